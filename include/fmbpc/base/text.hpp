@@ -1,0 +1,17 @@
+// Small helpers for messages and files: lists of names, numbers that survive a round trip.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace fpc {
+
+/// "a, b, c"
+std::string join(const std::vector<std::string>& words, const std::string& separator = ", ");
+/// Shortest decimal text that reads back to the same double.
+std::string exactText(double value);
+/// The text with every ${NAME} replaced by the environment variable NAME.
+/// @throws InputError naming `where` if a variable is not set or a brace is not closed.
+std::string expandEnvironment(const std::string& text, const std::string& where);
+
+}  // namespace fpc

@@ -1,0 +1,33 @@
+// Files and tables of a run: trajectory.csv, summary.json, the table a person reads.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fmbpc/analysis/performance.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/loop/record.hpp"
+
+namespace fpc {
+
+struct Summary {
+  std::string loop;
+  std::uint32_t steps{};  ///< number of actions
+  double wall_s{};
+  std::vector<std::string> output_names, input_names;
+  std::vector<OutputIndices> outputs;
+  std::vector<InputIndices> inputs;
+  std::uint64_t input_violations{}, move_violations{}, output_violations{}, actuator_clips{};
+  bool has_clp{};
+  std::uint64_t clp_solves{}, clp_infeasible{};
+  double clp_median_us{}, clp_p99_us{};
+  std::vector<std::uint64_t> sources;  ///< count of actions per ActionSource (index = value)
+};
+
+Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s);
+std::string toJson(const Summary& summary);    ///< keys of README, one object
+std::string toTable(const std::vector<Summary>& summaries);
+/// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot be written.
+void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary, const std::string& folder);
+
+}  // namespace fpc

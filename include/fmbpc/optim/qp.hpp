@@ -1,0 +1,69 @@
+// Dense convex quadratic programmes of the size a controller meets, solved by a dual active-set method
+// (Goldfarb and Idnani 1983) with warm start and no allocation after construction.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/types.hpp"
+
+namespace fpc {
+
+/// min 1/2 x'Hx + g'x  subject to  x_lower <= x <= x_upper,  a_lower <= A x <= a_upper.
+/// Infinite bounds are absent; equal bounds are equalities.
+/// Symbols: H n n symmetric positive definite, A m n
+struct QpProblem {
+  Matrix H;
+  Vector g;
+  Vector x_lower, x_upper;
+  Matrix A;
+  Vector a_lower, a_upper;
+
+  QpProblem() = default;
+  /// H = I, g = 0, A = 0, all bounds infinite.
+  QpProblem(Eigen::Index n, Eigen::Index m);
+};
+
+struct QpSettings {
+  int max_iterations{500};
+  double feasibility_tolerance{1e-10};  ///< relative to the row's norm and the size of x
+  void validate() const;                ///< @throws InputError naming the field
+};
+
+/// Multipliers: stationarity is H x + g = y_x + A' y_a, where y >= 0 on an active lower bound and <= 0 on an upper one.
+struct QpResult {
+  SolveStatus status{SolveStatus::kNumericalError};
+  Vector x;    ///< n
+  Vector y_x;  ///< n, multipliers of the bounds
+  Vector y_a;  ///< m, multipliers of the rows
+  int iterations{};
+  int active{};           ///< number of active constraints
+  double kkt_residual{};  ///< the largest of scaled stationarity, feasibility, sign and complementarity errors
+  bool usable() const { return status == SolveStatus::kSolved; }
+};
+
+/// Scaled KKT residual of a point (independent of how it was found).
+double kktResidual(const QpProblem& problem, VectorRef x, VectorRef y_x, VectorRef y_a);
+
+class QpSolver {
+ public:
+  /// Room for problems up to n unknowns and m rows; solve() does not allocate for these sizes.
+  QpSolver(Eigen::Index n, Eigen::Index m, const QpSettings& settings = {});
+  ~QpSolver();
+  QpSolver(QpSolver&&) noexcept;
+  QpSolver& operator=(QpSolver&&) noexcept;
+
+  /// Solves; with warm = true starts from the active set of the previous solve of the same size.
+  /// Non-finite or wrongly sized data, or lower > upper, give kInvalidProblem; an H that is not positive definite
+  /// kNumericalError; never throws.
+  const QpResult& solve(const QpProblem& problem, bool warm = true);
+  void forget();  ///< the next solve is cold
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> work_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,68 @@
+// The contract between a plant and everything that simulates it: sizes, names, equations. One plant = one .cpp.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/types.hpp"
+
+namespace fpc {
+
+/// A named quantity with its unit, usual value and physical range.
+struct Quantity {
+  std::string name;
+  std::string unit;
+  double nominal{};
+  double lower{};
+  double upper{};
+};
+
+/// A piece of equipment: position [m] of its frame in the parent frame.
+struct EquipmentFrame {
+  std::string name;
+  std::string parent;
+  double x{}, y{}, z{};
+};
+
+/// What a plant is, before it moves.
+struct PlantDescription {
+  std::string name;
+  std::string title;        ///< one line: what it is, source
+  double time_unit_s{1.0};  ///< derivatives are per this many seconds
+  std::vector<Quantity> states;
+  std::vector<Quantity> inputs;
+  std::vector<Quantity> disturbances;
+  std::vector<std::string> outputs;          ///< default measured outputs: names of states
+  std::vector<Quantity> parameters;          ///< what a loop file may override under plant.parameters
+  std::vector<EquipmentFrame> frames;        ///< the first one is the plant's own frame
+  std::map<std::string, std::string> output_frames;  ///< state name -> frame of its analyser
+};
+
+/// dx/dt = f(x, u, d), measured outputs are states.
+class Plant {
+ public:
+  virtual ~Plant() = default;
+  virtual const PlantDescription& description() const = 0;
+  /// dxdt [unit of the state per time unit]; must be finite for finite arguments inside the ranges.
+  virtual void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const = 0;
+};
+
+/// Parameter values by name; absent names keep the description's nominal values.
+using PlantParameters = std::map<std::string, double>;
+using PlantFactory = std::function<std::unique_ptr<Plant>(const PlantParameters&)>;
+
+/// Called by the registration line of each plant.
+bool registerPlant(const std::string& name, PlantFactory factory);
+/// @throws InputError with the known names, or naming an unknown parameter.
+std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters = {});
+std::vector<std::string> plantNames();
+
+/// The description's parameters with `parameters` written over them, in the description's order.
+/// @throws InputError on an unknown name, a non-finite value or one outside [lower, upper].
+Vector parameterValues(const PlantDescription& description, const PlantParameters& parameters);
+
+}  // namespace fpc

@@ -1,0 +1,103 @@
+// A plant that answers actions with measurements: equations, disturbances, actuator, sensors, injected faults.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "fmbpc/base/command_table.hpp"
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/base/sample_clock.hpp"
+#include "fmbpc/plant/actuator.hpp"
+#include "fmbpc/plant/disturbance.hpp"
+#include "fmbpc/plant/integrator.hpp"
+#include "fmbpc/plant/plant.hpp"
+
+namespace fpc {
+
+/// A command of the loop file, at a time after the start.
+struct ScheduledCommand {
+  double time_h{};
+  Command command;
+};
+
+struct SimulationParams {
+  std::string plant;
+  PlantParameters parameters;
+  Vector initial_state;                           ///< n_states
+  std::vector<std::string> outputs;               ///< measured states, in this order
+  std::vector<double> output_delay_s;             ///< transport delay of each measured output (0: none)
+  std::vector<std::string> measured_disturbances; ///< subset of the plant's, in PlantInfo order
+  IntegratorParams integrator;
+  ActuatorParams actuator;
+  Vector disturbance_nominal;                     ///< n_d
+  DisturbanceRecord disturbance;                  ///< may be empty: nominal for ever
+  std::vector<ScheduledCommand> disturbance_commands;
+  Vector noise_std;                               ///< n_y, standard deviation of white measurement noise
+  std::uint64_t noise_seed{1};
+  double sample_time_s{1.0};
+  double start_time_s{1.0};
+  std::uint32_t samples{};                        ///< N; 0 is endless
+};
+
+/// Owns the state of a simulated plant. Deterministic: same params, commands and actions give the same bits.
+class Simulation {
+ public:
+  /// @throws InputError naming the field.
+  explicit Simulation(SimulationParams params);
+
+  const PlantInfo& info() const { return info_; }
+  const PlantDescription& description() const { return plant_->description(); }
+  const SampleClock& clock() const { return clock_; }
+
+  /// Back to sample 0 under a new run_id; releases all commands but the scheduled ones.
+  const Measurement& reset(std::uint64_t run_id);
+  const Measurement& measurement() const { return measurement_; }  ///< sample k, until advance()
+  const PlantState& state() const { return state_; }
+
+  /// True if the action answers the present sample; anything else must be dropped (and counted) by the caller.
+  bool answers(const StepHeader& header) const;
+  /// Applies u(k) and moves to sample k+1.
+  const Measurement& advance(VectorRef input);
+  /// Moves on without an action (realtime only): hold, then fallback.
+  const Measurement& advanceWithoutAction();
+
+  /// Names that commands may use: the disturbances, "input/NAME" (what the valve really does), "output/NAME"
+  /// (what the sensor shows).
+  const std::vector<std::string>& commandNames() const { return commands_.names(); }
+  /// A person's command; returns the step from which it acts (stamp 0: the next sample to be measured).
+  /// @throws InputError; nothing is taken then.
+  std::uint32_t command(const Command& command);
+  /// Commands that took effect with the present sample.
+  const std::vector<CommandEffect>& effects() const { return effects_; }
+
+  /// Last integration problem in words, empty if none; the state is then held over that sample.
+  const std::string& trouble() const { return trouble_; }
+  /// Replaces the transport delay of one output (from the tf tree), before the first advance().
+  void setOutputDelay(std::size_t output, double seconds);
+
+ private:
+  void measure();
+  const Measurement& integrate();
+
+  SimulationParams params_;
+  std::unique_ptr<Plant> plant_;
+  SampleClock clock_;
+  Actuator actuator_;
+  Integrator integrator_;
+  CommandTable commands_;
+  PlantInfo info_;
+  Measurement measurement_;
+  PlantState state_;
+  std::vector<CommandEffect> effects_;
+  std::mt19937_64 noise_;
+  std::string trouble_;
+  std::vector<int> output_state_;             // index of the state behind each output
+  std::vector<int> measured_disturbance_;     // index into the plant's disturbances
+  std::vector<std::vector<double>> history_;  // past outputs for transport delays
+  Vector x_, u_effective_, d_;
+};
+
+}  // namespace fpc

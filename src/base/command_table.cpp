@@ -1,0 +1,71 @@
+#include "fmbpc/base/command_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+
+CommandTable::CommandTable(std::vector<std::string> names)
+    : names_(std::move(names)), active_(names_.size()) {}
+
+std::size_t CommandTable::indexOf(const std::string& name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  require(found != names_.end(), "name '" + name + "'", "one of " + join(names_));
+  return static_cast<std::size_t>(found - names_.begin());
+}
+
+void CommandTable::accept(const Command& command, std::uint32_t step) {
+  const bool release = command.mode == CommandMode::kRelease;
+  require(release || command.mode == CommandMode::kOverride || command.mode == CommandMode::kOffset,
+          "mode", "1 (override), 2 (offset) or 3 (release)");
+  require(!command.name.empty(), "name", "at least one name");
+  require((release && command.value.empty()) || command.value.size() == command.name.size(), "value",
+          "as many values as names");
+  for (const auto& name : command.name) indexOf(name);
+  for (const double value : command.value)
+    require(std::isfinite(value), "value", "finite numbers");
+  pending_.push_back({step, command});
+  std::stable_sort(pending_.begin(), pending_.end(),
+                   [](const Pending& a, const Pending& b) { return a.step < b.step; });
+}
+
+const std::vector<Command>& CommandTable::advance(std::uint32_t step) {
+  effects_.clear();
+  auto it = pending_.begin();
+  for (; it != pending_.end() && it->step <= step; ++it) {
+    const Command& command = it->command;
+    for (std::size_t i = 0; i < command.name.size(); ++i) {
+      ActiveCommand& entry = active_[indexOf(command.name[i])];
+      if (command.mode == CommandMode::kRelease)
+        entry = {};
+      else
+        entry = {true, command.mode, command.value[i]};
+    }
+    effects_.push_back(command);
+  }
+  pending_.erase(pending_.begin(), it);
+  return effects_;
+}
+
+double CommandTable::apply(std::size_t index, double nominal) const {
+  const ActiveCommand& entry = active_[index];
+  if (!entry.active) return nominal;
+  return entry.mode == CommandMode::kOverride ? entry.value : nominal + entry.value;
+}
+
+void CommandTable::apply(Eigen::Ref<Vector> values) const {
+  for (std::size_t i = 0; i < active_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    values[row] = apply(i, values[row]);
+  }
+}
+
+void CommandTable::clear() {
+  active_.assign(names_.size(), {});
+  pending_.clear();
+}
+
+}  // namespace fpc

@@ -1,0 +1,30 @@
+#include "fmbpc/base/sample_clock.hpp"
+
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+}  // namespace
+
+SampleClock::SampleClock(double sample_time_s, double start_time_s)
+    : sample_time_s_(sample_time_s),
+      sample_ns_(nanoseconds(sample_time_s)),
+      start_ns_(nanoseconds(start_time_s)) {
+  require(sample_ns_ > 0, "sampling.sample_time_s", "at least 1e-9 s");
+  require(start_ns_ > 0, "sampling.start_time_s", "a time > 0 (0 is special to rosbag and tf2)");
+}
+
+std::uint32_t SampleClock::firstStepAt(std::int64_t time_ns) const {
+  if (time_ns <= start_ns_) return 0;
+  const std::int64_t elapsed = time_ns - start_ns_;
+  return static_cast<std::uint32_t>((elapsed + sample_ns_ - 1) / sample_ns_);
+}
+
+double SampleClock::hoursAt(std::uint32_t step) const {
+  return static_cast<double>(step * sample_ns_) * 1e-9 / 3600.0;
+}
+
+}  // namespace fpc

@@ -1,0 +1,213 @@
+#include "base/yaml_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+namespace {
+
+std::string describe(const Range& range) {
+  std::string words = "a number";
+  if (std::isfinite(range.lower)) words += (range.lower_open ? " > " : " >= ") + exactText(range.lower);
+  if (std::isfinite(range.upper)) words += (std::isfinite(range.lower) ? " and <= " : " <= ") + exactText(range.upper);
+  return words;
+}
+
+bool inside(double value, const Range& range) {
+  if (std::isnan(value)) return false;
+  if (std::isinf(value)) return value > 0 ? range.upper == value : range.lower == value && !range.lower_open;
+  return (range.lower_open ? value > range.lower : value >= range.lower) && value <= range.upper;
+}
+
+std::string scalarText(const YAML::Node& node) {
+  return node.IsScalar() ? "'" + node.Scalar() + "'" : (node.IsNull() ? "nothing" : "a list or mapping");
+}
+
+}  // namespace
+
+YamlSection YamlSection::load(const std::string& file) {
+  std::ifstream stream(file);
+  require(stream.good(), file, "a readable file");
+  std::stringstream text;
+  text << stream.rdbuf();
+  return parse(text.str(), file);
+}
+
+YamlSection YamlSection::parse(const std::string& text, const std::string& name) {
+  try {
+    return {YAML::Load(text), name, ""};
+  } catch (const YAML::Exception& e) {
+    throw InputError(name + ":" + std::to_string(e.mark.line + 1) + ": expected valid YAML: " + e.msg);
+  }
+}
+
+YamlSection::YamlSection(YAML::Node node, std::string file, std::string path)
+    : node_(std::move(node)),
+      file_(std::move(file)),
+      path_(std::move(path)),
+      read_(std::make_shared<std::set<std::string>>()) {
+  if (!node_.IsDefined() || node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
+  require(node_.IsMap(), file_ + ": " + (path_.empty() ? "top level" : path_), "a mapping of keys to values");
+  std::set<std::string> seen;
+  for (const auto& entry : node_)
+    require(seen.insert(entry.first.Scalar()).second, where(entry.first.Scalar()), "the key only once");
+}
+
+std::string YamlSection::where(const std::string& key) const {
+  const YAML::Node& map = node_;
+  const YAML::Node child = map[key];
+  const int line = child.IsDefined() ? child.Mark().line : map.Mark().line;
+  const std::string path = path_.empty() ? key : path_ + "." + key;
+  return file_ + (line >= 0 ? ":" + std::to_string(line + 1) : "") + ": " + path;
+}
+
+void YamlSection::fail(const std::string& key, const std::string& expected) const {
+  const YAML::Node& map = node_;
+  const YAML::Node child = map[key];
+  throw InputError(where(key) + ": expected " + expected + (child.IsDefined() ? ", got " + scalarText(child) : ""));
+}
+
+bool YamlSection::has(const std::string& key) const {
+  const YAML::Node& map = node_;
+  return map[key].IsDefined();
+}
+
+YAML::Node YamlSection::raw(const std::string& key) const {
+  markRead(key);
+  const YAML::Node& map = node_;
+  return map[key];
+}
+
+double YamlSection::toNumber(const YAML::Node& node, const std::string& key, const Range& range) const {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  const bool parsed = node.IsScalar() && YAML::convert<double>::decode(node, value);
+  if (!parsed || !inside(value, range))
+    throw InputError(where(key) + ": expected " + describe(range) + ", got " + scalarText(node));
+  return value;
+}
+
+void YamlSection::number(const std::string& key, double& value, Range range) {
+  const YAML::Node node = raw(key);
+  if (node.IsDefined()) value = toNumber(node, key, range);
+}
+
+void YamlSection::integer(const std::string& key, int& value, int lower, int upper) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return;
+  int read = 0;
+  if (!node.IsScalar() || !YAML::convert<int>::decode(node, read) || read < lower || read > upper)
+    fail(key, "an integer >= " + std::to_string(lower) +
+                  (upper < std::numeric_limits<int>::max() ? " and <= " + std::to_string(upper) : ""));
+  value = read;
+}
+
+void YamlSection::seed(const std::string& key, std::uint64_t& value) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return;
+  if (!node.IsScalar() || node.Scalar().find('-') != std::string::npos ||
+      !YAML::convert<std::uint64_t>::decode(node, value))
+    fail(key, "an integer >= 0");
+}
+
+void YamlSection::boolean(const std::string& key, bool& value) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return;
+  if (!node.IsScalar() || !YAML::convert<bool>::decode(node, value)) fail(key, "true or false");
+}
+
+void YamlSection::text(const std::string& key, std::string& value) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return;
+  if (!node.IsScalar()) fail(key, "a text");
+  value = node.Scalar();
+}
+
+void YamlSection::oneOf(const std::string& key, std::string& value, const std::vector<std::string>& choices) {
+  text(key, value);
+  if (std::find(choices.begin(), choices.end(), value) == choices.end()) fail(key, "one of " + join(choices));
+}
+
+void YamlSection::names(const std::string& key, std::vector<std::string>& value) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return;
+  if (!node.IsSequence()) fail(key, "a list of names");
+  value.clear();
+  for (const auto& item : node) {
+    if (!item.IsScalar()) fail(key, "a list of names");
+    value.push_back(item.Scalar());
+  }
+}
+
+void YamlSection::numbers(const std::string& key, std::vector<double>& value, Range range) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return;
+  if (!node.IsSequence()) fail(key, "a list of numbers");
+  value.clear();
+  for (const auto& item : node) value.push_back(toNumber(item, key, range));
+}
+
+void YamlSection::vector(const std::string& key, Vector& value, Eigen::Index n, Range range) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return;
+  if (node.IsScalar()) {
+    value = Vector::Constant(n, toNumber(node, key, range));
+    return;
+  }
+  if (!node.IsSequence() || static_cast<Eigen::Index>(node.size()) != n)
+    fail(key, "a list of " + std::to_string(n) + " numbers");
+  value.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) value[i] = toNumber(node[static_cast<std::size_t>(i)], key, range);
+}
+
+void YamlSection::byName(const std::string& key, Vector& value, const std::vector<std::string>& names, Range range) {
+  const YAML::Node node = raw(key);
+  if (!node.IsDefined()) return;
+  if (!node.IsMap()) return vector(key, value, static_cast<Eigen::Index>(names.size()), range);
+  for (const auto& entry : node) {
+    const auto found = std::find(names.begin(), names.end(), entry.first.Scalar());
+    if (found == names.end()) throw InputError(where(key) + "." + entry.first.Scalar() + ": expected one of " + join(names));
+    value[found - names.begin()] = toNumber(entry.second, key, range);
+  }
+}
+
+YamlSection YamlSection::section(const std::string& key) {
+  const YAML::Node node = raw(key);
+  return {node.IsDefined() ? node : YAML::Node(YAML::NodeType::Map), file_, path_.empty() ? key : path_ + "." + key};
+}
+
+std::vector<YamlSection> YamlSection::list(const std::string& key) {
+  const YAML::Node node = raw(key);
+  std::vector<YamlSection> sections;
+  if (!node.IsDefined()) return sections;
+  if (!node.IsSequence()) fail(key, "a list of mappings");
+  for (std::size_t i = 0; i < node.size(); ++i)
+    sections.emplace_back(node[i], file_, (path_.empty() ? key : path_ + "." + key) + "[" + std::to_string(i) + "]");
+  return sections;
+}
+
+std::vector<std::string> YamlSection::keys() const {
+  std::vector<std::string> all;
+  for (const auto& entry : node_) all.push_back(entry.first.Scalar());
+  return all;
+}
+
+std::vector<std::string> YamlSection::unreadKeys() const {
+  std::vector<std::string> unread;
+  for (const auto& key : keys())
+    if (read_->count(key) == 0) unread.push_back(key);
+  return unread;
+}
+
+void YamlSection::finish() const {
+  const auto unread = unreadKeys();
+  if (unread.empty()) return;
+  const std::vector<std::string> known(read_->begin(), read_->end());
+  throw InputError(where(unread.front()) + ": unknown key; expected one of " + join(known));
+}
+
+}  // namespace fpc

@@ -1,0 +1,69 @@
+// A YAML mapping in which typos cannot hide: every key is read once, over a default, and what is left is an error.
+// Private: yaml-cpp does not appear in public headers.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <limits>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "fmbpc/base/types.hpp"
+
+namespace fpc {
+
+/// Closed range of a number; open ends by excluding the bound.
+struct Range {
+  double lower{-std::numeric_limits<double>::infinity()};
+  double upper{std::numeric_limits<double>::infinity()};
+  bool lower_open{false};
+  static Range positive() { return {0.0, std::numeric_limits<double>::infinity(), true}; }
+  static Range notNegative() { return {0.0, std::numeric_limits<double>::infinity(), false}; }
+};
+
+/// One mapping of a YAML file. All readers leave `value` alone when the key is absent.
+class YamlSection {
+ public:
+  static YamlSection load(const std::string& file);
+  static YamlSection parse(const std::string& text, const std::string& name);
+  /// @throws InputError unless the node is a mapping (a null node is an empty one).
+  YamlSection(YAML::Node node, std::string file, std::string path);
+
+  bool has(const std::string& key) const;
+  void number(const std::string& key, double& value, Range range = {});
+  void integer(const std::string& key, int& value, int lower, int upper = std::numeric_limits<int>::max());
+  void seed(const std::string& key, std::uint64_t& value);
+  void boolean(const std::string& key, bool& value);
+  void text(const std::string& key, std::string& value);
+  void oneOf(const std::string& key, std::string& value, const std::vector<std::string>& choices);
+  void names(const std::string& key, std::vector<std::string>& value);
+  void numbers(const std::string& key, std::vector<double>& value, Range range = {});
+  /// n numbers; also accepts one number for all n. `.inf` and `-.inf` pass when the range allows them.
+  void vector(const std::string& key, Vector& value, Eigen::Index n, Range range = {});
+  /// A mapping name -> number over `names`: values of absent names stay. Also accepts a list of names.size() numbers.
+  void byName(const std::string& key, Vector& value, const std::vector<std::string>& names, Range range = {});
+  YamlSection section(const std::string& key);  ///< an absent key is an empty section
+  std::vector<YamlSection> list(const std::string& key);  ///< a list of mappings
+  std::vector<std::string> unreadKeys() const;
+  std::vector<std::string> keys() const;
+  void markRead(const std::string& key) const { read_->insert(key); }
+  /// @throws InputError naming the first key that nobody read, with what this section knows.
+  void finish() const;
+  /// "file:line: path.key"
+  std::string where(const std::string& key) const;
+  [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
+  YAML::Node raw(const std::string& key) const;  ///< marks the key as read
+  const std::string& file() const { return file_; }
+
+ private:
+  const YAML::Node& node() const { return node_; }
+  double toNumber(const YAML::Node& node, const std::string& key, const Range& range) const;
+
+  YAML::Node node_;
+  std::string file_, path_;
+  std::shared_ptr<std::set<std::string>> read_;
+};
+
+}  // namespace fpc
