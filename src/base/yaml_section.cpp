@@ -12,9 +12,12 @@ namespace fpc {
 namespace {
 
 std::string describe(const Range& range) {
-  std::string words = "a number";
-  if (std::isfinite(range.lower)) words += (range.lower_open ? " > " : " >= ") + exactText(range.lower);
-  if (std::isfinite(range.upper)) words += (std::isfinite(range.lower) ? " and <= " : " <= ") + exactText(range.upper);
+  constexpr double kLargest = std::numeric_limits<double>::max();
+  const bool has_lower = range.lower > -kLargest;
+  const bool has_upper = range.upper < kLargest;
+  std::string words = range.lower == -kLargest || range.upper == kLargest ? "a finite number" : "a number";
+  if (has_lower) words += (range.lower_open ? " > " : " >= ") + exactText(range.lower);
+  if (has_upper) words += (has_lower ? " and <= " : " <= ") + exactText(range.upper);
   return words;
 }
 
@@ -46,23 +49,35 @@ YamlSection YamlSection::parse(const std::string& text, const std::string& name)
   }
 }
 
-YamlSection::YamlSection(YAML::Node node, std::string file, std::string path)
+YamlSection::YamlSection(YAML::Node node, std::string file, std::string path, std::shared_ptr<YamlTrace> trace)
     : node_(std::move(node)),
       file_(std::move(file)),
       path_(std::move(path)),
-      read_(std::make_shared<std::set<std::string>>()) {
+      read_(std::make_shared<std::set<std::string>>()),
+      trace_(std::move(trace)) {
   if (!node_.IsDefined() || node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
-  require(node_.IsMap(), file_ + ": " + (path_.empty() ? "top level" : path_), "a mapping of keys to values");
+  const auto origin = trace_ ? trace_->origins.find(path_) : std::map<std::string, std::string>::iterator{};
+  const bool known = trace_ && origin != trace_->origins.end();
+  require(node_.IsMap(), (known ? origin->second : file_ + ": ") + (path_.empty() ? "top level" : path_),
+          "a mapping of keys to values");
   std::set<std::string> seen;
   for (const auto& entry : node_)
     require(seen.insert(entry.first.Scalar()).second, where(entry.first.Scalar()), "the key only once");
 }
 
 std::string YamlSection::where(const std::string& key) const {
+  const std::string path = pathOf(key);
+  if (trace_) {
+    for (std::string known = path; !known.empty(); known.erase(std::min(known.size(), known.find_last_of(".[")))) {
+      const auto origin = trace_->origins.find(known);
+      if (origin != trace_->origins.end()) return origin->second + path;
+      if (known.find_last_of(".[") == std::string::npos) break;
+    }
+    return file_ + ": " + path;
+  }
   const YAML::Node& map = node_;
   const YAML::Node child = map[key];
   const int line = child.IsDefined() ? child.Mark().line : map.Mark().line;
-  const std::string path = path_.empty() ? key : path_ + "." + key;
   return file_ + (line >= 0 ? ":" + std::to_string(line + 1) : "") + ": " + path;
 }
 
@@ -70,6 +85,11 @@ void YamlSection::fail(const std::string& key, const std::string& expected) cons
   const YAML::Node& map = node_;
   const YAML::Node child = map[key];
   throw InputError(where(key) + ": expected " + expected + (child.IsDefined() ? ", got " + scalarText(child) : ""));
+}
+
+void YamlSection::markRead(const std::string& key) const {
+  read_->insert(key);
+  if (trace_) trace_->asked.insert(pathOf(key));
 }
 
 bool YamlSection::has(const std::string& key) const {
@@ -177,7 +197,7 @@ void YamlSection::byName(const std::string& key, Vector& value, const std::vecto
 
 YamlSection YamlSection::section(const std::string& key) {
   const YAML::Node node = raw(key);
-  return {node.IsDefined() ? node : YAML::Node(YAML::NodeType::Map), file_, path_.empty() ? key : path_ + "." + key};
+  return {node.IsDefined() ? node : YAML::Node(YAML::NodeType::Map), file_, pathOf(key), trace_};
 }
 
 std::vector<YamlSection> YamlSection::list(const std::string& key) {
@@ -186,7 +206,7 @@ std::vector<YamlSection> YamlSection::list(const std::string& key) {
   if (!node.IsDefined()) return sections;
   if (!node.IsSequence()) fail(key, "a list of mappings");
   for (std::size_t i = 0; i < node.size(); ++i)
-    sections.emplace_back(node[i], file_, (path_.empty() ? key : path_ + "." + key) + "[" + std::to_string(i) + "]");
+    sections.emplace_back(node[i], file_, pathOf(key) + "[" + std::to_string(i) + "]", trace_);
   return sections;
 }
 

@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <limits>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -23,13 +24,20 @@ struct Range {
   static Range notNegative() { return {0.0, std::numeric_limits<double>::infinity(), false}; }
 };
 
+/// For a text merged from several files: where each path ("controller.loops[0].kp") was written, and which paths a
+/// reader asked for. Shared by all sections of the text.
+struct YamlTrace {
+  std::map<std::string, std::string> origins;  ///< path -> what stands before it in errors: "file:12: ", "--set "
+  std::set<std::string> asked;
+};
+
 /// One mapping of a YAML file. All readers leave `value` alone when the key is absent.
 class YamlSection {
  public:
   static YamlSection load(const std::string& file);
   static YamlSection parse(const std::string& text, const std::string& name);
   /// @throws InputError unless the node is a mapping (a null node is an empty one).
-  YamlSection(YAML::Node node, std::string file, std::string path);
+  YamlSection(YAML::Node node, std::string file, std::string path, std::shared_ptr<YamlTrace> trace = nullptr);
 
   bool has(const std::string& key) const;
   void number(const std::string& key, double& value, Range range = {});
@@ -48,7 +56,7 @@ class YamlSection {
   std::vector<YamlSection> list(const std::string& key);  ///< a list of mappings
   std::vector<std::string> unreadKeys() const;
   std::vector<std::string> keys() const;
-  void markRead(const std::string& key) const { read_->insert(key); }
+  void markRead(const std::string& key) const;
   /// @throws InputError naming the first key that nobody read, with what this section knows.
   void finish() const;
   /// "file:line: path.key"
@@ -59,11 +67,13 @@ class YamlSection {
 
  private:
   const YAML::Node& node() const { return node_; }
+  std::string pathOf(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
   double toNumber(const YAML::Node& node, const std::string& key, const Range& range) const;
 
   YAML::Node node_;
   std::string file_, path_;
   std::shared_ptr<std::set<std::string>> read_;
+  std::shared_ptr<YamlTrace> trace_;  // may be null
 };
 
 }  // namespace fpc

@@ -24,38 +24,62 @@ struct SetpointParams {
   Vector lower, upper;                 ///< n_y, clamp (infinite if absent)
   Vector rate_per_h;                   ///< n_y, largest change per hour (infinite if absent)
   std::vector<Command> commands;       ///< played like a person's, with time_ns = absolute stamps
+  /// @throws InputError naming the field.
   void validate(Eigen::Index n_y) const;
 };
 
+/// A step of the schedule acts from the first sample that is not before its time (to a microsecond).
+/// No allocation in advance() but when a command takes effect.
 class SetpointSource {
  public:
-  SetpointSource(SetpointParams params, std::vector<std::string> output_names, const SampleClock& clock);
+  /// @throws InputError naming the field, also of a command in the params.
+  SetpointSource(SetpointParams params, std::vector<std::string> output_names,
+                 const SampleClock& clock);
 
   /// Forgets memory of the rate limiter; commands in force stay.
   void reset();
   /// Releases all commands and replays those of the params (a new run).
   void restart();
-  /// The setpoint at `step`: schedule, commands, clamp, rate limit. Call once per sample, steps increasing.
+  /// Tells the time that the plant gives to a sample, in case its t0 is not the clock's: the stamps
+  /// of people's commands are then the plant's. The schedule goes by step.
+  void anchor(const StepHeader& sample);
+  /// The setpoint at `step`: schedule, commands, clamp, rate limit. Call once per sample, steps
+  /// increasing; over skipped steps everything catches up. The first value is not rate-limited.
   const Vector& advance(std::uint32_t step);
   const Vector& present() const { return present_; }
-  /// Preview: what the schedule (and the commands now in force) will ask at `step`, clamped; no memory touched.
+  /// Preview: what the schedule (and the commands now in force) will ask at `step`, clamped; no
+  /// memory touched, no allocation.
   void scheduled(std::uint32_t step, Eigen::Ref<Vector> value) const;
-  /// A person's command; returns the step from which it acts (stamp 0: the next sample).
+  /// A person's command; returns the step from which it acts (stamp 0: the next sample; before the
+  /// first sample this is 0, whatever step comes first).
+  /// @throws InputError (nothing is taken) on an unknown name, wrong lengths, value or mode.
   std::uint32_t command(const Command& command);
+  /// Puts a command back in force that was in force when this source was lost. Only before the first
+  /// sample: later the source knows better, ignores it and returns false. @throws as command().
+  bool restore(const Command& command);
+  /// What is in force now, as commands for restore(): at most one override and one offset.
+  std::vector<Command> inForce() const;
+  /// Commands that took effect with the present sample; run_id is left to the caller.
   const std::vector<CommandEffect>& effects() const { return effects_; }
   const CommandTable& table() const { return commands_; }
 
  private:
   void scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const;
+  std::uint32_t scheduleStep(double time_h) const;
+  std::uint32_t stampStep(std::int64_t time_ns) const;
+  void acceptWaiting(std::uint32_t step);
+  void playParams();
 
   SetpointParams params_;
   SampleClock clock_;
   CommandTable commands_;
   std::vector<std::uint32_t> schedule_steps_;
+  std::vector<Command> waiting_;  // people's commands before the first sample: its step is unknown
   std::vector<CommandEffect> effects_;
-  Vector present_;
+  Vector present_, asked_;
+  std::int64_t clock_shift_ns_{};
   std::uint32_t next_step_{};
-  bool fresh_{true};
+  bool started_{false}, fresh_{true};
 };
 
 }  // namespace fpc

@@ -1,0 +1,189 @@
+#include "fmbpc/control/setpoint_source.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+// Finite stand-in for "no limit", so that no product or sum of limits becomes NaN.
+constexpr double kHuge = std::numeric_limits<double>::max();
+constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
+
+Vector filled(const Vector& given, Eigen::Index n_y, double absent) {
+  if (given.size() == 0) return Vector::Constant(n_y, absent);
+  return given.cwiseMax(-kHuge).cwiseMin(kHuge);
+}
+
+void validateOptional(const Vector& values, Eigen::Index n_y, const std::string& key) {
+  require(values.size() == 0 || values.size() == n_y, key, std::to_string(n_y) + " numbers");
+  require(!values.hasNaN(), key, "numbers, not NaN");
+}
+
+// NaN cells take the value before them, so that every entry says all outputs.
+void fillSchedule(SetpointParams& params) {
+  const Vector* before = &params.initial;
+  for (SetpointStep& entry : params.schedule) {
+    for (Eigen::Index i = 0; i < entry.value.size(); ++i)
+      if (std::isnan(entry.value[i])) entry.value[i] = (*before)[i];
+    before = &entry.value;
+  }
+}
+
+}  // namespace
+
+void SetpointParams::validate(Eigen::Index n_y) const {
+  const std::string count = std::to_string(n_y) + " numbers";
+  require(initial.size() == n_y, "setpoint.initial", count);
+  require(initial.allFinite(), "setpoint.initial", "finite numbers");
+  double previous = 0.0;
+  for (std::size_t i = 0; i < schedule.size(); ++i) {
+    const std::string key = "setpoint.schedule[" + std::to_string(i) + "].";
+    require(std::isfinite(schedule[i].time_h) && schedule[i].time_h >= 0.0, key + "time_h",
+            "a time >= 0 h");
+    require(schedule[i].time_h >= previous, key + "time_h", "a time not before the previous one");
+    require(schedule[i].value.size() == n_y, key + "value", count);
+    require(!schedule[i].value.array().isInf().any(), key + "value", "finite numbers");
+    previous = schedule[i].time_h;
+  }
+  validateOptional(lower, n_y, "setpoint.lower");
+  validateOptional(upper, n_y, "setpoint.upper");
+  validateOptional(rate_per_h, n_y, "setpoint.rate_per_h");
+  if (lower.size() == n_y && upper.size() == n_y)
+    require((lower.array() <= upper.array()).all(), "setpoint.upper", "numbers not below lower");
+  require((rate_per_h.array() > 0.0).all(), "setpoint.rate_per_h", "numbers > 0");
+}
+
+SetpointSource::SetpointSource(SetpointParams params, std::vector<std::string> output_names,
+                               const SampleClock& clock)
+    : params_(std::move(params)), clock_(clock), commands_(std::move(output_names)) {
+  const auto n_y = static_cast<Eigen::Index>(commands_.names().size());
+  params_.validate(n_y);
+  params_.lower = filled(params_.lower, n_y, -kHuge);
+  params_.upper = filled(params_.upper, n_y, kHuge);
+  params_.rate_per_h = filled(params_.rate_per_h, n_y, kHuge);
+  fillSchedule(params_);
+  for (const SetpointStep& entry : params_.schedule)
+    schedule_steps_.push_back(scheduleStep(entry.time_h));
+  asked_ = params_.initial.cwiseMax(params_.lower).cwiseMin(params_.upper);
+  present_ = asked_;
+  playParams();
+}
+
+// A time of the schedule is decimal, a sample time is a whole number of nanoseconds: what is meant to
+// be the same time may differ by rounding, and must not cost a sample.
+std::uint32_t SetpointSource::scheduleStep(double time_h) const {
+  const std::int64_t start_ns = clock_.startNanoseconds();
+  const std::int64_t sample_ns = clock_.timeAt(1) - start_ns;
+  const double after_start_ns = time_h * 3600e9;
+  if (after_start_ns >= static_cast<double>(std::numeric_limits<std::int64_t>::max() / 2))
+    return kNever;
+  const std::int64_t slack_ns = std::min<std::int64_t>(1000, sample_ns / 2);
+  return clock_.firstStepAt(start_ns + std::llround(after_start_ns) - slack_ns);
+}
+
+std::uint32_t SetpointSource::stampStep(std::int64_t time_ns) const {
+  if (time_ns <= 0) return next_step_;
+  return std::max(next_step_, clock_.firstStepAt(time_ns - clock_shift_ns_));
+}
+
+void SetpointSource::playParams() {
+  for (const Command& command : params_.commands)
+    commands_.accept(command, command.time_ns <= 0 ? 0 : clock_.firstStepAt(command.time_ns));
+}
+
+void SetpointSource::reset() { fresh_ = true; }
+
+void SetpointSource::restart() {
+  commands_.clear();
+  waiting_.clear();
+  effects_.clear();
+  playParams();
+  next_step_ = 0;
+  started_ = false;
+  fresh_ = true;
+}
+
+void SetpointSource::anchor(const StepHeader& sample) {
+  clock_shift_ns_ = sample.time_ns - clock_.timeAt(sample.step);
+}
+
+std::uint32_t SetpointSource::command(const Command& command) {
+  if (started_) {
+    const std::uint32_t step = stampStep(command.time_ns);
+    commands_.accept(command, step);
+    return step;
+  }
+  CommandTable(commands_.names()).accept(command, 0);  // throws what is to be thrown
+  waiting_.push_back(command);
+  return stampStep(command.time_ns);
+}
+
+bool SetpointSource::restore(const Command& command) {
+  if (started_) return false;
+  this->command(command);
+  return true;
+}
+
+void SetpointSource::acceptWaiting(std::uint32_t step) {
+  next_step_ = step;
+  started_ = true;
+  for (const Command& command : waiting_)
+    commands_.accept(command,
+                     command.time_ns <= 0 ? step : clock_.firstStepAt(command.time_ns - clock_shift_ns_));
+  waiting_.clear();
+}
+
+const Vector& SetpointSource::advance(std::uint32_t step) {
+  if (!started_) acceptWaiting(step);
+  effects_.clear();
+  for (const Command& command : commands_.advance(step))
+    effects_.push_back({{clock_.timeAt(step) + clock_shift_ns_, 0, step}, command});
+  scheduled(step, asked_);
+  const std::uint32_t passed = step >= next_step_ ? step - next_step_ + 1 : 0;
+  const double hours = clock_.hoursAt(passed);
+  for (Eigen::Index i = 0; i < asked_.size(); ++i) {
+    const double change = params_.rate_per_h[i] * hours;
+    present_[i] = fresh_ ? asked_[i]
+                         : std::clamp(asked_[i], present_[i] - change, present_[i] + change);
+  }
+  next_step_ = step + 1;
+  fresh_ = false;
+  return present_;
+}
+
+void SetpointSource::scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const {
+  const auto after = std::upper_bound(schedule_steps_.begin(), schedule_steps_.end(), step);
+  if (after == schedule_steps_.begin())
+    value = params_.initial;
+  else
+    value = params_.schedule[static_cast<std::size_t>(after - schedule_steps_.begin()) - 1].value;
+}
+
+void SetpointSource::scheduled(std::uint32_t step, Eigen::Ref<Vector> value) const {
+  scheduleAt(step, value);
+  commands_.apply(value);
+  value = value.cwiseMax(params_.lower).cwiseMin(params_.upper);
+}
+
+std::vector<Command> SetpointSource::inForce() const {
+  Command overrides{0, {}, {}, CommandMode::kOverride};
+  Command offsets{0, {}, {}, CommandMode::kOffset};
+  for (std::size_t i = 0; i < commands_.active().size(); ++i) {
+    const ActiveCommand& entry = commands_.active()[i];
+    if (!entry.active) continue;
+    Command& list = entry.mode == CommandMode::kOverride ? overrides : offsets;
+    list.name.push_back(commands_.names()[i]);
+    list.value.push_back(entry.value);
+  }
+  std::vector<Command> commands;
+  if (!overrides.name.empty()) commands.push_back(overrides);
+  if (!offsets.name.empty()) commands.push_back(offsets);
+  return commands;
+}
+
+}  // namespace fpc
