@@ -66,6 +66,7 @@ void CommandTable::apply(Eigen::Ref<Vector> values) const {
 void CommandTable::clear() {
   active_.assign(names_.size(), {});
   pending_.clear();
+  effects_.clear();
 }
 
 }  // namespace fpc

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -16,6 +16,7 @@ namespace fpc {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+const std::string kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets put it before UTF-8
 
 std::string trimmed(const std::string& cell) {
   const auto from = cell.find_first_not_of(" \t\r\"");
@@ -34,25 +35,34 @@ std::vector<std::string> cellsOf(const std::string& line) {
   return cells;
 }
 
+int daysIn(int month, int year) {
+  if (month == 2) return year % 4 == 0 && (year % 100 != 0 || year % 400 == 0) ? 29 : 28;
+  return month == 4 || month == 6 || month == 9 || month == 11 ? 30 : 31;
+}
+
 /// Days since 1970-01-01 of a civil date (Hinnant 2013, days_from_civil).
 std::optional<double> dayOf(const std::string& cell) {
   int y = 0, m = 0, d = 0, used = 0;
   if (std::sscanf(cell.c_str(), "%4d-%2d-%2d%n", &y, &m, &d, &used) != 3) return {};
-  if (used != static_cast<int>(cell.size()) || m < 1 || m > 12 || d < 1 || d > 31) return {};
+  if (used != static_cast<int>(cell.size()) || y < 0 || m < 1 || m > 12) return {};
+  if (d < 1 || d > daysIn(m, y)) return {};
   y -= m <= 2;
   const int era = (y >= 0 ? y : y - 399) / 400;
   const int year_of_era = y - era * 400;
   const int day_of_year = (153 * (m + (m > 2 ? -3 : 9)) + 2) / 5 + d - 1;
-  return era * 146097.0 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year - 719468;
+  return era * 146097.0 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year -
+         719468;
 }
 
+/// A finite number, or NaN for a missing one ("nan" is how other programs write an empty cell).
 std::optional<double> numberOf(const std::string& cell) {
-  if (cell.empty()) return kMissing;
+  if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NAN") return kMissing;
+  const bool plus = cell.front() == '+' && cell.size() > 1 && cell[1] != '-';
   double value = 0.0;
-  const char* begin = cell.data() + (cell.front() == '+');
-  const auto result = std::from_chars(begin, cell.data() + cell.size(), value);
-  if (result.ec == std::errc{} && result.ptr == cell.data() + cell.size()) return value;
-  return dayOf(cell);
+  const char* end = cell.data() + cell.size();
+  const auto result = std::from_chars(cell.data() + plus, end, value);
+  if (result.ec != std::errc{} || result.ptr != end || !std::isfinite(value)) return {};
+  return value;
 }
 
 void readHeader(const std::string& line, CsvTable& table) {
@@ -63,45 +73,56 @@ void readHeader(const std::string& line, CsvTable& table) {
     table.names.push_back(trimmed(has_unit ? cell.substr(0, open) : cell));
     table.units.push_back(has_unit ? cell.substr(open + 1, cell.size() - open - 2) : "");
     require(!table.names.back().empty(), table.file + ":1", "a name for every column");
-    require(seen.insert(table.names.back()).second, table.file + ":1: column '" + table.names.back() + "'",
-            "every column name only once");
+    require(seen.insert(table.names.back()).second,
+            table.file + ":1: column '" + table.names.back() + "'", "every column name only once");
   }
 }
 
-struct BadCell {
-  std::size_t line{};
-  std::string text;
+/// What a column has been seen to hold: the line of the first cell of each kind, 0 if there is
+/// none.
+struct ColumnKind {
+  std::size_t number{}, date{}, other{};
+  std::string text;  ///< of the first other cell
 };
 
-/// Reads the rows below the header; remembers the first cell per column that is no number.
-std::vector<std::vector<double>> readRows(std::istream& stream, const CsvTable& table, std::vector<BadCell>& bad) {
+double readCell(const std::string& cell, std::size_t line, ColumnKind& kind) {
+  if (const auto value = numberOf(cell)) {
+    if (kind.number == 0 && !std::isnan(*value)) kind.number = line;
+    return *value;
+  }
+  if (const auto day = dayOf(cell)) {
+    if (kind.date == 0) kind.date = line;
+    return *day;
+  }
+  if (kind.other == 0) kind = {kind.number, kind.date, line, cell};
+  return kMissing;
+}
+
+std::vector<std::vector<double>> readRows(std::istream& stream, const CsvTable& table,
+                                          std::vector<ColumnKind>& kinds) {
   std::vector<std::vector<double>> rows;
   std::string line;
   for (std::size_t number = 2; std::getline(stream, line); ++number) {
     if (trimmed(line).empty()) continue;
     const auto cells = cellsOf(line);
-    const std::string at = table.file + ":" + std::to_string(number);
-    require(cells.size() == table.names.size(), at,
+    require(cells.size() == table.names.size(), table.file + ":" + std::to_string(number),
             std::to_string(table.names.size()) + " cells, got " + std::to_string(cells.size()));
-    std::vector<double> row(cells.size(), kMissing);
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto value = numberOf(cells[i]);
-      if (value) row[i] = *value;
-      else if (bad[i].line == 0) bad[i] = {number, cells[i]};
-    }
+    std::vector<double> row(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) row[i] = readCell(cells[i], number, kinds[i]);
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
-void checkBadCells(const CsvTable& table, const std::vector<BadCell>& bad) {
-  for (std::size_t i = 0; i < bad.size(); ++i) {
-    if (bad[i].line == 0) continue;
-    const auto column = table.values.col(static_cast<Eigen::Index>(i));
-    const bool has_numbers = (column.array() == column.array()).any();
-    require(!has_numbers, table.file + ":" + std::to_string(bad[i].line) + ": column '" + table.names[i] + "'",
-            "a number, got '" + bad[i].text + "'");
-  }
+void checkColumn(const CsvTable& table, const std::string& name, const ColumnKind& kind) {
+  const auto at = [&](std::size_t line) {
+    return table.file + ":" + std::to_string(line) + ": column '" + name + "'";
+  };
+  const bool has_values = kind.number != 0 || kind.date != 0;
+  require(kind.other == 0 || !has_values, at(kind.other),
+          (kind.number != 0 ? "a finite number, got '" : "a date, got '") + kind.text + "'");
+  require(kind.number == 0 || kind.date == 0, at(std::max(kind.number, kind.date)),
+          "either dates or numbers in one column");
 }
 
 }  // namespace
@@ -112,35 +133,49 @@ Eigen::Index CsvTable::column(const std::string& name) const {
   return found - names.begin();
 }
 
+Eigen::Index CsvTable::missing(Eigen::Index column) const {
+  return values.col(column).array().isNaN().count();
+}
+
 CsvTable readCsv(const std::string& file) {
   std::ifstream stream(file);
   require(stream.good(), file, "a readable file");
   CsvTable table;
   table.file = file;
   std::string line;
-  require(static_cast<bool>(std::getline(stream, line)) && !trimmed(line).empty(), file + ":1", "a header line");
+  std::getline(stream, line);
+  if (line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
+  require(!trimmed(line).empty(), file + ":1", "a header line");
   readHeader(line, table);
-  std::vector<BadCell> bad(table.names.size());
-  const auto rows = readRows(stream, table, bad);
+  std::vector<ColumnKind> kinds(table.names.size());
+  const auto rows = readRows(stream, table, kinds);
   require(!rows.empty(), file, "at least one row below the header");
-  table.values.resize(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(table.names.size()));
+  table.values.resize(static_cast<Eigen::Index>(rows.size()),
+                      static_cast<Eigen::Index>(table.names.size()));
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (std::size_t c = 0; c < table.names.size(); ++c)
       table.values(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = rows[r][c];
-  checkBadCells(table, bad);
+  for (std::size_t c = 0; c < table.names.size(); ++c) {
+    checkColumn(table, table.names[c], kinds[c]);
+    table.is_date.push_back(kinds[c].date != 0);
+  }
   return table;
 }
 
 void writeCsv(const CsvTable& table, const std::string& file) {
   std::ofstream stream(file);
   require(stream.good(), file, "a writable file");
-  for (std::size_t i = 0; i < table.names.size(); ++i)
-    stream << (i ? "," : "") << table.names[i] << (table.units[i].empty() ? "" : "[" + table.units[i] + "]");
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const std::string unit = i < table.units.size() ? table.units[i] : "";
+    stream << (i ? "," : "") << table.names[i] << (unit.empty() ? "" : "[" + unit + "]");
+  }
   stream << "\n";
+  // A lone empty cell would be an empty line, which readers skip.
+  const std::string missing = table.names.size() == 1 ? "nan" : "";
   for (Eigen::Index r = 0; r < table.values.rows(); ++r) {
     for (Eigen::Index c = 0; c < table.values.cols(); ++c) {
       const double value = table.values(r, c);
-      stream << (c ? "," : "") << (std::isnan(value) ? "" : exactText(value));
+      stream << (c ? "," : "") << (std::isnan(value) ? missing : exactText(value));
     }
     stream << "\n";
   }

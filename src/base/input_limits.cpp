@@ -23,9 +23,10 @@ void InputLimits::validate(Eigen::Index n_u) const {
 bool InputLimits::clip(Eigen::Ref<Vector> input, VectorRef previous) const {
   bool move_gave_way = false;
   for (Eigen::Index i = 0; i < input.size(); ++i) {
-    const double wanted = std::clamp(input[i], previous[i] - move[i], previous[i] + move[i]);
-    input[i] = std::clamp(wanted, lower[i], upper[i]);
-    move_gave_way = move_gave_way || std::abs(input[i] - previous[i]) > move[i] * (1.0 + 1e-12);
+    if (std::isnan(input[i])) input[i] = std::isnan(previous[i]) ? lower[i] : previous[i];
+    const double from = previous[i] - move[i], to = previous[i] + move[i];
+    input[i] = std::clamp(std::clamp(input[i], from, to), lower[i], upper[i]);
+    move_gave_way = move_gave_way || input[i] < from || input[i] > to;
   }
   return move_gave_way;
 }

@@ -1,12 +1,21 @@
 #include "fmbpc/base/sample_clock.hpp"
 
+#include <algorithm>
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
-std::int64_t nanoseconds(double seconds) { return std::llround(seconds * 1e9); }
+constexpr double kLongest_s = 9e9;  // what fits into 63 bits of nanoseconds
+
+/// Nanoseconds, or 0 for what is no usable time (llround() of it would be undefined).
+std::int64_t nanoseconds(double seconds) {
+  return seconds > 0.0 && seconds <= kLongest_s ? std::llround(seconds * 1e9) : 0;
+}
 }  // namespace
 
 SampleClock::SampleClock(double sample_time_s, double start_time_s)
@@ -20,7 +29,9 @@ SampleClock::SampleClock(double sample_time_s, double start_time_s)
 std::uint32_t SampleClock::firstStepAt(std::int64_t time_ns) const {
   if (time_ns <= start_ns_) return 0;
   const std::int64_t elapsed = time_ns - start_ns_;
-  return static_cast<std::uint32_t>((elapsed + sample_ns_ - 1) / sample_ns_);
+  const std::int64_t step = elapsed / sample_ns_ + (elapsed % sample_ns_ != 0);
+  constexpr std::int64_t kLast = std::numeric_limits<std::uint32_t>::max();
+  return static_cast<std::uint32_t>(std::min(step, kLast));
 }
 
 double SampleClock::hoursAt(std::uint32_t step) const {

@@ -11,7 +11,7 @@ namespace fpc {
 
 std::string join(const std::vector<std::string>& words, const std::string& separator) {
   std::string all;
-  for (const auto& word : words) all += (all.empty() ? "" : separator) + word;
+  for (std::size_t i = 0; i < words.size(); ++i) all += (i == 0 ? "" : separator) + words[i];
   return all;
 }
 

@@ -33,6 +33,17 @@ std::string scalarText(const YAML::Node& node) {
 
 }  // namespace
 
+std::string YamlTrace::originOf(const std::string& path, const std::string& file) const {
+  std::string known = path;
+  while (true) {
+    const auto origin = origins.find(known);
+    if (origin != origins.end()) return origin->second;
+    const auto cut = known.find_last_of(".[");
+    if (cut == std::string::npos) return file + ": ";
+    known.erase(cut);
+  }
+}
+
 YamlSection YamlSection::load(const std::string& file) {
   std::ifstream stream(file);
   require(stream.good(), file, "a readable file");
@@ -56,9 +67,7 @@ YamlSection::YamlSection(YAML::Node node, std::string file, std::string path, st
       read_(std::make_shared<std::set<std::string>>()),
       trace_(std::move(trace)) {
   if (!node_.IsDefined() || node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
-  const auto origin = trace_ ? trace_->origins.find(path_) : std::map<std::string, std::string>::iterator{};
-  const bool known = trace_ && origin != trace_->origins.end();
-  require(node_.IsMap(), (known ? origin->second : file_ + ": ") + (path_.empty() ? "top level" : path_),
+  require(node_.IsMap(), (trace_ ? trace_->originOf(path_, file_) : file_ + ": ") + (path_.empty() ? "top level" : path_),
           "a mapping of keys to values");
   std::set<std::string> seen;
   for (const auto& entry : node_)
@@ -67,14 +76,7 @@ YamlSection::YamlSection(YAML::Node node, std::string file, std::string path, st
 
 std::string YamlSection::where(const std::string& key) const {
   const std::string path = pathOf(key);
-  if (trace_) {
-    for (std::string known = path; !known.empty(); known.erase(std::min(known.size(), known.find_last_of(".[")))) {
-      const auto origin = trace_->origins.find(known);
-      if (origin != trace_->origins.end()) return origin->second + path;
-      if (known.find_last_of(".[") == std::string::npos) break;
-    }
-    return file_ + ": " + path;
-  }
+  if (trace_) return trace_->originOf(path, file_) + path;
   const YAML::Node& map = node_;
   const YAML::Node child = map[key];
   const int line = child.IsDefined() ? child.Mark().line : map.Mark().line;
@@ -188,11 +190,20 @@ void YamlSection::byName(const std::string& key, Vector& value, const std::vecto
   const YAML::Node node = raw(key);
   if (!node.IsDefined()) return;
   if (!node.IsMap()) return vector(key, value, static_cast<Eigen::Index>(names.size()), range);
+  const auto n = static_cast<Eigen::Index>(names.size());
+  const bool has_defaults = value.size() == n;
+  Vector merged = has_defaults ? value : Vector::Zero(n);
+  std::set<std::string> seen;
   for (const auto& entry : node) {
-    const auto found = std::find(names.begin(), names.end(), entry.first.Scalar());
-    if (found == names.end()) throw InputError(where(key) + "." + entry.first.Scalar() + ": expected one of " + join(names));
-    value[found - names.begin()] = toNumber(entry.second, key, range);
+    const std::string name = entry.first.Scalar();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) throw InputError(where(key) + "." + name + ": expected one of " + join(names));
+    require(seen.insert(name).second, where(key) + "." + name, "the key only once");
+    merged[found - names.begin()] = toNumber(entry.second, key, range);
   }
+  for (const auto& name : names)
+    if (!has_defaults && seen.count(name) == 0) fail(key, "a number for " + name);
+  value = merged;
 }
 
 YamlSection YamlSection::section(const std::string& key) {

@@ -15,13 +15,13 @@
 
 namespace fpc {
 
-/// Closed range of a number; open ends by excluding the bound.
+/// Closed range of a number; open ends by excluding the bound. Infinite numbers pass only when a bound is infinite.
 struct Range {
   double lower{-std::numeric_limits<double>::infinity()};
   double upper{std::numeric_limits<double>::infinity()};
   bool lower_open{false};
-  static Range positive() { return {0.0, std::numeric_limits<double>::infinity(), true}; }
-  static Range notNegative() { return {0.0, std::numeric_limits<double>::infinity(), false}; }
+  static Range positive() { return {0.0, std::numeric_limits<double>::max(), true}; }      ///< and finite
+  static Range notNegative() { return {0.0, std::numeric_limits<double>::max(), false}; }  ///< and finite
 };
 
 /// For a text merged from several files: where each path ("controller.loops[0].kp") was written, and which paths a
@@ -29,6 +29,8 @@ struct Range {
 struct YamlTrace {
   std::map<std::string, std::string> origins;  ///< path -> what stands before it in errors: "file:12: ", "--set "
   std::set<std::string> asked;
+  /// Origin of the path, or of the nearest part of it that is known.
+  std::string originOf(const std::string& path, const std::string& file) const;
 };
 
 /// One mapping of a YAML file. All readers leave `value` alone when the key is absent.
@@ -50,7 +52,8 @@ class YamlSection {
   void numbers(const std::string& key, std::vector<double>& value, Range range = {});
   /// n numbers; also accepts one number for all n. `.inf` and `-.inf` pass when the range allows them.
   void vector(const std::string& key, Vector& value, Eigen::Index n, Range range = {});
-  /// A mapping name -> number over `names`: values of absent names stay. Also accepts a list of names.size() numbers.
+  /// A mapping name -> number over `names`: values of absent names stay; if `value` has another size than `names`, no
+  /// name may be absent. Also accepts a list of names.size() numbers.
   void byName(const std::string& key, Vector& value, const std::vector<std::string>& names, Range range = {});
   YamlSection section(const std::string& key);  ///< an absent key is an empty section
   std::vector<YamlSection> list(const std::string& key);  ///< a list of mappings

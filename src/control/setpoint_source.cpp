@@ -10,13 +10,12 @@
 namespace fpc {
 namespace {
 
-// Finite stand-in for "no limit", so that no product or sum of limits becomes NaN.
+// Finite stand-in for "no clamp", so that the sum of two huge wishes is not passed on as infinite.
 constexpr double kHuge = std::numeric_limits<double>::max();
-constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
+constexpr double kLatest = 4e18;  // [ns], so that t0 can be added to it
 
 Vector filled(const Vector& given, Eigen::Index n_y, double absent) {
-  if (given.size() == 0) return Vector::Constant(n_y, absent);
-  return given.cwiseMax(-kHuge).cwiseMin(kHuge);
+  return given.size() == 0 ? Vector(Vector::Constant(n_y, absent)) : given;
 }
 
 void validateOptional(const Vector& values, Eigen::Index n_y, const std::string& key) {
@@ -63,9 +62,9 @@ SetpointSource::SetpointSource(SetpointParams params, std::vector<std::string> o
     : params_(std::move(params)), clock_(clock), commands_(std::move(output_names)) {
   const auto n_y = static_cast<Eigen::Index>(commands_.names().size());
   params_.validate(n_y);
-  params_.lower = filled(params_.lower, n_y, -kHuge);
-  params_.upper = filled(params_.upper, n_y, kHuge);
-  params_.rate_per_h = filled(params_.rate_per_h, n_y, kHuge);
+  params_.lower = filled(params_.lower, n_y, -kHuge).cwiseMax(-kHuge);
+  params_.upper = filled(params_.upper, n_y, kHuge).cwiseMin(kHuge);
+  params_.rate_per_h = filled(params_.rate_per_h, n_y, std::numeric_limits<double>::infinity());
   fillSchedule(params_);
   for (const SetpointStep& entry : params_.schedule)
     schedule_steps_.push_back(scheduleStep(entry.time_h));
@@ -74,16 +73,17 @@ SetpointSource::SetpointSource(SetpointParams params, std::vector<std::string> o
   playParams();
 }
 
-// A time of the schedule is decimal, a sample time is a whole number of nanoseconds: what is meant to
-// be the same time may differ by rounding, and must not cost a sample.
+// A time of the loop file is decimal, a sample time is a whole number of nanoseconds: what is meant
+// to be the same time may differ by rounding, and must not cost a sample.
+std::uint32_t SetpointSource::fileStep(std::int64_t time_ns) const {
+  const std::int64_t sample_ns = clock_.timeAt(1) - clock_.startNanoseconds();
+  return clock_.firstStepAt(time_ns - std::min<std::int64_t>(1000, sample_ns / 2));
+}
+
 std::uint32_t SetpointSource::scheduleStep(double time_h) const {
-  const std::int64_t start_ns = clock_.startNanoseconds();
-  const std::int64_t sample_ns = clock_.timeAt(1) - start_ns;
   const double after_start_ns = time_h * 3600e9;
-  if (after_start_ns >= static_cast<double>(std::numeric_limits<std::int64_t>::max() / 2))
-    return kNever;
-  const std::int64_t slack_ns = std::min<std::int64_t>(1000, sample_ns / 2);
-  return clock_.firstStepAt(start_ns + std::llround(after_start_ns) - slack_ns);
+  if (after_start_ns >= kLatest) return std::numeric_limits<std::uint32_t>::max();
+  return fileStep(clock_.startNanoseconds() + std::llround(after_start_ns));
 }
 
 std::uint32_t SetpointSource::stampStep(std::int64_t time_ns) const {
@@ -93,7 +93,7 @@ std::uint32_t SetpointSource::stampStep(std::int64_t time_ns) const {
 
 void SetpointSource::playParams() {
   for (const Command& command : params_.commands)
-    commands_.accept(command, command.time_ns <= 0 ? 0 : clock_.firstStepAt(command.time_ns));
+    commands_.accept(command, command.time_ns <= 0 ? 0 : fileStep(command.time_ns));
 }
 
 void SetpointSource::reset() { fresh_ = true; }
@@ -133,8 +133,9 @@ void SetpointSource::acceptWaiting(std::uint32_t step) {
   next_step_ = step;
   started_ = true;
   for (const Command& command : waiting_)
-    commands_.accept(command,
-                     command.time_ns <= 0 ? step : clock_.firstStepAt(command.time_ns - clock_shift_ns_));
+    commands_.accept(command, command.time_ns <= 0
+                                  ? step
+                                  : clock_.firstStepAt(command.time_ns - clock_shift_ns_));
   waiting_.clear();
 }
 
@@ -148,8 +149,9 @@ const Vector& SetpointSource::advance(std::uint32_t step) {
   const double hours = clock_.hoursAt(passed);
   for (Eigen::Index i = 0; i < asked_.size(); ++i) {
     const double change = params_.rate_per_h[i] * hours;
-    present_[i] = fresh_ ? asked_[i]
-                         : std::clamp(asked_[i], present_[i] - change, present_[i] + change);
+    const bool free = fresh_ || std::isinf(params_.rate_per_h[i]);
+    present_[i] =
+        free ? asked_[i] : std::clamp(asked_[i], present_[i] - change, present_[i] + change);
   }
   next_step_ = step + 1;
   fresh_ = false;

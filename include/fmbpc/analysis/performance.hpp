@@ -1,7 +1,6 @@
-// Performance indices of a run. Sums over the samples k = 0..N; ISE is the sum of (setpoint - y)^2, without Ts.
+// Performance indices of a run. Sums over the samples k = 0..N; ISE is the sum of (setpoint - y)^2,
+// without Ts.
 #pragma once
-
-#include <vector>
 
 #include "fmbpc/base/types.hpp"
 
@@ -22,7 +21,12 @@ struct InputIndices {
   double min{}, max{}, mean_abs_move{};
 };
 
-OutputIndices outputIndices(VectorRef y, VectorRef setpoint, VectorRef reference, double sample_time_h);
+/// y, setpoint, reference: k = 0..N. A sample that is not finite makes the sums NaN: nothing is
+/// left out in silence. No samples give zeros.
+/// @throws InputError if the sizes differ or sample_time_h is not a number > 0.
+OutputIndices outputIndices(VectorRef y, VectorRef setpoint, VectorRef reference,
+                            double sample_time_h);
+/// applied: u(0)..u(N-1); before: u(-1). Without samples the input stays at `before`.
 InputIndices inputIndices(VectorRef applied, double before);
 
 }  // namespace fpc

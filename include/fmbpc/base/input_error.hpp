@@ -17,4 +17,9 @@ inline void require(bool condition, const std::string& where, const std::string&
   if (!condition) throw InputError(where + ": expected " + expected);
 }
 
+/// The same for literals: builds no string, and so allocates nothing, while the condition holds.
+inline void require(bool condition, const char* where, const char* expected) {
+  if (!condition) throw InputError(std::string(where) + ": expected " + expected);
+}
+
 }  // namespace fpc

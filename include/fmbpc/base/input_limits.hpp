@@ -15,7 +15,7 @@ struct InputLimits {
   /// @throws InputError naming the field: sizes, lower <= upper, move > 0, no NaN.
   void validate(Eigen::Index n_u) const;
   /// Clips to the move limit, then to the bounds: where they conflict the bound wins.
-  /// Returns true if the move limit had to give way.
+  /// A NaN element becomes the previous input. Returns true if the move limit had to give way.
   bool clip(Eigen::Ref<Vector> input, VectorRef previous) const;
 };
 

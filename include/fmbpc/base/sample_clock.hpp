@@ -10,11 +10,11 @@ namespace fpc {
 /// Turns steps into times [ns] and back.
 class SampleClock {
  public:
-  /// @throws InputError unless sample_time_s > 0 and start_time_s > 0 (0 is special to rosbag and tf2).
+  /// @throws InputError unless both are > 0 and at most 9e9 s (start 0 is special to rosbag and tf2).
   SampleClock(double sample_time_s, double start_time_s);
 
   std::int64_t timeAt(std::uint32_t step) const { return start_ns_ + step * sample_ns_; }
-  /// First step whose time is not before `time_ns` (0 for times before the start).
+  /// First step whose time is not before `time_ns` (0 before the start, 2^32 - 1 at most).
   std::uint32_t firstStepAt(std::int64_t time_ns) const;
   double hoursAt(std::uint32_t step) const;  ///< time since sample 0 [h]
   double sampleTime() const { return sample_time_s_; }

@@ -1,4 +1,5 @@
-// What every controller is: a law with memory that turns a measurement and a setpoint into an input inside its limits.
+// What every controller is: a law with memory that turns a measurement and a setpoint into an input
+// inside its limits.
 #pragma once
 
 #include <memory>
@@ -13,15 +14,16 @@
 
 namespace fpc {
 
-/// Filled by step(); sized by the controller at its first reset, reused afterwards (no allocation per sample).
+/// Filled by step(); sized by the controller at its first step, reused afterwards (no allocation
+/// per sample).
 struct ControllerOutput {
-  Vector input;                    ///< n_u, inside bounds and move limit
+  Vector input;  ///< n_u, inside bounds and move limit
   ActionSource source{ActionSource::kHeld};
-  Vector reference;                ///< n_y, y_r(k)
-  bool predictive{false};          ///< `prediction` is valid
+  Vector reference;        ///< n_y, y_r(k)
+  bool predictive{false};  ///< `prediction` is valid
   PredictiveAction prediction;
-  bool ok{true};                   ///< false: no rule fired, nothing finite came out, ... (see remark)
-  const char* remark{""};          ///< words for diagnostics; a string literal
+  bool ok{true};           ///< false: no rule fired, nothing finite came out, ... (see remark)
+  const char* remark{""};  ///< words for diagnostics; a string literal
 };
 
 class Controller {
@@ -29,16 +31,16 @@ class Controller {
   virtual ~Controller() = default;
   /// Starts from a finite measurement, bumplessly: the next step() moves on from input_applied.
   virtual void reset(const Measurement& start) = 0;
-  /// u(k). `now` is finite and of the right sizes, `setpoint` already advanced to this step.
+  /// u(k). `now` is finite and of the right sizes, `setpoint` already advanced to this step. What
+  /// was really sent instead of the last proposal (manual, optimizer) is in now.input_applied.
   /// Works in fixed time without allocation; limits hold whatever happens inside.
-  virtual void step(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output) = 0;
-  /// The input that was really sent instead of the proposal (manual, optimizer): default does nothing, because
-  /// input_applied of the next measurement tells.
+  virtual void step(const Measurement& now, const SetpointSource& setpoint,
+                    ControllerOutput& output) = 0;
   virtual bool needsModel() const { return false; }
-  /// Takes a new model between two samples, bumplessly.
+  /// Takes a new model between two samples, bumplessly. A law without a model ignores it.
   /// @throws InputError if it does not fit; the old one stays.
   virtual void setModel(const TsModel& model);
-  /// Signals for plotting, "NAME" -> value, refreshed by step().
+  /// Signals for plotting, "NAME" -> value, refreshed by step(). Default: none.
   virtual const std::vector<std::pair<std::string, double>>& signals() const;
 };
 

@@ -1,44 +1,66 @@
 // PI control, one loop per input: the rival that must be beaten honestly.
+// Source: Vallejo 2019 section 5.2.2.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fmbpc/control/controller.hpp"
 
 namespace fpc {
 
-/// u = bias + kp e + ki int e dt, e = sign (setpoint - y). Gains in input units per output unit (and per hour).
+/// u = bias + kp e + ki int e dt, e = setpoint - y. Gains in input units per output unit (and per
+/// hour).
 struct PiLoop {
   int input{};   ///< index of the input it moves
   int output{};  ///< index of the output it follows
   double kp{};
   double ki_per_h{};
   double bias{};
-  bool reverse{false};        ///< e = y - setpoint
-  std::string anti_windup{"clamp"};  ///< none, clamp (conditional integration), tracking (back-calculation)
-  std::string start{"bias"};  ///< bias: integral starts at 0; bumpless: integral makes u(0) = input_applied
+  bool reverse{false};               ///< e = y - setpoint
+  std::string anti_windup{"clamp"};  ///< none, clamp or tracking
+  std::string start{"bias"};         ///< bias: integral starts at 0; bumpless: u(0) = input_applied
 };
 
 struct PiParams {
   std::vector<PiLoop> loops;
+  /// @throws InputError naming the field: indices, finite gains, words, two loops on one input.
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
 };
 
-/// Inputs without a loop stay where they are. The integral uses forward Euler: I is updated after u(k) is computed.
-/// A reset in the middle of a run (manual and back, gap, new model) is always bumpless.
+/// Inputs without a loop stay where they are. The integral uses forward Euler: it is updated after
+/// u(k) is computed. A reset in the middle of a run (manual and back, gap) is always bumpless: the
+/// integral, or without one (ki = 0) a bias that decays by a tenth per sample, makes the first u
+/// equal input_applied.
+/// Anti-windup looks at bounds and move limit: `clamp` does not integrate while u is beyond them
+/// and the error pushes it further; `tracking` feeds the clipped part back with the time kp / ki.
 class PiController final : public Controller {
  public:
+  /// @throws InputError naming the field.
   PiController(PiParams params, InputLimits limits, PlantInfo plant);
   void reset(const Measurement& start) override;
-  void step(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output) override;
+  void step(const Measurement& now, const SetpointSource& setpoint,
+            ControllerOutput& output) override;
+  /// "INPUT_integral" of each loop: the integral's share of u, in units of the input.
+  const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
 
  private:
+  struct LoopState {
+    double integral{};  // ki int e dt, in units of the input
+    double error{};     // of this sample
+    double wanted{};    // u before the limits
+    bool transfer_pending{false};
+  };
+  void propose(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
+               LoopState& state) const;
+  void integrate(const PiLoop& loop, const Measurement& now, double sent, LoopState& state) const;
+
   PiParams params_;
   InputLimits limits_;
   double sample_time_h_;
-  std::vector<double> integral_;
-  std::vector<bool> bumpless_pending_;
+  std::vector<LoopState> states_;  // one per loop
+  std::vector<std::pair<std::string, double>> signals_;
 };
 
 }  // namespace fpc

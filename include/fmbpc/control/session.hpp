@@ -1,5 +1,6 @@
-// A controller or an optimizer behind the rules of the ring: repeats get the cached answer, gaps reset, NaN holds.
-// The same objects serve the nodes and the in-process loop, which is why both give the same numbers.
+// A controller or an optimizer behind the rules of the ring: repeats get the cached answer, gaps
+// reset, NaN holds. The same objects serve the nodes and the in-process loop, which is why both
+// give the same numbers.
 #pragma once
 
 #include <memory>
@@ -17,7 +18,7 @@ namespace fpc {
 struct ControllerAnswer {
   ControlAction base;
   Tracking tracking;
-  bool has_action{false};      ///< false for the final sample
+  bool has_action{false};  ///< false for the final sample
   bool has_prediction{false};
   PredictiveAction prediction;
   std::vector<CommandEffect> effects;  ///< setpoint commands that took effect with this sample
@@ -25,28 +26,45 @@ struct ControllerAnswer {
 
 /// What became of a message.
 enum class Receipt {
-  kAnswered,   ///< a new answer
-  kRepeated,   ///< the cached answer again
-  kDropped,    ///< old, of another run, or of wrong size: counted
-  kNotReady,   ///< no model yet
+  kAnswered,  ///< a new answer
+  kRepeated,  ///< the cached answer again
+  kDropped,   ///< old, of another run, or of wrong size: counted
+  kNotReady,  ///< no model yet
 };
 
+/// Rules, in this order, for each measurement:
+/// - wrong sizes: dropped and counted; no model yet: not ready, the plant will send it again;
+/// - old, of an earlier run, repeated: as StepGate says;
+/// - not finite: answered with the last applied input, source held; the controller skips it and is
+///   reset, bumplessly, at the next finite sample;
+/// - manual: the person's input inside the limits; the controller is reset when auto is back;
+/// - first sample, gap, new run: the controller is reset; otherwise it just steps.
+/// Setpoints advance with every sample. No allocation in receive() after the first answer, but for
+/// the words of a reset and for setpoint commands that take effect.
 class ControllerSession {
  public:
-  ControllerSession(std::unique_ptr<Controller> controller, SetpointParams setpoint, InputLimits limits,
-                    Vector initial_input, PlantInfo plant);
+  /// @throws InputError naming the field: sizes of limits, setpoint and initial_input (n_u, u(-1)).
+  ControllerSession(std::unique_ptr<Controller> controller, SetpointParams setpoint,
+                    InputLimits limits, Vector initial_input, PlantInfo plant);
 
   bool ready() const;  ///< has its model, if it needs one
-  /// `resetReason()` says in words why the last answered sample reset the controller (empty if it did not).
+  /// `resetReason()` says in words why the last answered sample reset the controller (empty if it
+  /// did not).
   Receipt receive(const Measurement& measurement);
   const ControllerAnswer& answer() const { return answer_; }
   const ControllerOutput& output() const { return output_; }
   const std::string& resetReason() const { return reset_reason_; }
 
-  void setModel(const TsModel& model);      ///< acts from the next sample; @throws InputError, old model kept
+  /// Acts from the next sample. @throws InputError if it does not fit; the old model stays.
+  void setModel(const TsModel& model);
+  /// See SetpointSource: a person's command, and one that was in force before this session began.
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
-  void manual(bool on);                     ///< acts from the next sample, bumpless both ways
-  void manualInput(VectorRef input);        ///< clipped to the limits; @throws InputError on size or NaN
+  bool restore(const Command& setpoint) { return setpoint_.restore(setpoint); }
+  void manual(bool on);  ///< acts from the next sample, bumpless both ways
+  /// Acts from the next sample; until it is called, manual keeps the last applied input.
+  /// Clipped to the bounds at once and to the move limit sample by sample.
+  /// @throws InputError on size or NaN, and in auto.
+  void manualInput(VectorRef input);
   bool isManual() const { return manual_; }
 
   const ArrivalCounts& counts() const { return gate_.counts(); }
@@ -55,8 +73,11 @@ class ControllerSession {
 
  private:
   bool sizesFit(const Measurement& m) const;
-  void process(const Measurement& m, Arrival arrival);
-  void hold(const Measurement& m);
+  void begin(const Measurement& m, Arrival arrival, const StepHeader& before);
+  void process(const Measurement& m);
+  void runLaw(const Measurement& m);
+  void hold(const Measurement& m, const char* remark);
+  void sendManual(const Measurement& m);
 
   std::unique_ptr<Controller> controller_;
   SetpointSource setpoint_;
@@ -66,14 +87,20 @@ class ControllerSession {
   ControllerOutput output_;
   ControllerAnswer answer_;
   std::string reset_reason_;
+  const char* interruption_{nullptr};  // why the controller did not run at the last sample
+  std::string arrival_reason_;         // first sample, gap, new run: in words
   Vector last_input_, manual_input_;
-  bool manual_{false}, reset_pending_{true}, has_model_{false};
+  bool manual_{false}, manual_given_{false}, has_model_{false};
 };
 
-/// The optimizer behind the ring: pairs base action and prediction of the same sample, passes held and manual
-/// actions through.
+/// The optimizer behind the ring: pairs base action and prediction of the same sample. Base actions
+/// of source base or clipped need a prediction; all others (held, manual, fallback) pass through
+/// with status not run. A prediction of wrong size, or not finite, is counted and the base action
+/// goes out inside the bounds with status invalid problem, so that the loop never stalls. A base
+/// action of wrong size, or not finite, is dropped and counted.
 class OptimizerSession {
  public:
+  /// @throws InputError naming the field.
   OptimizerSession(ClpParams params, InputLimits limits, PlantInfo plant);
 
   /// Both return true when the answer for that sample has just been made (or is repeated).
@@ -82,20 +109,32 @@ class OptimizerSession {
   const ControlAction& action() const { return action_; }
   const SolverReport& report() const { return report_; }
   const ArrivalCounts& counts() const { return gate_.counts(); }
+  /// Why the last answer has status invalid problem, in words; otherwise empty.
+  const std::string& trouble() const { return trouble_; }
 
  private:
+  bool admit(const StepHeader& header, bool already_here);
+  bool isAnswered(const StepHeader& header) const;
+  bool refuse(const StepHeader& header, bool fits);
+  bool baseIsRefused() const;
   bool tryAnswer();
   bool sizesFit(const PredictiveAction& p) const;
+  void optimize();
+  void passThrough(SolveStatus status);
 
   ClpParams params_;
   InputLimits limits_;
   PlantInfo plant_;
-  std::unique_ptr<ClosedLoopParadigm> optimizer_;  // made at the first prediction, when n_x is known
+  std::unique_ptr<ClosedLoopParadigm> optimizer_;  // made at a prediction, when n_x is known
   StepGate gate_;
   ControlAction base_, action_;
   PredictiveAction prediction_;
   SolverReport report_;
-  bool have_base_{false}, have_prediction_{false};
+  StepHeader refused_;  // of the last prediction that could not be used
+  const char* refused_reason_{nullptr};
+  std::string trouble_;
+  Eigen::Index n_x_{};
+  bool have_base_{false}, have_prediction_{false}, answered_{false};
 };
 
 }  // namespace fpc

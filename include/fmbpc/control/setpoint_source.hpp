@@ -28,7 +28,8 @@ struct SetpointParams {
   void validate(Eigen::Index n_y) const;
 };
 
-/// A step of the schedule acts from the first sample that is not before its time (to a microsecond).
+/// A step of the schedule acts from the first sample that is not before its time (to a microsecond,
+/// as do the commands of the params).
 /// No allocation in advance() but when a command takes effect.
 class SetpointSource {
  public:
@@ -54,8 +55,9 @@ class SetpointSource {
   /// first sample this is 0, whatever step comes first).
   /// @throws InputError (nothing is taken) on an unknown name, wrong lengths, value or mode.
   std::uint32_t command(const Command& command);
-  /// Puts a command back in force that was in force when this source was lost. Only before the first
-  /// sample: later the source knows better, ignores it and returns false. @throws as command().
+  /// Puts a command back in force that was in force when this source was lost. Only before the
+  /// first sample: later the source knows better, ignores it and returns false.
+  /// @throws InputError as command().
   bool restore(const Command& command);
   /// What is in force now, as commands for restore(): at most one override and one offset.
   std::vector<Command> inForce() const;
@@ -65,6 +67,7 @@ class SetpointSource {
 
  private:
   void scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const;
+  std::uint32_t fileStep(std::int64_t time_ns) const;
   std::uint32_t scheduleStep(double time_h) const;
   std::uint32_t stampStep(std::int64_t time_ns) const;
   void acceptWaiting(std::uint32_t step);

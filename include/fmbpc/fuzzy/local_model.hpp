@@ -9,9 +9,9 @@
 namespace fpc {
 
 /// xi(k+1) = A xi(k) + B u(k) + g,  y_m = C xi.  g = D d(k) + r (+ w_hat, added by the law).
-/// xi stacks, in this order: for each output its lags 0.., for each input u(k-1), u(k-2).., for each disturbance
-/// d(k-1), d(k-2)... Every input has at least u(k-1), so that moves can be weighed and limited.
-/// Source: Vallejo 2019 eqs. 10-17 (there u(k-1) is part of an extended input).
+/// xi stacks, in this order: for each output its lags 0.., for each input u(k-1), u(k-2).., for
+/// each disturbance d(k-1), d(k-2)... Every input has at least u(k-1), so that moves can be weighed
+/// and limited. Source: Vallejo 2019 eqs. 10-17 (there u(k-1) is part of an extended input).
 class LocalModel {
  public:
   /// `model` must be matched to the plant and validated. Keeps a copy.
@@ -19,25 +19,37 @@ class LocalModel {
 
   const TsModel& model() const { return model_; }
   Eigen::Index stateSize() const { return n_x_; }
-  Eigen::Index outputState(Eigen::Index output, int lag = 0) const;      ///< row of y(k-lag)
-  Eigen::Index inputState(Eigen::Index input, int lag) const;            ///< row of u(k-lag), lag >= 1
-  Eigen::Index disturbanceState(Eigen::Index disturbance, int lag) const;///< row of d(k-lag), lag >= 1
+  Eigen::Index outputState(Eigen::Index output, int lag = 0) const;  ///< row of y(k-lag)
+  Eigen::Index inputState(Eigen::Index input, int lag) const;        ///< row of u(k-lag), lag >= 1
+  Eigen::Index disturbanceState(Eigen::Index disturbance,
+                                int lag) const;  ///< row of d(k-lag), lag >= 1
 
   /// State of a process that has rested at these values.
-  void restState(VectorRef outputs, VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> state) const;
+  void restState(VectorRef outputs, VectorRef input, VectorRef disturbances,
+                 Eigen::Ref<Vector> state) const;
+  /// Moves a state of true values on by one sample: y(k+1) enters, u(k) and d(k) become the newest
+  /// past values.
+  void shiftState(VectorRef outputs, VectorRef input, VectorRef disturbances,
+                  Eigen::Ref<Vector> state) const;
   /// Blends the rules at the antecedent given by `state` (with u(k) replaced by u(k-1)) and d(k).
-  /// Fills affine(); no allocation. Returns false if in some output no rule fired (the nearest one is used).
+  /// Fills affine(); no allocation. Returns false if in some output no rule fired (the nearest one
+  /// is used). The matrices depend on the antecedent only: hand over measured outputs in `state` to
+  /// blend at the measurement.
   bool blend(VectorRef state, VectorRef disturbances);
-  /// The same with the outputs in the antecedents taken from `antecedent_state` (measured ones, say).
   const AffineModel& affine() const { return affine_; }
   const std::vector<FiringResult>& firing() const { return firing_; }
 
  private:
-  void blendOutput(Eigen::Index output, VectorRef state, VectorRef disturbances, bool& fired);
+  double antecedentValue(const Regressor& variable, VectorRef state, VectorRef disturbances) const;
+  bool blendOutput(Eigen::Index output, VectorRef state, VectorRef disturbances);
+  void addTerm(Eigen::Index output, const Regressor& regressor, double coefficient,
+               VectorRef disturbances);
+  void layOut();
   void fillShifts();
 
   TsModel model_;
   Eigen::Index n_x_{};
+  /// Of each signal: its first row, and how many rows it has.
   std::vector<Eigen::Index> output_offset_, input_offset_, disturbance_offset_;
   std::vector<int> output_lags_, input_lags_, disturbance_lags_;
   AffineModel affine_;

@@ -1,4 +1,5 @@
-// One-dimensional fuzzy sets, evaluated in the log domain so that far tails never underflow to an empty rule base.
+// One-dimensional fuzzy sets, evaluated in the log domain so that far tails never underflow to an
+// empty rule base.
 #pragma once
 
 #include <string>
@@ -7,14 +8,16 @@
 namespace fpc {
 
 enum class MembershipShape {
-  kExponential,  ///< p1..p4: exp(-7((z-p2)/(p2-p1))^2) below p2, 1 on [p2,p3], exp(-7((z-p3)/(p4-p3))^2) above
+  kExponential,  ///< p1..p4: exp(-7((z-p2)/(p2-p1))^2) below p2, 1 on [p2,p3],
+                 ///< exp(-7((z-p3)/(p4-p3))^2) above
   kGaussian,     ///< p1 centre, p2 width: exp(-(z-p1)^2 / (2 p2^2))
   kTriangular,   ///< p1..p3: feet and top; outside: 0
   kTrapezoidal,  ///< p1..p4: feet and shoulders
 };
 
 /// Names as in model files: exponential, gaussian, triangular, trapezoidal.
-MembershipShape membershipShape(const std::string& name);  ///< @throws InputError with the known names
+MembershipShape membershipShape(
+    const std::string& name);  ///< @throws InputError with the known names
 const std::string& name(MembershipShape shape);
 std::size_t parameterCount(MembershipShape shape);
 
@@ -25,8 +28,8 @@ struct Membership {
 
   /// log(mu(z)), -inf where mu is 0. Never NaN for finite z.
   double logDegree(double z) const;
-  /// How far z lies outside the support [in widths of the set, or in units for crisp ones]; 0 inside.
-  /// Orders rules when none fires.
+  /// How far z lies outside the support [in widths of the set, or in units for crisp ones]; 0
+  /// inside. Orders rules when none fires.
   double distance(double z) const;
   /// @throws InputError naming `where`: parameter count, order, finiteness, width > 0 for gaussian.
   void validate(const std::string& where) const;

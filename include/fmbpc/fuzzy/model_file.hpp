@@ -13,9 +13,10 @@ TsModel readModel(const std::string& file);
 TsModel parseModel(const std::string& text, const std::string& name);
 std::string writeModel(const TsModel& model);
 
-/// Reorders the model's names to the plant's (readers may then index by PlantInfo order). Signals the model does
-/// not use stay unused; plant outputs the model does not predict are not allowed.
-/// @throws InputError naming the signal that the plant lacks, a missing output, another sample time, another unit.
+/// Reorders the model's names to the plant's (readers may then index by PlantInfo order). Signals
+/// the model does not use stay unused; plant outputs the model does not predict are not allowed.
+/// @throws InputError naming the signal that the plant lacks, a missing output, another sample
+/// time, another unit.
 TsModel matchToPlant(const TsModel& model, const PlantInfo& plant);
 
 }  // namespace fpc

@@ -1,5 +1,5 @@
-// Takagi-Sugeno models: rules with fuzzy antecedents and affine consequents, any number of outputs, inputs,
-// disturbances, lags and delays.
+// Takagi-Sugeno models: rules with fuzzy antecedents and affine consequents, any number of outputs,
+// inputs, disturbances, lags and delays.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,9 @@ struct Regressor {
   SignalKind kind{SignalKind::kOutput};
   int index{};  ///< into the model's outputs, inputs or disturbances
   int lag{};
-  bool operator==(const Regressor& o) const { return kind == o.kind && index == o.index && lag == o.lag; }
+  bool operator==(const Regressor& o) const {
+    return kind == o.kind && index == o.index && lag == o.lag;
+  }
 };
 
 /// If every antecedent holds, then y(k+1) = coefficients . regressors + offset.
@@ -27,7 +29,7 @@ struct Rule {
   std::vector<Membership> antecedents;  ///< one per antecedent variable of the output
   Vector coefficients;                  ///< one per regressor of the output
   double offset{};
-  std::uint64_t data_count{};           ///< identification data behind it, 0 if unknown
+  std::uint64_t data_count{};  ///< identification data behind it, 0 if unknown
 };
 
 /// The submodel of one output.
@@ -37,17 +39,22 @@ struct OutputModel {
   std::vector<Rule> rules;
 };
 
-/// A model with names and units, as in its file. The order of names is the model's own, not PlantInfo's.
+/// A model with names and units, as in its file. The order of names is the model's own, not
+/// PlantInfo's.
 struct TsModel {
   std::string name;
   std::string source;  ///< provenance in words
   double sample_time_s{};
-  std::vector<SignalInfo> outputs, inputs, disturbances;  ///< lower/upper: range of the data, or infinite
-  std::vector<OutputModel> submodels;                     ///< one per output
+  std::vector<SignalInfo> outputs, inputs,
+      disturbances;                    ///< lower/upper: range of the data, or infinite
+  std::vector<OutputModel> submodels;  ///< one per output
 
-  /// @throws InputError naming the part: sizes, indices, lags, non-finite coefficients, no rules, repeated names.
+  /// @throws InputError naming the part: sizes, indices, lags, non-finite coefficients, no rules,
+  /// repeated names.
   void validate() const;
   int maxLag(SignalKind kind, int index) const;  ///< -1 if unused
+  const std::vector<SignalInfo>& signals(SignalKind kind) const;
+  std::string text(const Regressor& regressor) const;  ///< as in model files: "s(k)", "q_r(k-1)"
 };
 
 /// Firing weights of the rules of one output: >= 0, sum 1, for any finite antecedent values.
@@ -62,7 +69,8 @@ void firingWeights(const OutputModel& model, VectorRef antecedent_values, Firing
 struct RuleRemark {
   std::string output;
   std::size_t rule{};  ///< from 1
-  std::string text;    ///< "zero coefficients: rank-deficient fit", "pole 1.03: drifts in free run", ...
+  std::string
+      text;  ///< "zero coefficients: rank-deficient fit", "pole 1.03: drifts in free run", ...
 };
 std::vector<RuleRemark> reportModel(const TsModel& model);
 

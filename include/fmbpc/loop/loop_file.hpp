@@ -39,6 +39,14 @@ struct TfParams {
   std::vector<SampleLine> sample_lines;
 };
 
+/// Section `disturbance`: what acts on the plant besides the inputs. Read when the plant is made, not before:
+/// only the plant's machine needs the record.
+struct DisturbanceParams {
+  std::string source{"constant"};  ///< constant, pattern or csv
+  PatternParams pattern;
+  CsvDisturbanceParams csv;
+};
+
 /// Section `report`.
 struct ReportParams {
   std::string title;
@@ -50,7 +58,8 @@ struct LoopFile {
   std::string file;
   bool external_plant{false};  ///< plant.type external: a node of the user's speaks the ring
   PlantInfo plant_info;        ///< header of sample 0 with run_id 0
-  SimulationParams simulation; ///< for an external plant only sampling, limits and names are valid
+  SimulationParams simulation; ///< without the disturbance record; for an external plant only sampling, limits, names
+  DisturbanceParams disturbance;
   SetpointParams setpoint;
   bool has_model{false};
   std::string model_file;      ///< absolute
@@ -80,6 +89,7 @@ std::vector<std::string> loopNames();
 /// Merges `extends`, applies overrides, expands ${...} in `file:` keys and makes them absolute; validates by reading.
 /// The result is YAML text which parseLoop() reads. @throws InputError naming file, line, key and what was expected.
 std::string resolveLoop(const std::string& name_or_path, const Overrides& overrides = {});
+/// @throws InputError naming `name`, line, key and what was expected.
 LoopFile parseLoop(const std::string& text, const std::string& name);
 LoopFile readLoop(const std::string& name_or_path, const Overrides& overrides = {});
 

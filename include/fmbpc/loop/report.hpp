@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fmbpc/analysis/performance.hpp"
+#include "fmbpc/base/input_limits.hpp"
 #include "fmbpc/loop/loop_file.hpp"
 #include "fmbpc/loop/record.hpp"
 
@@ -12,6 +13,8 @@ namespace fpc {
 
 struct Summary {
   std::string loop;
+  std::string title;
+  bool complete{};        ///< the final sample came and nothing is missing
   std::uint32_t steps{};  ///< number of actions
   double wall_s{};
   std::vector<std::string> output_names, input_names;
@@ -20,8 +23,11 @@ struct Summary {
   std::uint64_t input_violations{}, move_violations{}, output_violations{}, actuator_clips{};
   bool has_clp{};
   std::uint64_t clp_solves{}, clp_infeasible{};
+  std::uint64_t clp_failed{};  ///< solves without a usable result for another reason
   double clp_median_us{}, clp_p99_us{};
   std::vector<std::uint64_t> sources;  ///< count of actions per ActionSource (index = value)
+  InputLimits limits;                  ///< of the inputs
+  std::vector<double> output_lower, output_upper;  ///< limits behind output_violations
 };
 
 Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s);

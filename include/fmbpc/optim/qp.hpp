@@ -1,5 +1,5 @@
-// Dense convex quadratic programmes of the size a controller meets, solved by a dual active-set method
-// (Goldfarb and Idnani 1983) with warm start and no allocation after construction.
+// Dense convex quadratic programmes of the size a controller meets, solved by a dual active-set
+// method (Goldfarb and Idnani 1983) with warm start and no allocation after construction.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,8 @@ struct QpSettings {
   void validate() const;                ///< @throws InputError naming the field
 };
 
-/// Multipliers: stationarity is H x + g = y_x + A' y_a, where y >= 0 on an active lower bound and <= 0 on an upper one.
+/// Multipliers: stationarity is H x + g = y_x + A' y_a, where y >= 0 on an active lower bound and
+/// <= 0 on an upper one.
 struct QpResult {
   SolveStatus status{SolveStatus::kNumericalError};
   Vector x;    ///< n
@@ -40,7 +41,8 @@ struct QpResult {
   Vector y_a;  ///< m, multipliers of the rows
   int iterations{};
   int active{};           ///< number of active constraints
-  double kkt_residual{};  ///< the largest of scaled stationarity, feasibility, sign and complementarity errors
+  double kkt_residual{};  ///< the largest of scaled stationarity, feasibility, sign and
+                          ///< complementarity errors
   bool usable() const { return status == SolveStatus::kSolved; }
 };
 
@@ -56,8 +58,8 @@ class QpSolver {
   QpSolver& operator=(QpSolver&&) noexcept;
 
   /// Solves; with warm = true starts from the active set of the previous solve of the same size.
-  /// Non-finite or wrongly sized data, or lower > upper, give kInvalidProblem; an H that is not positive definite
-  /// kNumericalError; never throws.
+  /// Non-finite or wrongly sized data, or lower > upper, give kInvalidProblem; an H that is not
+  /// positive definite kNumericalError; never throws.
   const QpResult& solve(const QpProblem& problem, bool warm = true);
   void forget();  ///< the next solve is cold
 

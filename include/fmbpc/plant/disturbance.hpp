@@ -15,10 +15,11 @@ struct DisturbanceRecord {
   std::uint64_t repaired{};  ///< missing cells that were held or interpolated
 };
 
-/// One channel of the pattern: [0,1]-scaled shape raised to the power that gives `mean`, mapped to lower..upper.
+/// One channel of the pattern: [0,1]-scaled shape raised to the power that gives `mean`, mapped to
+/// lower..upper.
 struct PatternChannel {
   std::string name;
-  std::string shape;  ///< "flow" or "load" (the two published-like shapes, see disturbance_pattern.cpp)
+  std::string shape;  ///< "flow" or "load", see disturbance_pattern.cpp
   double lower{}, upper{}, mean{};
 };
 
@@ -27,14 +28,18 @@ struct PatternParams {
   std::vector<PatternChannel> channels;
 };
 
-/// The seeded daily pattern: one value an hour, interpolated linearly to the samples.
-/// Element order follows `names`; channels not in the pattern keep `nominal`.
-/// @throws InputError naming channel and field.
-DisturbanceRecord makePattern(const PatternParams& params, const std::vector<std::string>& names, const Vector& nominal,
-                              double sample_time_s, std::uint32_t samples);
+/// The seeded daily pattern: one value an hour, interpolated linearly to the samples 0..`samples`,
+/// scaled to [0,1] over them, raised to the power that gives `mean` over them, and mapped to
+/// lower..upper. A run of less than a day takes the start of a day's record. Element order follows
+/// `names`; channels not in the pattern keep `nominal`.
+/// @throws InputError naming channel and field; also when samples = 0: an endless run has no record
+/// to scale.
+DisturbanceRecord makePattern(const PatternParams& params, const std::vector<std::string>& names,
+                              const Vector& nominal, double sample_time_s, std::uint32_t samples);
 
-/// How one disturbance is taken from a CSV column: value = scale * cell + offset, or, with `mean` set, the
-/// column scaled so that its mean over the record is `mean` (offset 0).
+/// How one disturbance is taken from a CSV column: value = scale * cell + offset, or, with `mean`
+/// set, the column scaled so that the mean of all its measured cells in the file is `mean` (scale 1
+/// and offset 0 then).
 struct CsvChannel {
   std::string name;
   std::string column;
@@ -46,17 +51,23 @@ struct CsvChannel {
 struct CsvDisturbanceParams {
   std::string file;
   std::string time_column;
-  std::string time_unit{"h"};           ///< s, min, h, d
-  std::string missing{"error"};         ///< error, hold, interpolate
-  std::string interpolation{"hold"};    ///< hold (zero order) or linear
-  std::string end{"error"};             ///< what if the record is shorter than the run: error, hold, repeat
+  std::string time_unit{"h"};  ///< s, min, h, d; a column of dates needs d
+  std::string missing{
+      "error"};  ///< error, hold, interpolate (at the ends: the nearest measured cell)
+  std::string interpolation{"hold"};  ///< hold (zero order) or linear
+  std::string end{"error"};  ///< what if the record is shorter than the run: error, hold, repeat
   std::vector<CsvChannel> channels;
 };
 
-/// Reads and resamples a record; its first time is the loop's start.
-/// @throws InputError naming file and column: unknown column, times not increasing, missing cells where not allowed,
-/// nothing but missing cells, record too short.
-DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params, const std::vector<std::string>& names,
-                                   const Vector& nominal, double sample_time_s, std::uint32_t samples);
+/// Reads and resamples a record; its first time is the loop's start. A row acts from its time on
+/// (early by at most 1e-4 of an interval, since files round their times); the last one as long as
+/// the row before it. With `end: repeat` a last row that equals the first one in all channels only
+/// closes the period. `repaired` counts the missing cells of the channels' columns in the whole
+/// file.
+/// @throws InputError naming file and column: unknown column, times not increasing, missing cells
+/// where not allowed, nothing but missing cells, record too short, samples = 0.
+DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
+                                   const std::vector<std::string>& names, const Vector& nominal,
+                                   double sample_time_s, std::uint32_t samples);
 
 }  // namespace fpc

@@ -33,7 +33,8 @@ class Integrator {
   ~Integrator();
   Integrator(Integrator&&) noexcept;
 
-  /// Moves x over `seconds`; x is unchanged when the result is not ok. Model exceptions become kModelFailed.
+  /// Moves x over `seconds`; x is unchanged when the result is not ok. Model exceptions become
+  /// kModelFailed.
   IntegrationResult advance(Eigen::Ref<Vector> x, VectorRef u, VectorRef d, double seconds);
 
  private:

@@ -1,4 +1,5 @@
-// The contract between a plant and everything that simulates it: sizes, names, equations. One plant = one .cpp.
+// The contract between a plant and everything that simulates it: sizes, names, equations. One plant
+// = one .cpp.
 #pragma once
 
 #include <functional>
@@ -36,9 +37,9 @@ struct PlantDescription {
   std::vector<Quantity> states;
   std::vector<Quantity> inputs;
   std::vector<Quantity> disturbances;
-  std::vector<std::string> outputs;          ///< default measured outputs: names of states
-  std::vector<Quantity> parameters;          ///< what a loop file may override under plant.parameters
-  std::vector<EquipmentFrame> frames;        ///< the first one is the plant's own frame
+  std::vector<std::string> outputs;    ///< default measured outputs: names of states
+  std::vector<Quantity> parameters;    ///< what a loop file may override under plant.parameters
+  std::vector<EquipmentFrame> frames;  ///< the first one is the plant's own frame
   std::map<std::string, std::string> output_frames;  ///< state name -> frame of its analyser
 };
 
@@ -48,7 +49,8 @@ class Plant {
   virtual ~Plant() = default;
   virtual const PlantDescription& description() const = 0;
   /// dxdt [unit of the state per time unit]; must be finite for finite arguments inside the ranges.
-  virtual void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const = 0;
+  virtual void derivatives(VectorRef x, VectorRef u, VectorRef d,
+                           Eigen::Ref<Vector> dxdt) const = 0;
 };
 
 /// Parameter values by name; absent names keep the description's nominal values.

@@ -1,4 +1,5 @@
-// A plant that answers actions with measurements: equations, disturbances, actuator, sensors, injected faults.
+// A plant that answers actions with measurements: equations, disturbances, actuator, sensors,
+// injected faults.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include "fmbpc/plant/disturbance.hpp"
 #include "fmbpc/plant/integrator.hpp"
 #include "fmbpc/plant/plant.hpp"
+#include "fmbpc/plant/transport_delay.hpp"
 
 namespace fpc {
 
@@ -26,23 +28,24 @@ struct ScheduledCommand {
 struct SimulationParams {
   std::string plant;
   PlantParameters parameters;
-  Vector initial_state;                           ///< n_states
-  std::vector<std::string> outputs;               ///< measured states, in this order
-  std::vector<double> output_delay_s;             ///< transport delay of each measured output (0: none)
-  std::vector<std::string> measured_disturbances; ///< subset of the plant's, in PlantInfo order
+  Vector initial_state;              ///< n_states
+  std::vector<std::string> outputs;  ///< measured states, in this order; empty: the plant's default
+  std::vector<double> output_delay_s;  ///< transport delay of each measured output; empty: none
+  std::vector<std::string> measured_disturbances;  ///< subset of the plant's, in PlantInfo order
   IntegratorParams integrator;
   ActuatorParams actuator;
-  Vector disturbance_nominal;                     ///< n_d
-  DisturbanceRecord disturbance;                  ///< may be empty: nominal for ever
+  Vector disturbance_nominal;     ///< n_d
+  DisturbanceRecord disturbance;  ///< empty: nominal for ever; an endless run keeps the last column
   std::vector<ScheduledCommand> disturbance_commands;
-  Vector noise_std;                               ///< n_y, standard deviation of white measurement noise
+  Vector noise_std;  ///< n_y, standard deviation of white measurement noise; empty: none
   std::uint64_t noise_seed{1};
   double sample_time_s{1.0};
   double start_time_s{1.0};
-  std::uint32_t samples{};                        ///< N; 0 is endless
+  std::uint32_t samples{};  ///< N; 0 is endless
 };
 
-/// Owns the state of a simulated plant. Deterministic: same params, commands and actions give the same bits.
+/// Owns the state of a simulated plant. Deterministic: same params, commands and actions give the
+/// same bits.
 class Simulation {
  public:
   /// @throws InputError naming the field.
@@ -57,28 +60,37 @@ class Simulation {
   const Measurement& measurement() const { return measurement_; }  ///< sample k, until advance()
   const PlantState& state() const { return state_; }
 
-  /// True if the action answers the present sample; anything else must be dropped (and counted) by the caller.
+  /// True if the action answers the present sample; anything else must be dropped (and counted) by
+  /// the caller.
   bool answers(const StepHeader& header) const;
-  /// Applies u(k) and moves to sample k+1.
+  /// Applies u(k) and moves to sample k+1; does nothing at the final sample.
   const Measurement& advance(VectorRef input);
   /// Moves on without an action (realtime only): hold, then fallback.
   const Measurement& advanceWithoutAction();
 
-  /// Names that commands may use: the disturbances, "input/NAME" (what the valve really does), "output/NAME"
-  /// (what the sensor shows).
+  /// Names that commands may use: the disturbances, "input/NAME" (what the valve really does),
+  /// "output/NAME" (what the sensor shows).
   const std::vector<std::string>& commandNames() const { return commands_.names(); }
-  /// A person's command; returns the step from which it acts (stamp 0: the next sample to be measured).
-  /// @throws InputError; nothing is taken then.
+  /// A person's command; returns the step from which it acts (stamp 0: the next sample to be
+  /// measured, and never before that). Inputs stay inside the actuator's bounds and offset
+  /// disturbances inside the plant's ranges.
+  /// @throws InputError, also for a disturbance overridden by a value outside its range; nothing is
+  /// taken then.
   std::uint32_t command(const Command& command);
   /// Commands that took effect with the present sample.
   const std::vector<CommandEffect>& effects() const { return effects_; }
 
-  /// Last integration problem in words, empty if none; the state is then held over that sample.
+  /// Last integration problem since the reset in words, empty if none; the state was held over that
+  /// sample.
   const std::string& trouble() const { return trouble_; }
   /// Replaces the transport delay of one output (from the tf tree), before the first advance().
+  /// @throws InputError later, and for an unusable delay.
   void setOutputDelay(std::size_t output, double seconds);
 
  private:
+  void schedule();
+  void checkRanges(const Command& command) const;
+  void updateDisturbances();
   void measure();
   const Measurement& integrate();
 
@@ -94,10 +106,16 @@ class Simulation {
   std::vector<CommandEffect> effects_;
   std::mt19937_64 noise_;
   std::string trouble_;
-  std::vector<int> output_state_;             // index of the state behind each output
-  std::vector<int> measured_disturbance_;     // index into the plant's disturbances
-  std::vector<std::vector<double>> history_;  // past outputs for transport delays
-  Vector x_, u_effective_, d_;
+  std::vector<Eigen::Index> output_state_;          // index of the state behind each output
+  std::vector<Eigen::Index> measured_disturbance_;  // index into the plant's disturbances
+  std::vector<TransportDelay> delays_;              // of each output
 };
+
+/// The same params with defaults filled in. @throws InputError naming the field that does not suit
+/// the plant.
+SimulationParams checked(SimulationParams params, const Plant& plant);
+/// What the plant tells controllers: bounds of the inputs are the actuator's. Header of sample 0
+/// with run_id 0.
+PlantInfo makePlantInfo(const SimulationParams& params, const PlantDescription& description);
 
 }  // namespace fpc

@@ -1,0 +1,21 @@
+// How well a number of clusters suits data: indices that a user may compare and identification
+// takes votes from.
+#pragma once
+
+#include "fmbpc/fuzzy/clustering.hpp"
+
+namespace fpc {
+
+/// Indices of clusters on points, which may be others than those they were found in.
+struct ClusterValidity {
+  double xie_beni{};  ///< mean weighted squared distance / closest centres' squared distance; small
+                      ///< is good
+  double partition_density{};      ///< mean of (memberships inside one deviation) / cluster volume;
+                                   ///< large is good
+  double partition_coefficient{};  ///< mean u^2, 1/c..1; large is crisp
+};
+
+/// Source: Xie and Beni (1991); Gath and Geva (1989), eqs. 17-19; Bezdek (1981).
+ClusterValidity clusterValidity(const Clusters& clusters, MatrixRef points);
+
+}  // namespace fpc

@@ -1,0 +1,36 @@
+// From clusters to rules: fuzzy sets on single variables, as models and their readers want them.
+#pragma once
+
+#include <vector>
+
+#include "fmbpc/fuzzy/clustering.hpp"
+#include "fmbpc/fuzzy/structure.hpp"
+
+namespace fpc {
+
+/// Columns shifted and divided: scaled = (value - shift) / scale.
+struct ColumnScaling {
+  Vector shift, scale;
+  Matrix apply(MatrixRef values) const;  ///< rows are samples
+};
+/// @throws nothing: a constant column gets scale 1.
+ColumnScaling columnScaling(MatrixRef values, Scaling scaling);
+
+/// The fuzzy set that a cluster casts on one variable. `values` are the variable at the samples,
+/// `memberships` the cluster's. Gaussian: mean and deviation weighted by u^m. Exponential: the
+/// shoulders span what belongs to the cluster almost fully, the flanks are fitted to the upper
+/// envelope of the memberships. `width` stretches both.
+Membership projectCluster(const Eigen::Ref<const Vector>& values,
+                          const Eigen::Ref<const Vector>& memberships, MembershipShape shape,
+                          double fuzziness, double width);
+
+/// One rule per cluster, consequents still zero. antecedents: samples x variables, in their own
+/// units.
+std::vector<Rule> projectClusters(MatrixRef antecedents, const Clusters& clusters,
+                                  const PartitionParams& params, Eigen::Index n_regressors);
+
+/// One rule per combination of the sets, the last variable's sets changing fastest.
+std::vector<Rule> gridRules(const std::vector<std::vector<Membership>>& sets,
+                            Eigen::Index n_regressors);
+
+}  // namespace fpc

@@ -1,0 +1,111 @@
+// What a user states before identification: which signals depend on which, and how the rules are to
+// be found.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fmbpc/fuzzy/ts_model.hpp"
+
+namespace fpc {
+
+/// A signal of the process and where its values are.
+struct StructureSignal {
+  SignalInfo
+      info;  ///< lower, upper: what is plausible; values outside mean a wrong unit and are an error
+  std::string column;  ///< of the data file
+};
+
+/// How one output depends on the past. Lags are seen from the prediction of k + 1 (see Regressor).
+struct OutputStructure {
+  std::vector<Regressor> regressors;
+  std::vector<Regressor> antecedents;
+  int clusters_min{1};  ///< clusters_min < clusters_max: the number is chosen on held-out data
+  int clusters_max{1};
+  /// Grid partition only: the sets of each antecedent; every combination becomes a rule.
+  std::vector<std::vector<Membership>> sets;
+};
+
+enum class PartitionMethod { kGustafsonKessel, kFuzzyCMeans, kGrid };
+enum class Scaling { kDeviation, kRange, kNone };
+
+/// Where the rules lie.
+struct PartitionParams {
+  PartitionMethod method{PartitionMethod::kGustafsonKessel};
+  MembershipShape membership{
+      MembershipShape::kGaussian};  ///< gaussian or exponential, for clusters
+  Scaling scaling{Scaling::kDeviation};
+  bool with_output{
+      true};  ///< cluster in the space of antecedents and predicted output, else antecedents only
+  double fuzziness{2.0};  ///< m > 1
+  double regularisation{
+      0.05};          ///< gamma in [0, 1): share of the data's own spread in each covariance
+  double width{1.0};  ///< > 0: the projected sets are made this much wider
+  int max_iterations{200};
+  double tolerance{1e-4};  ///< stops when no membership moves by more
+  int restarts{3};         ///< random starts; the one with the lowest objective is kept
+  std::uint64_t seed{1};
+  double held_out{0.3};  ///< share of the rows, at the end, that judges the number of clusters
+};
+
+enum class ConsequentMethod { kLocal, kGlobal, kRecursive };
+enum class ScarceRule { kBorrow, kDrop, kError };
+
+/// How the consequents are fitted, and what happens to rules without enough data.
+struct ConsequentParams {
+  ConsequentMethod method{ConsequentMethod::kLocal};
+  double ridge{
+      1.0};  ///< >= 0: weight of the linear model in each coefficient, in samples of evidence
+  double samples_per_coefficient{3.0};  ///< rules with less (sum of firing weights) are scarce
+  double max_condition{
+      1e8};  ///< of scaled columns, after the ridge; rules beyond it are scarce as well
+  ScarceRule scarce{ScarceRule::kBorrow};
+  double forgetting{1.0};  ///< recursive only
+};
+
+enum class MissingCells { kError, kDrop, kInterpolate };
+
+/// What may be done to bad data; everything done is counted and told.
+struct RepairParams {
+  MissingCells missing{MissingCells::kError};
+  bool sort_time{false};      ///< false: unsorted times are an error
+  bool drop_constant{false};  ///< false: an input or disturbance that never moves is an error
+};
+
+struct ValidationParams {
+  int correlation_lags{25};
+  double confidence{0.99};  ///< of the bounds on residual correlations
+};
+
+/// A structure file.
+struct Structure {
+  std::string name;
+  double sample_time_s{};
+  std::string time_column;     ///< empty: rows are taken to be equally spaced
+  std::string time_unit{"s"};  ///< s, min, h or d
+  std::vector<StructureSignal> outputs, inputs, disturbances;
+  std::vector<OutputStructure> submodels;  ///< one per output
+  PartitionParams partition;
+  ConsequentParams consequents;
+  RepairParams repair;
+  ValidationParams validation;
+
+  /// A model of these names and this sample time without rules.
+  TsModel emptyModel() const;
+  /// @throws InputError naming the part.
+  void validate() const;
+};
+
+/// Keys: docs/identification.md. @throws InputError naming file, line and key.
+Structure readStructure(const std::string& file);
+Structure parseStructure(const std::string& text, const std::string& name);
+
+/// Regressors from orders as the field writes them, for output i: N_y, N_u and N_d hold one number
+/// per output, per input and disturbance, per input and disturbance. N_y(j) = n gives
+/// y_j(k)..y_j(k-n+1); N_u(j) = n with transport delay N_d(j) = d >= 1 gives
+/// u_j(k-d+1)..u_j(k-d-n+2). Source: Babuska (1998), eq. 3.38; Vallejo 2021, table 4.
+std::vector<Regressor> regressorsOf(const std::vector<int>& N_y, const std::vector<int>& N_u,
+                                    const std::vector<int>& N_d, int n_inputs);
+
+}  // namespace fpc

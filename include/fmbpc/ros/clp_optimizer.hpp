@@ -1,0 +1,56 @@
+// The closed-loop-paradigm optimizer over topics: base and predictive action of a sample in, control action out.
+#pragma once
+
+#include <fmbpc/ControlAction.h>
+#include <fmbpc/PlantInfo.h>
+#include <fmbpc/PredictiveAction.h>
+#include <ros/ros.h>
+
+#include <cstdint>
+#include <string>
+
+#include "fmbpc/control/session.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/ros/diagnostics.hpp"
+#include "fmbpc/ros/node.hpp"
+#include "fmbpc/ros/ready.hpp"
+#include "fmbpc/ros/run_guard.hpp"
+#include "fmbpc/ros/signal_publishers.hpp"
+#include "fmbpc/ros/wall_throttle.hpp"
+
+namespace fpc {
+
+/// Ready when a fitting plant has introduced itself.
+class ClpOptimizer : public Node {
+ public:
+  static std::string idleReason(const LoopFile& loop);
+  /// @throws InputError
+  ClpOptimizer(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop);
+
+ private:
+  void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg);
+  void onBase(const fmbpc::ControlAction::ConstPtr& msg);
+  void onPrediction(const fmbpc::PredictiveAction::ConstPtr& msg);
+  template <typename Item>
+  void receive(const Item& item);
+  void publish();
+  void report(Diagnostics::Status& status) const;
+  void reportWords(Diagnostics::Status& status) const;
+
+  LoopFile loop_;
+  OptimizerSession session_;
+  ReadyPublisher ready_;
+  SignalPublishers signals_;
+  bool plant_fits_{false};
+  RunGuard guard_;
+  std::uint64_t foreign_{};  // messages of runs that nobody announced
+  std::string problem_;
+  StepHeader last_;  // of the last answer that was not a repetition
+  WallThrottle log_{1.0};
+
+  ros::Publisher action_, report_;
+  ros::Subscriber plant_subscriber_, base_subscriber_, prediction_subscriber_;
+  Diagnostics diagnostics_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,79 @@
+// A controller over topics: each measurement is answered with a base action and, if the law predicts, its prediction.
+#pragma once
+
+#include <fmbpc/FuzzyModel.h>
+#include <fmbpc/ManualInput.h>
+#include <fmbpc/Measurement.h>
+#include <fmbpc/PlantInfo.h>
+#include <fmbpc/Setpoint.h>
+#include <ros/ros.h>
+#include <std_srvs/SetBool.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "fmbpc/control/session.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/ros/diagnostics.hpp"
+#include "fmbpc/ros/node.hpp"
+#include "fmbpc/ros/ready.hpp"
+#include "fmbpc/ros/run_guard.hpp"
+#include "fmbpc/ros/signal_publishers.hpp"
+#include "fmbpc/ros/wall_throttle.hpp"
+
+namespace fpc {
+
+/// Ready when a fitting plant has introduced itself and, for laws that need one, a fitting model has come.
+/// Base actions go out on base_action, or straight on control_action if the loop has no optimizer (or ~final_action
+/// is true). Services: ~manual (SetBool: true is manual), ~manual_input.
+class ControllerNode : public Node {
+ public:
+  /// @throws InputError
+  ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop);
+
+ private:
+  void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg);
+  void onModel(const fmbpc::FuzzyModel::ConstPtr& msg);
+  void onMeasurement(const fmbpc::Measurement::ConstPtr& msg);
+  void onSetpoint(const fmbpc::Setpoint::ConstPtr& msg);
+  void onSetpointActive(const fmbpc::Setpoint::ConstPtr& msg);
+  bool onManual(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool onManualInput(fmbpc::ManualInput::Request& request, fmbpc::ManualInput::Response& response);
+  void announceIfReady();
+  bool mustAwaitSetpoints(const Measurement& measurement);
+  void publish(bool repeated);
+  void publishSignals();
+  void report(Diagnostics::Status& status) const;
+  void reportWords(Diagnostics::Status& status) const;
+
+  LoopFile loop_;
+  ControllerSession session_;
+  ReadyPublisher ready_;
+  SignalPublishers signals_;
+  std::optional<PlantInfo> plant_;  // that of the topic, if it fits the loop file
+  RunGuard guard_;
+  std::uint64_t foreign_{};         // measurements of runs that nobody announced
+  std::string problem_;             // why there is no plant or model, in words
+  bool setpoints_restored_{false};  // what stood before this process began is known
+  ros::WallTime restore_deadline_;
+  WallThrottle log_{1.0};
+
+  ros::Publisher base_, prediction_, tracking_, effect_;
+  ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_, setpoint_subscriber_,
+      setpoint_active_subscriber_;
+  ros::ServiceServer manual_, manual_input_;
+  Diagnostics diagnostics_;
+};
+
+/// The nodes fmbpc_controller and pi_controller.
+struct FmbpcControllerNode : ControllerNode {
+  using ControllerNode::ControllerNode;
+  static std::string idleReason(const LoopFile& loop);
+};
+struct PiControllerNode : ControllerNode {
+  using ControllerNode::ControllerNode;
+  static std::string idleReason(const LoopFile& loop);
+};
+
+}  // namespace fpc

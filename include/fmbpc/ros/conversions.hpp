@@ -1,0 +1,63 @@
+// Messages <-> structs, field for field, bit for bit. fromMsg() refuses what no struct can mean; whether sizes fit
+// the plant at hand is the core's question.
+#pragma once
+
+#include <fmbpc/CommandEffect.h>
+#include <fmbpc/ControlAction.h>
+#include <fmbpc/Disturbance.h>
+#include <fmbpc/FuzzyModel.h>
+#include <fmbpc/Matrix.h>
+#include <fmbpc/Measurement.h>
+#include <fmbpc/PlantInfo.h>
+#include <fmbpc/PlantState.h>
+#include <fmbpc/PredictiveAction.h>
+#include <fmbpc/Setpoint.h>
+#include <fmbpc/SignalInfo.h>
+#include <fmbpc/SolverReport.h>
+#include <fmbpc/Tracking.h>
+#include <ros/time.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "fmbpc/base/command_table.hpp"
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/fuzzy/ts_model.hpp"
+
+namespace fpc {
+
+/// Times before 0 s or after 2^32 s have no stamp. @throws InputError
+ros::Time toStamp(std::int64_t time_ns);
+std::int64_t fromStamp(const ros::Time& stamp);
+
+fmbpc::Matrix toMsg(const Matrix& matrix);
+fmbpc::SignalInfo toMsg(const SignalInfo& signal);
+fmbpc::PlantInfo toMsg(const PlantInfo& info);
+fmbpc::Measurement toMsg(const Measurement& measurement);
+fmbpc::ControlAction toMsg(const ControlAction& action);
+fmbpc::PredictiveAction toMsg(const PredictiveAction& action);
+fmbpc::SolverReport toMsg(const SolverReport& report);
+fmbpc::Tracking toMsg(const Tracking& tracking);
+fmbpc::PlantState toMsg(const PlantState& state);
+fmbpc::CommandEffect toMsg(const CommandEffect& effect);
+fmbpc::FuzzyModel toMsg(const TsModel& model);
+fmbpc::Setpoint toSetpointMsg(const Command& command);
+fmbpc::Disturbance toDisturbanceMsg(const Command& command);
+
+/// All of these @throws InputError naming the field: a matrix whose data are not rows * cols, a value that is not
+/// one of the message's constants, lists that belong together but differ in length.
+Matrix fromMsg(const fmbpc::Matrix& msg);
+SignalInfo fromMsg(const fmbpc::SignalInfo& msg);
+PlantInfo fromMsg(const fmbpc::PlantInfo& msg);
+Measurement fromMsg(const fmbpc::Measurement& msg);
+ControlAction fromMsg(const fmbpc::ControlAction& msg);
+PredictiveAction fromMsg(const fmbpc::PredictiveAction& msg);
+SolverReport fromMsg(const fmbpc::SolverReport& msg);
+Tracking fromMsg(const fmbpc::Tracking& msg);
+PlantState fromMsg(const fmbpc::PlantState& msg);
+CommandEffect fromMsg(const fmbpc::CommandEffect& msg);
+TsModel fromMsg(const fmbpc::FuzzyModel& msg);
+Command fromMsg(const fmbpc::Setpoint& msg);
+Command fromMsg(const fmbpc::Disturbance& msg);
+
+}  // namespace fpc

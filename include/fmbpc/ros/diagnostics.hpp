@@ -1,0 +1,35 @@
+// Health of a node on /diagnostics, with the reason in words, once per second of wall time.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "fmbpc/base/step_gate.hpp"
+
+namespace fpc {
+
+class Diagnostics {
+ public:
+  using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
+  /// `report` fills level, words and values; it is called from the node's own callback queue.
+  Diagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const std::string& title,
+              const std::string& hardware_id, std::function<void(Status&)> report);
+  void update() { updater_.force_update(); }
+
+ private:
+  diagnostic_updater::Updater updater_;
+  ros::WallTimer timer_;
+};
+
+/// What arrived and was not simply the next sample.
+void addCounts(Diagnostics::Status& status, const ArrivalCounts& counts);
+/// Messages refused, by topic.
+void addRefused(Diagnostics::Status& status, const std::map<std::string, std::uint64_t>& refused);
+
+}  // namespace fpc

@@ -1,0 +1,44 @@
+// The plant's equipment as tf frames, and sample lines whose delay is their length in the tf tree over a velocity.
+#pragma once
+
+#include <ros/ros.h>
+#include <tf2_ros/buffer.h>
+#include <tf2_ros/static_transform_broadcaster.h>
+#include <tf2_ros/transform_listener.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fmbpc/loop/loop_file.hpp"
+
+namespace fpc {
+
+/// Broadcasts the frames of a loop file as static transforms, once.
+class EquipmentFrames {
+ public:
+  /// Does nothing if the frames come from elsewhere (tf.broadcast false).
+  void broadcast(const TfParams& params, std::int64_t time_ns);
+
+ private:
+  std::unique_ptr<tf2_ros::StaticTransformBroadcaster> broadcaster_;
+};
+
+/// Looks up the lengths of sample lines; without lines it listens to nothing.
+class SampleLines {
+ public:
+  explicit SampleLines(std::vector<SampleLine> lines);
+  /// Tries the lines not yet found, without waiting. Returns (output, delay [s]) of those found now.
+  std::vector<std::pair<std::string, double>> poll();
+  /// Lines not yet found, "from -> to".
+  std::vector<std::string> missing() const;
+
+ private:
+  std::vector<SampleLine> lines_;
+  std::unique_ptr<tf2_ros::Buffer> buffer_;
+  std::unique_ptr<tf2_ros::TransformListener> listener_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,81 @@
+// What all nodes have in common: how they start, refuse messages, and end.
+#pragma once
+
+#include <ros/ros.h>
+
+#include <cstdint>
+#include <exception>
+#include <map>
+#include <string>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/ros/wall_throttle.hpp"
+
+namespace fpc {
+
+/// Base of the node classes.
+class Node {
+ public:
+  virtual ~Node() = default;
+  /// Called after spinning; the exit code of the process.
+  virtual int finish() { return exit_code_; }
+
+ protected:
+  /// Ends the process with a non-zero exit code.
+  void fail(const std::string& what);
+  /// Ends the process with exit code 0.
+  void done() { ros::shutdown(); }
+  /// Runs a message handler; a message that it refuses (InputError) is dropped, counted by topic and logged.
+  template <typename Handler>
+  void guarded(const char* topic, Handler handler) {
+    try {
+      handler();
+    } catch (const InputError& error) {
+      refuse(topic, error.what());
+    }
+  }
+  void refuse(const char* topic, const std::string& why);
+  const std::map<std::string, std::uint64_t>& refused() const { return refused_; }
+
+ private:
+  int exit_code_{0};
+  std::map<std::string, std::uint64_t> refused_;
+  WallThrottle refuse_log_{1.0};
+};
+
+/// The loop that the launch file gave as text: parameter `loop_text`, searched upwards.
+/// @throws InputError if there is none or it is no loop.
+LoopFile loopParameter(const ros::NodeHandle& node);
+
+/// For a node that the loop does not need: says why and returns 0; with ~stay true (a launch that respawns) only
+/// after a shutdown.
+int stayIdle(const ros::NodeHandle& private_node, const std::string& reason);
+
+/// Everything a main() does. `Class` has `static std::string idleReason(const LoopFile&)`, empty if the loop needs
+/// the node, and a constructor (NodeHandle, private NodeHandle, const LoopFile&).
+template <typename Class>
+int runNode(int argc, char** argv, const std::string& name) {
+  ros::init(argc, argv, name);
+  try {
+    const ros::NodeHandle node, private_node("~");
+    const LoopFile loop = loopParameter(node);
+    const std::string idle = Class::idleReason(loop);
+    if (!idle.empty()) return stayIdle(private_node, idle);
+    Class instance{node, private_node, loop};
+    ros::spin();
+    return instance.finish();
+  } catch (const std::exception& error) {
+    ROS_FATAL("%s: %s", name.c_str(), error.what());
+    return 1;
+  }
+}
+
+/// Subscribes without Nagle's delay.
+template <typename Msg, typename Class>
+ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
+                          void (Class::*handler)(const boost::shared_ptr<const Msg>&), Class* object) {
+  return node.subscribe<Msg>(topic, queue, handler, object, ros::TransportHints().tcpNoDelay());
+}
+
+}  // namespace fpc

@@ -1,0 +1,14 @@
+// Does the plant that introduces itself over a topic agree with the loop file?
+#pragma once
+
+#include <string>
+
+#include "fmbpc/base/ring.hpp"
+
+namespace fpc {
+
+/// Empty if `arrived` has the signals (names, order), units and sample time of `expected`; otherwise the first
+/// difference in words. Bounds and frames may differ.
+std::string plantMismatch(const PlantInfo& expected, const PlantInfo& arrived);
+
+}  // namespace fpc

@@ -1,0 +1,38 @@
+// Who must be ready before sample 0, and how a node says that it is.
+#pragma once
+
+#include <fmbpc/NodeReady.h>
+#include <ros/ros.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace fpc {
+
+/// Says "ready", once, latched.
+class ReadyPublisher {
+ public:
+  explicit ReadyPublisher(ros::NodeHandle node);
+  void announce();
+  bool announced() const { return announced_; }
+
+ private:
+  ros::Publisher publisher_;
+  bool announced_{false};
+};
+
+/// Listens for the nodes named (relative to the namespace of `node`).
+class ReadyListener {
+ public:
+  ReadyListener(ros::NodeHandle node, const std::vector<std::string>& names);
+  std::vector<std::string> missing() const;
+
+ private:
+  void onReady(const fmbpc::NodeReady::ConstPtr& msg);
+
+  std::set<std::string> missing_;
+  ros::Subscriber subscriber_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,41 @@
+// Names of topics, services and parameters: short, relative, in one place. Namespaces come from launch files.
+#pragma once
+
+namespace fpc::topics {
+
+inline constexpr char kPlantInfo[] = "plant_info";
+inline constexpr char kMeasurement[] = "measurement";
+inline constexpr char kPlantState[] = "plant_state";
+inline constexpr char kBaseAction[] = "base_action";
+inline constexpr char kControlAction[] = "control_action";
+inline constexpr char kPredictiveAction[] = "predictive_action";
+inline constexpr char kSolverReport[] = "solver_report";
+inline constexpr char kTracking[] = "tracking";
+inline constexpr char kFuzzyModel[] = "fuzzy_model";
+inline constexpr char kSetpoint[] = "setpoint";
+inline constexpr char kSetpointActive[] = "setpoint_active";
+inline constexpr char kSetpointEffect[] = "setpoint_effect";
+inline constexpr char kDisturbance[] = "disturbance";
+inline constexpr char kDisturbanceEffect[] = "disturbance_effect";
+inline constexpr char kRecorded[] = "recorded";
+inline constexpr char kReady[] = "ready";
+inline constexpr char kSignalPrefix[] = "signal/";
+inline constexpr char kClock[] = "/clock";
+
+// Private services.
+inline constexpr char kPause[] = "pause";
+inline constexpr char kStep[] = "step";
+inline constexpr char kReset[] = "reset";
+inline constexpr char kManual[] = "manual";
+inline constexpr char kManualInput[] = "manual_input";
+
+// Parameters: the loop as text (`fmbpc resolve`), searched upwards from the node's namespace.
+inline constexpr char kLoopText[] = "loop_text";
+inline constexpr char kLoopName[] = "loop_name";
+
+/// Queues of ring topics: a whole run, so that a slow listener loses nothing.
+inline constexpr unsigned kRingQueue = 100000;
+/// Queues of everything that only people look at.
+inline constexpr unsigned kViewQueue = 1000;
+
+}  // namespace fpc::topics

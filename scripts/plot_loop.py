@@ -1,0 +1,168 @@
+#!/usr/bin/python3
+"""Draws a run, or several over each other, from trajectory.csv and summary.json.
+
+    plot_loop.py DIR [DIR ...] [--out FILE]
+
+Outputs with setpoint and reference, inputs with their limits and the optimizer's perturbation, disturbances; time in
+hours. One folder: DIR/plot.png. Several folders are compared, one colour each, in comparison.png of the current folder.
+"""
+import argparse
+import csv
+import json
+import os
+import sys
+
+COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a"]
+SUFFIXES = ("_setpoint", "_reference", "_true", "_commanded", "_base", "_perturbation")
+
+
+class Run:
+    """One folder: columns by name, units by name, the summary."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        with open(os.path.join(folder, "summary.json"), encoding="utf-8") as stream:
+            self.summary = json.load(stream)
+        with open(os.path.join(folder, "trajectory.csv"), newline="", encoding="utf-8") as stream:
+            rows = list(csv.reader(stream))
+        self.units, self.columns = {}, {}
+        for i, cell in enumerate(rows[0]):
+            name, _, unit = cell.partition("[")
+            self.units[name] = unit.rstrip("]")
+            self.columns[name] = [float(row[i]) if row[i] else float("nan") for row in rows[1:]]
+        self.time = self.columns["time"]
+        self.name = self.summary["loop"]
+
+    def outputs(self):
+        return list(self.summary["outputs"])
+
+    def inputs(self):
+        return list(self.summary["inputs"])
+
+    def disturbances(self):
+        """Columns between the inputs and the first setpoint, as the writer orders them."""
+        names = list(self.columns)
+        first = names.index(self.inputs()[-1]) + 1
+        plain = [n for n in names[first:] if not n.endswith(SUFFIXES)]
+        last = names.index(self.outputs()[0] + "_setpoint")
+        return [n for n in plain if names.index(n) < last]
+
+    def limits(self, kind, name):
+        return self.summary.get("limits", {}).get(kind, {}).get(name, {})
+
+
+def label(run, name):
+    return "%s [%s]" % (name, run.units[name]) if run.units.get(name) else name
+
+
+def draw_limits(axis, limits, values, always):
+    """Limits as dotted lines; far ones only if they do not squeeze the picture."""
+    finite = [v for v in values if v == v]
+    for key in ("lower", "upper"):
+        limit = limits.get(key)
+        near = finite and limit is not None and min(finite) - 1e-9 <= limit <= max(finite) + 1e-9
+        if limit is not None and (always or near):
+            axis.axhline(limit, color="black", linewidth=0.9, linestyle=":", zorder=1)
+
+
+def robust_range(axis, series, skip):
+    """Leaves a start far outside (s = 200 mg/l, say) out of the frame rather than flatten everything else."""
+    values = sorted(v for one in series for v in one[skip:] if v == v)
+    everything = sorted(v for one in series for v in one if v == v)
+    if not values or not everything:
+        return
+    low, high = values[0], values[-1]
+    span = (high - low) or max(abs(high), 1.0)
+    if everything[-1] - everything[0] > 2.0 * span:
+        axis.set_ylim(low - 0.08 * span, high + 0.25 * span)
+
+
+def draw_output(axis, runs, name):
+    single = len(runs) == 1
+    first = runs[0]
+    axis.step(first.time, first.columns[name + "_setpoint"], where="post", color="black", linewidth=1.1,
+              linestyle="--", label="setpoint")
+    if single:
+        axis.plot(first.time, first.columns[name + "_reference"], color=COLOURS[2], linewidth=1.1, label="reference")
+    for run, colour in zip(runs, COLOURS):
+        axis.plot(run.time, run.columns[name], color=colour, linewidth=1.2, label=name if single else run.name)
+    draw_limits(axis, first.limits("outputs", name), [], True)
+    robust_range(axis, [run.columns[name] for run in runs] + [first.columns[name + "_setpoint"]],
+                 len(first.time) // 10)
+    axis.set_ylabel(label(first, name))
+
+
+def draw_input(axis, runs, name):
+    single = len(runs) == 1
+    values = []
+    for run, colour in zip(runs, COLOURS):
+        axis.step(run.time, run.columns[name], where="post", color=colour, linewidth=1.0,
+                  label=name if single else run.name)
+        values += run.columns[name]
+    run = runs[0]
+    if single and name + "_perturbation" in run.columns:
+        axis.step(run.time, run.columns[name + "_perturbation"], where="post", color=COLOURS[1], linewidth=0.9,
+                  label="perturbation")
+    draw_limits(axis, run.limits("inputs", name), values, False)
+    axis.set_ylabel(label(run, name))
+
+
+def draw_disturbance(axis, runs, name):
+    drawn = []
+    for run, colour in zip(runs, COLOURS):
+        if name in run.columns and run.columns[name] not in drawn:
+            drawn.append(run.columns[name])
+            axis.step(run.time, run.columns[name], where="post", color="#666666" if len(drawn) == 1 else colour,
+                      linewidth=1.0)
+    axis.set_ylabel(label(runs[0], name))
+
+
+def title_of(runs):
+    return runs[0].summary.get("title") or runs[0].name if len(runs) == 1 else "Comparison"
+
+
+def draw(runs, file):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    first = runs[0]
+    panels = [(draw_output, n, 2.0) for n in first.outputs()] + [(draw_input, n, 1.7) for n in first.inputs()]
+    panels += [(draw_disturbance, n, 1.0) for n in first.disturbances()]
+    heights = [height for _, _, height in panels]
+    figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(9.0, 1.15 * sum(heights) + 1.0),
+                                gridspec_kw={"height_ratios": heights})
+    for axis, (draw_panel, name, _) in zip(axes[:, 0], panels):
+        draw_panel(axis, runs, name)
+        axis.grid(True, color="#dddddd", linewidth=0.6)
+        axis.margins(x=0.0)
+        handles, _ = axis.get_legend_handles_labels()
+        if handles:
+            axis.legend(loc="upper right", ncol=min(len(handles), 4), fontsize=8, framealpha=0.85, borderpad=0.3)
+    figure.align_ylabels(axes[:, 0])
+    axes[-1, 0].set_xlabel("time [h]")
+    axes[0, 0].set_title(title_of(runs), fontsize=11)
+    figure.tight_layout()
+    figure.savefig(file, dpi=110)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folders", nargs="+", metavar="DIR")
+    parser.add_argument("--out", metavar="FILE")
+    arguments = parser.parse_args()
+    single = len(arguments.folders) == 1
+    file = arguments.out or (os.path.join(arguments.folders[0], "plot.png") if single else "comparison.png")
+    try:
+        draw([Run(folder) for folder in arguments.folders], file)
+    except ImportError as error:
+        print("plot_loop.py: no picture, a python module is missing: %s" % error, file=sys.stderr)
+        return 3
+    except (OSError, ValueError, KeyError, IndexError) as error:
+        print("plot_loop.py: cannot read the run: %r" % error, file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

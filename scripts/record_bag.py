@@ -1,0 +1,51 @@
+#!/usr/bin/python3
+"""Node bag_recorder: records every topic with rosbag and says `ready` when rosbag listens to all of them, so that
+the bag begins with sample 0. Usage: record_bag.py FILE.bag"""
+import os
+import signal
+import subprocess
+import sys
+import threading
+
+import rosgraph
+import rospy
+from fmbpc.msg import NodeReady
+
+RECORDER = "rosbag_record"
+
+
+def listens_to_all(master):
+    """True if rosbag has subscribed to every topic that somebody publishes."""
+    publishers, subscribers, _ = master.getSystemState()
+    name = rospy.resolve_name(RECORDER)
+    heard = {topic for topic, nodes in subscribers if name in nodes}
+    wanted = {topic for topic, nodes in publishers if nodes != [name] and nodes != [rospy.get_name()]}
+    needed = {rospy.resolve_name(topic) for topic in ("measurement", "tracking", "control_action")}
+    return needed <= heard and wanted <= heard
+
+
+def main():
+    rospy.init_node("bag_recorder", disable_signals=True)
+    bag = os.path.abspath(rospy.myargv()[1])
+    os.makedirs(os.path.dirname(bag), exist_ok=True)
+    ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
+    stop = threading.Event()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda *_: stop.set())
+    rosbag = subprocess.Popen(["rosbag", "record", "--all", "--buffsize=0", "--tcpnodelay", "--output-name", bag,
+                               "__name:=" + RECORDER], start_new_session=True)
+    master, said, quiet = rosgraph.Master(rospy.get_name()), False, 0
+    while rosbag.poll() is None and not stop.wait(0.1):
+        quiet = quiet + 1 if not said and listens_to_all(master) else 0
+        if quiet == 5:
+            ready.publish(node=rospy.get_name())
+            said = True
+    if rosbag.poll() is None:
+        os.killpg(rosbag.pid, signal.SIGINT)
+    code = rosbag.wait()
+    rospy.signal_shutdown("recorded")
+    return 0 if stop.is_set() else code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

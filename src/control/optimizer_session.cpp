@@ -1,0 +1,142 @@
+#include <utility>
+
+#include "fmbpc/control/session.hpp"
+
+namespace fpc {
+namespace {
+
+bool hasSize(const Matrix& matrix, Eigen::Index rows, Eigen::Index columns) {
+  return matrix.rows() == rows && matrix.cols() == columns;
+}
+
+bool allFinite(const PredictiveAction& p) {
+  return p.state.allFinite() && p.A.allFinite() && p.B.allFinite() && p.C.allFinite() &&
+         p.offset_state.allFinite() && p.offset_output.allFinite() && p.K.allFinite() &&
+         p.feedforward.allFinite() && p.reference.allFinite() && p.setpoint.allFinite() &&
+         p.input_base_unclipped.allFinite() && p.input_previous.allFinite();
+}
+
+bool needsPrediction(ActionSource source) {
+  return source == ActionSource::kBase || source == ActionSource::kClipped;
+}
+
+}  // namespace
+
+OptimizerSession::OptimizerSession(ClpParams params, InputLimits limits, PlantInfo plant)
+    : params_(std::move(params)), limits_(std::move(limits)), plant_(std::move(plant)) {
+  const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
+  params_.validate(static_cast<Eigen::Index>(plant_.outputs.size()), n_u);
+  limits_.validate(n_u);
+  report_.perturbation = Vector::Zero(n_u);
+}
+
+bool OptimizerSession::sizesFit(const PredictiveAction& p) const {
+  const auto n_y = static_cast<Eigen::Index>(plant_.outputs.size());
+  const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
+  const Eigen::Index n_x = p.state.size();
+  const Eigen::Index n_c = p.feedforward.cols();
+  return n_x > 0 && n_c >= params_.perturbation_steps && hasSize(p.A, n_x, n_x) &&
+         hasSize(p.B, n_x, n_u) && hasSize(p.C, n_y, n_x) && p.offset_state.size() == n_x &&
+         p.offset_output.size() == n_y && hasSize(p.K, n_u, n_x) &&
+         hasSize(p.feedforward, n_u, n_c) && hasSize(p.reference, n_y, n_c) &&
+         p.setpoint.size() == n_y && p.input_base_unclipped.size() == n_u &&
+         p.input_previous.size() == n_u;
+}
+
+// A sample is opened by whichever of its two messages comes first; its partner is not a repeat.
+bool OptimizerSession::admit(const StepHeader& header, bool already_here) {
+  if (!answered_ && !already_here && gate_.classify(header) == Arrival::kRepeat) return true;
+  const Arrival arrival = gate_.pass(header);
+  if (!isNew(arrival)) return false;
+  if (needsReset(arrival) && optimizer_) optimizer_->reset();
+  have_base_ = have_prediction_ = answered_ = false;
+  return true;
+}
+
+bool OptimizerSession::isAnswered(const StepHeader& header) const {
+  return answered_ && gate_.classify(header) == Arrival::kRepeat;
+}
+
+bool OptimizerSession::receive(const ControlAction& base) {
+  if (static_cast<std::size_t>(base.input.size()) != plant_.inputs.size()) {
+    gate_.countWrongSize();
+    return false;
+  }
+  if (!base.input.allFinite()) {
+    gate_.countNotFinite();
+    return false;
+  }
+  if (!admit(base.header, have_base_)) return isAnswered(base.header);
+  base_ = base;
+  have_base_ = true;
+  return tryAnswer();
+}
+
+bool OptimizerSession::receive(const PredictiveAction& prediction) {
+  const bool fits = sizesFit(prediction);
+  if (!fits || !allFinite(prediction)) return refuse(prediction.header, fits);
+  if (!admit(prediction.header, have_prediction_)) return isAnswered(prediction.header);
+  prediction_ = prediction;
+  have_prediction_ = true;
+  return tryAnswer();
+}
+
+// What cannot be used must not open a sample: its header is not to be believed before a base action
+// says the same.
+bool OptimizerSession::refuse(const StepHeader& header, bool fits) {
+  if (fits)
+    gate_.countNotFinite();
+  else
+    gate_.countWrongSize();
+  refused_ = header;
+  refused_reason_ = fits ? "the prediction is not finite" : "the prediction has wrong sizes";
+  return !answered_ && tryAnswer();
+}
+
+bool OptimizerSession::baseIsRefused() const {
+  return refused_reason_ != nullptr && refused_.run_id == base_.header.run_id &&
+         refused_.step == base_.header.step;
+}
+
+bool OptimizerSession::tryAnswer() {
+  if (!have_base_) return false;
+  const char* trouble = "";
+  if (!needsPrediction(base_.source)) {
+    passThrough(SolveStatus::kNotRun);
+  } else if (have_prediction_) {
+    optimize();
+  } else if (baseIsRefused()) {
+    trouble = refused_reason_;
+    passThrough(SolveStatus::kInvalidProblem);
+  } else {
+    return false;
+  }
+  trouble_ = trouble;
+  action_.header = report_.header = base_.header;
+  answered_ = true;
+  return true;
+}
+
+void OptimizerSession::optimize() {
+  if (!optimizer_ || n_x_ != prediction_.state.size()) {
+    n_x_ = prediction_.state.size();
+    optimizer_ = std::make_unique<ClosedLoopParadigm>(params_, limits_, n_x_, prediction_.C.rows(),
+                                                      prediction_.B.cols());
+  }
+  optimizer_->step(prediction_, action_, report_);
+}
+
+// The base action is inside its limits already; the bounds are for controllers that broke the rule.
+void OptimizerSession::passThrough(SolveStatus status) {
+  action_.input = base_.input;
+  limits_.clip(action_.input, base_.input);
+  action_.source = status == SolveStatus::kNotRun ? base_.source : ActionSource::kClipped;
+  report_.perturbation = action_.input - base_.input;
+  report_.status = status;
+  report_.iterations = 0;
+  report_.kkt_residual = 0.0;
+  report_.seconds = 0.0;
+  report_.active_rows = 0;
+}
+
+}  // namespace fpc

@@ -1,0 +1,170 @@
+#include "fmbpc/control/session.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
+  std::vector<std::string> names;
+  for (const SignalInfo& signal : signals) names.push_back(signal.name);
+  return names;
+}
+
+SampleClock clockOf(const PlantInfo& plant) {
+  return SampleClock(plant.sample_time_s, static_cast<double>(plant.header.time_ns) / 1e9);
+}
+
+bool allFinite(const Measurement& m) {
+  return m.outputs.allFinite() && m.disturbances.allFinite() && m.input_applied.allFinite();
+}
+
+std::string missingSamples(std::uint32_t first, std::uint32_t last) {
+  if (first == last) return "sample " + std::to_string(first) + " missing";
+  return "samples " + std::to_string(first) + ".." + std::to_string(last) + " missing";
+}
+
+}  // namespace
+
+ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
+                                     SetpointParams setpoint, InputLimits limits,
+                                     Vector initial_input, PlantInfo plant)
+    : controller_(std::move(controller)),
+      setpoint_(std::move(setpoint), namesOf(plant.outputs), clockOf(plant)),
+      limits_(std::move(limits)),
+      plant_(std::move(plant)),
+      last_input_(std::move(initial_input)) {
+  require(controller_ != nullptr, "controller", "a controller");
+  const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
+  limits_.validate(n_u);
+  require(last_input_.size() == n_u && last_input_.allFinite(), "actuator.initial_input",
+          std::to_string(n_u) + " finite numbers");
+  manual_input_ = last_input_;
+  answer_.base.input = last_input_;
+  answer_.tracking.reference = setpoint_.present();
+}
+
+bool ControllerSession::ready() const { return has_model_ || !controller_->needsModel(); }
+
+bool ControllerSession::sizesFit(const Measurement& m) const {
+  return static_cast<std::size_t>(m.outputs.size()) == plant_.outputs.size() &&
+         static_cast<std::size_t>(m.disturbances.size()) == plant_.disturbances.size() &&
+         static_cast<std::size_t>(m.input_applied.size()) == plant_.inputs.size();
+}
+
+Receipt ControllerSession::receive(const Measurement& measurement) {
+  if (!sizesFit(measurement)) {
+    gate_.countWrongSize();
+    return Receipt::kDropped;
+  }
+  if (!ready()) return Receipt::kNotReady;
+  const StepHeader before = gate_.last();
+  const Arrival arrival = gate_.pass(measurement.header);
+  if (arrival == Arrival::kRepeat) return Receipt::kRepeated;
+  if (!isNew(arrival)) return Receipt::kDropped;
+  begin(measurement, arrival, before);
+  process(measurement);
+  return Receipt::kAnswered;
+}
+
+// What a sample brings whatever its values are: identity, setpoints, and why memory may be invalid.
+void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepHeader& before) {
+  const std::uint32_t step = m.header.step;
+  if (arrival == Arrival::kFirst) arrival_reason_ = "first sample is " + std::to_string(step);
+  if (arrival == Arrival::kNewRun) arrival_reason_ = "new run";
+  if (arrival == Arrival::kGap) arrival_reason_ = missingSamples(before.step + 1, step - 1);
+  if (arrival == Arrival::kNewRun) setpoint_.restart();
+  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) setpoint_.anchor(m.header);
+
+  answer_.base.header = answer_.tracking.header = m.header;
+  answer_.has_action = !m.final;
+  answer_.has_prediction = false;
+  answer_.tracking.setpoint = setpoint_.advance(step);
+  answer_.effects = setpoint_.effects();
+  for (CommandEffect& effect : answer_.effects) effect.header = m.header;
+  reset_reason_.clear();
+}
+
+void ControllerSession::process(const Measurement& m) {
+  if (!allFinite(m)) {
+    gate_.countNotFinite();
+    hold(m, "the measurement is not finite: input held");
+    interruption_ = "data before were not finite";
+  } else if (manual_) {
+    sendManual(m);
+    interruption_ = "back from manual";
+  } else {
+    runLaw(m);
+  }
+  last_input_ = answer_.base.input;
+}
+
+void ControllerSession::hold(const Measurement& m, const char* remark) {
+  Vector& input = answer_.base.input;
+  input = m.input_applied.allFinite() ? m.input_applied : last_input_;
+  limits_.clip(input, input);
+  answer_.base.source = output_.source = ActionSource::kHeld;
+  output_.ok = output_.predictive = false;
+  output_.remark = remark;
+}
+
+void ControllerSession::sendManual(const Measurement& m) {
+  if (!manual_given_) manual_input_ = m.input_applied;
+  manual_given_ = true;
+  answer_.base.input = manual_input_;
+  limits_.clip(answer_.base.input, m.input_applied);
+  answer_.base.source = output_.source = ActionSource::kManual;
+  answer_.tracking.reference = m.outputs;
+  output_.ok = true;
+  output_.predictive = false;
+  output_.remark = "";
+}
+
+void ControllerSession::runLaw(const Measurement& m) {
+  if (interruption_ != nullptr || !arrival_reason_.empty()) {
+    reset_reason_ = arrival_reason_;
+    if (interruption_ != nullptr) {
+      if (!reset_reason_.empty()) reset_reason_ += "; ";
+      reset_reason_ += interruption_;
+    }
+    controller_->reset(m);
+    interruption_ = nullptr;
+    arrival_reason_.clear();
+  }
+  controller_->step(m, setpoint_, output_);
+  if (output_.reference.size() == m.outputs.size()) answer_.tracking.reference = output_.reference;
+  if (!output_.ok) return hold(m, output_.remark);
+  if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
+    return hold(m, "the law gave no finite input: input held");
+  answer_.base.input = output_.input;
+  limits_.clip(answer_.base.input, m.input_applied);
+  answer_.base.source = output_.source;
+  answer_.has_prediction = output_.predictive && !m.final;
+  if (!answer_.has_prediction) return;
+  answer_.prediction = output_.prediction;
+  answer_.prediction.header = m.header;
+}
+
+void ControllerSession::setModel(const TsModel& model) {
+  controller_->setModel(model);
+  has_model_ = true;
+}
+
+void ControllerSession::manual(bool on) {
+  if (on && !manual_) manual_given_ = false;
+  manual_ = on;
+}
+
+void ControllerSession::manualInput(VectorRef input) {
+  require(manual_, "manual input", "manual mode: switch to manual first");
+  require(input.size() == last_input_.size(), "manual input",
+          std::to_string(last_input_.size()) + " numbers");
+  require(input.allFinite(), "manual input", "finite numbers");
+  manual_input_ = input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
+  manual_given_ = true;
+}
+
+}  // namespace fpc

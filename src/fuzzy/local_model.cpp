@@ -1,0 +1,170 @@
+// Blends the rules into the matrices of one sample. Source: Vallejo 2019 eqs. 10-17, rewritten for
+// any lags.
+#include "fmbpc/fuzzy/local_model.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace fpc {
+namespace {
+
+std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+
+/// Moves the values of one signal a row down and puts the newest on top.
+void push(Eigen::Ref<Vector> state, Eigen::Index first, int count, double newest) {
+  for (Eigen::Index row = first + count - 1; row > first; --row) state[row] = state[row - 1];
+  if (count > 0) state[first] = newest;
+}
+
+}  // namespace
+
+LocalModel::LocalModel(TsModel model) : model_(std::move(model)) {
+  model_.validate();
+  layOut();
+  affine_ = AffineModel(n_x_, static_cast<Eigen::Index>(model_.inputs.size()),
+                        static_cast<Eigen::Index>(model_.outputs.size()));
+  fillShifts();
+  firing_.resize(model_.submodels.size());
+  for (std::size_t i = 0; i < model_.submodels.size(); ++i) {
+    firing_[i].weights = Vector::Zero(static_cast<Eigen::Index>(model_.submodels[i].rules.size()));
+    antecedent_values_.emplace_back(
+        Vector::Zero(static_cast<Eigen::Index>(model_.submodels[i].antecedents.size())));
+  }
+}
+
+void LocalModel::layOut() {
+  const auto place = [this](SignalKind kind, int extra, int least,
+                            std::vector<Eigen::Index>& offset, std::vector<int>& lags) {
+    const auto count = model_.signals(kind).size();
+    for (std::size_t i = 0; i < count; ++i) {
+      offset.push_back(n_x_);
+      lags.push_back(std::max(model_.maxLag(kind, static_cast<int>(i)) + extra, least));
+      n_x_ += lags.back();
+    }
+  };
+  place(SignalKind::kOutput, 1, 1, output_offset_, output_lags_);
+  place(SignalKind::kInput, 0, 1, input_offset_, input_lags_);
+  place(SignalKind::kDisturbance, 0, 0, disturbance_offset_, disturbance_lags_);
+}
+
+Eigen::Index LocalModel::outputState(Eigen::Index output, int lag) const {
+  return output_offset_[at(output)] + lag;
+}
+Eigen::Index LocalModel::inputState(Eigen::Index input, int lag) const {
+  return input_offset_[at(input)] + lag - 1;
+}
+Eigen::Index LocalModel::disturbanceState(Eigen::Index disturbance, int lag) const {
+  return disturbance_offset_[at(disturbance)] + lag - 1;
+}
+
+void LocalModel::restState(VectorRef outputs, VectorRef input, VectorRef disturbances,
+                           Eigen::Ref<Vector> state) const {
+  for (std::size_t i = 0; i < output_lags_.size(); ++i)
+    state.segment(output_offset_[i], output_lags_[i])
+        .setConstant(outputs[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < input_lags_.size(); ++i)
+    state.segment(input_offset_[i], input_lags_[i])
+        .setConstant(input[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
+    state.segment(disturbance_offset_[i], disturbance_lags_[i])
+        .setConstant(disturbances[static_cast<Eigen::Index>(i)]);
+}
+
+void LocalModel::shiftState(VectorRef outputs, VectorRef input, VectorRef disturbances,
+                            Eigen::Ref<Vector> state) const {
+  for (std::size_t i = 0; i < output_lags_.size(); ++i)
+    push(state, output_offset_[i], output_lags_[i], outputs[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < input_lags_.size(); ++i)
+    push(state, input_offset_[i], input_lags_[i], input[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
+    push(state, disturbance_offset_[i], disturbance_lags_[i],
+         disturbances[static_cast<Eigen::Index>(i)]);
+}
+
+void LocalModel::fillShifts() {
+  const auto shift = [this](Eigen::Index first, int count) {
+    for (Eigen::Index row = first + 1; row < first + count; ++row) affine_.A(row, row - 1) = 1.0;
+  };
+  for (std::size_t i = 0; i < output_lags_.size(); ++i) {
+    shift(output_offset_[i], output_lags_[i]);
+    affine_.C(static_cast<Eigen::Index>(i), output_offset_[i]) = 1.0;
+  }
+  for (std::size_t i = 0; i < input_lags_.size(); ++i) {
+    shift(input_offset_[i], input_lags_[i]);
+    affine_.B(input_offset_[i], static_cast<Eigen::Index>(i)) = 1.0;
+  }
+  for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
+    shift(disturbance_offset_[i], disturbance_lags_[i]);
+}
+
+double LocalModel::antecedentValue(const Regressor& variable, VectorRef state,
+                                   VectorRef disturbances) const {
+  switch (variable.kind) {
+    case SignalKind::kOutput:
+      return state[outputState(variable.index, variable.lag)];
+    case SignalKind::kInput:
+      return state[inputState(variable.index, std::max(variable.lag, 1))];
+    default:
+      return variable.lag == 0 ? disturbances[variable.index]
+                               : state[disturbanceState(variable.index, variable.lag)];
+  }
+}
+
+void LocalModel::addTerm(Eigen::Index output, const Regressor& regressor, double coefficient,
+                         VectorRef disturbances) {
+  const Eigen::Index row = outputState(output);
+  switch (regressor.kind) {
+    case SignalKind::kOutput:
+      affine_.A(row, outputState(regressor.index, regressor.lag)) += coefficient;
+      break;
+    case SignalKind::kInput:
+      if (regressor.lag == 0)
+        affine_.B(row, regressor.index) += coefficient;
+      else
+        affine_.A(row, inputState(regressor.index, regressor.lag)) += coefficient;
+      break;
+    case SignalKind::kDisturbance:
+      if (regressor.lag == 0)
+        affine_.g[row] += coefficient * disturbances[regressor.index];
+      else
+        affine_.A(row, disturbanceState(regressor.index, regressor.lag)) += coefficient;
+      break;
+  }
+}
+
+bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef disturbances) {
+  const OutputModel& submodel = model_.submodels[at(output)];
+  Vector& values = antecedent_values_[at(output)];
+  for (std::size_t i = 0; i < submodel.antecedents.size(); ++i)
+    values[static_cast<Eigen::Index>(i)] =
+        antecedentValue(submodel.antecedents[i], state, disturbances);
+  FiringResult& firing = firing_[at(output)];
+  firingWeights(submodel, values, firing);
+
+  const Eigen::Index row = outputState(output);
+  affine_.A.row(row).setZero();
+  affine_.B.row(row).setZero();
+  affine_.g[row] = 0.0;
+  for (std::size_t r = 0; r < submodel.rules.size(); ++r)
+    affine_.g[row] += firing.weights[static_cast<Eigen::Index>(r)] * submodel.rules[r].offset;
+  for (std::size_t i = 0; i < submodel.regressors.size(); ++i) {
+    double coefficient = 0.0;
+    for (std::size_t r = 0; r < submodel.rules.size(); ++r)
+      coefficient += firing.weights[static_cast<Eigen::Index>(r)] *
+                     submodel.rules[r].coefficients[static_cast<Eigen::Index>(i)];
+    addTerm(output, submodel.regressors[i], coefficient, disturbances);
+  }
+  return firing.fired;
+}
+
+bool LocalModel::blend(VectorRef state, VectorRef disturbances) {
+  bool fired = true;
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(model_.outputs.size()); ++i)
+    fired = blendOutput(i, state, disturbances) && fired;
+  for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
+    if (disturbance_lags_[i] > 0)
+      affine_.g[disturbance_offset_[i]] = disturbances[static_cast<Eigen::Index>(i)];
+  return fired;
+}
+
+}  // namespace fpc

@@ -1,0 +1,89 @@
+// Brings a model's signals into the order of the plant, so that everything behind it may index by
+// PlantInfo.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/fuzzy/model_file.hpp"
+
+namespace fpc {
+namespace {
+
+int indexOf(const std::vector<SignalInfo>& signals, const std::string& name) {
+  const auto found =
+      std::find_if(signals.begin(), signals.end(), [&](const auto& s) { return s.name == name; });
+  return found == signals.end() ? -1 : static_cast<int>(found - signals.begin());
+}
+
+std::string namesOf(const std::vector<SignalInfo>& signals) {
+  std::vector<std::string> names;
+  for (const auto& signal : signals) names.push_back(signal.name);
+  return signals.empty() ? "nothing" : join(names);
+}
+
+/// Where each of the model's signals is in the plant.
+std::vector<int> places(const std::string& where, const std::vector<SignalInfo>& model,
+                        const std::vector<SignalInfo>& plant) {
+  std::vector<int> to;
+  for (const auto& signal : model) {
+    const int place = indexOf(plant, signal.name);
+    require(place >= 0, where + "." + signal.name,
+            "a signal of the plant, which has " + namesOf(plant));
+    const std::string& unit = plant[static_cast<std::size_t>(place)].unit;
+    require(signal.unit == unit, where + "." + signal.name,
+            "the plant's unit '" + unit + "', got '" + signal.unit + "'");
+    to.push_back(place);
+  }
+  return to;
+}
+
+/// The plant's names and units with the ranges of the model.
+std::vector<SignalInfo> reordered(const std::vector<SignalInfo>& model,
+                                  const std::vector<SignalInfo>& plant) {
+  std::vector<SignalInfo> signals = plant;
+  for (auto& signal : signals) {
+    const int place = indexOf(model, signal.name);
+    const double infinite = std::numeric_limits<double>::infinity();
+    signal.lower = place < 0 ? -infinite : model[static_cast<std::size_t>(place)].lower;
+    signal.upper = place < 0 ? infinite : model[static_cast<std::size_t>(place)].upper;
+  }
+  return signals;
+}
+
+}  // namespace
+
+TsModel matchToPlant(const TsModel& model, const PlantInfo& plant) {
+  model.validate();
+  const std::string where = "model '" + model.name + "'";
+  require(
+      std::abs(model.sample_time_s - plant.sample_time_s) <= 1e-9 * plant.sample_time_s,
+      where + " sample_time_s",
+      "the plant's " + exactText(plant.sample_time_s) + ", got " + exactText(model.sample_time_s));
+  const std::vector<int> outputs = places(where + " outputs", model.outputs, plant.outputs);
+  const std::vector<int> inputs = places(where + " inputs", model.inputs, plant.inputs);
+  const std::vector<int> disturbances =
+      places(where + " disturbances", model.disturbances, plant.disturbances);
+  for (const auto& output : plant.outputs)
+    require(indexOf(model.outputs, output.name) >= 0, where + " outputs",
+            "also the plant's output " + output.name);
+
+  TsModel matched = model;
+  matched.outputs = reordered(model.outputs, plant.outputs);
+  matched.inputs = reordered(model.inputs, plant.inputs);
+  matched.disturbances = reordered(model.disturbances, plant.disturbances);
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    matched.submodels[static_cast<std::size_t>(outputs[i])] = model.submodels[i];
+  for (auto& submodel : matched.submodels)
+    for (auto* list : {&submodel.antecedents, &submodel.regressors})
+      for (auto& regressor : *list) {
+        const auto& to = regressor.kind == SignalKind::kOutput  ? outputs
+                         : regressor.kind == SignalKind::kInput ? inputs
+                                                                : disturbances;
+        regressor.index = to[static_cast<std::size_t>(regressor.index)];
+      }
+  return matched;
+}
+
+}  // namespace fpc

@@ -1,0 +1,60 @@
+// Where loop files are found by name.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+
+#ifndef FMBPC_SOURCE_CONFIG
+#define FMBPC_SOURCE_CONFIG ""
+#endif
+#ifndef FMBPC_INSTALL_CONFIG
+#define FMBPC_INSTALL_CONFIG ""
+#endif
+
+namespace fpc {
+namespace fs = std::filesystem;
+
+std::vector<std::string> configFolders() {
+  std::vector<std::string> folders;
+  const char* user = std::getenv("FMBPC_CONFIG_PATH");
+  std::stringstream listed(user ? user : "");
+  for (std::string folder; std::getline(listed, folder, ':');)
+    if (!folder.empty()) folders.push_back(folder);
+  for (const char* folder : {FMBPC_SOURCE_CONFIG, FMBPC_INSTALL_CONFIG}) {
+    std::error_code ignored;
+    if (*folder != '\0' && fs::is_directory(folder, ignored)) folders.emplace_back(folder);
+  }
+  return folders;
+}
+
+std::vector<std::string> loopNames() {
+  std::vector<std::string> names;
+  for (const auto& folder : configFolders()) {
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(fs::path(folder) / "loop", ignored))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+std::string findLoop(const std::string& name_or_path) {
+  const fs::path path(name_or_path);
+  const bool is_path = name_or_path.find('/') != std::string::npos || path.extension() == ".yaml";
+  if (is_path) {
+    require(fs::is_regular_file(path), name_or_path, "an existing loop file");
+    return fs::absolute(path).lexically_normal().string();
+  }
+  for (const auto& folder : configFolders()) {
+    const fs::path file = fs::path(folder) / "loop" / (name_or_path + ".yaml");
+    if (fs::is_regular_file(file)) return fs::absolute(file).lexically_normal().string();
+  }
+  throw InputError("loop '" + name_or_path + "': expected a path or one of " + join(loopNames()));
+}
+
+}  // namespace fpc

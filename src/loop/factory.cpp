@@ -1,0 +1,58 @@
+#include "fmbpc/loop/factory.hpp"
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+std::vector<std::string> disturbanceNames(const LoopFile& loop) {
+  std::vector<std::string> names;
+  const auto plant = makePlant(loop.simulation.plant);
+  for (const auto& quantity : plant->description().disturbances) names.push_back(quantity.name);
+  return names;
+}
+
+std::unique_ptr<Controller> makeController(const LoopFile& loop) {
+  const InputLimits& limits = loop.simulation.actuator.limits;
+  if (loop.controller == "pi") return std::make_unique<PiController>(loop.pi, limits, loop.plant_info);
+  return std::make_unique<FmbpcLaw>(loop.fmbpc, limits, loop.plant_info);
+}
+
+void requireSimulated(const LoopFile& loop) {
+  require(!loop.external_plant, loop.name + ": plant.type",
+          "a plant that can be simulated; an external one runs over topics only");
+}
+
+}  // namespace
+
+DisturbanceRecord makeDisturbance(const LoopFile& loop) {
+  requireSimulated(loop);
+  const SimulationParams& sim = loop.simulation;
+  const DisturbanceParams& params = loop.disturbance;
+  if (params.source == "constant") return {};
+  require(sim.samples > 0, loop.name + ": sampling.duration_h",
+          "a time > 0 with disturbance.source " + params.source);
+  const auto names = disturbanceNames(loop);
+  if (params.source == "pattern")
+    return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s, sim.samples);
+  return readDisturbances(params.csv, names, sim.disturbance_nominal, sim.sample_time_s, sim.samples);
+}
+
+Simulation makeSimulation(const LoopFile& loop) {
+  requireSimulated(loop);
+  SimulationParams params = loop.simulation;
+  params.disturbance = makeDisturbance(loop);
+  return Simulation(std::move(params));
+}
+
+ControllerSession makeControllerSession(const LoopFile& loop) {
+  const ActuatorParams& actuator = loop.simulation.actuator;
+  return {makeController(loop), loop.setpoint, actuator.limits, actuator.initial, loop.plant_info};
+}
+
+OptimizerSession makeOptimizerSession(const LoopFile& loop) {
+  require(loop.has_clp, loop.name + ": clp", "a section clp that is enabled");
+  return {loop.clp, loop.simulation.actuator.limits, loop.plant_info};
+}
+
+}  // namespace fpc

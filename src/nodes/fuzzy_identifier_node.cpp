@@ -1,0 +1,3 @@
+#include "fmbpc/ros/fuzzy_identifier.hpp"
+
+int main(int argc, char** argv) { return fpc::runNode<fpc::FuzzyIdentifier>(argc, argv, "fuzzy_identifier"); }

@@ -1,0 +1,3 @@
+#include "fmbpc/ros/plant_simulator.hpp"
+
+int main(int argc, char** argv) { return fpc::runNode<fpc::PlantSimulator>(argc, argv, "plant_simulator"); }

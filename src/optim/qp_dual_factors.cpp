@@ -1,0 +1,140 @@
+// The factors of the dual active-set method: J and R with J'N = [R; 0] and J'H J = I (Goldfarb and
+// Idnani 1983, section 4). A bound's normal is a unit vector, so its transform is a row of J.
+// Constraints enter by a Householder reflection of the null-space columns (the step z is half of
+// the product that it needs) and leave by Givens rotations.
+#include <cmath>
+
+#include "optim/qp_workspace.hpp"
+
+namespace fpc::qp {
+namespace {
+
+constexpr double kDependentTolerance = 1e-10;  // sine of the angle to the working set, metric H^-1
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+void DualActiveSet::setNormal(const QpProblem& p, Index id, Side side) {
+  if (id >= p.g.size()) normal_ = static_cast<double>(side) * p.A.row(id - p.g.size()).transpose();
+}
+
+/// d = J' normal
+void DualActiveSet::transformNormal(Index id, Side side) {
+  if (id < x_.size()) {
+    d_ = static_cast<double>(side) * J_.row(id).transpose();
+  } else {
+    d_.noalias() = J_.transpose() * normal_;
+  }
+}
+
+bool DualActiveSet::dependent() const {
+  if (q_ == d_.size()) return true;
+  return !(d_.tail(d_.size() - q_).squaredNorm() >
+           kDependentTolerance * kDependentTolerance * d_.squaredNorm());
+}
+
+/// J and R of the bounds in the working set: with fixed unknowns last in L, L^-T read backwards has
+/// them first.
+void DualActiveSet::seed(const QpProblem& p, const KktSystem& kkt, const Sides& sides) {
+  const Index n = p.g.size();
+  const Matrix& L = kkt.cholesky();
+  Matrix& inverse = R_;  // L^-T, upper triangular, for the moment
+  for (Index j = 0; j < n; ++j) {
+    auto column = inverse.col(j);
+    column.tail(n - j).setZero();
+    const double diagonal = 1.0 / L(j, j);
+    if (j > 0) {
+      column.head(j).noalias() = inverse.topLeftCorner(j, j) * L.row(j).head(j).transpose();
+      column.head(j) *= -diagonal;
+    }
+    column(j) = diagonal;
+  }
+  for (Index j = 0; j < n; ++j) {
+    double* column = J_.data() + (n - 1 - j) * n;
+    for (Index i = 0; i < n; ++i) column[kkt.order()[at(i)]] = inverse(i, j);
+  }
+  q_ = 0;
+  for (Index j = n; j-- > kkt.freeCount();) {
+    const Index i = kkt.order()[at(j)];
+    active_[at(q_)] = i;
+    active_side_[at(q_)] = sides[at(i)];
+    ++q_;
+  }
+  R_.setZero();
+  for (Index k = 0; k < q_; ++k) {
+    R_.col(k).head(k + 1) =
+        static_cast<double>(active_side_[at(k)]) * J_.row(active_[at(k)]).head(k + 1).transpose();
+  }
+}
+
+/// x and u of the working set: R'c = b, x = J_1 c - J_2 J_2'g, R u = c + J_1'g.
+void DualActiveSet::minimise(const QpProblem& p) {
+  const Index n = p.g.size();
+  for (Index k = 0; k < q_; ++k) {
+    c_(k) =
+        static_cast<double>(active_side_[at(k)]) * limitOf(p, active_[at(k)], active_side_[at(k)]);
+  }
+  d_.noalias() = J_.transpose() * p.g;
+  c_.tail(n - q_) = -d_.tail(n - q_);
+  if (q_ > 0) {
+    const auto R = R_.topLeftCorner(q_, q_).triangularView<Eigen::Upper>();
+    auto c = c_.head(q_);
+    auto u = u_.head(q_);
+    R.transpose().solveInPlace(c);
+    u = c + d_.head(q_);
+    R.solveInPlace(u);
+  }
+  x_.noalias() = J_ * c_;
+}
+
+/// Takes the constraint with transform d and step z into the working set.
+void DualActiveSet::append(Index id, Side side) {
+  const Index n = x_.size(), null_size = n - q_;
+  auto v = d_.tail(null_size);
+  const double norm = v.norm();
+  const double alpha = v(0) > 0.0 ? -norm : norm;
+  R_.col(q_).head(q_) = d_.head(q_);
+  R_(q_, q_) = alpha;
+  const double beta = 1.0 / (norm * (norm + std::abs(v(0))));
+  c_ = beta * (z_ - alpha * J_.col(q_));  // beta J_2 v
+  v(0) -= alpha;
+  for (Index j = 0; j < null_size; ++j) {
+    if (v(j) != 0.0) J_.col(q_ + j) -= v(j) * c_;
+  }
+  active_[at(q_)] = id;
+  active_side_[at(q_)] = side;
+  ++q_;
+}
+
+void DualActiveSet::remove(Index k, Sides& sides) {
+  sides[at(active_[at(k)])] = kOff;
+  for (Index j = k; j + 1 < q_; ++j) {
+    R_.col(j).head(j + 2) = R_.col(j + 1).head(j + 2);
+    active_[at(j)] = active_[at(j + 1)];
+    active_side_[at(j)] = active_side_[at(j + 1)];
+    u_(j) = u_(j + 1);
+  }
+  --q_;
+  const Index n = x_.size();
+  for (Index j = k; j < q_; ++j) {
+    const double norm = std::hypot(R_(j, j), R_(j + 1, j));
+    const double c = R_(j, j) / norm, s = R_(j + 1, j) / norm;
+    R_(j, j) = norm;
+    R_(j + 1, j) = 0.0;
+    for (Index l = j + 1; l < q_; ++l) {
+      const double a = R_(j, l), b = R_(j + 1, l);
+      R_(j, l) = c * a + s * b;
+      R_(j + 1, l) = c * b - s * a;
+    }
+    double* first = J_.data() + j * n;
+    double* second = first + n;
+    for (Index i = 0; i < n; ++i) {
+      const double a = first[i], b = second[i];
+      first[i] = c * a + s * b;
+      second[i] = c * b - s * a;
+    }
+  }
+}
+
+}  // namespace fpc::qp

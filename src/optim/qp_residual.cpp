@@ -1,0 +1,83 @@
+// How good a point is: the scaled KKT residual of a quadratic programme, each error measured
+// against the terms that it is the difference of. Complementarity is min(multiplier, distance to
+// the limit), both scaled.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fmbpc/base/input_error.hpp"
+#include "optim/qp_workspace.hpp"
+
+namespace fpc {
+namespace qp {
+namespace {
+
+double largest(VectorRef v) { return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0; }
+
+/// Feasibility, sign and complementarity errors of one constraint with value and multiplier y.
+double constraintError(const QpProblem& p, Index id, VectorRef x, double value, double y,
+                       double y_scale) {
+  const double lower = lowerOf(p, id), upper = upperOf(p, id);
+  double error = 0.0;
+  if (value < lower) error = (lower - value) / feasibilityScale(p, id, x, lower);
+  if (value > upper) error = (value - upper) / feasibilityScale(p, id, x, upper);
+  if (y == 0.0 || lower == upper) return error;
+  const double limit = y > 0.0 ? lower : upper;
+  const double multiplier = std::abs(y) / y_scale;
+  const double distance =
+      std::isinf(limit) ? multiplier : std::abs(value - limit) / feasibilityScale(p, id, x, limit);
+  return std::max(error, std::min(multiplier, distance));
+}
+
+}  // namespace
+
+double feasibilityScale(const QpProblem& p, Index id, VectorRef x, double limit) {
+  const Index n = p.g.size();
+  double scale = std::abs(limit);
+  if (id < n) {
+    scale += 1.0 + std::abs(x(id));
+  } else {
+    for (Index j = 0; j < n; ++j) scale += std::abs(p.A(id - n, j)) * (1.0 + std::abs(x(j)));
+  }
+  return std::max(scale, std::numeric_limits<double>::min());
+}
+
+double gradientScale(const QpProblem& p, VectorRef Hx, VectorRef y_x, VectorRef Aty) {
+  return 1.0 + std::max({largest(Hx), largest(p.g), largest(y_x), largest(Aty)});
+}
+
+double scaledResidual(const QpProblem& p, VectorRef x, VectorRef y_x, VectorRef y_a, VectorRef Hx,
+                      VectorRef Aty, VectorRef Ax) {
+  if (!Hx.allFinite() || !Aty.allFinite() || !Ax.allFinite() || !y_x.allFinite() ||
+      !y_a.allFinite()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  const Index n = x.size(), m = Ax.size();
+  const double gradient = gradientScale(p, Hx, y_x, Aty);
+  double error = 0.0;
+  for (Index i = 0; i < n; ++i) error = std::max(error, std::abs(Hx(i) + p.g(i) - y_x(i) - Aty(i)));
+  error /= gradient;
+  for (Index i = 0; i < n; ++i)
+    error = std::max(error, constraintError(p, i, x, x(i), y_x(i), gradient));
+  const double y_scale = 1.0 + largest(y_a);
+  for (Index i = 0; i < m; ++i)
+    error = std::max(error, constraintError(p, n + i, x, Ax(i), y_a(i), y_scale));
+  return error;
+}
+
+}  // namespace qp
+
+double kktResidual(const QpProblem& problem, VectorRef x, VectorRef y_x, VectorRef y_a) {
+  const Eigen::Index n = problem.g.size(), m = problem.a_lower.size();
+  require(x.size() == n && y_x.size() == n && y_a.size() == m, "kktResidual",
+          "x, y_x of size n and y_a of size m");
+  const Vector Hx = problem.H * x;
+  Vector Aty = Vector::Zero(n), Ax(m);
+  if (m > 0) {
+    Aty.noalias() = problem.A.transpose() * y_a;
+    Ax.noalias() = problem.A * x;
+  }
+  return qp::scaledResidual(problem, x, y_x, y_a, Hx, Aty, Ax);
+}
+
+}  // namespace fpc

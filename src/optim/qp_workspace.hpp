@@ -1,0 +1,126 @@
+// Private parts of the QP solver: the equality-constrained KKT system of one working set (used to
+// try a working set and to polish the answer) and the dual active-set method (Goldfarb and Idnani
+// 1983, section 4) that finds the set.
+#pragma once
+
+#include <vector>
+
+#include "fmbpc/optim/qp.hpp"
+
+namespace fpc::qp {
+
+using Index = Eigen::Index;
+
+/// Which limit of a constraint is in the working set. Constraint i < n is the bound of x_i, n + j
+/// is row j.
+enum Side : signed char { kUpper = -1, kOff = 0, kLower = 1 };
+using Sides = std::vector<Side>;
+
+inline double lowerOf(const QpProblem& p, Index id) {
+  return id < p.g.size() ? p.x_lower(id) : p.a_lower(id - p.g.size());
+}
+inline double upperOf(const QpProblem& p, Index id) {
+  return id < p.g.size() ? p.x_upper(id) : p.a_upper(id - p.g.size());
+}
+inline bool isEquality(const QpProblem& p, Index id) { return lowerOf(p, id) == upperOf(p, id); }
+inline double limitOf(const QpProblem& p, Index id, Side side) {
+  return side == kUpper ? upperOf(p, id) : lowerOf(p, id);
+}
+
+/// What an error in constraint id is measured against: |limit| + sum_j |a_j| (1 + |x_j|).
+double feasibilityScale(const QpProblem& p, Index id, VectorRef x, double limit);
+
+/// max(1 + the terms of stationarity): what an error in the gradient is measured against.
+double gradientScale(const QpProblem& p, VectorRef Hx, VectorRef y_x, VectorRef Aty);
+
+/// kktResidual() for products that are known already.
+double scaledResidual(const QpProblem& p, VectorRef x, VectorRef y_x, VectorRef y_a, VectorRef Hx,
+                      VectorRef Aty, VectorRef Ax);
+
+/// min 1/2 x'Hx + g'x with the constraints of a working set as equalities. Active bounds only
+/// remove their unknowns; the rest is L L' = H_ff and Q R = L^-1 A_wf'. Factors are kept as long as
+/// H and the working set stay the same.
+class KktSystem {
+ public:
+  void resize(Index n);
+  void setHessian(const Matrix& H);  ///< forgets the factors unless H is bitwise the one before
+  /// @return false if H_ff is not positive definite or the rows are dependent
+  bool factor(const QpProblem& p, const Sides& sides);
+  bool factorFree(const QpProblem& p, const Sides& sides);  ///< L only
+  /// Extends L to all unknowns, free ones first. @return false if H is not positive definite
+  bool complete();
+  bool definite() const { return definite_; }  ///< the whole of H has been factored once
+  /// Iterative refinement from the x and y_a given; x is exactly at the active bounds. Needs
+  /// factor().
+  void solve(const QpProblem& p, const Sides& sides, QpResult& result);
+  void evaluate(const QpProblem& p, const QpResult& result);  ///< sets hx() and aty() of any point
+  const Vector& hx() const { return hx_; }
+  const Vector& aty() const { return aty_; }
+  const Matrix& cholesky() const { return L_; }  ///< in the order of order(), after complete()
+  const std::vector<Index>& order() const { return order_; }
+  Index freeCount() const { return n_free_; }
+
+ private:
+  bool cholesky(Index column_begin, Index column_end, Index row_begin, Index row_end);
+  bool gatherRows(const QpProblem& p, const Sides& sides);
+  bool factorRows();
+  bool residual(const QpProblem& p, QpResult& result);
+  void correct(QpResult& result);
+
+  Matrix H_, L_;
+  std::vector<Index> order_;  // free unknowns, then fixed ones, each ascending
+  std::vector<char> fixed_;
+  std::vector<Index> rows_;  // of A, in the working set
+  std::vector<Side> row_side_;
+  Index n_free_{}, n_rows_{};
+  bool factored_{}, rows_factored_{}, complete_{}, definite_{};
+  Matrix At_;  // n n_rows, the working rows as columns
+  Matrix Vt_, Q_, R_;
+  Vector y_, hx_, aty_, residual_free_, residual_row_, work_, work_row_, norm_;
+};
+
+/// The dual method. Between iterations x minimises the cost on the working set and every multiplier
+/// has its sign. J = L^-T times a rotation; J'N = [R; 0], N the normals of the working set, first
+/// column first (their sections 3, 4).
+class DualActiveSet {
+ public:
+  void resize(Index n, Index m);
+  /// Starts from a working set; dependent rows and constraints with multipliers of the wrong sign
+  /// leave it.
+  /// @return false if H is not positive definite
+  bool start(const QpProblem& p, KktSystem& kkt, Sides& sides);
+  /// @return kSolved, kInfeasible, kIterationLimit or kNumericalError
+  SolveStatus run(const QpProblem& p, const QpSettings& settings, double tolerance, Sides& sides,
+                  int& iterations);
+  const Vector& x() const { return x_; }
+  void multipliers(Index n, QpResult& result) const;
+  Index culprit() const {
+    return culprit_;
+  }  ///< the constraint that could not be satisfied, after kInfeasible
+
+ private:
+  Index mostViolated(const QpProblem& p, double tolerance, const Sides& sides, Side& side);
+  SolveStatus add(const QpProblem& p, const QpSettings& settings, Index id, Side side, Sides& sides,
+                  int& iterations);
+  void seed(const QpProblem& p, const KktSystem& kkt, const Sides& sides);
+  void setNormal(const QpProblem& p, Index id, Side side);
+  void transformNormal(Index id, Side side);
+  bool dependent() const;
+  Index blocking(const QpProblem& p, bool dependent, double& step) const;
+  void append(Index id, Side side);
+  void remove(Index k, Sides& sides);
+  void minimise(const QpProblem& p);
+  void dropWrongSigns(const QpProblem& p, Sides& sides);
+  double rowNorm(const QpProblem& p, Index row);
+
+  Matrix J_, R_;
+  std::vector<Index> active_;
+  std::vector<Side> active_side_;
+  std::vector<char> ignored_;  // redundant but for rounding
+  Index q_{}, culprit_{-1};
+  Vector x_, u_, normal_, d_, z_, r_, c_, ax_;
+  Vector scale_;     // sqrt(H_ii)
+  Vector row_norm_;  // of a row in the metric diag(H)^-1, negative while unknown
+};
+
+}  // namespace fpc::qp

@@ -1,0 +1,61 @@
+#include "fmbpc/plant/plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+namespace {
+
+/// Made at first use: plants of other files register while static objects are still being built.
+std::map<std::string, PlantFactory>& registry() {
+  static std::map<std::string, PlantFactory> plants;
+  return plants;
+}
+
+template <typename Named>
+std::string namesOf(const std::vector<Named>& things) {
+  std::vector<std::string> names;
+  for (const auto& thing : things) names.push_back(thing.name);
+  return join(names);
+}
+
+}  // namespace
+
+bool registerPlant(const std::string& name, PlantFactory factory) {
+  return registry().emplace(name, std::move(factory)).second;
+}
+
+std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters) {
+  const auto found = registry().find(name);
+  require(found != registry().end(), "plant.type '" + name + "'", "one of " + join(plantNames()));
+  return found->second(parameters);
+}
+
+std::vector<std::string> plantNames() {
+  std::vector<std::string> names;
+  for (const auto& entry : registry()) names.push_back(entry.first);
+  return names;
+}
+
+Vector parameterValues(const PlantDescription& description, const PlantParameters& parameters) {
+  const auto& known = description.parameters;
+  Vector values(static_cast<Eigen::Index>(known.size()));
+  for (std::size_t i = 0; i < known.size(); ++i)
+    values[static_cast<Eigen::Index>(i)] = known[i].nominal;
+  for (const auto& [name, value] : parameters) {
+    const std::string where = "plant.parameters." + name;
+    const auto found = std::find_if(known.begin(), known.end(),
+                                    [&key = name](const Quantity& q) { return q.name == key; });
+    require(found != known.end(), where, "one of " + namesOf(known));
+    require(std::isfinite(value) && value >= found->lower && value <= found->upper, where,
+            "a number >= " + exactText(found->lower) + " and <= " + exactText(found->upper) + " [" +
+                found->unit + "], got " + exactText(value));
+    values[found - known.begin()] = value;
+  }
+  return values;
+}
+
+}  // namespace fpc

@@ -1,0 +1,181 @@
+// Timing of one sample k: commands due at k come into force; measurement k shows y(k), d(k),
+// u(k-1); then u(k) passes the actuator and its faults, and the plant moves over [t_k, t_k + Ts)
+// with u(k) and d(k) held.
+#include "fmbpc/plant/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "plant/gaussian.hpp"
+
+namespace fpc {
+namespace {
+
+std::vector<std::string> namesForCommands(const SimulationParams& params,
+                                          const PlantDescription& description) {
+  std::vector<std::string> names;
+  for (const auto& q : description.disturbances) names.push_back(q.name);
+  for (const auto& q : description.inputs) names.push_back("input/" + q.name);
+  for (const auto& name : params.outputs) names.push_back("output/" + name);
+  return names;
+}
+
+Eigen::Index indexOf(const std::vector<Quantity>& quantities, const std::string& name) {
+  return std::find_if(quantities.begin(), quantities.end(),
+                      [&](const Quantity& q) { return q.name == name; }) -
+         quantities.begin();
+}
+
+}  // namespace
+
+Simulation::Simulation(SimulationParams params)
+    : params_(std::move(params)),
+      plant_(makePlant(params_.plant, params_.parameters)),
+      clock_(params_.sample_time_s, params_.start_time_s),
+      actuator_((params_ = checked(std::move(params_), *plant_)).actuator),
+      integrator_(*plant_, params_.integrator),
+      commands_(namesForCommands(params_, plant_->description())),
+      info_(makePlantInfo(params_, plant_->description())) {
+  const PlantDescription& plant = plant_->description();
+  for (const auto& name : params_.outputs) output_state_.push_back(indexOf(plant.states, name));
+  for (const auto& name : params_.measured_disturbances)
+    measured_disturbance_.push_back(indexOf(plant.disturbances, name));
+  for (const double seconds : params_.output_delay_s)
+    delays_.emplace_back(seconds / params_.sample_time_s);
+  const auto n_y = static_cast<Eigen::Index>(params_.outputs.size());
+  measurement_.outputs.resize(n_y);
+  measurement_.disturbances.resize(static_cast<Eigen::Index>(measured_disturbance_.size()));
+  state_.outputs.resize(n_y);
+  state_.disturbances = params_.disturbance_nominal;
+  reset(1);
+}
+
+const Measurement& Simulation::reset(std::uint64_t run_id) {
+  info_.header = clock_.header(run_id, 0);
+  measurement_.header = info_.header;
+  state_.state = params_.initial_state;
+  state_.actuator_clips = 0;
+  state_.input_missing = false;
+  actuator_.reset();
+  noise_.seed(params_.noise_seed);
+  trouble_.clear();
+  for (std::size_t i = 0; i < delays_.size(); ++i) delays_[i].reset(state_.state[output_state_[i]]);
+  schedule();
+  measure();
+  return measurement_;
+}
+
+void Simulation::schedule() {
+  commands_.clear();
+  for (const auto& [time_h, command] : params_.disturbance_commands) {
+    checkRanges(command);
+    const std::int64_t after_start = std::llround(time_h * 3600e9);
+    commands_.accept(command, clock_.firstStepAt(clock_.startNanoseconds() + after_start));
+  }
+}
+
+bool Simulation::answers(const StepHeader& header) const {
+  return !measurement_.final && header.run_id == measurement_.header.run_id &&
+         header.step == measurement_.header.step;
+}
+
+const Measurement& Simulation::advance(VectorRef input) {
+  if (measurement_.final) return measurement_;
+  actuator_.apply(input);
+  return integrate();
+}
+
+const Measurement& Simulation::advanceWithoutAction() {
+  if (measurement_.final) return measurement_;
+  actuator_.miss();
+  return integrate();
+}
+
+const Measurement& Simulation::integrate() {
+  const std::size_t first = plant_->description().disturbances.size();
+  for (Eigen::Index i = 0; i < actuator_.applied().size(); ++i) {
+    const std::size_t name = first + static_cast<std::size_t>(i);
+    if (commands_.active()[name].active)
+      actuator_.disturb(i, commands_.apply(name, actuator_.applied()[i]));
+  }
+  const std::uint32_t step = measurement_.header.step;
+  const IntegrationResult result = integrator_.advance(state_.state, actuator_.applied(),
+                                                       state_.disturbances, params_.sample_time_s);
+  if (!result.ok()) trouble_ = "sample " + std::to_string(step) + ": " + result.reason;
+  measurement_.header = clock_.header(measurement_.header.run_id, step + 1);
+  state_.actuator_clips = actuator_.clips();
+  state_.input_missing = actuator_.missing();
+  measure();
+  return measurement_;
+}
+
+void Simulation::updateDisturbances() {
+  const auto& ranges = plant_->description().disturbances;
+  const Matrix& record = params_.disturbance.values;
+  const auto step = static_cast<Eigen::Index>(measurement_.header.step);
+  for (Eigen::Index i = 0; i < state_.disturbances.size(); ++i) {
+    const auto name = static_cast<std::size_t>(i);
+    const double scheduled = record.size() == 0 ? params_.disturbance_nominal[i]
+                                                : record(i, std::min(step, record.cols() - 1));
+    state_.disturbances[i] =
+        std::clamp(commands_.apply(name, scheduled), ranges[name].lower, ranges[name].upper);
+  }
+}
+
+void Simulation::measure() {
+  effects_.clear();
+  for (const auto& command : commands_.advance(measurement_.header.step))
+    effects_.push_back({measurement_.header, command});
+  updateDisturbances();
+  const std::size_t first_output = commands_.names().size() - output_state_.size();
+  for (std::size_t i = 0; i < output_state_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    state_.outputs[row] = delays_[i].pass(state_.state[output_state_[i]]);
+    const double noise = params_.noise_std[row] * standardNormal(noise_);
+    measurement_.outputs[row] = commands_.apply(first_output + i, state_.outputs[row] + noise);
+  }
+  for (std::size_t i = 0; i < measured_disturbance_.size(); ++i)
+    measurement_.disturbances[static_cast<Eigen::Index>(i)] =
+        state_.disturbances[measured_disturbance_[i]];
+  measurement_.input_applied = actuator_.applied();
+  measurement_.final = params_.samples > 0 && measurement_.header.step == params_.samples;
+  state_.header = measurement_.header;
+}
+
+void Simulation::checkRanges(const Command& command) const {
+  if (command.mode != CommandMode::kOverride) return;
+  const auto& ranges = plant_->description().disturbances;
+  for (std::size_t i = 0; i < std::min(command.name.size(), command.value.size()); ++i) {
+    const auto row = static_cast<std::size_t>(indexOf(ranges, command.name[i]));
+    if (row == ranges.size()) continue;  // an input or output, or unknown, which the table says
+    const bool inside =
+        command.value[i] >= ranges[row].lower && command.value[i] <= ranges[row].upper;
+    require(inside, "value of " + command.name[i],
+            "a number >= " + exactText(ranges[row].lower) +
+                " and <= " + exactText(ranges[row].upper) + " [" + ranges[row].unit + "]");
+  }
+}
+
+std::uint32_t Simulation::command(const Command& command) {
+  checkRanges(command);
+  const std::uint32_t next = measurement_.header.step + 1;
+  const std::uint32_t step =
+      command.time_ns == 0 ? next : std::max(next, clock_.firstStepAt(command.time_ns));
+  commands_.accept(command, step);
+  return step;
+}
+
+void Simulation::setOutputDelay(std::size_t output, double seconds) {
+  require(measurement_.header.step == 0, "output delay",
+          "to be set before the first sample is answered");
+  require(output < delays_.size(), "output delay", "an output of the plant");
+  TransportDelay delay(seconds / params_.sample_time_s);
+  delay.reset(state_.state[output_state_[output]]);
+  delay.pass(state_.state[output_state_[output]]);
+  delays_[output] = std::move(delay);
+  params_.output_delay_s[output] = seconds;
+}
+
+}  // namespace fpc

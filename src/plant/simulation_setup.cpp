@@ -1,0 +1,127 @@
+// What a simulation needs to be right before it starts: every field against the plant's
+// description.
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/plant/simulation.hpp"
+
+namespace fpc {
+namespace {
+
+using Index = Eigen::Index;
+
+Index count(const std::vector<Quantity>& quantities) {
+  return static_cast<Index>(quantities.size());
+}
+
+const Quantity& find(const std::vector<Quantity>& quantities, const std::string& name,
+                     const std::string& key) {
+  const auto found = std::find_if(quantities.begin(), quantities.end(),
+                                  [&](const Quantity& q) { return q.name == name; });
+  std::vector<std::string> known;
+  for (const auto& q : quantities) known.push_back(q.name);
+  require(found != quantities.end(), key + ": '" + name + "'", "one of " + join(known));
+  return *found;
+}
+
+void requireNames(const std::vector<std::string>& names, const std::vector<Quantity>& quantities,
+                  const std::string& key) {
+  for (auto it = names.begin(); it != names.end(); ++it) {
+    find(quantities, *it, key);
+    require(std::find(names.begin(), it, *it) == it, key + ": '" + *it + "'",
+            "every name only once");
+  }
+}
+
+void requireInside(double value, const Quantity& q, const std::string& key) {
+  require(std::isfinite(value) && value >= q.lower && value <= q.upper, key + "." + q.name,
+          "a number >= " + exactText(q.lower) + " and <= " + exactText(q.upper) + " [" + q.unit +
+              "], got " + exactText(value));
+}
+
+void requireInside(const Vector& values, const std::vector<Quantity>& quantities,
+                   const std::string& key) {
+  require(values.size() == count(quantities), key, std::to_string(quantities.size()) + " numbers");
+  for (Index i = 0; i < values.size(); ++i)
+    requireInside(values[i], quantities[static_cast<std::size_t>(i)], key);
+}
+
+void checkRecord(const SimulationParams& params, const PlantDescription& plant) {
+  const Matrix& values = params.disturbance.values;
+  if (values.size() == 0) return;
+  require(values.rows() == count(plant.disturbances), "disturbance",
+          "one row per disturbance of the plant");
+  require(values.cols() >= static_cast<Index>(params.samples) + 1, "disturbance",
+          "a column for every sample of the run");
+  for (Index k = 0; k < values.cols(); ++k)
+    for (Index i = 0; i < values.rows(); ++i)
+      requireInside(values(i, k), plant.disturbances[static_cast<std::size_t>(i)],
+                    "disturbance: sample " + std::to_string(k));
+}
+
+void checkActuator(const ActuatorParams& actuator, const PlantDescription& plant) {
+  actuator.validate(count(plant.inputs));
+  requireInside(actuator.limits.lower, plant.inputs, "actuator.input_lower");
+  requireInside(actuator.limits.upper, plant.inputs, "actuator.input_upper");
+}
+
+void checkSensors(SimulationParams& params) {
+  const std::size_t n_y = params.outputs.size();
+  if (params.output_delay_s.empty()) params.output_delay_s.assign(n_y, 0.0);
+  if (params.noise_std.size() == 0) params.noise_std = Vector::Zero(static_cast<Index>(n_y));
+  const std::string numbers = std::to_string(n_y) + " numbers";
+  require(params.output_delay_s.size() == n_y, "plant.output_delay_s", numbers);
+  require(params.noise_std.size() == static_cast<Index>(n_y), "noise.std", numbers);
+  for (const double std : params.noise_std)
+    require(std >= 0.0 && std::isfinite(std), "noise.std", "finite numbers >= 0");
+}
+
+}  // namespace
+
+SimulationParams checked(SimulationParams params, const Plant& plant) {
+  const PlantDescription& description = plant.description();
+  if (params.outputs.empty()) params.outputs = description.outputs;
+  requireNames(params.outputs, description.states, "plant.outputs");
+  requireNames(params.measured_disturbances, description.disturbances,
+               "plant.measured_disturbances");
+  requireInside(params.initial_state, description.states, "plant.initial_state");
+  requireInside(params.disturbance_nominal, description.disturbances, "disturbance.nominal");
+  checkActuator(params.actuator, description);
+  checkRecord(params, description);
+  checkSensors(params);
+  params.integrator.validate();
+  for (const auto& scheduled : params.disturbance_commands)
+    require(std::isfinite(scheduled.time_h) && scheduled.time_h >= 0.0 && scheduled.time_h <= 1e6,
+            "disturbance.commands: time_h", "a number >= 0 and <= 1e6");
+  return params;
+}
+
+PlantInfo makePlantInfo(const SimulationParams& params, const PlantDescription& description) {
+  PlantInfo info;
+  info.header = SampleClock(params.sample_time_s, params.start_time_s).header(0, 0);
+  info.name = description.name;
+  info.frame_id = description.frames.empty() ? description.name : description.frames.front().name;
+  info.sample_time_s = params.sample_time_s;
+  for (const auto& name : params.outputs) {
+    const Quantity& q = find(description.states, name, "plant.outputs");
+    info.outputs.push_back({q.name, q.unit, q.lower, q.upper});
+    const auto frame = description.output_frames.find(name);
+    info.output_frames.push_back(frame != description.output_frames.end() ? frame->second
+                                                                          : info.frame_id);
+  }
+  for (std::size_t i = 0; i < description.inputs.size(); ++i) {
+    const Quantity& q = description.inputs[i];
+    const auto row = static_cast<Index>(i);
+    info.inputs.push_back(
+        {q.name, q.unit, params.actuator.limits.lower[row], params.actuator.limits.upper[row]});
+  }
+  for (const auto& name : params.measured_disturbances) {
+    const Quantity& q = find(description.disturbances, name, "plant.measured_disturbances");
+    info.disturbances.push_back({q.name, q.unit, q.lower, q.upper});
+  }
+  return info;
+}
+
+}  // namespace fpc

@@ -1,0 +1,122 @@
+#include "fmbpc/ros/clp_optimizer.hpp"
+
+#include "fmbpc/loop/factory.hpp"
+#include "fmbpc/ros/conversions.hpp"
+#include "fmbpc/ros/plant_check.hpp"
+#include "fmbpc/ros/topics.hpp"
+
+namespace fpc {
+namespace {
+
+const char* words(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::kSolved: return "solved";
+    case SolveStatus::kInfeasible: return "infeasible: clipped";
+    case SolveStatus::kIterationLimit: return "iteration limit: clipped";
+    case SolveStatus::kNumericalError: return "numerical error: clipped";
+    case SolveStatus::kInvalidProblem: return "invalid problem: clipped";
+    case SolveStatus::kNotRun: return "passed through";
+    case SolveStatus::kBoundWins: return "move limit and bound conflict: the bound was kept";
+    case SolveStatus::kInconsistent: return "base action and prediction disagree: clipped";
+  }
+  return "unknown";
+}
+
+bool trouble(SolveStatus status) {
+  return status != SolveStatus::kSolved && status != SolveStatus::kNotRun;
+}
+
+}  // namespace
+
+std::string ClpOptimizer::idleReason(const LoopFile& loop) {
+  return loop.has_clp ? "" : loop.name + " has no section clp";
+}
+
+ClpOptimizer::ClpOptimizer(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop)
+    : loop_(loop),
+      session_(makeOptimizerSession(loop)),
+      ready_(node),
+      signals_(node),
+      action_(node.advertise<fmbpc::ControlAction>(topics::kControlAction, topics::kRingQueue)),
+      report_(node.advertise<fmbpc::SolverReport>(topics::kSolverReport, topics::kRingQueue)),
+      plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ClpOptimizer::onPlantInfo, this)),
+      base_subscriber_(
+          subscribe(node, topics::kBaseAction, topics::kRingQueue, &ClpOptimizer::onBase, this)),
+      prediction_subscriber_(subscribe(node, topics::kPredictiveAction, topics::kRingQueue,
+                                       &ClpOptimizer::onPrediction, this)),
+      diagnostics_(node, private_node, "optimizer", loop.name,
+                   [this](Diagnostics::Status& status) { report(status); }) {
+  for (const SignalInfo& input : loop.plant_info.inputs) signals_.add(input.name + "_perturbation");
+}
+
+void ClpOptimizer::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
+  guarded(topics::kPlantInfo, [&] {
+    const PlantInfo info = fromMsg(*msg);
+    const std::string mismatch = plantMismatch(loop_.plant_info, info);
+    if (plant_fits_) require(mismatch.empty(), mismatch, "the plant of this run");
+    problem_ = mismatch;
+    plant_fits_ = problem_.empty();
+    if (!plant_fits_) {
+      ROS_ERROR("clp_optimizer: %s", problem_.c_str());
+      return;
+    }
+    guard_.announce(info.header.run_id);
+    ready_.announce();
+  });
+}
+
+template <typename Item>
+void ClpOptimizer::receive(const Item& item) {
+  if (!guard_.admits(item.header.run_id, ros::WallTime::now()))
+    ++foreign_;
+  else if (session_.receive(item))
+    publish();
+}
+
+void ClpOptimizer::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
+  guarded(topics::kBaseAction, [&] { receive(fromMsg(*msg)); });
+}
+
+void ClpOptimizer::onPrediction(const fmbpc::PredictiveAction::ConstPtr& msg) {
+  guarded(topics::kPredictiveAction, [&] { receive(fromMsg(*msg)); });
+}
+
+void ClpOptimizer::publish() {
+  const SolverReport& report = session_.report();
+  action_.publish(toMsg(session_.action()));
+  if (report_.getNumSubscribers() > 0) report_.publish(toMsg(report));
+  if (report.header.run_id == last_.run_id && report.header.step == last_.step) return;
+  last_ = report.header;
+  for (Eigen::Index i = 0; i < report.perturbation.size(); ++i)
+    signals_.publish(static_cast<std::size_t>(i), report.header.time_ns, report.perturbation[i]);
+  if (trouble(report.status) && log_.pass())
+    ROS_WARN("clp_optimizer: sample %u: %s %s", report.header.step, words(report.status),
+             session_.trouble().c_str());
+}
+
+void ClpOptimizer::reportWords(Diagnostics::Status& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  const SolveStatus solve = session_.report().status;
+  if (!problem_.empty())
+    status.summary(DiagnosticStatus::ERROR, problem_);
+  else if (!plant_fits_)
+    status.summary(DiagnosticStatus::WARN, "waiting for plant_info");
+  else if (session_.counts().accepted == 0)
+    status.summary(DiagnosticStatus::OK, "waiting for the first base action");
+  else
+    status.summary(trouble(solve) ? DiagnosticStatus::WARN : DiagnosticStatus::OK, words(solve));
+}
+
+void ClpOptimizer::report(Diagnostics::Status& status) const {
+  const SolverReport& last = session_.report();
+  reportWords(status);
+  status.add("step", last.header.step);
+  status.add("iterations", last.iterations);
+  status.add("KKT residual", last.kkt_residual);
+  status.add("solve time [us]", last.seconds * 1e6);
+  addCounts(status, session_.counts());
+  status.add("dropped: run not announced", foreign_);
+  addRefused(status, refused());
+}
+
+}  // namespace fpc

@@ -1,0 +1,32 @@
+#include "fmbpc/ros/diagnostics.hpp"
+
+#include <utility>
+
+namespace fpc {
+
+Diagnostics::Diagnostics(ros::NodeHandle node, ros::NodeHandle private_node,
+                         const std::string& title, const std::string& hardware_id,
+                         std::function<void(Status&)> report)
+    : updater_(node, private_node) {
+  updater_.setHardwareID(hardware_id);
+  updater_.add(title, [report = std::move(report)](Status& status) { report(status); });
+  timer_ = node.createWallTimer(ros::WallDuration(1.0),
+                                [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+}
+
+void addCounts(Diagnostics::Status& status, const ArrivalCounts& counts) {
+  status.add("accepted", counts.accepted);
+  status.add("repeated", counts.repeated);
+  status.add("gaps", counts.gaps);
+  status.add("new runs", counts.new_runs);
+  status.add("dropped: old step", counts.old);
+  status.add("dropped: other run", counts.other_run);
+  status.add("dropped: wrong size", counts.wrong_size);
+  status.add("not finite", counts.not_finite);
+}
+
+void addRefused(Diagnostics::Status& status, const std::map<std::string, std::uint64_t>& refused) {
+  for (const auto& [topic, count] : refused) status.add("refused: " + topic, count);
+}
+
+}  // namespace fpc

@@ -1,0 +1,304 @@
+#include "fmbpc/ros/loop_recorder.hpp"
+
+#include <std_msgs/String.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/report.hpp"
+#include "fmbpc/ros/conversions.hpp"
+#include "fmbpc/ros/plant_check.hpp"
+#include "fmbpc/ros/topics.hpp"
+#include "tool/commands.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kPollPeriod = 0.05;   // [s] of wall time
+constexpr double kFinalPatience = 10;  // [s] of wall time for stragglers after the final measurement
+constexpr int kPollsConnected = 3;     // a connection is complete at both ends a moment after it is made
+constexpr std::size_t kMostEarly = 10000;
+
+std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
+  std::vector<std::string> names;
+  for (const SignalInfo& signal : signals) names.push_back(signal.name);
+  return names;
+}
+
+Recorder makeRecorder(const LoopFile& loop) {
+  std::vector<std::string> names, units;
+  if (!loop.external_plant)
+    for (const Quantity& state : makePlant(loop.simulation.plant)->description().states) {
+      names.push_back(state.name);
+      units.push_back(state.unit);
+    }
+  return {loop.name, loop.plant_info, loop.has_clp, !loop.external_plant, names, units};
+}
+
+template <typename List>
+Eigen::Index count(const List& list) {
+  return static_cast<Eigen::Index>(list.size());
+}
+
+}  // namespace
+
+LoopRecorder::LoopRecorder(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop)
+    : loop_(loop),
+      out_(private_node.param<std::string>("out", "")),
+      keep_(private_node.param("keep", false)),
+      plot_(private_node.param("plot", true)),
+      recorder_(makeRecorder(loop)),
+      setpoints_(namesOf(loop.plant_info.outputs)),
+      ready_(node),
+      n_y_(count(loop.plant_info.outputs)),
+      n_u_(count(loop.plant_info.inputs)),
+      n_d_(count(loop.plant_info.disturbances)),
+      active_(node.advertise<fmbpc::Setpoint>(
+          topics::kSetpointActive, topics::kViewQueue,
+          [this](const ros::SingleSubscriberPublisher& listener) { onListener(listener); })),
+      recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
+      setpoint_subscriber_(
+          subscribe(node, topics::kSetpoint, topics::kViewQueue, &LoopRecorder::onSetpoint, this)),
+      poll_timer_(node.createWallTimer(ros::WallDuration(kPollPeriod),
+                                       [this](const ros::WallTimerEvent&) { poll(); })),
+      diagnostics_(node, private_node, "recorder", loop.name,
+                   [this](Diagnostics::Status& status) { report(status); }) {
+  removeOldFiles();
+  const auto listen = [&](const char* topic, auto handler) {
+    ring_.push_back(subscribe(node, topic, topics::kRingQueue, handler, this));
+  };
+  listen(topics::kPlantInfo, &LoopRecorder::onPlantInfo);
+  listen(topics::kMeasurement, &LoopRecorder::onMeasurement);
+  listen(topics::kTracking, &LoopRecorder::onTracking);
+  listen(topics::kControlAction, &LoopRecorder::onAction);
+  if (!loop.external_plant) listen(topics::kPlantState, &LoopRecorder::onState);
+  if (!loop.has_clp) return;
+  listen(topics::kBaseAction, &LoopRecorder::onBase);
+  listen(topics::kSolverReport, &LoopRecorder::onReport);
+}
+
+// Results of an earlier run must not be taken for those of this one.
+void LoopRecorder::removeOldFiles() const {
+  if (out_.empty()) return;
+  for (const char* name : {"summary.json", "trajectory.csv", "plot.png"})
+    std::filesystem::remove(std::filesystem::path(out_) / name);
+}
+
+void LoopRecorder::poll() {
+  if (!ready_.announced()) announceIfConnected();
+  if (final_seen_.isZero() || (ros::SteadyTime::now() - final_seen_).toSec() < kFinalPatience) return;
+  final_seen_ = {};
+  fail("the final sample came, but the record has gaps: " + join(recorder_.gaps()));
+}
+
+void LoopRecorder::announceIfConnected() {
+  const bool connected = std::all_of(ring_.begin(), ring_.end(),
+                                     [](const auto& s) { return s.getNumPublishers() > 0; });
+  polls_connected_ = connected && plant_fits_ ? polls_connected_ + 1 : 0;
+  if (polls_connected_ == kPollsConnected) ready_.announce();
+}
+
+void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
+  guarded(topics::kPlantInfo, [&] {
+    const PlantInfo info = fromMsg(*msg);
+    const std::string mismatch = plantMismatch(loop_.plant_info, info);
+    if (plant_fits_) require(mismatch.empty(), mismatch, "the plant of this run");
+    problem_ = mismatch;
+    plant_fits_ = problem_.empty();
+    if (!plant_fits_) {
+      ROS_ERROR("loop_recorder: %s", problem_.c_str());
+      return;
+    }
+    guard_.announce(info.header.run_id);
+    const auto parked = std::exchange(unannounced_, {});
+    for (const auto& measurement : parked) onMeasurement(measurement);
+  });
+}
+
+bool LoopRecorder::fits(const Measurement& m) const {
+  return m.outputs.size() == n_y_ && m.disturbances.size() == n_d_ && m.input_applied.size() == n_u_;
+}
+bool LoopRecorder::fits(const PlantState& s) const {
+  const auto& record = recorder_.record();
+  return s.outputs.size() == n_y_ && s.state.size() == count(record.states);
+}
+bool LoopRecorder::fits(const Tracking& t) const {
+  return t.setpoint.size() == n_y_ && t.reference.size() == n_y_;
+}
+bool LoopRecorder::fits(const ControlAction& a) const {
+  return a.input.size() == n_u_ && a.input.allFinite();
+}
+bool LoopRecorder::fits(const SolverReport& r) const { return r.perturbation.size() == n_u_; }
+
+template <typename Item>
+void LoopRecorder::collect(const Item& item, bool SampleRecord::*has,
+                           void (Recorder::*add)(const Item&)) {
+  const StepHeader& header = item.header;
+  if (!fits(item)) {
+    ++wrong_size_;
+    return;
+  }
+  const bool later_run = !run_known_ || header.run_id > measured_.run_id;
+  const bool this_run = run_known_ && header.run_id == measured_.run_id;
+  if (later_run || (this_run && header.step > measured_.step)) {
+    if (early_.size() < kMostEarly)
+      early_.push_back({header, [this, item, has, add] { collect(item, has, add); }});
+    else
+      ++strays_;
+    return;
+  }
+  if (!this_run || written_) {
+    ++strays_;
+    return;
+  }
+  const auto& samples = recorder_.record().samples;
+  if (header.step < samples.size() && samples[header.step].*has) return;  // repeated
+  (recorder_.*add)(item);
+  if (!final_seen_.isZero()) checkComplete();
+}
+
+void LoopRecorder::deliverEarly() {
+  std::vector<Early> due;
+  const auto later = std::stable_partition(early_.begin(), early_.end(), [&](const Early& e) {
+    return e.header.run_id < measured_.run_id ||
+           (e.header.run_id == measured_.run_id && e.header.step <= measured_.step);
+  });
+  std::move(early_.begin(), later, std::back_inserter(due));
+  early_.erase(early_.begin(), later);
+  for (const Early& early : due) early.deliver();
+}
+
+void LoopRecorder::beginRun(const StepHeader& header) {
+  if (run_known_) setpoints_.clear();
+  run_known_ = true;
+  written_ = false;
+  final_seen_ = {};
+  began_ = ros::SteadyTime::now();
+  measured_ = header;
+}
+
+void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
+  guarded(topics::kMeasurement, [&] {
+    const Measurement m = fromMsg(*msg);
+    if (!fits(m)) {
+      ++wrong_size_;
+      return;
+    }
+    if (!guard_.admits(m.header.run_id, ros::WallTime::now())) {
+      ++strays_;
+      if (unannounced_.size() < kMostEarly) unannounced_.push_back(msg);
+      return;
+    }
+    if (!run_known_ || m.header.run_id > measured_.run_id) beginRun(m.header);
+    if (m.header.run_id < measured_.run_id) {
+      ++strays_;
+      return;
+    }
+    measured_.step = std::max(measured_.step, m.header.step);
+    if (m.final && !written_ && final_seen_.isZero()) final_seen_ = ros::SteadyTime::now();
+    if (setpoints_.advance(m.header.time_ns)) publishActive();
+    collect<Measurement>(m, &SampleRecord::has_measurement, &Recorder::add);
+    if (!early_.empty()) deliverEarly();
+  });
+}
+
+void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
+  guarded(topics::kPlantState, [&] {
+    collect<PlantState>(fromMsg(*msg), &SampleRecord::has_state, &Recorder::add);
+  });
+}
+
+void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
+  guarded(topics::kTracking, [&] {
+    collect<Tracking>(fromMsg(*msg), &SampleRecord::has_tracking, &Recorder::add);
+  });
+}
+
+void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
+  guarded(topics::kBaseAction, [&] {
+    collect<ControlAction>(fromMsg(*msg), &SampleRecord::has_base, &Recorder::addBase);
+  });
+}
+
+void LoopRecorder::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
+  guarded(topics::kControlAction, [&] {
+    collect<ControlAction>(fromMsg(*msg), &SampleRecord::has_action, &Recorder::addAction);
+  });
+}
+
+void LoopRecorder::onReport(const fmbpc::SolverReport::ConstPtr& msg) {
+  guarded(topics::kSolverReport, [&] {
+    collect<SolverReport>(fromMsg(*msg), &SampleRecord::has_report, &Recorder::add);
+  });
+}
+
+void LoopRecorder::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
+  guarded(topics::kSetpoint, [&] { setpoints_.accept(fromMsg(*msg)); });
+}
+
+// A controller that has just come (again) hears what stands and what is still to come; if that is nothing, so much.
+void LoopRecorder::onListener(const ros::SingleSubscriberPublisher& listener) {
+  std::vector<Command> commands = setpoints_.inForce();
+  commands.insert(commands.end(), setpoints_.waiting().begin(), setpoints_.waiting().end());
+  if (commands.empty()) commands.push_back({0, {}, {}, CommandMode::kRelease});
+  for (const Command& command : commands) listener.publish(toSetpointMsg(command));
+}
+
+void LoopRecorder::publishActive() {
+  std::vector<Command> commands = setpoints_.inForce();
+  if (commands.empty()) commands.push_back({0, {}, {}, CommandMode::kRelease});
+  for (const Command& command : commands) active_.publish(toSetpointMsg(command));
+}
+
+void LoopRecorder::checkComplete() {
+  if (!recorder_.complete()) return;
+  final_seen_ = {};
+  write();
+  if (!keep_) done();
+}
+
+void LoopRecorder::write() {
+  const double wall_s = (ros::SteadyTime::now() - began_).toSec();
+  const RunRecord record = recorder_.take();
+  const Summary summary = summarize(loop_, record, wall_s);
+  written_ = true;
+  ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, wall_s);
+  if (!out_.empty()) {
+    writeRun(loop_, record, summary, out_);
+    if (plot_) tool::plot(out_);
+    ROS_INFO("loop_recorder: written: %s", out_.c_str());
+  }
+  std_msgs::String folder;
+  folder.data = out_;
+  if (ros::ok()) recorded_.publish(folder);
+}
+
+int LoopRecorder::finish() {
+  const int code = Node::finish();
+  if (code != 0 || written_) return code;
+  if (loop_.simulation.samples == 0 && run_known_) {
+    write();
+    return 0;
+  }
+  ROS_ERROR("loop_recorder: stopped before the final sample: nothing is written");
+  return 1;
+}
+
+void LoopRecorder::report(Diagnostics::Status& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  if (!problem_.empty())
+    status.summary(DiagnosticStatus::ERROR, problem_);
+  else if (!ready_.announced())
+    status.summary(DiagnosticStatus::WARN, "waiting for publishers of the ring");
+  else
+    status.summary(DiagnosticStatus::OK, written_ ? "written" : run_known_ ? "recording" : "waiting");
+  status.add("step", measured_.step);
+  status.add("waiting for their measurement", early_.size());
+  status.add("dropped: other run", strays_);
+  status.add("dropped: wrong size or not finite", wrong_size_);
+  addRefused(status, refused());
+}
+
+}  // namespace fpc

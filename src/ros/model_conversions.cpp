@@ -1,0 +1,110 @@
+// Takagi-Sugeno models as messages.
+#include "conversion_parts.hpp"
+
+namespace fpc {
+namespace {
+
+using conversion::enumeration;
+using conversion::list;
+using conversion::number;
+using conversion::structs;
+
+static_assert(fmbpc::FuzzyRegressor::OUTPUT == number(SignalKind::kOutput));
+static_assert(fmbpc::FuzzyRegressor::INPUT == number(SignalKind::kInput));
+static_assert(fmbpc::FuzzyRegressor::DISTURBANCE == number(SignalKind::kDisturbance));
+static_assert(fmbpc::FuzzySet::EXPONENTIAL == number(MembershipShape::kExponential));
+static_assert(fmbpc::FuzzySet::GAUSSIAN == number(MembershipShape::kGaussian));
+static_assert(fmbpc::FuzzySet::TRIANGULAR == number(MembershipShape::kTriangular));
+static_assert(fmbpc::FuzzySet::TRAPEZOIDAL == number(MembershipShape::kTrapezoidal));
+
+std::vector<fmbpc::FuzzyRegressor> regressorList(const std::vector<Regressor>& regressors) {
+  std::vector<fmbpc::FuzzyRegressor> messages;
+  for (const Regressor& regressor : regressors) {
+    fmbpc::FuzzyRegressor msg;
+    msg.kind = number(regressor.kind);
+    msg.index = regressor.index;
+    msg.lag = regressor.lag;
+    messages.push_back(msg);
+  }
+  return messages;
+}
+
+std::vector<Regressor> regressorStructs(const std::vector<fmbpc::FuzzyRegressor>& messages) {
+  std::vector<Regressor> regressors;
+  for (const auto& msg : messages)
+    regressors.push_back(
+        {enumeration(msg.kind, SignalKind::kOutput, SignalKind::kDisturbance, "kind"), msg.index,
+         msg.lag});
+  return regressors;
+}
+
+fmbpc::FuzzyRule ruleMsg(const Rule& rule) {
+  fmbpc::FuzzyRule msg;
+  for (const Membership& membership : rule.antecedents) {
+    fmbpc::FuzzySet set;
+    set.shape = number(membership.shape);
+    set.parameters = membership.parameters;
+    msg.antecedents.push_back(set);
+  }
+  msg.coefficients = conversion::numbers(rule.coefficients);
+  msg.offset = rule.offset;
+  msg.data_count = rule.data_count;
+  return msg;
+}
+
+Rule ruleStruct(const fmbpc::FuzzyRule& msg) {
+  Rule rule;
+  for (const auto& set : msg.antecedents)
+    rule.antecedents.push_back({enumeration(set.shape, MembershipShape::kExponential,
+                                            MembershipShape::kTrapezoidal, "shape"),
+                                set.parameters});
+  rule.coefficients = conversion::vector(msg.coefficients);
+  rule.offset = msg.offset;
+  rule.data_count = msg.data_count;
+  return rule;
+}
+
+fmbpc::FuzzySubmodel submodelMsg(const OutputModel& submodel) {
+  fmbpc::FuzzySubmodel msg;
+  msg.antecedents = regressorList(submodel.antecedents);
+  msg.regressors = regressorList(submodel.regressors);
+  for (const Rule& rule : submodel.rules) msg.rules.push_back(ruleMsg(rule));
+  return msg;
+}
+
+OutputModel submodelStruct(const fmbpc::FuzzySubmodel& msg) {
+  OutputModel submodel;
+  submodel.antecedents = regressorStructs(msg.antecedents);
+  submodel.regressors = regressorStructs(msg.regressors);
+  for (const auto& rule : msg.rules) submodel.rules.push_back(ruleStruct(rule));
+  return submodel;
+}
+
+}  // namespace
+
+fmbpc::FuzzyModel toMsg(const TsModel& model) {
+  fmbpc::FuzzyModel msg;
+  msg.name = model.name;
+  msg.source = model.source;
+  msg.sample_time_s = model.sample_time_s;
+  msg.outputs = list<fmbpc::SignalInfo>(model.outputs);
+  msg.inputs = list<fmbpc::SignalInfo>(model.inputs);
+  msg.disturbances = list<fmbpc::SignalInfo>(model.disturbances);
+  for (const OutputModel& submodel : model.submodels) msg.submodels.push_back(submodelMsg(submodel));
+  return msg;
+}
+
+TsModel fromMsg(const fmbpc::FuzzyModel& msg) {
+  TsModel model;
+  model.name = msg.name;
+  model.source = msg.source;
+  model.sample_time_s = msg.sample_time_s;
+  model.outputs = structs<SignalInfo>(msg.outputs);
+  model.inputs = structs<SignalInfo>(msg.inputs);
+  model.disturbances = structs<SignalInfo>(msg.disturbances);
+  for (const auto& submodel : msg.submodels) model.submodels.push_back(submodelStruct(submodel));
+  model.validate();
+  return model;
+}
+
+}  // namespace fpc

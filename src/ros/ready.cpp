@@ -1,0 +1,31 @@
+#include "fmbpc/ros/ready.hpp"
+
+#include "fmbpc/ros/node.hpp"
+#include "fmbpc/ros/topics.hpp"
+
+namespace fpc {
+
+ReadyPublisher::ReadyPublisher(ros::NodeHandle node)
+    : publisher_(node.advertise<fmbpc::NodeReady>(topics::kReady, 1, true)) {}
+
+void ReadyPublisher::announce() {
+  if (announced_) return;
+  announced_ = true;
+  fmbpc::NodeReady msg;
+  msg.node = ros::this_node::getName();
+  publisher_.publish(msg);
+  ROS_INFO("%s: ready", msg.node.c_str());
+}
+
+ReadyListener::ReadyListener(ros::NodeHandle node, const std::vector<std::string>& names) {
+  for (const std::string& name : names) missing_.insert(node.resolveName(name));
+  subscriber_ = subscribe(node, topics::kReady, topics::kViewQueue, &ReadyListener::onReady, this);
+}
+
+std::vector<std::string> ReadyListener::missing() const {
+  return {missing_.begin(), missing_.end()};
+}
+
+void ReadyListener::onReady(const fmbpc::NodeReady::ConstPtr& msg) { missing_.erase(msg->node); }
+
+}  // namespace fpc

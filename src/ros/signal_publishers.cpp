@@ -1,0 +1,21 @@
+#include "fmbpc/ros/signal_publishers.hpp"
+
+#include "fmbpc/ros/conversions.hpp"
+#include "fmbpc/ros/topics.hpp"
+
+namespace fpc {
+
+std::size_t SignalPublishers::add(const std::string& name) {
+  publishers_.push_back(
+      node_.advertise<fmbpc::Signal>(topics::kSignalPrefix + name, topics::kViewQueue));
+  return publishers_.size() - 1;
+}
+
+void SignalPublishers::publish(std::size_t index, std::int64_t time_ns, double value) {
+  if (publishers_[index].getNumSubscribers() == 0) return;
+  msg_.header.stamp = toStamp(time_ns);
+  msg_.data = value;
+  publishers_[index].publish(msg_);
+}
+
+}  // namespace fpc

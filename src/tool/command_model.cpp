@@ -1,0 +1,54 @@
+// fmbpc model FILE: what a model file holds and where it should not be trusted.
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+#include "tool/commands.hpp"
+
+namespace fpc::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A path, or a name below config/model.
+std::string findModel(const std::string& name) {
+  if (fs::is_regular_file(name)) return name;
+  for (const auto& folder : configFolders())
+    for (const auto& ending : {"", ".yaml"}) {
+      const fs::path file = fs::path(folder) / "model" / (name + ending);
+      if (fs::is_regular_file(file)) return file.string();
+    }
+  return name;  // readModel() says that it is not there
+}
+
+void print(const TsModel& model, const std::vector<RuleRemark>& remarks) {
+  std::cout << model.name << ": " << model.source << "\nsample time " << model.sample_time_s << " s\n";
+  for (std::size_t i = 0; i < model.outputs.size(); ++i)
+    std::cout << "  " << model.outputs[i].name << ": " << model.submodels[i].rules.size() << " rules, "
+              << model.submodels[i].antecedents.size() << " antecedents, " << model.submodels[i].regressors.size()
+              << " regressors\n";
+  for (const auto& remark : remarks)
+    std::cout << "  " << remark.output << " rule " << remark.rule << ": " << remark.text << "\n";
+}
+
+}  // namespace
+
+int model(const std::string& file, bool json) {
+  const TsModel model = readModel(findModel(file));
+  const auto remarks = reportModel(model);
+  if (!json) {
+    print(model, remarks);
+    return 0;
+  }
+  Json report{{"name", model.name}, {"source", model.source}, {"sample_time_s", model.sample_time_s}};
+  report["remarks"] = Json::array();
+  for (const auto& remark : remarks)
+    report["remarks"].push_back({{"output", remark.output}, {"rule", remark.rule}, {"text", remark.text}});
+  std::cout << report.dump(2) << "\n";
+  return 0;
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,63 @@
+// fmbpc plants: what can be simulated.
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "fmbpc/plant/plant.hpp"
+#include "tool/commands.hpp"
+
+namespace fpc::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Groups = std::vector<std::pair<std::string, const std::vector<Quantity>*>>;
+
+Groups groupsOf(const PlantDescription& plant) {
+  return {{"states", &plant.states},
+          {"inputs", &plant.inputs},
+          {"disturbances", &plant.disturbances},
+          {"parameters", &plant.parameters}};
+}
+
+Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json toJson(const PlantDescription& plant) {
+  Json json{{"name", plant.name}, {"title", plant.title}, {"time_unit_s", plant.time_unit_s}};
+  json["outputs"] = plant.outputs;
+  for (const auto& [group, quantities] : groupsOf(plant)) {
+    json[group] = Json::array();
+    for (const auto& q : *quantities)
+      json[group].push_back({{"name", q.name},
+                             {"unit", q.unit},
+                             {"nominal", q.nominal},
+                             {"lower", finite(q.lower)},
+                             {"upper", finite(q.upper)}});
+  }
+  return json;
+}
+
+void print(const PlantDescription& plant) {
+  std::cout << plant.name << ": " << plant.title << "\n";
+  for (const auto& [group, quantities] : groupsOf(plant)) {
+    std::cout << "  " << group << "\n";
+    for (const auto& q : *quantities)
+      std::cout << "    " << std::left << std::setw(14) << q.name << std::setw(14) << q.unit << std::right
+                << std::setw(12) << q.nominal << "   " << q.lower << " .. " << q.upper << "\n";
+  }
+}
+
+}  // namespace
+
+int plants(bool json) {
+  Json all = Json::array();
+  for (const auto& name : plantNames()) {
+    const PlantDescription description = makePlant(name)->description();
+    if (json) all.push_back(toJson(description));
+    else print(description);
+  }
+  if (json) std::cout << Json{{"plants", all}}.dump(2) << "\n";
+  return 0;
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,101 @@
+// fmbpc run LOOP...: the loop closed in one process.
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+#include <set>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/report.hpp"
+#include "fmbpc/loop/run.hpp"
+#include "tool/commands.hpp"
+
+namespace fpc::tool {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr int kInterrupted = 130;
+
+std::atomic<bool> interrupted{false};
+void onInterrupt(int) { interrupted = true; }
+
+class ProgressBar {
+ public:
+  explicit ProgressBar(std::string name) : name_(std::move(name)), shown_(isatty(STDERR_FILENO) != 0) {}
+  ~ProgressBar() {
+    if (shown_ && percent_ >= 0) std::fprintf(stderr, "\r\033[K");
+  }
+  void show(std::uint32_t step, std::uint32_t samples) {
+    const auto percent = static_cast<int>(100.0 * step / samples);
+    if (!shown_ || percent == percent_) return;
+    percent_ = percent;
+    const std::string bar(static_cast<std::size_t>(percent) / 4, '#');
+    std::fprintf(stderr, "\r%s [%-25s] %3d %%", name_.c_str(), bar.c_str(), percent);
+  }
+
+ private:
+  std::string name_;
+  bool shown_;
+  int percent_{-1};
+};
+
+Summary runOne(const LoopFile& loop, const std::string& folder) {
+  ProgressBar bar(loop.name);
+  RunOptions options;
+  options.progress = [&bar](std::uint32_t step, std::uint32_t samples) { bar.show(step, samples); };
+  options.stop = [] { return interrupted.load(); };
+  const auto start = std::chrono::steady_clock::now();
+  const RunRecord record = runLoop(loop, options);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  const Summary summary = summarize(loop, record, wall.count());
+  if (!folder.empty()) writeRun(loop, record, summary, folder);
+  return summary;
+}
+
+std::vector<LoopFile> readAll(const RunArguments& arguments) {
+  Overrides overrides;
+  for (const auto& text : arguments.set) overrides.push_back(parseOverride(text));
+  std::vector<LoopFile> loops;
+  std::set<std::string> names;
+  for (const auto& name : arguments.loops) {
+    loops.push_back(readLoop(name, overrides));
+    require(names.insert(loops.back().name).second, name, "every loop only once");
+  }
+  return loops;
+}
+
+std::string jsonOf(const std::vector<Summary>& summaries) {
+  if (summaries.size() == 1) return toJson(summaries.front());
+  std::string text = "{\"loops\": [\n";
+  for (std::size_t i = 0; i < summaries.size(); ++i) text += (i ? ",\n" : "") + toJson(summaries[i]);
+  return text + "\n]}";
+}
+
+}  // namespace
+
+int run(const RunArguments& arguments) {
+  const std::vector<LoopFile> loops = readAll(arguments);
+  std::signal(SIGINT, onInterrupt);
+  std::vector<Summary> summaries;
+  std::vector<std::string> written;
+  for (const auto& loop : loops) {
+    std::string folder = arguments.out;
+    if (!folder.empty() && loops.size() > 1) folder = (fs::path(folder) / loop.name).string();
+    summaries.push_back(runOne(loop, folder));
+    if (!folder.empty()) written.push_back(folder);
+    if (!folder.empty() && !arguments.no_plot && !interrupted) plot(folder);
+    if (interrupted) break;
+  }
+  std::cout << (arguments.json ? jsonOf(summaries) + "\n" : toTable(summaries));
+  if (!arguments.json)
+    for (const auto& folder : written) std::cout << "written: " << folder << "\n";
+  if (!interrupted) return 0;
+  std::fprintf(stderr, "fmbpc: interrupted after %u steps\n", summaries.back().steps);
+  return kInterrupted;
+}
+
+}  // namespace fpc::tool

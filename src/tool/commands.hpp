@@ -1,0 +1,26 @@
+// The commands of the tool `fmbpc`, one file each. Every one returns the exit code and throws InputError.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace fpc::tool {
+
+struct RunArguments {
+  std::vector<std::string> loops;
+  std::vector<std::string> set;  ///< "path=value"
+  std::string out;               ///< folder, empty: nothing is written
+  bool json{false};
+  bool no_plot{false};
+};
+
+int run(const RunArguments& arguments);
+int resolve(const std::string& loop, const std::vector<std::string>& set);
+int plants(bool json);
+int model(const std::string& file, bool json);
+
+/// Runs scripts/plot_loop.py on a result folder; a missing script or matplotlib is a warning, not a failure.
+/// Returns the picture's name, empty if there is none.
+std::string plot(const std::string& folder);
+
+}  // namespace fpc::tool

@@ -1,0 +1,60 @@
+// The command-line tool `fmbpc`.
+#include <CLI/CLI.hpp>
+
+#include <cstdio>
+#include <exception>
+#include <functional>
+
+#include "tool/commands.hpp"
+
+namespace {
+
+std::function<int()> chosen;
+
+void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
+  CLI::App* run = app.add_subcommand("run", "Closes loops in this process and prints their indices");
+  run->add_option("LOOP", a.loops, "names of config/loop, or paths")->required();
+  run->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")->allow_extra_args(false);
+  run->add_option("--out", a.out, "folder for trajectory.csv, summary.json, plot.png (one below it per loop if several)");
+  run->add_flag("--json", a.json, "print one JSON object and nothing else");
+  run->add_flag("--no-plot", a.no_plot, "no plot.png");
+  run->callback([&a] { chosen = [&a] { return fpc::tool::run(a); }; });
+}
+
+void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
+  CLI::App* resolve = app.add_subcommand("resolve", "Merges and checks a loop file and prints what nodes would read");
+  resolve->add_option("LOOP", a.loops, "name or path")->required()->expected(1);
+  resolve->add_option("--set", a.set, "KEY.PATH=VALUE, may be repeated")->allow_extra_args(false);
+  resolve->callback([&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set); }; });
+}
+
+void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
+  CLI::App* plants = app.add_subcommand("plants", "Lists the plants with their signals, units and ranges");
+  plants->add_flag("--json", a.json, "print one JSON object and nothing else");
+  plants->callback([&a] { chosen = [&a] { return fpc::tool::plants(a.json); }; });
+  CLI::App* model = app.add_subcommand("model", "Reports what to know of a model file before trusting it");
+  model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
+  model->add_flag("--json", a.json, "print one JSON object and nothing else");
+  model->callback([&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json); }; });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Process control with fuzzy model-based predictive control"};
+  app.require_subcommand(1);
+  fpc::tool::RunArguments arguments;
+  addRun(app, arguments);
+  addResolve(app, arguments);
+  addLists(app, arguments);
+  try {
+    app.parse(argc, argv);
+    return chosen();
+  } catch (const CLI::ParseError& e) {
+    if (e.get_exit_code() == 0) return app.exit(e);
+    std::fprintf(stderr, "fmbpc: %s\n", e.what());
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "fmbpc: %s\n", e.what());
+  }
+  return 1;
+}

@@ -1,0 +1,101 @@
+#include "fmbpc/base/command_table.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+Command command(const std::string& name, double value, CommandMode mode = CommandMode::kOverride) {
+  return {0, {name}, {value}, mode};
+}
+
+TEST(CommandTable, NothingIsInForceAtTheStart) {
+  CommandTable table({"q_i", "s_i"});
+  Vector values(2);
+  values << 1300.0, 366.0;
+  EXPECT_TRUE(table.advance(0).empty());
+  table.apply(values);
+  EXPECT_EQ(values[0], 1300.0);
+  EXPECT_EQ(values[1], 366.0);
+}
+
+TEST(CommandTable, ACommandActsFromItsStepOn) {
+  CommandTable table({"q_i", "s_i"});
+  table.accept(command("q_i", 1900.0), 3);
+  EXPECT_TRUE(table.advance(2).empty());
+  EXPECT_EQ(table.apply(0, 1300.0), 1300.0);
+  ASSERT_EQ(table.advance(3).size(), 1U);
+  EXPECT_EQ(table.apply(0, 1300.0), 1900.0);
+  EXPECT_EQ(table.apply(1, 366.0), 366.0);
+  EXPECT_TRUE(table.advance(4).empty());
+  EXPECT_EQ(table.apply(0, 1300.0), 1900.0);
+}
+
+TEST(CommandTable, OffsetsReplaceAndDoNotAddUp) {
+  CommandTable table({"q_i"});
+  table.accept(command("q_i", 100.0, CommandMode::kOffset), 0);
+  table.accept(command("q_i", 50.0, CommandMode::kOffset), 1);
+  table.advance(0);
+  EXPECT_EQ(table.apply(0, 1300.0), 1400.0);
+  table.advance(1);
+  EXPECT_EQ(table.apply(0, 1300.0), 1350.0);
+}
+
+TEST(CommandTable, ReleaseGivesTheNominalValueBackAndNeedsNoValues) {
+  CommandTable table({"q_i"});
+  table.accept(command("q_i", 100.0), 0);
+  table.accept({0, {"q_i"}, {}, CommandMode::kRelease}, 1);
+  table.advance(0);
+  EXPECT_EQ(table.apply(0, 1300.0), 100.0);
+  table.advance(1);
+  EXPECT_EQ(table.apply(0, 1300.0), 1300.0);
+  EXPECT_FALSE(table.active()[0].active);
+}
+
+TEST(CommandTable, OrderOfStepsCountsNotOrderOfArrival) {
+  CommandTable table({"q_i"});
+  table.accept(command("q_i", 5.0), 5);
+  table.accept(command("q_i", 2.0), 2);
+  EXPECT_EQ(table.advance(9).size(), 2U);
+  EXPECT_EQ(table.apply(0, 0.0), 5.0);
+}
+
+TEST(CommandTable, ForTheSameStepTheLaterCommandWins) {
+  CommandTable table({"q_i"});
+  table.accept(command("q_i", 1.0), 4);
+  table.accept(command("q_i", 2.0), 4);
+  table.advance(4);
+  EXPECT_EQ(table.apply(0, 0.0), 2.0);
+}
+
+TEST(CommandTable, BadCommandsAreErrorsAndNothingIsTaken) {
+  CommandTable table({"q_i", "s_i"});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(table.accept({0, {"q_i", "typo"}, {1.0, 2.0}}, 0), InputError);
+  EXPECT_THROW(table.accept({0, {"q_i", "s_i"}, {1.0}}, 0), InputError);
+  EXPECT_THROW(table.accept({0, {}, {}}, 0), InputError);
+  EXPECT_THROW(table.accept(command("q_i", nan), 0), InputError);
+  EXPECT_THROW(table.accept(command("q_i", infinity), 0), InputError);
+  EXPECT_THROW(table.accept(command("q_i", 1.0, static_cast<CommandMode>(0)), 0), InputError);
+  EXPECT_THROW(table.accept({0, {"q_i"}, {}, CommandMode::kOffset}, 0), InputError);
+  EXPECT_TRUE(table.advance(10).empty());
+  EXPECT_EQ(table.apply(0, 7.0), 7.0);
+}
+
+TEST(CommandTable, ClearForgetsActiveAndPending) {
+  CommandTable table({"q_i"});
+  table.accept(command("q_i", 1.0), 0);
+  table.accept(command("q_i", 2.0), 5);
+  table.advance(0);
+  table.clear();
+  EXPECT_EQ(table.apply(0, 7.0), 7.0);
+  EXPECT_TRUE(table.advance(9).empty());
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,198 @@
+#include "control/session_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+using namespace test_session;
+
+class ControllerSessionRing : public SessionFixture {};
+
+TEST_F(ControllerSessionRing, AnswersEachNewSampleOnceUnderItsHeader) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    ASSERT_EQ(session->receive(sample(k)), Receipt::kAnswered);
+    const ControllerAnswer& answer = session->answer();
+    for (const StepHeader& h :
+         {answer.base.header, answer.tracking.header, answer.prediction.header}) {
+      EXPECT_EQ(h.step, k);
+      EXPECT_EQ(h.run_id, 1u);
+      EXPECT_EQ(h.time_ns, kStart + k * kSample);
+    }
+    EXPECT_TRUE(answer.has_action);
+    EXPECT_TRUE(answer.has_prediction);
+    EXPECT_EQ(input(), 571.0);
+    EXPECT_EQ(source(), ActionSource::kBase);
+    EXPECT_EQ(answer.tracking.setpoint, of({55.0, 2000.0}));
+    EXPECT_EQ(answer.tracking.reference, of({55.5, 1995.0}));
+  }
+  EXPECT_EQ(law->resets, Steps{0});
+  EXPECT_EQ(law->steps, (Steps{0, 1, 2}));
+  EXPECT_EQ(session->counts().accepted, 3u);
+  EXPECT_EQ(session->resetReason(), "");
+}
+
+TEST_F(ControllerSessionRing, RepeatGetsTheCachedAnswerAndIsNeverComputedTwice) {
+  session->receive(sample(0));
+  Measurement again = sample(0);
+  again.input_applied[0] = 900.0;
+  EXPECT_EQ(session->receive(again), Receipt::kRepeated);
+  EXPECT_EQ(input(), 571.0);
+  EXPECT_EQ(law->steps, Steps{0});
+  EXPECT_EQ(session->counts().repeated, 1u);
+}
+
+TEST_F(ControllerSessionRing, OldStepsAndEarlierRunsAreDroppedAndCountedApart) {
+  session->receive(sample(0, 5));
+  session->receive(sample(1, 5));
+  EXPECT_EQ(session->receive(sample(0, 5)), Receipt::kDropped);
+  EXPECT_EQ(session->receive(sample(2, 4)), Receipt::kDropped);
+  EXPECT_EQ(session->counts().old, 1u);
+  EXPECT_EQ(session->counts().other_run, 1u);
+  EXPECT_EQ(session->answer().base.header.step, 1u);
+  EXPECT_EQ(session->receive(sample(2, 5)), Receipt::kAnswered);
+  EXPECT_EQ(law->resets, Steps{0});
+}
+
+TEST_F(ControllerSessionRing, WrongSizesAreDroppedAndDoNotTouchTheSequence) {
+  session->receive(sample(0));
+  Measurement m = sample(1);
+  m.outputs = of({1.0});
+  EXPECT_EQ(session->receive(m), Receipt::kDropped);
+  m = sample(1);
+  m.disturbances = Vector();
+  EXPECT_EQ(session->receive(m), Receipt::kDropped);
+  m = sample(1);
+  m.input_applied = of({1.0, 2.0});
+  EXPECT_EQ(session->receive(m), Receipt::kDropped);
+  EXPECT_EQ(session->counts().wrong_size, 3u);
+  EXPECT_EQ(session->receive(sample(1)), Receipt::kAnswered);
+  EXPECT_EQ(law->resets, Steps{0});
+}
+
+TEST_F(ControllerSessionRing, GapResetsAndNamesTheMissingSamples) {
+  session->receive(sample(0));
+  session->receive(sample(4));
+  EXPECT_EQ(session->resetReason(), "samples 1..3 missing");
+  session->receive(sample(5));
+  EXPECT_EQ(session->resetReason(), "");
+  session->receive(sample(7));
+  EXPECT_EQ(session->resetReason(), "sample 6 missing");
+  EXPECT_EQ(law->resets, (Steps{0, 4, 7}));
+  EXPECT_EQ(session->counts().gaps, 2u);
+}
+
+TEST_F(ControllerSessionRing, NewRunResetsAndReleasesSetpointCommands) {
+  session->receive(sample(0, 1));
+  session->command({0, {"x"}, {2200.0}, CommandMode::kOverride});
+  session->receive(sample(1, 1));
+  EXPECT_EQ(law->seen_setpoint[1], 2200.0);
+  EXPECT_EQ(session->receive(sample(0, 2)), Receipt::kAnswered);
+  EXPECT_EQ(session->resetReason(), "new run");
+  EXPECT_EQ(law->resets, (Steps{0, 0}));
+  EXPECT_EQ(law->seen_setpoint[1], 2000.0);
+  EXPECT_EQ(session->counts().new_runs, 1u);
+}
+
+TEST_F(ControllerSessionRing, LateJoinerStartsAtWhateverSampleComes) {
+  SetpointParams p = setpoints();
+  p.schedule = {{1.0, of({55.0, 1900.0})}};
+  p.rate_per_h = of({1.0, 1.0});
+  make(limits(), p);
+  EXPECT_EQ(session->receive(sample(41, 9)), Receipt::kAnswered);
+  EXPECT_EQ(session->resetReason(), "first sample is 41");
+  EXPECT_EQ(law->resets, Steps{41});
+  EXPECT_EQ(law->seen_setpoint[1], 1900.0);
+  EXPECT_EQ(session->counts().gaps, 0u);
+}
+
+TEST_F(ControllerSessionRing, SetpointsCatchUpOverAGap) {
+  SetpointParams p = setpoints();
+  p.schedule = {{0.4, of({55.0, 1900.0})}};
+  p.rate_per_h = of({1e9, 50.0});  // 10 per sample
+  make(limits(), p);
+  session->receive(sample(0));
+  session->receive(sample(6));
+  EXPECT_NEAR(session->answer().tracking.setpoint[1], 1940.0, 1e-9);
+}
+
+TEST_F(ControllerSessionRing, SetpointCommandsTakeEffectUnderTheSamplesHeader) {
+  session->receive(sample(0, 3));
+  EXPECT_EQ(session->command({0, {"x"}, {2100.0}, CommandMode::kOverride}), 1u);
+  session->receive(sample(1, 3));
+  ASSERT_EQ(session->answer().effects.size(), 1u);
+  EXPECT_EQ(session->answer().effects[0].header.run_id, 3u);
+  EXPECT_EQ(session->answer().effects[0].header.step, 1u);
+  EXPECT_EQ(session->answer().effects[0].header.time_ns, kStart + kSample);
+  session->receive(sample(2, 3));
+  EXPECT_TRUE(session->answer().effects.empty());
+}
+
+TEST_F(ControllerSessionRing, RespawnedSessionTakesUpTheSetpointThatWasInForce) {
+  EXPECT_TRUE(session->restore({0, {"x"}, {1850.0}, CommandMode::kOverride}));
+  session->receive(sample(30));
+  EXPECT_EQ(law->seen_setpoint[1], 1850.0);
+  EXPECT_FALSE(session->restore({0, {"x"}, {1.0}, CommandMode::kOverride}));
+}
+
+TEST_F(ControllerSessionRing, StampsAreThoseOfThePlantNotOfThePlantInfo) {
+  Measurement m = sample(0);
+  const std::int64_t t0 = 1700000000123456789;
+  m.header.time_ns = t0;
+  session->receive(m);
+  EXPECT_EQ(session->command({t0 + 3 * kSample, {"x"}, {1.0}, CommandMode::kOverride}), 3u);
+}
+
+TEST_F(ControllerSessionRing, FinalSampleHasTrackingButNoAction) {
+  session->receive(sample(0));
+  Measurement m = sample(1);
+  m.final = true;
+  EXPECT_EQ(session->receive(m), Receipt::kAnswered);
+  EXPECT_FALSE(session->answer().has_action);
+  EXPECT_FALSE(session->answer().has_prediction);
+  EXPECT_EQ(session->answer().tracking.header.step, 1u);
+  EXPECT_EQ(session->answer().tracking.reference, of({55.5, 1995.0}));
+  EXPECT_EQ(session->receive(m), Receipt::kRepeated);
+  EXPECT_FALSE(session->answer().has_action);
+  EXPECT_EQ(law->steps, (Steps{0, 1}));
+}
+
+TEST_F(ControllerSessionRing, NotReadyWithoutTheModelItNeeds) {
+  law->needs_model = true;
+  EXPECT_FALSE(session->ready());
+  EXPECT_EQ(session->receive(sample(0)), Receipt::kNotReady);
+  EXPECT_EQ(session->counts().accepted, 0u);
+  TsModel model;
+  model.name = "bad";
+  EXPECT_THROW(session->setModel(model), InputError);
+  EXPECT_FALSE(session->ready());
+  model.name = "good";
+  session->setModel(model);
+  EXPECT_TRUE(session->ready());
+  EXPECT_EQ(session->receive(sample(0)), Receipt::kAnswered);  // the plant sent it again
+  EXPECT_EQ(session->resetReason(), "first sample is 0");
+}
+
+TEST_F(ControllerSessionRing, NewModelInARunGoesToTheControllerAndABadOneChangesNothing) {
+  session->receive(sample(0));
+  TsModel model;
+  model.name = "second";
+  session->setModel(model);
+  model.name = "bad";
+  EXPECT_THROW(session->setModel(model), InputError);
+  EXPECT_EQ(law->models, std::vector<std::string>{"second"});
+  EXPECT_EQ(session->receive(sample(1)), Receipt::kAnswered);
+  EXPECT_EQ(law->resets, Steps{0});  // the controller itself sees to a bumpless change
+}
+
+TEST(ControllerSession, BadConstructionNamesTheField) {
+  const auto make = [](Vector initial, const InputLimits& l) {
+    ControllerSession(std::make_unique<FakeLaw>(), setpoints(), l, std::move(initial), plant());
+  };
+  EXPECT_NO_THROW(make(of({1.0}), limits()));
+  EXPECT_THROW(make(of({1.0, 2.0}), limits()), InputError);
+  EXPECT_THROW(make(of({kNaN}), limits()), InputError);
+  EXPECT_THROW(make(of({1.0}), limits(-1.0)), InputError);
+  EXPECT_THROW(ControllerSession(nullptr, setpoints(), limits(), of({1.0}), plant()), InputError);
+}
+
+}  // namespace
+}  // namespace fpc

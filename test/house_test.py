@@ -1,0 +1,67 @@
+#!/usr/bin/python3
+"""The house rules that a compiler does not check: who may include whom, and which clocks may be read."""
+import pathlib
+import re
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parent.parent
+ROS_INCLUDE = re.compile(r'#include *[<"](ros/|tf2|std_msgs|std_srvs|rosgraph|geometry_msgs|diagnostic|actionlib|dynamic_reconfigure|fmbpc/[A-Z])')
+ROS_CLOCK = re.compile(r"ros::Time::now|createTimer|ros::Timer\b|ros::Rate|ros::Duration\([^)]*\)\.sleep|rospy\.(Rate|sleep|Timer|get_rostime|Time\.now)")
+RANKS = {"base": 0, "optim": 1, "plant": 1, "fuzzy": 2, "control": 3, "analysis": 4, "loop": 5, "ros": 6}
+FORBIDDEN = {("optim", "plant"), ("plant", "optim"), ("fuzzy", "plant"), ("control", "plant"), ("analysis", "plant")}
+
+
+def sources(*folders):
+    for folder in folders:
+        for path in sorted((TOP / folder).rglob("*")):
+            if path.suffix in (".cpp", ".hpp") and path.is_file():
+                yield path
+
+
+def room_of(path):
+    parts = path.relative_to(TOP).parts
+    return parts[2] if parts[0] == "include" else parts[1]
+
+
+class House(unittest.TestCase):
+    def test_the_core_includes_no_ros_header(self):
+        core = [p for p in sources("include", "src") if room_of(p) not in ("ros", "nodes")]
+        self.assertGreater(len(core), 20)
+        for path in core:
+            self.assertIsNone(ROS_INCLUDE.search(path.read_text()), path)
+
+    def test_rooms_include_only_rooms_below_them(self):
+        for path in sources("include", "src"):
+            room = room_of(path)
+            if room not in RANKS:
+                continue
+            for other in re.findall(r'#include "(?:fmbpc/)?(\w+)/', path.read_text()):
+                if other in RANKS and other != room:
+                    self.assertLess(RANKS[other], RANKS[room], f"{path} includes {other}/")
+                    self.assertNotIn((room, other), FORBIDDEN, f"{path} includes {other}/")
+
+    def test_our_nodes_never_read_the_ros_clock(self):
+        paths = list(sources("include", "src")) + sorted((TOP / "scripts").glob("*.py"))
+        for path in paths:
+            self.assertIsNone(ROS_CLOCK.search(path.read_text()), path)
+
+    def test_sundials_stays_in_one_file(self):
+        users = [p.name for p in sources("include", "src") if re.search(r"#include *<(cvode|sundials|nvector)", p.read_text())]
+        self.assertEqual(users, ["integrator.cpp"])
+
+    def test_no_public_header_shows_yaml_or_json(self):
+        for path in sources("include"):
+            self.assertIsNone(re.search(r"#include *<(yaml-cpp|nlohmann)", path.read_text()), path)
+
+    def test_files_are_small(self):
+        for path in list(sources("include", "src", "test", "bench")) + sorted((TOP / "test").rglob("*.py")):
+            self.assertLessEqual(len(path.read_text().splitlines()), 300, path)
+
+    def test_mains_are_short(self):
+        for path in sources("src/nodes"):
+            body = path.read_text().split("int main", 1)[1]
+            self.assertLessEqual(len(body.splitlines()), 20, path)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,218 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/plant/disturbance.hpp"
+
+namespace fpc {
+namespace {
+
+const std::vector<std::string> kNames{"q_i", "s_i"};
+const Vector kNominal = Eigen::Vector2d(1300.0, 366.67);
+
+std::string fileWith(const std::string& text) {
+  const std::string file = ::testing::TempDir() + "disturbance_csv_test.csv";
+  std::ofstream(file, std::ios::binary) << text;
+  return file;
+}
+
+/// Column `q` as q_i, column `t` in hours.
+CsvDisturbanceParams flowFrom(const std::string& text) {
+  CsvDisturbanceParams params;
+  params.file = fileWith(text);
+  params.time_column = "t";
+  params.channels = {{"q_i", "q"}};
+  return params;
+}
+
+/// q_i at samples 0..`samples`, every half hour unless said.
+std::vector<double> flows(const CsvDisturbanceParams& params, std::uint32_t samples,
+                          double sample_time_s = 1800.0) {
+  const Matrix values = readDisturbances(params, kNames, kNominal, sample_time_s, samples).values;
+  EXPECT_EQ(values.row(1), Matrix::Constant(1, values.cols(), 366.67)) << "s_i is not in the file";
+  const Vector row = values.row(0);
+  return {row.begin(), row.end()};
+}
+
+std::string errorOf(const CsvDisturbanceParams& params, std::uint32_t samples = 2) {
+  try {
+    readDisturbances(params, kNames, kNominal, 1800.0, samples);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "nothing was thrown";
+}
+
+void expectWords(const std::string& error, const std::string& words) {
+  EXPECT_NE(error.find(words), std::string::npos) << error;
+}
+
+using Values = std::vector<double>;
+const std::string kThreeHours = "t[h],q\n5,100\n6,200\n7,400\n";
+
+TEST(DisturbanceCsv, HoldsEachRowUntilTheNextAndStartsWithTheFirst) {
+  EXPECT_EQ(flows(flowFrom(kThreeHours), 5), (Values{100, 100, 200, 200, 400, 400}));
+}
+
+TEST(DisturbanceCsv, InterpolatesBetweenRows) {
+  CsvDisturbanceParams params = flowFrom(kThreeHours);
+  params.interpolation = "linear";
+  EXPECT_EQ(flows(params, 5), (Values{100, 150, 200, 300, 400, 400}));
+}
+
+TEST(DisturbanceCsv, ScalesAndShifts) {
+  CsvDisturbanceParams params = flowFrom(kThreeHours);
+  params.channels[0].scale = 2.0;
+  params.channels[0].offset = 1.0;
+  EXPECT_EQ(flows(params, 2), (Values{201, 201, 401}));
+}
+
+TEST(DisturbanceCsv, ScalesToAWantedMeanOfTheMeasuredCells) {
+  CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,\n2,300\n");
+  params.missing = "hold";
+  params.channels[0].mean = 1000.0;
+  EXPECT_EQ(flows(params, 4), (Values{500, 500, 500, 500, 1500}));
+}
+
+TEST(DisturbanceCsv, EveryTimeUnitIsUnderstood) {
+  for (const auto& [unit, step] :
+       {std::pair<const char*, double>{"s", 3600.0}, {"min", 60.0}, {"h", 1.0}}) {
+    CsvDisturbanceParams params =
+        flowFrom("t,q\n0,1\n" + std::to_string(step) + ",2\n" + std::to_string(2 * step) + ",3\n");
+    params.time_unit = unit;
+    EXPECT_EQ(flows(params, 4), (Values{1, 1, 2, 2, 3})) << unit;
+  }
+}
+
+TEST(DisturbanceCsv, DatesAreDays) {
+  CsvDisturbanceParams params = flowFrom("t,q\n1990-02-28,1\n1990-03-01,2\n1990-03-02,3\n");
+  params.time_unit = "d";
+  EXPECT_EQ(flows(params, 5, 43200.0), (Values{1, 1, 2, 2, 3, 3}));
+  params.time_unit = "h";
+  expectWords(errorOf(params), "time_unit d");
+}
+
+// 15 minutes are 0.010416667 d in the file: 29 microseconds late for the sample, which must not see
+// the row before.
+TEST(DisturbanceCsv, RoundedTimesDoNotShiftTheRecordByARow) {
+  CsvDisturbanceParams params =
+      flowFrom("t,q\n0.000000000,1\n0.010416667,2\n0.020833333,3\n0.031250000,4\n");
+  params.time_unit = "d";
+  EXPECT_EQ(flows(params, 4, 900.0), (Values{1, 2, 3, 4, 4}));
+}
+
+TEST(DisturbanceCsv, MissingCellsAreHeldInterpolatedAndCounted) {
+  const std::string text = "t,q\n0,\n1,100\n2,\n3,\n5,500\n6,nan\n";
+  CsvDisturbanceParams params = flowFrom(text);
+  params.missing = "hold";
+  EXPECT_EQ(flows(params, 6, 3600.0), (Values{100, 100, 100, 100, 100, 500, 500}));
+  params.missing = "interpolate";
+  EXPECT_EQ(flows(params, 6, 3600.0), (Values{100, 100, 200, 300, 300, 500, 500}));
+  EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 6).repaired, 4U);
+}
+
+TEST(DisturbanceCsv, MissingCellsAreErrorsUnlessAllowed) {
+  expectWords(errorOf(flowFrom("t,q\n0,1\n1,\n2,3\n")), "column 'q', row 2");
+  CsvDisturbanceParams nothing = flowFrom("t,q\n0,\n1,\n");
+  nothing.missing = "hold";
+  expectWords(errorOf(nothing), "at least one number");
+}
+
+TEST(DisturbanceCsv, ARecordThatIsTooShortIsAnErrorUnlessHeldOrRepeated) {
+  CsvDisturbanceParams params = flowFrom(kThreeHours);
+  EXPECT_EQ(flows(params, 6).back(), 400.0) << "the last row acts for an hour like those before";
+  expectWords(errorOf(params, 7), "a record of at least 3.5 h");
+  params.end = "hold";
+  EXPECT_EQ(flows(params, 8), (Values{100, 100, 200, 200, 400, 400, 400, 400, 400}));
+  params.end = "repeat";
+  EXPECT_EQ(flows(params, 8), (Values{100, 100, 200, 200, 400, 400, 100, 100, 200}));
+  params.interpolation = "linear";
+  EXPECT_EQ(flows(params, 8), (Values{100, 150, 200, 300, 400, 250, 100, 150, 200}));
+}
+
+TEST(DisturbanceCsv, ALastRowEqualToTheFirstClosesThePeriod) {
+  CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,200\n2,400\n3,100\n");
+  params.end = "repeat";
+  EXPECT_EQ(flows(params, 7, 3600.0), (Values{100, 200, 400, 100, 200, 400, 100, 200}));
+}
+
+TEST(DisturbanceCsv, TimesMustBeThereAndIncrease) {
+  expectWords(errorOf(flowFrom("t,q\n0,1\n1,2\n1,3\n")),
+              "row 3: expected increasing times, got 1 after 1");
+  expectWords(errorOf(flowFrom("t,q\n0,1\n2,2\n1,3\n")),
+              "row 3: expected increasing times, got 1 after 2");
+  expectWords(errorOf(flowFrom("t,q\n0,1\n,2\n")), "row 2: expected a time");
+  expectWords(errorOf(flowFrom("t,q\n0,1\n")), "at least two rows");
+}
+
+TEST(DisturbanceCsv, BadNamesAndChoicesAreErrors) {
+  const auto spoiled = [](auto spoil) {
+    CsvDisturbanceParams params = flowFrom(kThreeHours);
+    spoil(params);
+    return errorOf(params);
+  };
+  using P = CsvDisturbanceParams;
+  expectWords(spoiled([](P& p) { p.file += ".gone"; }), ".gone: expected a readable file");
+  expectWords(spoiled([](P& p) { p.time_column = "time"; }), "column 'time': expected one of t, q");
+  expectWords(spoiled([](P& p) { p.channels[0].column = "Q"; }),
+              "column 'Q': expected one of t, q");
+  expectWords(spoiled([](P& p) { p.channels[0].name = "x"; }), "'x': expected one of q_i, s_i");
+  expectWords(spoiled([](P& p) { p.channels.push_back(p.channels[0]); }), "only once");
+  expectWords(spoiled([](P& p) { p.time_unit = "hours"; }), "disturbance.time_unit");
+  expectWords(spoiled([](P& p) { p.missing = "skip"; }), "disturbance.missing");
+  expectWords(spoiled([](P& p) { p.interpolation = "cubic"; }), "disturbance.interpolation");
+  expectWords(spoiled([](P& p) { p.end = "stop"; }), "disturbance.end");
+  expectWords(spoiled([](P& p) { p.channels[0].scale = NAN; }), "finite scale");
+  expectWords(errorOf(flowFrom(kThreeHours), 0), "duration");
+}
+
+std::string dataFile(const std::string& name) {
+  const char* folder = std::getenv("FMBPC_DATA");
+  return folder == nullptr ? "" : std::string(folder) + "/" + name;
+}
+
+// Benchmark simulation model no. 1, dry weather: 14 days every 15 min; the last row repeats the
+// first, 14 days later.
+TEST(DisturbanceCsv, ReadsThePublicBsm1Influent) {
+  CsvDisturbanceParams params;
+  params.file = dataFile("bsm1_influent_dry.csv");
+  if (params.file.empty()) GTEST_SKIP() << "FMBPC_DATA, the folder of public records, is not set";
+  params.time_column = "t_d";
+  params.time_unit = "d";
+  params.end = "repeat";
+  params.channels = {{"q_i", "Q_m3d", 1.0, 0.0, 1300.0}, {"s_i", "COD_total", 1.0, 0.0, 366.67}};
+  const DisturbanceRecord record = readDisturbances(params, kNames, kNominal, 900.0, 2 * 1344);
+  EXPECT_EQ(record.repaired, 0U);
+  EXPECT_NEAR(record.values.row(0).head(1344).mean(), 1300.0, 1.0);
+  EXPECT_NEAR(record.values.row(1).head(1344).mean(), 366.67, 0.5);
+  EXPECT_NEAR(record.values(0, 1) / record.values(0, 0), 21474.0 / 21477.0, 1e-12);
+  EXPECT_EQ(record.values.col(0), record.values.col(1344));
+  EXPECT_EQ(record.values.leftCols(1344), record.values.middleCols(1344, 1344));
+  EXPECT_GT(record.values.minCoeff(), 0.0);
+}
+
+// A real plant near Barcelona, daily over 668 calendar days: 159 of the flows and 150 of the COD
+// values are missing.
+TEST(DisturbanceCsv, ReadsTheUciPlantWithItsGaps) {
+  CsvDisturbanceParams params;
+  params.file = dataFile("uci_wwtp_disturbance_calendar.csv");
+  if (params.file.empty()) GTEST_SKIP() << "FMBPC_DATA, the folder of public records, is not set";
+  params.time_column = "date";
+  params.time_unit = "d";
+  params.channels = {{"q_i", "q_i_m3h"}, {"s_i", "DQO_D_mgl"}};
+  EXPECT_THROW(readDisturbances(params, kNames, kNominal, 3600.0, 168), InputError);
+  for (const char* repair : {"hold", "interpolate"}) {
+    params.missing = repair;
+    const DisturbanceRecord record = readDisturbances(params, kNames, kNominal, 86400.0, 667);
+    EXPECT_EQ(record.repaired, 159U + 150U) << repair;
+    EXPECT_EQ(record.values(0, 0), 1717.92);
+    EXPECT_EQ(record.values(1, 1), 368.0);
+    EXPECT_EQ(record.values(0, 667), 1313.5);
+    EXPECT_TRUE(record.values.allFinite() && record.values.minCoeff() > 0.0) << repair;
+  }
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,219 @@
+#!/usr/bin/python3
+"""fmbpc_controller against a plant that does everything wrong. The first sample of each test opens a new run."""
+import math
+import sys
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from fmbpc.msg import CommandEffect, ControlAction, Measurement, NodeReady, PlantInfo, Setpoint, Tracking
+from fmbpc.srv import ManualInput
+from rosgraph_msgs.msg import Log
+from std_srvs.srv import SetBool
+
+import ring
+
+BASE, HELD, MANUAL = ControlAction.BASE, ControlAction.HELD, ControlAction.MANUAL
+
+
+class FakePlant(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # The plant in the other namespace never starts: it is there to introduce itself.
+        cls.info = ring.Listener("reference/plant_info", PlantInfo).wait()
+        cls.info_pub = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
+        cls.pub = ring.publisher("measurement", Measurement)
+        cls.actions = ring.Listener("control_action", ControlAction)
+        cls.tracking = ring.Listener("tracking", Tracking)
+        cls.log = ring.Listener("/rosout", Log)
+        cls.diagnostics = ring.Listener("/diagnostics", DiagnosticArray)
+        cls.ready = ring.Listener("ready", NodeReady)
+        cls.actions.wait_for_publisher()
+        cls.tracking.wait_for_publisher()
+        cls.refuse_a_plant_with_other_units()
+
+    @classmethod
+    def refuse_a_plant_with_other_units(cls):
+        wrong = PlantInfo(name="wrong", sample_time_s=720.0, inputs=cls.info.inputs, output_frames=["", ""],
+                          disturbances=cls.info.disturbances, outputs=list(cls.info.outputs)[::-1])
+        cls.info_pub.publish(wrong)
+        words = cls.status(lambda s: s.level == DiagnosticStatus.ERROR).message
+        assert words == ("plant_info: outputs are x[mg/l], s[mg/l], the loop file expects s[mg/l], x[mg/l]"), words
+        assert "/fmbpc_controller" not in [m.node for m in cls.ready.messages]
+        cls.info_pub.publish(cls.info)
+        cls.ready.wait(lambda m: m.node == "/fmbpc_controller")
+
+    @classmethod
+    def status(cls, fits):
+        """The controller's next status that fits."""
+        cls.diagnostics.clear()
+        return ring.diagnostics_of(cls.diagnostics.wait(
+            lambda m: ring.diagnostics_of(m, "fmbpc_controller") is not None
+            and fits(ring.diagnostics_of(m, "fmbpc_controller"))), "fmbpc_controller")
+
+    @classmethod
+    def counts(cls):
+        return {k: int(v) for k, v in ring.values(cls.status(lambda s: True)).items() if v.isdigit()}
+
+    def setUp(self):
+        self.new_run()
+
+    def new_run(self):
+        self.info.run_id += 1000
+        self.info_pub.publish(self.info)
+        for listener in (self.actions, self.tracking, self.log):
+            listener.clear()
+        self.applied = [570.0]
+        self.sent = -1
+        ring.wait_until(lambda: self.answered(0), "an answer to sample 0")
+
+    def answered(self, step):
+        """plant_info and measurement travel apart: send again, as a plant does."""
+        self.send(step)
+        try:
+            self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step), patience=0.05)
+            return True
+        except AssertionError:
+            return False
+
+    def message(self, step, run_id=None, outputs=(200.0, 2000.0), final=False):
+        msg = Measurement(run_id=self.info.run_id if run_id is None else run_id, step=step, outputs=outputs,
+                          disturbances=[1300.0, 430.0], input_applied=self.applied, final=final)
+        msg.header.stamp = self.info.header.stamp + rospy.Duration(720 * step)
+        return msg
+
+    def send(self, step, **fields):
+        self.pub.publish(self.message(step, **fields))
+
+    def answer(self, step, **fields):
+        """Sends a sample and returns its action; whatever was answered before it is in self.actions."""
+        self.send(step, **fields)
+        action = self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step))
+        self.applied = list(action.input)
+        return action
+
+    def steps_answered(self):
+        return [a.step for a in self.actions.messages if a.run_id == self.info.run_id]
+
+    def test_a_repeated_step_gets_the_cached_answer(self):
+        first = self.answer(1)
+        self.actions.clear()
+        again = self.answer(1, outputs=(300.0, 1000.0))
+        self.assertEqual((first.input, first.source, first.header.stamp), (again.input, again.source, again.header.stamp))
+        self.assertEqual(BASE, self.answer(2).source)
+
+    def test_old_steps_are_dropped_and_counted(self):
+        for step in (1, 2):
+            self.answer(step)
+        before = self.counts()
+        self.actions.clear()
+        self.send(0)
+        self.send(1)
+        self.answer(3)
+        self.assertEqual([3], self.steps_answered())
+        self.assertEqual(before["dropped: old step"] + 2, self.counts()["dropped: old step"])
+
+    def test_other_runs_are_dropped_and_counted_apart(self):
+        before = self.counts()
+        self.send(1, run_id=self.info.run_id - 1)
+        self.send(1, run_id=0)
+        self.send(1, run_id=self.info.run_id + 7)  # larger, but no plant has announced it
+        self.answer(1)
+        after = self.counts()
+        self.assertEqual(before["dropped: other run"] + 2, after["dropped: other run"])
+        self.assertEqual(before["dropped: run not announced"] + 1, after["dropped: run not announced"])
+        self.assertEqual({self.info.run_id}, {a.run_id for a in self.actions.messages})
+
+    def test_wrong_sizes_are_dropped_and_counted(self):
+        before = self.counts()
+        self.send(1, outputs=(200.0,))
+        self.send(1, outputs=(200.0, 2000.0, 1.0))
+        empty = Measurement(run_id=self.info.run_id, step=1)
+        self.pub.publish(empty)
+        self.assertEqual(BASE, self.answer(1).source)
+        self.assertEqual(before["dropped: wrong size"] + 3, self.counts()["dropped: wrong size"])
+
+    def test_a_nan_measurement_holds_the_last_applied_input_and_says_so(self):
+        self.applied = [612.5]
+        action = self.answer(1, outputs=(200.0, math.nan))
+        self.assertEqual((HELD, (612.5,)), (action.source, action.input))
+        status = self.status(lambda s: s.level == DiagnosticStatus.WARN)
+        self.assertIn("not finite", status.message)
+        self.log.wait(lambda m: m.name == "/fmbpc_controller" and "not finite" in m.msg)
+        action = self.answer(2, outputs=(200.0, math.inf))
+        self.assertEqual((HELD, (612.5,)), (action.source, action.input))
+        action = self.answer(3)
+        self.assertEqual(BASE, action.source)
+        self.log.wait(lambda m: "reset: data before were not finite" in m.msg)
+
+    def test_a_gap_means_reset_and_is_reported(self):
+        self.answer(1)
+        before = self.counts()
+        self.assertEqual(BASE, self.answer(5).source)
+        self.log.wait(lambda m: "reset: samples 2..4 missing" in m.msg)
+        self.assertEqual(before["gaps"] + 1, self.counts()["gaps"])
+
+    def test_a_new_run_starts_afresh(self):
+        first = [self.answer(k, outputs=(100.0 + k, 2000.0 - 20 * k)).input for k in (1, 2, 3)]
+        self.new_run()
+        self.log.wait(lambda m: "reset: new run" in m.msg)
+        self.assertEqual(first, [self.answer(k, outputs=(100.0 + k, 2000.0 - 20 * k)).input for k in (1, 2, 3)])
+
+    def test_the_final_sample_needs_no_action(self):
+        self.answer(1)
+        self.send(2, final=True)
+        self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))
+        self.assertNotIn(2, self.steps_answered())
+
+    def test_manual_and_back_without_a_bump(self):
+        self.applied = list(self.answer(1).input)
+        manual = rospy.ServiceProxy("fmbpc_controller/manual", SetBool)
+        by_hand = rospy.ServiceProxy("fmbpc_controller/manual_input", ManualInput)
+        self.assertFalse(by_hand([700.0]).success)  # not yet manual
+        self.assertEqual("manual", manual(True).message)
+        action = self.answer(2)
+        self.assertEqual((MANUAL, self.applied), (action.source, list(action.input)))
+        self.assertTrue(by_hand([700.0]).success)
+        self.assertEqual((700.0,), self.answer(3).input)
+        for refused in ([], [1.0, 2.0], [math.nan]):
+            reply = by_hand(refused)
+            self.assertEqual((False, True), (reply.success, "manual input" in reply.message))
+        self.assertTrue(by_hand([99999.0]).success)
+        self.assertEqual((self.info.inputs[0].upper,), self.answer(4).input)
+        self.assertTrue(by_hand([650.0]).success)
+        self.answer(5)
+        self.status(lambda s: s.message == "manual")
+        self.assertEqual("auto", manual(False).message)
+        action = self.answer(6)
+        self.assertEqual(BASE, action.source)
+        self.assertAlmostEqual(650.0, action.input[0], delta=1e-6)
+
+    def test_a_setpoint_without_a_stamp_acts_at_the_next_sample(self):
+        effects = ring.Listener("setpoint_effect", CommandEffect)
+        effects.wait_for_publisher()
+        setpoint = ring.publisher("setpoint", Setpoint)
+        self.answer(1)
+        setpoint.publish(name=["x"], value=[1950.0], mode=Setpoint.OVERRIDE)
+        self.log.wait(lambda m: "setpoint of x from sample 2 on" in m.msg)
+        self.answer(2)
+        now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))
+        self.assertEqual((55.0, 1950.0), now.setpoint)
+        effect = effects.wait()
+        self.assertEqual((2, self.info.run_id, ["x"]), (effect.step, effect.run_id, effect.name))
+        before = int(ring.values(self.status(lambda s: True)).get("refused: setpoint", 0))
+        for wrong in (Setpoint(name=["x"], value=[1.0], mode=0), Setpoint(name=["x"], value=[1.0], mode=4),
+                      Setpoint(name=["nobody"], value=[1.0], mode=1), Setpoint(name=["x"], value=[], mode=1),
+                      Setpoint(name=["x"], value=[math.nan], mode=1)):
+            setpoint.publish(wrong)
+        self.status(lambda s: ring.values(s).get("refused: setpoint") == str(before + 5))
+        setpoint.publish(name=["x"], value=[], mode=Setpoint.RELEASE)
+        self.log.wait(lambda m: "setpoint of x from sample 3 on" in m.msg)
+        self.answer(3)
+        now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 3))
+        self.assertEqual((55.0, 1800.0), now.setpoint)
+
+
+if __name__ == "__main__":
+    rospy.init_node("fake_plant")
+    rostest.rosrun("fmbpc", "fake_plant", FakePlant, sys.argv)

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""Somebody publishes rubbish on every topic of the ring while a loop with optimizer runs: the run stays the same, bit
+for bit. Every message here is one that its receiver must refuse."""
+import itertools
+import math
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from fmbpc.msg import (ControlAction, Disturbance, FuzzyModel, Matrix, Measurement, PlantInfo, PlantState,
+                       PredictiveAction, Setpoint, SolverReport, Tracking)
+from std_msgs.msg import String
+
+import ring
+
+FAR = 2 ** 63  # a run that no plant has announced
+KINDS = {"control_action": ControlAction, "base_action": ControlAction, "predictive_action": PredictiveAction,
+         "measurement": Measurement, "plant_state": PlantState, "tracking": Tracking, "solver_report": SolverReport,
+         "setpoint": Setpoint, "disturbance": Disturbance, "fuzzy_model": FuzzyModel, "plant_info": PlantInfo}
+
+
+def rubbish(now):
+    """(topic, message) to publish when the plant shows sample `now`."""
+    this = {"run_id": now.run_id, "step": now.step}
+    yield "control_action", ControlAction(input=[], source=1, **this)
+    yield "control_action", ControlAction(input=[1.0, 2.0], source=1, **this)
+    yield "control_action", ControlAction(input=[math.nan], source=1, **this)
+    yield "control_action", ControlAction(input=[700.0], source=99, **this)
+    yield "base_action", ControlAction(input=[], source=1, **this)
+    yield "base_action", ControlAction(input=[700.0], source=0, **this)
+    yield "predictive_action", PredictiveAction(A=Matrix(2, 2, [1.0]), **this)
+    yield "measurement", Measurement(outputs=[1.0], **this)
+    yield "plant_state", PlantState(state=[1.0], **this)
+    yield "tracking", Tracking(setpoint=[1.0], **this)
+    yield "solver_report", SolverReport(perturbation=[], status=1, **this)
+    for topic, kind in KINDS.items():
+        yield topic, kind()
+    for run_id in (1, now.run_id - 1, FAR + now.step):
+        yield "control_action", ControlAction(run_id=run_id, step=now.step, input=[700.0], source=1)
+        yield "base_action", ControlAction(run_id=run_id, step=now.step, input=[700.0], source=1)
+        yield "predictive_action", PredictiveAction(run_id=run_id, step=now.step)
+        yield "measurement", Measurement(run_id=run_id, step=now.step, outputs=now.outputs,
+                                         disturbances=now.disturbances, input_applied=now.input_applied)
+        yield "tracking", Tracking(run_id=run_id, step=now.step, setpoint=[1.0, 1.0], reference=[1.0, 1.0])
+    if now.step > 1:
+        yield "control_action", ControlAction(run_id=now.run_id, step=now.step - 2, input=[700.0], source=1)
+        yield "measurement", Measurement(run_id=now.run_id, step=now.step - 2, outputs=[1.0, 1.0],
+                                         disturbances=now.disturbances, input_applied=now.input_applied)
+    yield "setpoint", Setpoint(name=["nobody"], value=[1.0], mode=1)
+    yield "disturbance", Disturbance(name=["q_i"], value=[math.inf], mode=1)
+
+
+class Intruder(unittest.TestCase):
+    def test_rubbish_on_every_topic_changes_nothing_and_is_counted(self):
+        loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
+        recorded, diagnostics = ring.Listener("recorded", String), ring.Listener("/diagnostics", DiagnosticArray)
+        measurements = ring.Listener("measurement", Measurement)
+        publishers = {topic: rospy.Publisher(topic, kind, queue_size=10000) for topic, kind in KINDS.items()}
+        for topic, publisher in publishers.items():
+            ring.wait_until(lambda p=publisher: p.get_num_connections() > 0, f"a listener of {topic}")
+        run_id = measurements.wait(lambda m: m.run_id not in (0, 1)).run_id
+        for step in itertools.count():
+            now = measurements.wait(lambda m, s=step: m.run_id == run_id and m.step >= s and len(m.outputs) == 2)
+            if now.final:
+                break
+            for topic, message in rubbish(now):
+                publishers[topic].publish(message)
+        folder = recorded.wait().data
+        with tempfile.TemporaryDirectory() as reference:
+            ring.run_in_process(loop, reference, sets)
+            ring.assert_same_run(self, folder, reference)
+        for node, keys in (("plant_simulator", ("actions dropped: wrong size", "actions dropped: other run",
+                                                "refused: control_action", "refused: disturbance")),
+                           ("fmbpc_controller", ("dropped: wrong size", "dropped: other run", "refused: setpoint",
+                                                 "refused: fuzzy_model", "refused: plant_info",
+                                                 "dropped: run not announced")),
+                           ("clp_optimizer", ("refused: base_action", "refused: predictive_action",
+                                              "dropped: other run", "dropped: run not announced")),
+                           ("loop_recorder", ("dropped: other run", "dropped: wrong size or not finite"))):
+            diagnostics.wait(lambda m, n=node, k=keys: ring.diagnostics_of(m, n) is not None and all(
+                int(ring.values(ring.diagnostics_of(m, n)).get(key, 0)) > 0 for key in k))
+
+
+if __name__ == "__main__":
+    rospy.init_node("intruder")
+    rostest.rosrun("fmbpc", "intruder", Intruder, sys.argv)

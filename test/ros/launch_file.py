@@ -1,0 +1,67 @@
+#!/usr/bin/python3
+"""loop.launch as a person types it, each time with a master of its own on a free port."""
+import os
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosbag
+import rostest
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("", 0))
+        return str(probe.getsockname()[1])
+
+
+def roslaunch(*arguments):
+    port = free_port()
+    environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
+    done = subprocess.run(["roslaunch", "-p", port, "fmbpc", "loop.launch", *arguments], env=environment, text=True,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=150, check=False)
+    return done.returncode, re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
+
+
+class LaunchFile(unittest.TestCase):
+    def setUp(self):
+        self.out = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.out)
+
+    def test_a_run_ends_by_itself_with_its_files_and_a_bag_of_every_sample(self):
+        _, text = roslaunch("loop:=asp_case1_clp", "set:=sampling.duration_h=10", "pace:=lockstep", "record:=true",
+                            "plot:=true", "out:=" + self.out)
+        for name in ("trajectory.csv", "summary.json", "plot.png", "loop.bag"):
+            self.assertTrue(os.path.isfile(os.path.join(self.out, name)), f"{name}\n{text}")
+        with rosbag.Bag(os.path.join(self.out, "loop.bag")) as bag:
+            steps = {topic: sorted({m.step for _, m, _ in bag.read_messages("/" + topic)})
+                     for topic in ("measurement", "base_action", "predictive_action", "control_action",
+                                   "solver_report", "tracking", "plant_state")}
+            self.assertGreater(min(t.to_sec() for _, _, t in bag.read_messages()), 0.9)
+            signals = {t for t in bag.get_type_and_topic_info().topics if t.startswith("/signal/")}
+        for topic in ("measurement", "tracking", "plant_state"):
+            self.assertEqual(list(range(51)), steps[topic], topic)
+        for topic in ("base_action", "predictive_action", "control_action", "solver_report"):
+            self.assertEqual(list(range(50)), steps[topic], topic)
+        self.assertLessEqual({"/signal/x", "/signal/x_setpoint", "/signal/x_reference", "/signal/q_r",
+                              "/signal/q_r_perturbation"}, signals)
+        if shutil.which("rqt_plot") is None:
+            self.assertIn("rqt_plot is not installed", text)
+
+    def test_a_bad_loop_starts_nothing(self):
+        for arguments, words in ((["loop:=nobody"], "nobody"),
+                                 (["loop:=asp_case1", "set:=controller.coincidence_stepz=3"], "coincidence_stepz"),
+                                 (["loop:=asp_case1", "pace:=slowly"], "loop.pace")):
+            code, text = roslaunch(*arguments, "out:=" + self.out)
+            self.assertNotEqual(0, code)
+            self.assertIn(words, text)
+            self.assertNotIn("process[", text)
+        self.assertEqual([], os.listdir(self.out))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("fmbpc", "launch_file", LaunchFile, sys.argv)

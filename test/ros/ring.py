@@ -1,0 +1,124 @@
+"""What the tests over topics share: waiting for messages, the tool, comparing result folders."""
+import json
+import os
+import subprocess
+import threading
+import time
+
+import roslib.packages
+import rospy
+
+PATIENCE = 60.0  # s of wall time for anything that must come
+
+
+class Listener:
+    """Keeps every message of a topic; wait() returns the first one that fulfils a condition."""
+
+    def __init__(self, topic, kind):
+        self.messages, self.arrived = [], threading.Condition()
+        self.subscriber = rospy.Subscriber(topic, kind, self.take, tcp_nodelay=True)
+        self.topic = topic
+
+    def take(self, message):
+        with self.arrived:
+            self.messages.append(message)
+            self.arrived.notify_all()
+
+    def wait(self, condition=lambda message: True, patience=PATIENCE):
+        end, seen = time.monotonic() + patience, 0
+        with self.arrived:
+            while True:
+                for message in self.messages[seen:]:
+                    if condition(message):
+                        return message
+                seen = len(self.messages)
+                if not self.arrived.wait(max(0.0, end - time.monotonic())):
+                    raise AssertionError(f"{self.topic}: what was waited for did not come within {patience} s; "
+                                         f"last of {seen}: {self.messages[-1:]}")
+
+    def wait_for_publisher(self, patience=PATIENCE):
+        wait_until(lambda: self.subscriber.get_num_connections() > 0, f"a publisher of {self.topic}", patience)
+
+    def clear(self):
+        with self.arrived:
+            self.messages.clear()
+
+
+def wait_until(condition, what, patience=PATIENCE):
+    """For what sends no message of its own (connections, processes, files)."""
+    end = time.monotonic() + patience
+    while not condition():
+        assert time.monotonic() < end, f"waited {patience} s for {what}"
+        time.sleep(0.01)
+
+
+def publisher(topic, kind, latch=False, listeners=1):
+    pub = rospy.Publisher(topic, kind, queue_size=1000, latch=latch, tcp_nodelay=True)
+    wait_until(lambda: pub.get_num_connections() >= listeners, f"{listeners} listeners of {topic}")
+    return pub
+
+
+def program(name):
+    """Path of an executable of the build."""
+    found = [p for p in roslib.packages.find_node("fmbpc", name) if os.path.basename(os.path.dirname(p)) == "fmbpc"]
+    assert found, f"no executable {name} in the build"
+    return found[0]
+
+
+def tool(*arguments, check=True):
+    return subprocess.run([program("fmbpc"), *arguments], check=check, capture_output=True, text=True)
+
+
+def overrides(text):
+    return [word for pair in text.split() for word in ("--set", pair)]
+
+
+def run_in_process(loop, folder, sets):
+    tool("run", loop, "--no-plot", "--out", folder, *[word for s in sets for word in ("--set", s)])
+
+
+def trajectory(folder):
+    with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:
+        return file.read().splitlines()
+
+
+def summary(folder):
+    """summary.json without what depends on the speed of the machine."""
+    with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
+        data = json.load(file)
+    assert data.pop("wall_s") > 0.0
+    for key in ("median_us", "p99_us"):
+        data.get("clp", {}).pop(key, None)
+    return data
+
+
+def assert_same_run(test, folder, reference):
+    """Bit for bit: the CSV holds the shortest decimals that read back to the same doubles."""
+    here, there = trajectory(folder), trajectory(reference)
+    test.assertEqual(here[0], there[0])
+    for row, (a, b) in enumerate(zip(here, there)):
+        test.assertEqual(a, b, f"row {row} of trajectory.csv")
+    test.assertEqual(len(here), len(there))
+    test.assertEqual(summary(folder), summary(reference))
+
+
+def diagnostics_of(message, name):
+    """Status of one node in a DiagnosticArray, None if it is not in there."""
+    for status in message.status:
+        if status.name.startswith(name + ":"):
+            return status
+    return None
+
+
+def values(status):
+    return {pair.key: pair.value for pair in status.values}
+
+
+def killed(process):
+    if process.poll() is None:
+        process.terminate()
+        try:
+            process.wait(10)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()

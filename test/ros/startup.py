@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""Sample 0 waits for everybody. Nodes are started one by one here, the loop text is on the parameter server."""
+import subprocess
+import sys
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from fmbpc.msg import Measurement, NodeReady
+from std_msgs.msg import String
+
+import ring
+
+
+class Startup(unittest.TestCase):
+    def setUp(self):
+        self.processes = []
+
+    def tearDown(self):
+        for process in self.processes:
+            ring.killed(process)
+
+    def start(self, name, *arguments, **options):
+        process = subprocess.Popen([ring.program(name), *arguments], **options)
+        self.processes.append(process)
+        return process
+
+    def wait_for_status(self, name, level, words):
+        listener = ring.Listener("/diagnostics", DiagnosticArray)
+
+        def fits(message):
+            status = ring.diagnostics_of(message, name)
+            return status is not None and status.level == level and words in status.message
+        listener.wait(fits)
+
+    def test_a_missing_node_is_named_and_the_plant_ends(self):
+        ready = rospy.Publisher("impatient/ready", NodeReady, queue_size=1, latch=True)
+        ready.publish(node="/impatient/fuzzy_identifier")
+        plant = self.start("plant_simulator", "__ns:=impatient", stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                           text=True)
+        text, _ = plant.communicate(timeout=ring.PATIENCE)
+        self.assertEqual(1, plant.returncode)
+        self.assertIn("not ready within loop.ready_timeout_s = 3 s: /impatient/fmbpc_controller, "
+                      "/impatient/loop_recorder\n", text.replace("\x1b[0m", ""))
+
+    def test_a_controller_without_a_model_is_not_ready_and_one_that_joins_late_finds_sample_0(self):
+        measurements, recorded = ring.Listener("measurement", Measurement), ring.Listener("recorded", String)
+        ready = ring.Listener("ready", NodeReady)
+        self.start("plant_simulator")
+        self.start("loop_recorder")
+        self.wait_for_status("plant_simulator", DiagnosticStatus.WARN,
+                             "waiting for /fmbpc_controller, /fuzzy_identifier, /loop_recorder")
+        self.start("fmbpc_controller")
+        self.wait_for_status("fmbpc_controller", DiagnosticStatus.WARN, "waiting for fuzzy_model")
+        self.assertNotIn("/fmbpc_controller", [m.node for m in ready.messages])
+        self.assertEqual([], measurements.messages)
+        self.start("fuzzy_identifier")
+        recorded.wait()
+        self.assertEqual({"/fmbpc_controller", "/fuzzy_identifier", "/loop_recorder"}, {m.node for m in ready.messages})
+        self.assertEqual(0, measurements.messages[0].step)
+        self.assertEqual(10, measurements.messages[-1].step)
+
+    def test_nodes_that_the_loop_does_not_need_say_so_and_end(self):
+        for name, reason in (("clp_optimizer", "has no section clp"), ("pi_controller", "has controller.type fmbpc")):
+            done = subprocess.run([ring.program(name)], capture_output=True, text=True, timeout=ring.PATIENCE, check=True)
+            self.assertIn(reason, done.stdout)
+
+    def test_a_node_without_a_loop_says_what_it_misses(self):
+        rospy.set_param("empty/loop_text", "")
+        done = subprocess.run([ring.program("plant_simulator"), "__ns:=empty"], capture_output=True, text=True,
+                              timeout=ring.PATIENCE, check=False)
+        self.assertEqual(1, done.returncode)
+        self.assertIn("plant_simulator: ", done.stderr)
+
+
+if __name__ == "__main__":
+    rospy.init_node("startup")
+    rostest.rosrun("fmbpc", "startup", Startup, sys.argv)
