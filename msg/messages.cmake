@@ -1,0 +1,24 @@
+# Messages and services of the package.
+add_message_files(DIRECTORY msg FILES
+  CommandEffect.msg
+  ControlAction.msg
+  Disturbance.msg
+  FuzzyModel.msg
+  FuzzyRegressor.msg
+  FuzzyRule.msg
+  FuzzySet.msg
+  FuzzySubmodel.msg
+  Matrix.msg
+  Measurement.msg
+  NodeReady.msg
+  PlantInfo.msg
+  PlantState.msg
+  PredictiveAction.msg
+  Setpoint.msg
+  Signal.msg
+  SignalInfo.msg
+  SolverReport.msg
+  Tracking.msg
+)
+add_service_files(DIRECTORY srv FILES ManualInput.srv)
+generate_messages(DEPENDENCIES std_msgs)

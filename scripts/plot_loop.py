@@ -62,7 +62,7 @@ def draw_limits(axis, limits, values, always):
         limit = limits.get(key)
         near = finite and limit is not None and min(finite) - 1e-9 <= limit <= max(finite) + 1e-9
         if limit is not None and (always or near):
-            axis.axhline(limit, color="black", linewidth=0.9, linestyle=":", zorder=1)
+            axis.axhline(limit, color="black", linewidth=1.1, linestyle=":", zorder=3)
 
 
 def robust_range(axis, series, skip):
@@ -74,7 +74,7 @@ def robust_range(axis, series, skip):
     low, high = values[0], values[-1]
     span = (high - low) or max(abs(high), 1.0)
     if everything[-1] - everything[0] > 2.0 * span:
-        axis.set_ylim(low - 0.08 * span, high + 0.25 * span)
+        axis.set_ylim(low - 0.08 * span, high + 0.12 * span)
 
 
 def draw_output(axis, runs, name):
@@ -137,6 +137,8 @@ def draw(runs, file):
         axis.margins(x=0.0)
         handles, _ = axis.get_legend_handles_labels()
         if handles:
+            low, high = axis.get_ylim()
+            axis.set_ylim(low, high + 0.16 * (high - low))  # room for the legend
             axis.legend(loc="upper right", ncol=min(len(handles), 4), fontsize=8, framealpha=0.85, borderpad=0.3)
     figure.align_ylabels(axes[:, 0])
     axes[-1, 0].set_xlabel("time [h]")

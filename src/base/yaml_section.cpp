@@ -66,7 +66,7 @@ YamlSection::YamlSection(YAML::Node node, std::string file, std::string path, st
       path_(std::move(path)),
       read_(std::make_shared<std::set<std::string>>()),
       trace_(std::move(trace)) {
-  if (!node_.IsDefined() || node_.IsNull()) node_ = YAML::Node(YAML::NodeType::Map);
+  if (!node_.IsDefined() || node_.IsNull()) node_.reset(YAML::Node(YAML::NodeType::Map));  // = would change the tree
   require(node_.IsMap(), (trace_ ? trace_->originOf(path_, file_) : file_ + ": ") + (path_.empty() ? "top level" : path_),
           "a mapping of keys to values");
   std::set<std::string> seen;
@@ -78,7 +78,7 @@ std::string YamlSection::where(const std::string& key) const {
   const std::string path = pathOf(key);
   if (trace_) return trace_->originOf(path, file_) + path;
   const YAML::Node& map = node_;
-  const YAML::Node child = map[key];
+  const YAML::Node child = map[key.substr(0, key.find('.'))];
   const int line = child.IsDefined() ? child.Mark().line : map.Mark().line;
   return file_ + (line >= 0 ? ":" + std::to_string(line + 1) : "") + ": " + path;
 }
@@ -197,9 +197,10 @@ void YamlSection::byName(const std::string& key, Vector& value, const std::vecto
   for (const auto& entry : node) {
     const std::string name = entry.first.Scalar();
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) throw InputError(where(key) + "." + name + ": expected one of " + join(names));
-    require(seen.insert(name).second, where(key) + "." + name, "the key only once");
-    merged[found - names.begin()] = toNumber(entry.second, key, range);
+    const std::string path = key + "." + name;
+    if (found == names.end()) throw InputError(where(path) + ": expected one of " + join(names));
+    require(seen.insert(name).second, where(path), "the key only once");
+    merged[found - names.begin()] = toNumber(entry.second, path, range);
   }
   for (const auto& name : names)
     if (!has_defaults && seen.count(name) == 0) fail(key, "a number for " + name);

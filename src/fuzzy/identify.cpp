@@ -57,6 +57,13 @@ void addRemarks(const OutputIdentification& found, std::vector<std::string>& rem
   }
 }
 
+IdentifyProgress freeRunProgress() {
+  IdentifyProgress progress;
+  progress.stage = "free run";
+  progress.share = 0.95;
+  return progress;
+}
+
 /// The model of output i; false when cancelled.
 bool identifyOutput(const DataSet& data, const Structure& structure, std::size_t i,
                     const IdentifyCallback& callback, Identification& result) {
@@ -82,8 +89,13 @@ bool identifyOutput(const DataSet& data, const Structure& structure, std::size_t
     return !callback || callback(progress);
   };
   OutputModel submodel;
-  const bool completed =
+  bool completed =
       findRules(rows, s, structure, result.linear.submodels.back(), report, found, submodel);
+  if (completed && structure.consequents.free_run_iterations > 0) {
+    found.free_run = fitFreeRun(data, static_cast<int>(i), result.linear.submodels.back(), structure.consequents,
+                                submodel, [&] { return report(freeRunProgress()); });
+    completed = !found.free_run.cancelled;
+  }
   result.model.submodels.push_back(submodel);
   addRemarks(found, result.remarks);
   result.outputs.push_back(std::move(found));

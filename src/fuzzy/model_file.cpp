@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "base/yaml_section.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fuzzy/regressor_text.hpp"
 
 namespace fpc {
 namespace {
@@ -63,32 +63,6 @@ void readRanges(YamlSection& top, TsModel& model) {
   for (auto* signals : {&model.outputs, &model.inputs, &model.disturbances})
     for (auto& signal : *signals) readRange(ranges, signal);
   ranges.finish();
-}
-
-/// "NAME(k)" or "NAME(k-LAG)".
-std::optional<Regressor> parseRegressor(const TsModel& model, const std::string& text) {
-  const auto open = text.find("(k");
-  if (open == std::string::npos || text.back() != ')') return std::nullopt;
-  const std::string name = text.substr(0, open);
-  const std::string lag = text.substr(open + 2, text.size() - open - 3);
-  Regressor regressor;
-  if (!lag.empty()) {
-    const bool digits =
-        lag.size() <= 5 && lag.find_first_not_of("0123456789", 1) == std::string::npos;
-    if (lag[0] != '-' || lag.size() < 2 || !digits) return std::nullopt;
-    regressor.lag = std::stoi(lag.substr(1));
-  }
-  for (const SignalKind kind :
-       {SignalKind::kOutput, SignalKind::kInput, SignalKind::kDisturbance}) {
-    const auto& signals = model.signals(kind);
-    const auto found =
-        std::find_if(signals.begin(), signals.end(), [&](const auto& s) { return s.name == name; });
-    if (found == signals.end()) continue;
-    regressor.kind = kind;
-    regressor.index = static_cast<int>(found - signals.begin());
-    return regressor;
-  }
-  return std::nullopt;
 }
 
 std::vector<Regressor> readRegressors(YamlSection& section, const std::string& key,

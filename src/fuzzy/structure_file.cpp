@@ -175,6 +175,8 @@ void readConsequents(YamlSection section, ConsequentParams& c) {
   section.number("max_condition", c.max_condition);
   choice(section, "scarce", c.scarce, {"borrow", "drop", "error"});
   section.number("forgetting", c.forgetting);
+  section.integer("free_run_iterations", c.free_run_iterations, 0);
+  section.number("one_step_weight", c.one_step_weight, Range::notNegative());
   section.finish();
 }
 

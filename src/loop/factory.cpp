@@ -14,7 +14,8 @@ std::vector<std::string> disturbanceNames(const LoopFile& loop) {
 
 std::unique_ptr<Controller> makeController(const LoopFile& loop) {
   const InputLimits& limits = loop.simulation.actuator.limits;
-  if (loop.controller == "pi") return std::make_unique<PiController>(loop.pi, limits, loop.plant_info);
+  if (loop.controller == "pi")
+    return std::make_unique<PiController>(loop.pi, limits, loop.plant_info);
   return std::make_unique<FmbpcLaw>(loop.fmbpc, limits, loop.plant_info);
 }
 
@@ -30,12 +31,15 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
   const SimulationParams& sim = loop.simulation;
   const DisturbanceParams& params = loop.disturbance;
   if (params.source == "constant") return {};
-  require(sim.samples > 0, loop.name + ": sampling.duration_h",
-          "a time > 0 with disturbance.source " + params.source);
+  require(
+      sim.samples > 0, loop.name + ": sampling.duration_h",
+      "a time > 0 with disturbance.source " + params.source + " (an endless run needs constant)");
   const auto names = disturbanceNames(loop);
   if (params.source == "pattern")
-    return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s, sim.samples);
-  return readDisturbances(params.csv, names, sim.disturbance_nominal, sim.sample_time_s, sim.samples);
+    return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,
+                       sim.samples);
+  return readDisturbances(params.csv, names, sim.disturbance_nominal, sim.sample_time_s,
+                          sim.samples);
 }
 
 Simulation makeSimulation(const LoopFile& loop) {

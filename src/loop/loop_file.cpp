@@ -25,7 +25,8 @@ void need(const YamlSection& section, const std::string& key, const std::string&
   if (!section.has(key)) section.fail(key, expected);
 }
 
-int indexByName(YamlSection& section, const std::string& key, const std::vector<std::string>& names) {
+int indexByName(YamlSection& section, const std::string& key,
+                const std::vector<std::string>& names) {
   std::string name;
   need(section, key, "one of " + join(names));
   section.oneOf(key, name, names);
@@ -38,7 +39,8 @@ void failAt(const YamlSection& section, const std::string& message) {
   const auto colon = message.find(':');
   std::string field = message.substr(0, colon);
   field = field.substr(field.find_last_of('.') + 1);
-  const bool is_field = colon != std::string::npos && field.find_first_of(" /[]") == std::string::npos;
+  const bool is_field =
+      colon != std::string::npos && field.find_first_of(" /[]") == std::string::npos;
   if (is_field) throw InputError(section.where(field) + message.substr(colon));
   std::string place = section.where("");
   if (place.back() == '.') place.pop_back();
@@ -77,7 +79,8 @@ LoopFile parseLoop(const std::string& text, const std::string& name) {
 
 LoopFile readLoop(const std::string& name_or_path, const Overrides& overrides) {
   const std::string file = findLoop(name_or_path);
-  LoopFile loop = parseLoop(resolveLoop(file, overrides), std::filesystem::path(file).stem().string());
+  LoopFile loop =
+      parseLoop(resolveLoop(file, overrides), std::filesystem::path(file).stem().string());
   loop.file = file;
   return loop;
 }

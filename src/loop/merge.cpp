@@ -20,10 +20,13 @@ std::string at(const std::string& file, const YAML::Mark& mark) {
   return file + ":" + std::to_string(mark.line + 1) + ": ";
 }
 
-std::string below(const std::string& path, const std::string& key) { return path.empty() ? key : path + "." + key; }
+std::string below(const std::string& path, const std::string& key) {
+  return path.empty() ? key : path + "." + key;
+}
 
 /// Notes where every path of a file stands; keys must be plain and unique.
-void noteOrigins(const YAML::Node& node, const std::string& path, const std::string& file, Origins& origins) {
+void noteOrigins(const YAML::Node& node, const std::string& path, const std::string& file,
+                 Origins& origins) {
   if (node.IsSequence()) {
     for (std::size_t i = 0; i < node.size(); ++i) {
       const std::string item = path + "[" + std::to_string(i) + "]";
@@ -49,7 +52,8 @@ bool isBelow(const std::string& path, const std::string& parent) {
 }
 
 void replaceOrigins(Origins& origins, const Origins& news, const std::string& path) {
-  for (auto it = origins.begin(); it != origins.end();) it = isBelow(it->first, path) ? origins.erase(it) : std::next(it);
+  for (auto it = origins.begin(); it != origins.end();)
+    it = isBelow(it->first, path) ? origins.erase(it) : std::next(it);
   for (const auto& [key, origin] : news)
     if (isBelow(key, path)) origins[key] = origin;
 }
@@ -62,7 +66,8 @@ bool changesType(const YAML::Node& old, const YAML::Node& young) {
 }
 
 /// Writes `young` over `old` (both mappings).
-void mergeMaps(YAML::Node old, const YAML::Node& young, const std::string& path, Origins& origins, const Origins& news) {
+void mergeMaps(YAML::Node old, const YAML::Node& young, const std::string& path, Origins& origins,
+               const Origins& news) {
   for (const auto& entry : young) {
     const std::string key = entry.first.Scalar();
     const std::string child = below(path, key);
@@ -95,14 +100,16 @@ YAML::Node parseFile(const std::string& file) {
 }
 
 /// The extended file: beside the extending one, or in the config folders.
-std::string findExtended(const std::string& name, const std::string& file, const std::string& where) {
-  for (const auto& candidate : {fs::path(file).parent_path() / (name + ".yaml"), fs::path(file).parent_path() / name})
+std::string findExtended(const std::string& name, const std::string& file,
+                         const std::string& where) {
+  for (const auto& candidate :
+       {fs::path(file).parent_path() / (name + ".yaml"), fs::path(file).parent_path() / name})
     if (fs::is_regular_file(candidate)) return candidate.lexically_normal().string();
   try {
     return findLoop(name);
   } catch (const InputError&) {
-    throw InputError(where + ": expected a loop file beside this one or one of " + join(loopNames()) + ", got '" +
-                     name + "'");
+    throw InputError(where + ": expected a loop file beside this one or one of " +
+                     join(loopNames()) + ", got '" + name + "'");
   }
 }
 
@@ -126,17 +133,19 @@ MergedLoop mergeChain(const std::string& file, std::vector<std::string> chain) {
   return merged;
 }
 
-
-/// Sets `value` at the parts from `index` on; `node` is the mapping or list that holds part `index`.
-void setAt(YAML::Node node, const std::vector<std::string>& parts, std::size_t index, std::string path,
-           const YAML::Node& value, Origins& origins) {
+/// Sets `value` at the parts from `index` on; `node` is the mapping or list that holds part
+/// `index`.
+void setAt(YAML::Node node, const std::vector<std::string>& parts, std::size_t index,
+           std::string path, const YAML::Node& value, Origins& origins) {
   const std::string& part = parts[index];
   const bool last = index + 1 == parts.size();
   const std::string asked = "--set " + join(parts, ".");
   if (node.IsSequence()) {
-    const bool is_number = !part.empty() && part.size() < 7 && part.find_first_not_of("0123456789") == std::string::npos;
+    const bool is_number = !part.empty() && part.size() < 7 &&
+                           part.find_first_not_of("0123456789") == std::string::npos;
     require(is_number && std::stoul(part) < node.size(), asked,
-            "a number below " + std::to_string(node.size()) + " for an item of " + path + ", got '" + part + "'");
+            "a number below " + std::to_string(node.size()) + " for an item of " + path +
+                ", got '" + part + "'");
     path += "[" + part + "]";
     const std::size_t item = std::stoul(part);
     if (!last) return setAt(node[item], parts, index + 1, path, value, origins);
@@ -147,7 +156,10 @@ void setAt(YAML::Node node, const std::vector<std::string>& parts, std::size_t i
     const YAML::Node& before = node;
     const YAML::Node there = before[part];
     if (!last) {
-      if (!there.IsDefined() || there.IsNull()) node[part] = YAML::Node(YAML::NodeType::Map);
+      if (!there.IsDefined() || there.IsNull()) {
+        node[part] = YAML::Node(YAML::NodeType::Map);
+        origins[path] = {"", 0};
+      }
       return setAt(node[part], parts, index + 1, path, value, origins);
     }
     YAML::Node one(YAML::NodeType::Map);
@@ -190,7 +202,8 @@ MergedLoop mergeLoop(const std::string& file) { return mergeChain(file, {}); }
 void applyOverrides(MergedLoop& loop, const Overrides& overrides) {
   for (const auto& [path, text] : overrides) {
     const auto parts = split(path);
-    require(!parts.empty() && std::count(parts.begin(), parts.end(), "") == 0, "--set " + path, "path=value");
+    require(!parts.empty() && std::count(parts.begin(), parts.end(), "") == 0, "--set " + path,
+            "path=value");
     require(parts.front() != "extends", "--set extends", "a key of a section");
     YAML::Node value;
     try {

@@ -27,9 +27,10 @@ struct MergedLoop {
   std::shared_ptr<YamlTrace> trace() const;
 };
 
-/// Reads a file and everything it extends. Mappings merge, lists and scalars replace; a section whose `type` changes
-/// is replaced as a whole, because its other keys belong to the old type.
-/// @throws InputError naming file, line and key: bad YAML, repeated keys, missing or circular `extends`.
+/// Reads a file and everything it extends. Mappings merge, lists and scalars replace; a section
+/// whose `type` changes is replaced as a whole, because its other keys belong to the old type.
+/// @throws InputError naming file, line and key: bad YAML, repeated keys, missing or circular
+/// `extends`.
 MergedLoop mergeLoop(const std::string& file);
 /// Writes overrides over it, in order. @throws InputError naming "--set path".
 void applyOverrides(MergedLoop& loop, const Overrides& overrides);

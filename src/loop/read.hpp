@@ -21,8 +21,8 @@ constexpr Range kFiniteNotNegative{0.0, kLargest};
 struct LoopNames {
   PlantDescription plant;  ///< empty for an external plant
   std::vector<std::string> outputs, inputs;
-  std::vector<std::string> disturbances;      ///< those that act on the plant
-  std::vector<std::string> seen_disturbances; ///< those that are measured
+  std::vector<std::string> disturbances;       ///< those that act on the plant
+  std::vector<std::string> seen_disturbances;  ///< those that are measured
 };
 
 /// The whole text. @throws InputError with the origin of the key.
@@ -44,7 +44,8 @@ void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);
 /// A required key: fails unless it is there.
 void need(const YamlSection& section, const std::string& key, const std::string& expected);
 /// Index of the name that stands at `key`. @throws InputError listing the names.
-int indexByName(YamlSection& section, const std::string& key, const std::vector<std::string>& names);
+int indexByName(YamlSection& section, const std::string& key,
+                const std::vector<std::string>& names);
 /// `time_h`, `name`, `value`, `mode` of one scheduled command.
 ScheduledCommand readCommand(YamlSection& item, const std::vector<std::string>& names);
 /// Throws `message` ("field: expected ...") again with the place of the field in the file.

@@ -10,15 +10,19 @@
 namespace fpc {
 namespace {
 
-Eigen::Index count(const std::vector<std::string>& names) { return static_cast<Eigen::Index>(names.size()); }
+Eigen::Index count(const std::vector<std::string>& names) {
+  return static_cast<Eigen::Index>(names.size());
+}
 
-/// Setpoints are asked from the present state on, unless the file says more; an external plant has no such state.
+/// Setpoints are asked from the present state on, unless the file says more; an external plant has
+/// no such state.
 Vector defaultSetpoint(const LoopFile& loop, const LoopNames& names) {
   Vector value = Vector::Constant(count(names.outputs), std::nan(""));
   for (std::size_t i = 0; i < names.outputs.size(); ++i)
     for (std::size_t s = 0; s < names.plant.states.size(); ++s)
       if (names.plant.states[s].name == names.outputs[i])
-        value[static_cast<Eigen::Index>(i)] = loop.simulation.initial_state[static_cast<Eigen::Index>(s)];
+        value[static_cast<Eigen::Index>(i)] =
+            loop.simulation.initial_state[static_cast<Eigen::Index>(s)];
   return value;
 }
 
@@ -42,7 +46,8 @@ void readFmbpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
   params.disturbance_nominal.resize(count(names.seen_disturbances));
   for (Eigen::Index i = 0; i < params.disturbance_nominal.size(); ++i) {
     const auto& all = names.disturbances;
-    const auto at = std::find(all.begin(), all.end(), names.seen_disturbances[static_cast<std::size_t>(i)]);
+    const auto at =
+        std::find(all.begin(), all.end(), names.seen_disturbances[static_cast<std::size_t>(i)]);
     params.disturbance_nominal[i] = loop.simulation.disturbance_nominal[at - all.begin()];
   }
   section.oneOf("law", params.law, {"published", "general"});
@@ -55,12 +60,14 @@ void readFmbpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
   section.oneOf("antecedent", params.antecedent, {"model", "measured"});
   section.number("offset_gain", params.offset_gain, {0.0, 1.0});
   section.boolean("disturbance_feedforward", params.disturbance_feedforward);
-  section.byName("disturbance_nominal", params.disturbance_nominal, names.seen_disturbances, kFinite);
+  section.byName("disturbance_nominal", params.disturbance_nominal, names.seen_disturbances,
+                 kFinite);
   section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
   if (loop.has_clp) params.prediction_steps = loop.clp.perturbation_steps;
   section.integer("prediction_steps", params.prediction_steps, 1, 10000);
   if (loop.has_clp && params.prediction_steps != loop.clp.perturbation_steps)
-    section.fail("prediction_steps", "clp.perturbation_steps (" + std::to_string(loop.clp.perturbation_steps) + ")");
+    section.fail("prediction_steps",
+                 "clp.perturbation_steps (" + std::to_string(loop.clp.perturbation_steps) + ")");
   checked(section, [&] { params.validate(n_y, n_u); });
 }
 
@@ -101,8 +108,8 @@ void readTargets(YamlSection& section, ClpParams& clp, const std::vector<std::st
   for (const auto& target : targets) {
     const auto found = std::find(outputs.begin(), outputs.end(), target);
     if (found == outputs.end())
-      throw InputError(section.where("target_outputs") + ": expected names out of " + join(outputs) + ", got '" +
-                       target + "'");
+      throw InputError(section.where("target_outputs") + ": expected names out of " +
+                       join(outputs) + ", got '" + target + "'");
     clp.target_outputs.push_back(static_cast<int>(found - outputs.begin()));
   }
 }
@@ -141,10 +148,12 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   params.upper = Vector::Constant(n_y, kInfinite);
   params.rate_per_h = Vector::Constant(n_y, kInfinite);
   section.byName("initial", params.initial, names.outputs, kFinite);
-  if (!params.initial.allFinite()) section.fail("initial", "a value for each of " + join(names.outputs));
+  if (!params.initial.allFinite())
+    section.fail("initial", "a value for each of " + join(names.outputs));
   for (auto& item : section.list("schedule")) {
     params.schedule.push_back(readSetpointStep(item, names.outputs));
-    if (params.schedule.size() > 1 && params.schedule.end()[-2].time_h > params.schedule.back().time_h)
+    if (params.schedule.size() > 1 &&
+        params.schedule.end()[-2].time_h > params.schedule.back().time_h)
       item.fail("time_h", "times that do not decrease");
   }
   section.byName("lower", params.lower, names.outputs);
@@ -185,7 +194,9 @@ void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   }
   section.finish();
   if (loop.has_clp && loop.controller != "fmbpc")
-    section.fail("type", "a controller that predicts (fmbpc) for clp; clp.enabled: false switches the optimizer off");
+    section.fail("type",
+                 "a controller that predicts (fmbpc) for clp; clp.enabled: false switches the "
+                 "optimizer off");
 }
 
 void readModelSection(YamlSection& root, LoopFile& loop) {
@@ -193,7 +204,8 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
   section.text("file", loop.model_file);
   section.finish();
   loop.has_model = !loop.model_file.empty();
-  if (loop.controller == "fmbpc" && !loop.has_model) section.fail("file", "a model file for controller fmbpc");
+  if (loop.controller == "fmbpc" && !loop.has_model)
+    section.fail("file", "a model file for controller fmbpc");
   if (!loop.has_model) return;
   try {
     loop.model = matchToPlant(readModel(loop.model_file), loop.plant_info);

@@ -8,7 +8,9 @@
 namespace fpc {
 namespace {
 
-Eigen::Index count(const std::vector<std::string>& names) { return static_cast<Eigen::Index>(names.size()); }
+Eigen::Index count(const std::vector<std::string>& names) {
+  return static_cast<Eigen::Index>(names.size());
+}
 
 /// The plant's usual values and ranges of its inputs; for an external plant the declared ranges.
 void defaultActuator(const LoopFile& loop, const LoopNames& names, ActuatorParams& actuator) {
@@ -18,13 +20,16 @@ void defaultActuator(const LoopFile& loop, const LoopNames& names, ActuatorParam
   for (Eigen::Index i = 0; i < n_u; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const bool external = loop.external_plant;
-    actuator.limits.lower[i] = external ? loop.plant_info.inputs[k].lower : names.plant.inputs[k].lower;
-    actuator.limits.upper[i] = external ? loop.plant_info.inputs[k].upper : names.plant.inputs[k].upper;
+    actuator.limits.lower[i] =
+        external ? loop.plant_info.inputs[k].lower : names.plant.inputs[k].lower;
+    actuator.limits.upper[i] =
+        external ? loop.plant_info.inputs[k].upper : names.plant.inputs[k].upper;
     if (!external) actuator.initial[i] = names.plant.inputs[k].nominal;
   }
 }
 
-void readPattern(YamlSection& section, PatternParams& params, const std::vector<std::string>& names) {
+void readPattern(YamlSection& section, PatternParams& params,
+                 const std::vector<std::string>& names) {
   section.seed("seed", params.seed);
   YamlSection channels = section.section("channels");
   for (const auto& name : names) {
@@ -46,7 +51,8 @@ void readPattern(YamlSection& section, PatternParams& params, const std::vector<
   section.finish();
 }
 
-void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params, const std::vector<std::string>& names) {
+void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
+                     const std::vector<std::string>& names) {
   YamlSection channels = section.section("channels");
   for (const auto& name : names) {
     channels.markRead(name);
@@ -67,7 +73,8 @@ void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params, const s
   channels.finish();
 }
 
-void readCsvSection(YamlSection& section, CsvDisturbanceParams& params, const std::vector<std::string>& names) {
+void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
+                    const std::vector<std::string>& names) {
   section.text("file", params.file);
   section.text("time_column", params.time_column);
   section.oneOf("time_unit", params.time_unit, {"s", "min", "h", "d"});
@@ -147,7 +154,8 @@ void readDisturbance(YamlSection& root, LoopFile& loop, const LoopNames& names) 
   if (params.source == "csv") {
     need(csv, "file", "the name of a CSV file");
     need(csv, "time_column", "the name of a column");
-    if (params.csv.channels.empty()) csv.fail("channels", "at least one disturbance out of " + join(names.disturbances));
+    if (params.csv.channels.empty())
+      csv.fail("channels", "at least one disturbance out of " + join(names.disturbances));
   }
   for (auto& item : section.list("commands"))
     loop.simulation.disturbance_commands.push_back(readCommand(item, commandNames(names)));

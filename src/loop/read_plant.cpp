@@ -30,8 +30,8 @@ void readSubset(YamlSection& section, const std::string& key, std::vector<std::s
     const auto here = value.begin() + static_cast<std::ptrdiff_t>(i);
     const bool repeated = std::find(value.begin(), here, value[i]) != here;
     if (!exists || repeated)
-      throw InputError(section.where(key) + ": expected names out of " + join(known) + ", each once, got '" + value[i] +
-                       "'");
+      throw InputError(section.where(key) + ": expected names out of " + join(known) +
+                       ", each once, got '" + value[i] + "'");
   }
 }
 
@@ -45,7 +45,8 @@ void readIntegrator(YamlSection& plant, IntegratorParams& params) {
   section.finish();
 }
 
-void readParameters(YamlSection& plant, const PlantDescription& description, PlantParameters& parameters) {
+void readParameters(YamlSection& plant, const PlantDescription& description,
+                    PlantParameters& parameters) {
   YamlSection section = plant.section("parameters");
   for (const auto& quantity : description.parameters) {
     double value = quantity.nominal;
@@ -86,7 +87,8 @@ void readSimulated(YamlSection& plant, LoopFile& loop, LoopNames& names) {
   readIntegrator(plant, sim.integrator);
 }
 
-std::vector<SignalInfo> readSignals(YamlSection& plant, const std::string& key, std::vector<std::string>& names) {
+std::vector<SignalInfo> readSignals(YamlSection& plant, const std::string& key,
+                                    std::vector<std::string>& names) {
   std::vector<SignalInfo> signals;
   for (auto& item : plant.list(key)) {
     SignalInfo signal{"", "", -kInfinite, kInfinite};
@@ -96,7 +98,8 @@ std::vector<SignalInfo> readSignals(YamlSection& plant, const std::string& key, 
     item.number("lower", signal.lower, {});
     item.number("upper", signal.upper, {});
     if (!(signal.lower <= signal.upper)) item.fail("upper", "a number >= lower");
-    if (std::count(names.begin(), names.end(), signal.name) > 0) item.fail("name", "every name only once");
+    if (std::count(names.begin(), names.end(), signal.name) > 0)
+      item.fail("name", "every name only once");
     item.finish();
     names.push_back(signal.name);
     signals.push_back(std::move(signal));
@@ -149,7 +152,8 @@ void readSampling(YamlSection& root, LoopFile& loop) {
   section.number("start_time_s", sim.start_time_s, {1e-9, 4e9});
   const double samples = duration_h * 3600.0 / sim.sample_time_s;
   if (std::abs(samples - std::round(samples)) > 1e-6 * std::max(1.0, samples))
-    section.fail("duration_h", "a whole number of samples of " + exactText(sim.sample_time_s) + " s");
+    section.fail("duration_h",
+                 "a whole number of samples of " + exactText(sim.sample_time_s) + " s");
   if (samples > 1e9) section.fail("duration_h", "at most 1e9 samples");
   sim.samples = static_cast<std::uint32_t>(std::llround(samples));
   section.finish();

@@ -1,4 +1,5 @@
-// Sections `loop`, `tf` and `report`: how the ring over topics runs, where equipment stands, what is judged.
+// Sections `loop`, `tf` and `report`: how the ring over topics runs, where equipment stands, what
+// is judged.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -33,7 +34,8 @@ void readFrames(YamlSection& section, std::vector<EquipmentFrame>& frames) {
   YamlSection items = section.section("frames");
   for (const auto& name : items.keys()) {
     YamlSection item = items.section(name);
-    auto known = std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.name == name; });
+    auto known =
+        std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.name == name; });
     if (known == frames.end()) {
       need(item, "parent", "the parent frame of a new frame");
       frames.push_back({name, "", 0.0, 0.0, 0.0});
@@ -49,7 +51,8 @@ Eigen::Vector3d positionOf(const std::string& name, const std::vector<EquipmentF
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   std::string at = name;
   for (std::size_t depth = 0; depth <= frames.size(); ++depth) {
-    const auto frame = std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.name == at; });
+    const auto frame =
+        std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.name == at; });
     if (frame == frames.end()) return position;
     position += Eigen::Vector3d(frame->x, frame->y, frame->z);
     at = frame->parent;

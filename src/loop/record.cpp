@@ -17,7 +17,8 @@ Recorder::Recorder(std::string loop, PlantInfo info, bool has_optimizer, bool ha
 }
 
 SampleRecord* Recorder::at(const StepHeader& header) {
-  if (header.run_id < run_id_ || header.step > record_.samples.size() + kLargestJump) return nullptr;
+  if (header.run_id < run_id_ || header.step > record_.samples.size() + kLargestJump)
+    return nullptr;
   if (header.run_id > run_id_) {
     run_id_ = header.run_id;
     record_.samples.clear();
@@ -76,7 +77,8 @@ void Recorder::add(const SolverReport& r) {
 }
 
 bool Recorder::finalSeen() const {
-  return !record_.samples.empty() && record_.samples.back().has_measurement && record_.samples.back().measurement.final;
+  return !record_.samples.empty() && record_.samples.back().has_measurement &&
+         record_.samples.back().measurement.final;
 }
 
 bool Recorder::complete() const { return finalSeen() && gaps(1).empty(); }
@@ -85,7 +87,8 @@ std::vector<std::string> Recorder::gaps(std::size_t limit) const {
   std::vector<std::string> lines;
   const std::size_t last = record_.samples.size() - 1;
   const auto note = [&](std::size_t step, bool there, const char* what) {
-    if (!there && lines.size() < limit) lines.push_back("sample " + std::to_string(step) + ": no " + what);
+    if (!there && lines.size() < limit)
+      lines.push_back("sample " + std::to_string(step) + ": no " + what);
   };
   for (std::size_t step = 0; step < record_.samples.size() && lines.size() < limit; ++step) {
     const SampleRecord& sample = record_.samples[step];

@@ -16,7 +16,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* kSourceNames[] = {"", "base", "constrained", "clipped", "held", "manual", "fallback"};
+constexpr const char* kSourceNames[] = {"",     "base",   "constrained", "clipped",
+                                        "held", "manual", "fallback"};
 
 /// JSON has no infinity: an absent limit is null.
 Json limit(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -25,8 +26,9 @@ Json outputsOf(const Summary& summary) {
   Json outputs = Json::object();
   for (std::size_t i = 0; i < summary.outputs.size(); ++i) {
     const OutputIndices& y = summary.outputs[i];
-    outputs[summary.output_names[i]] = {{"ise", y.ise},   {"iae", y.iae},   {"itae", y.itae},
-                                        {"itse", y.itse}, {"rmse", y.rmse}, {"ise_reference", y.ise_reference}};
+    outputs[summary.output_names[i]] = {{"ise", y.ise},   {"iae", y.iae},
+                                        {"itae", y.itae}, {"itse", y.itse},
+                                        {"rmse", y.rmse}, {"ise_reference", y.ise_reference}};
   }
   return outputs;
 }
@@ -35,7 +37,8 @@ Json inputsOf(const Summary& summary) {
   Json inputs = Json::object();
   for (std::size_t i = 0; i < summary.inputs.size(); ++i) {
     const InputIndices& u = summary.inputs[i];
-    inputs[summary.input_names[i]] = {{"min", u.min}, {"max", u.max}, {"mean_abs_move", u.mean_abs_move}};
+    inputs[summary.input_names[i]] = {
+        {"min", u.min}, {"max", u.max}, {"mean_abs_move", u.mean_abs_move}};
   }
   return inputs;
 }
@@ -64,7 +67,8 @@ class Columns {
     values_.push_back(std::move(value));
   }
   CsvTable fill(std::size_t rows) {
-    table_.values.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(values_.size()));
+    table_.values.resize(static_cast<Eigen::Index>(rows),
+                         static_cast<Eigen::Index>(values_.size()));
     for (std::size_t c = 0; c < values_.size(); ++c)
       for (std::size_t r = 0; r < rows; ++r)
         table_.values(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = values_[c](r);
@@ -105,15 +109,17 @@ void addDisturbances(const LoopFile& loop, const RunRecord& record, Columns& col
   if (!record.states.empty()) {
     const auto all = makePlant(loop.simulation.plant)->description().disturbances;
     for (std::size_t i = 0; i < all.size(); ++i)
-      columns.add(all[i].name, all[i].unit, [&samples, k = static_cast<Eigen::Index>(i)](std::size_t r) {
-        return samples[r].has_state ? samples[r].state.disturbances[k] : kMissing;
-      });
+      columns.add(all[i].name, all[i].unit,
+                  [&samples, k = static_cast<Eigen::Index>(i)](std::size_t r) {
+                    return samples[r].has_state ? samples[r].state.disturbances[k] : kMissing;
+                  });
     return;
   }
   for (std::size_t i = 0; i < record.info.disturbances.size(); ++i)
     columns.add(record.info.disturbances[i].name, record.info.disturbances[i].unit,
                 [&samples, k = static_cast<Eigen::Index>(i)](std::size_t r) {
-                  return samples[r].has_measurement ? samples[r].measurement.disturbances[k] : kMissing;
+                  return samples[r].has_measurement ? samples[r].measurement.disturbances[k]
+                                                    : kMissing;
                 });
 }
 
@@ -158,7 +164,8 @@ void addOtherStates(const RunRecord& record, Columns& columns) {
   const auto& samples = record.samples;
   for (std::size_t i = 0; i < record.states.size(); ++i) {
     bool is_output = false;
-    for (const auto& output : record.info.outputs) is_output = is_output || output.name == record.states[i];
+    for (const auto& output : record.info.outputs)
+      is_output = is_output || output.name == record.states[i];
     if (is_output) continue;
     columns.add(record.states[i], record.state_units[i],
                 [&samples, k = static_cast<Eigen::Index>(i)](std::size_t r) {
@@ -189,25 +196,29 @@ std::string toJson(const Summary& summary) {
                    {"median_us", summary.clp_median_us},
                    {"p99_us", summary.clp_p99_us}};
   json["sources"] = Json::object();
-  for (std::size_t i = 1; i < summary.sources.size(); ++i) json["sources"][kSourceNames[i]] = summary.sources[i];
+  for (std::size_t i = 1; i < summary.sources.size(); ++i)
+    json["sources"][kSourceNames[i]] = summary.sources[i];
   json["limits"] = limitsOf(summary);
   return json.dump(2);
 }
 
-void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary, const std::string& folder) {
+void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
+              const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   require(!error, folder, "a folder that can be made (" + error.message() + ")");
   Columns columns;
   const SampleClock clock(loop.plant_info.sample_time_s, loop.simulation.start_time_s);
-  columns.add("time", "h", [&clock](std::size_t r) { return clock.hoursAt(static_cast<std::uint32_t>(r)); });
+  columns.add("time", "h",
+              [&clock](std::size_t r) { return clock.hoursAt(static_cast<std::uint32_t>(r)); });
   addOutputs(record, columns);
   addInputs(record, columns);
   addDisturbances(loop, record, columns);
   addTracking(record, columns);
   addActions(loop, record, columns);
   addOtherStates(record, columns);
-  writeCsv(columns.fill(record.samples.size()), (std::filesystem::path(folder) / "trajectory.csv").string());
+  writeCsv(columns.fill(record.samples.size()),
+           (std::filesystem::path(folder) / "trajectory.csv").string());
   const std::string file = (std::filesystem::path(folder) / "summary.json").string();
   std::ofstream stream(file);
   stream << toJson(summary) << "\n";

@@ -1,4 +1,5 @@
-// From a loop's name to the one text that tool and nodes read: merged, with absolute file names, checked.
+// From a loop's name to the one text that tool and nodes read: merged, with absolute file names,
+// checked.
 #include <filesystem>
 
 #include "fmbpc/base/input_error.hpp"
@@ -30,23 +31,28 @@ std::string findFile(const std::string& name, const std::string& beside, const s
                      const std::string& where) {
   std::vector<fs::path> candidates{fs::path(beside) / name};
   if (fs::path(name).is_relative())
-    for (const auto& config : configFolders()) candidates.push_back(fs::path(config) / folder / name);
+    for (const auto& config : configFolders())
+      candidates.push_back(fs::path(config) / folder / name);
   for (const auto& candidate : candidates)
     if (fs::is_regular_file(candidate)) return fs::absolute(candidate).lexically_normal().string();
   std::vector<std::string> looked;
-  for (const auto& candidate : candidates) looked.push_back(candidate.parent_path().lexically_normal().string());
-  throw InputError(where + ": expected an existing file, got '" + name + "' (looked in " + join(looked) + ")");
+  for (const auto& candidate : candidates)
+    looked.push_back(candidate.parent_path().lexically_normal().string());
+  throw InputError(where + ": expected an existing file, got '" + name + "' (looked in " +
+                   join(looked) + ")");
 }
 
 /// Replaces a `file` key by an absolute name; `folder` is its usual place below a config folder.
-void makeAbsolute(MergedLoop& loop, const std::vector<std::string>& keys, const std::string& folder) {
+void makeAbsolute(MergedLoop& loop, const std::vector<std::string>& keys,
+                  const std::string& folder) {
   YAML::Node file = scalarAt(loop.root, keys);
   if (!file.IsDefined() || !file.IsScalar() || file.Scalar().empty()) return;
   const std::string path = join(keys, ".");
   const std::string where = loop.whereIs(path);
   const auto origin = loop.origins.find(path);
   const bool from_file = origin != loop.origins.end() && !origin->second.file.empty();
-  const fs::path beside = from_file ? fs::path(origin->second.file).parent_path() : fs::current_path();
+  const fs::path beside =
+      from_file ? fs::path(origin->second.file).parent_path() : fs::current_path();
   file = findFile(expandEnvironment(file.Scalar(), where), beside.string(), folder, where);
 }
 

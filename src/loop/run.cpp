@@ -14,7 +14,9 @@ constexpr std::uint64_t kRunId = 1;
 class Ring {
  public:
   explicit Ring(const LoopFile& loop)
-      : simulation_(makeSimulation(loop)), controller_(makeControllerSession(loop)), recorder_(makeRecorder(loop)) {
+      : simulation_(makeSimulation(loop)),
+        controller_(makeControllerSession(loop)),
+        recorder_(makeRecorder(loop)) {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     if (loop.has_model && controller_.controller().needsModel()) controller_.setModel(loop.model);
     simulation_.reset(kRunId);
@@ -64,7 +66,8 @@ class Ring {
 
 RunRecord runLoop(const LoopFile& loop, const RunOptions& options) {
   const std::uint32_t samples = loop.simulation.samples;
-  require(samples > 0, loop.name + ": sampling.duration_h", "a time > 0: a run in one process must end");
+  require(samples > 0, loop.name + ": sampling.duration_h",
+          "a time > 0: a run in one process must end");
   Ring ring(loop);
   for (std::uint32_t step = 0; ring.step(); ++step) {
     if (options.progress) options.progress(step + 1, samples);

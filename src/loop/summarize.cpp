@@ -32,8 +32,10 @@ InputIndices indicesOfInput(const RunRecord& record, Eigen::Index i) {
   for (std::size_t k = 0; k < record.samples.size(); ++k) {
     if (!record.samples[k].has_measurement) continue;
     const double value = record.samples[k].measurement.input_applied[i];
-    if (k == 0) before = value;
-    else applied.push_back(value);
+    if (k == 0)
+      before = value;
+    else
+      applied.push_back(value);
   }
   return inputIndices(toVector(applied), before);
 }
@@ -51,7 +53,8 @@ void countInputViolations(const SampleRecord& sample, Summary& summary) {
     const bool inside = u >= limits.lower[i] - tolerance && u <= limits.upper[i] + tolerance;
     summary.input_violations += !inside;
     if (!sample.has_measurement) continue;
-    const bool small = std::abs(u - sample.measurement.input_applied[i]) <= limits.move[i] + tolerance;
+    const bool small =
+        std::abs(u - sample.measurement.input_applied[i]) <= limits.move[i] + tolerance;
     summary.move_violations += !small;
   }
 }
@@ -77,8 +80,10 @@ void summarizeSolves(const RunRecord& record, Summary& summary) {
     if (!sample.has_report || sample.report.status == SolveStatus::kNotRun) continue;
     const SolveStatus status = sample.report.status;
     microseconds.push_back(1e6 * sample.report.seconds);
-    if (status == SolveStatus::kInfeasible) ++summary.clp_infeasible;
-    else if (status != SolveStatus::kSolved && status != SolveStatus::kBoundWins) ++summary.clp_failed;
+    if (status == SolveStatus::kInfeasible)
+      ++summary.clp_infeasible;
+    else if (status != SolveStatus::kSolved && status != SolveStatus::kBoundWins)
+      ++summary.clp_failed;
   }
   std::sort(microseconds.begin(), microseconds.end());
   summary.clp_solves = microseconds.size();
@@ -118,7 +123,8 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
     summary.outputs.push_back(indicesOfOutput(record, i, sample_time_h));
   }
   for (const auto& input : loop.plant_info.inputs) {
-    summary.inputs.push_back(indicesOfInput(record, static_cast<Eigen::Index>(summary.input_names.size())));
+    summary.inputs.push_back(
+        indicesOfInput(record, static_cast<Eigen::Index>(summary.input_names.size())));
     summary.input_names.push_back(input.name);
   }
   countSamples(record, summary);

@@ -24,7 +24,8 @@ std::string layout(const std::vector<Row>& rows) {
   std::string text;
   for (const auto& row : rows) {
     std::string line = row[0] + std::string(widths[0] - row[0].size(), ' ');
-    for (std::size_t i = 1; i < row.size(); ++i) line += "  " + std::string(widths[i] - row[i].size(), ' ') + row[i];
+    for (std::size_t i = 1; i < row.size(); ++i)
+      line += "  " + std::string(widths[i] - row[i].size(), ' ') + row[i];
     text += line + "\n";
   }
   return text;
@@ -33,9 +34,9 @@ std::string layout(const std::vector<Row>& rows) {
 void addOutputRows(const Summary& s, std::vector<Row>& rows) {
   for (std::size_t i = 0; i < s.outputs.size(); ++i) {
     const OutputIndices& y = s.outputs[i];
-    rows.push_back({i == 0 ? s.loop : "", s.output_names[i], shortText(y.ise), shortText(y.iae), shortText(y.itae),
-                    shortText(y.itse), shortText(y.rmse), shortText(y.ise_reference),
-                    i == 0 ? std::to_string(s.output_violations) : ""});
+    rows.push_back({i == 0 ? s.loop : "", s.output_names[i], shortText(y.ise), shortText(y.iae),
+                    shortText(y.itae), shortText(y.itse), shortText(y.rmse),
+                    shortText(y.ise_reference), i == 0 ? std::to_string(s.output_violations) : ""});
   }
 }
 
@@ -45,7 +46,8 @@ void addInputRows(const Summary& s, std::vector<Row>& rows) {
     const bool first = i == 0;
     rows.push_back({first ? s.loop : "", s.input_names[i], shortText(u.min), shortText(u.max),
                     shortText(u.mean_abs_move), first ? std::to_string(s.input_violations) : "",
-                    first ? std::to_string(s.move_violations) : "", first ? std::to_string(s.actuator_clips) : "",
+                    first ? std::to_string(s.move_violations) : "",
+                    first ? std::to_string(s.actuator_clips) : "",
                     first ? std::to_string(s.steps) : "", first ? shortText(s.wall_s) : ""});
   }
 }
@@ -53,17 +55,19 @@ void addInputRows(const Summary& s, std::vector<Row>& rows) {
 }  // namespace
 
 std::string toTable(const std::vector<Summary>& summaries) {
-  std::vector<Row> outputs{{"loop", "output", "ISE", "IAE", "ITAE", "ITSE", "rmse", "ISE ref", "beyond"}};
-  std::vector<Row> inputs{
-      {"loop", "input", "min", "max", "mean move", "beyond", "moves beyond", "clips", "steps", "wall s"}};
-  std::vector<Row> solves{{"optimizer of", "solves", "infeasible", "failed", "median us", "p99 us"}};
+  std::vector<Row> outputs{
+      {"loop", "output", "ISE", "IAE", "ITAE", "ITSE", "rmse", "ISE ref", "beyond"}};
+  std::vector<Row> inputs{{"loop", "input", "min", "max", "mean move", "beyond", "moves beyond",
+                           "clips", "steps", "wall s"}};
+  std::vector<Row> solves{
+      {"optimizer of", "solves", "infeasible", "failed", "median us", "p99 us"}};
   for (const auto& summary : summaries) {
     addOutputRows(summary, outputs);
     addInputRows(summary, inputs);
     if (summary.has_clp)
-      solves.push_back({summary.loop, std::to_string(summary.clp_solves), std::to_string(summary.clp_infeasible),
-                        std::to_string(summary.clp_failed), shortText(summary.clp_median_us),
-                        shortText(summary.clp_p99_us)});
+      solves.push_back({summary.loop, std::to_string(summary.clp_solves),
+                        std::to_string(summary.clp_infeasible), std::to_string(summary.clp_failed),
+                        shortText(summary.clp_median_us), shortText(summary.clp_p99_us)});
   }
   std::string text = layout(outputs) + "\n" + layout(inputs);
   if (solves.size() > 1) text += "\n" + layout(solves);

@@ -1,3 +1,5 @@
 #include "fmbpc/ros/clp_optimizer.hpp"
 
-int main(int argc, char** argv) { return fpc::runNode<fpc::ClpOptimizer>(argc, argv, "clp_optimizer"); }
+int main(int argc, char** argv) {
+  return fpc::runNode<fpc::ClpOptimizer>(argc, argv, "clp_optimizer");
+}

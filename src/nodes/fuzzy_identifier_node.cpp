@@ -1,3 +1,5 @@
 #include "fmbpc/ros/fuzzy_identifier.hpp"
 
-int main(int argc, char** argv) { return fpc::runNode<fpc::FuzzyIdentifier>(argc, argv, "fuzzy_identifier"); }
+int main(int argc, char** argv) {
+  return fpc::runNode<fpc::FuzzyIdentifier>(argc, argv, "fuzzy_identifier");
+}

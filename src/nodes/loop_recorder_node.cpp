@@ -1,3 +1,5 @@
 #include "fmbpc/ros/loop_recorder.hpp"
 
-int main(int argc, char** argv) { return fpc::runNode<fpc::LoopRecorder>(argc, argv, "loop_recorder"); }
+int main(int argc, char** argv) {
+  return fpc::runNode<fpc::LoopRecorder>(argc, argv, "loop_recorder");
+}

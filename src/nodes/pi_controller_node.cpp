@@ -1,3 +1,5 @@
 #include "fmbpc/ros/controller_node.hpp"
 
-int main(int argc, char** argv) { return fpc::runNode<fpc::PiControllerNode>(argc, argv, "pi_controller"); }
+int main(int argc, char** argv) {
+  return fpc::runNode<fpc::PiControllerNode>(argc, argv, "pi_controller");
+}

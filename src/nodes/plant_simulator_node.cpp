@@ -1,3 +1,5 @@
 #include "fmbpc/ros/plant_simulator.hpp"
 
-int main(int argc, char** argv) { return fpc::runNode<fpc::PlantSimulator>(argc, argv, "plant_simulator"); }
+int main(int argc, char** argv) {
+  return fpc::runNode<fpc::PlantSimulator>(argc, argv, "plant_simulator");
+}

@@ -147,7 +147,7 @@ Index QpSolver::Workspace::revise(const QpProblem& p) {
 bool QpSolver::Workspace::guess(const QpProblem& p, bool warm) {
   const int count = warm || p.a_lower.size() == 0 ? kMaxGuesses : 1;
   for (int k = 0; k < count && result.iterations < settings.max_iterations; ++k) {
-    if (!kkt.factor(p, k == 0 ? sides : next)) return false;
+    if (!kkt.factor(p, k == 0 ? sides : next, qp::kNearlyDependent)) return false;
     if (k > 0) sides.swap(next);
     ++result.iterations;
     kkt.solve(p, sides, result);
@@ -174,9 +174,8 @@ SolveStatus QpSolver::Workspace::search(const QpProblem& p) {
     dual.multipliers(p.g.size(), result);
     if (status == SolveStatus::kIterationLimit || status == SolveStatus::kNumericalError)
       return status;
-    if (!kkt.factor(
-            p,
-            sides)) {  // rows so close to dependent that only the dual method's factors stand them
+    // Rows so close to dependent that only the factors of the dual method stand them.
+    if (!kkt.factor(p, sides, qp::kDependent)) {
       kkt.evaluate(p, result);
       if (p.a_lower.size() > 0) ax.noalias() = p.A * result.x;
       return status;
@@ -189,17 +188,21 @@ SolveStatus QpSolver::Workspace::search(const QpProblem& p) {
   return SolveStatus::kSolved;
 }
 
-/// Judges the point: multipliers of the wrong sign are rounding here and become zero.
+/// Judges the point. Multipliers of the wrong sign that revise() let pass are rounding: zero.
 SolveStatus QpSolver::Workspace::finish(const QpProblem& p) {
   const Index n = p.g.size(), m = p.a_lower.size();
+  bool row_changed = false;
   result.active = 0;
   for (Index id = 0; id < n + m; ++id) {
     const Side side = sides[at(id)];
     if (side == qp::kOff) continue;
     ++result.active;
     double& y = id < n ? result.y_x(id) : result.y_a(id - n);
-    if (y * static_cast<double>(side) < 0.0 && !qp::isEquality(p, id)) y = 0.0;
+    if (y * static_cast<double>(side) >= 0.0 || qp::isEquality(p, id)) continue;
+    y = 0.0;
+    row_changed = row_changed || id >= n;
   }
+  if (row_changed) kkt.evaluate(p, result);
   result.kkt_residual =
       qp::scaledResidual(p, result.x, result.y_x, result.y_a, kkt.hx(), kkt.aty(), ax);
   const double accepted = std::max(kAcceptedResidual, 10.0 * settings.feasibility_tolerance);

@@ -44,7 +44,7 @@ bool DualActiveSet::start(const QpProblem& p, KktSystem& kkt, Sides& sides) {
       if (sides[at(id)] == kOff || isEquality(p, id) != equalities) continue;
       setNormal(p, id, sides[at(id)]);
       transformNormal(id, sides[at(id)]);
-      if (dependent()) {
+      if (dependent(kNearlyDependent)) {  // enters later if it is violated
         sides[at(id)] = kOff;
         continue;
       }
@@ -116,7 +116,7 @@ Index DualActiveSet::blocking(const QpProblem& p, bool dependent, double& step) 
     if (!(r_(k) > 0.0) || isEquality(p, active_[at(k)])) continue;
     if (dependent && r_(k) * R_.col(k).head(k + 1).norm() <= kBlockingTolerance * norm) continue;
     const double length = std::max(u_(k), 0.0) / r_(k);
-    if (length >= step) continue;
+    if (!(length < step)) continue;
     step = length;
     first = k;
   }
@@ -134,7 +134,7 @@ SolveStatus DualActiveSet::add(const QpProblem& p, const QpSettings& settings, I
     if (iterations >= settings.max_iterations) return SolveStatus::kIterationLimit;
     ++iterations;
     transformNormal(id, side);
-    const bool blocked = dependent();
+    const bool blocked = dependent(kDependent);
     r_.head(q_) = d_.head(q_);
     if (q_ > 0) R_.topLeftCorner(q_, q_).triangularView<Eigen::Upper>().solveInPlace(r_.head(q_));
     double step = kInfinity;

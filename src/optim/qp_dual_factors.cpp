@@ -9,8 +9,6 @@
 namespace fpc::qp {
 namespace {
 
-constexpr double kDependentTolerance = 1e-10;  // sine of the angle to the working set, metric H^-1
-
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
@@ -28,10 +26,10 @@ void DualActiveSet::transformNormal(Index id, Side side) {
   }
 }
 
-bool DualActiveSet::dependent() const {
-  if (q_ == d_.size()) return true;
-  return !(d_.tail(d_.size() - q_).squaredNorm() >
-           kDependentTolerance * kDependentTolerance * d_.squaredNorm());
+/// Whether the sine of the angle of d to the working set, in the metric of H^-1, is that small.
+bool DualActiveSet::dependent(double tolerance) const {
+  const Index n = d_.size();
+  return q_ == n || !(d_.tail(n - q_).norm() > tolerance * d_.norm());
 }
 
 /// J and R of the bounds in the working set: with fixed unknowns last in L, L^-T read backwards has

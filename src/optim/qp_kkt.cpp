@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kPivotTolerance =
     1e-14;  // of H_ii: below it H is not positive definite in this arithmetic
-constexpr double kDependentTolerance = 1e-11;  // sine of the angle to the rows before
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr int kMaxCorrections = 4;
 
@@ -131,7 +130,7 @@ bool KktSystem::gatherRows(const QpProblem& p, const Sides& sides) {
 }
 
 /// Q R = L^-1 A_wf' by modified Gram-Schmidt.
-bool KktSystem::factorRows() {
+bool KktSystem::factorRows(double dependent_tolerance) {
   const Index n_f = n_free_, n_r = n_rows_;
   if (n_r > n_f) return false;
   for (Index j = 0; j < n_f; ++j) {  // V' = A_wf L^-T, column by column
@@ -146,7 +145,7 @@ bool KktSystem::factorRows() {
   for (Index k = 0; k < n_r; ++k) {
     auto q = Q_.col(k).head(n_f);
     const double norm = q.norm();
-    if (!(norm > kDependentTolerance * norm_(k))) return false;
+    if (!(norm > dependent_tolerance * norm_(k))) return false;
     q *= 1.0 / norm;
     R_(k, k) = norm;
     for (Index l = k + 1; l < n_r; ++l) {
@@ -158,10 +157,10 @@ bool KktSystem::factorRows() {
   return true;
 }
 
-bool KktSystem::factor(const QpProblem& p, const Sides& sides) {
+bool KktSystem::factor(const QpProblem& p, const Sides& sides, double dependent_tolerance) {
   if (!factorFree(p, sides)) return false;
   if (gatherRows(p, sides)) return true;
-  rows_factored_ = n_rows_ <= n_free_ && factorRows();
+  rows_factored_ = n_rows_ <= n_free_ && factorRows(dependent_tolerance);
   return rows_factored_;
 }
 

@@ -27,6 +27,11 @@ inline double limitOf(const QpProblem& p, Index id, Side side) {
   return side == kUpper ? upperOf(p, id) : lowerOf(p, id);
 }
 
+/// Sine of the angle to the working set below which a constraint counts as dependent: where other
+/// constraints can be taken first, and where it is this one or none.
+constexpr double kNearlyDependent = 1e-4;
+constexpr double kDependent = 1e-10;
+
 /// What an error in constraint id is measured against: |limit| + sum_j |a_j| (1 + |x_j|).
 double feasibilityScale(const QpProblem& p, Index id, VectorRef x, double limit);
 
@@ -44,8 +49,9 @@ class KktSystem {
  public:
   void resize(Index n);
   void setHessian(const Matrix& H);  ///< forgets the factors unless H is bitwise the one before
-  /// @return false if H_ff is not positive definite or the rows are dependent
-  bool factor(const QpProblem& p, const Sides& sides);
+  /// @return false if H_ff is not positive definite or the rows are dependent, that is a row's sine
+  /// of the angle to the rows before is not above the tolerance
+  bool factor(const QpProblem& p, const Sides& sides, double dependent_tolerance);
   bool factorFree(const QpProblem& p, const Sides& sides);  ///< L only
   /// Extends L to all unknowns, free ones first. @return false if H is not positive definite
   bool complete();
@@ -63,7 +69,7 @@ class KktSystem {
  private:
   bool cholesky(Index column_begin, Index column_end, Index row_begin, Index row_end);
   bool gatherRows(const QpProblem& p, const Sides& sides);
-  bool factorRows();
+  bool factorRows(double dependent_tolerance);
   bool residual(const QpProblem& p, QpResult& result);
   void correct(QpResult& result);
 
@@ -105,7 +111,7 @@ class DualActiveSet {
   void seed(const QpProblem& p, const KktSystem& kkt, const Sides& sides);
   void setNormal(const QpProblem& p, Index id, Side side);
   void transformNormal(Index id, Side side);
-  bool dependent() const;
+  bool dependent(double tolerance) const;
   Index blocking(const QpProblem& p, bool dependent, double& step) const;
   void append(Index id, Side side);
   void remove(Index k, Sides& sides);

@@ -10,14 +10,22 @@ namespace {
 
 const char* words(SolveStatus status) {
   switch (status) {
-    case SolveStatus::kSolved: return "solved";
-    case SolveStatus::kInfeasible: return "infeasible: clipped";
-    case SolveStatus::kIterationLimit: return "iteration limit: clipped";
-    case SolveStatus::kNumericalError: return "numerical error: clipped";
-    case SolveStatus::kInvalidProblem: return "invalid problem: clipped";
-    case SolveStatus::kNotRun: return "passed through";
-    case SolveStatus::kBoundWins: return "move limit and bound conflict: the bound was kept";
-    case SolveStatus::kInconsistent: return "base action and prediction disagree: clipped";
+    case SolveStatus::kSolved:
+      return "solved";
+    case SolveStatus::kInfeasible:
+      return "infeasible: clipped";
+    case SolveStatus::kIterationLimit:
+      return "iteration limit: clipped";
+    case SolveStatus::kNumericalError:
+      return "numerical error: clipped";
+    case SolveStatus::kInvalidProblem:
+      return "invalid problem: clipped";
+    case SolveStatus::kNotRun:
+      return "passed through";
+    case SolveStatus::kBoundWins:
+      return "move limit and bound conflict: the bound was kept";
+    case SolveStatus::kInconsistent:
+      return "base action and prediction disagree: clipped";
   }
   return "unknown";
 }

@@ -16,8 +16,8 @@ Msg fillCommand(const Command& command) {
 
 template <typename Msg>
 Command readCommand(const Msg& msg, const ros::Time& stamp) {
-  const CommandMode mode = conversion::enumeration(msg.mode, CommandMode::kOverride,
-                                                   CommandMode::kRelease, "mode");
+  const CommandMode mode =
+      conversion::enumeration(msg.mode, CommandMode::kOverride, CommandMode::kRelease, "mode");
   const bool bare_release = mode == CommandMode::kRelease && msg.value.empty();
   require(bare_release || msg.value.size() == msg.name.size(), "value", "as many values as names");
   return {fromStamp(stamp), msg.name, msg.value, mode};

@@ -23,7 +23,9 @@ const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_nod
 
 }  // namespace
 
-std::string FmbpcControllerNode::idleReason(const LoopFile& loop) { return wrongType(loop, "fmbpc"); }
+std::string FmbpcControllerNode::idleReason(const LoopFile& loop) {
+  return wrongType(loop, "fmbpc");
+}
 std::string PiControllerNode::idleReason(const LoopFile& loop) { return wrongType(loop, "pi"); }
 
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node,
@@ -32,12 +34,13 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       session_(makeControllerSession(loop)),
       ready_(node),
       signals_(node),
-      base_(node.advertise<fmbpc::ControlAction>(actionTopic(loop, private_node), topics::kRingQueue)),
-      prediction_(node.advertise<fmbpc::PredictiveAction>(topics::kPredictiveAction, topics::kRingQueue)),
+      base_(node.advertise<fmbpc::ControlAction>(actionTopic(loop, private_node),
+                                                 topics::kRingQueue)),
+      prediction_(
+          node.advertise<fmbpc::PredictiveAction>(topics::kPredictiveAction, topics::kRingQueue)),
       tracking_(node.advertise<fmbpc::Tracking>(topics::kTracking, topics::kRingQueue)),
       effect_(node.advertise<fmbpc::CommandEffect>(topics::kSetpointEffect, topics::kRingQueue)),
-      plant_subscriber_(
-          subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
+      plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &ControllerNode::onModel, this)),
       measurement_subscriber_(subscribe(node, topics::kMeasurement, topics::kRingQueue,
                                         &ControllerNode::onMeasurement, this)),
@@ -91,18 +94,22 @@ void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
     }
     if (!plant_ || mustAwaitSetpoints(measurement)) return;  // the plant will send it again
     switch (session_.receive(measurement)) {
-      case Receipt::kAnswered: return publish(false);
-      case Receipt::kRepeated: return publish(true);
+      case Receipt::kAnswered:
+        return publish(false);
+      case Receipt::kRepeated:
+        return publish(true);
       case Receipt::kDropped:
-      case Receipt::kNotReady: return;
+      case Receipt::kNotReady:
+        return;
     }
   });
 }
 
-// A controller that joins in the middle of a run first hears from the recorder what people have asked until now; if
-// there is no recorder it does not wait long.
+// A controller that joins in the middle of a run first hears from the recorder what people have
+// asked until now; if there is no recorder it does not wait long.
 bool ControllerNode::mustAwaitSetpoints(const Measurement& measurement) {
-  if (setpoints_restored_ || session_.counts().accepted > 0 || measurement.header.step == 0) return false;
+  if (setpoints_restored_ || session_.counts().accepted > 0 || measurement.header.step == 0)
+    return false;
   const ros::WallTime now = ros::WallTime::now();
   if (restore_deadline_.isZero()) restore_deadline_ = now + ros::WallDuration(kRestorePatience);
   return now < restore_deadline_;
@@ -168,8 +175,10 @@ void ControllerNode::publish(bool repeated) {
 void ControllerNode::publishSignals() {
   const Tracking& tracking = session_.answer().tracking;
   std::size_t index = 0;
-  for (const double value : tracking.setpoint) signals_.publish(index++, tracking.header.time_ns, value);
-  for (const double value : tracking.reference) signals_.publish(index++, tracking.header.time_ns, value);
+  for (const double value : tracking.setpoint)
+    signals_.publish(index++, tracking.header.time_ns, value);
+  for (const double value : tracking.reference)
+    signals_.publish(index++, tracking.header.time_ns, value);
   for (const auto& [name, value] : session_.controller().signals()) {
     if (index == signals_.size()) signals_.add(name);
     signals_.publish(index++, tracking.header.time_ns, value);

@@ -46,9 +46,7 @@ ros::Time toStamp(std::int64_t time_ns) {
   return stamp;
 }
 
-std::int64_t fromStamp(const ros::Time& stamp) {
-  return static_cast<std::int64_t>(stamp.toNSec());
-}
+std::int64_t fromStamp(const ros::Time& stamp) { return static_cast<std::int64_t>(stamp.toNSec()); }
 
 fmbpc::Matrix toMsg(const Matrix& matrix) {
   fmbpc::Matrix msg;
@@ -214,8 +212,8 @@ fmbpc::PlantState toMsg(const PlantState& state) {
 }
 
 PlantState fromMsg(const fmbpc::PlantState& msg) {
-  return {stepHeader(msg),     vector(msg.state),  vector(msg.outputs), vector(msg.disturbances),
-          msg.actuator_clips, msg.input_missing != 0};
+  return {stepHeader(msg),          vector(msg.state),  vector(msg.outputs),
+          vector(msg.disturbances), msg.actuator_clips, msg.input_missing != 0};
 }
 
 }  // namespace fpc

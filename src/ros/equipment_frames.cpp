@@ -22,7 +22,9 @@ geometry_msgs::TransformStamped transform(const EquipmentFrame& frame, const ros
   return msg;
 }
 
-double length(const geometry_msgs::Vector3& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
+double length(const geometry_msgs::Vector3& v) {
+  return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
+}
 
 }  // namespace
 

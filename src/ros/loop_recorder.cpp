@@ -16,9 +16,11 @@
 namespace fpc {
 namespace {
 
-constexpr double kPollPeriod = 0.05;   // [s] of wall time
-constexpr double kFinalPatience = 10;  // [s] of wall time for stragglers after the final measurement
-constexpr int kPollsConnected = 3;     // a connection is complete at both ends a moment after it is made
+constexpr double kPollPeriod = 0.05;  // [s] of wall time
+constexpr double kFinalPatience =
+    10;  // [s] of wall time for stragglers after the final measurement
+constexpr int kPollsConnected =
+    3;  // a connection is complete at both ends a moment after it is made
 constexpr std::size_t kMostEarly = 10000;
 
 std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
@@ -50,17 +52,12 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, ros::NodeHandle private_node, c
       keep_(private_node.param("keep", false)),
       plot_(private_node.param("plot", true)),
       recorder_(makeRecorder(loop)),
-      setpoints_(namesOf(loop.plant_info.outputs)),
+      setpoints_(node, namesOf(loop.plant_info.outputs)),
       ready_(node),
       n_y_(count(loop.plant_info.outputs)),
       n_u_(count(loop.plant_info.inputs)),
       n_d_(count(loop.plant_info.disturbances)),
-      active_(node.advertise<fmbpc::Setpoint>(
-          topics::kSetpointActive, topics::kViewQueue,
-          [this](const ros::SingleSubscriberPublisher& listener) { onListener(listener); })),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
-      setpoint_subscriber_(
-          subscribe(node, topics::kSetpoint, topics::kViewQueue, &LoopRecorder::onSetpoint, this)),
       poll_timer_(node.createWallTimer(ros::WallDuration(kPollPeriod),
                                        [this](const ros::WallTimerEvent&) { poll(); })),
       diagnostics_(node, private_node, "recorder", loop.name,
@@ -88,7 +85,8 @@ void LoopRecorder::removeOldFiles() const {
 
 void LoopRecorder::poll() {
   if (!ready_.announced()) announceIfConnected();
-  if (final_seen_.isZero() || (ros::SteadyTime::now() - final_seen_).toSec() < kFinalPatience) return;
+  if (final_seen_.isZero() || (ros::SteadyTime::now() - final_seen_).toSec() < kFinalPatience)
+    return;
   final_seen_ = {};
   fail("the final sample came, but the record has gaps: " + join(recorder_.gaps()));
 }
@@ -118,7 +116,8 @@ void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
 }
 
 bool LoopRecorder::fits(const Measurement& m) const {
-  return m.outputs.size() == n_y_ && m.disturbances.size() == n_d_ && m.input_applied.size() == n_u_;
+  return m.outputs.size() == n_y_ && m.disturbances.size() == n_d_ &&
+         m.input_applied.size() == n_u_;
 }
 bool LoopRecorder::fits(const PlantState& s) const {
   const auto& record = recorder_.record();
@@ -198,22 +197,20 @@ void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
     }
     measured_.step = std::max(measured_.step, m.header.step);
     if (m.final && !written_ && final_seen_.isZero()) final_seen_ = ros::SteadyTime::now();
-    if (setpoints_.advance(m.header.time_ns)) publishActive();
+    setpoints_.advance(m.header.time_ns);
     collect<Measurement>(m, &SampleRecord::has_measurement, &Recorder::add);
     if (!early_.empty()) deliverEarly();
   });
 }
 
 void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
-  guarded(topics::kPlantState, [&] {
-    collect<PlantState>(fromMsg(*msg), &SampleRecord::has_state, &Recorder::add);
-  });
+  guarded(topics::kPlantState,
+          [&] { collect<PlantState>(fromMsg(*msg), &SampleRecord::has_state, &Recorder::add); });
 }
 
 void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
-  guarded(topics::kTracking, [&] {
-    collect<Tracking>(fromMsg(*msg), &SampleRecord::has_tracking, &Recorder::add);
-  });
+  guarded(topics::kTracking,
+          [&] { collect<Tracking>(fromMsg(*msg), &SampleRecord::has_tracking, &Recorder::add); });
 }
 
 void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
@@ -229,27 +226,8 @@ void LoopRecorder::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
 }
 
 void LoopRecorder::onReport(const fmbpc::SolverReport::ConstPtr& msg) {
-  guarded(topics::kSolverReport, [&] {
-    collect<SolverReport>(fromMsg(*msg), &SampleRecord::has_report, &Recorder::add);
-  });
-}
-
-void LoopRecorder::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
-  guarded(topics::kSetpoint, [&] { setpoints_.accept(fromMsg(*msg)); });
-}
-
-// A controller that has just come (again) hears what stands and what is still to come; if that is nothing, so much.
-void LoopRecorder::onListener(const ros::SingleSubscriberPublisher& listener) {
-  std::vector<Command> commands = setpoints_.inForce();
-  commands.insert(commands.end(), setpoints_.waiting().begin(), setpoints_.waiting().end());
-  if (commands.empty()) commands.push_back({0, {}, {}, CommandMode::kRelease});
-  for (const Command& command : commands) listener.publish(toSetpointMsg(command));
-}
-
-void LoopRecorder::publishActive() {
-  std::vector<Command> commands = setpoints_.inForce();
-  if (commands.empty()) commands.push_back({0, {}, {}, CommandMode::kRelease});
-  for (const Command& command : commands) active_.publish(toSetpointMsg(command));
+  guarded(topics::kSolverReport,
+          [&] { collect<SolverReport>(fromMsg(*msg), &SampleRecord::has_report, &Recorder::add); });
 }
 
 void LoopRecorder::checkComplete() {
@@ -293,12 +271,15 @@ void LoopRecorder::report(Diagnostics::Status& status) const {
   else if (!ready_.announced())
     status.summary(DiagnosticStatus::WARN, "waiting for publishers of the ring");
   else
-    status.summary(DiagnosticStatus::OK, written_ ? "written" : run_known_ ? "recording" : "waiting");
+    status.summary(DiagnosticStatus::OK, written_     ? "written"
+                                         : run_known_ ? "recording"
+                                                      : "waiting");
   status.add("step", measured_.step);
   status.add("waiting for their measurement", early_.size());
   status.add("dropped: other run", strays_);
   status.add("dropped: wrong size or not finite", wrong_size_);
   addRefused(status, refused());
+  addRefused(status, setpoints_.refused());
 }
 
 }  // namespace fpc

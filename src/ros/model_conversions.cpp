@@ -90,7 +90,8 @@ fmbpc::FuzzyModel toMsg(const TsModel& model) {
   msg.outputs = list<fmbpc::SignalInfo>(model.outputs);
   msg.inputs = list<fmbpc::SignalInfo>(model.inputs);
   msg.disturbances = list<fmbpc::SignalInfo>(model.disturbances);
-  for (const OutputModel& submodel : model.submodels) msg.submodels.push_back(submodelMsg(submodel));
+  for (const OutputModel& submodel : model.submodels)
+    msg.submodels.push_back(submodelMsg(submodel));
   return msg;
 }
 

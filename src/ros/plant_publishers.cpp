@@ -10,7 +10,8 @@ namespace fpc {
 PlantPublishers::PlantPublishers(ros::NodeHandle node, const Simulation& simulation,
                                  bool publish_clock)
     : info_(node.advertise<fmbpc::PlantInfo>(topics::kPlantInfo, 1, true)),
-      measurement_(node.advertise<fmbpc::Measurement>(topics::kMeasurement, topics::kRingQueue, true)),
+      measurement_(
+          node.advertise<fmbpc::Measurement>(topics::kMeasurement, topics::kRingQueue, true)),
       state_(node.advertise<fmbpc::PlantState>(topics::kPlantState, topics::kRingQueue)),
       effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect, topics::kRingQueue)),
       signals_(node) {
@@ -50,7 +51,8 @@ void PlantPublishers::clock(std::int64_t time_ns) {
   clock_.publish(msg);
 }
 
-// Outputs and disturbances of sample k; the input that acted until then, at the time from which it did.
+// Outputs and disturbances of sample k; the input that acted until then, at the time from which it
+// did.
 void PlantPublishers::signals(const Simulation& simulation) {
   const Measurement& now = simulation.measurement();
   std::size_t index = 0;

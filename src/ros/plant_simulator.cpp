@@ -44,9 +44,9 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
       reset_(private_node.advertiseService(topics::kReset, &PlantSimulator::onReset, this)),
       poll_timer_(node.createWallTimer(ros::WallDuration(kResendPeriod),
                                        [this](const ros::WallTimerEvent&) { onPoll(); })),
-      pace_timer_(node.createWallTimer(ros::WallDuration(kResendPeriod),
-                                       [this](const ros::WallTimerEvent&) { tryAdvance(); }, true,
-                                       false)),
+      pace_timer_(node.createWallTimer(
+          ros::WallDuration(kResendPeriod), [this](const ros::WallTimerEvent&) { tryAdvance(); },
+          true, false)),
       diagnostics_(node, private_node, "plant", loop.name,
                    [this](Diagnostics::Status& status) { report(status); }) {
   beginRun();
@@ -85,8 +85,9 @@ std::vector<std::string> PlantSimulator::missing() const {
 void PlantSimulator::waitForOthers() {
   for (const auto& [output, delay_s] : lines_.poll()) {
     const auto& outputs = simulation_.info().outputs;
-    const auto found = std::find_if(outputs.begin(), outputs.end(),
-                                    [&name = output](const SignalInfo& o) { return o.name == name; });
+    const auto found =
+        std::find_if(outputs.begin(), outputs.end(),
+                     [&name = output](const SignalInfo& o) { return o.name == name; });
     simulation_.setOutputDelay(static_cast<std::size_t>(found - outputs.begin()), delay_s);
   }
   const std::vector<std::string> names = missing();
@@ -138,7 +139,8 @@ void PlantSimulator::countStray(const StepHeader& header) {
     ++counts_.old;
 }
 
-// Moves on if the run is on, not paused, the pace allows it, and there is an input (or, in realtime, its time is up).
+// Moves on if the run is on, not paused, the pace allows it, and there is an input (or, in
+// realtime, its time is up).
 void PlantSimulator::tryAdvance() {
   if (phase_ != Phase::kRunning || (paused_ && steps_allowed_ == 0)) return;
   if (!paused_ && !pacer_.due(ros::WallTime::now())) return armTimer();
@@ -147,7 +149,8 @@ void PlantSimulator::tryAdvance() {
   } else if (pacer_.pace() == Pace::kRealtime && !paused_) {
     simulation_.advanceWithoutAction();
     ++missing_inputs_;
-    if (trouble_log_.pass()) ROS_WARN("plant_simulator: no action in time (%lu so far)", missing_inputs_);
+    if (trouble_log_.pass())
+      ROS_WARN("plant_simulator: no action in time (%lu so far)", missing_inputs_);
   } else {
     return;
   }
@@ -181,7 +184,8 @@ void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
   guarded(topics::kDisturbance, [&] {
     const Command command = fromMsg(*msg);
     const std::uint32_t step = simulation_.command(command);
-    ROS_INFO("plant_simulator: disturbance of %s from sample %u on", join(command.name).c_str(), step);
+    ROS_INFO("plant_simulator: disturbance of %s from sample %u on", join(command.name).c_str(),
+             step);
   });
 }
 
@@ -200,7 +204,7 @@ bool PlantSimulator::onPause(std_srvs::SetBool::Request& request,
 
 bool PlantSimulator::onStep(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   response.success = paused_ && phase_ == Phase::kRunning;
-  response.message = !paused_                   ? "pause first"
+  response.message = !paused_                    ? "pause first"
                      : phase_ != Phase::kRunning ? "there is no run under way"
                                                  : "one sample";
   if (response.success) {

@@ -25,11 +25,12 @@ std::string findModel(const std::string& name) {
 }
 
 void print(const TsModel& model, const std::vector<RuleRemark>& remarks) {
-  std::cout << model.name << ": " << model.source << "\nsample time " << model.sample_time_s << " s\n";
+  std::cout << model.name << ": " << model.source << "\nsample time " << model.sample_time_s
+            << " s\n";
   for (std::size_t i = 0; i < model.outputs.size(); ++i)
-    std::cout << "  " << model.outputs[i].name << ": " << model.submodels[i].rules.size() << " rules, "
-              << model.submodels[i].antecedents.size() << " antecedents, " << model.submodels[i].regressors.size()
-              << " regressors\n";
+    std::cout << "  " << model.outputs[i].name << ": " << model.submodels[i].rules.size()
+              << " rules, " << model.submodels[i].antecedents.size() << " antecedents, "
+              << model.submodels[i].regressors.size() << " regressors\n";
   for (const auto& remark : remarks)
     std::cout << "  " << remark.output << " rule " << remark.rule << ": " << remark.text << "\n";
 }
@@ -43,10 +44,12 @@ int model(const std::string& file, bool json) {
     print(model, remarks);
     return 0;
   }
-  Json report{{"name", model.name}, {"source", model.source}, {"sample_time_s", model.sample_time_s}};
+  Json report{
+      {"name", model.name}, {"source", model.source}, {"sample_time_s", model.sample_time_s}};
   report["remarks"] = Json::array();
   for (const auto& remark : remarks)
-    report["remarks"].push_back({{"output", remark.output}, {"rule", remark.rule}, {"text", remark.text}});
+    report["remarks"].push_back(
+        {{"output", remark.output}, {"rule", remark.rule}, {"text", remark.text}});
   std::cout << report.dump(2) << "\n";
   return 0;
 }

@@ -42,8 +42,9 @@ void print(const PlantDescription& plant) {
   for (const auto& [group, quantities] : groupsOf(plant)) {
     std::cout << "  " << group << "\n";
     for (const auto& q : *quantities)
-      std::cout << "    " << std::left << std::setw(14) << q.name << std::setw(14) << q.unit << std::right
-                << std::setw(12) << q.nominal << "   " << q.lower << " .. " << q.upper << "\n";
+      std::cout << "    " << std::left << std::setw(14) << q.name << std::setw(14) << q.unit
+                << std::right << std::setw(12) << q.nominal << "   " << q.lower << " .. " << q.upper
+                << "\n";
   }
 }
 
@@ -53,8 +54,10 @@ int plants(bool json) {
   Json all = Json::array();
   for (const auto& name : plantNames()) {
     const PlantDescription description = makePlant(name)->description();
-    if (json) all.push_back(toJson(description));
-    else print(description);
+    if (json)
+      all.push_back(toJson(description));
+    else
+      print(description);
   }
   if (json) std::cout << Json{{"plants", all}}.dump(2) << "\n";
   return 0;

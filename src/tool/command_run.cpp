@@ -25,7 +25,8 @@ void onInterrupt(int) { interrupted = true; }
 
 class ProgressBar {
  public:
-  explicit ProgressBar(std::string name) : name_(std::move(name)), shown_(isatty(STDERR_FILENO) != 0) {}
+  explicit ProgressBar(std::string name)
+      : name_(std::move(name)), shown_(isatty(STDERR_FILENO) != 0) {}
   ~ProgressBar() {
     if (shown_ && percent_ >= 0) std::fprintf(stderr, "\r\033[K");
   }
@@ -71,7 +72,8 @@ std::vector<LoopFile> readAll(const RunArguments& arguments) {
 std::string jsonOf(const std::vector<Summary>& summaries) {
   if (summaries.size() == 1) return toJson(summaries.front());
   std::string text = "{\"loops\": [\n";
-  for (std::size_t i = 0; i < summaries.size(); ++i) text += (i ? ",\n" : "") + toJson(summaries[i]);
+  for (std::size_t i = 0; i < summaries.size(); ++i)
+    text += (i ? ",\n" : "") + toJson(summaries[i]);
   return text + "\n]}";
 }
 

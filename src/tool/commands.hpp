@@ -1,4 +1,5 @@
-// The commands of the tool `fmbpc`, one file each. Every one returns the exit code and throws InputError.
+// The commands of the tool `fmbpc`, one file each. Every one returns the exit code and throws
+// InputError.
 #pragma once
 
 #include <string>
@@ -19,8 +20,8 @@ int resolve(const std::string& loop, const std::vector<std::string>& set);
 int plants(bool json);
 int model(const std::string& file, bool json);
 
-/// Runs scripts/plot_loop.py on a result folder; a missing script or matplotlib is a warning, not a failure.
-/// Returns the picture's name, empty if there is none.
+/// Runs scripts/plot_loop.py on a result folder; a missing script or matplotlib is a warning, not a
+/// failure. Returns the picture's name, empty if there is none.
 std::string plot(const std::string& folder);
 
 }  // namespace fpc::tool

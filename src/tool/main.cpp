@@ -12,27 +12,34 @@ namespace {
 std::function<int()> chosen;
 
 void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
-  CLI::App* run = app.add_subcommand("run", "Closes loops in this process and prints their indices");
+  CLI::App* run =
+      app.add_subcommand("run", "Closes loops in this process and prints their indices");
   run->add_option("LOOP", a.loops, "names of config/loop, or paths")->required();
-  run->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")->allow_extra_args(false);
-  run->add_option("--out", a.out, "folder for trajectory.csv, summary.json, plot.png (one below it per loop if several)");
+  run->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
+      ->allow_extra_args(false);
+  run->add_option(
+      "--out", a.out,
+      "folder for trajectory.csv, summary.json, plot.png (one below it per loop if several)");
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
   run->add_flag("--no-plot", a.no_plot, "no plot.png");
   run->callback([&a] { chosen = [&a] { return fpc::tool::run(a); }; });
 }
 
 void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
-  CLI::App* resolve = app.add_subcommand("resolve", "Merges and checks a loop file and prints what nodes would read");
+  CLI::App* resolve = app.add_subcommand(
+      "resolve", "Merges and checks a loop file and prints what nodes would read");
   resolve->add_option("LOOP", a.loops, "name or path")->required()->expected(1);
   resolve->add_option("--set", a.set, "KEY.PATH=VALUE, may be repeated")->allow_extra_args(false);
   resolve->callback([&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set); }; });
 }
 
 void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
-  CLI::App* plants = app.add_subcommand("plants", "Lists the plants with their signals, units and ranges");
+  CLI::App* plants =
+      app.add_subcommand("plants", "Lists the plants with their signals, units and ranges");
   plants->add_flag("--json", a.json, "print one JSON object and nothing else");
   plants->callback([&a] { chosen = [&a] { return fpc::tool::plants(a.json); }; });
-  CLI::App* model = app.add_subcommand("model", "Reports what to know of a model file before trusting it");
+  CLI::App* model =
+      app.add_subcommand("model", "Reports what to know of a model file before trusting it");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
   model->add_flag("--json", a.json, "print one JSON object and nothing else");
   model->callback([&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json); }; });

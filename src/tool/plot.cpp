@@ -45,7 +45,9 @@ bool runScript(const std::string& script, const std::string& folder) {
 std::string plot(const std::string& folder) {
   const std::string script = findScript();
   if (script.empty()) {
-    std::fprintf(stderr, "fmbpc: warning: no plot, scripts/plot_loop.py not found beside the config folders\n");
+    std::fprintf(
+        stderr,
+        "fmbpc: warning: no plot, scripts/plot_loop.py not found beside the config folders\n");
     return {};
   }
   if (!runScript(script, folder)) {

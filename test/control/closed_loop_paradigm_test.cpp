@@ -5,7 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 
-namespace fpc::test {
+namespace fpc::clp_test {
 namespace {
 
 TEST(ClosedLoopParadigm, OneStepWithOneBoundIsClipping) {
@@ -198,4 +198,4 @@ TEST(ClosedLoopParadigm, AfterResetItRepeatsItselfBitForBit) {
 }
 
 }  // namespace
-}  // namespace fpc::test
+}  // namespace fpc::clp_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fpc::test {
+namespace fpc::clp_test {
 namespace {
 
 struct Solved {
@@ -123,11 +123,11 @@ TEST(ClpAlgebra, HessianAndGradientAreTheTextbooksInThePerturbations) {
     const Eigen::Index n_u = 1 + static_cast<Eigen::Index>(seed % 2);
     Case made = regulator(draw, 4, n_u, n_c);
     ClpParams params = lqParams(n_c, 1.0);
-    params.weight_input = Vector::Constant(n_u, 0.3);
+    params.weight_input = Vector::Constant(n_u, 0.003);
     params.weight_state_output = Vector::Constant(n_u, 2.0);
     const Solved solved(made, params);
     const PredictiveAction& now = made.now;
-    const Matrix Q = 2.0 * now.C.transpose() * now.C, R = 0.3 * Matrix::Identity(n_u, n_u);
+    const Matrix Q = 2.0 * now.C.transpose() * now.C, R = 0.003 * Matrix::Identity(n_u, n_u);
     const Textbook book = textbook(now, n_c, Q, R);
     const ClpProblem& p = solved.clp.problem();
     const Matrix to_c = p.perturbation_from_input.inverse();
@@ -152,7 +152,7 @@ TEST(ClpAlgebra, LqCostIsTheSumOfStageCostsOverALongRollOut) {
     const Case made = randomCase(draw, 3, 2, 2, kSteps);
     const PredictiveAction& now = made.now;
     ClpParams params = lqParams(kSteps, 1.0);
-    params.weight_input = Vector::Constant(2, 0.7);
+    params.weight_input = Vector::Constant(2, 0.005);
     const Solved solved(made, params);
     const Vector x_ss = solved.clp.steadyState(), u_ss = solved.clp.steadyInput();
     const Matrix U = draw.matrix(2, kSteps, 50.0);
@@ -160,7 +160,7 @@ TEST(ClpAlgebra, LqCostIsTheSumOfStageCostsOverALongRollOut) {
     Vector u;
     const Matrix path = roll(now, kSteps + 5000, [&](int i, const Vector& x) -> Vector {
       u = i < kSteps ? Vector(U.col(i)) : Vector(u_ss - now.K * (x - x_ss));
-      stages += 0.7 * (u - u_ss).squaredNorm();
+      stages += 0.005 * (u - u_ss).squaredNorm();
       return u;
     });
     stages += (now.C * (path.colwise() - x_ss)).squaredNorm();
@@ -201,12 +201,12 @@ TEST(ClpAlgebra, FreeLqOptimumIsTheRegulatorWhateverTheBaseGain) {
     Case made = randomCase(draw, 3, 2, 2, kSteps);
     PredictiveAction& now = made.now;
     now.A *= 0.7 / now.A.eigenvalues().cwiseAbs().maxCoeff();
-    const Matrix Q = now.C.transpose() * now.C, R = 0.4 * Matrix::Identity(2, 2);
+    const Matrix Q = now.C.transpose() * now.C, R = 0.002 * Matrix::Identity(2, 2);
     const Matrix K_lq = riccatiGain(now.A, now.B, Q, R);
     if (seed % 2 == 0) now.K.setZero();
     now.input_base_unclipped = baseLaw(now);
     ClpParams params = lqParams(kSteps, 1.0);
-    params.weight_input = Vector::Constant(2, 0.4);
+    params.weight_input = Vector::Constant(2, 0.002);
     const Solved solved(made, params);
     const Vector x_ss = solved.clp.steadyState(), u_ss = solved.clp.steadyInput();
     const Vector expected = u_ss - K_lq * (now.state - x_ss);
@@ -222,11 +222,11 @@ TEST(ClpAlgebra, AtTheLqOptimalGainTheHessianIsBlockDiagonalAndThePerturbationZe
     constexpr int kSteps = 42;
     Case made = randomCase(draw, 3, 2, 2, kSteps);
     PredictiveAction& now = made.now;
-    const Matrix Q = now.C.transpose() * now.C, R = 0.4 * Matrix::Identity(2, 2);
+    const Matrix Q = now.C.transpose() * now.C, R = 0.002 * Matrix::Identity(2, 2);
     now.K = riccatiGain(now.A, now.B, Q, R);
     now.input_base_unclipped = baseLaw(now);
     ClpParams params = lqParams(kSteps, 1.0);
-    params.weight_input = Vector::Constant(2, 0.4);
+    params.weight_input = Vector::Constant(2, 0.002);
     const Solved solved(made, params);
     const ClpProblem& p = solved.clp.problem();
     const Matrix to_c = p.perturbation_from_input.inverse();
@@ -266,4 +266,4 @@ TEST(ClpAlgebra, AnIntegratorHasASteadyStateToo) {
 }
 
 }  // namespace
-}  // namespace fpc::test
+}  // namespace fpc::clp_test

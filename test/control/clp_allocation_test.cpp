@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fpc::test {
+namespace fpc::clp_test {
 namespace {
 
 using testing::AllocationCounter;
@@ -34,6 +34,7 @@ void countSteps(const ClpParams& params, bool moves) {
     allocations += counter.count();
     active += report.active_rows > 0;
     ASSERT_EQ(report.status, SolveStatus::kSolved) << k;
+    ASSERT_LE(report.kkt_residual, 1e-9) << k;
   }
   EXPECT_EQ(allocations, 0u);
   EXPECT_GT(active, 0);
@@ -87,4 +88,4 @@ TEST(ClpAllocation, NoneWhenTheStepFails) {
 }
 
 }  // namespace
-}  // namespace fpc::test
+}  // namespace fpc::clp_test

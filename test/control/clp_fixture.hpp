@@ -11,7 +11,7 @@
 
 #include <Eigen/Dense>
 
-namespace fpc::test {
+namespace fpc::clp_test {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -112,7 +112,7 @@ inline Case randomCase(Draw& draw, Eigen::Index n_x, Eigen::Index n_y, Eigen::In
   now.offset_state = draw.vector(n_x);
   now.offset_output = draw.vector(n_y);
   now.K = riccatiGain(now.A, now.B, now.C.transpose() * now.C,
-                      draw(0.01, 1.0) * Matrix::Identity(n_u, n_u));
+                      draw(0.001, 0.1) * Matrix::Identity(n_u, n_u));
   now.feedforward = draw.matrix(n_u, n_c, 50.0);
   now.reference = draw.matrix(n_y, n_c, 10.0);
   now.setpoint = draw.vector(n_y, 10.0);
@@ -170,4 +170,4 @@ inline Vector one(double value) { return Vector::Constant(1, value); }
 /// A base law that asks for 50 at first and decays: a lag of 0.9 under u = -5 y, from y = -10.
 inline Case eager(int n_c) { return firstOrderLag(0.9, 0.1, 5.0, 0.0, n_c, -10.0); }
 
-}  // namespace fpc::test
+}  // namespace fpc::clp_test

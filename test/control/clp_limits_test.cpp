@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fpc::test {
+namespace fpc::clp_test {
 namespace {
 
 TEST(ClpLimits, MoveLimitHoldsFromThePreviousInputOn) {
@@ -175,4 +175,4 @@ TEST(ClpLimits, Mode2LimitsAreFeltInMode1) {
 }
 
 }  // namespace
-}  // namespace fpc::test
+}  // namespace fpc::clp_test

@@ -9,7 +9,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 
-namespace fpc::test {
+namespace fpc::clp_test {
 namespace {
 
 Vector numbers(std::initializer_list<double> list) {
@@ -109,4 +109,4 @@ TEST(ClpParams, ConstructionChecksLimitsAndSizes) {
 }
 
 }  // namespace
-}  // namespace fpc::test
+}  // namespace fpc::clp_test

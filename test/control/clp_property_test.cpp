@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace fpc::test {
+namespace fpc::clp_test {
 namespace {
 
 constexpr int kCases = 1000;
@@ -209,4 +209,4 @@ TEST(ClosedLoopParadigmProperty, StackedPredictionEqualsSteppingTheModel) {
 }
 
 }  // namespace
-}  // namespace fpc::test
+}  // namespace fpc::clp_test

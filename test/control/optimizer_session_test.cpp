@@ -121,8 +121,9 @@ TEST(OptimizerSession, RepeatBeforeThePartnerCameIsNotAnAnswer) {
 
 TEST(OptimizerSession, OldAndForeignSamplesAreDroppedAndCountedApart) {
   OptimizerSession session = make();
-  session.receive(base(header(4, 7)));
-  session.receive(prediction(header(4, 7)));
+  session.receive(base(header(4, 7)));  // joins late
+  EXPECT_TRUE(session.receive(prediction(header(4, 7))));
+  EXPECT_EQ(session.counts().gaps, 0u);
   EXPECT_FALSE(session.receive(base(header(3, 7))));
   EXPECT_FALSE(session.receive(prediction(header(2, 7))));
   EXPECT_FALSE(session.receive(base(header(5, 6))));
@@ -131,19 +132,15 @@ TEST(OptimizerSession, OldAndForeignSamplesAreDroppedAndCountedApart) {
   EXPECT_EQ(session.action().header.step, 4u);
 }
 
-TEST(OptimizerSession, MovesOnWhenAPredictionNeverCame) {
+TEST(OptimizerSession, MovesOnWhenAPartnerNeverCame) {
   OptimizerSession session = make();
   EXPECT_FALSE(session.receive(base(header(0))));
   EXPECT_FALSE(session.receive(base(header(1))));
   EXPECT_FALSE(session.receive(prediction(header(0))));
   EXPECT_TRUE(session.receive(prediction(header(1))));
   EXPECT_EQ(session.action().header.step, 1u);
-}
-
-TEST(OptimizerSession, PredictionOfOneSampleIsNeverUsedForAnother) {
-  OptimizerSession session = make();
-  session.receive(prediction(header(0)));
-  EXPECT_FALSE(session.receive(base(header(1))));
+  session.receive(prediction(header(2)));
+  EXPECT_FALSE(session.receive(base(header(3))));  // never with the prediction of another sample
 }
 
 using Spoil = std::function<void(PredictiveAction&)>;
@@ -199,18 +196,12 @@ TEST(OptimizerSession, PredictionOfWrongSizeIsCountedAndTheBaseIsClipped) {
 }
 
 std::vector<double*> numbersOf(PredictiveAction& p) {
-  return {p.state.data(),
-          p.A.data(),
-          p.B.data(),
-          p.C.data(),
-          p.offset_state.data(),
-          p.offset_output.data(),
-          p.K.data(),
-          &p.feedforward(0, kSteps - 1),
-          p.reference.data(),
-          p.setpoint.data(),
-          p.input_previous.data(),
-          p.input_base_unclipped.data()};
+  std::vector<double*> numbers{&p.feedforward(0, kSteps - 1)};
+  for (Matrix* m : {&p.A, &p.B, &p.C, &p.K, &p.reference}) numbers.push_back(m->data());
+  for (Vector* v : {&p.state, &p.offset_state, &p.offset_output, &p.setpoint, &p.input_previous,
+                    &p.input_base_unclipped})
+    numbers.push_back(v->data());
+  return numbers;
 }
 
 TEST(OptimizerSession, PredictionThatIsNotFiniteIsCountedAndTheBaseIsClipped) {
@@ -293,14 +284,6 @@ TEST(OptimizerSession, GapAndNewRunForgetTheWarmStart) {
   solve(session, header(0, 2));
   EXPECT_EQ(session.report().iterations, cold);
   EXPECT_EQ(session.counts().new_runs, 1u);
-}
-
-TEST(OptimizerSession, LateJoinerStartsAtWhateverSampleComes) {
-  OptimizerSession session = make();
-  session.receive(base(header(57, 3)));
-  EXPECT_TRUE(session.receive(prediction(header(57, 3))));
-  EXPECT_EQ(session.action().header.step, 57u);
-  EXPECT_EQ(session.counts().gaps, 0u);
 }
 
 TEST(OptimizerSession, BadParamsAreRefusedAtConstruction) {

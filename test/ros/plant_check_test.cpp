@@ -24,13 +24,16 @@ TEST(PlantCheck, AcceptsTheSamePlantWithOtherBounds) {
 TEST(PlantCheck, NamesTheFirstDifference) {
   PlantInfo arrived = tank();
   arrived.sample_time_s = 30.0;
-  EXPECT_EQ("plant_info: the sample time is 30 s, the loop file expects 60 s", plantMismatch(tank(), arrived));
+  EXPECT_EQ("plant_info: the sample time is 30 s, the loop file expects 60 s",
+            plantMismatch(tank(), arrived));
   arrived = tank();
   arrived.outputs[0].unit = "cm";
-  EXPECT_EQ("plant_info: outputs are level[cm], the loop file expects level[m]", plantMismatch(tank(), arrived));
+  EXPECT_EQ("plant_info: outputs are level[cm], the loop file expects level[m]",
+            plantMismatch(tank(), arrived));
   arrived = tank();
   arrived.inputs.clear();
-  EXPECT_EQ("plant_info: inputs are none, the loop file expects inflow[m3/h]", plantMismatch(tank(), arrived));
+  EXPECT_EQ("plant_info: inputs are none, the loop file expects inflow[m3/h]",
+            plantMismatch(tank(), arrived));
   arrived = tank();
   arrived.disturbances = {{"rain", "mm/h", 0.0, 50.0}};
   EXPECT_EQ("plant_info: measured disturbances are rain[mm/h], the loop file expects none",

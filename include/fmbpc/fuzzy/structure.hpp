@@ -38,7 +38,7 @@ struct PartitionParams {
   Scaling scaling{Scaling::kDeviation};
   bool with_output{
       true};  ///< cluster in the space of antecedents and predicted output, else antecedents only
-  double fuzziness{2.0};  ///< m > 1
+  double fuzziness{1.5};  ///< m > 1; near 2 clusters in many dimensions fall together
   double regularisation{
       0.05};          ///< gamma in [0, 1): share of the data's own spread in each covariance
   double width{1.0};  ///< > 0: the projected sets are made this much wider
@@ -55,13 +55,13 @@ enum class ScarceRule { kBorrow, kDrop, kError };
 /// How the consequents are fitted, and what happens to rules without enough data.
 struct ConsequentParams {
   ConsequentMethod method{ConsequentMethod::kLocal};
-  double ridge{
-      1.0};  ///< >= 0: weight of the linear model in each coefficient, in samples of evidence
+  double ridge{0.1};  ///< >= 0: weight of the linear model in each coefficient, in samples
   double samples_per_coefficient{3.0};  ///< rules with less (sum of firing weights) are scarce
-  double max_condition{
-      1e8};  ///< of scaled columns, after the ridge; rules beyond it are scarce as well
+  double max_condition{1e8};  ///< of scaled columns, without ridge; rules beyond it are scarce too
   ScarceRule scarce{ScarceRule::kBorrow};
   double forgetting{1.0};  ///< recursive only
+  int free_run_iterations{0};   ///< > 0: then the coefficients are fitted to free runs as well
+  double one_step_weight{1.0};  ///< of one-step errors beside free-run errors in that fit
 };
 
 enum class MissingCells { kError, kDrop, kInterpolate };

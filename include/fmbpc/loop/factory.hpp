@@ -9,10 +9,13 @@
 
 namespace fpc {
 
-/// The disturbances of the loop on its own samples. @throws InputError naming file, column or field.
+/// The disturbances of the loop on its own samples. @throws InputError naming file, column or
+/// field.
 DisturbanceRecord makeDisturbance(const LoopFile& loop);
-Simulation makeSimulation(const LoopFile& loop);                             ///< @throws InputError for an external plant
-ControllerSession makeControllerSession(const LoopFile& loop);               ///< without a model: send it by setModel()
-OptimizerSession makeOptimizerSession(const LoopFile& loop);                 ///< @throws InputError without a clp section
+Simulation makeSimulation(const LoopFile& loop);  ///< @throws InputError for an external plant
+ControllerSession makeControllerSession(
+    const LoopFile& loop);  ///< without a model: send it by setModel()
+OptimizerSession makeOptimizerSession(
+    const LoopFile& loop);  ///< @throws InputError without a clp section
 
 }  // namespace fpc

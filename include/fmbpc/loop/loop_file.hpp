@@ -19,16 +19,17 @@ enum class Pace { kLockstep, kPaced, kRealtime };
 /// Section `loop`: how the ring over topics runs; ignored in one process.
 struct RingParams {
   Pace pace{Pace::kLockstep};
-  double speedup{3600.0};               ///< simulated seconds per second of wall time (paced, realtime)
-  std::vector<std::string> wait_for;    ///< nodes that must be ready before sample 0; filled from controller, clp, model
-  double ready_timeout_s{60.0};         ///< wall time after which missing nodes are named
+  double speedup{3600.0};  ///< simulated seconds per second of wall time (paced, realtime)
+  std::vector<std::string>
+      wait_for;  ///< nodes that must be ready before sample 0; filled from controller, clp, model
+  double ready_timeout_s{60.0};  ///< wall time after which missing nodes are named
   bool publish_clock{true};
 };
 
 /// A sample line from the process to an analyser; its transport delay is length / velocity.
 struct SampleLine {
   std::string output;
-  std::string from, to;   ///< frames
+  std::string from, to;  ///< frames
   double velocity_m_s{};
 };
 
@@ -39,8 +40,8 @@ struct TfParams {
   std::vector<SampleLine> sample_lines;
 };
 
-/// Section `disturbance`: what acts on the plant besides the inputs. Read when the plant is made, not before:
-/// only the plant's machine needs the record.
+/// Section `disturbance`: what acts on the plant besides the inputs. Read when the plant is made,
+/// not before: only the plant's machine needs the record.
 struct DisturbanceParams {
   std::string source{"constant"};  ///< constant, pattern or csv
   PatternParams pattern;
@@ -50,21 +51,23 @@ struct DisturbanceParams {
 /// Section `report`.
 struct ReportParams {
   std::string title;
-  std::vector<double> output_lower, output_upper;  ///< n_y limits for violations.output; infinite if absent
+  std::vector<double> output_lower,
+      output_upper;  ///< n_y limits for violations.output; infinite if absent
 };
 
 struct LoopFile {
-  std::string name;   ///< the file's stem
+  std::string name;  ///< the file's stem
   std::string file;
-  bool external_plant{false};  ///< plant.type external: a node of the user's speaks the ring
-  PlantInfo plant_info;        ///< header of sample 0 with run_id 0
-  SimulationParams simulation; ///< without the disturbance record; for an external plant only sampling, limits, names
+  bool external_plant{false};   ///< plant.type external: a node of the user's speaks the ring
+  PlantInfo plant_info;         ///< header of sample 0 with run_id 0
+  SimulationParams simulation;  ///< without the disturbance record; for an external plant only
+                                ///< sampling, limits, names
   DisturbanceParams disturbance;
   SetpointParams setpoint;
   bool has_model{false};
-  std::string model_file;      ///< absolute
-  TsModel model;               ///< matched to the plant
-  std::string controller;      ///< fmbpc or pi
+  std::string model_file;  ///< absolute
+  TsModel model;           ///< matched to the plant
+  std::string controller;  ///< fmbpc or pi
   FmbpcParams fmbpc;
   PiParams pi;
   bool has_clp{false};
@@ -72,7 +75,8 @@ struct LoopFile {
   RingParams ring;
   TfParams tf;
   ReportParams report;
-  std::string resolved;        ///< the merged text all this was read from; self-contained but for data files
+  std::string
+      resolved;  ///< the merged text all this was read from; self-contained but for data files
 };
 
 /// "--set controller.coincidence_steps=3": dotted path (list items by number) -> YAML text.
@@ -80,14 +84,16 @@ using Overrides = std::vector<std::pair<std::string, std::string>>;
 /// @throws InputError unless the text is "path=value".
 std::pair<std::string, std::string> parseOverride(const std::string& text);
 
-/// Folders that hold loop/, model/, structure/ and data/: ${FMBPC_CONFIG_PATH} (colon separated), then those of the build.
+/// Folders that hold loop/, model/, structure/ and data/: ${FMBPC_CONFIG_PATH} (colon separated),
+/// then those of the build.
 std::vector<std::string> configFolders();
 /// A loop's file from its name ("asp_case1") or path. @throws InputError listing the known names.
 std::string findLoop(const std::string& name_or_path);
 std::vector<std::string> loopNames();
 
-/// Merges `extends`, applies overrides, expands ${...} in `file:` keys and makes them absolute; validates by reading.
-/// The result is YAML text which parseLoop() reads. @throws InputError naming file, line, key and what was expected.
+/// Merges `extends`, applies overrides, expands ${...} in `file:` keys and makes them absolute;
+/// validates by reading. The result is YAML text which parseLoop() reads. @throws InputError naming
+/// file, line, key and what was expected.
 std::string resolveLoop(const std::string& name_or_path, const Overrides& overrides = {});
 /// @throws InputError naming `name`, line, key and what was expected.
 LoopFile parseLoop(const std::string& text, const std::string& name);

@@ -1,4 +1,5 @@
-// What happened in a run, sample by sample, collected from structs in one process or from messages over topics.
+// What happened in a run, sample by sample, collected from structs in one process or from messages
+// over topics.
 #pragma once
 
 #include <cstdint>
@@ -9,13 +10,14 @@
 
 namespace fpc {
 
-/// Everything about sample k. What did not come (or does not exist, as the action of the final sample) has no values.
+/// Everything about sample k. What did not come (or does not exist, as the action of the final
+/// sample) has no values.
 struct SampleRecord {
   Measurement measurement;
-  PlantState state;            ///< absent with an external plant
+  PlantState state;  ///< absent with an external plant
   Tracking tracking;
   ControlAction base;
-  ControlAction action;        ///< what the plant was told (equals base without an optimizer)
+  ControlAction action;  ///< what the plant was told (equals base without an optimizer)
   SolverReport report;
   bool has_measurement{}, has_state{}, has_tracking{}, has_base{}, has_action{}, has_report{};
 };
@@ -23,9 +25,10 @@ struct SampleRecord {
 struct RunRecord {
   std::string loop;
   PlantInfo info;
-  std::vector<std::string> states, state_units;  ///< names of PlantState::state, empty for an external plant
-  std::vector<SampleRecord> samples;             ///< index = step
-  bool complete{false};                          ///< the final sample came and nothing is missing
+  std::vector<std::string> states,
+      state_units;                    ///< names of PlantState::state, empty for an external plant
+  std::vector<SampleRecord> samples;  ///< index = step
+  bool complete{false};               ///< the final sample came and nothing is missing
 };
 
 /// Collects by step; order of arrival does not matter. A new run_id starts over.

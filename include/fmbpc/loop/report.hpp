@@ -31,9 +31,11 @@ struct Summary {
 };
 
 Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s);
-std::string toJson(const Summary& summary);    ///< keys of README, one object
+std::string toJson(const Summary& summary);  ///< keys of README, one object
 std::string toTable(const std::vector<Summary>& summaries);
-/// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot be written.
-void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary, const std::string& folder);
+/// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot
+/// be written.
+void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
+              const std::string& folder);
 
 }  // namespace fpc

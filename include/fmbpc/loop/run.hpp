@@ -1,4 +1,5 @@
-// The loop closed in one process: no master, no topics, the same objects and numbers as over topics.
+// The loop closed in one process: no master, no topics, the same objects and numbers as over
+// topics.
 #pragma once
 
 #include <functional>
@@ -10,7 +11,7 @@ namespace fpc {
 
 struct RunOptions {
   std::function<void(std::uint32_t step, std::uint32_t samples)> progress;  ///< may be empty
-  std::function<bool()> stop;                                               ///< true ends the run early; may be empty
+  std::function<bool()> stop;  ///< true ends the run early; may be empty
 };
 
 /// @throws InputError for an external plant or an endless run.

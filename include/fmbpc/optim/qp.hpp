@@ -28,7 +28,7 @@ struct QpProblem {
 
 struct QpSettings {
   int max_iterations{500};
-  double feasibility_tolerance{1e-10};  ///< relative to the row's norm and the size of x
+  double feasibility_tolerance{1e-10};  ///< relative to |limit| + sum_j |a_j| (1 + |x_j|)
   void validate() const;                ///< @throws InputError naming the field
 };
 
@@ -36,22 +36,27 @@ struct QpSettings {
 /// <= 0 on an upper one.
 struct QpResult {
   SolveStatus status{SolveStatus::kNumericalError};
-  Vector x;    ///< n
-  Vector y_x;  ///< n, multipliers of the bounds
-  Vector y_a;  ///< m, multipliers of the rows
-  int iterations{};
+  Vector x;               ///< n, meaningless unless usable(); exactly at the active bounds
+  Vector y_x;             ///< n, multipliers of the bounds
+  Vector y_a;             ///< m, multipliers of the rows
+  int iterations{};       ///< working sets tried
   int active{};           ///< number of active constraints
   double kkt_residual{};  ///< the largest of scaled stationarity, feasibility, sign and
                           ///< complementarity errors
   bool usable() const { return status == SolveStatus::kSolved; }
 };
 
-/// Scaled KKT residual of a point (independent of how it was found).
+/// Scaled KKT residual of a point (independent of how it was found): stationarity relative to
+/// 1 + its largest term, feasibility to |limit| + sum_j |a_j| (1 + |x_j|), complementarity
+/// min(multiplier, distance to the limit), both scaled. Infinite if anything is not finite.
+/// @throws InputError if the sizes of x, y_x, y_a are not those of the problem
 double kktResidual(const QpProblem& problem, VectorRef x, VectorRef y_x, VectorRef y_a);
 
 class QpSolver {
  public:
-  /// Room for problems up to n unknowns and m rows; solve() does not allocate for these sizes.
+  /// Room for problems up to n unknowns and m rows; solve() does not allocate for these sizes, nor
+  /// for smaller ones unless the size differs from the solve before.
+  /// @throws InputError if n < 1, m < 0 or the settings are not valid
   QpSolver(Eigen::Index n, Eigen::Index m, const QpSettings& settings = {});
   ~QpSolver();
   QpSolver(QpSolver&&) noexcept;
@@ -59,7 +64,9 @@ class QpSolver {
 
   /// Solves; with warm = true starts from the active set of the previous solve of the same size.
   /// Non-finite or wrongly sized data, or lower > upper, give kInvalidProblem; an H that is not
-  /// positive definite kNumericalError; never throws.
+  /// positive definite kNumericalError; never throws. kSolved implies kkt_residual <= 1e-9 (or
+  /// 10 feasibility_tolerance if that is larger). The factors of H are kept while H stays bitwise
+  /// the same.
   const QpResult& solve(const QpProblem& problem, bool warm = true);
   void forget();  ///< the next solve is cold
 

@@ -1,4 +1,5 @@
-// The closed-loop-paradigm optimizer over topics: base and predictive action of a sample in, control action out.
+// The closed-loop-paradigm optimizer over topics: base and predictive action of a sample in,
+// control action out.
 #pragma once
 
 #include <fmbpc/ControlAction.h>

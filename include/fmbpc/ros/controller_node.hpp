@@ -1,4 +1,5 @@
-// A controller over topics: each measurement is answered with a base action and, if the law predicts, its prediction.
+// A controller over topics: each measurement is answered with a base action and, if the law
+// predicts, its prediction.
 #pragma once
 
 #include <fmbpc/FuzzyModel.h>
@@ -24,9 +25,10 @@
 
 namespace fpc {
 
-/// Ready when a fitting plant has introduced itself and, for laws that need one, a fitting model has come.
-/// Base actions go out on base_action, or straight on control_action if the loop has no optimizer (or ~final_action
-/// is true). Services: ~manual (SetBool: true is manual), ~manual_input.
+/// Ready when a fitting plant has introduced itself and, for laws that need one, a fitting model
+/// has come. Base actions go out on base_action, or straight on control_action if the loop has no
+/// optimizer (or ~final_action is true). Services: ~manual (SetBool: true is manual),
+/// ~manual_input.
 class ControllerNode : public Node {
  public:
   /// @throws InputError
@@ -60,8 +62,8 @@ class ControllerNode : public Node {
   WallThrottle log_{1.0};
 
   ros::Publisher base_, prediction_, tracking_, effect_;
-  ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_, setpoint_subscriber_,
-      setpoint_active_subscriber_;
+  ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
+      setpoint_subscriber_, setpoint_active_subscriber_;
   ros::ServiceServer manual_, manual_input_;
   Diagnostics diagnostics_;
 };

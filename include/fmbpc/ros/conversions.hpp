@@ -1,5 +1,5 @@
-// Messages <-> structs, field for field, bit for bit. fromMsg() refuses what no struct can mean; whether sizes fit
-// the plant at hand is the core's question.
+// Messages <-> structs, field for field, bit for bit. fromMsg() refuses what no struct can mean;
+// whether sizes fit the plant at hand is the core's question.
 #pragma once
 
 #include <fmbpc/CommandEffect.h>
@@ -44,8 +44,9 @@ fmbpc::FuzzyModel toMsg(const TsModel& model);
 fmbpc::Setpoint toSetpointMsg(const Command& command);
 fmbpc::Disturbance toDisturbanceMsg(const Command& command);
 
-/// All of these @throws InputError naming the field: a matrix whose data are not rows * cols, a value that is not
-/// one of the message's constants, lists that belong together but differ in length.
+/// All of these @throws InputError naming the field: a matrix whose data are not rows * cols, a
+/// value that is not one of the message's constants, lists that belong together but differ in
+/// length.
 Matrix fromMsg(const fmbpc::Matrix& msg);
 SignalInfo fromMsg(const fmbpc::SignalInfo& msg);
 PlantInfo fromMsg(const fmbpc::PlantInfo& msg);

@@ -1,4 +1,5 @@
-// The plant's equipment as tf frames, and sample lines whose delay is their length in the tf tree over a velocity.
+// The plant's equipment as tf frames, and sample lines whose delay is their length in the tf tree
+// over a velocity.
 #pragma once
 
 #include <ros/ros.h>
@@ -30,7 +31,8 @@ class EquipmentFrames {
 class SampleLines {
  public:
   explicit SampleLines(std::vector<SampleLine> lines);
-  /// Tries the lines not yet found, without waiting. Returns (output, delay [s]) of those found now.
+  /// Tries the lines not yet found, without waiting. Returns (output, delay [s]) of those found
+  /// now.
   std::vector<std::pair<std::string, double>> poll();
   /// Lines not yet found, "from -> to".
   std::vector<std::string> missing() const;

@@ -1,4 +1,5 @@
-// Owner of the fuzzy_model topic: obtains the model that the loop names, checks it against the plant, publishes it.
+// Owner of the fuzzy_model topic: obtains the model that the loop names, checks it against the
+// plant, publishes it.
 #pragma once
 
 #include <fmbpc/PlantInfo.h>

@@ -1,11 +1,11 @@
-// Listens to the whole ring and writes the files that `fmbpc run --out` writes; keeps the operator's setpoints.
+// Listens to the whole ring and writes the files that `fmbpc run --out` writes; keeps the
+// operator's setpoints.
 #pragma once
 
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
 #include <fmbpc/PlantState.h>
-#include <fmbpc/Setpoint.h>
 #include <fmbpc/SolverReport.h>
 #include <fmbpc/Tracking.h>
 #include <ros/ros.h>
@@ -21,15 +21,15 @@
 #include "fmbpc/ros/node.hpp"
 #include "fmbpc/ros/ready.hpp"
 #include "fmbpc/ros/run_guard.hpp"
-#include "fmbpc/ros/setpoint_keeper.hpp"
+#include "fmbpc/ros/setpoint_latch.hpp"
 
 namespace fpc {
 
-/// Ready when every publisher of the ring is connected. Ends with the run: exit code 0 when it is complete and
-/// written (then `recorded`, latched, names the folder); otherwise 1, naming the gaps, and no summary.json is left. An
-/// endless run is written at Ctrl-C.
-/// Parameters: ~out, folder of the files (nothing is written without it); ~keep, do not end with the run; ~plot, draw
-/// plot.png (default true).
+/// Ready when every publisher of the ring is connected. Ends with the run: exit code 0 when it is
+/// complete and written (then `recorded`, latched, names the folder); otherwise 1, naming the gaps,
+/// and no summary.json is left. An endless run is written at Ctrl-C. Parameters: ~out, folder of
+/// the files (nothing is written without it); ~keep, do not end with the run; ~plot, draw plot.png
+/// (default true).
 class LoopRecorder : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }
@@ -45,8 +45,6 @@ class LoopRecorder : public Node {
   void onBase(const fmbpc::ControlAction::ConstPtr& msg);
   void onAction(const fmbpc::ControlAction::ConstPtr& msg);
   void onReport(const fmbpc::SolverReport::ConstPtr& msg);
-  void onSetpoint(const fmbpc::Setpoint::ConstPtr& msg);
-  void onListener(const ros::SingleSubscriberPublisher& listener);
 
   void beginRun(const StepHeader& header);
   /// Takes one item per sample and kind; what is ahead of the measurements waits for them.
@@ -62,7 +60,6 @@ class LoopRecorder : public Node {
   void announceIfConnected();
   void checkComplete();
   void write();
-  void publishActive();
   void removeOldFiles() const;
   void report(Diagnostics::Status& status) const;
 
@@ -70,29 +67,29 @@ class LoopRecorder : public Node {
   std::string out_;
   bool keep_, plot_;
   Recorder recorder_;
-  SetpointKeeper setpoints_;
+  SetpointLatch setpoints_;
   ReadyPublisher ready_;
   Eigen::Index n_y_, n_u_, n_d_;
   bool plant_fits_{false};
   std::string problem_;
 
   RunGuard guard_;
-  StepHeader measured_;    // the latest sample of the run being recorded
+  StepHeader measured_;  // the latest sample of the run being recorded
   bool run_known_{false};
   struct Early {
     StepHeader header;
     std::function<void()> deliver;
   };
   std::vector<Early> early_;
-  std::vector<fmbpc::Measurement::ConstPtr> unannounced_;  // of runs that plant_info has not announced yet
+  std::vector<fmbpc::Measurement::ConstPtr>
+      unannounced_;  // of runs that plant_info has not announced yet
   std::uint64_t strays_{}, wrong_size_{};
   ros::SteadyTime began_, final_seen_;
   bool written_{false};
   int polls_connected_{};
 
-  ros::Publisher active_, recorded_;
+  ros::Publisher recorded_;
   std::vector<ros::Subscriber> ring_;  // every publisher that must be connected
-  ros::Subscriber setpoint_subscriber_;
   ros::WallTimer poll_timer_;
   Diagnostics diagnostics_;
 };

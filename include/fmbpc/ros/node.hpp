@@ -26,7 +26,8 @@ class Node {
   void fail(const std::string& what);
   /// Ends the process with exit code 0.
   void done() { ros::shutdown(); }
-  /// Runs a message handler; a message that it refuses (InputError) is dropped, counted by topic and logged.
+  /// Runs a message handler; a message that it refuses (InputError) is dropped, counted by topic
+  /// and logged.
   template <typename Handler>
   void guarded(const char* topic, Handler handler) {
     try {
@@ -48,17 +49,18 @@ class Node {
 /// @throws InputError if there is none or it is no loop.
 LoopFile loopParameter(const ros::NodeHandle& node);
 
-/// For a node that the loop does not need: says why and returns 0; with ~stay true (a launch that respawns) only
-/// after a shutdown.
+/// For a node that the loop does not need: says why and returns 0; with ~stay true (a launch that
+/// respawns) only after a shutdown.
 int stayIdle(const ros::NodeHandle& private_node, const std::string& reason);
 
-/// Everything a main() does. `Class` has `static std::string idleReason(const LoopFile&)`, empty if the loop needs
-/// the node, and a constructor (NodeHandle, private NodeHandle, const LoopFile&).
+/// Everything a main() does. `Class` has `static std::string idleReason(const LoopFile&)`, empty if
+/// the loop needs the node, and a constructor (NodeHandle, private NodeHandle, const LoopFile&).
 template <typename Class>
 int runNode(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name);
+  const ros::NodeHandle node,
+      private_node("~");  // outlives the catch: without a node nothing is logged
   try {
-    const ros::NodeHandle node, private_node("~");
     const LoopFile loop = loopParameter(node);
     const std::string idle = Class::idleReason(loop);
     if (!idle.empty()) return stayIdle(private_node, idle);
@@ -74,7 +76,8 @@ int runNode(int argc, char** argv, const std::string& name) {
 /// Subscribes without Nagle's delay.
 template <typename Msg, typename Class>
 ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
-                          void (Class::*handler)(const boost::shared_ptr<const Msg>&), Class* object) {
+                          void (Class::*handler)(const boost::shared_ptr<const Msg>&),
+                          Class* object) {
   return node.subscribe<Msg>(topic, queue, handler, object, ros::TransportHints().tcpNoDelay());
 }
 

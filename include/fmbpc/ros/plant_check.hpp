@@ -7,8 +7,8 @@
 
 namespace fpc {
 
-/// Empty if `arrived` has the signals (names, order), units and sample time of `expected`; otherwise the first
-/// difference in words. Bounds and frames may differ.
+/// Empty if `arrived` has the signals (names, order), units and sample time of `expected`;
+/// otherwise the first difference in words. Bounds and frames may differ.
 std::string plantMismatch(const PlantInfo& expected, const PlantInfo& arrived);
 
 }  // namespace fpc

@@ -1,4 +1,5 @@
-// Everything that a simulated plant says: who it is, its samples, the clock, signals, effects of disturbances.
+// Everything that a simulated plant says: who it is, its samples, the clock, signals, effects of
+// disturbances.
 #pragma once
 
 #include <fmbpc/Measurement.h>

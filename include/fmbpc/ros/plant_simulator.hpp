@@ -1,4 +1,5 @@
-// The node that stands for the process: holds sample 0 until everybody is ready, then answers actions with samples.
+// The node that stands for the process: holds sample 0 until everybody is ready, then answers
+// actions with samples.
 #pragma once
 
 #include <fmbpc/ControlAction.h>
@@ -24,8 +25,9 @@
 
 namespace fpc {
 
-/// Parameters: `loop_text`; `~also_wait_for`, names beside those of loop.wait_for, separated by spaces.
-/// Services: ~pause (SetBool), ~step (Trigger, while paused), ~reset (Trigger: sample 0 of a new run).
+/// Parameters: `loop_text`; `~also_wait_for`, names beside those of loop.wait_for, separated by
+/// spaces. Services: ~pause (SetBool), ~step (Trigger, while paused), ~reset (Trigger: sample 0 of
+/// a new run).
 class PlantSimulator : public Node {
  public:
   static std::string idleReason(const LoopFile& loop);
@@ -65,7 +67,7 @@ class PlantSimulator : public Node {
   bool paused_{false};
   std::uint32_t steps_allowed_{};  // while paused
   bool have_action_{false};
-  Vector action_;                  // u(k), waiting for its time
+  Vector action_;  // u(k), waiting for its time
   std::uint64_t run_id_{};
   ros::WallTime begun_, sent_;
   ArrivalCounts counts_;

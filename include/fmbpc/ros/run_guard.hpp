@@ -7,12 +7,14 @@
 
 namespace fpc {
 
-/// Every plant start or reset has a larger run_id, announced by plant_info. A run that nobody announced is admitted
-/// only after it has gone on for half a second while the present one was silent.
+/// Every plant start or reset has a larger run_id, announced by plant_info. A run that nobody
+/// announced is admitted only after it has gone on for half a second while the present one was
+/// silent.
 class RunGuard {
  public:
   void announce(std::uint64_t run_id) { announced_ = run_id; }
-  /// False: to be dropped. Messages of earlier runs pass: the receiver's StepGate drops and counts them.
+  /// False: to be dropped. Messages of earlier runs pass: the receiver's StepGate drops and counts
+  /// them.
   bool admits(std::uint64_t run_id, ros::WallTime now) {
     if (run_id < present_) return true;
     if (run_id == present_ || run_id == announced_) {

@@ -1,4 +1,5 @@
-// Names of topics, services and parameters: short, relative, in one place. Namespaces come from launch files.
+// Names of topics, services and parameters: short, relative, in one place. Namespaces come from
+// launch files.
 #pragma once
 
 namespace fpc::topics {

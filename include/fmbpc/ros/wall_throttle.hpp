@@ -1,4 +1,5 @@
-// Lets a log line through once per period of wall time (the throttle of rosconsole goes by simulated time).
+// Lets a log line through once per period of wall time (the throttle of rosconsole goes by
+// simulated time).
 #pragma once
 
 #include <ros/time.h>

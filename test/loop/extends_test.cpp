@@ -1,0 +1,172 @@
+// Loop files that extend others, overrides, and the one text that comes of them.
+#include <gtest/gtest.h>
+
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+using Extends = LoopFolder;
+using Resolve = LoopFolder;
+
+TEST_F(Extends, MappingsMergeListsAndScalarsReplace) {
+  write("parent.yaml", smallLoop() + "noise: {seed: 5, std: {s: 1, x: 2}}\n");
+  const std::string child =
+      write("child.yaml",
+            "extends: parent\nnoise: {std: {x: 3}}\nsetpoint: {schedule: [{time_h: 1, s: 60}]}\n");
+  const LoopFile loop = readLoop(child);
+  EXPECT_EQ(loop.simulation.noise_seed, 5U);
+  EXPECT_EQ(loop.simulation.noise_std, (Vector(2) << 1, 3).finished());
+  EXPECT_EQ(loop.setpoint.schedule.size(), 1U);
+  const LoopFile other =
+      readLoop(child, {{"setpoint.schedule", "[{time_h: 2, x: 1}, {time_h: 3, x: 2}]"}});
+  EXPECT_EQ(other.setpoint.schedule.size(), 2U);
+}
+
+TEST_F(Extends, ASectionWhoseTypeChangesIsReplacedAsAWhole) {
+  write("parent.yaml", smallLoop());
+  const std::string child = write("child.yaml",
+                                  "extends: parent\nmodel: {file: fm_1.yaml}\n"
+                                  "controller: {type: fmbpc, coincidence_steps: 4}\n");
+  const LoopFile loop = readLoop(child);
+  EXPECT_EQ(loop.controller, "fmbpc");
+  EXPECT_EQ(loop.fmbpc.coincidence_steps, 4);
+  EXPECT_TRUE(loop.pi.loops.empty());
+}
+
+TEST_F(Extends, GoesThroughSeveralFilesAndTheConfigFolders) {
+  write("a.yaml", "extends: asp_case1\nsampling: {duration_h: 4}\n");
+  write("b.yaml", "extends: a.yaml\ntitle: b\n");
+  const LoopFile loop = readLoop(path("b.yaml"));
+  EXPECT_EQ(loop.report.title, "b");
+  EXPECT_EQ(loop.simulation.samples, 20U);
+  EXPECT_EQ(loop.fmbpc.coincidence_steps, 6);
+}
+
+TEST_F(Extends, CirclesAreErrors) {
+  const std::string a = write("a.yaml", "extends: b\n");
+  write("b.yaml", "extends: a\n");
+  expectWords(errorOf([&] { readLoop(a); }), {path("b.yaml") + ":1: extends", "no cycle"});
+  const std::string own = write("own.yaml", "title: x\nextends: own\n");
+  expectWords(errorOf([&] { readLoop(own); }), {own + ":2: extends", "no cycle"});
+}
+
+TEST_F(Extends, AMissingParentIsNamed) {
+  const std::string file = write("a.yaml", "extends: nobody\n");
+  expectWords(errorOf([&] { readLoop(file); }),
+              {file + ":1: extends", "got 'nobody'", "asp_case1"});
+  const std::string list = write("l.yaml", "extends: [a, b]\n");
+  expectWords(errorOf([&] { readLoop(list); }), {list + ":1: extends", "one loop file"});
+}
+
+TEST_F(Extends, AnEmptySectionTakesTheParentsAway) {
+  const std::string file = write("a.yaml", "extends: asp_case1_clp\nclp:\n");
+  EXPECT_TRUE(readLoop("asp_case1_clp").has_clp);
+  EXPECT_FALSE(readLoop(file).has_clp);
+  EXPECT_FALSE(readLoop("asp_case1_clp", {{"clp.enabled", "false"}}).has_clp);
+}
+
+TEST_F(Resolve, OverridesReachScalarsItemsAndNewKeys) {
+  const std::string file = write("loop.yaml", smallLoop());
+  const LoopFile loop = readLoop(file, {{"controller.loops.0.kp", "2.5"},
+                                        {"noise.std.x", "1.5"},
+                                        {"actuator", "{move_upper: {q_r: 20}}"},
+                                        {"loop.wait_for", "[]"}});
+  EXPECT_EQ(loop.pi.loops.at(0).kp, 2.5);
+  EXPECT_EQ(loop.simulation.noise_std[1], 1.5);
+  EXPECT_EQ(loop.simulation.actuator.limits.move[0], 20.0);
+  EXPECT_TRUE(loop.ring.wait_for.empty());
+}
+
+TEST_F(Resolve, ALaterOverrideWinsAndATypeTakesTheOldKeysAway) {
+  const Overrides twice = {{"controller.coincidence_steps", "3"},
+                           {"controller.coincidence_steps", "4"}};
+  EXPECT_EQ(readLoop("asp_case1", twice).fmbpc.coincidence_steps, 4);
+  const Overrides pi = {{"controller.type", "pi"},
+                        {"controller.loops", "[{input: q_r, output: s, kp: 1}]"}};
+  EXPECT_EQ(readLoop("asp_case1", pi).controller, "pi");
+}
+
+TEST_F(Resolve, NumbersStayAsTheyWereWritten) {
+  const std::string text =
+      resolveLoop("asp_case1", {{"plant.integrator.relative_tolerance", "1e-6"}});
+  EXPECT_NE(text.find("relative_tolerance: 1e-6\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("absolute_tolerance: 1e-8\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("extends"), std::string::npos);
+}
+
+TEST_F(Resolve, TheTextReadsBackToItself) {
+  const LoopFile loop = readLoop("asp_clp_1c");
+  const std::string file = write("again.yaml", loop.resolved);
+  EXPECT_EQ(resolveLoop(file), loop.resolved);
+  const LoopFile again = parseLoop(loop.resolved, "again");
+  EXPECT_EQ(again.clp.increment_upper, loop.clp.increment_upper);
+  EXPECT_EQ(again.simulation.initial_state, loop.simulation.initial_state);
+  EXPECT_EQ(again.model_file, loop.model_file);
+}
+
+TEST_F(Resolve, FilesAreFoundBesideTheFileThatNamesThem) {
+  write("week.csv", "t,q\n0,1000\n1,1200\n2,1100\n3,1000\n4,900\n");
+  const std::string csv =
+      "disturbance:\n  source: csv\n  csv:\n    file: week.csv\n    time_column: t\n"
+      "    channels: {q_i: {column: q}}\n";
+  write("parent.yaml", smallLoop() + csv);
+  std::filesystem::create_directory(path("below"));
+  const std::string child = write("below/child.yaml", "extends: ../parent.yaml\n");
+  EXPECT_EQ(readLoop(child).disturbance.csv.file, path("week.csv"));
+}
+
+TEST_F(Resolve, VariablesAreExpandedInFileKeys) {
+  write("week.csv", "t,q\n0,1000\n1,1200\n2,1100\n3,1000\n4,900\n");
+  setenv("FMBPC_TEST_FOLDER", folder_.c_str(), 1);
+  const std::string file =
+      write("loop.yaml", smallLoop() +
+                             "disturbance:\n  source: csv\n  csv:\n    file: "
+                             "${FMBPC_TEST_FOLDER}/week.csv\n    time_column: t\n"
+                             "    channels: {q_i: {column: q}}\n");
+  EXPECT_EQ(readLoop(file).disturbance.csv.file, path("week.csv"));
+  unsetenv("FMBPC_TEST_FOLDER");
+  expectWords(errorOf([&] { readLoop(file); }),
+              {file + ":15: disturbance.csv.file", "FMBPC_TEST_FOLDER to be set"});
+}
+
+TEST_F(Resolve, AMistakeInTheRecordNamesLoopAndRecord) {
+  write("week.csv", "t,q\n0,1000\n1,\n2,1100\n3,1000\n4,900\n");
+  const std::string csv =
+      "disturbance:\n  source: csv\n  csv:\n    file: week.csv\n    time_column: t\n"
+      "    channels: {q_i: {column: q}}\n";
+  const std::string file = write("loop.yaml", smallLoop() + csv);
+  expectWords(errorOf([&] { readLoop(file); }),
+              {file + ":12: disturbance", path("week.csv"), "column 'q'", "missing"});
+  EXPECT_EQ(readLoop(file, {{"disturbance.csv.missing", "hold"}}).disturbance.csv.missing, "hold");
+}
+
+TEST_F(Resolve, UserFoldersComeFirst) {
+  std::filesystem::create_directory(path("loop"));
+  write("loop/asp_case1.yaml", smallLoop() + "title: mine\n");
+  setenv("FMBPC_CONFIG_PATH", folder_.c_str(), 1);
+  EXPECT_EQ(readLoop("asp_case1").report.title, "mine");
+  unsetenv("FMBPC_CONFIG_PATH");
+  EXPECT_NE(readLoop("asp_case1").report.title, "mine");
+}
+
+TEST_F(Resolve, SampleLinesGiveTheTransportDelay) {
+  const std::string file =
+      write("loop.yaml",
+            smallLoop() +
+                "tf:\n  frames:\n    lab: {parent: reactor, x: 3, y: 4, z: 0}\n"
+                "  sample_lines:\n    - {output: x, from: reactor, to: lab, velocity_m_s: 0.5}\n");
+  const LoopFile loop = readLoop(file);
+  EXPECT_EQ(loop.simulation.output_delay_s, (std::vector<double>{0.0, 10.0}));
+  EXPECT_EQ(loop.tf.sample_lines.at(0).to, "lab");
+}
+
+TEST_F(Resolve, TheRingWaitsForTheNodesTheLoopNeeds) {
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(readLoop("asp_case1_clp").ring.wait_for,
+            (Names{"loop_recorder", "fmbpc_controller", "fuzzy_identifier", "clp_optimizer"}));
+  EXPECT_EQ(readLoop("asp_case1_pi_x").ring.wait_for, (Names{"loop_recorder", "pi_controller"}));
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,162 @@
+// What a person gets for a loop file with a mistake: one line with file, line, key and what was
+// expected.
+#include <gtest/gtest.h>
+
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+using LoopErrors = LoopFolder;
+
+TEST_F(LoopErrors, TheSmallLoopHasNone) {
+  const LoopFile loop = readLoop(write("small.yaml", smallLoop()));
+  EXPECT_EQ(loop.name, "small");
+  EXPECT_EQ(loop.controller, "pi");
+  EXPECT_EQ(loop.simulation.samples, 20U);
+  EXPECT_FALSE(loop.has_clp);
+  EXPECT_FALSE(loop.has_model);
+}
+
+/// A mistake, written below the small loop or by an override, and the words of its error.
+struct Mistake {
+  std::string name;
+  std::string text;  ///< appended to the file
+  std::string set;   ///< "path=value", may be empty
+  std::vector<std::string> words;
+};
+
+void PrintTo(const Mistake& mistake, std::ostream* stream) { *stream << mistake.name; }
+
+class EveryMistake : public LoopFolder, public ::testing::WithParamInterface<Mistake> {};
+
+TEST_P(EveryMistake, IsNamedInOneLine) {
+  const Mistake& mistake = GetParam();
+  const std::string file = write("loop.yaml", smallLoop() + mistake.text);
+  Overrides overrides;
+  if (!mistake.set.empty()) overrides.push_back(parseOverride(mistake.set));
+  const std::string error = errorOf([&] { readLoop(file, overrides); });
+  for (const auto& word : mistake.words) expectWords(error, {word});
+  if (mistake.set.empty()) expectWords(error, {file + ":"});
+}
+
+// The small loop has 11 lines; the appended text starts at line 12.
+const Mistake kMistakes[] = {
+    {"UnknownSection", "actuators: {}\n", "", {":12: actuators: unknown key", "actuator,"}},
+    {"UnknownKey", "loop:\n  pacing: fast\n", "", {":13: loop.pacing: unknown key", "pace"}},
+    {"UnknownKeyInList",
+     "disturbance:\n  commands:\n    - {time_h: 1, name: q_i, value: 2, until: 3}\n",
+     "",
+     {":14: disturbance.commands[0].until: unknown key", "mode"}},
+    {"UnknownSignal", "noise:\n  std: {y: 1}\n", "", {":13: noise.std.y", "one of s, x"}},
+    {"WrongSize", "noise:\n  std: [1, 2, 3]\n", "", {":13: noise.std", "a list of 2 numbers"}},
+    {"NotANumber",
+     "loop:\n  speedup: fast\n",
+     "",
+     {":13: loop.speedup", "a finite number > 0", "'fast'"}},
+    {"NotFinite",
+     "actuator:\n  initial: {q_r: .nan}\n",
+     "",
+     {":13: actuator.initial.q_r", "finite number"}},
+    {"InfiniteValue",
+     "",
+     "setpoint.initial.x=.inf",
+     {"--set setpoint.initial.x: expected a finite number"}},
+    {"OutOfRange", "", "plant.parameters.yield=2", {"--set plant.parameters.yield", "<= 1"}},
+    {"NegativeTime", "", "sampling.sample_time_s=-1", {"--set sampling.sample_time_s", "got '-1'"}},
+    {"PartOfASample",
+     "",
+     "sampling.duration_h=4.1",
+     {"--set sampling.duration_h", "whole number of samples of 720 s"}},
+    {"NoChoice",
+     "",
+     "loop.pace=brisk",
+     {"--set loop.pace", "lockstep, paced, realtime", "'brisk'"}},
+    {"UnknownPlant",
+     "",
+     "plant.type=reactor",
+     {"--set plant.type", "activated_sludge", "external"}},
+    {"MissingKey",
+     "",
+     "controller={type: pi, loops: [{input: q_r, output: x}]}",
+     {"controller.loops[0].kp", "a number"}},
+    {"UnknownOutput",
+     "",
+     "controller.loops.0.output=z",
+     {"--set controller.loops[0].output", "one of s, x", "'z'"}},
+    {"NoSuchItem",
+     "",
+     "controller.loops.1.kp=1",
+     {"--set controller.loops.1.kp", "a number below 1"}},
+    {"LowerAboveUpper",
+     "actuator:\n  input_lower: {q_r: 900}\n  input_upper: {q_r: 800}\n",
+     "",
+     {"actuator.input_"}},
+    {"MeanOutside",
+     "disturbance:\n  source: pattern\n  pattern:\n    channels:\n"
+     "      q_i: {shape: flow, lower: 700, upper: 2300, mean: 3000}\n",
+     "",
+     {":16: disturbance.pattern.channels.q_i.mean", "> 700"}},
+    {"TimesDecrease",
+     "",
+     "setpoint.schedule=[{time_h: 2, x: 1}, {time_h: 1, x: 2}]",
+     {"--set setpoint.schedule[1].time_h", "do not decrease"}},
+    {"CsvWithoutFile",
+     "disturbance:\n  source: csv\n",
+     "",
+     {"disturbance", "csv.file", "CSV file"}},
+    {"MissingFile",
+     "model: {file: nowhere.yaml}\n",
+     "",
+     {":12: model.file", "existing file", "'nowhere.yaml'"}},
+    {"UnsetVariable",
+     "model: {file: '${FMBPC_NOT_SET}/m.yaml'}\n",
+     "",
+     {":12: model.file", "FMBPC_NOT_SET to be set"}},
+    {"OptimizerWithoutPrediction", "clp: {}\n", "", {"controller.type", "fmbpc", "clp.enabled"}},
+    {"ModelNeeded", "", "controller={type: fmbpc}", {"model.file", "a model file"}},
+    {"FramesInACircle",
+     "tf:\n  frames:\n    reactor: {parent: settler}\n    settler: {parent: reactor}\n",
+     "",
+     {"tf.frames", "without a cycle"}},
+    {"UnknownFrame",
+     "tf:\n  sample_lines:\n    - {output: s, from: reactor, to: moon, velocity_m_s: 1}\n",
+     "",
+     {":14: tf.sample_lines[0].to", "one of", "'moon'"}},
+    {"KeyTwice", "title: a\ntitle: b\n", "", {":13: title", "only once"}},
+    {"SectionIsAWord", "noise: loud\n", "", {":12: noise", "a mapping"}},
+    {"BadYaml", "noise: [1, 2\n", "", {"valid YAML"}},
+};
+
+std::string nameOf(const ::testing::TestParamInfo<Mistake>& info) { return info.param.name; }
+
+INSTANTIATE_TEST_SUITE_P(Loop, EveryMistake, ::testing::ValuesIn(kMistakes), nameOf);
+
+TEST_F(LoopErrors, AnEndlessRunNeedsConstantDisturbances) {
+  const std::string file = write("loop.yaml", smallLoop());
+  EXPECT_EQ(readLoop(file, {{"sampling.duration_h", "0"}}).simulation.samples, 0U);
+  const std::string error = errorOf([] { readLoop("asp_case1", {{"sampling.duration_h", "0"}}); });
+  expectWords(error, {"asp_case1", "sampling.duration_h", "constant"});
+}
+
+TEST_F(LoopErrors, UnknownLoopsListTheKnownOnes) {
+  expectWords(errorOf([] { readLoop("asp_case_one"); }),
+              {"'asp_case_one'", "asp_case1,", "asp_clp_1a"});
+  expectWords(errorOf([&] { readLoop(path("absent.yaml")); }),
+              {"absent.yaml", "an existing loop file"});
+}
+
+TEST_F(LoopErrors, OverridesNeedAPathAndAValue) {
+  expectWords(errorOf([] { parseOverride("loop.pace"); }), {"--set loop.pace", "path=value"});
+  expectWords(errorOf([] { parseOverride("=3"); }), {"path=value"});
+  EXPECT_EQ(parseOverride("a.b=c=d"), (std::pair<std::string, std::string>("a.b", "c=d")));
+}
+
+TEST_F(LoopErrors, AMistakeInAnExtendedFileNamesThatFile) {
+  const std::string parent = write("parent.yaml", smallLoop() + "loop:\n  speedup: -3\n");
+  const std::string child = write("child.yaml", "extends: parent\ntitle: child\n");
+  expectWords(errorOf([&] { readLoop(child); }), {parent + ":13: loop.speedup", "got '-3'"});
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,142 @@
+#include "fmbpc/loop/report.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "fmbpc/base/csv.hpp"
+#include "fmbpc/loop/run.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+using Report = LoopFolder;
+
+LoopFile shortLoop(const std::string& name, Overrides overrides = {}) {
+  overrides.emplace_back("sampling.duration_h", "40");
+  return readLoop(name, overrides);
+}
+
+/// Two samples of one output, whose indices fit on a finger.
+RunRecord smallRecord(const LoopFile& loop) {
+  RunRecord record = runLoop(loop);
+  record.samples.resize(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    record.samples[k].measurement.outputs << 55.0 + static_cast<double>(k), 2000.0;
+    record.samples[k].tracking.setpoint << 55.0, 2001.0;
+    record.samples[k].tracking.reference << 55.0, 2003.0;
+    record.samples[k].measurement.input_applied << 700.0 + 10.0 * static_cast<double>(k * k);
+  }
+  return record;
+}
+
+TEST_F(Report, IndicesAreThoseOfTheFormulas) {
+  const LoopFile loop = shortLoop("asp_case1_pi_s");
+  const Summary summary = summarize(loop, smallRecord(loop), 0.5);
+  EXPECT_EQ(summary.outputs[0].ise, 0.0 + 1.0 + 4.0);
+  EXPECT_EQ(summary.outputs[0].iae, 3.0);
+  EXPECT_NEAR(summary.outputs[0].itae, 0.2 * 1.0 + 0.4 * 2.0, 1e-15);
+  EXPECT_EQ(summary.outputs[1].ise_reference, 27.0);
+  EXPECT_EQ(summary.outputs[1].rmse, 1.0);
+  EXPECT_EQ(summary.inputs[0].max, 740.0);
+  EXPECT_EQ(summary.inputs[0].min, 710.0);
+  EXPECT_EQ(summary.inputs[0].mean_abs_move, 20.0);
+  EXPECT_EQ(summary.wall_s, 0.5);
+}
+
+TEST_F(Report, ViolationsCountCommandsBeyondTheirLimits) {
+  const LoopFile loop = shortLoop(
+      "asp_case1_pi_s", {{"actuator.move_upper.q_r", "100"}, {"report.output_upper.x", "2050"}});
+  RunRecord record = smallRecord(loop);
+  record.samples[0].action.input << 1600.0 + 1e-7;  // inside 1e-9 of the range, but a move of 900
+  record.samples[1].action.input << 1600.1;         // beyond both
+  record.samples[2].action.input << 740.0;
+  record.samples[2].state.outputs << 55.0, 2050.1;
+  record.samples[0].state.outputs << 55.0, 2050.0;
+  record.samples[1].state.outputs << 55.0, 2000.0;
+  const Summary summary = summarize(loop, record, 0.0);
+  EXPECT_EQ(summary.input_violations, 1U);
+  EXPECT_EQ(summary.move_violations, 2U);
+  EXPECT_EQ(summary.output_violations, 1U);
+}
+
+TEST_F(Report, TrajectoryReadsBackToTheSameNumbers) {
+  const LoopFile loop = shortLoop("asp_case1_clp", {{"noise.std", "{s: 1, x: 5}"}});
+  const RunRecord record = runLoop(loop);
+  writeRun(loop, record, summarize(loop, record, 0.0), path("deep/er"));
+  const CsvTable table = readCsv(path("deep/er/trajectory.csv"));
+  ASSERT_EQ(table.rows(), 201);
+  const auto cell = [&](std::size_t k, const char* name) {
+    return table.values(static_cast<Eigen::Index>(k), table.column(name));
+  };
+  for (std::size_t k = 0; k < 201; ++k) {
+    const SampleRecord& sample = record.samples[k];
+    EXPECT_EQ(cell(k, "x"), sample.measurement.outputs[1]);
+    EXPECT_EQ(cell(k, "x_true"), sample.state.outputs[1]);
+    EXPECT_EQ(cell(k, "x_reference"), sample.tracking.reference[1]);
+    EXPECT_EQ(cell(k, "s_i"), sample.state.disturbances[1]);
+    EXPECT_EQ(cell(k, "x_r"), sample.state.state[5]);
+    if (k == 200) continue;
+    EXPECT_EQ(cell(k, "q_r"), record.samples[k + 1].measurement.input_applied[0]);
+    EXPECT_EQ(cell(k, "q_r_commanded"), sample.action.input[0]);
+    EXPECT_EQ(cell(k, "q_r_perturbation"), sample.report.perturbation[0]);
+  }
+  EXPECT_TRUE(std::isnan(cell(200, "q_r")));
+  EXPECT_EQ(cell(5, "time"), 1.0);
+  EXPECT_EQ(table.units[static_cast<std::size_t>(table.column("time"))], "h");
+  EXPECT_EQ(table.units[static_cast<std::size_t>(table.column("q_r"))], "m3/h");
+}
+
+TEST_F(Report, SummaryHasTheKeysThatScriptsRead) {
+  const LoopFile loop = shortLoop("asp_case1_clp");
+  const RunRecord record = runLoop(loop);
+  const auto json = nlohmann::json::parse(toJson(summarize(loop, record, 1.5)));
+  EXPECT_EQ(json["loop"], "asp_case1_clp");
+  EXPECT_EQ(json["steps"], 200);
+  EXPECT_EQ(json["wall_s"], 1.5);
+  EXPECT_EQ(json["complete"], true);
+  for (const char* key : {"ise", "iae", "itae", "itse", "rmse", "ise_reference"})
+    for (const char* output : {"s", "x"})
+      EXPECT_TRUE(json["outputs"][output][key].is_number()) << key;
+  for (const char* key : {"min", "max", "mean_abs_move"})
+    EXPECT_TRUE(json["inputs"]["q_r"][key].is_number()) << key;
+  for (const char* key : {"input", "move", "output"}) EXPECT_EQ(json["violations"][key], 0) << key;
+  EXPECT_EQ(json["actuator_clips"], 0);
+  EXPECT_EQ(json["clp"]["solves"], 200);
+  EXPECT_EQ(json["clp"]["infeasible"], 0);
+  EXPECT_TRUE(json["clp"]["median_us"].is_number());
+  EXPECT_EQ(json["limits"]["inputs"]["q_r"]["upper"], 1600.0);
+  EXPECT_TRUE(json["limits"]["inputs"]["q_r"]["move"].is_null());
+  EXPECT_FALSE(nlohmann::json::parse(toJson(summarize(shortLoop("asp_case1"), record, 0.0)))
+                   .contains("clp"));
+}
+
+TEST_F(Report, SourcesAddUpToTheSteps) {
+  const LoopFile loop = shortLoop("asp_case1_clp");
+  const Summary summary = summarize(loop, runLoop(loop), 0.0);
+  std::uint64_t all = 0;
+  for (const auto count : summary.sources) all += count;
+  EXPECT_EQ(all, summary.steps);
+}
+
+TEST_F(Report, AFolderThatCannotBeMadeIsAnError) {
+  const LoopFile loop = shortLoop("asp_case1_pi_s");
+  const RunRecord record = runLoop(loop);
+  const std::string file = write("file", "");
+  expectWords(
+      errorOf([&] { writeRun(loop, record, summarize(loop, record, 0.0), file + "/below"); }),
+      {file});
+}
+
+TEST_F(Report, TheTableHasALinePerOutputAndPerInput) {
+  const LoopFile loop = shortLoop("asp_case1_clp");
+  const Summary summary = summarize(loop, runLoop(loop), 0.0);
+  const std::string table = toTable({summary, summary});
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 1 + 4 + 1 + 1 + 2 + 1 + 1 + 2);
+  EXPECT_NE(table.find("mean move"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fpc

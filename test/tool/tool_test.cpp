@@ -1,0 +1,102 @@
+// The tool as a person or a script calls it: what is printed, where, and the exit code.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+struct Outcome {
+  int code{};
+  std::string printed;
+};
+
+/// Standard output, or with `errors` standard error, of `fmbpc ARGUMENTS`.
+Outcome tool(const std::string& arguments, bool errors = false) {
+  const std::string redirect = errors ? " 2>&1 >/dev/null" : " 2>/dev/null";
+  FILE* pipe = popen((std::string(FMBPC_TOOL) + " " + arguments + redirect).c_str(), "r");
+  Outcome outcome;
+  std::array<char, 4096> buffer{};
+  while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.printed.append(buffer.data(), n);
+  outcome.code = WEXITSTATUS(pclose(pipe));
+  return outcome;
+}
+
+using Tool = LoopFolder;
+const std::string kShort = " --set sampling.duration_h=40";
+
+TEST_F(Tool, JsonIsOneObjectAndNothingElse) {
+  const Outcome one = tool("run asp_case1_clp --json" + kShort);
+  EXPECT_EQ(one.code, 0);
+  const auto json = nlohmann::json::parse(one.printed);
+  EXPECT_EQ(json["loop"], "asp_case1_clp");
+  EXPECT_EQ(json["steps"], 200);
+  const auto two =
+      nlohmann::json::parse(tool("run asp_case1 asp_case1_pi_s --json" + kShort).printed);
+  EXPECT_EQ(two["loops"].size(), 2U);
+  EXPECT_EQ(two["loops"][1]["loop"], "asp_case1_pi_s");
+  const auto plants = nlohmann::json::parse(tool("plants --json").printed);
+  EXPECT_EQ(plants["plants"][0]["name"], "activated_sludge");
+}
+
+TEST_F(Tool, NoBarIsDrawnWhereNobodyLooks) {
+  EXPECT_EQ(tool("run asp_case1_pi_s" + kShort, true).printed, "");
+}
+
+TEST_F(Tool, MistakesAreOneLineOnStandardError) {
+  for (const char* arguments :
+       {"run nothing", "run asp_case1 --set loop.pace=brisk", "run asp_case1 --set nonsense",
+        "resolve", "fly", "run asp_case1 --fast", "resolve asp_case1 --set controller.horizon=3",
+        "model nothing.yaml", ""}) {
+    const Outcome outcome = tool(arguments, true);
+    EXPECT_EQ(outcome.code, 1) << arguments;
+    EXPECT_EQ(outcome.printed.rfind("fmbpc: ", 0), 0U) << outcome.printed;
+    EXPECT_EQ(std::count(outcome.printed.begin(), outcome.printed.end(), '\n'), 1)
+        << outcome.printed;
+    EXPECT_EQ(tool(arguments).printed, "") << arguments;
+  }
+}
+
+TEST_F(Tool, ResolvePrintsTheTextThatNodesRead) {
+  const Outcome outcome = tool("resolve asp_case1_pi_x");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.printed, resolveLoop("asp_case1_pi_x"));
+}
+
+TEST_F(Tool, OutHoldsTheFilesOfEveryLoop) {
+  const Outcome one = tool("run asp_case1_pi_s --no-plot --out " + path("one") + kShort);
+  EXPECT_EQ(one.code, 0);
+  EXPECT_TRUE(std::filesystem::exists(path("one/trajectory.csv")));
+  EXPECT_TRUE(std::filesystem::exists(path("one/summary.json")));
+  EXPECT_FALSE(std::filesystem::exists(path("one/plot.png")));
+  tool("run asp_case1 asp_case1_pi_s --no-plot --out " + path("two") + kShort);
+  EXPECT_TRUE(std::filesystem::exists(path("two/asp_case1/summary.json")));
+  EXPECT_TRUE(std::filesystem::exists(path("two/asp_case1_pi_s/summary.json")));
+}
+
+TEST_F(Tool, OutDrawsAPicture) {
+  if (std::system("/usr/bin/python3 -c 'import matplotlib' 2>/dev/null") != 0)
+    GTEST_SKIP() << "python3-matplotlib is not installed";
+  EXPECT_EQ(tool("run asp_case1_clp --out " + folder_.string() + kShort, true).printed, "");
+  std::ifstream picture(path("plot.png"), std::ios::binary);
+  std::array<char, 4> start{};
+  picture.read(start.data(), start.size());
+  EXPECT_EQ(std::string(start.data() + 1, 3), "PNG");
+}
+
+TEST_F(Tool, ShippedInfluentIsWhatItsScriptPrints) {
+  const std::string top = FMBPC_SOURCE_DIR;
+  const std::string command = "/usr/bin/python3 " + top +
+                              "/scripts/make_influent_week.py | cmp - " + top +
+                              "/config/data/influent_week.csv";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+}  // namespace
+}  // namespace fpc
