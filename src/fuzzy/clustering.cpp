@@ -69,7 +69,8 @@ class Iteration {
     const Index n = points_.rows();
     clusters_ = {};
     clusters_.fuzziness = params_.fuzziness;
-    clusters_.covariances.assign(static_cast<std::size_t>(params_.clusters), Matrix::Identity(n, n));
+    clusters_.covariances.assign(static_cast<std::size_t>(params_.clusters),
+                                 Matrix::Identity(n, n));
     spreadCenters(generator);
     moveMemberships();
   }
@@ -134,7 +135,8 @@ class Iteration {
       Matrix covariance = (1.0 - params_.regularisation) * scatter[i] / weight;
       covariance.diagonal().array() += params_.regularisation * spread_;
       covariance = bounded(covariance);
-      // A regularised shape is not the best one for the objective: it is taken only where it lowers it.
+      // A regularised shape is not the best one for the objective: it is taken only where it lowers
+      // it.
       if (distanceSum(covariance, scatter[i]) <= distanceSum(clusters_.covariances[i], scatter[i]))
         clusters_.covariances[i] = covariance;
     }

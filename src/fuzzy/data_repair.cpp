@@ -58,6 +58,10 @@ std::vector<Index> sampleNumbers(const Vector& time, const std::vector<Index>& o
                        rowText(first, order[k]));
     numbers.push_back(numbers.back() + static_cast<Index>(whole));
   }
+  const Index holes = numbers.back() + 1 - static_cast<Index>(order.size());
+  require(holes <= static_cast<Index>(order.size()), where,
+          "times " + exactText(sample) +
+              " apart (sample_time_s; or another unit?), got more holes than rows");
   return numbers;
 }
 

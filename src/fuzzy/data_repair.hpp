@@ -8,10 +8,11 @@
 
 namespace fpc {
 
-/// Checks the time column of the taken rows against the sample time. Sorting, if allowed, reorders data.values;
-/// gaps of whole samples become missing rows. @throws InputError naming file, column and row.
-void repairTime(DataSet& data, const CsvTable& table, const Structure& structure, Eigen::Index first,
-                Eigen::Index count);
+/// Checks the time column of the taken rows against the sample time. Sorting, if allowed, reorders
+/// data.values; gaps of whole samples become missing rows. @throws InputError naming file, column
+/// and row.
+void repairTime(DataSet& data, const CsvTable& table, const Structure& structure,
+                Eigen::Index first, Eigen::Index count);
 
 /// Missing cells: an error, interpolated, or left for makeRegression() to step over.
 void repairMissing(DataSet& data, MissingCells how, const std::vector<std::string>& columns);

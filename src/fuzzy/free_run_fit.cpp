@@ -12,13 +12,14 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kFarthest = 100.0;      // spans of the data: a run that leaves further has failed
-constexpr double kNudge = 1e-6;          // spans, for derivatives by differences
-constexpr double kEnough = 1e-6;         // relative fall of the objective below which the fit has settled
-constexpr double kFirstDamping = 1e-3;   // of the number of rows
+constexpr double kFarthest = 100.0;  // spans of the data: a run that leaves further has failed
+constexpr double kNudge = 1e-6;      // spans, for derivatives by differences
+constexpr double kEnough = 1e-6;  // relative fall of the objective below which the fit has settled
+constexpr double kFirstDamping = 1e-3;  // of the number of rows
 constexpr double kMostDamping = 1e6;
 
-/// A model of one output whose coefficients are one vector, in columns scaled to mean 0 and deviation 1.
+/// A model of one output whose coefficients are one vector, in columns scaled to mean 0 and
+/// deviation 1.
 class Simulator {
  public:
   Simulator(const DataSet& data, int output, const OutputModel& shape)
@@ -58,8 +59,8 @@ class Simulator {
     }
   }
 
-  /// Sum of squared errors of a free run, or one step ahead. With `squares`: adds a row per sample, the sensitivity of
-  /// the prediction and its error, both over `unit`.
+  /// Sum of squared errors of a free run, or one step ahead. With `squares`: adds a row per sample,
+  /// the sensitivity of the prediction and its error, both over `unit`.
   double run(const Vector& theta, bool free, double unit, double weight, LeastSquares* squares);
 
  private:
@@ -67,7 +68,8 @@ class Simulator {
     Index column, lag;
     bool own;
   };
-  void addSources(const std::vector<Regressor>& variables, int output, std::vector<Source>& sources) {
+  void addSources(const std::vector<Regressor>& variables, int output,
+                  std::vector<Source>& sources) {
     for (const auto& v : variables) {
       const bool own = v.kind == SignalKind::kOutput && v.index == output;
       sources.push_back({data_.column(v.kind, v.index), v.lag, own});
@@ -75,7 +77,9 @@ class Simulator {
       if (own) own_lags_ = std::max(own_lags_, static_cast<Index>(v.lag) + 1);
     }
   }
-  double value(const Source& s, Index k) const { return s.own ? past_[k - s.lag] : data_.values(k - s.lag, s.column); }
+  double value(const Source& s, Index k) const {
+    return s.own ? past_[k - s.lag] : data_.values(k - s.lag, s.column);
+  }
   double predict(const Vector& theta, Index k);
   void differentiate(const Vector& theta, Index k, bool free);
 
@@ -92,10 +96,12 @@ class Simulator {
 
 /// Prediction of k + 1 from past_; leaves x_ (scaled, with 1) and firing_ for differentiate().
 double Simulator::predict(const Vector& theta, Index k) {
-  for (std::size_t j = 0; j < z_sources_.size(); ++j) z_[static_cast<Index>(j)] = value(z_sources_[j], k);
+  for (std::size_t j = 0; j < z_sources_.size(); ++j)
+    z_[static_cast<Index>(j)] = value(z_sources_[j], k);
   const Index p = x_.size();
   for (Index j = 0; j < p - 1; ++j)
-    x_[j] = (value(x_sources_[static_cast<std::size_t>(j)], k) - scaling_.shift[j]) / scaling_.scale[j];
+    x_[j] =
+        (value(x_sources_[static_cast<std::size_t>(j)], k) - scaling_.shift[j]) / scaling_.scale[j];
   x_[p - 1] = 1.0;
   if (!z_.allFinite() || !x_.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   firingWeights(shape_, z_, firing_);
@@ -108,7 +114,8 @@ double Simulator::predict(const Vector& theta, Index k) {
 /// gradient_ of the prediction just made: its own rules, and in free run what they did to the past.
 void Simulator::differentiate(const Vector& theta, Index k, bool free) {
   const Index p = x_.size(), ring = sensitivity_.cols();
-  for (Index r = 0; r < firing_.weights.size(); ++r) gradient_.segment(r * p, p) = firing_.weights[r] * x_;
+  for (Index r = 0; r < firing_.weights.size(); ++r)
+    gradient_.segment(r * p, p) = firing_.weights[r] * x_;
   for (Index lag = 0; free && lag < own_lags_; ++lag) {
     const auto earlier = sensitivity_.col((k - lag) % ring);
     if (earlier.isZero(0.0)) continue;
@@ -122,7 +129,8 @@ void Simulator::differentiate(const Vector& theta, Index k, bool free) {
   }
 }
 
-double Simulator::run(const Vector& theta, bool free, double unit, double weight, LeastSquares* squares) {
+double Simulator::run(const Vector& theta, bool free, double unit, double weight,
+                      LeastSquares* squares) {
   past_ = data_.values.col(own_column_);
   sensitivity_ = Matrix::Zero(unknowns(), std::max<Index>(own_lags_, 1));
   const Index ring = sensitivity_.cols();
@@ -136,7 +144,8 @@ double Simulator::run(const Vector& theta, bool free, double unit, double weight
       newest.setZero();
       continue;
     }
-    if (std::abs(predicted - center_) > kFarthest * span_) return std::numeric_limits<double>::infinity();
+    if (std::abs(predicted - center_) > kFarthest * span_)
+      return std::numeric_limits<double>::infinity();
     if (squares != nullptr) {
       differentiate(theta, k, free);
       newest = gradient_;
@@ -167,14 +176,16 @@ class Fit {
     if (!std::isfinite(free)) return free;
     double sum = free + pull() * (theta - linear_).squaredNorm();
     if (params_.one_step_weight > 0.0)
-      sum += params_.one_step_weight * simulator_.run(theta, false, 1.0, 1.0, nullptr) / (step_unit_ * step_unit_);
+      sum += params_.one_step_weight * simulator_.run(theta, false, 1.0, 1.0, nullptr) /
+             (step_unit_ * step_unit_);
     return sum;
   }
 
   LeastSquares linearise(const Vector& theta) {
     LeastSquares squares(simulator_.unknowns());
     simulator_.run(theta, true, free_unit_, 1.0, &squares);
-    if (params_.one_step_weight > 0.0) simulator_.run(theta, false, step_unit_, params_.one_step_weight, &squares);
+    if (params_.one_step_weight > 0.0)
+      simulator_.run(theta, false, step_unit_, params_.one_step_weight, &squares);
     Vector row = Vector::Zero(simulator_.unknowns());
     for (Index i = 0; i < row.size(); ++i) {
       row[i] = 1.0;
@@ -218,8 +229,9 @@ class Fit {
 
 }  // namespace
 
-FreeRunFit fitFreeRun(const DataSet& data, int output, const OutputModel& linear, const ConsequentParams& params,
-                      OutputModel& model, const std::function<bool()>& proceed) {
+FreeRunFit fitFreeRun(const DataSet& data, int output, const OutputModel& linear,
+                      const ConsequentParams& params, OutputModel& model,
+                      const std::function<bool()>& proceed) {
   Simulator simulator(data, output, model);
   const std::vector<Rule> same(model.rules.size(), linear.rules.front());
   const Vector start = simulator.scaled(same);

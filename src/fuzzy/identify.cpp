@@ -92,8 +92,9 @@ bool identifyOutput(const DataSet& data, const Structure& structure, std::size_t
   bool completed =
       findRules(rows, s, structure, result.linear.submodels.back(), report, found, submodel);
   if (completed && structure.consequents.free_run_iterations > 0) {
-    found.free_run = fitFreeRun(data, static_cast<int>(i), result.linear.submodels.back(), structure.consequents,
-                                submodel, [&] { return report(freeRunProgress()); });
+    found.free_run =
+        fitFreeRun(data, static_cast<int>(i), result.linear.submodels.back(), structure.consequents,
+                   submodel, [&] { return report(freeRunProgress()); });
     completed = !found.free_run.cancelled;
   }
   result.model.submodels.push_back(submodel);

@@ -8,7 +8,8 @@
 
 namespace fpc {
 
-/// The variable that TsModel::text() writes so; nothing if the text has another form or names no signal of the model.
+/// The variable that TsModel::text() writes so; nothing if the text has another form or names no
+/// signal of the model.
 std::optional<Regressor> parseRegressor(const TsModel& model, const std::string& text);
 
 }  // namespace fpc

@@ -7,7 +7,7 @@ namespace fpc {
 
 /// Fills `model` and what `found` says about its rules. @return false when the callback cancelled.
 bool findRules(const Regression& rows, const OutputStructure& structure, const Structure& settings,
-               const OutputModel& linear, const IdentifyCallback& report, OutputIdentification& found,
-               OutputModel& model);
+               const OutputModel& linear, const IdentifyCallback& report,
+               OutputIdentification& found, OutputModel& model);
 
 }  // namespace fpc

@@ -198,6 +198,7 @@ std::string toJson(const Summary& summary) {
   json["sources"] = Json::object();
   for (std::size_t i = 1; i < summary.sources.size(); ++i)
     json["sources"][kSourceNames[i]] = summary.sources[i];
+  json["repaired_cells"] = summary.repaired_cells;
   json["limits"] = limitsOf(summary);
   return json.dump(2);
 }

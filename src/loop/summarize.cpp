@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/report.hpp"
 
 namespace fpc {
@@ -105,6 +107,17 @@ void countSamples(const RunRecord& record, Summary& summary) {
   }
 }
 
+/// Counted again from the record; 0 where the record is not at hand (it is the plant's, maybe of
+/// another machine).
+std::uint64_t repairedCells(const LoopFile& loop) {
+  if (loop.external_plant || loop.disturbance.source != "csv") return 0;
+  try {
+    return makeDisturbance(loop).repaired;
+  } catch (const InputError&) {
+    return 0;
+  }
+}
+
 }  // namespace
 
 Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) {
@@ -130,6 +143,7 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
   countSamples(record, summary);
   summary.has_clp = loop.has_clp;
   if (loop.has_clp) summarizeSolves(record, summary);
+  summary.repaired_cells = repairedCells(loop);
   return summary;
 }
 

@@ -71,6 +71,10 @@ std::string toTable(const std::vector<Summary>& summaries) {
   }
   std::string text = layout(outputs) + "\n" + layout(inputs);
   if (solves.size() > 1) text += "\n" + layout(solves);
+  for (const auto& summary : summaries)
+    if (summary.repaired_cells > 0)
+      text += "\n" + summary.loop + ": " + std::to_string(summary.repaired_cells) +
+              " missing cells of the influent record filled\n";
   return text;
 }
 

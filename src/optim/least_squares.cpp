@@ -1,4 +1,5 @@
-// Row-wise QR: a block of rows is stacked under the triangle and folded into it by Householder reflections.
+// Row-wise QR: a block of rows is stacked under the triangle and folded into it by Householder
+// reflections.
 #include "fmbpc/optim/least_squares.hpp"
 
 #include <Eigen/QR>
@@ -11,7 +12,8 @@ namespace {
 
 constexpr Eigen::Index kSmallestBlock = 64;
 constexpr double kRankTolerance = 1e-12;  // of the largest pivot, columns scaled to length 1
-constexpr int kPowerIterations = 40;      // a condition number needs no more than its order of magnitude
+constexpr int kPowerIterations =
+    40;  // a condition number needs no more than its order of magnitude
 
 /// Lengths of the columns; 1 for columns of zeros.
 Vector columnLengths(const Matrix& matrix) {
@@ -44,9 +46,10 @@ void judge(const Matrix& scaled, LeastSquaresSolution& solution) {
   if (n == 0 || solution.rank < n) return;
   const Matrix square = qr.matrixR().topRows(n);
   const auto R = square.triangularView<Eigen::Upper>();
-  const double largest = largestEigenvalue(n, [&](const Vector& v) { return Vector(R.transpose() * Vector(R * v)); });
-  const double inverse =
-      largestEigenvalue(n, [&](const Vector& v) { return Vector(R.solve(R.transpose().solve(v))); });
+  const double largest =
+      largestEigenvalue(n, [&](const Vector& v) { return Vector(R.transpose() * Vector(R * v)); });
+  const double inverse = largestEigenvalue(
+      n, [&](const Vector& v) { return Vector(R.solve(R.transpose().solve(v))); });
   solution.condition = std::sqrt(largest) * std::sqrt(inverse);
 }
 

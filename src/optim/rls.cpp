@@ -6,22 +6,33 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
+namespace {
+
+constexpr int kPowerIterations =
+    8;  // towards the direction of largest variance; PSD whatever they reach
+
+}  // namespace
 
 void RlsParams::validate() const {
   require(forgetting > 0.0 && forgetting <= 1.0, "forgetting", "a number in (0, 1]");
-  require(std::isfinite(initial_covariance) && initial_covariance > 0.0, "initial_covariance", "a number > 0");
-  require(std::isfinite(covariance_bound) && covariance_bound >= initial_covariance, "covariance_bound",
-          "a number that is not below initial_covariance");
+  require(std::isfinite(initial_covariance) && initial_covariance > 0.0, "initial_covariance",
+          "a number > 0");
+  require(std::isfinite(covariance_bound) && covariance_bound >= initial_covariance,
+          "covariance_bound", "a number that is not below initial_covariance");
 }
 
 RecursiveLeastSquares::RecursiveLeastSquares(const Vector& theta_0, const RlsParams& params)
-    : params_(params), projected_(theta_0.size()), gain_(theta_0.size()), root_(theta_0.size(), theta_0.size()) {
+    : params_(params),
+      projected_(theta_0.size()),
+      gain_(theta_0.size()),
+      root_(theta_0.size(), theta_0.size()) {
   params_.validate();
   reset(theta_0);
 }
 
 void RecursiveLeastSquares::reset(VectorRef theta_0) {
-  require(theta_0.size() > 0 && theta_0.size() == root_.rows(), "theta_0", "one value for each regressor");
+  require(theta_0.size() > 0 && theta_0.size() == root_.rows(), "theta_0",
+          "one value for each regressor");
   require(theta_0.allFinite(), "theta_0", "finite values");
   theta_ = theta_0;
   root_.setZero();
@@ -49,11 +60,29 @@ bool RecursiveLeastSquares::update(VectorRef x, double y, double weight) {
   return true;
 }
 
+/// Shrinks S along the direction of largest variance only: what the data do determine keeps its own
+/// forgetting.
 void RecursiveLeastSquares::boundCovariance() {
+  for (Eigen::Index turn = 0; turn < theta_.size(); ++turn) {
+    Eigen::Index widest = 0;
+    const double largest = root_.rowwise().squaredNorm().maxCoeff(&widest);
+    if (largest <= params_.covariance_bound) return;
+    if (turn == 0) ++bounded_;
+    gain_.setZero();
+    gain_[widest] = 1.0;
+    double variance = largest;
+    for (int i = 0; i < kPowerIterations; ++i) {
+      projected_.noalias() = root_.transpose() * gain_;
+      gain_.noalias() = root_ * projected_;
+      variance = gain_.norm();
+      gain_ /= variance;
+    }
+    projected_.noalias() = root_.transpose() * gain_;
+    root_.noalias() -=
+        (1.0 - std::sqrt(params_.covariance_bound / variance)) * gain_ * projected_.transpose();
+  }
   const double largest = root_.rowwise().squaredNorm().maxCoeff();
-  if (largest <= params_.covariance_bound) return;
-  root_ *= std::sqrt(params_.covariance_bound / largest);
-  ++bounded_;
+  if (largest > params_.covariance_bound) root_ *= std::sqrt(params_.covariance_bound / largest);
 }
 
 }  // namespace fpc

@@ -7,11 +7,11 @@
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/plot.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/ros/conversions.hpp"
 #include "fmbpc/ros/plant_check.hpp"
 #include "fmbpc/ros/topics.hpp"
-#include "tool/commands.hpp"
 
 namespace fpc {
 namespace {
@@ -31,11 +31,13 @@ std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
 
 Recorder makeRecorder(const LoopFile& loop) {
   std::vector<std::string> names, units;
-  if (!loop.external_plant)
-    for (const Quantity& state : makePlant(loop.simulation.plant)->description().states) {
+  if (!loop.external_plant) {
+    const auto plant = makePlant(loop.simulation.plant);
+    for (const Quantity& state : plant->description().states) {
       names.push_back(state.name);
       units.push_back(state.unit);
     }
+  }
   return {loop.name, loop.plant_info, loop.has_clp, !loop.external_plant, names, units};
 }
 
@@ -245,7 +247,8 @@ void LoopRecorder::write() {
   ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, wall_s);
   if (!out_.empty()) {
     writeRun(loop_, record, summary, out_);
-    if (plot_) tool::plot(out_);
+    const PlotResult plot = plot_ ? drawPlot(out_) : PlotResult{};
+    if (!plot.warning.empty()) ROS_WARN("loop_recorder: %s", plot.warning.c_str());
     ROS_INFO("loop_recorder: written: %s", out_.c_str());
   }
   std_msgs::String folder;

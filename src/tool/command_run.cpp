@@ -10,6 +10,7 @@
 #include <set>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/plot.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "tool/commands.hpp"
@@ -69,6 +70,11 @@ std::vector<LoopFile> readAll(const RunArguments& arguments) {
   return loops;
 }
 
+void draw(const std::string& folder) {
+  const PlotResult plot = drawPlot(folder);
+  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
+}
+
 std::string jsonOf(const std::vector<Summary>& summaries) {
   if (summaries.size() == 1) return toJson(summaries.front());
   std::string text = "{\"loops\": [\n";
@@ -89,7 +95,7 @@ int run(const RunArguments& arguments) {
     if (!folder.empty() && loops.size() > 1) folder = (fs::path(folder) / loop.name).string();
     summaries.push_back(runOne(loop, folder));
     if (!folder.empty()) written.push_back(folder);
-    if (!folder.empty() && !arguments.no_plot && !interrupted) plot(folder);
+    if (!folder.empty() && !arguments.no_plot && !interrupted) draw(folder);
     if (interrupted) break;
   }
   std::cout << (arguments.json ? jsonOf(summaries) + "\n" : toTable(summaries));

@@ -19,9 +19,6 @@ int run(const RunArguments& arguments);
 int resolve(const std::string& loop, const std::vector<std::string>& set);
 int plants(bool json);
 int model(const std::string& file, bool json);
-
-/// Runs scripts/plot_loop.py on a result folder; a missing script or matplotlib is a warning, not a
-/// failure. Returns the picture's name, empty if there is none.
-std::string plot(const std::string& folder);
+int table(const std::vector<std::string>& folders);
 
 }  // namespace fpc::tool

@@ -113,6 +113,13 @@ TEST_F(Report, SummaryHasTheKeysThatScriptsRead) {
                    .contains("clp"));
 }
 
+TEST_F(Report, MissingCellsOfTheInfluentAreCounted) {
+  const LoopFile loop = readLoop("asp_influent_csv");
+  const Summary summary = summarize(loop, runLoop(loop), 0.0);
+  EXPECT_EQ(summary.repaired_cells, 3U);
+  EXPECT_NE(toTable({summary}).find("3 missing cells"), std::string::npos);
+}
+
 TEST_F(Report, SourcesAddUpToTheSteps) {
   const LoopFile loop = shortLoop("asp_case1_clp");
   const Summary summary = summarize(loop, runLoop(loop), 0.0);

@@ -13,6 +13,14 @@ namespace fpc::testing {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
+/// min 1/2 |x|^2 over two unknowns with x_1 + x_2 >= 2: x = (1, 1), y_a = 1.
+inline QpProblem nearestPointOfHalfPlane() {
+  QpProblem p(2, 1);
+  p.A << 1.0, 1.0;
+  p.a_lower << 2.0;
+  return p;
+}
+
 /// Draws for the generators below.
 class Draw {
  public:

@@ -31,7 +31,8 @@ struct Clusters {
   bool cancelled{false};
 
   Eigen::Index count() const { return centers.cols(); }
-  /// Squared distances (c x samples) of points (dimensions x samples): (z - v)' A (z - v), A = det(F)^(1/n) F^-1.
+  /// Squared distances (c x samples) of points (dimensions x samples): (z - v)' A (z - v), A =
+  /// det(F)^(1/n) F^-1.
   Matrix distances(MatrixRef points) const;
   /// Memberships of any points in these clusters (c x samples).
   Matrix membershipsOf(MatrixRef points) const;

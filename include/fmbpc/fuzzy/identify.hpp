@@ -41,7 +41,7 @@ struct OutputIdentification {
   std::vector<ClusterTrial> trials;  ///< empty if the number was given
   std::vector<double> objective;     ///< of the final clustering; empty for grids and one cluster
   bool converged{true};
-  FreeRunFit free_run;               ///< if asked for
+  FreeRunFit free_run;  ///< if asked for
   RuleFit linear;
   std::vector<RuleFit> rules;  ///< as found; dropped ones are in here but not in the model
 };

@@ -59,7 +59,7 @@ struct ConsequentParams {
   double samples_per_coefficient{3.0};  ///< rules with less (sum of firing weights) are scarce
   double max_condition{1e8};  ///< of scaled columns, without ridge; rules beyond it are scarce too
   ScarceRule scarce{ScarceRule::kBorrow};
-  double forgetting{1.0};  ///< recursive only
+  double forgetting{1.0};       ///< recursive only
   int free_run_iterations{0};   ///< > 0: then the coefficients are fitted to free runs as well
   double one_step_weight{1.0};  ///< of one-step errors beside free-run errors in that fit
 };

@@ -26,12 +26,16 @@ struct Summary {
   std::uint64_t clp_failed{};  ///< solves without a usable result for another reason
   double clp_median_us{}, clp_p99_us{};
   std::vector<std::uint64_t> sources;  ///< count of actions per ActionSource (index = value)
-  InputLimits limits;                  ///< of the inputs
+  std::uint64_t
+      repaired_cells{};  ///< missing cells of the influent record that were held or interpolated
+  InputLimits limits;    ///< of the inputs
   std::vector<double> output_lower, output_upper;  ///< limits behind output_violations
 };
 
 Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s);
 std::string toJson(const Summary& summary);  ///< keys of README, one object
+/// What toTable() needs of a summary.json. @throws InputError naming the file.
+Summary readSummary(const std::string& file);
 std::string toTable(const std::vector<Summary>& summaries);
 /// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot
 /// be written.

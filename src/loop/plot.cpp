@@ -1,16 +1,15 @@
-// plot.png of a result folder, by scripts/plot_loop.py.
+#include "fmbpc/loop/plot.hpp"
+
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <filesystem>
 
 #include "fmbpc/loop/loop_file.hpp"
-#include "tool/commands.hpp"
 
-namespace fpc::tool {
+namespace fpc {
 namespace {
 
 namespace fs = std::filesystem;
@@ -18,7 +17,7 @@ constexpr char kPython[] = "/usr/bin/python3";
 
 /// The script stands beside the config folders, in the source tree as in an installed package.
 std::string findScript() {
-  for (const auto& folder : fpc::configFolders()) {
+  for (const auto& folder : configFolders()) {
     const fs::path script = fs::path(folder).lexically_normal() / ".." / "scripts" / "plot_loop.py";
     if (fs::is_regular_file(script)) return script.lexically_normal().string();
   }
@@ -42,19 +41,12 @@ bool runScript(const std::string& script, const std::string& folder) {
 
 }  // namespace
 
-std::string plot(const std::string& folder) {
+PlotResult drawPlot(const std::string& folder) {
   const std::string script = findScript();
-  if (script.empty()) {
-    std::fprintf(
-        stderr,
-        "fmbpc: warning: no plot, scripts/plot_loop.py not found beside the config folders\n");
-    return {};
-  }
-  if (!runScript(script, folder)) {
-    std::fprintf(stderr, "fmbpc: warning: no plot of %s\n", folder.c_str());
-    return {};
-  }
-  return (fs::path(folder) / "plot.png").string();
+  if (script.empty())
+    return {"", "no plot: scripts/plot_loop.py not found beside the config folders"};
+  if (!runScript(script, folder)) return {"", "no plot of " + folder};
+  return {(fs::path(folder) / "plot.png").string(), ""};
 }
 
-}  // namespace fpc::tool
+}  // namespace fpc

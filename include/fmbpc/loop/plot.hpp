@@ -1,0 +1,16 @@
+// The picture of a run, drawn by scripts/plot_loop.py.
+#pragma once
+
+#include <string>
+
+namespace fpc {
+
+struct PlotResult {
+  std::string picture;  ///< file, empty if none was drawn
+  std::string warning;  ///< why not, in words
+};
+
+/// Draws plot.png in a folder written by writeRun(). A missing script or matplotlib is a warning, never a failure.
+PlotResult drawPlot(const std::string& folder);
+
+}  // namespace fpc

@@ -1,0 +1,68 @@
+// summary.json read back, for tables of runs that other processes made.
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/report.hpp"
+
+namespace fpc {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void readOutputs(const Json& json, Summary& summary) {
+  for (const auto& [name, y] : json.items()) {
+    summary.output_names.push_back(name);
+    summary.outputs.push_back(
+        {y.at("ise"), y.at("iae"), y.at("itae"), y.at("itse"), y.at("rmse"), y.at("ise_reference")});
+  }
+}
+
+void readInputs(const Json& json, Summary& summary) {
+  for (const auto& [name, u] : json.items()) {
+    summary.input_names.push_back(name);
+    summary.inputs.push_back({u.at("min"), u.at("max"), u.at("mean_abs_move")});
+  }
+}
+
+void readClp(const Json& json, Summary& summary) {
+  summary.has_clp = true;
+  summary.clp_solves = json.at("solves");
+  summary.clp_infeasible = json.at("infeasible");
+  summary.clp_failed = json.at("failed");
+  summary.clp_median_us = json.at("median_us");
+  summary.clp_p99_us = json.at("p99_us");
+}
+
+Summary summaryOf(const Json& json) {
+  Summary summary;
+  summary.loop = json.at("loop");
+  summary.complete = json.at("complete");
+  summary.steps = json.at("steps");
+  summary.wall_s = json.at("wall_s");
+  readOutputs(json.at("outputs"), summary);
+  readInputs(json.at("inputs"), summary);
+  const Json& violations = json.at("violations");
+  summary.input_violations = violations.at("input");
+  summary.move_violations = violations.at("move");
+  summary.output_violations = violations.at("output");
+  summary.actuator_clips = json.at("actuator_clips");
+  summary.repaired_cells = json.at("repaired_cells");
+  if (json.contains("clp")) readClp(json.at("clp"), summary);
+  return summary;
+}
+
+}  // namespace
+
+Summary readSummary(const std::string& file) {
+  std::ifstream stream(file);
+  require(stream.good(), file, "a readable file");
+  try {
+    return summaryOf(Json::parse(stream));
+  } catch (const Json::exception& error) {
+    throw InputError(file + ": expected a summary of `fmbpc run --out`: " + error.what());
+  }
+}
+
+}  // namespace fpc

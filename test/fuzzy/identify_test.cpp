@@ -1,0 +1,152 @@
+#include "fmbpc/fuzzy/identify.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/prediction.hpp"
+#include "fuzzy/identify_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+using test::knownRecord;
+using test::knownStructure;
+
+DataSet dataOf(const Matrix& record, const Structure& structure) {
+  return makeDataSet(record, structure, "record");
+}
+
+double freeRunRmse(const TsModel& model, const DataSet& data) {
+  return fitFigures(data.values.col(0), predictFreeRun(model, data).col(0)).rmse;
+}
+
+TEST(Identify, AKnownGridRecoversTheModelToTheLastDigits) {
+  const Structure structure = knownStructure(
+      test::kKnownGrid, "partition: {method: grid}\nconsequents: {method: global, ridge: 0}\n");
+  const auto found = identify(dataOf(knownRecord(500, 1), structure), structure);
+  const OutputModel known = test::knownModel().submodels.front();
+  ASSERT_EQ(found.model.submodels[0].rules.size(), 2U);
+  for (std::size_t r = 0; r < 2; ++r)
+    EXPECT_LT((found.model.submodels[0].rules[r].coefficients - known.rules[r].coefficients)
+                  .cwiseAbs()
+                  .maxCoeff(),
+              1e-6);
+  EXPECT_TRUE(found.remarks.empty());
+}
+
+TEST(Identify, ClustersBeatTheLinearModelOnHeldOutData) {
+  for (const char* method : {"gustafson_kessel", "fuzzy_c_means"})
+    for (const char* membership : {"gaussian", "exponential"}) {
+      SCOPED_TRACE(std::string(method) + " " + membership);
+      const Structure structure = knownStructure(
+          "antecedents: [u(k)]\n    clusters: 4",
+          std::string("partition: {method: ") + method + ", membership: " + membership + "}\n");
+      const auto found = identify(dataOf(knownRecord(1500, 1, 0.01), structure), structure);
+      const DataSet held_out = dataOf(knownRecord(500, 2, 0.01), structure);
+      EXPECT_LT(freeRunRmse(found.model, held_out), 0.8 * freeRunRmse(found.linear, held_out));
+    }
+}
+
+TEST(Identify, SameSeedSameModel) {
+  const Structure structure = knownStructure("clusters: auto");
+  const DataSet data = dataOf(knownRecord(400, 3, 0.05), structure);
+  EXPECT_EQ(writeModel(identify(data, structure).model),
+            writeModel(identify(data, structure).model));
+}
+
+TEST(Identify, ItsModelSurvivesItsFile) {
+  const Structure structure = knownStructure();
+  const auto found = identify(dataOf(knownRecord(400, 4, 0.05), structure), structure);
+  const std::string text = writeModel(found.model);
+  EXPECT_EQ(writeModel(parseModel(text, "model")), text);
+  EXPECT_NE(found.model.source.find("seed 1"), std::string::npos) << found.model.source;
+}
+
+TEST(Identify, WeightsAreSharesOfOneFarOutsideTheData) {
+  std::mt19937_64 generator(11);
+  std::uniform_real_distribution<double> exponent(-3.0, 12.0);
+  for (const char* membership : {"gaussian", "exponential"}) {
+    const Structure structure =
+        knownStructure("clusters: 5", std::string("partition: {membership: ") + membership + "}\n");
+    const auto found = identify(dataOf(knownRecord(400, 4, 0.05), structure), structure);
+    FiringResult firing;
+    for (int i = 0; i < 500; ++i) {
+      const double size = std::pow(10.0, exponent(generator));
+      const Vector z = (Vector(2) << (i % 2 ? size : -size), (i % 3 ? size : -size)).finished();
+      firingWeights(found.model.submodels[0], z, firing);
+      EXPECT_GE(firing.weights.minCoeff(), 0.0);
+      EXPECT_NEAR(firing.weights.sum(), 1.0, 1e-12);
+    }
+  }
+}
+
+TEST(Identify, TheNumberOfClustersIsChosenByVotesOnHeldOutRows) {
+  const Structure structure = knownStructure("antecedents: [u(k)]\n    clusters: [2, 5]");
+  const auto found = identify(dataOf(knownRecord(1000, 5, 0.02), structure), structure);
+  const auto& trials = found.outputs[0].trials;
+  ASSERT_EQ(trials.size(), 4U);
+  double fewest = 1e9;
+  for (const auto& trial : trials) fewest = std::min(fewest, trial.votes);
+  const auto chosen = static_cast<int>(found.outputs[0].rules.size());
+  for (const auto& trial : trials) {
+    if (trial.clusters == chosen) {
+      EXPECT_EQ(trial.votes, fewest);
+    }
+  }
+  EXPECT_GE(chosen, 2);
+  EXPECT_LE(chosen, 5);
+}
+
+TEST(Identify, ProgressRisesToOneAndCancelStops) {
+  const Structure structure = knownStructure();
+  const DataSet data = dataOf(knownRecord(400, 6, 0.05), structure);
+  double share = 0.0;
+  identify(data, structure, [&](const IdentifyProgress& progress) {
+    EXPECT_GE(progress.share, share);
+    EXPECT_EQ(progress.output, "y");
+    EXPECT_EQ(progress.samples, 399);
+    share = progress.share;
+    return true;
+  });
+  EXPECT_EQ(share, 1.0);
+  int calls = 0;
+  const auto found =
+      identify(data, structure, [&](const IdentifyProgress&) { return ++calls < 3; });
+  EXPECT_TRUE(found.cancelled);
+  EXPECT_EQ(calls, 3);
+}
+
+TEST(Identify, AnInputThatNeverMovesIsDroppedWhenAllowed) {
+  Matrix record = knownRecord(200, 7, 0.5);
+  record.col(1).setConstant(1.0);
+  const Structure structure = knownStructure("clusters: 2", "repair: {drop_constant: true}\n");
+  const auto found = identify(dataOf(record, structure), structure);
+  EXPECT_EQ(found.model.submodels[0].regressors.size(), 1U);
+  EXPECT_NE(found.remarks.front().find("'u' never moves"), std::string::npos);
+}
+
+TEST(Identify, TooFewRowsAreRefused) {
+  const Structure structure = knownStructure("clusters: 8");
+  EXPECT_THROW(identify(dataOf(knownRecord(30, 8, 0.05), structure), structure), InputError);
+}
+
+TEST(Identify, AFreeRunFitLowersTheFreeRunErrorAndKeepsOneStepErrorsSmall) {
+  // Noise on the measurement biases one-step least squares towards too fast a process.
+  Matrix record = knownRecord(800, 9), fresh = knownRecord(800, 10);
+  std::mt19937_64 generator(12);
+  std::normal_distribution<double> normal(0.0, 0.3);
+  for (double& y : record.col(0)) y += normal(generator);
+  const std::string rules = "antecedents: [u(k)]\n    clusters: 2";
+  const Structure plain = knownStructure(rules),
+                  fitted = knownStructure(rules, "consequents: {free_run_iterations: 20}\n");
+  const DataSet data = dataOf(record, plain), clean = dataOf(fresh, plain);
+  const auto before = identify(data, plain), after = identify(data, fitted);
+  EXPECT_LT(freeRunRmse(after.model, data), freeRunRmse(before.model, data));
+  EXPECT_LT(freeRunRmse(after.model, clean), 0.7 * freeRunRmse(before.model, clean));
+  EXPECT_NEAR(after.outputs[0].free_run.after, freeRunRmse(after.model, data), 1e-9);
+  EXPECT_GT(after.outputs[0].free_run.iterations, 0);
+}
+
+}  // namespace
+}  // namespace fpc
