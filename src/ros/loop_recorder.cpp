@@ -172,7 +172,10 @@ void LoopRecorder::deliverEarly() {
 }
 
 void LoopRecorder::beginRun(const StepHeader& header) {
-  if (run_known_) setpoints_.clear();
+  if (run_known_) {
+    setpoints_.clear();
+    recorder_.take();  // an unfinished run is forgotten
+  }
   run_known_ = true;
   written_ = false;
   final_seen_ = {};

@@ -32,7 +32,7 @@ StepHeader header(std::uint32_t step, std::uint64_t run_id = 1) {
 
 // The base law of the fixture asks for 804; `demand` more moves it towards the bound of 1600.
 PredictiveAction prediction(const StepHeader& h, double demand = 0.0, int n_c = kSteps) {
-  PredictiveAction p = test::sludgeLike(n_c).now;
+  PredictiveAction p = clp_test::sludgeLike(n_c).now;
   p.header = h;
   p.feedforward.array() += demand;
   p.input_base_unclipped.array() += demand;
@@ -44,7 +44,7 @@ ControlAction base(const StepHeader& h, double input = 804.0,
   return {h, Vector::Constant(1, input), source};
 }
 
-OptimizerSession make() { return {params(), test::sludgeLike(kSteps).limits, plant()}; }
+OptimizerSession make() { return {params(), clp_test::sludgeLike(kSteps).limits, plant()}; }
 
 TEST(OptimizerSession, PairsBaseAndPredictionInAnyOrder) {
   OptimizerSession session = make();
@@ -207,7 +207,7 @@ std::vector<double*> numbersOf(PredictiveAction& p) {
 TEST(OptimizerSession, PredictionThatIsNotFiniteIsCountedAndTheBaseIsClipped) {
   std::vector<Spoil> spoils;
   for (std::size_t i = 0; i < 12; ++i)
-    for (const double bad : {kNaN, test::kInfinity})
+    for (const double bad : {kNaN, clp_test::kInfinity})
       spoils.push_back([i, bad](PredictiveAction& p) { *numbersOf(p)[i] = bad; });
   expectClipped(spoils);
 }
@@ -289,7 +289,7 @@ TEST(OptimizerSession, GapAndNewRunForgetTheWarmStart) {
 TEST(OptimizerSession, BadParamsAreRefusedAtConstruction) {
   ClpParams p = params();
   p.perturbation_steps = 0;
-  InputLimits limits = test::sludgeLike(kSteps).limits;
+  InputLimits limits = clp_test::sludgeLike(kSteps).limits;
   EXPECT_THROW(OptimizerSession(p, limits, plant()), InputError);
   limits.upper = Vector::Zero(2);
   EXPECT_THROW(OptimizerSession(params(), limits, plant()), InputError);

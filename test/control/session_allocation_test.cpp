@@ -32,7 +32,7 @@ struct PredictiveStub final : Controller {
     output.predictive = true;
     output.prediction = prediction;
   }
-  PredictiveAction prediction = test::sludgeLike(8).now;
+  PredictiveAction prediction = clp_test::sludgeLike(8).now;
 };
 
 // Every kind of sample but the first: plain, repeated, old, not finite (held), manual.
@@ -41,7 +41,7 @@ void expectNoAllocations(std::unique_ptr<Controller> controller) {
   setpoints.initial = Vector::Constant(2, 55.0);
   setpoints.schedule = {{1.0, Vector::Constant(2, 60.0)}, {2.0, Vector::Constant(2, 70.0)}};
   setpoints.rate_per_h = Vector::Constant(2, 5.0);
-  const InputLimits limits = test::sludgeLike(8).limits;
+  const InputLimits limits = clp_test::sludgeLike(8).limits;
   ControllerSession session(std::move(controller), setpoints, limits, Vector::Constant(1, 570.0),
                             plant());
   Measurement m{header(0), Vector::Constant(2, 50.0), Vector(), Vector::Constant(1, 570.0), false};
@@ -69,7 +69,7 @@ TEST(SessionAllocation, ControllerSessionDoesNotAllocatePerSample) {
   params.loops.resize(1);
   params.loops[0].kp = 1.0;
   params.loops[0].ki_per_h = 0.1;
-  expectNoAllocations(std::make_unique<PiController>(params, test::sludgeLike(8).limits, plant()));
+  expectNoAllocations(std::make_unique<PiController>(params, clp_test::sludgeLike(8).limits, plant()));
   expectNoAllocations(std::make_unique<PredictiveStub>());
 }
 
@@ -77,8 +77,8 @@ TEST(SessionAllocation, OptimizerSessionDoesNotAllocatePerSample) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   ClpParams params;
   params.perturbation_steps = 8;
-  OptimizerSession session(params, test::sludgeLike(8).limits, plant());
-  PredictiveAction prediction = test::sludgeLike(8).now;
+  OptimizerSession session(params, clp_test::sludgeLike(8).limits, plant());
+  PredictiveAction prediction = clp_test::sludgeLike(8).now;
   ControlAction base{header(0), Vector::Constant(1, 804.0), ActionSource::kBase};
   prediction.header = base.header;
   session.receive(base);

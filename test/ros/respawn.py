@@ -8,7 +8,7 @@ import sys
 import unittest
 import xmlrpc.client
 
-import rosnode
+import rosgraph
 import rospy
 import rostest
 from fmbpc.msg import CommandEffect, ControlAction, Measurement, Setpoint
@@ -23,9 +23,9 @@ NODE = "/fmbpc_controller"
 def pid():
     """Process of the controller; 0 while it is not there."""
     try:
-        uri = rosnode.get_api_uri(rospy.get_master(), NODE, skip_cache=True)
-        return xmlrpc.client.ServerProxy(uri).getPid("/respawn")[2] if uri else 0
-    except OSError:
+        uri = rosgraph.Master(rospy.get_name()).lookupNode(NODE)
+        return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2]
+    except (OSError, rosgraph.MasterException):
         return 0
 
 

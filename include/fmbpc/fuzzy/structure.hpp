@@ -38,7 +38,7 @@ struct PartitionParams {
   Scaling scaling{Scaling::kDeviation};
   bool with_output{
       true};  ///< cluster in the space of antecedents and predicted output, else antecedents only
-  double fuzziness{1.5};  ///< m > 1; near 2 clusters in many dimensions fall together
+  double fuzziness{1.5};  ///< m > 1; near 2, clusters in many dimensions fall together
   double regularisation{
       0.05};          ///< gamma in [0, 1): share of the data's own spread in each covariance
   double width{1.0};  ///< > 0: the projected sets are made this much wider

@@ -1,0 +1,47 @@
+#!/usr/bin/python3
+"""In realtime the plant does not wait: it holds the last input, then takes the fallback, and a controller that joins
+late finds a run under way."""
+import sys
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray
+from fmbpc.msg import ControlAction, Measurement, NodeReady, PlantState
+
+import ring
+
+
+class RealtimeGaps(unittest.TestCase):
+    def test_missing_actions_mean_hold_then_fallback(self):
+        measurements, states = ring.Listener("measurement", Measurement), ring.Listener("plant_state", PlantState)
+        diagnostics = ring.Listener("/diagnostics", DiagnosticArray)
+        pub = ring.publisher("control_action", ControlAction)
+        states.wait_for_publisher()
+        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
+        ready.publish(node=rospy.get_name())
+        run_id = measurements.wait(lambda m: m.step == 8).run_id
+        pub.publish(ControlAction(run_id=run_id, step=2, input=[700.0], source=1))  # much too late
+        for step in range(20, 40):  # one of these at the latest is in time
+            measurements.wait(lambda m, s=step: m.step >= s)
+            pub.publish(ControlAction(run_id=run_id, step=step, input=[700.0], source=1))
+        measurements.wait(lambda m: m.final)
+        states.wait(lambda s: s.step == 50)
+        inputs = {m.step: m.input_applied[0] for m in measurements.messages}
+        missing = {s.step: s.input_missing for s in states.messages}
+        self.assertEqual(list(range(51)), sorted(inputs))
+        self.assertEqual([570.0] * 4 + [800.0] * 16, [inputs[k] for k in range(20)])  # u(-1), three held, fallback
+        self.assertEqual([False] + [True] * 19, [missing[k] for k in range(20)])
+        answered = [k for k in range(21, 51) if not missing[k]]
+        self.assertTrue(answered)
+        self.assertEqual({700.0}, {inputs[k] for k in answered})
+        last = answered[-1]  # then three held, then the fallback again
+        self.assertEqual([700.0] * 4 + [800.0] * (47 - last), [inputs[k] for k in range(last, 51)])
+        count = str(sum(missing.values()))
+        diagnostics.wait(lambda m: ring.values(ring.diagnostics_of(m, "plant_simulator") or
+                                               type("None", (), {"values": []})).get("inputs missing") == count)
+
+
+if __name__ == "__main__":
+    rospy.init_node("realtime_gaps")
+    rostest.rosrun("fmbpc", "realtime_gaps", RealtimeGaps, sys.argv)
