@@ -47,6 +47,7 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, ros::NodeHandle private_node, c
       signals_(node),
       action_(node.advertise<fmbpc::ControlAction>(topics::kControlAction, topics::kRingQueue)),
       report_(node.advertise<fmbpc::SolverReport>(topics::kSolverReport, topics::kRingQueue)),
+      listeners_({action_, report_}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ClpOptimizer::onPlantInfo, this)),
       base_subscriber_(
           subscribe(node, topics::kBaseAction, topics::kRingQueue, &ClpOptimizer::onBase, this)),
@@ -77,7 +78,7 @@ template <typename Item>
 void ClpOptimizer::receive(const Item& item) {
   if (!guard_.admits(item.header.run_id, ros::WallTime::now()))
     ++foreign_;
-  else if (session_.receive(item))
+  else if (listeners_.open() && session_.receive(item))  // if not, both will come again
     publish();
 }
 

@@ -40,6 +40,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
           node.advertise<fmbpc::PredictiveAction>(topics::kPredictiveAction, topics::kRingQueue)),
       tracking_(node.advertise<fmbpc::Tracking>(topics::kTracking, topics::kRingQueue)),
       effect_(node.advertise<fmbpc::CommandEffect>(topics::kSetpointEffect, topics::kRingQueue)),
+      listeners_({base_, prediction_, tracking_, effect_}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &ControllerNode::onModel, this)),
       measurement_subscriber_(subscribe(node, topics::kMeasurement, topics::kRingQueue,
@@ -92,7 +93,8 @@ void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
       ++foreign_;
       return;
     }
-    if (!plant_ || mustAwaitSetpoints(measurement)) return;  // the plant will send it again
+    if (!plant_ || mustAwaitSetpoints(measurement) || !listeners_.open())
+      return;  // the plant will send it again
     switch (session_.receive(measurement)) {
       case Receipt::kAnswered:
         return publish(false);

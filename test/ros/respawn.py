@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""A controller that is killed in the middle of a run comes back, finds what the operator asked, and no sample is
-lost."""
+"""A node that is killed in the middle of a run comes back, finds what the operator asked, and no sample is lost."""
 import csv
 import os
 import signal
@@ -17,40 +16,43 @@ from std_msgs.msg import String
 
 import ring
 
-NODE = "/fmbpc_controller"
 
-
-def pid():
-    """Process of the controller; 0 while it is not there."""
+def pid(node):
+    """Process of a node; 0 while it is not there."""
     try:
-        uri = rosgraph.Master(rospy.get_name()).lookupNode(NODE)
+        uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
         return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2]
     except (OSError, rosgraph.MasterException):
         return 0
 
 
 class Respawn(unittest.TestCase):
-    def test_a_killed_controller_comes_back_and_no_sample_is_lost(self):
-        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log)
-        measurements, actions = ring.Listener("measurement", Measurement), ring.Listener("control_action", ControlAction)
+    def kill_in_the_middle(self, victim):
+        """Asks for x = 1900, kills the victim once that acts; returns the step from which it acts."""
         effects, active = ring.Listener("setpoint_effect", CommandEffect), ring.Listener("setpoint_active", Setpoint)
         effects.wait_for_publisher()
-        actions.wait(lambda a: a.step == 5)
+        ring.Listener("control_action", ControlAction).wait(lambda a: a.step >= 5)
         setpoint = ring.publisher("setpoint", Setpoint, listeners=2)
         setpoint.publish(name=["x"], value=[1900.0], mode=Setpoint.OVERRIDE)
         asked = effects.wait().step
         active.wait(lambda m: m.name == ["x"] and list(m.value) == [1900.0])
-        first = pid()
+        first = pid(victim)
         os.kill(first, signal.SIGKILL)
-        ring.wait_until(lambda: pid() not in (0, first), "another controller")
-        log.wait(lambda m: m.name == NODE and "reset: first sample is" in m.msg and "first sample is 0" not in m.msg)
-        log.wait(lambda m: m.name == NODE and "setpoint of x restored" in m.msg)
+        ring.wait_until(lambda: pid(victim) not in (0, first), f"another {victim}")
+        return asked
 
+    def test_a_killed_node_comes_back_and_no_sample_is_lost(self):
+        victim = rospy.get_param("~victim")
+        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log)
+        measurements = ring.Listener("measurement", Measurement)
+        asked = self.kill_in_the_middle(victim)
+        if victim == "/fmbpc_controller":
+            log.wait(lambda m: m.name == victim and "reset: first sample is" in m.msg and "is 0" not in m.msg)
+            log.wait(lambda m: m.name == victim and "setpoint of x restored" in m.msg)
         folder = recorded.wait().data
-        self.assertEqual(100, ring.summary(folder)["steps"])
-        self.assertTrue(ring.summary(folder)["complete"])
-        steps = sorted({m.step for m in measurements.messages})
-        self.assertEqual(100, steps[-1])
+        summary = ring.summary(folder)
+        self.assertEqual((100, True), (summary["steps"], summary["complete"]))
+        self.assertEqual(100, max(m.step for m in measurements.messages))
         with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         column = next(name for name in rows[0] if name.startswith("x_setpoint"))

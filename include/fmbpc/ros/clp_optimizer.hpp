@@ -13,6 +13,7 @@
 #include "fmbpc/control/session.hpp"
 #include "fmbpc/loop/loop_file.hpp"
 #include "fmbpc/ros/diagnostics.hpp"
+#include "fmbpc/ros/listener_gate.hpp"
 #include "fmbpc/ros/node.hpp"
 #include "fmbpc/ros/ready.hpp"
 #include "fmbpc/ros/run_guard.hpp"
@@ -50,6 +51,7 @@ class ClpOptimizer : public Node {
   WallThrottle log_{1.0};
 
   ros::Publisher action_, report_;
+  ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, base_subscriber_, prediction_subscriber_;
   Diagnostics diagnostics_;
 };

@@ -17,6 +17,7 @@
 #include "fmbpc/control/session.hpp"
 #include "fmbpc/loop/loop_file.hpp"
 #include "fmbpc/ros/diagnostics.hpp"
+#include "fmbpc/ros/listener_gate.hpp"
 #include "fmbpc/ros/node.hpp"
 #include "fmbpc/ros/ready.hpp"
 #include "fmbpc/ros/run_guard.hpp"
@@ -62,6 +63,7 @@ class ControllerNode : public Node {
   WallThrottle log_{1.0};
 
   ros::Publisher base_, prediction_, tracking_, effect_;
+  ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       setpoint_subscriber_, setpoint_active_subscriber_;
   ros::ServiceServer manual_, manual_input_;

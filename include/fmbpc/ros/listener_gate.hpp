@@ -1,0 +1,27 @@
+// Holds back the first answer of a node that joins a running loop until everybody who listens is
+// connected: otherwise a recorder would miss samples that the plant has already used.
+#pragma once
+
+#include <ros/ros.h>
+
+#include <vector>
+
+namespace fpc {
+
+/// Open as soon as each publisher has as many connections as the master knows listeners; a listener
+/// that died without a word holds it back for a second of wall time only. Once open it stays open.
+class ListenerGate {
+ public:
+  explicit ListenerGate(std::vector<ros::Publisher> publishers)
+      : publishers_(std::move(publishers)) {}
+  bool open();
+
+ private:
+  bool allConnected() const;
+
+  std::vector<ros::Publisher> publishers_;
+  ros::WallTime deadline_;
+  bool open_{false};
+};
+
+}  // namespace fpc

@@ -1,0 +1,43 @@
+#include "fmbpc/ros/listener_gate.hpp"
+
+#include <ros/master.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+
+namespace fpc {
+namespace {
+
+constexpr double kPatience = 1.0;  // [s] of wall time
+
+/// Number of listeners by topic; empty if the master does not answer.
+std::map<std::string, std::uint32_t> listeners() {
+  XmlRpc::XmlRpcValue request, response, state;
+  request[0] = ros::this_node::getName();
+  std::map<std::string, std::uint32_t> counts;
+  if (!ros::master::execute("getSystemState", request, response, state, false)) return counts;
+  XmlRpc::XmlRpcValue& subscribers = state[1];
+  for (int i = 0; i < subscribers.size(); ++i)
+    counts[subscribers[i][0]] = static_cast<std::uint32_t>(subscribers[i][1].size());
+  return counts;
+}
+
+}  // namespace
+
+bool ListenerGate::allConnected() const {
+  auto wanted = listeners();
+  return std::all_of(publishers_.begin(), publishers_.end(), [&](const ros::Publisher& p) {
+    return p.getNumSubscribers() >= wanted[p.getTopic()];
+  });
+}
+
+bool ListenerGate::open() {
+  if (open_) return true;
+  const ros::WallTime now = ros::WallTime::now();
+  if (deadline_.isZero()) deadline_ = now + ros::WallDuration(kPatience);
+  open_ = allConnected() || now >= deadline_;
+  return open_;
+}
+
+}  // namespace fpc
