@@ -18,7 +18,7 @@ std::map<std::string, std::uint32_t> listeners() {
   std::map<std::string, std::uint32_t> counts;
   if (!ros::master::execute("getSystemState", request, response, state, false)) return counts;
   XmlRpc::XmlRpcValue& subscribers = state[1];
-  for (int i = 0; i < subscribers.size(); ++i)
+  for (int i = subscribers.size(); i-- > 0;)
     counts[subscribers[i][0]] = static_cast<std::uint32_t>(subscribers[i][1].size());
   return counts;
 }

@@ -25,6 +25,7 @@ constexpr std::size_t kMostEarly = 10000;
 
 std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
   std::vector<std::string> names;
+  names.reserve(signals.size());
   for (const SignalInfo& signal : signals) names.push_back(signal.name);
   return names;
 }
@@ -48,7 +49,8 @@ Eigen::Index count(const List& list) {
 
 }  // namespace
 
-LoopRecorder::LoopRecorder(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop)
+LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_node,
+                           const LoopFile& loop)
     : loop_(loop),
       out_(private_node.param<std::string>("out", "")),
       keep_(private_node.param("keep", false)),

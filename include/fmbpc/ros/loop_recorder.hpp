@@ -34,7 +34,7 @@ class LoopRecorder : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }
   /// @throws InputError
-  LoopRecorder(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop);
+  LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_node, const LoopFile& loop);
   int finish() override;
 
  private:

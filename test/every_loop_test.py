@@ -1,0 +1,52 @@
+#!/usr/bin/python3
+"""Every shipped loop over topics equals the same loop in process, byte for byte. Long: scripts/test --long."""
+import filecmp
+import os
+import pathlib
+import socket
+import subprocess
+import tempfile
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parent.parent
+LOOPS = sorted(path.stem for path in (TOP / "config" / "loop").glob("*.yaml"))
+ENVIRONMENT = f". {TOP}/scripts/env.sh; exec "
+
+
+def run(command, **variables):
+    return subprocess.run(["bash", "-c", ENVIRONMENT + command], env={**os.environ, **variables},
+                          capture_output=True, text=True, timeout=600, check=False)
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("", 0))
+        return probe.getsockname()[1]
+
+
+@unittest.skipUnless(os.environ.get("FMBPC_LONG_TESTS"), "long run: scripts/test --long")
+class EveryLoop(unittest.TestCase):
+    def test_over_topics_equals_in_process(self):
+        for loop in LOOPS:
+            text = (TOP / "config" / "loop" / f"{loop}.yaml").read_text()
+            external = "type: external" in text
+            no_data = loop.startswith(("asp_bsm1", "asp_uci")) and not os.environ.get("FMBPC_DATA")
+            if external or no_data:
+                continue
+            with self.subTest(loop=loop), tempfile.TemporaryDirectory() as folder:
+                self.compare(loop, folder)
+
+    def compare(self, loop, folder):
+        duration = "sampling.duration_h=96"
+        port = free_port()
+        topics = run(f"roslaunch -p {port} fmbpc loop.launch loop:={loop} pace:=lockstep draw:=false "
+                     f"set:='{duration}' out:={folder}/topics", ROS_MASTER_URI=f"http://localhost:{port}")
+        process = run(f"rosrun fmbpc fmbpc run {loop} --set {duration} --no-plot --out {folder}/process")
+        self.assertEqual(process.returncode, 0, process.stderr)
+        files = [f"{folder}/{kind}/trajectory.csv" for kind in ("topics", "process")]
+        self.assertTrue(os.path.exists(files[0]), topics.stdout[-2000:])
+        self.assertTrue(filecmp.cmp(*files, shallow=False), f"{loop}: trajectories differ")
+
+
+if __name__ == "__main__":
+    unittest.main()
