@@ -40,7 +40,8 @@ std::string ClpOptimizer::idleReason(const LoopFile& loop) {
   return loop.has_clp ? "" : loop.name + " has no section clp";
 }
 
-ClpOptimizer::ClpOptimizer(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop)
+ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_node,
+                           const LoopFile& loop)
     : loop_(loop),
       session_(makeOptimizerSession(loop)),
       ready_(node),

@@ -4,7 +4,7 @@
 
 namespace fpc {
 
-Diagnostics::Diagnostics(ros::NodeHandle node, ros::NodeHandle private_node,
+Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                          const std::string& title, const std::string& hardware_id,
                          std::function<void(Status&)> report)
     : updater_(node, private_node) {

@@ -10,7 +10,7 @@ std::string FuzzyIdentifier::idleReason(const LoopFile& loop) {
   return loop.has_model ? "" : loop.name + " names no model";
 }
 
-FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, ros::NodeHandle private_node,
+FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& private_node,
                                  const LoopFile& loop)
     : loop_(loop),
       ready_(node),

@@ -19,6 +19,7 @@ static_assert(fmbpc::FuzzySet::TRAPEZOIDAL == number(MembershipShape::kTrapezoid
 
 std::vector<fmbpc::FuzzyRegressor> regressorList(const std::vector<Regressor>& regressors) {
   std::vector<fmbpc::FuzzyRegressor> messages;
+  messages.reserve(regressors.size());
   for (const Regressor& regressor : regressors) {
     fmbpc::FuzzyRegressor msg;
     msg.kind = number(regressor.kind);
@@ -31,6 +32,7 @@ std::vector<fmbpc::FuzzyRegressor> regressorList(const std::vector<Regressor>& r
 
 std::vector<Regressor> regressorStructs(const std::vector<fmbpc::FuzzyRegressor>& messages) {
   std::vector<Regressor> regressors;
+  regressors.reserve(messages.size());
   for (const auto& msg : messages)
     regressors.push_back(
         {enumeration(msg.kind, SignalKind::kOutput, SignalKind::kDisturbance, "kind"), msg.index,

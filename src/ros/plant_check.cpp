@@ -9,6 +9,7 @@ namespace {
 
 std::string names(const std::vector<SignalInfo>& signals) {
   std::vector<std::string> list;
+  list.reserve(signals.size());
   for (const SignalInfo& signal : signals) list.push_back(signal.name + "[" + signal.unit + "]");
   return list.empty() ? "none" : join(list);
 }

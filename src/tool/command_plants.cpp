@@ -42,7 +42,7 @@ void print(const PlantDescription& plant) {
   for (const auto& [group, quantities] : groupsOf(plant)) {
     std::cout << "  " << group << "\n";
     for (const auto& q : *quantities)
-      std::cout << "    " << std::left << std::setw(14) << q.name << std::setw(14) << q.unit
+      std::cout << "    " << std::left << std::setw(24) << q.name << std::setw(8) << q.unit
                 << std::right << std::setw(12) << q.nominal << "   " << q.lower << " .. " << q.upper
                 << "\n";
   }

@@ -27,7 +27,7 @@ class ClpOptimizer : public Node {
  public:
   static std::string idleReason(const LoopFile& loop);
   /// @throws InputError
-  ClpOptimizer(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop);
+  ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_node, const LoopFile& loop);
 
  private:
   void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg);

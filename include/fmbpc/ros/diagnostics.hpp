@@ -18,8 +18,9 @@ class Diagnostics {
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   /// `report` fills level, words and values; it is called from the node's own callback queue.
-  Diagnostics(ros::NodeHandle node, ros::NodeHandle private_node, const std::string& title,
-              const std::string& hardware_id, std::function<void(Status&)> report);
+  Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+              const std::string& title, const std::string& hardware_id,
+              std::function<void(Status&)> report);
   void update() { updater_.force_update(); }
 
  private:

@@ -20,7 +20,7 @@ namespace fpc {
 class FuzzyIdentifier : public Node {
  public:
   static std::string idleReason(const LoopFile& loop);
-  FuzzyIdentifier(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop);
+  FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& private_node, const LoopFile& loop);
 
  private:
   void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg);
