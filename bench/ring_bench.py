@@ -2,7 +2,7 @@
 """The loop over topics beside a bare ring of three processes: ring_bench.py [PAIRS] [LOOP]
 
 Runs pairs, one after the other (bare, loop, bare, loop, ...), each run with a master of its own, and prints samples
-per second of both and the median of the ratios. Source scripts/env.sh first.
+per second of both and the median of the ratios. Before: make -C build bare_ring, and source scripts/env.sh.
 """
 import json
 import os
@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 
+BARE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "build", "devel", "lib", "fmbpc", "bare_ring")
 ROLES = ("listener", "optimizer", "controller", "plant")
 
 
@@ -31,8 +32,8 @@ def bare_rate(samples):
     try:
         subprocess.run(["rostopic", "list"], check=False, **quiet)
         for role in ROLES[:-1]:
-            nodes.append(subprocess.Popen(["rosrun", "fmbpc", "bare_ring", role, str(samples)], **quiet))
-        plant = subprocess.run(["rosrun", "fmbpc", "bare_ring", "plant", str(samples)], env=env, check=True,
+            nodes.append(subprocess.Popen([BARE, role, str(samples)], **quiet))
+        plant = subprocess.run([BARE, "plant", str(samples)], env=env, check=True,
                                capture_output=True, text=True, timeout=300)
         return samples / float(plant.stdout.split()[-1])
     finally:
