@@ -49,7 +49,7 @@ def loop_rate(loop):
     env = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", ROS_HOSTNAME="localhost")
     with tempfile.TemporaryDirectory() as out:
         subprocess.run(["roslaunch", "-p", str(port), "fmbpc", "loop.launch", f"loop:={loop}", "pace:=lockstep",
-                        f"out:={out}", "draw:=false"], env=env, check=True, capture_output=True, timeout=300)
+                        f"out:={out}", "draw:=false", "sim_time:=false"], env=env, check=True, capture_output=True, timeout=300)
         with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
     return summary["steps"] / summary["wall_s"], summary["steps"]

@@ -57,7 +57,7 @@ class ControllerSession {
 
   /// Acts from the next sample. @throws InputError if it does not fit; the old model stays.
   void setModel(const TsModel& model);
-  /// See SetpointSource: a person's command, and one that was in force before this session began.
+  /// See SetpointSource: a command of a person, and one that was in force before this object was made.
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
   bool restore(const Command& setpoint) { return setpoint_.restore(setpoint); }
   void manual(bool on);  ///< acts from the next sample, bumpless both ways
