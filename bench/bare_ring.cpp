@@ -82,8 +82,9 @@ void runPlant(ros::NodeHandle& node, std::uint32_t samples) {
   const auto ready = [&] {
     return measured.getNumSubscribers() >= 2 && state.getNumSubscribers() >= 1 && answer.getNumPublishers() >= 1;
   };
+  // Sent again until it is answered: the others may not have found one another yet.
   ros::WallTimer begin = node.createWallTimer(ros::WallDuration(0.1), [&](const ros::WallTimerEvent&) {
-    if (!start.isZero() || !ready()) return;
+    if (sample.step > 0 || !ready()) return;
     start = ros::WallTime::now();
     send();
   });

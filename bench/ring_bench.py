@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 
-BARE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "build", "devel", "lib", "fmbpc", "bare_ring")
+BARE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "devel", "lib", "fmbpc", "bare_ring")
 ROLES = ("listener", "optimizer", "controller", "plant")
 
 
