@@ -50,8 +50,8 @@ std::optional<double> dayOf(const std::string& cell) {
   const int era = (y >= 0 ? y : y - 399) / 400;
   const int year_of_era = y - era * 400;
   const int day_of_year = (153 * (m + (m > 2 ? -3 : 9)) + 2) / 5 + d - 1;
-  return era * 146097.0 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year -
-         719468;
+  const int day_of_era = year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year;
+  return era * 146097.0 + day_of_era - 719468;
 }
 
 /// A finite number, or NaN for a missing one ("nan" is how other programs write an empty cell).

@@ -10,11 +10,11 @@
 
 namespace fpc {
 namespace {
-constexpr double kLongest_s = 9e9;  // what fits into 63 bits of nanoseconds
+constexpr double kLongestS = 9e9;  // what fits into 63 bits of nanoseconds
 
 /// Nanoseconds, or 0 for what is no usable time (llround() of it would be undefined).
 std::int64_t nanoseconds(double seconds) {
-  return seconds > 0.0 && seconds <= kLongest_s ? std::llround(seconds * 1e9) : 0;
+  return seconds > 0.0 && seconds <= kLongestS ? std::llround(seconds * 1e9) : 0;
 }
 }  // namespace
 

@@ -60,8 +60,8 @@ YamlSection YamlSection::parse(const std::string& text, const std::string& name)
   }
 }
 
-YamlSection::YamlSection(YAML::Node node, std::string file, std::string path, std::shared_ptr<YamlTrace> trace)
-    : node_(std::move(node)),
+YamlSection::YamlSection(const YAML::Node& node, std::string file, std::string path, std::shared_ptr<YamlTrace> trace)
+    : node_(node),
       file_(std::move(file)),
       path_(std::move(path)),
       read_(std::make_shared<std::set<std::string>>()),

@@ -39,7 +39,7 @@ class YamlSection {
   static YamlSection load(const std::string& file);
   static YamlSection parse(const std::string& text, const std::string& name);
   /// @throws InputError unless the node is a mapping (a null node is an empty one).
-  YamlSection(YAML::Node node, std::string file, std::string path, std::shared_ptr<YamlTrace> trace = nullptr);
+  YamlSection(const YAML::Node& node, std::string file, std::string path, std::shared_ptr<YamlTrace> trace = nullptr);
 
   bool has(const std::string& key) const;
   void number(const std::string& key, double& value, Range range = {});
