@@ -80,9 +80,11 @@ def robust_range(axis, series, skip):
 def draw_output(axis, runs, name):
     single = len(runs) == 1
     first = runs[0]
-    axis.step(first.time, first.columns[name + "_setpoint"], where="post", color="black", linewidth=1.1,
-              linestyle="--", label="setpoint")
-    if single:
+    followed = any(v == v for v in first.columns[name + "_setpoint"])  # not in an open-loop experiment
+    if followed:
+        axis.step(first.time, first.columns[name + "_setpoint"], where="post", color="black", linewidth=1.1,
+                  linestyle="--", label="setpoint")
+    if single and followed:
         axis.plot(first.time, first.columns[name + "_reference"], color=COLOURS[2], linewidth=1.1, label="reference")
     for run, colour in zip(runs, COLOURS):
         axis.plot(run.time, run.columns[name], color=colour, linewidth=1.2, label=name if single else run.name)

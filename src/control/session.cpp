@@ -45,6 +45,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
   manual_input_ = last_input_;
   answer_.base.input = last_input_;
   answer_.tracking.reference = setpoint_.present();
+  if (!controller_->followsSetpoint()) answer_.tracking.reference.setConstant(std::nan(""));
 }
 
 bool ControllerSession::ready() const { return has_model_ || !controller_->needsModel(); }
@@ -83,6 +84,7 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   answer_.has_action = !m.final;
   answer_.has_prediction = false;
   answer_.tracking.setpoint = setpoint_.advance(step);
+  if (!controller_->followsSetpoint()) answer_.tracking.setpoint.setConstant(std::nan(""));
   answer_.effects = setpoint_.effects();
   for (CommandEffect& effect : answer_.effects) effect.header = m.header;
   reset_reason_.clear();
@@ -117,7 +119,7 @@ void ControllerSession::sendManual(const Measurement& m) {
   answer_.base.input = manual_input_;
   limits_.clip(answer_.base.input, m.input_applied);
   answer_.base.source = output_.source = ActionSource::kManual;
-  answer_.tracking.reference = m.outputs;
+  if (controller_->followsSetpoint()) answer_.tracking.reference = m.outputs;
   output_.ok = true;
   output_.predictive = false;
   output_.remark = "";

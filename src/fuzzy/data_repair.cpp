@@ -112,6 +112,13 @@ void repairTime(DataSet& data, const CsvTable& table, const Structure& structure
                            " rows absent from the times: treated as missing cells");
 }
 
+void holdLastInputs(DataSet& data) {
+  const Index last = data.values.rows() - 1;
+  if (last < 1) return;
+  for (auto c = static_cast<Index>(data.outputs.size()); c < data.values.cols(); ++c)
+    if (std::isnan(data.values(last, c))) data.values(last, c) = data.values(last - 1, c);
+}
+
 void repairMissing(DataSet& data, MissingCells how, const std::vector<std::string>& columns) {
   for (Index c = 0; c < data.values.cols(); ++c) {
     const std::string& column = columns[static_cast<std::size_t>(c)];

@@ -109,6 +109,7 @@ void checkAndRepair(DataSet& data, const Structure& structure) {
               std::to_string(data.values.rows()));
   std::vector<std::string> columns;
   for (const auto& signal : allSignals(structure)) columns.push_back(signal.column);
+  holdLastInputs(data);
   repairMissing(data, structure.repair.missing, columns);
   checkColumns(data, structure);
   setRanges(data);

@@ -16,6 +16,10 @@ std::unique_ptr<Controller> makeController(const LoopFile& loop) {
   const InputLimits& limits = loop.simulation.actuator.limits;
   if (loop.controller == "pi")
     return std::make_unique<PiController>(loop.pi, limits, loop.plant_info);
+  if (loop.controller == "excitation")
+    return std::make_unique<ExcitationController>(loop.excitation, limits,
+                                                  loop.simulation.actuator.initial,
+                                                  loop.plant_info);
   return std::make_unique<FmbpcLaw>(loop.fmbpc, limits, loop.plant_info);
 }
 

@@ -37,6 +37,8 @@ void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readController(YamlSection& root, LoopFile& loop, const LoopNames& names);
+/// Keys of `controller` with type excitation.
+void readExcitation(YamlSection& section, LoopFile& loop, const LoopNames& names);
 void readModelSection(YamlSection& root, LoopFile& loop);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);

@@ -184,11 +184,13 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 
 void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("controller");
-  need(section, "type", "one of fmbpc, pi");
+  need(section, "type", "one of fmbpc, pi, excitation");
   loop.controller = "fmbpc";
-  section.oneOf("type", loop.controller, {"fmbpc", "pi"});
+  section.oneOf("type", loop.controller, {"fmbpc", "pi", "excitation"});
   if (loop.controller == "fmbpc") {
     readFmbpc(section, loop, names);
+  } else if (loop.controller == "excitation") {
+    readExcitation(section, loop, names);
   } else {
     readPi(section, loop, names);
   }

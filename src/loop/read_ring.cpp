@@ -16,7 +16,9 @@ Pace paceFrom(const std::string& name) {
 }
 
 std::vector<std::string> ringNodes(const LoopFile& loop) {
-  std::vector<std::string> nodes{"loop_recorder", loop.controller + "_controller"};
+  const bool open_loop = loop.controller == "excitation";
+  std::vector<std::string> nodes{
+      "loop_recorder", open_loop ? "excitation_generator" : loop.controller + "_controller"};
   if (loop.controller == "fmbpc") nodes.emplace_back("fuzzy_identifier");
   if (loop.has_clp) nodes.emplace_back("clp_optimizer");
   return nodes;

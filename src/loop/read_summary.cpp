@@ -1,4 +1,5 @@
 // summary.json read back, for tables of runs that other processes made.
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,11 +12,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// An index that a run does not have (no setpoint was followed) is null.
+double numberOf(const Json& y, const char* key) {
+  return y.at(key).is_null() ? std::nan("") : y.at(key).get<double>();
+}
+
 void readOutputs(const Json& json, Summary& summary) {
   for (const auto& [name, y] : json.items()) {
     summary.output_names.push_back(name);
     summary.outputs.push_back(
-        {y.at("ise"), y.at("iae"), y.at("itae"), y.at("itse"), y.at("rmse"), y.at("ise_reference")});
+        {numberOf(y, "ise"), numberOf(y, "iae"), numberOf(y, "itae"), numberOf(y, "itse"),
+         numberOf(y, "rmse"), numberOf(y, "ise_reference")});
   }
 }
 

@@ -1,6 +1,7 @@
 // The table that a person reads after a run: one line per loop and output, one per loop and input.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 
 #include "fmbpc/loop/report.hpp"
@@ -11,6 +12,7 @@ namespace {
 using Row = std::vector<std::string>;
 
 std::string shortText(double value) {
+  if (std::isnan(value)) return "-";  // an error where nothing was followed
   std::array<char, 32> buffer{};
   std::snprintf(buffer.data(), buffer.size(), "%.4g", value);
   return buffer.data();

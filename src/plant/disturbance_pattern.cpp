@@ -7,10 +7,10 @@
 #include <cmath>
 #include <map>
 
+#include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/plant/disturbance.hpp"
-#include "plant/gaussian.hpp"
 
 namespace fpc {
 namespace {
@@ -30,12 +30,6 @@ const std::map<std::string, Shape>& shapes() {
       {"load", {11.0, 0.35, 7.0, 0.5, 120.0, 0.35, 1}},
   };
   return all;
-}
-
-std::mt19937_64 engineFor(std::uint64_t seed, std::uint64_t stream, std::uint64_t repetition) {
-  const auto low = [](std::uint64_t v) { return static_cast<std::uint32_t>(v & 0xFFFFFFFFU); };
-  std::seed_seq sequence{low(seed), low(seed >> 32U), low(stream), low(repetition)};
-  return std::mt19937_64(sequence);
 }
 
 Vector hourlyValues(const Shape& shape, std::mt19937_64 engine, Eigen::Index hours) {
@@ -119,7 +113,7 @@ DisturbanceRecord makePattern(const PatternParams& params, const std::vector<std
     taken[static_cast<std::size_t>(row)] = true;
     validate(channel, where);
     const Shape& shape = shapes().at(channel.shape);
-    const auto engine = engineFor(params.seed, shape.stream, seen[channel.shape]++);
+    const auto engine = seededEngine(params.seed, {shape.stream, seen[channel.shape]++});
     const Vector raw = interpolated(hourlyValues(shape, engine, hours), sample_time_h, count);
     record.values.row(row) = shaped(channel, raw, where).head(columns).transpose();
   }

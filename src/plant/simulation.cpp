@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "plant/gaussian.hpp"
 
 namespace fpc {
 namespace {

@@ -26,6 +26,9 @@ const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_nod
 std::string FmbpcControllerNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "fmbpc");
 }
+std::string ExcitationGeneratorNode::idleReason(const LoopFile& loop) {
+  return wrongType(loop, "excitation");
+}
 std::string PiControllerNode::idleReason(const LoopFile& loop) { return wrongType(loop, "pi"); }
 
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node,
@@ -54,6 +57,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                                                   &ControllerNode::onManualInput, this)),
       diagnostics_(node, private_node, "controller", loop.name,
                    [this](Diagnostics::Status& status) { report(status); }) {
+  if (!session_.controller().followsSetpoint()) return;
   for (const SignalInfo& output : loop.plant_info.outputs) signals_.add(output.name + "_setpoint");
   for (const SignalInfo& output : loop.plant_info.outputs) signals_.add(output.name + "_reference");
 }
@@ -177,10 +181,12 @@ void ControllerNode::publish(bool repeated) {
 void ControllerNode::publishSignals() {
   const Tracking& tracking = session_.answer().tracking;
   std::size_t index = 0;
-  for (const double value : tracking.setpoint)
-    signals_.publish(index++, tracking.header.time_ns, value);
-  for (const double value : tracking.reference)
-    signals_.publish(index++, tracking.header.time_ns, value);
+  if (session_.controller().followsSetpoint()) {
+    for (const double value : tracking.setpoint)
+      signals_.publish(index++, tracking.header.time_ns, value);
+    for (const double value : tracking.reference)
+      signals_.publish(index++, tracking.header.time_ns, value);
+  }
   for (const auto& [name, value] : session_.controller().signals()) {
     if (index == signals_.size()) signals_.add(name);
     signals_.publish(index++, tracking.header.time_ns, value);

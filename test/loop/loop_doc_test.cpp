@@ -76,9 +76,17 @@ std::set<std::string> readerKeys() {
       "upper: 1}]\n"
       "  disturbances: [{name: d}]\nsetpoint: {initial: {y: 1}}\n"
       "controller: {type: pi, loops: [{input: u, output: y, kp: 1}]}\n";
+  const std::string excitation =
+      "plant: {type: activated_sludge}\ncontroller:\n  type: excitation\n  signals: [{input: q_r, "
+      "signal: ";
+  const std::string prbs = controlled(excitation + "prbs}]\n");
+  const std::string levels =
+      controlled(excitation + "multi_level, hold_lower_steps: 1, hold_upper_steps: 2}]\n");
+  const std::string steps = controlled(excitation + "steps, schedule: [{time_h: 1, value: 2}]}]\n");
   std::set<std::string> keys;
   std::set<std::string> sections;
-  for (const auto& text : {controlled(fmbpc + lists), controlled(external)})
+  for (const auto& text :
+       {controlled(fmbpc + lists), controlled(external), prbs, levels, steps})
     for (const auto& path : asked(text)) {
       keys.insert(general(path));
       for (auto cut = path.find('.'); cut != std::string::npos; cut = path.find('.', cut + 1))
@@ -159,6 +167,10 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.loops[].reverse", word(pi.reverse)},
           {"controller.loops[].anti_windup", pi.anti_windup},
           {"controller.loops[].start", pi.start},
+          {"controller.seed", std::to_string(loop.excitation.seed)},
+          {"controller.signals[].register_bits", std::to_string(ExcitationSignal{}.register_bits)},
+          {"controller.signals[].clock_steps", std::to_string(ExcitationSignal{}.clock_steps)},
+          {"controller.signals[].start_steps", std::to_string(ExcitationSignal{}.start_steps)},
           {"clp.perturbation_steps", std::to_string(clp.perturbation_steps)},
           {"clp.mode2_steps", std::to_string(clp.mode2_steps)},
           {"clp.cost", clp.cost},

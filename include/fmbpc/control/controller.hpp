@@ -37,6 +37,8 @@ class Controller {
   virtual void step(const Measurement& now, const SetpointSource& setpoint,
                     ControllerOutput& output) = 0;
   virtual bool needsModel() const { return false; }
+  /// False for an open-loop experiment: setpoints and references are then recorded as NaN.
+  virtual bool followsSetpoint() const { return true; }
   /// Takes a new model between two samples, bumplessly. A law without a model ignores it.
   /// @throws InputError if it does not fit; the old one stays.
   virtual void setModel(const TsModel& model);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fmbpc/control/closed_loop_paradigm.hpp"
+#include "fmbpc/control/excitation.hpp"
 #include "fmbpc/control/fmbpc_law.hpp"
 #include "fmbpc/control/pi.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
@@ -67,9 +68,10 @@ struct LoopFile {
   bool has_model{false};
   std::string model_file;  ///< absolute
   TsModel model;           ///< matched to the plant
-  std::string controller;  ///< fmbpc or pi
+  std::string controller;  ///< fmbpc, pi or excitation
   FmbpcParams fmbpc;
   PiParams pi;
+  ExcitationParams excitation;
   bool has_clp{false};
   ClpParams clp;
   RingParams ring;

@@ -70,8 +70,12 @@ class ControllerNode : public Node {
   Diagnostics diagnostics_;
 };
 
-/// The nodes fmbpc_controller and pi_controller.
+/// The nodes fmbpc_controller, excitation_generator and pi_controller.
 struct FmbpcControllerNode : ControllerNode {
+  using ControllerNode::ControllerNode;
+  static std::string idleReason(const LoopFile& loop);
+};
+struct ExcitationGeneratorNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
 };

@@ -1,4 +1,4 @@
-#include "plant/gaussian.hpp"
+#include "base/random.hpp"
 
 #include <gtest/gtest.h>
 
