@@ -4,6 +4,7 @@
 
 #include "allocation_counter.hpp"
 #include "control/clp_fixture.hpp"
+#include "fmbpc/control/excitation.hpp"
 #include "fmbpc/control/pi.hpp"
 #include "fmbpc/control/session.hpp"
 
@@ -71,6 +72,14 @@ TEST(SessionAllocation, ControllerSessionDoesNotAllocatePerSample) {
   params.loops[0].ki_per_h = 0.1;
   expectNoAllocations(std::make_unique<PiController>(params, clp_test::sludgeLike(8).limits, plant()));
   expectNoAllocations(std::make_unique<PredictiveStub>());
+  ExcitationParams excitation;
+  excitation.signals.resize(1);
+  excitation.signals[0].upper = 1000.0;
+  for (const char* signal : {"prbs", "multi_level"}) {
+    excitation.signals[0].signal = signal;
+    expectNoAllocations(std::make_unique<ExcitationController>(
+        excitation, clp_test::sludgeLike(8).limits, Vector::Constant(1, 570.0), plant()));
+  }
 }
 
 TEST(SessionAllocation, OptimizerSessionDoesNotAllocatePerSample) {
