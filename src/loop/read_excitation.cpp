@@ -1,7 +1,7 @@
 // Section `controller` of type excitation: open-loop experiments. Times are given in samples or in
 // seconds that are a whole number of samples.
 #include <cmath>
-#include <limits>
+#include <set>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -98,8 +98,12 @@ ExcitationSignal readSignal(YamlSection& item, const LoopFile& loop, const LoopN
 void readExcitation(YamlSection& section, LoopFile& loop, const LoopNames& names) {
   section.seed("seed", loop.excitation.seed);
   need(section, "signals", "a list of signals, one for each input that moves");
-  for (auto& item : section.list("signals"))
+  std::set<int> moved;
+  for (auto& item : section.list("signals")) {
     loop.excitation.signals.push_back(readSignal(item, loop, names));
+    if (!moved.insert(loop.excitation.signals.back().input).second)
+      item.fail("input", "an input that no other signal moves");
+  }
   checked(section, [&] { loop.excitation.validate(loop.simulation.actuator.limits); });
 }
 
