@@ -104,6 +104,15 @@ TEST(DataSet, MissingCellsAreSteppedOverOrInterpolatedWhenAllowedAndCounted) {
   contains(filled.repairs[0], "interpolated");
 }
 
+TEST(DataSet, TheInputOfTheLastRowActsAfterTheDataAndMayBeMissing) {
+  CsvTable t = table();
+  t.values(19, 2) = kNaN;
+  const DataSet data = makeDataSet(t, structureWith());
+  EXPECT_TRUE(data.repairs.empty());
+  EXPECT_EQ(makeRegression(data, {{SignalKind::kInput, 0, 0}}, {}, 0).rows(), 19);
+  contains(errorOf([](CsvTable& spoiled) { spoiled.values(18, 2) = kNaN; }), "data row 19");
+}
+
 TEST(DataSet, ConstantColumnsAreRefusedOrDropped) {
   const auto spoil = [](CsvTable& t) { t.values.col(2).setConstant(7.0); };
   contains(errorOf(spoil), "column 'u': expected values that move");
