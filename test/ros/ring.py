@@ -66,7 +66,7 @@ def program(name):
 
 
 def tool(*arguments, check=True):
-    return subprocess.run([program("fmbpc"), *arguments], check=check, capture_output=True, text=True)
+    return subprocess.run([program("fmbpc_tool"), *arguments], check=check, capture_output=True, text=True)
 
 
 def overrides(text):
