@@ -65,9 +65,11 @@ std::vector<Index> sampleNumbers(const Vector& time, const std::vector<Index>& o
   return numbers;
 }
 
-std::vector<Index> missingRows(const Matrix& values, Index column) {
+/// What acts from the last row on shows in no later output: causes need no value there.
+std::vector<Index> missingRows(const Matrix& values, Index column, bool is_output) {
   std::vector<Index> rows;
-  for (Index k = 0; k < values.rows(); ++k)
+  const Index end = is_output ? values.rows() : values.rows() - 1;
+  for (Index k = 0; k < end; ++k)
     if (std::isnan(values(k, column))) rows.push_back(k);
   return rows;
 }
@@ -125,9 +127,10 @@ void repairMissing(DataSet& data, MissingCells how, const std::vector<std::strin
     const std::string where = data.source + ": column '" + column + "'";
     for (Index k = 0; k < data.values.rows(); ++k)
       require(!std::isinf(data.values(k, c)), where, "finite values");
-    const auto rows = missingRows(data.values, c);
+    const auto rows =
+        missingRows(data.values, c, c < static_cast<Index>(data.outputs.size()));
     if (rows.empty()) continue;
-    require(static_cast<Index>(rows.size()) < data.values.rows(), where, "at least one number");
+    require(data.values.col(c).array().isFinite().any(), where, "at least one number");
     require(how != MissingCells::kError, where,
             "no missing cells; " + std::to_string(rows.size()) + " are, the first in data row " +
                 std::to_string(rows.front() + 1) + " (repair.missing: drop or interpolate)");

@@ -65,7 +65,7 @@ void checkColumns(DataSet& data, const Structure& structure) {
       require(droppable, where, "values that move; they are all the same");
       data.constant[i] = true;
       data.repairs.push_back("'" + signals[i].info.name +
-                             "' never moves: its regressors are dropped");
+                             "' never moves: its regressors tell nothing");
       continue;
     }
     for (std::size_t j = 0; j < i; ++j)

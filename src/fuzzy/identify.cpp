@@ -23,10 +23,10 @@ std::vector<Regressor> moving(const std::vector<Regressor>& variables, const Dat
   return kept;
 }
 
-void checkEnough(const Regression& rows, const std::string& output, Index n_regressors,
+void checkEnough(const Regression& rows, const std::string& where, Index n_regressors,
                  int clusters) {
   const Index needed = std::max<Index>(2 * (n_regressors + 1), 5 * clusters);
-  require(rows.rows() >= needed, "data for '" + output + "'",
+  require(rows.rows() >= needed, where,
           "at least " + std::to_string(needed) + " complete rows for " +
               std::to_string(n_regressors) + " regressors and " + std::to_string(clusters) +
               " clusters, got " + std::to_string(rows.rows()));
@@ -38,8 +38,23 @@ std::string provenance(const DataSet& data, const Structure& s) {
   std::string text = "Identified from " + data.source + ", structure " + s.name + ": " +
                      methods.at(static_cast<std::size_t>(s.partition.method)) + ", " +
                      fits.at(static_cast<std::size_t>(s.consequents.method)) +
-                     " least squares, ridge " + exactText(s.consequents.ridge) + ", seed " +
-                     std::to_string(s.partition.seed) + ".";
+                     " least squares, ridge " + exactText(s.consequents.ridge);
+  const auto add = [&text](const std::string& words, double value) {
+    text += ", " + words + " " + exactText(value);
+  };
+  if (s.partition.method != PartitionMethod::kGrid) {
+    text += ", " + fpc::name(s.partition.membership) + " sets";
+    add("fuzziness", s.partition.fuzziness);
+    add("regularisation", s.partition.regularisation);
+    add("width", s.partition.width);
+  }
+  if (s.consequents.method == ConsequentMethod::kRecursive)
+    add("forgetting", s.consequents.forgetting);
+  if (s.consequents.free_run_iterations > 0) {
+    add("free-run iterations", s.consequents.free_run_iterations);
+    add("one-step weight", s.consequents.one_step_weight);
+  }
+  text += ", seed " + std::to_string(s.partition.seed) + ".";
   for (const auto& repair : data.repairs) text += " " + repair + ".";
   return text;
 }
@@ -76,7 +91,8 @@ bool identifyOutput(const DataSet& data, const Structure& structure, std::size_t
   require(!s.antecedents.empty() || s.clusters_max == 1, "submodels." + name,
           "an antecedent that moves in the data");
   const Regression rows = makeRegression(data, s.regressors, s.antecedents, static_cast<int>(i));
-  checkEnough(rows, name, static_cast<Index>(s.regressors.size()), s.clusters_max);
+  checkEnough(rows, data.source + ": output '" + name + "'",
+              static_cast<Index>(s.regressors.size()), s.clusters_max);
   OutputIdentification found;
   found.output = name;
   found.samples = rows.rows();

@@ -31,11 +31,13 @@ std::vector<std::string> configFolders() {
   return folders;
 }
 
-std::vector<std::string> loopNames() {
+namespace {
+
+std::vector<std::string> namesIn(const std::string& kind) {
   std::vector<std::string> names;
   for (const auto& folder : configFolders()) {
     std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(fs::path(folder) / "loop", ignored))
+    for (const auto& entry : fs::directory_iterator(fs::path(folder) / kind, ignored))
       if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
@@ -43,18 +45,30 @@ std::vector<std::string> loopNames() {
   return names;
 }
 
-std::string findLoop(const std::string& name_or_path) {
+/// `kind` is the folder below config, and the word for such a file.
+std::string find(const std::string& kind, const std::string& name_or_path) {
   const fs::path path(name_or_path);
   const bool is_path = name_or_path.find('/') != std::string::npos || path.extension() == ".yaml";
   if (is_path) {
-    require(fs::is_regular_file(path), name_or_path, "an existing loop file");
+    require(fs::is_regular_file(path), name_or_path, "an existing " + kind + " file");
     return fs::absolute(path).lexically_normal().string();
   }
   for (const auto& folder : configFolders()) {
-    const fs::path file = fs::path(folder) / "loop" / (name_or_path + ".yaml");
+    const fs::path file = fs::path(folder) / kind / (name_or_path + ".yaml");
     if (fs::is_regular_file(file)) return fs::absolute(file).lexically_normal().string();
   }
-  throw InputError("loop '" + name_or_path + "': expected a path or one of " + join(loopNames()));
+  throw InputError(kind + " '" + name_or_path + "': expected a path or one of " +
+                   join(namesIn(kind)));
+}
+
+}  // namespace
+
+std::vector<std::string> loopNames() { return namesIn("loop"); }
+
+std::string findLoop(const std::string& name_or_path) { return find("loop", name_or_path); }
+
+std::string findStructure(const std::string& name_or_path) {
+  return find("structure", name_or_path);
 }
 
 }  // namespace fpc

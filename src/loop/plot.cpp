@@ -16,9 +16,9 @@ namespace fs = std::filesystem;
 constexpr char kPython[] = "/usr/bin/python3";
 
 /// The script stands beside the config folders, in the source tree as in an installed package.
-std::string findScript() {
+std::string findScript(const std::string& name) {
   for (const auto& folder : configFolders()) {
-    const fs::path script = fs::path(folder).lexically_normal() / ".." / "scripts" / "plot_loop.py";
+    const fs::path script = fs::path(folder).lexically_normal() / ".." / "scripts" / name;
     if (fs::is_regular_file(script)) return script.lexically_normal().string();
   }
   return {};
@@ -39,14 +39,24 @@ bool runScript(const std::string& script, const std::string& folder) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+/// A warning, or nothing.
+std::string drawWith(const std::string& name, const std::string& folder) {
+  const std::string script = findScript(name);
+  if (script.empty())
+    return "no plot: scripts/" + name + " not found beside the config folders";
+  return runScript(script, folder) ? "" : "no plot of " + folder;
+}
+
 }  // namespace
 
 PlotResult drawPlot(const std::string& folder) {
-  const std::string script = findScript();
-  if (script.empty())
-    return {"", "no plot: scripts/plot_loop.py not found beside the config folders"};
-  if (!runScript(script, folder)) return {"", "no plot of " + folder};
+  const std::string warning = drawWith("plot_loop.py", folder);
+  if (!warning.empty()) return {"", warning};
   return {(fs::path(folder) / "plot.png").string(), ""};
+}
+
+PlotResult drawModelPlots(const std::string& folder) {
+  return {"", drawWith("plot_model.py", folder)};
 }
 
 }  // namespace fpc

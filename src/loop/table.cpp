@@ -1,37 +1,11 @@
 // The table that a person reads after a run: one line per loop and output, one per loop and input.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdio>
-
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/report.hpp"
 
 namespace fpc {
 namespace {
 
 using Row = std::vector<std::string>;
-
-std::string shortText(double value) {
-  if (std::isnan(value)) return "-";  // an error where nothing was followed
-  std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.4g", value);
-  return buffer.data();
-}
-
-/// First column left, the others right aligned.
-std::string layout(const std::vector<Row>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line = row[0] + std::string(widths[0] - row[0].size(), ' ');
-    for (std::size_t i = 1; i < row.size(); ++i)
-      line += "  " + std::string(widths[i] - row[i].size(), ' ') + row[i];
-    text += line + "\n";
-  }
-  return text;
-}
 
 void addOutputRows(const Summary& s, std::vector<Row>& rows) {
   for (std::size_t i = 0; i < s.outputs.size(); ++i) {
@@ -71,8 +45,8 @@ std::string toTable(const std::vector<Summary>& summaries) {
                         std::to_string(summary.clp_infeasible), std::to_string(summary.clp_failed),
                         shortText(summary.clp_median_us), shortText(summary.clp_p99_us)});
   }
-  std::string text = layout(outputs) + "\n" + layout(inputs);
-  if (solves.size() > 1) text += "\n" + layout(solves);
+  std::string text = alignedTable(outputs) + "\n" + alignedTable(inputs);
+  if (solves.size() > 1) text += "\n" + alignedTable(solves);
   for (const auto& summary : summaries)
     if (summary.repaired_cells > 0)
       text += "\n" + summary.loop + ": " + std::to_string(summary.repaired_cells) +

@@ -1,9 +1,5 @@
 // fmbpc run LOOP...: the loop closed in one process.
-#include <unistd.h>
-
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -14,42 +10,20 @@
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "tool/commands.hpp"
+#include "tool/progress_bar.hpp"
 
 namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr int kInterrupted = 130;
-
-std::atomic<bool> interrupted{false};
-void onInterrupt(int) { interrupted = true; }
-
-class ProgressBar {
- public:
-  explicit ProgressBar(std::string name)
-      : name_(std::move(name)), shown_(isatty(STDERR_FILENO) != 0) {}
-  ~ProgressBar() {
-    if (shown_ && percent_ >= 0) std::fprintf(stderr, "\r\033[K");
-  }
-  void show(std::uint32_t step, std::uint32_t samples) {
-    const auto percent = static_cast<int>(100.0 * step / samples);
-    if (!shown_ || percent == percent_) return;
-    percent_ = percent;
-    const std::string bar(static_cast<std::size_t>(percent) / 4, '#');
-    std::fprintf(stderr, "\r%s [%-25s] %3d %%", name_.c_str(), bar.c_str(), percent);
-  }
-
- private:
-  std::string name_;
-  bool shown_;
-  int percent_{-1};
-};
 
 Summary runOne(const LoopFile& loop, const std::string& folder) {
   ProgressBar bar(loop.name);
   RunOptions options;
-  options.progress = [&bar](std::uint32_t step, std::uint32_t samples) { bar.show(step, samples); };
-  options.stop = [] { return interrupted.load(); };
+  options.progress = [&bar](std::uint32_t step, std::uint32_t samples) {
+    bar.show(static_cast<double>(step) / samples);
+  };
+  options.stop = [] { return interruption().load(); };
   const auto start = std::chrono::steady_clock::now();
   const RunRecord record = runLoop(loop, options);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
@@ -87,7 +61,7 @@ std::string jsonOf(const std::vector<Summary>& summaries) {
 
 int run(const RunArguments& arguments) {
   const std::vector<LoopFile> loops = readAll(arguments);
-  std::signal(SIGINT, onInterrupt);
+  catchInterrupts();
   std::vector<Summary> summaries;
   std::vector<std::string> written;
   for (const auto& loop : loops) {
@@ -95,13 +69,13 @@ int run(const RunArguments& arguments) {
     if (!folder.empty() && loops.size() > 1) folder = (fs::path(folder) / loop.name).string();
     summaries.push_back(runOne(loop, folder));
     if (!folder.empty()) written.push_back(folder);
-    if (!folder.empty() && !arguments.no_plot && !interrupted) draw(folder);
-    if (interrupted) break;
+    if (!folder.empty() && !arguments.no_plot && !interruption()) draw(folder);
+    if (interruption()) break;
   }
   std::cout << (arguments.json ? jsonOf(summaries) + "\n" : toTable(summaries));
   if (!arguments.json)
     for (const auto& folder : written) std::cout << "written: " << folder << "\n";
-  if (!interrupted) return 0;
+  if (!interruption()) return 0;
   std::fprintf(stderr, "fmbpc: interrupted after %u steps\n", summaries.back().steps);
   return kInterrupted;
 }

@@ -15,6 +15,18 @@ struct RunArguments {
   bool no_plot{false};
 };
 
+struct IdentifyArguments {
+  std::string data;           ///< CSV or bag
+  std::string structure;      ///< name of config/structure, or path
+  std::string rows;           ///< "FIRST:LAST", empty: all
+  std::string validate;       ///< another record, empty: the same
+  std::string validate_rows;  ///< of it; both empty: nothing is held out
+  std::string out;            ///< model file, empty: none
+  std::string plots;          ///< folder, empty: none
+  bool json{false};
+};
+
+int identify(const IdentifyArguments& arguments);
 int run(const RunArguments& arguments);
 int resolve(const std::string& loop, const std::vector<std::string>& set);
 int plants(bool json);

@@ -33,6 +33,20 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
   resolve->callback([&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set); }; });
 }
 
+void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
+  CLI::App* identify = app.add_subcommand(
+      "identify", "Identifies a fuzzy model from a record and validates it beside a linear one");
+  identify->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
+  identify->add_option("STRUCTURE", a.structure, "name of config/structure, or path")->required();
+  identify->add_option("--out", a.out, "model file to write");
+  identify->add_option("--rows", a.rows, "FIRST:LAST data rows to identify from, from 1");
+  identify->add_option("--validate", a.validate, "another record to validate on");
+  identify->add_option("--validate-rows", a.validate_rows, "FIRST:LAST rows to validate on");
+  identify->add_option("--plots", a.plots, "folder for pictures of sets, predictions, residuals");
+  identify->add_flag("--json", a.json, "print one JSON object and nothing else");
+  identify->callback([&a] { chosen = [&a] { return fpc::tool::identify(a); }; });
+}
+
 void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   CLI::App* plants =
       app.add_subcommand("plants", "Lists the plants with their signals, units and ranges");
@@ -56,6 +70,8 @@ int main(int argc, char** argv) {
   fpc::tool::RunArguments arguments;
   addRun(app, arguments);
   addResolve(app, arguments);
+  fpc::tool::IdentifyArguments identify_arguments;
+  addIdentify(app, identify_arguments);
   addLists(app, arguments);
   try {
     app.parse(argc, argv);

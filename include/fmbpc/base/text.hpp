@@ -10,6 +10,10 @@ namespace fpc {
 std::string join(const std::vector<std::string>& words, const std::string& separator = ", ");
 /// Shortest decimal text that reads back to the same double.
 std::string exactText(double value);
+/// Four significant digits, for people; "-" for NaN.
+std::string shortText(double value);
+/// Rows of equally many cells, in lines: first column left, the others right aligned.
+std::string alignedTable(const std::vector<std::vector<std::string>>& rows);
 /// The text with every ${NAME} replaced by the environment variable NAME.
 /// @throws InputError naming `where` if a variable is not set or a brace is not closed.
 std::string expandEnvironment(const std::string& text, const std::string& where);

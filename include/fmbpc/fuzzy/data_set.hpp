@@ -38,7 +38,7 @@ struct DataSet {
 /// @throws InputError naming file and column (or row): unknown column, another unit, implausible
 /// values, no number in a column, missing cells, times unsorted or not spaced by the sample time
 /// (unless structure.repair allows to mend them), constant or duplicated columns, rows outside the
-/// file.
+/// file. Inputs and disturbances of the last row act on nothing known and may be missing.
 DataSet makeDataSet(const CsvTable& table, const Structure& structure, RowRange range = {});
 
 /// The same for signals that do not come from a file: values is rows x (n_y + n_u + n_d) in the

@@ -92,6 +92,8 @@ std::vector<std::string> configFolders();
 /// A loop's file from its name ("asp_case1") or path. @throws InputError listing the known names.
 std::string findLoop(const std::string& name_or_path);
 std::vector<std::string> loopNames();
+/// An identification structure's file from its name ("asp_c") or path, in the same way.
+std::string findStructure(const std::string& name_or_path);
 
 /// Merges `extends`, applies overrides, expands ${...} in `file:` keys and makes them absolute;
 /// validates by reading. The result is YAML text which parseLoop() reads. @throws InputError naming

@@ -1,0 +1,137 @@
+// fmbpc identify DATA STRUCTURE: from a record to a model file and an honest report.
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+#include "tool/commands.hpp"
+#include "tool/identify_report.hpp"
+#include "tool/model_plots.hpp"
+#include "tool/progress_bar.hpp"
+#include "tool/read_record.hpp"
+
+namespace fpc::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string rowsText(const std::string& text) { return text.empty() ? ":" : text; }
+
+/// Refuses before hours of work what could not be written after it.
+void checkTarget(const std::string& file) {
+  if (file.empty()) return;
+  const fs::path folder = fs::absolute(file).parent_path();
+  require(fs::is_directory(folder), file, "a file in an existing folder");
+  require(!fs::is_directory(file), file, "a file, not a folder");
+}
+
+/// The whole file or nothing.
+void writeAtOnce(const std::string& text, const std::string& file) {
+  const std::string partial = file + ".partial";
+  std::ofstream stream(partial);
+  stream << text;
+  stream.close();
+  std::error_code error;
+  if (!stream.fail()) fs::rename(partial, file, error);
+  if (!stream.fail() && !error) return;
+  fs::remove(partial, error);
+  throw InputError(file + ": expected a writable file");
+}
+
+/// Provenance must not depend on where the user's folders are.
+DataSet makeData(const CsvTable& table, const Structure& structure, const std::string& rows) {
+  DataSet data = makeDataSet(table, structure, parseRows(rowsText(rows)));
+  const std::string name = fs::path(table.file).filename().string();
+  data.source.replace(0, table.file.size(), name);
+  return data;
+}
+
+struct Records {
+  DataSet identification;
+  std::optional<DataSet> validation;
+  bool overlap{false};  ///< validation rows were identified from
+};
+
+bool overlap(RowRange a, RowRange b) {
+  const auto before = [](RowRange x, RowRange y) { return x.last != 0 && x.last < y.first; };
+  return !before(a, b) && !before(b, a);
+}
+
+Records readRecords(const IdentifyArguments& a, const Structure& structure) {
+  const CsvTable table = readRecord(a.data);
+  Records records{makeData(table, structure, a.rows), {}, false};
+  if (a.validate.empty() && a.validate_rows.empty()) return records;
+  Structure judging = structure;
+  judging.repair.drop_constant = true;  // an input may rest while a model is judged
+  std::error_code ignored;  // a file that is not there is told by its reader
+  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data, ignored);
+  records.validation = makeData(same ? table : readRecord(a.validate), judging, a.validate_rows);
+  records.overlap = same && overlap(parseRows(rowsText(a.rows)),
+                                    parseRows(rowsText(a.validate_rows)));
+  return records;
+}
+
+Identification identifyWithBar(const DataSet& data, const Structure& structure) {
+  ProgressBar bar(structure.name);
+  return identify(data, structure, [&bar](const IdentifyProgress& progress) {
+    bar.show(progress.share, progress.output + ": " + progress.stage);
+    return !interruption();
+  });
+}
+
+Judged judge(const std::string& title, DataSet data, const Identification& found,
+             const ValidationParams& params) {
+  Judged judged{title, std::move(data), {}};
+  judged.outputs = validateModel(found.model, found.linear, judged.data, params);
+  return judged;
+}
+
+void addRemarks(const Records& records, IdentifyReport& report) {
+  report.remarks = report.found.remarks;
+  for (const auto& remark : reportModel(report.found.model))
+    report.remarks.push_back(remark.output + " rule " + std::to_string(remark.rule) + ": " +
+                             remark.text);
+  if (records.validation)
+    for (const auto& repair : records.validation->repairs)
+      report.remarks.push_back("validation data: " + repair);
+  if (records.overlap)
+    report.remarks.push_back("validation rows are among the identification rows: not held out");
+}
+
+}  // namespace
+
+int identify(const IdentifyArguments& a) {
+  const Structure structure = readStructure(findStructure(a.structure));
+  checkTarget(a.out);
+  const Records records = readRecords(a, structure);
+  catchInterrupts();
+  const auto start = std::chrono::steady_clock::now();
+  IdentifyReport report;
+  report.found = identifyWithBar(records.identification, structure);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  report.seconds = wall.count();
+  if (!report.found.cancelled) {
+    report.identification =
+        judge("identification", records.identification, report.found, structure.validation);
+    if (records.validation)
+      report.validation =
+          judge("validation", *records.validation, report.found, structure.validation);
+    addRemarks(records, report);
+  }
+  if (report.found.cancelled || interruption()) {
+    std::fprintf(stderr, "fmbpc: interrupted, nothing is written\n");
+    return kInterrupted;
+  }
+  if (!a.out.empty()) writeAtOnce(writeModel(report.found.model), a.out);
+  if (!a.plots.empty()) writeModelPlots(report, a.plots);
+  std::cout << (a.json ? toJson(report) + "\n" : toTables(report));
+  if (!a.json && !a.out.empty()) std::cout << "written: " << a.out << "\n";
+  if (!a.json && !a.plots.empty()) std::cout << "written: " << a.plots << "\n";
+  return 0;
+}
+
+}  // namespace fpc::tool

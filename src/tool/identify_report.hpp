@@ -1,0 +1,32 @@
+// What `fmbpc identify` found, as one JSON object and as tables.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fmbpc/fuzzy/identify.hpp"
+#include "fmbpc/fuzzy/validation.hpp"
+
+namespace fpc::tool {
+
+/// One set of rows and what the models make of it.
+struct Judged {
+  std::string title;  ///< "identification", "validation"
+  DataSet data;
+  std::vector<OutputValidation> outputs;
+};
+
+struct IdentifyReport {
+  Identification found;
+  Judged identification;
+  std::optional<Judged> validation;  ///< absent: nothing was held out
+  std::vector<std::string> remarks;
+  double seconds{};  ///< wall time of identification
+};
+
+/// Keys: docs/identification.md. Numbers that are not finite, and figures of no sample, are null.
+std::string toJson(const IdentifyReport& report);
+std::string toTables(const IdentifyReport& report);
+
+}  // namespace fpc::tool

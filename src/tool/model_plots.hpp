@@ -1,0 +1,16 @@
+// The folder that scripts/plot_model.py draws from.
+#pragma once
+
+#include <string>
+
+#include "tool/identify_report.hpp"
+
+namespace fpc::tool {
+
+/// Writes report.json (figures, membership functions, residual correlations), identification.csv
+/// and validation.csv (measured outputs and predictions) and draws memberships.png, prediction.png
+/// and residuals.png. No picture is a warning on standard error, not a failure.
+/// @throws InputError if the folder cannot be written.
+void writeModelPlots(const IdentifyReport& report, const std::string& folder);
+
+}  // namespace fpc::tool

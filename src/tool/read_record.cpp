@@ -1,0 +1,36 @@
+#include "tool/read_record.hpp"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+
+#include "fmbpc/base/input_error.hpp"
+#ifdef FMBPC_WITH_BAGS
+#include "fmbpc/ros/bag_table.hpp"
+#endif
+
+namespace fpc::tool {
+namespace {
+
+bool isBag(const std::string& file) {
+  static const std::string magic = "#ROSBAG";
+  std::array<char, 7> start{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(start.data(), start.size());
+  return std::string(start.data(), start.size()) == magic ||
+         std::filesystem::path(file).extension() == ".bag";
+}
+
+}  // namespace
+
+CsvTable readRecord(const std::string& file) {
+  require(std::filesystem::is_regular_file(file), file, "an existing CSV or bag");
+  if (!isBag(file)) return readCsv(file);
+#ifdef FMBPC_WITH_BAGS
+  return readBag(file);
+#else
+  throw InputError(file + ": expected a CSV; this program is built without ROS and reads no bags");
+#endif
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,14 @@
+// A record of a process for identification: a CSV, or a bag where the tool is built with ROS.
+#pragma once
+
+#include <string>
+
+#include "fmbpc/base/csv.hpp"
+
+namespace fpc::tool {
+
+/// Bags are told by their content, whatever their name.
+/// @throws InputError naming the file.
+CsvTable readRecord(const std::string& file);
+
+}  // namespace fpc::tool
