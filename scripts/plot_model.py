@@ -67,9 +67,7 @@ def draw_memberships(plt, report, folder):
         for axis in row[len(sets):]:
             axis.set_visible(False)
         row[0].set_ylabel("membership, %s" % output)
-    rules = max((len(panel["degrees"]), axis) for (_, sets), row in zip(outputs, axes)
-                for panel, axis in [(sets[0], row[0])], key=lambda pair: pair[0])
-    handles, labels = rules[1].get_legend_handles_labels()
+    handles, labels = max((row[0].get_legend_handles_labels() for row in axes), key=lambda pair: len(pair[1]))
     figure.suptitle("%s: fuzzy sets of the rules" % report["name"], fontsize=11)
     figure.legend(handles, labels, loc="lower center", ncol=min(len(labels), 8), fontsize=8, frameon=False)
     figure.tight_layout(rect=(0, 0.35 / figure.get_figheight(), 1, 1))
@@ -136,6 +134,7 @@ def draw_residuals(plt, report, folder):
             axis.set_xlabel("lag [samples]")
             axis.set_title("%s with %s" % (output, "itself" if cause is None else cause), fontsize=9)
             tidy(axis, legend=False)
+            axis.set_xlim(0.0, len(bars) + 1.0)
         row[0].set_ylabel("correlation")
     handles, labels = axes[0][0].get_legend_handles_labels()
     figure.suptitle("%s: one-step residuals" % report["name"], fontsize=11)

@@ -65,11 +65,9 @@ std::vector<Index> sampleNumbers(const Vector& time, const std::vector<Index>& o
   return numbers;
 }
 
-/// What acts from the last row on shows in no later output: causes need no value there.
-std::vector<Index> missingRows(const Matrix& values, Index column, bool is_output) {
+std::vector<Index> missingRows(const Matrix& values, Index column) {
   std::vector<Index> rows;
-  const Index end = is_output ? values.rows() : values.rows() - 1;
-  for (Index k = 0; k < end; ++k)
+  for (Index k = 0; k < values.rows(); ++k)
     if (std::isnan(values(k, column))) rows.push_back(k);
   return rows;
 }
@@ -127,10 +125,9 @@ void repairMissing(DataSet& data, MissingCells how, const std::vector<std::strin
     const std::string where = data.source + ": column '" + column + "'";
     for (Index k = 0; k < data.values.rows(); ++k)
       require(!std::isinf(data.values(k, c)), where, "finite values");
-    const auto rows =
-        missingRows(data.values, c, c < static_cast<Index>(data.outputs.size()));
+    const auto rows = missingRows(data.values, c);
     if (rows.empty()) continue;
-    require(data.values.col(c).array().isFinite().any(), where, "at least one number");
+    require(static_cast<Index>(rows.size()) < data.values.rows(), where, "at least one number");
     require(how != MissingCells::kError, where,
             "no missing cells; " + std::to_string(rows.size()) + " are, the first in data row " +
                 std::to_string(rows.front() + 1) + " (repair.missing: drop or interpolate)");

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """loop.launch as a person types it, each time with a master of its own on a free port."""
+import json
 import os
 import re
 import shutil
@@ -11,6 +12,8 @@ import unittest
 
 import rosbag
 import rostest
+
+import ring
 
 
 def free_port():
@@ -49,6 +52,11 @@ class LaunchFile(unittest.TestCase):
             self.assertEqual(list(range(50)), steps[topic], topic)
         self.assertLessEqual({"/signal/x", "/signal/x_setpoint", "/signal/x_reference", "/signal/q_r",
                               "/signal/q_r_perturbation"}, signals)
+        here, there = (ring.tool("identify", os.path.join(self.out, record), "asp_c", "--json").stdout
+                       for record in ("loop.bag", "trajectory.csv"))
+        here, there = json.loads(here), json.loads(there)
+        for part in ("identification", "rule_details", "rules"):
+            self.assertEqual(there[part], here[part])
         if shutil.which("rqt_plot") is None:
             self.assertIn("rqt_plot is not installed", text)
 
