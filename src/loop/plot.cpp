@@ -42,8 +42,7 @@ bool runScript(const std::string& script, const std::string& folder) {
 /// A warning, or nothing.
 std::string drawWith(const std::string& name, const std::string& folder) {
   const std::string script = findScript(name);
-  if (script.empty())
-    return "no plot: scripts/" + name + " not found beside the config folders";
+  if (script.empty()) return "no plot: scripts/" + name + " not found beside the config folders";
   return runScript(script, folder) ? "" : "no plot of " + folder;
 }
 

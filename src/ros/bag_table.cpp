@@ -86,9 +86,8 @@ CsvTable emptyTable(const PlantInfo& info, const std::string& file, Index rows) 
       table.units.push_back(signal.unit);
     }
   table.is_date.assign(table.names.size(), false);
-  table.values =
-      Matrix::Constant(rows, static_cast<Index>(table.names.size()),
-                       std::numeric_limits<double>::quiet_NaN());
+  table.values = Matrix::Constant(rows, static_cast<Index>(table.names.size()),
+                                  std::numeric_limits<double>::quiet_NaN());
   return table;
 }
 
@@ -97,8 +96,7 @@ CsvTable tableOf(const rosbag::Bag& bag, const std::string& file) {
   const PlantInfo info = infoOf(bag, file, measured.begin()->second.header.run_id);
   const std::uint32_t first = measured.begin()->first, last = measured.rbegin()->first;
   CsvTable table = emptyTable(info, file, static_cast<Index>(last - first) + 1);
-  const SampleClock clock(info.sample_time_s,
-                          static_cast<double>(info.header.time_ns) * 1e-9);
+  const SampleClock clock(info.sample_time_s, static_cast<double>(info.header.time_ns) * 1e-9);
   const auto n_y = static_cast<Index>(info.outputs.size());
   const auto n_u = static_cast<Index>(info.inputs.size());
   for (std::uint32_t step = first; step <= last; ++step)

@@ -54,8 +54,7 @@ std::string trialsTable(const Identification& found) {
     for (const auto& t : found.outputs[i].trials)
       rows.push_back(
           {found.outputs[i].output, std::to_string(t.clusters), shortText(t.validity.xie_beni),
-           shortText(t.validity.partition_density), shortText(t.one_step_rmse),
-           shortText(t.votes),
+           shortText(t.validity.partition_density), shortText(t.one_step_rmse), shortText(t.votes),
            static_cast<std::size_t>(t.clusters) == found.outputs[i].rules.size() ? "chosen" : ""});
   return rows.size() > 1 ? "\n" + alignedTable(rows) : "";
 }

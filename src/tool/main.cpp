@@ -57,7 +57,8 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
   model->add_flag("--json", a.json, "print one JSON object and nothing else");
   model->callback([&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json); }; });
-  CLI::App* table = app.add_subcommand("table", "Prints one table of runs that were written before");
+  CLI::App* table =
+      app.add_subcommand("table", "Prints one table of runs that were written before");
   table->add_option("DIR", a.loops, "folders with a summary.json")->required();
   table->callback([&a] { chosen = [&a] { return fpc::tool::table(a.loops); }; });
 }

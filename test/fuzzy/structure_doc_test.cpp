@@ -36,8 +36,8 @@ std::map<std::string, std::string> documented() {
       if (name.front() == '.')
         name = section + name;
       else
-        section = name.substr(0, name.rfind('.') == std::string::npos ? name.size()
-                                                                      : name.rfind('.'));
+        section =
+            name.substr(0, name.rfind('.') == std::string::npos ? name.size() : name.rfind('.'));
       EXPECT_EQ(rows.count(name), 0U) << name;
       const bool each = static_cast<std::size_t>(count) == fallbacks.size();
       rows[name] = each ? fallbacks[n] : fallback;

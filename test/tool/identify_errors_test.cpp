@@ -15,8 +15,8 @@ class IdentifyErrors : public IdentifyTool {
  protected:
   void expectError(const std::string& data, std::initializer_list<std::string> words,
                    const std::string& rest = "") {
-    const std::string command = "identify " + data + " " + structure_ + " " + rest + " --out " +
-                                path("model.yaml");
+    const std::string command =
+        "identify " + data + " " + structure_ + " " + rest + " --out " + path("model.yaml");
     const Outcome outcome = tool(command, true);
     EXPECT_EQ(outcome.code, 1) << outcome.printed;
     EXPECT_EQ(std::count(outcome.printed.begin(), outcome.printed.end(), '\n'), 1);

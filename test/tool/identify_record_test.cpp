@@ -25,9 +25,9 @@ TEST_F(IdentifyRecord, AWrittenRunGivesAModelThatClosesTheLoop) {
 
 TEST_F(IdentifyRecord, CstrFitsHeldOutDataAsTheBestPublishedModels) {
   if (!hasRecords()) GTEST_SKIP() << "needs ${FMBPC_DATA}";
-  const Outcome outcome =
-      tool("identify ${FMBPC_DATA}/daisy_cstr.csv daisy_cstr --rows 1:5000 --validate-rows "
-           "5001:7500 --json");
+  const Outcome outcome = tool(
+      "identify ${FMBPC_DATA}/daisy_cstr.csv daisy_cstr --rows 1:5000 --validate-rows "
+      "5001:7500 --json");
   ASSERT_EQ(outcome.code, 0);
   const auto held_out = parsed(outcome.printed)["validation"];
   EXPECT_GE(held_out["Ca"]["free_run"]["fit"], 91.0);
@@ -39,8 +39,8 @@ TEST_F(IdentifyRecord, CstrFitsHeldOutDataAsTheBestPublishedModels) {
 TEST_F(IdentifyRecord, GasFurnaceBeatsTheLinearModelInSample) {
   if (!hasRecords()) GTEST_SKIP() << "needs ${FMBPC_DATA}";
   for (const auto& [name, most] : {std::pair{"box_jenkins_2", 0.166}, {"box_jenkins_6", 0.058}}) {
-    const Outcome outcome = tool("identify ${FMBPC_DATA}/box_jenkins_gas_furnace.csv " +
-                                 std::string(name) + " --json");
+    const Outcome outcome =
+        tool("identify ${FMBPC_DATA}/box_jenkins_gas_furnace.csv " + std::string(name) + " --json");
     ASSERT_EQ(outcome.code, 0);
     EXPECT_LE(parsed(outcome.printed)["identification"]["co2"]["one_step"]["mse"], most);
   }
@@ -48,9 +48,9 @@ TEST_F(IdentifyRecord, GasFurnaceBeatsTheLinearModelInSample) {
 
 TEST_F(IdentifyRecord, CascadedTanksFollowTheirOwnHeldOutPart) {
   if (!hasRecords()) GTEST_SKIP() << "needs ${FMBPC_DATA}";
-  const Outcome outcome =
-      tool("identify ${FMBPC_DATA}/cascaded_tanks_estimation.csv cascaded_tanks --rows 1:700 "
-           "--validate-rows 701:1024 --json");
+  const Outcome outcome = tool(
+      "identify ${FMBPC_DATA}/cascaded_tanks_estimation.csv cascaded_tanks --rows 1:700 "
+      "--validate-rows 701:1024 --json");
   ASSERT_EQ(outcome.code, 0);
   const auto held_out = parsed(outcome.printed)["validation"]["level"];
   EXPECT_LE(held_out["one_step"]["rmse"], 0.055);

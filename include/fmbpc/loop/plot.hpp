@@ -10,10 +10,12 @@ struct PlotResult {
   std::string warning;  ///< why not, in words
 };
 
-/// Draws plot.png in a folder written by writeRun(). A missing script or matplotlib is a warning, never a failure.
+/// Draws plot.png in a folder written by writeRun(). A missing script or matplotlib is a warning,
+/// never a failure.
 PlotResult drawPlot(const std::string& folder);
 
-/// The same by scripts/plot_model.py for a folder that `fmbpc identify --plots` fills; several pictures, none is named.
+/// The same by scripts/plot_model.py for a folder that `fmbpc identify --plots` fills; several
+/// pictures, none is named.
 PlotResult drawModelPlots(const std::string& folder);
 
 }  // namespace fpc
