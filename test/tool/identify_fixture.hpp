@@ -17,14 +17,14 @@ class IdentifyTool : public LoopFolder {
     structure_ = write("known.yaml", kStructure);
   }
 
-  /// 300 rows, noise-free: time[s], y[mg/l], u[m3/h].
-  static CsvTable record() {
-    const Matrix values = test::knownRecord(300, 1);
+  /// Noise-free: time[s], y[mg/l], u[m3/h].
+  static CsvTable record(Eigen::Index rows = 300) {
+    const Matrix values = test::knownRecord(rows, 1);
     CsvTable table;
     table.names = {"time", "y", "u"};
     table.units = {"s", "mg/l", "m3/h"};
     table.values.resize(values.rows(), 3);
-    table.values.col(0) = Vector::LinSpaced(values.rows(), 0.0, 299.0);
+    table.values.col(0) = Vector::LinSpaced(rows, 0.0, static_cast<double>(rows - 1));
     table.values.rightCols(2) = values;
     return table;
   }

@@ -103,11 +103,12 @@ TEST_F(IdentifyTool, PlotsAreDrawnAndTheirDataWritten) {
 }
 
 TEST_F(IdentifyTool, InterruptedItEndsWithAnErrorAndWritesNothing) {
-  write("slow.yaml", kStructure + "partition: {max_iterations: 100000000, tolerance: 1e-300}\n");
+  writeRecord("long.csv", record(20000));
+  write("slow.yaml", kStructure + "partition: {restarts: 100000}\n");  // would take hours
   const std::string model = path("model.yaml");
-  const std::string command = "timeout --preserve-status -s INT 1 " + std::string(FMBPC_TOOL) +
-                              " identify " + data_ + " " + path("slow.yaml") + " --out " + model +
-                              " --json >" + path("out") + " 2>" + path("err");
+  const std::string command = "timeout --preserve-status -s INT 2 " + std::string(FMBPC_TOOL) +
+                              " identify " + path("long.csv") + " " + path("slow.yaml") +
+                              " --out " + model + " --json >" + path("out") + " 2>" + path("err");
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 130);
   EXPECT_EQ(contents(path("out")), "");
