@@ -25,7 +25,7 @@ std::vector<Regressor> moving(const std::vector<Regressor>& variables, const Dat
 
 void checkEnough(const Regression& rows, const std::string& where, Index n_regressors,
                  int clusters) {
-  const Index needed = std::max<Index>(2 * (n_regressors + 1), 5 * clusters);
+  const Index needed = std::max<Index>(2 * (n_regressors + 1), 5 * Index{clusters});
   require(rows.rows() >= needed, where,
           "at least " + std::to_string(needed) + " complete rows for " +
               std::to_string(n_regressors) + " regressors and " + std::to_string(clusters) +

@@ -16,7 +16,7 @@ namespace fpc {
 namespace {
 
 constexpr double kPi = 3.141592653589793;
-constexpr double kShortestRecord_h = 24.0;
+constexpr double kShortestRecordH = 24.0;
 constexpr double kLogPowerLimit = 7.0;  // powers e^-7..e^7 reach any mean a usable shape can have
 
 struct Shape {
@@ -58,13 +58,13 @@ Vector interpolated(const Vector& hourly, double sample_time_h, Eigen::Index cou
 /// The power p for which mean(unit^p) = mean; unit in [0,1], so the mean falls as p grows.
 /// Bisection in log p.
 double powerForMean(const Vector& unit, double mean, const std::string& where) {
-  const auto meanAt = [&](double log_p) { return unit.array().pow(std::exp(log_p)).mean(); };
+  const auto mean_at = [&](double log_p) { return unit.array().pow(std::exp(log_p)).mean(); };
   double low = -kLogPowerLimit, high = kLogPowerLimit;
-  require(meanAt(low) >= mean && meanAt(high) <= mean, where + ": mean",
+  require(mean_at(low) >= mean && mean_at(high) <= mean, where + ": mean",
           "a value that the shape can have; nearer to the middle of lower..upper");
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
-    (meanAt(middle) > mean ? low : high) = middle;
+    (mean_at(middle) > mean ? low : high) = middle;
   }
   return std::exp(0.5 * (low + high));
 }
@@ -96,7 +96,7 @@ DisturbanceRecord makePattern(const PatternParams& params, const std::vector<std
           std::to_string(names.size()) + " numbers");
   const double sample_time_h = sample_time_s / 3600.0;
   const auto columns = static_cast<Eigen::Index>(samples) + 1;
-  const auto day = static_cast<Eigen::Index>(std::ceil(kShortestRecord_h / sample_time_h)) + 1;
+  const auto day = static_cast<Eigen::Index>(std::ceil(kShortestRecordH / sample_time_h)) + 1;
   const Eigen::Index count = std::max(columns, day);
   const auto hours =
       static_cast<Eigen::Index>(std::ceil(static_cast<double>(count - 1) * sample_time_h));

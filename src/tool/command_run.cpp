@@ -27,7 +27,7 @@ Summary runOne(const LoopFile& loop, const std::string& folder) {
   const auto start = std::chrono::steady_clock::now();
   const RunRecord record = runLoop(loop, options);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  const Summary summary = summarize(loop, record, wall.count());
+  Summary summary = summarize(loop, record, wall.count());
   if (!folder.empty()) writeRun(loop, record, summary, folder);
   return summary;
 }
