@@ -5,6 +5,7 @@
 #include <fmbpc/PlantInfo.h>
 #include <rosbag/bag.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fmbpc/loop/report.hpp"
