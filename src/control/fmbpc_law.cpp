@@ -2,12 +2,15 @@
 // Vallejo 2022 eqs. 1-10.
 #include "fmbpc/control/fmbpc_law.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/control/coincidence.hpp"
+#include "fmbpc/control/disturbance_forecast.hpp"
+#include "fmbpc/control/path_planner.hpp"
 #include "fmbpc/fuzzy/model_file.hpp"
 
 namespace fpc {
@@ -34,7 +37,8 @@ struct FmbpcLaw::Belief {
         offset_output(Vector::Zero(n_y)),
         error_filtered(offset_output),
         outputs(offset_output),
-        lacking(offset_output) {}
+        lacking(offset_output),
+        correction(state) {}
 
   LocalModel local;
   CoincidenceGains gains;
@@ -46,6 +50,8 @@ struct FmbpcLaw::Belief {
   Vector error_filtered;  ///< w_hat
   Vector outputs;         ///< y_m, for signals
   Vector lacking;         ///< e, without C A^H xi
+  Vector correction;      ///< w_hat in the rows of the outputs
+  std::optional<PathPlanner> planner;  ///< of the iterated law
 };
 
 struct FmbpcLaw::Memory {
@@ -54,11 +60,13 @@ struct FmbpcLaw::Memory {
         limits(std::move(l)),
         plant(std::move(i)),
         published(params.law == "published"),
+        iterated(params.law == "iterated"),
         realigned(params.realisation == "realigned"),
         antecedent_measured(params.antecedent == "measured"),
         reference(params.reference_pole, params.preview),
-        future(Matrix::Zero(count(plant.outputs),
-                            params.prediction_steps + params.coincidence_steps - 1)),
+        future(Matrix::Zero(count(plant.outputs), params.referenceSteps())),
+        forecast(count(plant.disturbances), params.horizon_steps, params.forecast_period_steps,
+                 params.forecast_pole),
         disturbances(params.disturbance_feedforward
                          ? Vector(Vector::Zero(count(plant.disturbances)))
                          : params.disturbance_nominal),
@@ -75,9 +83,10 @@ struct FmbpcLaw::Memory {
   FmbpcParams params;
   InputLimits limits;
   PlantInfo plant;
-  bool published, realigned, antecedent_measured;
+  bool published, iterated, realigned, antecedent_measured;
   ReferenceTrajectory reference;
   Matrix future;        ///< col(i) = y_r(k+1+i)
+  DisturbanceForecast forecast;
   Vector disturbances;  ///< d(k) as the model takes it
   Vector bias;          ///< of a bumpless transfer, dying out
   Vector proposal;      ///< u(k), unclipped
@@ -105,6 +114,11 @@ void FmbpcLaw::setModel(const TsModel& model) {
   Memory& m = *memory_;
   m.belief = std::make_unique<Belief>(matchToPlant(model, m.plant), count(m.plant.outputs),
                                       count(m.plant.inputs));
+  if (m.iterated)
+    m.belief->planner.emplace(m.belief->local,
+                              PathParams{m.params.horizon_steps, m.params.iterations,
+                                         m.params.weight_output, m.params.weight_move},
+                              m.limits);
   m.start_pending = true;
   m.transfer_pending = m.transfer_pending || m.running;
 }
@@ -113,6 +127,7 @@ void FmbpcLaw::reset(const Measurement& start) {
   Memory& m = *memory_;
   m.reference.reset(start.outputs);
   m.bias.setZero();
+  m.forecast.forget();
   m.start_pending = true;
   m.transfer_pending = start.header.step > 0;
   m.running = false;
@@ -129,8 +144,10 @@ void FmbpcLaw::estimate(const Measurement& now) {
     b.state = b.measured;
     b.error_filtered.setZero();
     b.outputs = now.outputs;
+    if (b.planner) b.planner->forget();
     m.start_pending = false;
   } else {
+    if (m.iterated) b.local.blend(b.state, now.input_applied, m.disturbances);
     b.next = model.g;
     b.next.noalias() += model.A * b.state;
     b.next.noalias() += model.B * now.input_applied;
@@ -143,6 +160,7 @@ void FmbpcLaw::estimate(const Measurement& now) {
   }
   b.offset_output.setZero();
   if (!m.realigned) b.offset_output = now.outputs - b.outputs;
+  m.forecast.add(now.header.step, m.disturbances);
 }
 
 bool FmbpcLaw::computeGains() {
@@ -162,6 +180,24 @@ void FmbpcLaw::propose(const Measurement& now) {
   b.lacking.noalias() -= b.gains.free() * b.state;
   m.proposal.noalias() = b.gains.gain() * b.lacking;
   m.proposal.noalias() += b.gains.moveGain() * now.input_applied;
+}
+
+/// The first input of the best path; the local model is then that of its first sample.
+bool FmbpcLaw::proposePath(const Measurement& now) {
+  Memory& m = *memory_;
+  Belief& b = *m.belief;
+  b.correction = b.offset_state - b.local.affine().g;
+  if (!b.planner->plan(b.state, b.correction, b.offset_output, m.forecast.predict(), m.future,
+                       now.input_applied))
+    return false;
+  m.proposal = b.planner->inputs().col(0);
+  b.local.blend(b.state, m.proposal, m.disturbances);
+  b.offset_state = b.local.affine().g + b.correction;
+  return true;
+}
+
+void FmbpcLaw::transfer(const Measurement& now) {
+  Memory& m = *memory_;
   if (m.transfer_pending && m.proposal.allFinite()) {
     m.bias = now.input_applied - m.proposal;
     m.proposal = now.input_applied;
@@ -172,7 +208,8 @@ void FmbpcLaw::propose(const Measurement& now) {
 }
 
 /// With A, B, g and y - y_m frozen, the law at k+i is affine in x(k+i): K = F P - V E, where E
-/// picks u(k+i-1) from the state; what is left is the feedforward.
+/// picks u(k+i-1) from the state; what is left is the feedforward. The iterated law hands over its
+/// plan: K = 0.
 void FmbpcLaw::predict(const Measurement& now, const SetpointSource& setpoint,
                        PredictiveAction& prediction) const {
   const Memory& m = *memory_;
@@ -187,9 +224,15 @@ void FmbpcLaw::predict(const Measurement& now, const SetpointSource& setpoint,
   prediction.K.noalias() = b.gains.gain() * b.gains.free();
   for (Eigen::Index j = 0; j < m.bias.size(); ++j)
     prediction.K.col(b.local.inputState(j, 1)) -= b.gains.moveGain().col(j);
+  if (m.iterated) prediction.K.setZero();
   prediction.feedforward.resize(m.bias.size(), m.params.prediction_steps);
   double decay = 1.0;
   for (Eigen::Index i = 0; i < m.params.prediction_steps; ++i, decay *= m.params.transfer_decay) {
+    if (m.iterated) {
+      const Matrix& plan = b.planner->inputs();
+      prediction.feedforward.col(i) = plan.col(std::min(i, plan.cols() - 1)) + decay * m.bias;
+      continue;
+    }
     b.lacking = m.future.col(i + m.params.coincidence_steps - 1) - b.offset_output;
     b.lacking.noalias() -= b.gains.sum() * b.offset_state;
     prediction.feedforward.col(i).noalias() = b.gains.gain() * b.lacking;
@@ -231,7 +274,7 @@ void FmbpcLaw::step(const Measurement& now, const SetpointSource& setpoint,
   output.ok = true;
   output.remark = "";
   m.reference.predict(setpoint, now.header.step, m.future);
-  m.reference.advance(setpoint.present());
+  m.reference.advance(setpoint, now.header.step);
   m.running = true;
   if (!m.belief) return hold(now, "no model", output);
   if (!allFinite(now)) {
@@ -245,14 +288,15 @@ void FmbpcLaw::step(const Measurement& now, const SetpointSource& setpoint,
   b.offset_state = b.local.affine().g;
   for (Eigen::Index i = 0; i < now.outputs.size(); ++i)
     b.offset_state[b.local.outputState(i)] += b.error_filtered[i];
-  const bool solvable = computeGains();
-  propose(now);
+  const bool solvable = m.iterated ? proposePath(now) : computeGains();
+  if (!m.iterated) propose(now);
+  transfer(now);
   refreshSignals(now);
   if (!b.state.allFinite()) m.start_pending = true;
   if (!solvable || !m.proposal.allFinite()) {
     m.bias.setZero();
     return hold(
-        now, solvable ? "the law gave no finite input" : "the input has no effect at the horizon",
+        now, solvable || m.iterated ? "the law gave no finite input" : "the input has no effect at the horizon",
         output);
   }
   m.limits.clip(output.input = m.proposal, now.input_applied);

@@ -1,4 +1,6 @@
 // Checks of the parameters of the fuzzy model-based predictive law.
+#include <algorithm>
+
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/control/fmbpc_law.hpp"
 
@@ -19,7 +21,8 @@ void requireOneOf(const std::string& value, const std::string& first, const std:
 }  // namespace
 
 void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
-  requireOneOf(law, "published", "general", "controller.law");
+  require(law == "published" || law == "general" || law == "iterated", "controller.law",
+          "one of published, general, iterated, got '" + law + "'");
   requireOneOf(realisation, "parallel", "realigned", "controller.realisation");
   requireOneOf(antecedent, "model", "measured", "controller.antecedent");
   require(coincidence_steps >= 1 && coincidence_steps <= 100000, "controller.coincidence_steps",
@@ -41,10 +44,18 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
             "general for a plant with " + std::to_string(n_u) + " inputs; published has one");
     return;
   }
+  require(horizon_steps >= 1 && horizon_steps <= 10000, "controller.horizon_steps",
+          "an integer from 1 to 10000");
+  require(iterations >= 1 && iterations <= 1000, "controller.iterations",
+          "an integer from 1 to 1000");
   requireWeights(weight_output, n_y, "controller.weight_output");
   requireWeights(weight_move, n_u, "controller.weight_move");
   require((weight_output.array() > 0.0).any(), "controller.weight_output",
           "at least one number > 0");
+}
+
+Eigen::Index FmbpcParams::referenceSteps() const {
+  return std::max(prediction_steps + coincidence_steps - 1, law == "iterated" ? horizon_steps : 1);
 }
 
 }  // namespace fpc

@@ -18,22 +18,27 @@ ReferenceTrajectory::ReferenceTrajectory(Vector pole, bool preview)
 
 void ReferenceTrajectory::reset(VectorRef outputs) { present_ = outputs; }
 
+const Vector& ReferenceTrajectory::target(const SetpointSource& setpoint,
+                                          std::uint32_t step) const {
+  if (!preview_) return setpoint.present();
+  setpoint.scheduled(step + 1, scheduled_);
+  return scheduled_;
+}
+
 void ReferenceTrajectory::predict(const SetpointSource& setpoint, std::uint32_t step,
                                   Eigen::Ref<Matrix> future) const {
-  const Vector& now = setpoint.present();
   for (Eigen::Index i = 0; i < future.cols(); ++i) {
-    const bool ahead = preview_ && i > 0;
-    if (ahead) setpoint.scheduled(step + static_cast<std::uint32_t>(i), scheduled_);
+    const Vector& aim = target(setpoint, step + static_cast<std::uint32_t>(i));
     for (Eigen::Index row = 0; row < present_.size(); ++row) {
       const double last = i == 0 ? present_[row] : future(row, i - 1);
-      const double target = ahead ? scheduled_[row] : now[row];
-      future(row, i) = pole_[row] * last + (1.0 - pole_[row]) * target;
+      future(row, i) = pole_[row] * last + (1.0 - pole_[row]) * aim[row];
     }
   }
 }
 
-void ReferenceTrajectory::advance(VectorRef setpoint) {
-  present_ = (pole_.array() * present_.array() + (1.0 - pole_.array()) * setpoint.array()).matrix();
+void ReferenceTrajectory::advance(const SetpointSource& setpoint, std::uint32_t step) {
+  const Vector& aim = target(setpoint, step);
+  present_ = (pole_.array() * present_.array() + (1.0 - pole_.array()) * aim.array()).matrix();
 }
 
 }  // namespace fpc

@@ -23,6 +23,7 @@ LocalModel::LocalModel(TsModel model) : model_(std::move(model)) {
   layOut();
   affine_ = AffineModel(n_x_, static_cast<Eigen::Index>(model_.inputs.size()),
                         static_cast<Eigen::Index>(model_.outputs.size()));
+  last_input_ = Vector::Zero(static_cast<Eigen::Index>(model_.inputs.size()));
   fillShifts();
   firing_.resize(model_.submodels.size());
   for (std::size_t i = 0; i < model_.submodels.size(); ++i) {
@@ -97,13 +98,14 @@ void LocalModel::fillShifts() {
     shift(disturbance_offset_[i], disturbance_lags_[i]);
 }
 
-double LocalModel::antecedentValue(const Regressor& variable, VectorRef state,
+double LocalModel::antecedentValue(const Regressor& variable, VectorRef state, VectorRef input,
                                    VectorRef disturbances) const {
   switch (variable.kind) {
     case SignalKind::kOutput:
       return state[outputState(variable.index, variable.lag)];
     case SignalKind::kInput:
-      return state[inputState(variable.index, std::max(variable.lag, 1))];
+      return variable.lag == 0 ? input[variable.index]
+                               : state[inputState(variable.index, variable.lag)];
     default:
       return variable.lag == 0 ? disturbances[variable.index]
                                : state[disturbanceState(variable.index, variable.lag)];
@@ -132,12 +134,13 @@ void LocalModel::addTerm(Eigen::Index output, const Regressor& regressor, double
   }
 }
 
-bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef disturbances) {
+bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef input,
+                             VectorRef disturbances) {
   const OutputModel& submodel = model_.submodels[at(output)];
   Vector& values = antecedent_values_[at(output)];
   for (std::size_t i = 0; i < submodel.antecedents.size(); ++i)
     values[static_cast<Eigen::Index>(i)] =
-        antecedentValue(submodel.antecedents[i], state, disturbances);
+        antecedentValue(submodel.antecedents[i], state, input, disturbances);
   FiringResult& firing = firing_[at(output)];
   firingWeights(submodel, values, firing);
 
@@ -158,9 +161,14 @@ bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef dis
 }
 
 bool LocalModel::blend(VectorRef state, VectorRef disturbances) {
+  for (Eigen::Index i = 0; i < last_input_.size(); ++i) last_input_[i] = state[inputState(i, 1)];
+  return blend(state, last_input_, disturbances);
+}
+
+bool LocalModel::blend(VectorRef state, VectorRef input, VectorRef disturbances) {
   bool fired = true;
   for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(model_.outputs.size()); ++i)
-    fired = blendOutput(i, state, disturbances) && fired;
+    fired = blendOutput(i, state, input, disturbances) && fired;
   for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
     if (disturbance_lags_[i] > 0)
       affine_.g[disturbance_offset_[i]] = disturbances[static_cast<Eigen::Index>(i)];

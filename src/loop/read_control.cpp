@@ -50,12 +50,19 @@ void readFmbpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
         std::find(all.begin(), all.end(), names.seen_disturbances[static_cast<std::size_t>(i)]);
     params.disturbance_nominal[i] = loop.simulation.disturbance_nominal[at - all.begin()];
   }
-  section.oneOf("law", params.law, {"published", "general"});
+  section.oneOf("law", params.law, {"published", "general", "iterated"});
   section.integer("coincidence_steps", params.coincidence_steps, 1, 100000);
   section.byName("reference_pole", params.reference_pole, names.outputs, {0.0, 1.0});
   section.boolean("preview", params.preview);
   section.byName("weight_output", params.weight_output, names.outputs, kFiniteNotNegative);
   section.byName("weight_move", params.weight_move, names.inputs, kFiniteNotNegative);
+  section.integer("horizon_steps", params.horizon_steps, 1, 10000);
+  section.integer("iterations", params.iterations, 1, 1000);
+  double period_h = 0.0;
+  section.number("forecast_period_h", period_h, {0.0, 1e4});
+  params.forecast_period_steps =
+      static_cast<int>(std::lround(period_h * 3600.0 / loop.simulation.sample_time_s));
+  section.number("forecast_pole", params.forecast_pole, {0.0, 1.0});
   section.oneOf("realisation", params.realisation, {"parallel", "realigned"});
   section.oneOf("antecedent", params.antecedent, {"model", "measured"});
   section.number("offset_gain", params.offset_gain, {0.0, 1.0});

@@ -33,9 +33,9 @@ TEST(ReferenceTrajectory, AdvancesOntoItsOwnPrediction) {
     SetpointSource setpoint = test::setpointOf(test::activatedSludgeInfo(), pair(3.0, 4.0));
     Matrix future(2, 3);
     for (std::uint32_t k = 0; k < 10; ++k) {
-      const Vector asked = setpoint.advance(k);
+      setpoint.advance(k);
       reference.predict(setpoint, k, future);
-      reference.advance(asked);
+      reference.advance(setpoint, k);
       EXPECT_EQ(reference.present(), future.col(0));
     }
   }
@@ -52,9 +52,9 @@ TEST(ReferenceTrajectory, PreviewFollowsTheScheduleAndOtherwiseThePresentSetpoin
   with.reset(pair(55.0, 2000.0));
   without.predict(setpoint, 0, held);
   with.predict(setpoint, 0, ahead);
-  for (int i = 0; i < 8; ++i) {  // column i is y_r(i+1), which follows the setpoint of sample i
+  for (int i = 0; i < 8; ++i) {  // column i is y_r(i+1); preview knows the setpoint of sample i+1
     EXPECT_EQ(held(1, i), 2000.0);
-    EXPECT_EQ(ahead(1, i), i >= 5 ? 2100.0 : 2000.0) << i;
+    EXPECT_EQ(ahead(1, i), i >= 4 ? 2100.0 : 2000.0) << i;
   }
 }
 

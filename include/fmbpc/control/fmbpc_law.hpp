@@ -11,12 +11,16 @@
 namespace fpc {
 
 struct FmbpcParams {
-  std::string law{"published"};  ///< published (u = e_x / m2) or general (weighted)
+  std::string law{"published"};  ///< published (u = e_x / m2), general (weighted) or iterated
   int coincidence_steps{6};      ///< H
   Vector reference_pole;         ///< n_y, a_r
   bool preview{false};           ///< references follow the setpoint schedule over the horizon
-  Vector weight_output;          ///< n_y, diagonal W (general)
-  Vector weight_move;            ///< n_u, diagonal L (general)
+  Vector weight_output;          ///< n_y, diagonal W (general, iterated)
+  Vector weight_move;            ///< n_u, diagonal L (general, iterated)
+  int horizon_steps{40};         ///< N (iterated)
+  int iterations{8};             ///< most linearisations per sample (iterated)
+  int forecast_period_steps{0};  ///< d is expected as it was so long ago; 0: as it is (iterated)
+  double forecast_pole{0.975};   ///< how today's difference fades per sample, [0, 1]
   std::string realisation{
       "parallel"};  ///< parallel: own state, y_m = z; realigned: state from measurements
   std::string antecedent{"model"};     ///< outputs in the antecedents: model or measured
@@ -28,12 +32,16 @@ struct FmbpcParams {
   /// @throws InputError naming the field ("controller.coincidence_steps"). The weights matter to
   /// `general` only.
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
+  Eigen::Index referenceSteps() const;  ///< how far ahead the law reads its references
 };
 
 /// The law of Vallejo 2019 eqs. 19-37, with past inputs in the state:
 ///   M = C S_H B,  e = y_r(k+H) - y + y_m - C A^H xi - C S_H g,
 ///   published: u = e_x / m2 (row of the last output; one input; the other outputs and their
 ///   setpoints play no part); general:   u = (M' W M + L)^-1 (M' W e + L u(k-1)).
+/// iterated: the inputs of N samples that minimise the weighted squares of errors and moves inside
+/// the limits, rules blended along the path, references and disturbances ahead (see PathPlanner,
+/// DisturbanceForecast); the first is applied, the rest is handed to an optimizer as feedforward.
 /// A start in the middle of a run, and a new model, add a bias to u that makes it continuous and
 /// dies out. If no rule fires the nearest one is used, with a remark. If the gains are singular or
 /// anything is not finite the last applied input is held (clipped), ok is false, and there is no
@@ -58,6 +66,8 @@ class FmbpcLaw final : public Controller {
   void estimate(const Measurement& now);
   bool computeGains();
   void propose(const Measurement& now);
+  bool proposePath(const Measurement& now);
+  void transfer(const Measurement& now);
   void predict(const Measurement& now, const SetpointSource& setpoint,
                PredictiveAction& prediction) const;
   void hold(const Measurement& now, const char* reason, ControllerOutput& output);

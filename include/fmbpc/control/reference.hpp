@@ -6,20 +6,24 @@
 
 namespace fpc {
 
-/// y_r(k+1) = a_r y_r(k) + (1 - a_r) setpoint(k), y_r(0) = y(0). Source: Vallejo 2019 eqs. 29,
-/// 30, 37.
+/// y_r(k+1) = a_r y_r(k) + (1 - a_r) setpoint(k), y_r(0) = y(0). With preview it is setpoint(k+1):
+/// a path without lag (a_r = 0) changes with the setpoint, not a sample after it. Source: Vallejo
+/// 2019 eqs. 29, 30, 37.
 class ReferenceTrajectory {
  public:
-  /// pole: n_y values a_r in [0, 1). With preview the future setpoints come from the schedule,
-  /// otherwise the present one is held over the horizon.
+  /// pole: n_y values a_r in [0, 1). With preview the future setpoints come from the schedule and
+  /// the commands now in force (a command yet to come is not known), otherwise the present one is
+  /// held over the horizon.
   ReferenceTrajectory(Vector pole, bool preview);
   void reset(VectorRef outputs);                      ///< y_r = y
   const Vector& present() const { return present_; }  ///< y_r(k)
   /// future.col(i) = y_r(k+1+i) for the columns given; no memory touched, no allocation.
   void predict(const SetpointSource& setpoint, std::uint32_t step, Eigen::Ref<Matrix> future) const;
-  void advance(VectorRef setpoint);  ///< to k+1
+  void advance(const SetpointSource& setpoint, std::uint32_t step);  ///< from k = step to k+1
 
  private:
+  const Vector& target(const SetpointSource& setpoint, std::uint32_t step) const;
+
   Vector pole_, present_;
   bool preview_;
   mutable Vector scheduled_;

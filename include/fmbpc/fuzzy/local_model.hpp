@@ -36,12 +36,15 @@ class LocalModel {
   /// is used). The matrices depend on the antecedent only: hand over measured outputs in `state` to
   /// blend at the measurement.
   bool blend(VectorRef state, VectorRef disturbances);
+  /// The same for a u(k) that is known, as along a planned path.
+  bool blend(VectorRef state, VectorRef input, VectorRef disturbances);
   const AffineModel& affine() const { return affine_; }
   const std::vector<FiringResult>& firing() const { return firing_; }
 
  private:
-  double antecedentValue(const Regressor& variable, VectorRef state, VectorRef disturbances) const;
-  bool blendOutput(Eigen::Index output, VectorRef state, VectorRef disturbances);
+  double antecedentValue(const Regressor& variable, VectorRef state, VectorRef input,
+                         VectorRef disturbances) const;
+  bool blendOutput(Eigen::Index output, VectorRef state, VectorRef input, VectorRef disturbances);
   void addTerm(Eigen::Index output, const Regressor& regressor, double coefficient,
                VectorRef disturbances);
   void layOut();
@@ -55,6 +58,7 @@ class LocalModel {
   AffineModel affine_;
   std::vector<FiringResult> firing_;
   std::vector<Vector> antecedent_values_;
+  Vector last_input_;  ///< u(k-1) out of a state
 };
 
 }  // namespace fpc

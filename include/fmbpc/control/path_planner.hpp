@@ -1,0 +1,59 @@
+// Plans the inputs of a whole horizon along the nonlinear path of the fuzzy model.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <vector>
+
+#include "fmbpc/base/input_limits.hpp"
+#include "fmbpc/fuzzy/local_model.hpp"
+
+namespace fpc {
+
+struct PathParams {
+  int horizon_steps{40};  ///< N
+  int iterations{8};      ///< most linearisations per sample
+  Vector weight_output;   ///< n_y, diagonal W
+  Vector weight_move;     ///< n_u, diagonal L
+};
+
+/// Minimises  sum_{i=1..N} |y(k+i) - y_r(k+i)|^2_W + sum_{i<N} |u(k+i) - u(k+i-1)|^2_L  over inputs
+/// inside their limits, with the rules blended anew at every predicted sample: Gauss-Newton steps
+/// by a Riccati sweep backwards and a simulation of the model forwards, from the plan of the sample
+/// before. Bounds are kept by clipping the sweep's inputs (the others are found again).
+/// Source: Li and Todorov 2004; bounds after Tassa, Mansard and Todorov 2014. Work is linear in N
+/// and bounded by `iterations`. No allocation after construction.
+class PathPlanner {
+ public:
+  PathPlanner(const LocalModel& model, PathParams params, InputLimits limits);
+  void forget();  ///< the next plan starts from the input held
+  /// state xi(k), correction n_x (added to every prediction), offset_output n_y (y - y_m),
+  /// disturbances n_d N, reference n_y N or more columns. Returns false if nothing finite came out.
+  bool plan(VectorRef state, VectorRef correction, VectorRef offset_output,
+            const Matrix& disturbances, const Matrix& reference, VectorRef input_previous);
+  const Matrix& inputs() const { return inputs_; }  ///< n_u N, u(k)...
+  double cost() const { return cost_; }             ///< of that plan
+
+ private:
+  double simulate(double share, Matrix& states, Matrix& inputs);
+  void linearise();
+  void slope(Eigen::Index i);
+  bool sweep();
+  bool chooseInput(Eigen::Index i);
+  double weigh(Eigen::Index i, const Matrix& states, const Matrix& inputs) const;
+
+  LocalModel model_;
+  PathParams params_;
+  InputLimits limits_;
+  Eigen::Index n_x_, n_u_, n_y_, N_;
+  bool warm_{false};
+  double cost_{};
+  Matrix states_, inputs_, trial_states_, trial_inputs_, step_;  ///< columns: samples
+  std::vector<Matrix> A_, B_, K_;                                ///< one per sample
+  Matrix P_, PA_, PB_, Quu_, Qux_, Qxx_, free_Quu_;
+  Vector p_, Qu_, Qx_, wish_, state_, next_, moved_, lower_, upper_, input_, correction_, offset_;
+  Matrix disturbances_, reference_;
+  std::vector<bool> fixed_;
+  Eigen::LLT<Matrix> factor_;
+};
+
+}  // namespace fpc
