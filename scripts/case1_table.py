@@ -17,6 +17,8 @@ ROWS = (
     ("FMBPC, general law", "asp_case1_general", ()),
     ("FMBPC, published law, H 3, a_r2 0.3", "asp_case1",
      ("controller.coincidence_steps=3", "controller.reference_pole.x=0.3")),
+    ("FMBPC, published law, own model, H 6", "asp_case1_own", ()),
+    ("FMBPC, iterated law, own model, preview", "asp_best", ()),
     ("PI on substrate, paper's gains", "asp_case1_pi_s", ()),
     ("PI on biomass, paper's gains", "asp_case1_pi_x", ()),
     ("PI on biomass, kp 10, ki 1", "asp_case1_pi_x_tuned",

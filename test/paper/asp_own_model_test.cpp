@@ -102,7 +102,7 @@ TEST(AspOwnModel, TheShippedFilesAreWhatIdentificationGivesFromTheShippedExperim
   writeRun(loop, record, summarize(loop, record, 0.0), folder);
   const CsvTable table = readCsv(folder + "/trajectory.csv");
   const std::string config = std::string(FMBPC_SOURCE_DIR) + "/config";
-  for (const std::string name : {"asp_a", "asp_b", "asp_c", "asp_d", "asp_best"}) {
+  for (const std::string name : {"asp_a", "asp_b", "asp_c", "asp_d", "asp_xr"}) {
     SCOPED_TRACE(name);
     const Structure structure = readStructure(config + "/structure/" + name + ".yaml");
     const TsModel found = identify(makeDataSet(table, structure), structure).model;
