@@ -295,9 +295,10 @@ void FmbpcLaw::step(const Measurement& now, const SetpointSource& setpoint,
   if (!b.state.allFinite()) m.start_pending = true;
   if (!solvable || !m.proposal.allFinite()) {
     m.bias.setZero();
-    return hold(
-        now, solvable || m.iterated ? "the law gave no finite input" : "the input has no effect at the horizon",
-        output);
+    const bool no_effect = !solvable && !m.iterated;
+    return hold(now, no_effect ? "the input has no effect at the horizon"
+                               : "the law gave no finite input",
+                output);
   }
   m.limits.clip(output.input = m.proposal, now.input_applied);
   m.last_input = output.input;

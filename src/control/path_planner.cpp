@@ -7,7 +7,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kEnough = 1e-4;    // relative gain below which another linearisation is not worth it
+constexpr double kEnough = 1e-4;    // relative gain below which another round is not worth it
 constexpr double kSmallest = 0.05;  // share of a step below which it is given up
 constexpr double kStep = 1e-4;      // of finite differences, relative
 
