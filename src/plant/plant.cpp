@@ -40,6 +40,8 @@ std::vector<std::string> plantNames() {
   return names;
 }
 
+void Plant::localLoop(VectorRef, VectorRef, Eigen::Ref<Vector>) const {}
+
 Vector parameterValues(const PlantDescription& description, const PlantParameters& parameters) {
   const auto& known = description.parameters;
   Vector values(static_cast<Eigen::Index>(known.size()));

@@ -1,6 +1,6 @@
 // Timing of one sample k: commands due at k come into force; measurement k shows y(k), d(k),
-// u(k-1); then u(k) passes the actuator and its faults, and the plant moves over [t_k, t_k + Ts)
-// with u(k) and d(k) held.
+// u(k-1); then u(k) passes the actuator, its faults and the plant's local loop, and the plant moves
+// over [t_k, t_k + Ts) with u(k) and d(k) held.
 #include "fmbpc/plant/simulation.hpp"
 
 #include <algorithm>
@@ -56,6 +56,7 @@ const Measurement& Simulation::reset(std::uint64_t run_id) {
   info_.header = clock_.header(run_id, 0);
   measurement_.header = info_.header;
   state_.state = params_.initial_state;
+  state_before_ = params_.initial_state;
   state_.actuator_clips = 0;
   state_.input_missing = false;
   actuator_.reset();
@@ -101,7 +102,8 @@ const Measurement& Simulation::integrate() {
       actuator_.disturb(i, commands_.apply(name, actuator_.applied()[i]));
   }
   const std::uint32_t step = measurement_.header.step;
-  const IntegrationResult result = integrator_.advance(state_.state, actuator_.applied(),
+  passLocalLoop();
+  const IntegrationResult result = integrator_.advance(state_.state, plant_input_,
                                                        state_.disturbances, params_.sample_time_s);
   if (!result.ok()) trouble_ = "sample " + std::to_string(step) + ": " + result.reason;
   measurement_.header = clock_.header(measurement_.header.run_id, step + 1);
@@ -109,6 +111,19 @@ const Measurement& Simulation::integrate() {
   state_.input_missing = actuator_.missing();
   measure();
   return measurement_;
+}
+
+// The actuator's limits bound what is applied; what the local loop adds is bounded by what the plant
+// can take at all.
+void Simulation::passLocalLoop() {
+  plant_input_ = actuator_.applied();
+  plant_->localLoop(state_.state, state_before_, plant_input_);
+  state_before_ = state_.state;
+  const auto& ranges = plant_->description().inputs;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    double& input = plant_input_[static_cast<Eigen::Index>(i)];
+    input = std::clamp(input, ranges[i].lower, ranges[i].upper);
+  }
 }
 
 void Simulation::updateDisturbances() {

@@ -51,6 +51,11 @@ class Plant {
   /// dxdt [unit of the state per time unit]; must be finite for finite arguments inside the ranges.
   virtual void derivatives(VectorRef x, VectorRef u, VectorRef d,
                            Eigen::Ref<Vector> dxdt) const = 0;
+  /// What a local loop inside the plant, sampled with the ring, makes of the applied input: called
+  /// once per sample before the integration, u is written over and then held. x: the state now,
+  /// before: one sample ago (at the start the same). Controllers never see what it adds. Default:
+  /// no such loop.
+  virtual void localLoop(VectorRef x, VectorRef before, Eigen::Ref<Vector> u) const;
 };
 
 /// Parameter values by name; absent names keep the description's nominal values.
