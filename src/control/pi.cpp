@@ -16,6 +16,25 @@ double insideBounds(const InputLimits& limits, Eigen::Index i, double value) {
   return std::clamp(value, limits.lower[i], limits.upper[i]);
 }
 
+double scheduledGain(const std::vector<GainPoint>& points, double output) {
+  if (points.empty()) return 1.0;
+  const auto after =
+      std::find_if(points.begin(), points.end(), [&](const auto& p) { return p.output > output; });
+  if (after == points.begin()) return points.front().gain;
+  if (after == points.end()) return points.back().gain;
+  const GainPoint& before = *(after - 1);
+  const double part = (output - before.output) / (after->output - before.output);
+  return before.gain + part * (after->gain - before.gain);
+}
+
+void validateSchedule(const std::vector<GainPoint>& points, const std::string& key) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool increasing = i == 0 || points[i].output > points[i - 1].output;
+    require(std::isfinite(points[i].output) && increasing, key, "finite outputs that increase");
+    require(std::isfinite(points[i].gain) && points[i].gain > 0.0, key, "finite gains > 0");
+  }
+}
+
 void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, Eigen::Index n_u) {
   require(loop.input >= 0 && loop.input < n_u, key + "input", "one of the plant's inputs");
   require(loop.output >= 0 && loop.output < n_y, key + "output", "one of the plant's outputs");
@@ -26,6 +45,7 @@ void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, 
   require(windup == "none" || windup == "clamp" || windup == "tracking", key + "anti_windup",
           "none, clamp or tracking");
   require(loop.start == "bias" || loop.start == "bumpless", key + "start", "bias or bumpless");
+  validateSchedule(loop.gain_schedule, key + "gain_schedule");
 }
 
 }  // namespace
@@ -39,6 +59,11 @@ void PiParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
     require(moved.insert(loops[i].input).second, key + "input",
             "an input that no other loop moves");
   }
+  if (reference_pole.size() == 0) return;
+  require(reference_pole.size() == n_y, "controller.reference_pole",
+          std::to_string(n_y) + " numbers");
+  require((reference_pole.array() >= 0.0).all() && (reference_pole.array() < 1.0).all(),
+          "controller.reference_pole", "numbers >= 0 and < 1");
 }
 
 PiController::PiController(PiParams params, InputLimits limits, PlantInfo plant)
@@ -51,12 +76,14 @@ PiController::PiController(PiParams params, InputLimits limits, PlantInfo plant)
   limits_.validate(n_u);
   require(std::isfinite(sample_time_h_) && sample_time_h_ > 0.0, "sampling.sample_time_s",
           "a number > 0");
+  if (params_.reference_pole.size() > 0) path_.emplace(params_.reference_pole, false);
   for (const PiLoop& loop : params_.loops)
     signals_.emplace_back(plant.inputs[static_cast<std::size_t>(loop.input)].name + "_integral",
                           0.0);
 }
 
 void PiController::reset(const Measurement& start) {
+  if (path_) path_->reset(start.outputs);
   for (std::size_t i = 0; i < states_.size(); ++i) {
     states_[i] = {};
     const bool from_bias = start.header.step == 0 && params_.loops[i].start == "bias";
@@ -64,11 +91,17 @@ void PiController::reset(const Measurement& start) {
   }
 }
 
-// u = bias + kp e + ki int e dt
+void PiController::refer(const SetpointSource& setpoint, Vector& reference) {
+  reference = path_ ? path_->present() : setpoint.present();
+  if (path_) path_->advance(setpoint.present());
+}
+
+// u = bias + kp g e + ki int g e dt
 void PiController::propose(const PiLoop& loop, const Measurement& now,
                            const SetpointSource& setpoint, LoopState& state) const {
   const double difference = setpoint.present()[loop.output] - now.outputs[loop.output];
-  state.error = loop.reverse ? -difference : difference;
+  state.error = (loop.reverse ? -difference : difference) *
+                scheduledGain(loop.gain_schedule, now.outputs[loop.output]);
   const double proportional = loop.bias + loop.kp * state.error;
   state.wanted = proportional + state.integral;
   if (!state.transfer_pending || !std::isfinite(proportional)) return;
@@ -102,7 +135,7 @@ void PiController::integrate(const PiLoop& loop, const Measurement& now, double 
 void PiController::step(const Measurement& now, const SetpointSource& setpoint,
                         ControllerOutput& output) {
   output.input = now.input_applied;
-  output.reference = setpoint.present();
+  refer(setpoint, output.reference);
   output.predictive = false;
   output.ok = true;
   output.remark = "";

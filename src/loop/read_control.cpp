@@ -78,7 +78,24 @@ void readFmbpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
   checked(section, [&] { params.validate(n_y, n_u); });
 }
 
+std::vector<GainPoint> readSchedule(YamlSection& section) {
+  std::vector<GainPoint> points;
+  for (auto& item : section.list("gain_schedule")) {
+    for (const char* key : {"output", "gain"}) need(item, key, "a number");
+    GainPoint point;
+    item.number("output", point.output, kFinite);
+    item.number("gain", point.gain, kFinitePositive);
+    item.finish();
+    points.push_back(point);
+  }
+  return points;
+}
+
 void readPi(YamlSection& section, LoopFile& loop, const LoopNames& names) {
+  if (section.has("reference_pole")) {
+    loop.pi.reference_pole = Vector::Constant(count(names.outputs), 0.9);
+    section.byName("reference_pole", loop.pi.reference_pole, names.outputs, {0.0, 1.0});
+  }
   need(section, "loops", "a list of loops");
   for (auto& item : section.list("loops")) {
     PiLoop pi;
@@ -92,6 +109,7 @@ void readPi(YamlSection& section, LoopFile& loop, const LoopNames& names) {
     item.boolean("reverse", pi.reverse);
     item.oneOf("anti_windup", pi.anti_windup, {"none", "clamp", "tracking"});
     item.oneOf("start", pi.start, {"bias", "bumpless"});
+    pi.gain_schedule = readSchedule(item);
     item.finish();
     loop.pi.loops.push_back(std::move(pi));
   }

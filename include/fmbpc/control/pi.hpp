@@ -2,16 +2,24 @@
 // Source: Vallejo 2019 section 5.2.2.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/reference.hpp"
 
 namespace fpc {
 
-/// u = bias + kp e + ki int e dt, e = setpoint - y. Gains in input units per output unit (and per
-/// hour).
+/// At this value of the followed output both gains are multiplied by `gain`.
+struct GainPoint {
+  double output{};
+  double gain{1.0};
+};
+
+/// u = bias + kp g e + ki int g e dt, e = setpoint - y. Gains in input units per output unit (and
+/// per hour); g = 1 unless scheduled.
 struct PiLoop {
   int input{};   ///< index of the input it moves
   int output{};  ///< index of the output it follows
@@ -21,10 +29,15 @@ struct PiLoop {
   bool reverse{false};               ///< e = y - setpoint
   std::string anti_windup{"clamp"};  ///< none, clamp or tracking
   std::string start{"bias"};         ///< bias: integral starts at 0; bumpless: u(0) = input_applied
+  /// g(y): outputs increasing, linear between points, held outside; empty: 1.
+  std::vector<GainPoint> gain_schedule;
 };
 
 struct PiParams {
   std::vector<PiLoop> loops;
+  /// n_y: the published reference is the first-order path to the setpoint with these poles, so that
+  /// rivals are judged by the same path; e stays setpoint - y. Empty: the setpoint itself.
+  Vector reference_pole;
   /// @throws InputError naming the field: indices, finite gains, words, two loops on one input.
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
 };
@@ -48,18 +61,20 @@ class PiController final : public Controller {
  private:
   struct LoopState {
     double integral{};  // ki int e dt, in units of the input
-    double error{};     // of this sample
+    double error{};     // of this sample, times the scheduled gain
     double wanted{};    // u before the limits
     bool transfer_pending{false};
   };
   void propose(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
                LoopState& state) const;
+  void refer(const SetpointSource& setpoint, Vector& reference);
   void integrate(const PiLoop& loop, const Measurement& now, double sent, LoopState& state) const;
 
   PiParams params_;
   InputLimits limits_;
   double sample_time_h_;
   std::vector<LoopState> states_;  // one per loop
+  std::optional<ReferenceTrajectory> path_;
   std::vector<std::pair<std::string, double>> signals_;
 };
 
