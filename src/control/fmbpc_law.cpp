@@ -3,14 +3,11 @@
 #include "fmbpc/control/fmbpc_law.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 #include <utility>
 
+#include "control/fmbpc_belief.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/coincidence.hpp"
 #include "fmbpc/control/disturbance_forecast.hpp"
-#include "fmbpc/control/path_planner.hpp"
 #include "fmbpc/fuzzy/model_file.hpp"
 
 namespace fpc {
@@ -26,34 +23,6 @@ bool allFinite(const Measurement& m) {
 
 }  // namespace
 
-struct FmbpcLaw::Belief {
-  Belief(TsModel model, Eigen::Index n_y, Eigen::Index n_u)
-      : local(std::move(model)),
-        gains(local.stateSize(), n_u, n_y),
-        state(Vector::Zero(local.stateSize())),
-        measured(state),
-        next(state),
-        offset_state(state),
-        offset_output(Vector::Zero(n_y)),
-        error_filtered(offset_output),
-        outputs(offset_output),
-        lacking(offset_output),
-        correction(state) {}
-
-  LocalModel local;
-  CoincidenceGains gains;
-  Vector state;           ///< xi(k): own (parallel) or measured (realigned)
-  Vector measured;        ///< the same rows filled with measurements
-  Vector next;            ///< xi(k) as predicted at k-1
-  Vector offset_state;    ///< g
-  Vector offset_output;   ///< y - y_m
-  Vector error_filtered;  ///< w_hat
-  Vector outputs;         ///< y_m, for signals
-  Vector lacking;         ///< e, without C A^H xi
-  Vector correction;      ///< w_hat in the rows of the outputs
-  std::optional<PathPlanner> planner;  ///< of the iterated law
-};
-
 struct FmbpcLaw::Memory {
   Memory(FmbpcParams p, InputLimits l, PlantInfo i)
       : params(std::move(p)),
@@ -62,8 +31,8 @@ struct FmbpcLaw::Memory {
         published(params.law == "published"),
         iterated(params.law == "iterated"),
         realigned(params.realisation == "realigned"),
-        antecedent_measured(params.antecedent == "measured"),
         reference(params.reference_pole, params.preview),
+        aim(params.coincidence_steps - 1 + params.reference_lead_steps),
         future(Matrix::Zero(count(plant.outputs), params.referenceSteps())),
         forecast(count(plant.disturbances), params.horizon_steps, params.forecast_period_steps,
                  params.forecast_pole),
@@ -76,6 +45,7 @@ struct FmbpcLaw::Memory {
     for (const auto& output : plant.outputs) {
       signals.emplace_back(output.name + "_model", 0.0);
       signals.emplace_back(output.name + "_correction", 0.0);
+      if (params.delay_steps > 0) signals.emplace_back(output.name + "_undelayed", 0.0);
     }
     for (const auto& input : plant.inputs) signals.emplace_back(input.name + "_unclipped", 0.0);
   }
@@ -83,8 +53,9 @@ struct FmbpcLaw::Memory {
   FmbpcParams params;
   InputLimits limits;
   PlantInfo plant;
-  bool published, iterated, realigned, antecedent_measured;
+  bool published, iterated, realigned;
   ReferenceTrajectory reference;
+  Eigen::Index aim;     ///< column of `future` that u(k) aims at
   Matrix future;        ///< col(i) = y_r(k+1+i)
   DisturbanceForecast forecast;
   Vector disturbances;  ///< d(k) as the model takes it
@@ -112,8 +83,8 @@ FmbpcLaw::~FmbpcLaw() = default;
 
 void FmbpcLaw::setModel(const TsModel& model) {
   Memory& m = *memory_;
-  m.belief = std::make_unique<Belief>(matchToPlant(model, m.plant), count(m.plant.outputs),
-                                      count(m.plant.inputs));
+  m.belief = std::make_unique<Belief>(matchToPlant(model, m.plant), m.params,
+                                      count(m.plant.outputs), count(m.plant.inputs));
   if (m.iterated)
     m.belief->planner.emplace(m.belief->local,
                               PathParams{m.params.horizon_steps, m.params.iterations,
@@ -136,36 +107,22 @@ void FmbpcLaw::reset(const Measurement& start) {
 void FmbpcLaw::estimate(const Measurement& now) {
   Memory& m = *memory_;
   Belief& b = *m.belief;
-  const AffineModel& model = b.local.affine();  // still of sample k-1
-  const Eigen::Index n_y = now.outputs.size();
-  if (m.start_pending) {
-    if (m.params.disturbance_feedforward) m.disturbances = now.disturbances;
-    b.local.restState(now.outputs, now.input_applied, m.disturbances, b.measured);
-    b.state = b.measured;
-    b.error_filtered.setZero();
-    b.outputs = now.outputs;
-    if (b.planner) b.planner->forget();
-    m.start_pending = false;
-  } else {
+  if (!m.start_pending) {
     if (m.iterated) b.local.blend(b.state, now.input_applied, m.disturbances);
-    b.next = model.g;
-    b.next.noalias() += model.A * b.state;
-    b.next.noalias() += model.B * now.input_applied;
-    b.local.shiftState(now.outputs, now.input_applied, m.disturbances, b.measured);
-    for (Eigen::Index i = 0; i < n_y; ++i) b.outputs[i] = b.next[b.local.outputState(i)];
-    if (m.realigned)
-      b.error_filtered += m.params.offset_gain * (now.outputs - b.outputs - b.error_filtered);
-    b.state = m.realigned ? b.measured : b.next;
-    if (m.params.disturbance_feedforward) m.disturbances = now.disturbances;
+    b.advance(now, m.disturbances);  // matrices still of sample k-1
   }
-  b.offset_output.setZero();
-  if (!m.realigned) b.offset_output = now.outputs - b.outputs;
+  if (m.params.disturbance_feedforward) m.disturbances = now.disturbances;
+  if (m.start_pending) {
+    b.rest(now, m.disturbances);
+    if (b.planner) b.planner->forget();
+  }
+  m.start_pending = false;
   m.forecast.add(now.header.step, m.disturbances);
 }
 
 bool FmbpcLaw::computeGains() {
   Memory& m = *memory_;
-  const AffineModel& model = m.belief->local.affine();
+  const AffineModel& model = m.belief->affine();
   CoincidenceGains& gains = m.belief->gains;
   if (m.published) return gains.computePublished(model, m.params.coincidence_steps);
   return gains.computeWeighted(model, m.params.coincidence_steps, m.params.weight_output,
@@ -175,7 +132,7 @@ bool FmbpcLaw::computeGains() {
 void FmbpcLaw::propose(const Measurement& now) {
   Memory& m = *memory_;
   Belief& b = *m.belief;
-  b.lacking = m.future.col(m.params.coincidence_steps - 1) - b.offset_output;
+  b.lacking = m.future.col(m.aim) - b.offset_output;
   b.lacking.noalias() -= b.gains.sum() * b.offset_state;
   b.lacking.noalias() -= b.gains.free() * b.state;
   m.proposal.noalias() = b.gains.gain() * b.lacking;
@@ -216,13 +173,13 @@ void FmbpcLaw::predict(const Measurement& now, const SetpointSource& setpoint,
   Belief& b = *m.belief;
   prediction.header = now.header;
   prediction.state = b.state;
-  prediction.A = b.local.affine().A;
-  prediction.B = b.local.affine().B;
-  prediction.C = b.local.affine().C;
+  prediction.A = b.affine().A;
+  prediction.B = b.affine().B;
+  prediction.C = b.affine().C;
   prediction.offset_state = b.offset_state;
   prediction.offset_output = b.offset_output;
   prediction.K.noalias() = b.gains.gain() * b.gains.free();
-  for (Eigen::Index j = 0; j < m.bias.size(); ++j)
+  for (Eigen::Index j = 0; j < m.bias.size() && !m.published; ++j)
     prediction.K.col(b.local.inputState(j, 1)) -= b.gains.moveGain().col(j);
   if (m.iterated) prediction.K.setZero();
   prediction.feedforward.resize(m.bias.size(), m.params.prediction_steps);
@@ -233,12 +190,13 @@ void FmbpcLaw::predict(const Measurement& now, const SetpointSource& setpoint,
       prediction.feedforward.col(i) = plan.col(std::min(i, plan.cols() - 1)) + decay * m.bias;
       continue;
     }
-    b.lacking = m.future.col(i + m.params.coincidence_steps - 1) - b.offset_output;
+    b.lacking = m.future.col(i + m.aim) - b.offset_output;
     b.lacking.noalias() -= b.gains.sum() * b.offset_state;
     prediction.feedforward.col(i).noalias() = b.gains.gain() * b.lacking;
     prediction.feedforward.col(i) += decay * m.bias;
   }
-  prediction.reference = m.future.leftCols(m.params.prediction_steps);
+  prediction.reference =
+      m.future.middleCols(m.params.reference_lead_steps, m.params.prediction_steps);
   prediction.setpoint = setpoint.present();
   prediction.input_base_unclipped = m.proposal;
   prediction.input_previous = now.input_applied;
@@ -262,6 +220,7 @@ void FmbpcLaw::refreshSignals(const Measurement& now) {
   for (Eigen::Index i = 0; i < now.outputs.size(); ++i) {
     m.signals[place++].second = b.outputs[i];
     m.signals[place++].second = m.realigned ? b.error_filtered[i] : b.offset_output[i];
+    if (b.twin) m.signals[place++].second = b.undelayed[i] + b.offset_output[i];
   }
   for (Eigen::Index i = 0; i < m.proposal.size(); ++i) m.signals[place++].second = m.proposal[i];
 }
@@ -284,10 +243,8 @@ void FmbpcLaw::step(const Measurement& now, const SetpointSource& setpoint,
 
   Belief& b = *m.belief;
   estimate(now);
-  const bool fired = b.local.blend(m.antecedent_measured ? b.measured : b.state, m.disturbances);
-  b.offset_state = b.local.affine().g;
-  for (Eigen::Index i = 0; i < now.outputs.size(); ++i)
-    b.offset_state[b.local.outputState(i)] += b.error_filtered[i];
+  const bool fired = b.blend(m.disturbances);
+  b.compare(now);
   const bool solvable = m.iterated ? proposePath(now) : computeGains();
   if (!m.iterated) propose(now);
   transfer(now);

@@ -12,6 +12,26 @@ void requireWeights(const Vector& weight, Eigen::Index n, const std::string& key
   require(weight.allFinite() && (weight.array() >= 0.0).all(), key, "finite numbers >= 0");
 }
 
+/// What only some realisations can do.
+void requireCombination(const FmbpcParams& p) {
+  const std::string& realisation = p.realisation;
+  require(realisation == "parallel" || realisation == "realigned" || realisation == "literal",
+          "controller.realisation",
+          "one of parallel, realigned, literal, got '" + realisation + "'");
+  require(p.delay_steps >= 0 && p.delay_steps <= 1000, "controller.delay_steps",
+          "an integer from 0 to 1000");
+  require(p.delay_steps == 0 || realisation != "realigned", "controller.delay_steps",
+          "0 for realisation realigned, whose state comes from present measurements");
+  require(p.reference_lead_steps >= 0 && p.reference_lead_steps <= 100000,
+          "controller.reference_lead_steps", "an integer from 0 to 100000");
+  require(p.law != "iterated" || (p.delay_steps == 0 && p.reference_lead_steps == 0),
+          "controller.law", "published or general with delay_steps or reference_lead_steps");
+  if (realisation != "literal") return;
+  require(p.law == "published", "controller.law", "published for realisation literal");
+  require(p.antecedent == "measured", "controller.antecedent",
+          "measured for realisation literal");
+}
+
 void requireOneOf(const std::string& value, const std::string& first, const std::string& second,
                   const std::string& key) {
   require(value == first || value == second, key,
@@ -23,8 +43,8 @@ void requireOneOf(const std::string& value, const std::string& first, const std:
 void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   require(law == "published" || law == "general" || law == "iterated", "controller.law",
           "one of published, general, iterated, got '" + law + "'");
-  requireOneOf(realisation, "parallel", "realigned", "controller.realisation");
   requireOneOf(antecedent, "model", "measured", "controller.antecedent");
+  requireCombination(*this);
   require(coincidence_steps >= 1 && coincidence_steps <= 100000, "controller.coincidence_steps",
           "an integer from 1 to 100000");
   require(prediction_steps >= 1 && prediction_steps <= 100000, "controller.prediction_steps",
@@ -55,7 +75,8 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
 }
 
 Eigen::Index FmbpcParams::referenceSteps() const {
-  return std::max(prediction_steps + coincidence_steps - 1, law == "iterated" ? horizon_steps : 1);
+  const int aimed = prediction_steps + coincidence_steps - 1 + reference_lead_steps;
+  return std::max(aimed, law == "iterated" ? horizon_steps : 1);
 }
 
 }  // namespace fpc

@@ -91,9 +91,9 @@ void PiController::reset(const Measurement& start) {
   }
 }
 
-void PiController::refer(const SetpointSource& setpoint, Vector& reference) {
+void PiController::refer(const SetpointSource& setpoint, std::uint32_t step, Vector& reference) {
   reference = path_ ? path_->present() : setpoint.present();
-  if (path_) path_->advance(setpoint.present());
+  if (path_) path_->advance(setpoint, step);
 }
 
 // u = bias + kp g e + ki int g e dt
@@ -135,7 +135,7 @@ void PiController::integrate(const PiLoop& loop, const Measurement& now, double 
 void PiController::step(const Measurement& now, const SetpointSource& setpoint,
                         ControllerOutput& output) {
   output.input = now.input_applied;
-  refer(setpoint, output.reference);
+  refer(setpoint, now.header.step, output.reference);
   output.predictive = false;
   output.ok = true;
   output.remark = "";

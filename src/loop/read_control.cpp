@@ -63,7 +63,9 @@ void readFmbpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
   params.forecast_period_steps =
       static_cast<int>(std::lround(period_h * 3600.0 / loop.simulation.sample_time_s));
   section.number("forecast_pole", params.forecast_pole, {0.0, 1.0});
-  section.oneOf("realisation", params.realisation, {"parallel", "realigned"});
+  section.oneOf("realisation", params.realisation, {"parallel", "realigned", "literal"});
+  section.integer("delay_steps", params.delay_steps, 0, 1000);
+  section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
   section.oneOf("antecedent", params.antecedent, {"model", "measured"});
   section.number("offset_gain", params.offset_gain, {0.0, 1.0});
   section.boolean("disturbance_feedforward", params.disturbance_feedforward);

@@ -22,8 +22,11 @@ struct FmbpcParams {
   int forecast_period_steps{0};  ///< d is expected as it was so long ago; 0: as it is (iterated)
   double forecast_pole{0.975};   ///< how today's difference fades per sample, [0, 1]
   std::string realisation{
-      "parallel"};  ///< parallel: own state, y_m = z; realigned: state from measurements
+      "parallel"};  ///< parallel: own state, y_m = z; realigned: state from measurements;
+                    ///< literal: parallel in the state space of Blazic and Skrjanc, CanonicalForm
   std::string antecedent{"model"};     ///< outputs in the antecedents: model or measured
+  int delay_steps{0};           ///< transport delay taken out of the model, see FmbpcLaw
+  int reference_lead_steps{0};  ///< the law aims at y_r(k + H + this)
   double offset_gain{0.2};             ///< filter gain of the one-step error w_hat (realigned)
   bool disturbance_feedforward{true};  ///< d(k) in the model; false: the nominal d
   Vector disturbance_nominal;          ///< n_d, used without feedforward
@@ -42,11 +45,15 @@ struct FmbpcParams {
 /// iterated: the inputs of N samples that minimise the weighted squares of errors and moves inside
 /// the limits, rules blended along the path, references and disturbances ahead (see PathPlanner,
 /// DisturbanceForecast); the first is applied, the rest is handed to an optimizer as feedforward.
+/// delay_steps takes a transport delay out of the model: xi, A, B, C, g and H are then those of the
+/// undelayed process, and y_m in e is the output of the model with its delay, which runs beside it
+/// on the same applied inputs (Blazic and Skrjanc 2007, eqs. 17-27).
 /// A start in the middle of a run, and a new model, add a bias to u that makes it continuous and
 /// dies out. If no rule fires the nearest one is used, with a remark. If the gains are singular or
 /// anything is not finite the last applied input is held (clipped), ok is false, and there is no
-/// prediction. signals(): NAME_model (y_m), NAME_correction (y - y_m, or w_hat) of each output,
-/// NAME_unclipped of each input.
+/// prediction. signals(): NAME_model (y_m), NAME_correction (y - y_m, or w_hat) of each output and,
+/// with a delay, NAME_undelayed (what the output will be delay_steps later); NAME_unclipped of each
+/// input.
 class FmbpcLaw final : public Controller {
  public:
   FmbpcLaw(FmbpcParams params, InputLimits limits, PlantInfo plant);

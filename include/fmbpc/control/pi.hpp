@@ -67,7 +67,7 @@ class PiController final : public Controller {
   };
   void propose(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
                LoopState& state) const;
-  void refer(const SetpointSource& setpoint, Vector& reference);
+  void refer(const SetpointSource& setpoint, std::uint32_t step, Vector& reference);
   void integrate(const PiLoop& loop, const Measurement& now, double sent, LoopState& state) const;
 
   PiParams params_;
