@@ -37,7 +37,8 @@ class EveryLoop(unittest.TestCase):
                 self.compare(loop, folder)
 
     def compare(self, loop, folder):
-        duration = "sampling.duration_h=96"
+        seconds = 6 if loop.startswith("cstr") else 720
+        duration = f"sampling.duration_h={480 * seconds / 3600}"
         port = free_port()
         topics = run(f"roslaunch -p {port} fmbpc loop.launch loop:={loop} pace:=lockstep draw:=false "
                      f"set:='{duration}' out:={folder}/topics", ROS_MASTER_URI=f"http://localhost:{port}")

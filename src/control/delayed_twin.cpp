@@ -20,11 +20,13 @@ void DelayedTwin::rest(VectorRef outputs, VectorRef input, VectorRef disturbance
   inputs_.colwise() = Vector::Map(input.data(), input.size());
   disturbances_.colwise() = Vector::Map(disturbances.data(), disturbances.size());
   local_.restState(outputs, input, disturbances, rest_);
-  state_ = rest_;
-  if (!canonical_) return;
-  local_.blend(rest_, disturbances);
-  canonical_->blend(local_.firing().front());
-  canonical_->restState(outputs[0], state_);
+  if (canonical_) {
+    local_.blend(rest_, disturbances);
+    canonical_->blend(local_.firing().front());
+    canonical_->restState(input[0], state_);
+  } else {
+    state_ = rest_;
+  }
 }
 
 void DelayedTwin::advance(VectorRef input) {

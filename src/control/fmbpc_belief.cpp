@@ -31,7 +31,7 @@ void FmbpcLaw::Belief::rest(const Measurement& now, VectorRef disturbances) {
   if (canonical) {
     local.blend(measured, disturbances);
     canonical->blend(local.firing().front());
-    canonical->restState(now.outputs[0], state);
+    canonical->restState(now.input_applied[0], state);
   } else {
     state = measured;
   }

@@ -49,8 +49,9 @@ void CanonicalForm::blend(const FiringResult& firing) {
   }
 }
 
-void CanonicalForm::restState(double output, Eigen::Ref<Vector> state) const {
-  state.setConstant(output / affine_.C.sum());
+void CanonicalForm::restState(double input, Eigen::Ref<Vector> state) const {
+  const Eigen::Index last = affine_.g.size() - 1;
+  state.setConstant((input + affine_.g[last]) / (1.0 - affine_.A.row(last).sum()));
 }
 
 }  // namespace fpc

@@ -68,6 +68,28 @@ TEST(FmbpcLawMemory, StepDoesNotAllocate) {
     }
 }
 
+TEST(FmbpcLawMemory, WithADelayTakenOutNothingIsAllocatedEither) {
+  if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  for (const char* realisation : {"parallel", "literal"})
+    for (const char* antecedent : {"model", "measured"}) {
+      if (std::string(realisation) == "literal" && std::string(antecedent) == "model") continue;
+      FmbpcParams params;
+      params.coincidence_steps = 9;
+      params.reference_pole = Vector::Constant(1, 0.96);
+      params.reference_lead_steps = 5;
+      params.delay_steps = 5;
+      params.prediction_steps = 42;
+      params.realisation = realisation;
+      params.antecedent = antecedent;
+      Steady loop(params, test::shippedModel("cstr_a"));
+      EXPECT_EQ(loop.allocations(200), 0U) << realisation;
+      testing::AllocationCounter counter;
+      loop.law.reset(loop.now);
+      EXPECT_EQ(counter.count(), 0U);
+      EXPECT_EQ(loop.allocations(3), 0U);
+    }
+}
+
 TEST(FmbpcLawMemory, HoldingAndStartingAgainDoNotAllocateEither) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   Steady loop(test::generalParams(1, 1, 5, 0.5, 0.0), test::firstOrder(0.9, 0.1, 0.2));

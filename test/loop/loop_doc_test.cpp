@@ -75,7 +75,8 @@ std::set<std::string> readerKeys() {
       "plant:\n  type: external\n  name: p\n  outputs: [{name: y}]\n  inputs: [{name: u, lower: 0, "
       "upper: 1}]\n"
       "  disturbances: [{name: d}]\nsetpoint: {initial: {y: 1}}\n"
-      "controller: {type: pi, loops: [{input: u, output: y, kp: 1}]}\n";
+      "controller: {type: pi, loops: [{input: u, output: y, kp: 1, gain_schedule: [{output: 0, "
+      "gain: 1}]}]}\n";
   const std::string excitation =
       "plant: {type: activated_sludge}\ncontroller:\n  type: excitation\n  signals: [{input: q_r, "
       "signal: ";
@@ -163,6 +164,8 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.forecast_pole", exactText(law.forecast_pole)},
           {"controller.realisation", law.realisation},
           {"controller.antecedent", law.antecedent},
+          {"controller.delay_steps", std::to_string(law.delay_steps)},
+          {"controller.reference_lead_steps", std::to_string(law.reference_lead_steps)},
           {"controller.offset_gain", exactText(law.offset_gain)},
           {"controller.disturbance_feedforward", word(law.disturbance_feedforward)},
           {"controller.transfer_decay", exactText(law.transfer_decay)},

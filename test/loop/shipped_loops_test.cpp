@@ -1,6 +1,8 @@
 // Every loop file that ships can be read, and rivals run under the same conditions.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "fmbpc/loop/factory.hpp"
 #include "loop/loop_fixture.hpp"
 
@@ -22,12 +24,27 @@ TEST_P(ShippedLoop, IsRead) {
 
 TEST_P(ShippedLoop, HasRivalsUnderTheSameDisturbances) {
   const std::string name = GetParam();
-  const auto cut = name.find("_pi_");
+  const auto cut = std::min(name.find("_pi"), name.find("_gspi"));
   if (cut == std::string::npos) return;
   if (needsRecords(name) && !hasRecords()) GTEST_SKIP() << "FMBPC_DATA is not set";
   const LoopFile rival = readLoop(name), base = readLoop(name.substr(0, cut));
   EXPECT_EQ(makeDisturbance(rival).values, makeDisturbance(base).values);
   EXPECT_EQ(rival.setpoint.initial, base.setpoint.initial);
+  ASSERT_EQ(rival.setpoint.schedule.size(), base.setpoint.schedule.size());
+  for (std::size_t i = 0; i < base.setpoint.schedule.size(); ++i) {
+    EXPECT_EQ(rival.setpoint.schedule[i].time_h, base.setpoint.schedule[i].time_h);
+    const Vector &ours = rival.setpoint.schedule[i].value, &theirs = base.setpoint.schedule[i].value;
+    EXPECT_TRUE((ours.array() == theirs.array() || ours.array().isNaN()).all());
+  }
+  const auto &commands = rival.simulation.disturbance_commands,
+             &of_base = base.simulation.disturbance_commands;
+  ASSERT_EQ(commands.size(), of_base.size());
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    EXPECT_EQ(commands[i].time_h, of_base[i].time_h);
+    EXPECT_EQ(commands[i].command.value, of_base[i].command.value);
+  }
+  EXPECT_EQ(rival.simulation.output_delay_s, base.simulation.output_delay_s);
+  EXPECT_EQ(rival.simulation.parameters, base.simulation.parameters);
   EXPECT_EQ(rival.simulation.actuator.limits.upper, base.simulation.actuator.limits.upper);
   EXPECT_EQ(rival.controller, "pi");
   EXPECT_FALSE(rival.has_clp);

@@ -88,6 +88,37 @@ TEST(CstrReference, GainScheduledPiIsTheHonestRival) {
   EXPECT_LT(score("cstr_disturbance"), 0.0073);
 }
 
+/// The coolant flow under which the reactor rests at this concentration, by bisection.
+double restFlow(const Plant& plant, double concentration) {
+  Vector x = Eigen::Vector2d(concentration, 0.0), u(1), dxdt(2);
+  const Vector d = Vector::Zero(1);
+  const auto root = [&](double& value, double lower, double upper, Eigen::Index row) {
+    for (int i = 0; i < 100; ++i) {
+      value = 0.5 * (lower + upper);
+      plant.derivatives(x, u, d, dxdt);
+      (dxdt[row] > 0.0 ? lower : upper) = value;
+    }
+  };
+  u[0] = 0.0;
+  root(x[1], 300.0, 600.0, 0);
+  root(u[0], 1.0, 500.0, 1);
+  return u[0];
+}
+
+TEST(CstrReference, TheGainScheduleIsTheSlopeOfTheStaticCurve) {
+  const auto plant = makePlant("cstr");
+  const auto slope = [&](double y) {
+    return (restFlow(*plant, y + 1e-4) - restFlow(*plant, y - 1e-4)) / 2e-4;
+  };
+  EXPECT_NEAR(restFlow(*plant, 0.1), 103.4066, 1e-3);
+  for (const char* name : {"cstr_tracking_gspi", "cstr_disturbance_gspi", "cstr_small_steps_gspi"}) {
+    const auto points = readLoop(name).pi.loops[0].gain_schedule;
+    ASSERT_EQ(points.size(), 23U);
+    for (const auto& point : points)
+      EXPECT_NEAR(point.gain, slope(point.output) / slope(0.1), 2e-4 * (1.0 + point.gain));
+  }
+}
+
 TEST(CstrReference, OnSmallStepsThePrintedLawDoesNotBeatPiAndTheOtherDoes) {
   const double pi = score("cstr_small_steps_pi"), a = score("cstr_small_steps_literal"),
                b = score("cstr_small_steps_literal_b"), states = score("cstr_small_steps");
@@ -127,17 +158,6 @@ TEST(CstrReference, NoLawIsBetterThanTheDeadTimeAllows) {
   EXPECT_NEAR(disturbance, 0.00053, 1e-5);
   EXPECT_LT(tracking, score("cstr_tracking_preview"));
   EXPECT_LT(disturbance, score("cstr_disturbance_preview"));
-}
-
-Overrides bounds(const std::string& lower, const std::string& upper) {
-  return {{"actuator.input_lower.q_c", lower}, {"actuator.input_upper.q_c", upper}};
-}
-
-TEST(CstrLimits, AntiWindupHelpsThePiOnceAndHarmsItOnce) {
-  EXPECT_NEAR(score("cstr_tracking_pi", bounds("85", "115")), 0.01689, 1e-5);
-  EXPECT_NEAR(score("cstr_tracking_pi_aw", bounds("85", "115")), 0.01381, 1e-5);
-  EXPECT_NEAR(score("cstr_tracking_pi", bounds("60", "113")), 0.01586, 1e-5);
-  EXPECT_NEAR(score("cstr_tracking_pi_aw", bounds("60", "113")), 0.01646, 1e-5);
 }
 
 }  // namespace

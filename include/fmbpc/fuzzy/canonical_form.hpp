@@ -20,8 +20,8 @@ class CanonicalForm {
 
   void blend(const FiringResult& firing);  ///< no allocation
   const AffineModel& affine() const { return affine_; }
-  /// A state at rest whose output, as blended now, is `output`.
-  void restState(double output, Eigen::Ref<Vector> state) const;
+  /// The state that rests under this input, as blended now; not finite if the model integrates.
+  void restState(double input, Eigen::Ref<Vector> state) const;
 
  private:
   struct Row {

@@ -1,0 +1,91 @@
+// From the reactor's own record to a model to control: excite, identify, run the experiments.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "fmbpc/fuzzy/identify.hpp"
+#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/loop/report.hpp"
+#include "fmbpc/loop/run.hpp"
+
+namespace fpc {
+namespace {
+
+TsModel identified(int seed) {
+  const LoopFile loop = readLoop("cstr_excite", {{"controller.seed", std::to_string(seed)}});
+  const RunRecord record = runLoop(loop);
+  const auto folder =
+      std::filesystem::path(FMBPC_RESULTS_DIR) / ("cstr_excite_" + std::to_string(seed));
+  writeRun(loop, record, summarize(loop, record, 0.0), folder.string());
+  const Structure structure =
+      readStructure(std::string(FMBPC_SOURCE_DIR) + "/config/structure/cstr.yaml");
+  const DataSet data = makeDataSet(readCsv((folder / "trajectory.csv").string()), structure);
+  EXPECT_TRUE(data.repairs.empty());
+  TsModel model = identify(data, structure).model;
+  std::ofstream((folder / "model.yaml").string()) << writeModel(model);
+  return model;
+}
+
+struct Outcome {
+  double score{};    ///< sum of (y_r - y)^2
+  double largest{};  ///< |y_r - y|
+  double last{};     ///< |y_r - y| at the end
+};
+
+Outcome runWith(const TsModel& model, const std::string& name, const Overrides& overrides = {}) {
+  LoopFile loop = readLoop(name, overrides);
+  loop.model = matchToPlant(model, loop.plant_info);
+  const RunRecord record = runLoop(loop);
+  Outcome outcome;
+  outcome.score = summarize(loop, record, 0.0).outputs[0].ise_reference;
+  for (const auto& sample : record.samples) {
+    outcome.last = std::abs(sample.tracking.reference[0] - sample.measurement.outputs[0]);
+    outcome.largest = std::max(outcome.largest, outcome.last);
+  }
+  return outcome;
+}
+
+class CstrOwnModel : public ::testing::TestWithParam<int> {};
+
+TEST_P(CstrOwnModel, ControlsTheReactor) {
+  SCOPED_TRACE("seed " + std::to_string(GetParam()));
+  const TsModel model = identified(GetParam());
+  const Outcome tracking = runWith(model, "cstr_tracking"),
+                disturbance = runWith(model, "cstr_disturbance"),
+                small = runWith(model, "cstr_small_steps");
+  std::printf("seed %d: tracking %.5f, disturbance %.5f, small steps %.5f\n", GetParam(),
+              tracking.score, disturbance.score, small.score);
+  EXPECT_LE(tracking.score, 0.0050);
+  EXPECT_LE(disturbance.score, 0.0036);
+  for (const Outcome& outcome : {tracking, disturbance, small}) {
+    EXPECT_LT(outcome.largest, 0.02) << "mol/l";
+    EXPECT_LT(outcome.last, 0.001) << "mol/l";
+  }
+  const Overrides literal = {{"controller.realisation", "literal"},
+                             {"controller.antecedent", "measured"}};
+  const Outcome as_printed = runWith(model, "cstr_tracking", literal);
+  std::printf("seed %d: tracking as printed %.5f\n", GetParam(), as_printed.score);
+  EXPECT_LT(as_printed.largest, 0.04) << "does not diverge";
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, CstrOwnModel, ::testing::Range(1, 9));
+
+TEST(CstrOwnModelFile, IsTheOneOfTheFirstSeed) {
+  const TsModel model = identified(1);
+  const TsModel shipped =
+      readModel(std::string(FMBPC_SOURCE_DIR) + "/config/model/cstr_own.yaml");
+  ASSERT_EQ(shipped.submodels[0].rules.size(), model.submodels[0].rules.size());
+  for (std::size_t i = 0; i < model.submodels[0].rules.size(); ++i) {
+    const Rule &a = shipped.submodels[0].rules[i], &b = model.submodels[0].rules[i];
+    EXPECT_EQ(a.antecedents, b.antecedents);
+    EXPECT_LT((a.coefficients - b.coefficients).norm(), 1e-6 * b.coefficients.norm()) << i;
+    EXPECT_NEAR(a.offset, b.offset, 1e-6 * std::abs(b.offset)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace fpc
