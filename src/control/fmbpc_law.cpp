@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "control/fmbpc_belief.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/coincidence.hpp"
 #include "fmbpc/fuzzy/model_file.hpp"
 
 namespace fpc {
@@ -23,29 +23,8 @@ bool allFinite(const Measurement& m) {
 
 }  // namespace
 
-struct FmbpcLaw::Belief {
-  Belief(TsModel model, Eigen::Index n_y, Eigen::Index n_u)
-      : local(std::move(model)),
-        gains(local.stateSize(), n_u, n_y),
-        state(Vector::Zero(local.stateSize())),
-        measured(state),
-        next(state),
-        offset_state(state),
-        offset_output(Vector::Zero(n_y)),
-        error_filtered(offset_output),
-        outputs(offset_output),
-        lacking(offset_output) {}
-
-  LocalModel local;
-  CoincidenceGains gains;
-  Vector state;           ///< xi(k): own (parallel) or measured (realigned)
-  Vector measured;        ///< the same rows filled with measurements
-  Vector next;            ///< xi(k) as predicted at k-1
-  Vector offset_state;    ///< g
-  Vector offset_output;   ///< y - y_m
-  Vector error_filtered;  ///< w_hat
-  Vector outputs;         ///< y_m, for signals
-  Vector lacking;         ///< e, without C A^H xi
+struct FmbpcLaw::Belief : FmbpcBelief {
+  using FmbpcBelief::FmbpcBelief;
 };
 
 struct FmbpcLaw::Memory {
@@ -64,6 +43,7 @@ struct FmbpcLaw::Memory {
                          : params.disturbance_nominal),
         bias(Vector::Zero(count(plant.inputs))),
         proposal(bias),
+        wanted(bias),
         last_input(limits.lower) {
     for (const auto& output : plant.outputs) {
       signals.emplace_back(output.name + "_model", 0.0);
@@ -81,8 +61,11 @@ struct FmbpcLaw::Memory {
   Vector disturbances;  ///< d(k) as the model takes it
   Vector bias;          ///< of a bumpless transfer, dying out
   Vector proposal;      ///< u(k), unclipped
+  Vector wanted;        ///< the proposal of a model that is handing over
   Vector last_input;    ///< the last finite input, applied or sent
   std::unique_ptr<Belief> belief;
+  std::unique_ptr<Belief> successor;  ///< of a new model: takes over in the next step
+  std::unique_ptr<Belief> retired;    ///< of the model before: freed when the next one comes
   std::vector<std::pair<std::string, double>> signals;
   bool start_pending{true};      ///< the state is to be taken from the next measurement
   bool transfer_pending{false};  ///< the next u must equal the applied input
@@ -103,14 +86,22 @@ FmbpcLaw::~FmbpcLaw() = default;
 
 void FmbpcLaw::setModel(const TsModel& model) {
   Memory& m = *memory_;
-  m.belief = std::make_unique<Belief>(matchToPlant(model, m.plant), count(m.plant.outputs),
-                                      count(m.plant.inputs));
+  m.retired.reset();
+  auto belief = std::make_unique<Belief>(matchToPlant(model, m.plant), count(m.plant.outputs),
+                                         count(m.plant.inputs));
+  if (m.belief && m.running && !m.start_pending) {
+    m.successor = std::move(belief);
+    return;
+  }
+  m.successor.reset();
+  m.belief = std::move(belief);
   m.start_pending = true;
   m.transfer_pending = m.transfer_pending || m.running;
 }
 
 void FmbpcLaw::reset(const Measurement& start) {
   Memory& m = *memory_;
+  if (m.successor) m.belief = std::move(m.successor);
   m.reference.reset(start.outputs);
   m.bias.setZero();
   m.start_pending = true;
@@ -201,6 +192,40 @@ void FmbpcLaw::predict(const Measurement& now, const SetpointSource& setpoint,
   prediction.input_previous = now.input_applied;
 }
 
+/// From the state of sample k to a proposal; false if no rule fired.
+bool FmbpcLaw::think(const Measurement& now, bool& solvable) {
+  Memory& m = *memory_;
+  Belief& b = *m.belief;
+  const bool fired = b.local.blend(m.antecedent_measured ? b.measured : b.state, m.disturbances);
+  b.offset_state = b.local.affine().g;
+  for (Eigen::Index i = 0; i < now.outputs.size(); ++i)
+    b.offset_state[b.local.outputState(i)] += b.error_filtered[i];
+  solvable = computeGains();
+  propose(now);
+  return fired;
+}
+
+/// The old model has just proposed an input; the new one goes on from there: its bias is what it
+/// would have done otherwise. If the old one had nothing to propose, the new one goes on from the
+/// applied input.
+bool FmbpcLaw::handOver(const Measurement& now, bool& solvable) {
+  Memory& m = *memory_;
+  if (!solvable || !m.proposal.allFinite()) m.proposal = now.input_applied;
+  m.wanted = m.proposal;
+  m.belief.swap(m.successor);
+  if (!m.belief->inherit(*m.successor, m.realigned)) {
+    m.start_pending = true;
+    estimate(now);
+  }
+  m.retired = std::move(m.successor);  // freed outside of the step
+  m.bias.setZero();
+  m.transfer_pending = false;
+  const bool fired = think(now, solvable);
+  m.bias = m.wanted - m.proposal;
+  m.proposal = m.wanted;
+  return fired;
+}
+
 void FmbpcLaw::hold(const Measurement& now, const char* reason, ControllerOutput& output) {
   Memory& m = *memory_;
   if (now.input_applied.allFinite()) m.last_input = now.input_applied;
@@ -239,14 +264,11 @@ void FmbpcLaw::step(const Measurement& now, const SetpointSource& setpoint,
     return hold(now, "the measurement is not finite", output);
   }
 
-  Belief& b = *m.belief;
   estimate(now);
-  const bool fired = b.local.blend(m.antecedent_measured ? b.measured : b.state, m.disturbances);
-  b.offset_state = b.local.affine().g;
-  for (Eigen::Index i = 0; i < now.outputs.size(); ++i)
-    b.offset_state[b.local.outputState(i)] += b.error_filtered[i];
-  const bool solvable = computeGains();
-  propose(now);
+  bool solvable = false;
+  bool fired = think(now, solvable);
+  if (m.successor) fired = handOver(now, solvable);
+  const Belief& b = *m.belief;
   refreshSignals(now);
   if (!b.state.allFinite()) m.start_pending = true;
   if (!solvable || !m.proposal.allFinite()) {

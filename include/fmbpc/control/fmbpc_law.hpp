@@ -34,11 +34,14 @@ struct FmbpcParams {
 ///   M = C S_H B,  e = y_r(k+H) - y + y_m - C A^H xi - C S_H g,
 ///   published: u = e_x / m2 (row of the last output; one input; the other outputs and their
 ///   setpoints play no part); general:   u = (M' W M + L)^-1 (M' W e + L u(k-1)).
-/// A start in the middle of a run, and a new model, add a bias to u that makes it continuous and
-/// dies out. If no rule fires the nearest one is used, with a remark. If the gains are singular or
-/// anything is not finite the last applied input is held (clipped), ok is false, and there is no
-/// prediction. signals(): NAME_model (y_m), NAME_correction (y - y_m, or w_hat) of each output,
-/// NAME_unclipped of each input.
+/// A start in the middle of a run adds a bias to u that makes it the applied input and dies out
+/// with transfer_decay. A new model takes over in the next step: the old one still says what u(k)
+/// would have been, and the new one starts with a bias that makes its u(k) the very same. If both
+/// models have the same lags, the measured past is handed over as well, and the own state if only
+/// consequents differ; otherwise the new one starts at rest. If no rule fires the nearest one is
+/// used, with a remark. If the gains are singular or anything is not finite the last applied input
+/// is held (clipped), ok is false, and there is no prediction. signals(): NAME_model (y_m),
+/// NAME_correction (y - y_m, or w_hat) of each output, NAME_unclipped of each input.
 class FmbpcLaw final : public Controller {
  public:
   FmbpcLaw(FmbpcParams params, InputLimits limits, PlantInfo plant);
@@ -57,6 +60,8 @@ class FmbpcLaw final : public Controller {
 
   void estimate(const Measurement& now);
   bool computeGains();
+  bool think(const Measurement& now, bool& solvable);
+  bool handOver(const Measurement& now, bool& solvable);
   void propose(const Measurement& now);
   void predict(const Measurement& now, const SetpointSource& setpoint,
                PredictiveAction& prediction) const;
