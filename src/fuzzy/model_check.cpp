@@ -27,7 +27,7 @@ void requireStable(const TsModel& model, const Measurement& at, double limit) {
   const double pole = largestPole(model, at);
   require(pole <= limit + 1e-9, "model '" + model.name + "'",
           "a model that is stable at the present sample: poles up to model.max_pole " +
-              exactText(limit) + ", got " + exactText(pole));
+              exactText(limit) + ", got " + exactText(std::round(1e6 * pole) / 1e6));
 }
 
 }  // namespace fpc

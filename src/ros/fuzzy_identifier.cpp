@@ -237,20 +237,18 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
     return;
   }
   result = toResult(outcome.result);
+  const TsModel& model = outcome.result.found.model;
+  result.message = model.name + " identified from " + std::to_string(result.rows) + " rows" +
+                   (publish_ ? " and published" : ", not published");
+  result.ok = 1;
+  if (!publish_) return;
   try {
-    const TsModel& model = outcome.result.found.model;
-    if (publish_) {
-      offer(model);
-      if (loop_.identify.online.enabled)  // goes on learning from here
-        learner_.emplace(model_, loop_.plant_info, loop_.identify.online);
-      write(model_);
-    } else {
-      matchToPlant(model, loop_.plant_info);
-    }
-    result.ok = 1;
-    result.message = model.name + " identified from " + std::to_string(result.rows) + " rows" +
-                     (publish_ ? " and published" : ", not published");
+    offer(model);
+    if (loop_.identify.online.enabled)  // goes on learning from here
+      learner_.emplace(model_, loop_.plant_info, loop_.identify.online);
+    write(model_);
   } catch (const InputError& error) {
+    result.ok = 0;
     result.message = std::string("identified, but refused: ") + error.what();
   }
 }

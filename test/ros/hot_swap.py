@@ -1,0 +1,78 @@
+#!/usr/bin/python3
+"""Excite a plant, record it, identify by action, and hand the model over to a loop that runs: the input goes on without
+a bump, limits hold, and the biomass follows its setpoint better than under FM_1 on the same disturbances."""
+import csv
+import os
+import sys
+import tempfile
+import unittest
+
+import actionlib
+import rospy
+import rostest
+from actionlib_msgs.msg import GoalStatus
+from fmbpc.msg import FuzzyModel, IdentifyModelAction, IdentifyModelGoal, Measurement, NodeReady
+from rosgraph_msgs.msg import Log
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+
+import ring
+
+
+def rows(folder):
+    with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:
+        return [{name.split("[")[0]: float(value) for name, value in row.items() if value and name.split("[")[0] in
+                 ("x", "x_setpoint", "q_r")} for row in csv.DictReader(file)]
+
+
+def ise(run, first):
+    return sum((row["x"] - row["x_setpoint"]) ** 2 for row in run[first:])
+
+
+class HotSwap(unittest.TestCase):
+    def identified(self):
+        """The model of the experiment, which has run to its end."""
+        ring.Listener("experiment/measurement", Measurement).wait(lambda m: m.final)
+        client = actionlib.SimpleActionClient("experiment/fuzzy_identifier/identify", IdentifyModelAction)
+        client.wait_for_server()
+        models, feedback = ring.Listener("experiment/fuzzy_model", FuzzyModel), []
+        client.send_goal(IdentifyModelGoal(publish=True), feedback_cb=feedback.append)
+        ring.wait_until(lambda: client.get_state() > GoalStatus.ACTIVE, "the identification", patience=180)
+        result = client.get_result()
+        self.assertTrue(result.ok, result.message)
+        self.assertIn("done", [f.stage for f in feedback])
+        print("held out, free run:", dict(zip(result.outputs, result.free_run_vaf)), "linear", result.linear_free_run_vaf)
+        return models.wait()
+
+    def test_the_own_model_takes_over_and_tracks_better(self):
+        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log)
+        measurements = ring.Listener("measurement", Measurement)
+        model = self.identified()
+        pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
+        publisher = ring.publisher("fuzzy_model", FuzzyModel)
+        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
+        ready.publish(node=rospy.get_name())  # now the loop may begin
+        measurements.wait(lambda m: m.step >= 60)
+        pause(True)
+        publisher.publish(model)
+        log.wait(lambda m: m.name == "/fmbpc_controller" and f"model {model.name} from the next sample on" in m.msg)
+        swap = measurements.messages[-1].step
+        pause(False)
+        folder = recorded.wait().data
+        summary = ring.summary(folder)
+        self.assertTrue(summary["complete"])
+        self.assertEqual((0, 0), (summary["violations"]["input"], summary["violations"]["move"]))
+        own = rows(folder)
+        with tempfile.TemporaryDirectory() as reference:
+            ring.run_in_process(rospy.get_param("~loop"), reference, [])
+            fm_1 = rows(reference)
+        self.assertEqual(fm_1[:swap], own[:swap])  # the same run until then
+        at = next(k for k, (a, b) in enumerate(zip(fm_1, own)) if a != b)
+        self.assertAlmostEqual(fm_1[at - 1]["q_r"], own[at - 1]["q_r"], delta=1e-9)
+        print(f"from sample {swap} on, ISE of x: FM_1 {ise(fm_1, swap):.3g}, own model {ise(own, swap):.3g}")
+        self.assertLess(ise(own, swap), ise(fm_1, swap))
+
+
+if __name__ == "__main__":
+    rospy.init_node("hot_swap")
+    rostest.rosrun("fmbpc", "hot_swap", HotSwap, sys.argv)
