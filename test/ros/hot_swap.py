@@ -40,7 +40,7 @@ class HotSwap(unittest.TestCase):
         ring.wait_until(lambda: client.get_state() > GoalStatus.ACTIVE, "the identification", patience=180)
         result = client.get_result()
         self.assertTrue(result.ok, result.message)
-        self.assertIn("done", [f.stage for f in feedback])
+        ring.wait_until(lambda: "done" in [f.stage for f in feedback], "the last feedback")
         print("held out, free run:", dict(zip(result.outputs, result.free_run_vaf)), "linear", result.linear_free_run_vaf)
         return models.wait()
 
