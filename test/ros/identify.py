@@ -42,10 +42,7 @@ class Identify(unittest.TestCase):
         return feedback
 
     def finish(self, client=None):
-        client = client or self.client
-        ring.wait_until(lambda: client.get_state() > GoalStatus.ACTIVE
-                        and client.get_state() not in (GoalStatus.PREEMPTING, GoalStatus.RECALLING), "the end")
-        return client.get_state(), client.get_result()
+        return ring.action_end(client or self.client)
 
     def test_a_goal_brings_progress_and_a_model_with_honest_figures(self):
         models = len(self.models.messages)

@@ -5,6 +5,7 @@ import subprocess
 import threading
 import time
 
+import actionlib
 import roslib.packages
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
@@ -132,6 +133,12 @@ class NodeStatus:
 
     def counts(self):
         return {k: int(v) for k, v in values(self.wait()).items() if v.isdigit()}
+
+
+def action_end(client, patience=PATIENCE):
+    """(state, result) of a SimpleActionClient's goal."""
+    wait_until(lambda: client.simple_state == actionlib.SimpleGoalState.DONE, "the end of the action", patience)
+    return client.get_state(), client.get_result()
 
 
 def killed(process):
