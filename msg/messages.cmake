@@ -1,4 +1,4 @@
-# Messages and services of the package.
+# Messages, services and actions of the package.
 add_message_files(DIRECTORY msg FILES
   CommandEffect.msg
   ControlAction.msg
@@ -21,4 +21,5 @@ add_message_files(DIRECTORY msg FILES
   Tracking.msg
 )
 add_service_files(DIRECTORY srv FILES ManualInput.srv)
-generate_messages(DEPENDENCIES std_msgs)
+add_action_files(DIRECTORY action FILES IdentifyModel.action)
+generate_messages(DEPENDENCIES actionlib_msgs std_msgs)

@@ -26,6 +26,10 @@ struct FmbpcLaw::Belief {
   /// Returns false if no rule fired; then the nearest one is used.
   bool blend(VectorRef disturbances);
   void compare(const Measurement& now);
+  /// Takes over the memory of the belief in an older model: the measured past, and the own state if
+  /// only consequents differ. False if there is nothing to take over (other lags, another state
+  /// space): rest() then. No allocation.
+  bool inherit(const Belief& other);
   /// The model of the undelayed process, as blended last.
   const AffineModel& affine() const { return canonical ? canonical->affine() : local.affine(); }
 

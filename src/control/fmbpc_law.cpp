@@ -5,17 +5,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "control/fmbpc_belief.hpp"
+#include "control/fmbpc_memory.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/disturbance_forecast.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
 
 namespace fpc {
 namespace {
-
-Eigen::Index count(const std::vector<SignalInfo>& signals) {
-  return static_cast<Eigen::Index>(signals.size());
-}
 
 bool allFinite(const Measurement& m) {
   return m.outputs.allFinite() && m.disturbances.allFinite() && m.input_applied.allFinite();
@@ -23,57 +17,11 @@ bool allFinite(const Measurement& m) {
 
 }  // namespace
 
-struct FmbpcLaw::Memory {
-  Memory(FmbpcParams p, InputLimits l, PlantInfo i)
-      : params(std::move(p)),
-        limits(std::move(l)),
-        plant(std::move(i)),
-        published(params.law == "published"),
-        iterated(params.law == "iterated"),
-        realigned(params.realisation == "realigned"),
-        reference(params.reference_pole, params.preview),
-        aim(params.coincidence_steps - 1 + params.reference_lead_steps),
-        future(Matrix::Zero(count(plant.outputs), params.referenceSteps())),
-        forecast(count(plant.disturbances), params.horizon_steps, params.forecast_period_steps,
-                 params.forecast_pole),
-        disturbances(params.disturbance_feedforward
-                         ? Vector(Vector::Zero(count(plant.disturbances)))
-                         : params.disturbance_nominal),
-        bias(Vector::Zero(count(plant.inputs))),
-        proposal(bias),
-        last_input(limits.lower) {
-    for (const auto& output : plant.outputs) {
-      signals.emplace_back(output.name + "_model", 0.0);
-      signals.emplace_back(output.name + "_correction", 0.0);
-      if (params.delay_steps > 0) signals.emplace_back(output.name + "_undelayed", 0.0);
-    }
-    for (const auto& input : plant.inputs) signals.emplace_back(input.name + "_unclipped", 0.0);
-  }
-
-  FmbpcParams params;
-  InputLimits limits;
-  PlantInfo plant;
-  bool published, iterated, realigned;
-  ReferenceTrajectory reference;
-  Eigen::Index aim;     ///< column of `future` that u(k) aims at
-  Matrix future;        ///< col(i) = y_r(k+1+i)
-  DisturbanceForecast forecast;
-  Vector disturbances;  ///< d(k) as the model takes it
-  Vector bias;          ///< of a bumpless transfer, dying out
-  Vector proposal;      ///< u(k), unclipped
-  Vector last_input;    ///< the last finite input, applied or sent
-  std::unique_ptr<Belief> belief;
-  std::vector<std::pair<std::string, double>> signals;
-  bool start_pending{true};      ///< the state is to be taken from the next measurement
-  bool transfer_pending{false};  ///< the next u must equal the applied input
-  bool running{false};           ///< an action has been computed since the reset
-};
-
 FmbpcLaw::FmbpcLaw(FmbpcParams params, InputLimits limits, PlantInfo plant) {
-  params.validate(count(plant.outputs), count(plant.inputs));
-  limits.validate(count(plant.inputs));
+  params.validate(countOf(plant.outputs), countOf(plant.inputs));
+  limits.validate(countOf(plant.inputs));
   if (!params.disturbance_feedforward)
-    require(params.disturbance_nominal.size() == count(plant.disturbances),
+    require(params.disturbance_nominal.size() == countOf(plant.disturbances),
             "controller.disturbance_nominal",
             std::to_string(plant.disturbances.size()) + " numbers");
   memory_ = std::make_unique<Memory>(std::move(params), std::move(limits), std::move(plant));
@@ -81,21 +29,9 @@ FmbpcLaw::FmbpcLaw(FmbpcParams params, InputLimits limits, PlantInfo plant) {
 
 FmbpcLaw::~FmbpcLaw() = default;
 
-void FmbpcLaw::setModel(const TsModel& model) {
-  Memory& m = *memory_;
-  m.belief = std::make_unique<Belief>(matchToPlant(model, m.plant), m.params,
-                                      count(m.plant.outputs), count(m.plant.inputs));
-  if (m.iterated)
-    m.belief->planner.emplace(m.belief->local,
-                              PathParams{m.params.horizon_steps, m.params.iterations,
-                                         m.params.weight_output, m.params.weight_move},
-                              m.limits);
-  m.start_pending = true;
-  m.transfer_pending = m.transfer_pending || m.running;
-}
-
 void FmbpcLaw::reset(const Measurement& start) {
   Memory& m = *memory_;
+  if (m.successor) m.belief = std::move(m.successor);
   m.reference.reset(start.outputs);
   m.bias.setZero();
   m.forecast.forget();
@@ -202,6 +138,18 @@ void FmbpcLaw::predict(const Measurement& now, const SetpointSource& setpoint,
   prediction.input_previous = now.input_applied;
 }
 
+/// From the state of sample k to a proposal; false if no rule fired.
+bool FmbpcLaw::think(const Measurement& now, bool& solvable) {
+  Memory& m = *memory_;
+  Belief& b = *m.belief;
+  const bool fired = b.blend(m.disturbances);
+  b.compare(now);
+  solvable = m.iterated ? proposePath(now) : computeGains();
+  if (!m.iterated) propose(now);
+  transfer(now);
+  return fired;
+}
+
 void FmbpcLaw::hold(const Measurement& now, const char* reason, ControllerOutput& output) {
   Memory& m = *memory_;
   if (now.input_applied.allFinite()) m.last_input = now.input_applied;
@@ -241,13 +189,11 @@ void FmbpcLaw::step(const Measurement& now, const SetpointSource& setpoint,
     return hold(now, "the measurement is not finite", output);
   }
 
-  Belief& b = *m.belief;
   estimate(now);
-  const bool fired = b.blend(m.disturbances);
-  b.compare(now);
-  const bool solvable = m.iterated ? proposePath(now) : computeGains();
-  if (!m.iterated) propose(now);
-  transfer(now);
+  bool solvable = false;
+  bool fired = think(now, solvable);
+  if (m.successor) fired = handOver(now, solvable);
+  const Belief& b = *m.belief;
   refreshSignals(now);
   if (!b.state.allFinite()) m.start_pending = true;
   if (!solvable || !m.proposal.allFinite()) {

@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/model_check.hpp"
+#include "fmbpc/fuzzy/model_file.hpp"
 
 namespace fpc {
 namespace {
@@ -31,12 +33,13 @@ std::string missingSamples(std::uint32_t first, std::uint32_t last) {
 
 ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
                                      SetpointParams setpoint, InputLimits limits,
-                                     Vector initial_input, PlantInfo plant)
+                                     Vector initial_input, PlantInfo plant, double max_pole)
     : controller_(std::move(controller)),
       setpoint_(std::move(setpoint), namesOf(plant.outputs), clockOf(plant)),
       limits_(std::move(limits)),
       plant_(std::move(plant)),
-      last_input_(std::move(initial_input)) {
+      last_input_(std::move(initial_input)),
+      max_pole_(max_pole) {
   require(controller_ != nullptr, "controller", "a controller");
   const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
   limits_.validate(n_u);
@@ -48,7 +51,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
   if (!controller_->followsSetpoint()) answer_.tracking.reference.setConstant(std::nan(""));
 }
 
-bool ControllerSession::ready() const { return has_model_ || !controller_->needsModel(); }
+bool ControllerSession::ready() const { return models_ > 0 || !controller_->needsModel(); }
 
 bool ControllerSession::sizesFit(const Measurement& m) const {
   return static_cast<std::size_t>(m.outputs.size()) == plant_.outputs.size() &&
@@ -95,11 +98,14 @@ void ControllerSession::process(const Measurement& m) {
     gate_.countNotFinite();
     hold(m, "the measurement is not finite: input held");
     interruption_ = "data before were not finite";
-  } else if (manual_) {
-    sendManual(m);
-    interruption_ = "back from manual";
   } else {
-    runLaw(m);
+    present_ = m;
+    if (manual_) {
+      sendManual(m);
+      interruption_ = "back from manual";
+    } else {
+      runLaw(m);
+    }
   }
   last_input_ = answer_.base.input;
 }
@@ -151,8 +157,10 @@ void ControllerSession::runLaw(const Measurement& m) {
 }
 
 void ControllerSession::setModel(const TsModel& model) {
+  if (models_ > 0 && controller_->needsModel() && present_.outputs.size() > 0)
+    requireStable(matchToPlant(model, plant_), present_, max_pole_);
   controller_->setModel(model);
-  has_model_ = true;
+  ++models_;
 }
 
 void ControllerSession::manual(bool on) {

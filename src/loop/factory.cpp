@@ -55,7 +55,8 @@ Simulation makeSimulation(const LoopFile& loop) {
 
 ControllerSession makeControllerSession(const LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
-  return {makeController(loop), loop.setpoint, actuator.limits, actuator.initial, loop.plant_info};
+  return {makeController(loop), loop.setpoint,   actuator.limits,
+          actuator.initial,     loop.plant_info, loop.max_pole};
 }
 
 OptimizerSession makeOptimizerSession(const LoopFile& loop) {

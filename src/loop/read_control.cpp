@@ -1,10 +1,9 @@
-// Sections `setpoint`, `controller`, `clp` and `model`: what is asked and how the input is chosen.
+// Sections `setpoint`, `controller` and `clp`: what is asked and how the input is chosen.
 #include <algorithm>
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
 #include "loop/read.hpp"
 
 namespace fpc {
@@ -226,21 +225,6 @@ void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
     section.fail("type",
                  "a controller that predicts (fmbpc) for clp; clp.enabled: false switches the "
                  "optimizer off");
-}
-
-void readModelSection(YamlSection& root, LoopFile& loop) {
-  YamlSection section = root.section("model");
-  section.text("file", loop.model_file);
-  section.finish();
-  loop.has_model = !loop.model_file.empty();
-  if (loop.controller == "fmbpc" && !loop.has_model)
-    section.fail("file", "a model file for controller fmbpc");
-  if (!loop.has_model) return;
-  try {
-    loop.model = matchToPlant(readModel(loop.model_file), loop.plant_info);
-  } catch (const InputError& e) {
-    throw InputError(section.where("file") + ": " + e.what());
-  }
 }
 
 }  // namespace fpc

@@ -19,7 +19,7 @@ std::vector<std::string> ringNodes(const LoopFile& loop) {
   const bool open_loop = loop.controller == "excitation";
   std::vector<std::string> nodes{
       "loop_recorder", open_loop ? "excitation_generator" : loop.controller + "_controller"};
-  if (loop.controller == "fmbpc") nodes.emplace_back("fuzzy_identifier");
+  if (loop.controller == "fmbpc" || loop.has_identify) nodes.emplace_back("fuzzy_identifier");
   if (loop.has_clp) nodes.emplace_back("clp_optimizer");
   return nodes;
 }

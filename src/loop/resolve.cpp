@@ -58,6 +58,7 @@ void makeAbsolute(MergedLoop& loop, const std::vector<std::string>& keys,
 
 void makeFilesAbsolute(MergedLoop& loop) {
   makeAbsolute(loop, {"model", "file"}, "model");
+  makeAbsolute(loop, {"model", "identify", "structure"}, "structure");
   const YAML::Node source = scalarAt(loop.root, {"disturbance", "source"});
   if (source.IsDefined() && source.IsScalar() && source.Scalar() == "csv")
     makeAbsolute(loop, {"disturbance", "csv", "file"}, "data");

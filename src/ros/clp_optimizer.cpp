@@ -2,7 +2,6 @@
 
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/plant_check.hpp"
 #include "fmbpc/ros/topics.hpp"
 
 namespace fpc {
@@ -42,10 +41,10 @@ std::string ClpOptimizer::idleReason(const LoopFile& loop) {
 
 ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_node,
                            const LoopFile& loop)
-    : loop_(loop),
-      session_(makeOptimizerSession(loop)),
+    : session_(makeOptimizerSession(loop)),
       ready_(node),
       signals_(node),
+      plant_(loop.plant_info),
       action_(node.advertise<fmbpc::ControlAction>(topics::kControlAction, topics::kRingQueue)),
       report_(node.advertise<fmbpc::SolverReport>(topics::kSolverReport, topics::kRingQueue)),
       listeners_({action_, report_}),
@@ -61,25 +60,14 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
 
 void ClpOptimizer::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    const PlantInfo info = fromMsg(*msg);
-    const std::string mismatch = plantMismatch(loop_.plant_info, info);
-    if (plant_fits_) require(mismatch.empty(), mismatch, "the plant of this run");
-    problem_ = mismatch;
-    plant_fits_ = problem_.empty();
-    if (!plant_fits_) {
-      ROS_ERROR("clp_optimizer: %s", problem_.c_str());
-      return;
-    }
-    guard_.announce(info.header.run_id);
-    ready_.announce();
+    if (plant_.introduce(fromMsg(*msg))) ready_.announce();
   });
 }
 
 template <typename Item>
 void ClpOptimizer::receive(const Item& item) {
-  if (!guard_.admits(item.header.run_id, ros::WallTime::now()))
-    ++foreign_;
-  else if (listeners_.open() && session_.receive(item))  // if not, both will come again
+  if (plant_.admits(item.header.run_id, ros::WallTime::now()) && listeners_.open() &&
+      session_.receive(item))  // if not, both will come again
     publish();
 }
 
@@ -107,9 +95,9 @@ void ClpOptimizer::publish() {
 void ClpOptimizer::reportWords(Diagnostics::Status& status) const {
   using diagnostic_msgs::DiagnosticStatus;
   const SolveStatus solve = session_.report().status;
-  if (!problem_.empty())
-    status.summary(DiagnosticStatus::ERROR, problem_);
-  else if (!plant_fits_)
+  if (!plant_.problem().empty())
+    status.summary(DiagnosticStatus::ERROR, plant_.problem());
+  else if (!plant_.open())
     status.summary(DiagnosticStatus::WARN, "waiting for plant_info");
   else if (session_.counts().accepted == 0)
     status.summary(DiagnosticStatus::OK, "waiting for the first base action");
@@ -125,7 +113,7 @@ void ClpOptimizer::report(Diagnostics::Status& status) const {
   status.add("KKT residual", last.kkt_residual);
   status.add("solve time [us]", last.seconds * 1e6);
   addCounts(status, session_.counts());
-  status.add("dropped: run not announced", foreign_);
+  status.add("dropped: run not announced", plant_.foreign());
   addRefused(status, refused());
 }
 

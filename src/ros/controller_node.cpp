@@ -4,7 +4,6 @@
 #include "fmbpc/fuzzy/model_file.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/plant_check.hpp"
 #include "fmbpc/ros/topics.hpp"
 
 namespace fpc {
@@ -37,6 +36,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       session_(makeControllerSession(loop)),
       ready_(node),
       signals_(node),
+      plant_(loop.plant_info),
       base_(node.advertise<fmbpc::ControlAction>(actionTopic(loop, private_node),
                                                  topics::kRingQueue)),
       prediction_(
@@ -64,40 +64,34 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
 
 void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    const PlantInfo info = fromMsg(*msg);
-    const std::string mismatch = plantMismatch(loop_.plant_info, info);
-    if (plant_) require(mismatch.empty(), mismatch, "the plant of this run");
-    problem_ = mismatch;
-    if (!problem_.empty()) {
-      ROS_ERROR("%s: %s", ros::this_node::getName().c_str(), problem_.c_str());
-      return;
-    }
-    plant_ = info;
-    guard_.announce(info.header.run_id);
-    announceIfReady();
+    if (plant_.introduce(fromMsg(*msg))) announceIfReady();
   });
 }
 
 void ControllerNode::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
   if (!session_.controller().needsModel()) return;
-  guarded(topics::kFuzzyModel, [&] {
+  try {
     session_.setModel(matchToPlant(fromMsg(*msg), loop_.plant_info));
+    model_ = msg->name;
+    model_problem_.clear();
+    ROS_INFO("%s: model %s from the next sample on", ros::this_node::getName().c_str(),
+             model_.c_str());
     announceIfReady();
-  });
+  } catch (const InputError& error) {
+    model_problem_ = error.what();
+    refuse(topics::kFuzzyModel, error.what());
+  }
 }
 
 void ControllerNode::announceIfReady() {
-  if (plant_ && session_.ready()) ready_.announce();
+  if (plant_.open() && session_.ready()) ready_.announce();
 }
 
 void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   guarded(topics::kMeasurement, [&] {
     const Measurement measurement = fromMsg(*msg);
-    if (!guard_.admits(measurement.header.run_id, ros::WallTime::now())) {
-      ++foreign_;
-      return;
-    }
-    if (!plant_ || mustAwaitSetpoints(measurement) || !listeners_.open())
+    if (!plant_.admits(measurement.header.run_id, ros::WallTime::now())) return;
+    if (!plant_.open() || mustAwaitSetpoints(measurement) || !listeners_.open())
       return;  // the plant will send it again
     switch (session_.receive(measurement)) {
       case Receipt::kAnswered:
@@ -195,9 +189,9 @@ void ControllerNode::publishSignals() {
 
 void ControllerNode::reportWords(Diagnostics::Status& status) const {
   using diagnostic_msgs::DiagnosticStatus;
-  if (!problem_.empty())
-    status.summary(DiagnosticStatus::ERROR, problem_);
-  else if (!plant_)
+  if (!plant_.problem().empty())
+    status.summary(DiagnosticStatus::ERROR, plant_.problem());
+  else if (!plant_.open())
     status.summary(DiagnosticStatus::WARN, "waiting for plant_info");
   else if (!session_.ready())
     status.summary(DiagnosticStatus::WARN, "waiting for fuzzy_model");
@@ -207,6 +201,8 @@ void ControllerNode::reportWords(Diagnostics::Status& status) const {
     status.summary(DiagnosticStatus::OK, "waiting for the first measurement");
   else if (!session_.output().ok || session_.answer().base.source == ActionSource::kHeld)
     status.summary(DiagnosticStatus::WARN, session_.output().remark);
+  else if (!model_problem_.empty())
+    status.summary(DiagnosticStatus::WARN, "controlling; refused: " + model_problem_);
   else
     status.summary(DiagnosticStatus::OK, "controlling");
 }
@@ -216,7 +212,11 @@ void ControllerNode::report(Diagnostics::Status& status) const {
   status.add("mode", session_.isManual() ? "manual" : "auto");
   status.add("step", session_.answer().tracking.header.step);
   addCounts(status, session_.counts());
-  status.add("dropped: run not announced", foreign_);
+  status.add("dropped: run not announced", plant_.foreign());
+  if (session_.controller().needsModel()) {
+    status.add("model", model_);
+    status.add("models taken", session_.models());
+  }
   addRefused(status, refused());
 }
 

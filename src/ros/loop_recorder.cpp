@@ -10,7 +10,6 @@
 #include "fmbpc/loop/plot.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/plant_check.hpp"
 #include "fmbpc/ros/topics.hpp"
 
 namespace fpc {
@@ -58,6 +57,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       recorder_(makeRecorder(loop)),
       setpoints_(node, namesOf(loop.plant_info.outputs)),
       ready_(node),
+      plant_(loop.plant_info),
       n_y_(count(loop.plant_info.outputs)),
       n_u_(count(loop.plant_info.inputs)),
       n_d_(count(loop.plant_info.disturbances)),
@@ -98,22 +98,13 @@ void LoopRecorder::poll() {
 void LoopRecorder::announceIfConnected() {
   const bool connected = std::all_of(ring_.begin(), ring_.end(),
                                      [](const auto& s) { return s.getNumPublishers() > 0; });
-  polls_connected_ = connected && plant_fits_ ? polls_connected_ + 1 : 0;
+  polls_connected_ = connected && plant_.open() ? polls_connected_ + 1 : 0;
   if (polls_connected_ == kPollsConnected) ready_.announce();
 }
 
 void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    const PlantInfo info = fromMsg(*msg);
-    const std::string mismatch = plantMismatch(loop_.plant_info, info);
-    if (plant_fits_) require(mismatch.empty(), mismatch, "the plant of this run");
-    problem_ = mismatch;
-    plant_fits_ = problem_.empty();
-    if (!plant_fits_) {
-      ROS_ERROR("loop_recorder: %s", problem_.c_str());
-      return;
-    }
-    guard_.announce(info.header.run_id);
+    if (!plant_.introduce(fromMsg(*msg))) return;
     const auto parked = std::exchange(unannounced_, {});
     for (const auto& measurement : parked) onMeasurement(measurement);
   });
@@ -192,7 +183,7 @@ void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
       ++wrong_size_;
       return;
     }
-    if (!guard_.admits(m.header.run_id, ros::WallTime::now())) {
+    if (!plant_.admits(m.header.run_id, ros::WallTime::now())) {
       ++strays_;
       if (unannounced_.size() < kMostEarly) unannounced_.push_back(msg);
       return;
@@ -274,8 +265,8 @@ int LoopRecorder::finish() {
 
 void LoopRecorder::report(Diagnostics::Status& status) const {
   using diagnostic_msgs::DiagnosticStatus;
-  if (!problem_.empty())
-    status.summary(DiagnosticStatus::ERROR, problem_);
+  if (!plant_.problem().empty())
+    status.summary(DiagnosticStatus::ERROR, plant_.problem());
   else if (!ready_.announced())
     status.summary(DiagnosticStatus::WARN, "waiting for publishers of the ring");
   else

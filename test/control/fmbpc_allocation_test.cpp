@@ -90,6 +90,19 @@ TEST(FmbpcLawMemory, WithADelayTakenOutNothingIsAllocatedEither) {
     }
 }
 
+TEST(FmbpcLawMemory, TakingOverFromAnotherModelOfThisSizeDoesNotAllocate) {
+  if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  for (const char* realisation : {"parallel", "realigned"}) {
+    FmbpcParams params = test::generalParams(1, 1, 5, 0.5, 0.0);
+    params.realisation = realisation;
+    Steady loop(params, test::firstOrder(0.9, 0.1, 0.2));
+    for (int i = 0; i < 3; ++i) {
+      loop.law.setModel(test::firstOrder(0.8, 0.2, 0.1 * i));
+      EXPECT_EQ(loop.allocations(3), 0U);
+    }
+  }
+}
+
 TEST(FmbpcLawMemory, HoldingAndStartingAgainDoNotAllocateEither) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   Steady loop(test::generalParams(1, 1, 5, 0.5, 0.0), test::firstOrder(0.9, 0.1, 0.2));

@@ -48,17 +48,6 @@ TEST(BumplessTransfer, FirstInputAfterAResetInTheMiddleIsTheAppliedOne) {
   EXPECT_LT(error, 1e-9);  // the bias dies out
 }
 
-TEST(BumplessTransfer, ANewModelDoesNotKickTheInput) {
-  Running loop;
-  const double before = loop.last.input[0];
-  loop.law.setModel(test::firstOrder(0.5, 0.9, 1.0));
-  test::run(loop.law, loop.plant, loop.setpoint, 40, 41,
-            [&](const Measurement&, const ControllerOutput& output) {
-              EXPECT_EQ(output.input[0], before);
-              EXPECT_TRUE(output.predictive);
-            });
-}
-
 TEST(BumplessTransfer, TheFirstSampleOfARunIsThePureLaw) {
   const PlantInfo info = test::infoOf(test::firstOrder(0.9, 0.1, 0.0));
   test::ModelPlant plant(test::firstOrder(0.9, 0.1, 0.0), one(0.0), one(7.0), Vector());

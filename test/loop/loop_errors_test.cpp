@@ -18,6 +18,17 @@ TEST_F(LoopErrors, TheSmallLoopHasNone) {
   EXPECT_FALSE(loop.has_model);
 }
 
+TEST_F(LoopErrors, AnIdentifierNeedsNoModelAndIsWaitedFor) {
+  const LoopFile loop = readLoop(write(
+      "i.yaml", smallLoop() + "model: {identify: {structure: asp_d.yaml, online: {every: 7}}}\n"));
+  EXPECT_FALSE(loop.has_model);
+  ASSERT_TRUE(loop.has_identify);
+  EXPECT_EQ(loop.identify.structure.name, "asp_d");
+  EXPECT_TRUE(loop.identify.online.enabled);
+  EXPECT_EQ(loop.identify.online.every, 7);
+  EXPECT_EQ(loop.ring.wait_for.back(), "fuzzy_identifier");
+}
+
 /// A mistake, written below the small loop or by an override, and the words of its error.
 struct Mistake {
   std::string name;
@@ -114,6 +125,27 @@ const Mistake kMistakes[] = {
      "",
      {":12: model.file", "FMBPC_NOT_SET to be set"}},
     {"OptimizerWithoutPrediction", "clp: {}\n", "", {"controller.type", "fmbpc", "clp.enabled"}},
+    {"MissingStructure",
+     "model: {identify: {structure: nowhere.yaml}}\n",
+     "",
+     {":12: model.identify.structure", "existing file", "'nowhere.yaml'"}},
+    {"BadStructure",
+     "model: {identify: {structure: loop.yaml}}\n",
+     "",
+     {":12: model.identify.structure", "loop.yaml"}},
+    {"IdentifyWithoutStructure",
+     "model: {identify: {after: 100}}\n",
+     "",
+     {"model.identify.structure", "identify.after"}},
+    {"OnlineNever",
+     "model: {identify: {online: {every: 0}}}\n",
+     "",
+     {":12: model.identify.online.every", ">= 1"}},
+    {"CovarianceAboveItsBound",
+     "model: {identify: {online: {initial_covariance: 1000}}}\n",
+     "",
+     {"model.identify.online", "covariance_bound"}},
+    {"NoPoleAllowed", "model: {max_pole: 0}\n", "", {":12: model.max_pole", "0"}},
     {"ModelNeeded", "", "controller={type: fmbpc}", {"model.file", "a model file"}},
     {"FramesInACircle",
      "tf:\n  frames:\n    reactor: {parent: settler}\n    settler: {parent: reactor}\n",

@@ -6,7 +6,7 @@ import unittest
 
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from fmbpc.msg import CommandEffect, ControlAction, Measurement, NodeReady, PlantInfo, Setpoint, Tracking
 from fmbpc.srv import ManualInput
 from rosgraph_msgs.msg import Log
@@ -27,7 +27,7 @@ class FakePlant(unittest.TestCase):
         cls.actions = ring.Listener("control_action", ControlAction)
         cls.tracking = ring.Listener("tracking", Tracking)
         cls.log = ring.Listener("/rosout", Log)
-        cls.diagnostics = ring.Listener("/diagnostics", DiagnosticArray)
+        cls.status = ring.NodeStatus("fmbpc_controller")
         cls.ready = ring.Listener("ready", NodeReady)
         cls.actions.wait_for_publisher()
         cls.tracking.wait_for_publisher()
@@ -38,23 +38,11 @@ class FakePlant(unittest.TestCase):
         wrong = PlantInfo(name="wrong", sample_time_s=720.0, inputs=cls.info.inputs, output_frames=["", ""],
                           disturbances=cls.info.disturbances, outputs=list(cls.info.outputs)[::-1])
         cls.info_pub.publish(wrong)
-        words = cls.status(lambda s: s.level == DiagnosticStatus.ERROR).message
+        words = cls.status.wait(lambda s: s.level == DiagnosticStatus.ERROR).message
         assert words == ("plant_info: outputs are x[mg/l], s[mg/l], the loop file expects s[mg/l], x[mg/l]"), words
         assert "/fmbpc_controller" not in [m.node for m in cls.ready.messages]
         cls.info_pub.publish(cls.info)
         cls.ready.wait(lambda m: m.node == "/fmbpc_controller")
-
-    @classmethod
-    def status(cls, fits):
-        """The controller's next status that fits."""
-        cls.diagnostics.clear()
-        return ring.diagnostics_of(cls.diagnostics.wait(
-            lambda m: ring.diagnostics_of(m, "fmbpc_controller") is not None
-            and fits(ring.diagnostics_of(m, "fmbpc_controller"))), "fmbpc_controller")
-
-    @classmethod
-    def counts(cls):
-        return {k: int(v) for k, v in ring.values(cls.status(lambda s: True)).items() if v.isdigit()}
 
     def setUp(self):
         self.new_run()
@@ -106,39 +94,39 @@ class FakePlant(unittest.TestCase):
     def test_old_steps_are_dropped_and_counted(self):
         for step in (1, 2):
             self.answer(step)
-        before = self.counts()
+        before = self.status.counts()
         self.actions.clear()
         self.send(0)
         self.send(1)
         self.answer(3)
         self.assertEqual([3], self.steps_answered())
-        self.assertEqual(before["dropped: old step"] + 2, self.counts()["dropped: old step"])
+        self.assertEqual(before["dropped: old step"] + 2, self.status.counts()["dropped: old step"])
 
     def test_other_runs_are_dropped_and_counted_apart(self):
-        before = self.counts()
+        before = self.status.counts()
         self.send(1, run_id=self.info.run_id - 1)
         self.send(1, run_id=0)
         self.send(1, run_id=self.info.run_id + 7)  # larger, but no plant has announced it
         self.answer(1)
-        after = self.counts()
+        after = self.status.counts()
         self.assertEqual(before["dropped: other run"] + 2, after["dropped: other run"])
         self.assertEqual(before["dropped: run not announced"] + 1, after["dropped: run not announced"])
         self.assertEqual({self.info.run_id}, {a.run_id for a in self.actions.messages})
 
     def test_wrong_sizes_are_dropped_and_counted(self):
-        before = self.counts()
+        before = self.status.counts()
         self.send(1, outputs=(200.0,))
         self.send(1, outputs=(200.0, 2000.0, 1.0))
         empty = Measurement(run_id=self.info.run_id, step=1)
         self.pub.publish(empty)
         self.assertEqual(BASE, self.answer(1).source)
-        self.assertEqual(before["dropped: wrong size"] + 3, self.counts()["dropped: wrong size"])
+        self.assertEqual(before["dropped: wrong size"] + 3, self.status.counts()["dropped: wrong size"])
 
     def test_a_nan_measurement_holds_the_last_applied_input_and_says_so(self):
         self.applied = [612.5]
         action = self.answer(1, outputs=(200.0, math.nan))
         self.assertEqual((HELD, (612.5,)), (action.source, action.input))
-        status = self.status(lambda s: s.level == DiagnosticStatus.WARN)
+        status = self.status.wait(lambda s: s.level == DiagnosticStatus.WARN)
         self.assertIn("not finite", status.message)
         self.log.wait(lambda m: m.name == "/fmbpc_controller" and "not finite" in m.msg)
         action = self.answer(2, outputs=(200.0, math.inf))
@@ -149,10 +137,10 @@ class FakePlant(unittest.TestCase):
 
     def test_a_gap_means_reset_and_is_reported(self):
         self.answer(1)
-        before = self.counts()
+        before = self.status.counts()
         self.assertEqual(BASE, self.answer(5).source)
         self.log.wait(lambda m: "reset: samples 2..4 missing" in m.msg)
-        self.assertEqual(before["gaps"] + 1, self.counts()["gaps"])
+        self.assertEqual(before["gaps"] + 1, self.status.counts()["gaps"])
 
     def test_a_new_run_starts_afresh(self):
         first = [self.answer(k, outputs=(100.0 + k, 2000.0 - 20 * k)).input for k in (1, 2, 3)]
@@ -183,7 +171,7 @@ class FakePlant(unittest.TestCase):
         self.assertEqual((self.info.inputs[0].upper,), self.answer(4).input)
         self.assertTrue(by_hand([650.0]).success)
         self.answer(5)
-        self.status(lambda s: s.message == "manual")
+        self.status.wait(lambda s: s.message == "manual")
         self.assertEqual("auto", manual(False).message)
         action = self.answer(6)
         self.assertEqual(BASE, action.source)
@@ -201,12 +189,12 @@ class FakePlant(unittest.TestCase):
         self.assertEqual((55.0, 1950.0), now.setpoint)
         effect = effects.wait()
         self.assertEqual((2, self.info.run_id, ["x"]), (effect.step, effect.run_id, effect.name))
-        before = int(ring.values(self.status(lambda s: True)).get("refused: setpoint", 0))
+        before = int(ring.values(self.status.wait(lambda s: True)).get("refused: setpoint", 0))
         for wrong in (Setpoint(name=["x"], value=[1.0], mode=0), Setpoint(name=["x"], value=[1.0], mode=4),
                       Setpoint(name=["nobody"], value=[1.0], mode=1), Setpoint(name=["x"], value=[], mode=1),
                       Setpoint(name=["x"], value=[math.nan], mode=1)):
             setpoint.publish(wrong)
-        self.status(lambda s: ring.values(s).get("refused: setpoint") == str(before + 5))
+        self.status.wait(lambda s: ring.values(s).get("refused: setpoint") == str(before + 5))
         setpoint.publish(name=["x"], value=[], mode=Setpoint.RELEASE)
         self.log.wait(lambda m: "setpoint of x from sample 3 on" in m.msg)
         self.answer(3)

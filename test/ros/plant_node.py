@@ -7,7 +7,6 @@ import unittest
 
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticArray
 from fmbpc.msg import CommandEffect, ControlAction, Disturbance, Measurement, NodeReady, PlantInfo, PlantState, Signal
 from rosgraph_msgs.msg import Clock, Log
 from std_srvs.srv import SetBool, Trigger
@@ -22,7 +21,7 @@ class PlantNode(unittest.TestCase):
         cls.measurements = ring.Listener("measurement", Measurement)
         cls.states = ring.Listener("plant_state", PlantState)
         cls.infos = ring.Listener("plant_info", PlantInfo)
-        cls.diagnostics = ring.Listener("/diagnostics", DiagnosticArray)
+        cls.status = ring.NodeStatus("plant_simulator")
         cls.log = ring.Listener("/rosout", Log)
         cls.pub = ring.publisher("control_action", ControlAction)
         cls.states.wait_for_publisher()
@@ -31,22 +30,11 @@ class PlantNode(unittest.TestCase):
         cls.reset = rospy.ServiceProxy("plant_simulator/reset", Trigger)
         cls.reset.wait_for_service(ring.PATIENCE)
         assert not cls.reset().success  # the first run has not begun
-        cls.status(lambda s: s.message == "waiting for /plant_node")
+        cls.status.wait(lambda s: s.message == "waiting for /plant_node")
         assert cls.measurements.messages == []
         ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
         ready.publish(node=rospy.get_name())
         cls.now = cls.measurements.wait()
-
-    @classmethod
-    def status(cls, fits):
-        cls.diagnostics.clear()
-        return ring.diagnostics_of(cls.diagnostics.wait(
-            lambda m: ring.diagnostics_of(m, "plant_simulator") is not None
-            and fits(ring.diagnostics_of(m, "plant_simulator"))), "plant_simulator")
-
-    @classmethod
-    def counts(cls):
-        return {k: int(v) for k, v in ring.values(cls.status(lambda s: True)).items() if v.isdigit()}
 
     def setUp(self):
         before = self.now.run_id
@@ -86,12 +74,12 @@ class PlantNode(unittest.TestCase):
         first = self.measurements.wait()
         self.measurements.wait(lambda m: m is not first)
         self.assertEqual({0}, {m.step for m in self.measurements.messages})
-        self.assertGreater(self.counts()["measurements sent again"], 1)
+        self.assertGreater(self.status.counts()["measurements sent again"], 1)
 
     def test_what_does_not_answer_the_sample_is_dropped_and_counted_apart(self):
         self.advance()
         self.advance()
-        before = self.counts()
+        before = self.status.counts()
         wrong = [self.action(input=[]), self.action(input=[1.0, 2.0]), self.action(math.nan), self.action(math.inf),
                  self.action(step=1), self.action(step=1), self.action(step=1), self.action(step=0),
                  self.action(step=3), self.action(run_id=self.now.run_id + 1), self.action(run_id=0), ControlAction()]
@@ -99,7 +87,7 @@ class PlantNode(unittest.TestCase):
             self.pub.publish(message)
         now = self.advance(700.0)
         self.assertEqual((3, (700.0,)), (now.step, now.input_applied))
-        after = self.counts()
+        after = self.status.counts()
         for kind, count in (("wrong size", 2), ("not finite", 2), ("repeated", 3), ("old step", 1), ("later step", 1),
                             ("other run", 2)):
             key = "actions dropped: " + kind
@@ -125,13 +113,13 @@ class PlantNode(unittest.TestCase):
         effects = ring.Listener("disturbance_effect", CommandEffect)
         effects.wait_for_publisher()
         pub = ring.publisher("disturbance", Disturbance)
-        before = self.counts().get("refused: disturbance", 0)
+        before = self.status.counts().get("refused: disturbance", 0)
         for wrong in (Disturbance(name=["q_i"], value=[1.0], mode=0), Disturbance(name=["nobody"], value=[1.0], mode=1),
                       Disturbance(name=["q_i"], value=[math.nan], mode=1),
                       Disturbance(name=["q_i", "s_i"], value=[1.0], mode=1)):
             pub.publish(wrong)
         pub.publish(name=["q_i", "input/q_r", "output/x"], value=[1900.0, 100.0, 1.0], mode=Disturbance.OVERRIDE)
-        self.status(lambda s: ring.values(s).get("refused: disturbance") == str(before + 4))
+        self.status.wait(lambda s: ring.values(s).get("refused: disturbance") == str(before + 4))
         now = self.advance()
         self.assertEqual((1, ["q_i", "input/q_r", "output/x"]), (effects.wait().step, effects.wait().name))
         self.assertEqual((1900.0, 1.0), (now.disturbances[0], now.outputs[1]))
@@ -146,16 +134,16 @@ class PlantNode(unittest.TestCase):
     def test_pause_and_step(self):
         self.assertFalse(self.step().success)
         self.assertTrue(self.pause(True).success)
-        accepted = self.counts()["actions accepted"]
+        accepted = self.status.counts()["actions accepted"]
         self.pub.publish(self.action())
-        self.status(lambda s: s.message == "paused" and ring.values(s)["actions accepted"] == str(accepted + 1)
+        self.status.wait(lambda s: s.message == "paused" and ring.values(s)["actions accepted"] == str(accepted + 1)
                     and ring.values(s)["step"] == "0")
         self.assertTrue(self.step().success)
         self.assertEqual(1, self.next().step)
         self.assertTrue(self.step().success)  # allowed now, taken when the action comes
         self.assertEqual(2, self.advance().step)
         self.pub.publish(self.action())
-        self.status(lambda s: ring.values(s)["actions accepted"] == str(accepted + 3) and ring.values(s)["step"] == "2")
+        self.status.wait(lambda s: ring.values(s)["actions accepted"] == str(accepted + 3) and ring.values(s)["step"] == "2")
         self.assertTrue(self.pause(False).success)
         self.assertEqual(3, self.next().step)
 
@@ -171,7 +159,7 @@ class PlantNode(unittest.TestCase):
     def test_the_final_sample_is_marked_and_nothing_follows(self):
         finals = [self.advance().final for _ in range(10)]
         self.assertEqual([False] * 9 + [True], finals)
-        self.status(lambda s: s.message == "finished")
+        self.status.wait(lambda s: s.message == "finished")
         self.measurements.clear()
         again = ring.Listener("measurement", Measurement).wait()  # latched for those who come later
         self.assertEqual((10, True), (again.step, again.final))

@@ -5,8 +5,10 @@ import subprocess
 import threading
 import time
 
+import actionlib
 import roslib.packages
 import rospy
+from diagnostic_msgs.msg import DiagnosticArray
 
 PATIENCE = 60.0  # s of wall time for anything that must come
 
@@ -112,6 +114,31 @@ def diagnostics_of(message, name):
 
 def values(status):
     return {pair.key: pair.value for pair in status.values}
+
+
+class NodeStatus:
+    """What a node says of itself on /diagnostics."""
+
+    def __init__(self, name):
+        self.name, self.listener = name, Listener("/diagnostics", DiagnosticArray)
+
+    def wait(self, fits=lambda status: True, patience=PATIENCE):
+        """Its next status that fits."""
+        self.listener.clear()
+
+        def found(message):
+            status = diagnostics_of(message, self.name)
+            return status is not None and fits(status)
+        return diagnostics_of(self.listener.wait(found, patience), self.name)
+
+    def counts(self):
+        return {k: int(v) for k, v in values(self.wait()).items() if v.isdigit()}
+
+
+def action_end(client, patience=PATIENCE):
+    """(state, result) of a SimpleActionClient's goal."""
+    wait_until(lambda: client.simple_state == actionlib.SimpleGoalState.DONE, "the end of the action", patience)
+    return client.get_state(), client.get_result()
 
 
 def killed(process):

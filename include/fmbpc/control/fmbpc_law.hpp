@@ -48,8 +48,12 @@ struct FmbpcParams {
 /// delay_steps takes a transport delay out of the model: xi, A, B, C, g and H are then those of the
 /// undelayed process, and y_m in e is the output of the model with its delay, which runs beside it
 /// on the same applied inputs (Blazic and Skrjanc 2007, eqs. 17-27).
-/// A start in the middle of a run, and a new model, add a bias to u that makes it continuous and
-/// dies out. If no rule fires the nearest one is used, with a remark. If the gains are singular or
+/// A start in the middle of a run adds a bias to u that makes it the applied input and dies out
+/// with transfer_decay. A new model takes over in the next step: the old one still says what u(k)
+/// would have been, and the new one starts with a bias that makes its u(k) the very same. If both
+/// models have the same lags, the measured past is handed over as well, and the own state if only
+/// consequents differ; otherwise (and always with a delay taken out, or literal) the new one starts
+/// at rest. If no rule fires the nearest one is used, with a remark. If the gains are singular or
 /// anything is not finite the last applied input is held (clipped), ok is false, and there is no
 /// prediction. signals(): NAME_model (y_m), NAME_correction (y - y_m, or w_hat) of each output and,
 /// with a delay, NAME_undelayed (what the output will be delay_steps later); NAME_unclipped of each
@@ -72,6 +76,8 @@ class FmbpcLaw final : public Controller {
 
   void estimate(const Measurement& now);
   bool computeGains();
+  bool think(const Measurement& now, bool& solvable);
+  bool handOver(const Measurement& now, bool& solvable);
   void propose(const Measurement& now);
   bool proposePath(const Measurement& now);
   void transfer(const Measurement& now);

@@ -45,7 +45,8 @@ class ControllerSession {
  public:
   /// @throws InputError naming the field: sizes of limits, setpoint and initial_input (n_u, u(-1)).
   ControllerSession(std::unique_ptr<Controller> controller, SetpointParams setpoint,
-                    InputLimits limits, Vector initial_input, PlantInfo plant);
+                    InputLimits limits, Vector initial_input, PlantInfo plant,
+                    double max_pole = 1.0);
 
   bool ready() const;  ///< has its model, if it needs one
   /// `resetReason()` says in words why the last answered sample reset the controller (empty if it
@@ -55,9 +56,14 @@ class ControllerSession {
   const ControllerOutput& output() const { return output_; }
   const std::string& resetReason() const { return reset_reason_; }
 
-  /// Acts from the next sample. @throws InputError if it does not fit; the old model stays.
+  /// Acts from the next sample. @throws InputError if it does not fit the plant, or if it would
+  /// replace another one and is unstable at the last finite sample (see largestPole(); beyond
+  /// max_pole): the old model stays. A first model is taken even if it is unstable somewhere, since
+  /// there is no better one.
   void setModel(const TsModel& model);
-  /// See SetpointSource: a command of a person, and one that was in force before this object was made.
+  std::uint64_t models() const { return models_; }  ///< taken so far
+  /// See SetpointSource: a command of a person, and one that was in force before this object was
+  /// made.
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
   bool restore(const Command& setpoint) { return setpoint_.restore(setpoint); }
   void manual(bool on);  ///< acts from the next sample, bumpless both ways
@@ -90,7 +96,10 @@ class ControllerSession {
   const char* interruption_{nullptr};  // why the controller did not run at the last sample
   std::string arrival_reason_;         // first sample, gap, new run: in words
   Vector last_input_, manual_input_;
-  bool manual_{false}, manual_given_{false}, has_model_{false};
+  Measurement present_;  // the last finite one; empty before the first
+  double max_pole_{1.0};
+  std::uint64_t models_{};
+  bool manual_{false}, manual_given_{false};
 };
 
 /// The optimizer behind the ring: pairs base action and prediction of the same sample. Base actions

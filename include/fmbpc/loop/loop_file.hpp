@@ -10,6 +10,8 @@
 #include "fmbpc/control/fmbpc_law.hpp"
 #include "fmbpc/control/pi.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
+#include "fmbpc/fuzzy/online_learner.hpp"
+#include "fmbpc/fuzzy/structure.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
 #include "fmbpc/plant/simulation.hpp"
 
@@ -56,6 +58,16 @@ struct ReportParams {
       output_upper;  ///< n_y limits for violations.output; infinite if absent
 };
 
+/// Section `model.identify`: how fuzzy_identifier finds models while the plant runs.
+struct IdentifyParams {
+  std::string structure_file;    ///< absolute; empty: only goals that bring a structure
+  Structure structure;           ///< of that file
+  int window{100000};            ///< samples kept, the newest; 0: all
+  double validation_share{0.3};  ///< of the rows, at the end, held out
+  int after{0};  ///< samples after which the node identifies unasked, once; 0: on request only
+  OnlineParams online;
+};
+
 struct LoopFile {
   std::string name;  ///< the file's stem
   std::string file;
@@ -68,6 +80,9 @@ struct LoopFile {
   bool has_model{false};
   std::string model_file;  ///< absolute
   TsModel model;           ///< matched to the plant
+  double max_pole{1.0};    ///< a model that replaces another in a run is refused beyond
+  bool has_identify{false};
+  IdentifyParams identify;
   std::string controller;  ///< fmbpc, pi or excitation
   FmbpcParams fmbpc;
   PiParams pi;

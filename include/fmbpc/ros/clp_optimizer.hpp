@@ -15,8 +15,8 @@
 #include "fmbpc/ros/diagnostics.hpp"
 #include "fmbpc/ros/listener_gate.hpp"
 #include "fmbpc/ros/node.hpp"
+#include "fmbpc/ros/plant_gate.hpp"
 #include "fmbpc/ros/ready.hpp"
-#include "fmbpc/ros/run_guard.hpp"
 #include "fmbpc/ros/signal_publishers.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
@@ -39,14 +39,10 @@ class ClpOptimizer : public Node {
   void report(Diagnostics::Status& status) const;
   void reportWords(Diagnostics::Status& status) const;
 
-  LoopFile loop_;
   OptimizerSession session_;
   ReadyPublisher ready_;
   SignalPublishers signals_;
-  bool plant_fits_{false};
-  RunGuard guard_;
-  std::uint64_t foreign_{};  // messages of runs that nobody announced
-  std::string problem_;
+  PlantGate plant_;
   StepHeader last_;  // of the last answer that was not a repetition
   WallThrottle log_{1.0};
 

@@ -11,7 +11,6 @@
 #include <std_srvs/SetBool.h>
 
 #include <cstdint>
-#include <optional>
 #include <string>
 
 #include "fmbpc/control/session.hpp"
@@ -19,8 +18,8 @@
 #include "fmbpc/ros/diagnostics.hpp"
 #include "fmbpc/ros/listener_gate.hpp"
 #include "fmbpc/ros/node.hpp"
+#include "fmbpc/ros/plant_gate.hpp"
 #include "fmbpc/ros/ready.hpp"
-#include "fmbpc/ros/run_guard.hpp"
 #include "fmbpc/ros/signal_publishers.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
@@ -54,11 +53,9 @@ class ControllerNode : public Node {
   ControllerSession session_;
   ReadyPublisher ready_;
   SignalPublishers signals_;
-  std::optional<PlantInfo> plant_;  // that of the topic, if it fits the loop file
-  RunGuard guard_;
-  std::uint64_t foreign_{};         // measurements of runs that nobody announced
-  std::string problem_;             // why there is no plant or model, in words
-  bool setpoints_restored_{false};  // what stood before this process began is known
+  PlantGate plant_;
+  std::string model_, model_problem_;  // name of the one in use; why the latest was refused
+  bool setpoints_restored_{false};     // what stood before this process began is known
   ros::WallTime restore_deadline_;
   WallThrottle log_{1.0};
 

@@ -19,8 +19,8 @@
 #include "fmbpc/loop/record.hpp"
 #include "fmbpc/ros/diagnostics.hpp"
 #include "fmbpc/ros/node.hpp"
+#include "fmbpc/ros/plant_gate.hpp"
 #include "fmbpc/ros/ready.hpp"
-#include "fmbpc/ros/run_guard.hpp"
 #include "fmbpc/ros/setpoint_latch.hpp"
 
 namespace fpc {
@@ -69,11 +69,9 @@ class LoopRecorder : public Node {
   Recorder recorder_;
   SetpointLatch setpoints_;
   ReadyPublisher ready_;
+  PlantGate plant_;
   Eigen::Index n_y_, n_u_, n_d_;
-  bool plant_fits_{false};
-  std::string problem_;
 
-  RunGuard guard_;
   StepHeader measured_;  // the latest sample of the run being recorded
   bool run_known_{false};
   struct Early {

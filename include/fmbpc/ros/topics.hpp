@@ -23,6 +23,9 @@ inline constexpr char kReady[] = "ready";
 inline constexpr char kSignalPrefix[] = "signal/";
 inline constexpr char kClock[] = "/clock";
 
+// Private action.
+inline constexpr char kIdentify[] = "identify";
+
 // Private services.
 inline constexpr char kPause[] = "pause";
 inline constexpr char kStep[] = "step";

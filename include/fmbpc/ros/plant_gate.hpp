@@ -1,0 +1,38 @@
+// The plant that a node serves: one that does not fit the loop file is refused, and so are runs
+// that nobody announced.
+#pragma once
+
+#include <ros/time.h>
+
+#include <cstdint>
+#include <string>
+
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/ros/run_guard.hpp"
+
+namespace fpc {
+
+class PlantGate {
+ public:
+  explicit PlantGate(PlantInfo expected) : expected_(std::move(expected)) {}
+
+  /// A plant introduces itself, at its start or before a new run. One that does not fit is logged
+  /// and leaves problem().
+  /// @return true if it fits. @throws InputError if the plant in service stops fitting: that
+  /// message is to be refused.
+  bool introduce(const PlantInfo& info);
+  /// False: to be dropped, and counted.
+  bool admits(std::uint64_t run_id, ros::WallTime now);
+  bool open() const { return open_; }  ///< a plant that fits has introduced itself
+  const std::string& problem() const { return problem_; }
+  std::uint64_t foreign() const { return foreign_; }  ///< messages of runs that nobody announced
+
+ private:
+  PlantInfo expected_;
+  RunGuard guard_;
+  std::string problem_;
+  std::uint64_t foreign_{};
+  bool open_{false};
+};
+
+}  // namespace fpc

@@ -1,0 +1,28 @@
+#include "fmbpc/ros/plant_gate.hpp"
+
+#include <ros/ros.h>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/ros/plant_check.hpp"
+
+namespace fpc {
+
+bool PlantGate::introduce(const PlantInfo& info) {
+  const std::string mismatch = plantMismatch(expected_, info);
+  if (open_) require(mismatch.empty(), mismatch, "the plant of this run");
+  problem_ = mismatch;
+  open_ = problem_.empty();
+  if (open_)
+    guard_.announce(info.header.run_id);
+  else
+    ROS_ERROR("%s: %s", ros::this_node::getName().c_str(), problem_.c_str());
+  return open_;
+}
+
+bool PlantGate::admits(std::uint64_t run_id, ros::WallTime now) {
+  if (guard_.admits(run_id, now)) return true;
+  ++foreign_;
+  return false;
+}
+
+}  // namespace fpc
