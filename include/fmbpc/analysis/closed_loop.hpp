@@ -1,0 +1,60 @@
+// The linear loop that a predictive law closes around its own model: matrices and eigenvalues for
+// any lags, delays and horizon. Source: Vallejo Llamas 2021, article 2, sections 4 and 5; Blazic
+// and Skrjanc 2007, section 4.
+#pragma once
+
+#include <complex>
+#include <vector>
+
+#include "fmbpc/analysis/rule_models.hpp"
+
+namespace fpc {
+
+using Eigenvalues = std::vector<std::complex<double>>;
+
+/// Largest modulus first; pairs with the positive imaginary part first.
+/// @throws InputError unless A is square.
+Eigenvalues eigenvalues(MatrixRef A);
+double spectralRadius(const Eigenvalues& values);  ///< 0 without values, NaN if one is NaN
+
+/// What of a law matters to the loop; see FmbpcParams.
+struct LoopLaw {
+  bool published{true};  ///< u = e / m2 of the last output; else the weighted law
+  int coincidence_steps{6};
+  Vector weight_output;  ///< n_y (weighted)
+  Vector weight_move;    ///< n_u (weighted)
+};
+
+/// xi(k+1) = A xi(k) + B_e e_r(k) for a perfect model, past inputs in xi; u = F e_r - K xi.
+/// Symbols: A n_x n_x, K n_u n_x, F n_u n_y (reference or noise to input), B n_x n_u
+struct ClosedLoop {
+  bool applicable{false};  ///< false: the law has no gain there (g0 = 0), the rest is empty
+  Matrix A, B, K, F;
+  Eigenvalues values;  ///< of A
+};
+
+/// The loop of a law around one linear model: A_cl = A - B (F C A^H - V E).
+/// @throws InputError if horizon < 1 or weights do not fit.
+ClosedLoop closeLoop(const LinearModel& model, const LoopLaw& law);
+/// g0 of the last output and first input: its forced response after H samples of a unit input.
+double forcedGain(const LinearModel& model, int horizon);
+
+/// Samples D by which every input acts late: the shortest lag of an input in any consequent.
+int inputDelay(const TsModel& model);
+/// The same model with that delay taken out: u(k - D) becomes u(k). Source: Blazic and Skrjanc
+/// 2007, eq. 17.
+TsModel withoutDelay(const TsModel& model);
+
+/// The paper's analysis, which takes u(k-1) for an input of its own:
+///   M = A^(H-1) B + (sum_{i<=H-2} A^i) B [1 0; 1 0],   A_CL = A - B M^-1 C A^H, C = I.
+/// M is never inverted: with A = [a b; 0 f], B = [m n; p 0] its second row is [m2 0], so that
+///   u = -f^H x2 / m2,   n a^(H-1) u' = -(A^H x)_1 - m1 u.
+/// Source: Vallejo Llamas 2021, article 2, eqs. 41-48.
+/// @throws InputError unless A and B have that shape, p != 0, n != 0, and horizon >= 1.
+Matrix paperReducedLoop(MatrixRef A, MatrixRef B, int horizon);
+/// Eigenvalue 2 of the paper, eq. 59: f sum_{i<=H-2} f^i / sum_{i<=H-1} f^i.
+double paperSecondEigenvalue(double f, int horizon);
+/// The true loop of the same matrices, u(k-1) as a state: eigenvalues {0, a, eig2}.
+LinearModel paperModel(MatrixRef A, MatrixRef B);
+
+}  // namespace fpc

@@ -1,0 +1,133 @@
+#include "fmbpc/analysis/closed_loop.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/control/coincidence.hpp"
+
+namespace fpc {
+
+Eigenvalues eigenvalues(MatrixRef A) {
+  require(A.rows() == A.cols(), "A", "a square matrix");
+  if (!A.allFinite())
+    return Eigenvalues(static_cast<std::size_t>(A.rows()),
+                       {std::numeric_limits<double>::quiet_NaN(), 0.0});
+  if (A.rows() == 0) return {};
+  const Eigen::VectorXcd found = Eigen::EigenSolver<Matrix>(A, false).eigenvalues();
+  Eigenvalues values(found.begin(), found.end());
+  std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
+    if (std::abs(a) != std::abs(b)) return std::abs(a) > std::abs(b);
+    return a.imag() != b.imag() ? a.imag() > b.imag() : a.real() > b.real();
+  });
+  return values;
+}
+
+double spectralRadius(const Eigenvalues& values) {
+  double radius = 0.0;
+  for (const auto& value : values) {
+    if (!std::isfinite(std::abs(value))) return std::numeric_limits<double>::quiet_NaN();
+    radius = std::max(radius, std::abs(value));
+  }
+  return radius;
+}
+
+ClosedLoop closeLoop(const LinearModel& model, const LoopLaw& law) {
+  const AffineModel& m = model.affine;
+  require(law.coincidence_steps >= 1, "coincidence_steps", "an integer >= 1");
+  CoincidenceGains gains(m.A.rows(), m.B.cols(), m.C.rows());
+  ClosedLoop loop;
+  if (law.published) {
+    loop.applicable = gains.computePublished(m, law.coincidence_steps);
+  } else {
+    require(law.weight_output.size() == m.C.rows(), "weight_output", "one weight per output");
+    require(law.weight_move.size() == m.B.cols(), "weight_move", "one weight per input");
+    loop.applicable =
+        gains.computeWeighted(m, law.coincidence_steps, law.weight_output, law.weight_move);
+  }
+  if (!loop.applicable) return loop;
+  loop.F = gains.gain();
+  loop.K = gains.gain() * gains.free() - gains.moveGain() * model.previous_input;
+  loop.B = m.B;
+  loop.A = m.A - m.B * loop.K;
+  loop.values = eigenvalues(loop.A);
+  return loop;
+}
+
+double forcedGain(const LinearModel& model, int horizon) {
+  require(horizon >= 1, "coincidence_steps", "an integer >= 1");
+  const AffineModel& m = model.affine;
+  Eigen::RowVectorXd row = m.C.bottomRows(1);
+  double gain = 0.0;
+  for (int i = 0; i < horizon; ++i) {
+    gain += row.dot(m.B.col(0));
+    row = row * m.A;
+  }
+  return gain;
+}
+
+int inputDelay(const TsModel& model) {
+  int delay = std::numeric_limits<int>::max();
+  for (const auto& submodel : model.submodels)
+    for (const auto& r : submodel.regressors)
+      if (r.kind == SignalKind::kInput) delay = std::min(delay, r.lag);
+  return delay == std::numeric_limits<int>::max() ? 0 : delay;
+}
+
+TsModel withoutDelay(const TsModel& model) {
+  const int delay = inputDelay(model);
+  TsModel prompt = model;
+  for (auto& submodel : prompt.submodels) {
+    for (auto& r : submodel.regressors)
+      if (r.kind == SignalKind::kInput) r.lag -= delay;
+    for (auto& r : submodel.antecedents)
+      if (r.kind == SignalKind::kInput) r.lag = std::max(0, r.lag - delay);
+  }
+  return prompt;
+}
+
+Matrix paperReducedLoop(MatrixRef A, MatrixRef B, int horizon) {
+  require(A.rows() == 2 && A.cols() == 2 && A(1, 0) == 0.0, "A", "[a b; 0 f]");
+  require(B.rows() == 2 && B.cols() == 2 && B(1, 1) == 0.0 && B(0, 1) != 0.0 && B(1, 0) != 0.0,
+          "B", "[m n; p 0] with n and p other than 0");
+  PowerSum powers(2);
+  powers.compute(A, horizon);
+  const Matrix& power = powers.power();
+  const double m2 = powers.sum().row(1).dot(B.col(0));
+  // A^(H-1) B + S_(H-1) B [1 0; 1 0] counts u once for every sample, u' in all but the first.
+  double m1 = powers.sum().row(0).dot(B.col(0)), scale = 1.0;
+  if (horizon > 1) {
+    PowerSum shorter(2);
+    shorter.compute(A, horizon - 1);
+    m1 += shorter.sum().row(0).dot(B.col(1));
+    scale = shorter.power()(0, 0);
+  }
+  const Eigen::RowVector2d u = -power.row(1) / m2;
+  const Eigen::RowVector2d previous = (-power.row(0) - m1 * u) / (scale * B(0, 1));
+  return A + B.col(0) * u + B.col(1) * previous;
+}
+
+double paperSecondEigenvalue(double f, int horizon) {
+  require(horizon >= 1, "coincidence_steps", "an integer >= 1");
+  double shorter = 0.0, sum = 0.0;
+  for (int i = 0; i < horizon; ++i) {
+    shorter = sum;
+    sum = 1.0 + f * sum;
+  }
+  return f * shorter / sum;
+}
+
+LinearModel paperModel(MatrixRef A, MatrixRef B) {
+  require(A.rows() == 2 && A.cols() == 2 && B.rows() == 2 && B.cols() == 2, "A, B", "2 x 2");
+  LinearModel model{AffineModel(3, 1, 2), Matrix::Zero(1, 3)};
+  model.affine.A.topLeftCorner(2, 2) = A;
+  model.affine.A.col(2).head(2) = B.col(1);
+  model.affine.B.col(0) << B(0, 0), B(1, 0), 1.0;
+  model.affine.C.leftCols(2).setIdentity();
+  model.previous_input(0, 2) = 1.0;
+  return model;
+}
+
+}  // namespace fpc
