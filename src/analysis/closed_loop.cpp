@@ -68,26 +68,6 @@ double forcedGain(const LinearModel& model, int horizon) {
   return gain;
 }
 
-int inputDelay(const TsModel& model) {
-  int delay = std::numeric_limits<int>::max();
-  for (const auto& submodel : model.submodels)
-    for (const auto& r : submodel.regressors)
-      if (r.kind == SignalKind::kInput) delay = std::min(delay, r.lag);
-  return delay == std::numeric_limits<int>::max() ? 0 : delay;
-}
-
-TsModel withoutDelay(const TsModel& model) {
-  const int delay = inputDelay(model);
-  TsModel prompt = model;
-  for (auto& submodel : prompt.submodels) {
-    for (auto& r : submodel.regressors)
-      if (r.kind == SignalKind::kInput) r.lag -= delay;
-    for (auto& r : submodel.antecedents)
-      if (r.kind == SignalKind::kInput) r.lag = std::max(0, r.lag - delay);
-  }
-  return prompt;
-}
-
 Matrix paperReducedLoop(MatrixRef A, MatrixRef B, int horizon) {
   require(A.rows() == 2 && A.cols() == 2 && A(1, 0) == 0.0, "A", "[a b; 0 f]");
   require(B.rows() == 2 && B.cols() == 2 && B(1, 1) == 0.0 && B(0, 1) != 0.0 && B(1, 0) != 0.0,

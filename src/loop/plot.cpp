@@ -58,4 +58,10 @@ PlotResult drawModelPlots(const std::string& folder) {
   return {"", drawWith("plot_model.py", folder)};
 }
 
+PlotResult drawStability(const std::string& folder) {
+  const std::string warning = drawWith("plot_stability.py", folder);
+  if (!warning.empty()) return {"", warning};
+  return {(fs::path(folder) / "root_locus.png").string(), ""};
+}
+
 }  // namespace fpc

@@ -13,17 +13,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A path, or a name below config/model.
-std::string findModel(const std::string& name) {
-  if (fs::is_regular_file(name)) return name;
-  for (const auto& folder : configFolders())
-    for (const auto& ending : {"", ".yaml"}) {
-      const fs::path file = fs::path(folder) / "model" / (name + ending);
-      if (fs::is_regular_file(file)) return file.string();
-    }
-  return name;  // readModel() says that it is not there
-}
-
 void print(const TsModel& model, const std::vector<RuleRemark>& remarks) {
   std::cout << model.name << ": " << model.source << "\nsample time " << model.sample_time_s
             << " s\n";
@@ -36,6 +25,16 @@ void print(const TsModel& model, const std::vector<RuleRemark>& remarks) {
 }
 
 }  // namespace
+
+std::string findModel(const std::string& name) {
+  if (fs::is_regular_file(name)) return name;
+  for (const auto& folder : configFolders())
+    for (const auto& ending : {"", ".yaml"}) {
+      const fs::path file = fs::path(folder) / "model" / (name + ending);
+      if (fs::is_regular_file(file)) return file.string();
+    }
+  return name;  // readModel() says that it is not there
+}
 
 int model(const std::string& file, bool json) {
   const TsModel model = readModel(findModel(file));

@@ -26,11 +26,32 @@ struct IdentifyArguments {
   bool json{false};
 };
 
+struct StabilityArguments {
+  std::string name;             ///< model or loop
+  std::string at;               ///< "name=value,..."
+  std::string horizon{"1..200"};
+  std::string out;
+  double noise_gain{0.0};       ///< limits of the advisor; 0: no advice
+  int settling{0};
+  bool json{false};
+  bool no_plot{false};
+};
+
+struct ReproduceArguments {
+  std::vector<std::string> names;
+  bool list{false};
+  bool json{false};
+};
+
 int identify(const IdentifyArguments& arguments);
 int run(const RunArguments& arguments);
 int resolve(const std::string& loop, const std::vector<std::string>& set);
 int plants(bool json);
 int model(const std::string& file, bool json);
+/// A path, or a name below config/model; what it was given if there is neither.
+std::string findModel(const std::string& name);
+int stability(const StabilityArguments& arguments);
+int reproduce(const ReproduceArguments& arguments);
 int table(const std::vector<std::string>& folders);
 
 }  // namespace fpc::tool

@@ -63,6 +63,30 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   table->callback([&a] { chosen = [&a] { return fpc::tool::table(a.loops); }; });
 }
 
+void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
+  CLI::App* stability = app.add_subcommand(
+      "stability", "Steady states, eigenvalues over the horizon, zeros, a Lyapunov certificate");
+  stability->add_option("MODEL|LOOP", a.name, "model or loop, by name or path")->required();
+  stability->add_option("--at", a.at, "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
+  stability->add_option("--horizon", a.horizon, "coincidence horizons, FIRST..LAST");
+  stability->add_option("--noise-gain", a.noise_gain,
+                        "advise a horizon: largest std of the input per std of measurement noise");
+  stability->add_option("--settling", a.settling, "advise a horizon: largest settling [samples]");
+  stability->add_option("--out", a.out, "folder for stability.json and plots");
+  stability->add_flag("--json", a.json, "print one JSON object and nothing else");
+  stability->add_flag("--no-plot", a.no_plot, "no plots");
+  stability->callback([&a] { chosen = [&a] { return fpc::tool::stability(a); }; });
+}
+
+void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
+  CLI::App* reproduce =
+      app.add_subcommand("reproduce", "Runs the papers' experiments: paper | here | ratio | verdict");
+  reproduce->add_option("NAME", a.names, "experiments; all of them if none is named");
+  reproduce->add_flag("--list", a.list, "only list their names and sources");
+  reproduce->add_flag("--json", a.json, "print one JSON array and nothing else");
+  reproduce->callback([&a] { chosen = [&a] { return fpc::tool::reproduce(a); }; });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -74,6 +98,10 @@ int main(int argc, char** argv) {
   fpc::tool::IdentifyArguments identify_arguments;
   addIdentify(app, identify_arguments);
   addLists(app, arguments);
+  fpc::tool::StabilityArguments stability;
+  addStability(app, stability);
+  fpc::tool::ReproduceArguments reproduce;
+  addReproduce(app, reproduce);
   try {
     app.parse(argc, argv);
     return chosen();

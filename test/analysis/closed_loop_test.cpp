@@ -10,6 +10,7 @@
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/undelayed.hpp"
 
 namespace fpc {
 namespace {
@@ -120,12 +121,12 @@ TEST(ClosedLoop, OfTheDelayedModelIsThatOfTheUndelayedOneWithTheDelayAsZeroPoles
     const double p1 = part(random), p2 = part(random);
     const int delay = trial % 6, H = 2 + trial % 7;  // H = 1: all at 0
     const TsModel model = delayedModel(p1 + p2, -p1 * p2, part(random), delay);
-    ASSERT_EQ(inputDelay(model), delay);
+    ASSERT_EQ(transportDelay(model), delay);
     LoopLaw late, prompt;
     late.coincidence_steps = H + delay;
     prompt.coincidence_steps = H;
     const ClosedLoop a = closeLoop(ruleModel(model, {0}, Vector()), late);
-    const ClosedLoop b = closeLoop(ruleModel(withoutDelay(model), {0}, Vector()), prompt);
+    const ClosedLoop b = closeLoop(ruleModel(withoutDelay(model, delay), {0}, Vector()), prompt);
     ASSERT_TRUE(a.applicable && b.applicable);
     EXPECT_NEAR(spectralRadius(a.values), spectralRadius(b.values), 1e-9) << trial;
     EXPECT_NEAR(a.A.trace(), b.A.trace(), 1e-12) << trial;

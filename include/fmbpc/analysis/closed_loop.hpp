@@ -39,12 +39,6 @@ ClosedLoop closeLoop(const LinearModel& model, const LoopLaw& law);
 /// g0 of the last output and first input: its forced response after H samples of a unit input.
 double forcedGain(const LinearModel& model, int horizon);
 
-/// Samples D by which every input acts late: the shortest lag of an input in any consequent.
-int inputDelay(const TsModel& model);
-/// The same model with that delay taken out: u(k - D) becomes u(k). Source: Blazic and Skrjanc
-/// 2007, eq. 17.
-TsModel withoutDelay(const TsModel& model);
-
 /// The paper's analysis, which takes u(k-1) for an input of its own:
 ///   M = A^(H-1) B + (sum_{i<=H-2} A^i) B [1 0; 1 0],   A_CL = A - B M^-1 C A^H, C = I.
 /// M is never inverted: with A = [a b; 0 f], B = [m n; p 0] its second row is [m2 0], so that

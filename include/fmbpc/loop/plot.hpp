@@ -13,6 +13,8 @@ struct PlotResult {
 /// Draws plot.png in a folder written by writeRun(). A missing script or matplotlib is a warning,
 /// never a failure.
 PlotResult drawPlot(const std::string& folder);
+/// bifurcation.png and root_locus.png in a folder with a stability.json.
+PlotResult drawStability(const std::string& folder);
 
 /// The same by scripts/plot_model.py for a folder that `fmbpc identify --plots` fills; several
 /// pictures, none is named.

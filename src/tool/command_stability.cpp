@@ -1,0 +1,258 @@
+// fmbpc stability MODEL|LOOP: steady states, eigenvalues over the horizon, zeros, a certificate.
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <numeric>
+
+#include "fmbpc/analysis/common_lyapunov.hpp"
+#include "fmbpc/analysis/horizon_advisor.hpp"
+#include "fmbpc/analysis/transfer.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/local_model.hpp"
+#include "fmbpc/loop/plant_continuation.hpp"
+#include "fmbpc/loop/plot.hpp"
+#include "tool/commands.hpp"
+#include "tool/stability_report.hpp"
+#include "tool/stability_subject.hpp"
+
+namespace fpc::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Stage {
+ public:
+  Stage() : shown_(isatty(STDERR_FILENO) != 0) {}
+  ~Stage() {
+    if (shown_) std::fprintf(stderr, "\r\033[K");
+  }
+  void show(const char* what) const {
+    if (shown_) std::fprintf(stderr, "\r\033[K%s ...", what);
+  }
+
+ private:
+  bool shown_;
+};
+
+std::pair<int, int> parseHorizon(const std::string& text) {
+  int first = 0, last = 0, read = 0;
+  const int count = std::sscanf(text.c_str(), "%d..%d%n", &first, &last, &read);
+  require(count == 2 && read == static_cast<int>(text.size()) && first >= 1 && last >= first &&
+              last <= 100000,
+          "--horizon", "FIRST..LAST with 1 <= FIRST <= LAST <= 100000");
+  return {first, last};
+}
+
+Json jsonOf(const Eigenvalues& values) {
+  Json list = Json::array();
+  for (const auto& value : values) list.push_back({value.real(), value.imag()});
+  return list;
+}
+
+Json jsonOf(const std::vector<SignalInfo>& signals, const Vector& values) {
+  Json object = Json::object();
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    object[signals[i].name] = values[static_cast<Eigen::Index>(i)];
+  return object;
+}
+
+Json pointOf(const StabilitySubject& s) {
+  Json at = {{"outputs", jsonOf(s.model.outputs, s.outputs)},
+             {"inputs", jsonOf(s.model.inputs, s.input)},
+             {"disturbances", jsonOf(s.model.disturbances, s.disturbances)}};
+  return at;
+}
+
+Json equilibriaOf(const StabilitySubject& s) {
+  Json list = Json::array();
+  for (const auto& rest : s.equilibria)
+    list.push_back({{"outputs", jsonOf(s.model.outputs, rest.outputs)},
+                    {"stable", rest.stable()},
+                    {"eigenvalues", jsonOf(rest.values)}});
+  return list;
+}
+
+Json linearOf(const LinearModel& model, LoopLaw law, int longest) {
+  const Transfer transfer = transferOf(model.affine, 0, model.affine.C.rows() - 1);
+  const ClosedLoop loop = closeLoop(model, law);
+  return {{"open_loop", jsonOf(transfer.poles)},
+          {"open_radius", spectralRadius(transfer.poles)},
+          {"relative_degree", transfer.relative_degree},
+          {"zeros", jsonOf(transfer.zeros)},
+          {"applicable", loop.applicable},
+          {"closed_loop", jsonOf(loop.values)},
+          {"closed_radius", loop.applicable ? Json(spectralRadius(loop.values)) : Json(nullptr)},
+          {"smallest_stable_horizon", smallestStableHorizon(model, law, longest)}};
+}
+
+Json overHorizon(const LinearModel& model, LoopLaw law, std::pair<int, int> range) {
+  Json list = Json::array();
+  for (law.coincidence_steps = range.first; law.coincidence_steps <= range.second;
+       ++law.coincidence_steps) {
+    const ClosedLoop loop = closeLoop(model, law);
+    Json row = {{"coincidence_steps", law.coincidence_steps}, {"applicable", loop.applicable}};
+    if (loop.applicable) {
+      row["radius"] = spectralRadius(loop.values);
+      row["eigenvalues"] = jsonOf(loop.values);
+    }
+    list.push_back(row);
+  }
+  return list;
+}
+
+/// Distance of a combination of rules from the point: how little its rules fire there.
+std::vector<std::size_t> nearestFirst(const StabilitySubject& s,
+                                      const std::vector<RuleChoice>& choices) {
+  LocalModel local(s.model);
+  Vector rest(local.stateSize());
+  local.restState(s.outputs, s.input, s.disturbances, rest);
+  local.blend(rest, s.disturbances);
+  const auto weight = [&](std::size_t c) {
+    double product = 1.0;
+    for (std::size_t i = 0; i < choices[c].size(); ++i)
+      product *= local.firing()[i].weights[static_cast<Eigen::Index>(choices[c][i])];
+    return product;
+  };
+  std::vector<std::size_t> order(choices.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
+  return order;
+}
+
+const char* word(LyapunovStatus status) {
+  switch (status) {
+    case LyapunovStatus::kFound:
+      return "found";
+    case LyapunovStatus::kNone:
+      return "none";
+    case LyapunovStatus::kNoSolver:
+      return "csdp not installed";
+    default:
+      return "solver failed";
+  }
+}
+
+Json certificateOf(const StabilitySubject& s, const std::vector<RuleChoice>& choices) {
+  std::vector<Matrix> maps;
+  std::vector<RuleChoice> usable;
+  for (const std::size_t c : nearestFirst(s, choices)) {
+    const ClosedLoop loop = closeLoop(ruleModel(s.model, choices[c], s.disturbances), s.law);
+    if (!loop.applicable) continue;
+    maps.push_back(loop.A);
+    usable.push_back(choices[c]);
+  }
+  Json json = {{"of", choices.size()}, {"applicable", maps.size()}};
+  if (maps.empty()) {
+    json["status"] = "none";
+    return json;
+  }
+  const CommonLyapunov whole = commonLyapunov(maps);
+  json["status"] = word(whole.status);
+  if (whole.ok()) json["decay"] = whole.decay;
+  if (whole.ok() || whole.status == LyapunovStatus::kNoSolver) return json;
+  std::vector<std::size_t> order(maps.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const CertifiedRegion region = largestRegion(maps, order);
+  Json members = Json::array();
+  for (const std::size_t i : region.members) members.push_back(text(usable[i]));
+  json["region"] = {{"rules", members},
+                    {"chosen", "by firing weight at the point, kept while a common P remains"},
+                    {"status", word(region.certificate.status)}};
+  if (region.certificate.ok()) json["region"]["decay"] = region.certificate.decay;
+  return json;
+}
+
+Json branchesOf(const StabilitySubject& s) {
+  const PlantContinuation set = plantContinuation(s.plant, 0, s.sample_time_s, -1.0, -1.0);
+  const auto& states = s.plant->description().states;
+  const auto stateOf = [&](const Vector& x) {
+    Json object = Json::object();
+    for (std::size_t i = 0; i < states.size(); ++i)
+      object[states[i].name] = x[static_cast<Eigen::Index>(i)];
+    return object;
+  };
+  Json list = Json::array();
+  for (const auto& branch : continueBranches(set.problem, set.params)) {
+    Json points = Json::array(), special = Json::array();
+    for (const auto& p : branch.points)
+      points.push_back(
+          {{"input", p.parameter}, {"state", stateOf(p.state)}, {"unstable", p.unstable}});
+    for (const auto& p : branch.special) {
+      special.push_back(
+          {{"kind", name(p.kind)}, {"input", p.parameter}, {"state", stateOf(p.state)}});
+      if (p.turning_state >= 0)
+        special.back()["of"] = states[static_cast<std::size_t>(p.turning_state)].name;
+    }
+    list.push_back({{"closed", branch.closed}, {"special", special}, {"points", points}});
+  }
+  return {{"input", s.plant->description().inputs[0].name},
+          {"input_unit", s.plant->description().inputs[0].unit},
+          {"output", s.plant->description().outputs.back()},
+          {"map", set.problem.map},
+          {"branches", list}};
+}
+
+Json adviceOf(const LinearModel& model, const LoopLaw& law, const StabilityArguments& a) {
+  require(a.noise_gain > 0.0 && a.settling > 0, "--noise-gain, --settling", "both, numbers > 0");
+  const HorizonAdvice advice = adviseHorizon(model, law, {a.noise_gain, a.settling});
+  return {{"found", advice.found},
+          {"coincidence_steps", advice.coincidence_steps},
+          {"reference_pole", advice.reference_pole},
+          {"noise_gain", advice.figures.noise_gain},
+          {"reasons", advice.reasons}};
+}
+
+Json reportOf(const StabilitySubject& s, const StabilityArguments& a) {
+  const auto range = parseHorizon(a.horizon);
+  const Stage stage;
+  Json json = {{"name", s.name}};
+  if (s.has_model) {
+    stage.show("rules");
+    json["model"] = s.model.name;
+    json["law"] = {{"published", s.law.published}, {"coincidence_steps", s.law.coincidence_steps}};
+    json["at"] = pointOf(s);
+    json["equilibria"] = equilibriaOf(s);
+    const LinearModel blended = blendedModel(s.model, s.outputs, s.input, s.disturbances);
+    json["blended"] = linearOf(blended, s.law, range.second);
+    const auto choices = ruleChoices(s.model);
+    json["rules"] = Json::array();
+    for (const auto& choice : choices) {
+      json["rules"].push_back({{"rules", text(choice)}});
+      json["rules"].back().update(
+          linearOf(ruleModel(s.model, choice, s.disturbances), s.law, range.second));
+    }
+    stage.show("horizons");
+    json["horizon"] = overHorizon(blended, s.law, range);
+    stage.show("certificate");
+    json["certificate"] = certificateOf(s, choices);
+    if (a.noise_gain != 0.0 || a.settling != 0) json["advice"] = adviceOf(blended, s.law, a);
+  }
+  stage.show("steady states");
+  if (s.plant) json["steady_states"] = branchesOf(s);
+  return json;
+}
+
+}  // namespace
+
+int stability(const StabilityArguments& arguments) {
+  const Json report = reportOf(readSubject(arguments.name, arguments.at), arguments);
+  std::cout << (arguments.json ? report.dump(2) + "\n" : stabilityTable(report));
+  if (arguments.out.empty()) return 0;
+  std::error_code error;
+  fs::create_directories(arguments.out, error);
+  std::ofstream file(fs::path(arguments.out) / "stability.json");
+  file << report.dump(1) << "\n";
+  require(static_cast<bool>(file), arguments.out, "a folder that can be written");
+  file.close();
+  if (arguments.no_plot) return 0;
+  const PlotResult plot = drawStability(arguments.out);
+  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
+  return 0;
+}
+
+}  // namespace fpc::tool

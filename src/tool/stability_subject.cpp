@@ -1,0 +1,120 @@
+#include "tool/stability_subject.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <sstream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/undelayed.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+#include "tool/commands.hpp"
+
+namespace fpc::tool {
+namespace {
+
+std::map<std::string, double> parsePoint(const std::string& at) {
+  std::map<std::string, double> values;
+  std::stringstream parts(at);
+  for (std::string part; std::getline(parts, part, ',');) {
+    const auto equal = part.find('=');
+    require(equal != std::string::npos, "--at", "NAME=VALUE,..., not \"" + part + "\"");
+    try {
+      values[part.substr(0, equal)] = std::stod(part.substr(equal + 1));
+    } catch (const std::exception&) {
+      throw InputError("--at: expected a number after " + part.substr(0, equal + 1));
+    }
+  }
+  return values;
+}
+
+bool isLoop(const std::string& name) {
+  const auto names = loopNames();
+  if (std::find(names.begin(), names.end(), name) != names.end()) return true;
+  if (std::filesystem::path(name).parent_path().filename() == "loop") return true;
+  return !std::filesystem::is_regular_file(findModel(name));  // readLoop() says what is missing
+}
+
+double nominalOf(const StabilitySubject& subject, SignalKind kind, int index) {
+  const std::string& name = subject.model.signals(kind)[static_cast<std::size_t>(index)].name;
+  if (subject.plant)
+    for (const auto* list : {&subject.plant->description().states,
+                             &subject.plant->description().inputs,
+                             &subject.plant->description().disturbances})
+      for (const auto& quantity : *list)
+        if (quantity.name == name) return quantity.nominal;
+  return usualValue(subject.model, kind, index);
+}
+
+Vector pointOf(const StabilitySubject& subject, SignalKind kind,
+               std::map<std::string, double>& given, bool& chosen) {
+  const auto& signals = subject.model.signals(kind);
+  Vector values(static_cast<Eigen::Index>(signals.size()));
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    double value = nominalOf(subject, kind, static_cast<int>(i));
+    const auto found = given.find(signals[i].name);
+    if (found != given.end()) {
+      value = found->second;
+      given.erase(found);
+      chosen = true;
+    }
+    values[static_cast<Eigen::Index>(i)] = value;
+  }
+  return values;
+}
+
+void settleOn(StabilitySubject& subject) {
+  subject.equilibria = fuzzyEquilibria(subject.model, subject.input, subject.disturbances);
+  double nearest = std::numeric_limits<double>::infinity();
+  const Vector wanted = subject.outputs;
+  for (const auto& rest : subject.equilibria) {
+    const double distance = (rest.outputs - wanted).norm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    subject.outputs = rest.outputs;
+  }
+}
+
+void readLoopInto(StabilitySubject& subject, const std::string& name) {
+  const LoopFile loop = readLoop(name);
+  subject.name = loop.name;
+  subject.has_model = loop.has_model;
+  subject.sample_time_s = loop.plant_info.sample_time_s;
+  if (loop.has_model) subject.model = withoutDelay(loop.model, loop.fmbpc.delay_steps);
+  subject.law.coincidence_steps = loop.fmbpc.coincidence_steps;
+  subject.law.published = loop.fmbpc.law != "general";
+  subject.law.weight_output = loop.fmbpc.weight_output;
+  subject.law.weight_move = loop.fmbpc.weight_move;
+  if (!loop.external_plant)
+    subject.plant = makePlant(loop.simulation.plant, loop.simulation.parameters);
+}
+
+}  // namespace
+
+StabilitySubject readSubject(const std::string& name, const std::string& at) {
+  StabilitySubject subject;
+  if (isLoop(name)) {
+    readLoopInto(subject, name);
+  } else {
+    subject.model = readModel(findModel(name));
+    subject.name = subject.model.name;
+    subject.has_model = true;
+    subject.sample_time_s = subject.model.sample_time_s;
+  }
+  auto given = parsePoint(at);
+  if (subject.has_model) {
+    bool chosen = false, outputs = false;
+    subject.input = pointOf(subject, SignalKind::kInput, given, chosen);
+    subject.disturbances = pointOf(subject, SignalKind::kDisturbance, given, chosen);
+    subject.outputs = pointOf(subject, SignalKind::kOutput, given, outputs);
+    settleOn(subject);
+  }
+  require(given.empty() || !subject.has_model,
+          "--at " + (given.empty() ? "" : given.begin()->first), "a signal of the model");
+  return subject;
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,29 @@
+// What `fmbpc stability` looks at: a model, the law around it, the plant behind it if there is one,
+// and a point.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "fmbpc/analysis/closed_loop.hpp"
+#include "fmbpc/analysis/fuzzy_equilibrium.hpp"
+#include "fmbpc/plant/plant.hpp"
+
+namespace fpc::tool {
+
+struct StabilitySubject {
+  std::string name;
+  bool has_model{false};
+  TsModel model;
+  LoopLaw law;
+  std::shared_ptr<const Plant> plant;  ///< none for a model alone
+  double sample_time_s{};
+  Vector outputs, input, disturbances;           ///< the point, in the model's order
+  std::vector<FuzzyEquilibrium> equilibria;      ///< of the model for that input
+};
+
+/// Loops go before models of the same name. `at` is "name=value,...": outputs given choose the
+/// nearest equilibrium. @throws InputError naming what was not understood.
+StabilitySubject readSubject(const std::string& name, const std::string& at);
+
+}  // namespace fpc::tool
