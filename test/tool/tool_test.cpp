@@ -80,5 +80,40 @@ TEST_F(Tool, ShippedInfluentIsWhatItsScriptPrints) {
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 
+TEST_F(Tool, StabilityJsonHoldsRulesHorizonsCertificateAndSteadyStates) {
+  const Outcome outcome = tool("stability cstr_tracking --json --horizon 1..12");
+  ASSERT_EQ(outcome.code, 0);
+  const auto json = nlohmann::json::parse(outcome.printed);
+  EXPECT_EQ(json["rules"].size(), 6U);
+  EXPECT_EQ(json["horizon"].size(), 12U);
+  EXPECT_TRUE(json["certificate"].contains("status"));
+  int folds = 0;
+  for (const auto& point : json["steady_states"]["branches"][0]["special"])
+    folds += point["kind"] == "fold";
+  EXPECT_EQ(folds, 2);
+  EXPECT_EQ(tool("stability fm_2 --horizon 1..3 --json").code, 0);
+  for (const char* wrong : {"stability nothing", "stability fm_1 --horizon 3",
+                            "stability fm_1 --at x", "stability fm_1 --at height=3"})
+    EXPECT_EQ(tool(wrong).code, 1) << wrong;
+}
+
+TEST_F(Tool, ReproduceJsonIsAListOfRowsWithAVerdictEach) {
+  const auto json =
+      nlohmann::json::parse(tool("reproduce asp_table_8 cstr_steady_states --json").printed);
+  ASSERT_TRUE(json.is_array());
+  EXPECT_EQ(json.size(), 18U);
+  for (const auto& row : json) {
+    for (const char* key : {"name", "source", "quantity", "paper", "here", "unit", "note"})
+      EXPECT_TRUE(row.contains(key)) << key;
+    const std::string verdict = row["verdict"];
+    EXPECT_TRUE(verdict == "reproduced" || verdict == "close" || verdict == "not_reproducible" ||
+                verdict == "better");
+  }
+  EXPECT_EQ(json[0]["verdict"], "not_reproducible");  // the sign in H = 6
+  EXPECT_NEAR(json[0]["here"].get<double>(), -0.868240, 1e-6);
+  EXPECT_GE(nlohmann::json::parse(tool("reproduce --list --json").printed).size(), 20U);
+  EXPECT_EQ(tool("reproduce nothing").code, 1);
+}
+
 }  // namespace
 }  // namespace fpc

@@ -76,7 +76,7 @@ std::vector<ReproduceRow> table11(const std::string& loop, const double (&paper)
     rows.back().verdict = Verdict::kBetter;
   rows.push_back(state("ISE of x saved against PI on x",
                        100.0 * (1.0 - law.outputs[1].ise / pi_x.outputs[1].ise), "%",
-                       Verdict::kReproduced, "the honest rival; not in the paper"));
+                       Verdict::kBetter, "not in the paper"));
   return rows;
 }
 
@@ -86,18 +86,22 @@ std::vector<ReproduceRow> case2021(const std::string& loop) {
   std::vector<ReproduceRow> rows;
   for (const char* rival : {"_pi_s", "_pi_x"}) {
     const Summary pi = runOnce(loop + rival);
-    const double ratio = law.outputs[1].ise / pi.outputs[1].ise;
-    rows.push_back(state(std::string("ISE of x, FMBPC against ") + (loop + rival), ratio, "-",
-                         ratio < 1.0 ? Verdict::kReproduced : Verdict::kNotReproducible,
-                         "the figures show FMBPC nearer to the setpoint; no number is printed"));
-    rows.push_back(state(std::string("ISE of s, FMBPC against ") + (loop + rival),
-                         law.outputs[0].ise / pi.outputs[0].ise, "-", Verdict::kReproduced,
-                         "alike, as the figures show"));
-    const double s = rows.back().here;
-    if (s < 0.8 || s > 1.15) {
-      rows.back().verdict = Verdict::kNotReproducible;
-      rows.back().note = kUnpublished;
+    const double x = law.outputs[1].ise / pi.outputs[1].ise;
+    const double ratio_s = law.outputs[0].ise / pi.outputs[0].ise;
+    const std::string against = std::string(", FMBPC against ") + (loop + rival);
+    const Verdict below = x < 1.0 ? Verdict::kReproduced : Verdict::kNotReproducible;
+    if (loop == "asp_case3") {
+      rows.push_back(state("ISE of x" + against, x, "-", x < 1.0 ? Verdict::kBetter : below,
+                           "the paper runs no PI in case 3"));
+      continue;
     }
+    rows.push_back(state("ISE of x" + against, x, "-", below,
+                         "the figures show FMBPC nearer to the setpoint; no number is printed"));
+    const bool lower = loop == "asp_case2" && std::string(rival) == "_pi_s";
+    const bool agrees = lower ? ratio_s > 1.0 : ratio_s > 0.8 && ratio_s < 1.15;
+    rows.push_back(state("ISE of s" + against, ratio_s, "-",
+                         agrees ? Verdict::kReproduced : Verdict::kNotReproducible,
+                         lower ? "figure 9: the PI on s holds s lower" : "figures: alike"));
   }
   return rows;
 }
