@@ -11,6 +11,7 @@ import os
 import sys
 
 import matplotlib
+import matplotlib.colors
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
@@ -26,7 +27,7 @@ def draw_root_locus(report, folder):
     x = [v[0] for r in rows for v in r["eigenvalues"]]
     y = [v[1] for r in rows for v in r["eigenvalues"]]
     horizon = [r["coincidence_steps"] for r in rows for _ in r["eigenvalues"]]
-    points = plane.scatter(x, y, c=horizon, s=14, cmap="viridis")
+    points = plane.scatter(x, y, c=horizon, s=14, cmap="viridis", norm=matplotlib.colors.LogNorm())
     figure.colorbar(points, ax=plane, label="coincidence horizon H")
     plane.add_patch(plt.Circle((0, 0), 1, fill=False, color="0.5"))
     open_loop = report["blended"]["open_loop"]
