@@ -84,6 +84,8 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
   subject.has_model = loop.has_model;
   subject.sample_time_s = loop.plant_info.sample_time_s;
   if (loop.has_model) subject.model = withoutDelay(loop.model, loop.fmbpc.delay_steps);
+  require(loop.fmbpc.law == "published" || loop.fmbpc.law == "general", name + ": controller.law",
+          "published or general: no other law is linear around its model");
   subject.law.coincidence_steps = loop.fmbpc.coincidence_steps;
   subject.law.published = loop.fmbpc.law != "general";
   subject.law.weight_output = loop.fmbpc.weight_output;
