@@ -69,7 +69,7 @@ class ControllerSession {
   void manual(bool on);  ///< acts from the next sample, bumpless both ways
   /// Acts from the next sample; until it is called, manual keeps the last applied input.
   /// Clipped to the bounds at once and to the move limit sample by sample.
-  /// @throws InputError on size or NaN, and in auto.
+  /// @throws InputError on size or NaN, in auto, and for an input that the controller refuses.
   void manualInput(VectorRef input);
   bool isManual() const { return manual_; }
 
