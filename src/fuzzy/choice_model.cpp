@@ -15,23 +15,6 @@ using Eigen::Index;
 // Below this the degrees have lost their relations to underflow: the log domain decides.
 constexpr double kFaintest = 1e-100;
 
-double rampDown(double beyond, double width) {
-  if (beyond <= 0.0) return 1.0;
-  return beyond < width ? 1.0 - beyond / width : 0.0;
-}
-
-double degree(const Membership& set, double z) {
-  const auto& p = set.parameters;
-  switch (set.shape) {
-    case MembershipShape::kTriangular:
-      return z < p[1] ? rampDown(p[1] - z, p[1] - p[0]) : rampDown(z - p[1], p[2] - p[1]);
-    case MembershipShape::kTrapezoidal:
-      return z < p[1] ? rampDown(p[1] - z, p[1] - p[0]) : rampDown(z - p[2], p[3] - p[2]);
-    default:
-      return std::exp(set.logDegree(z));
-  }
-}
-
 /// `lags` values, newest first, from row `first` on: all older by one, `newest` in front.
 void push(Eigen::Ref<Vector> state, Index first, int lags, double newest) {
   for (Index row = first + lags - 1; row > first; --row) state[row] = state[row - 1];
@@ -43,6 +26,28 @@ bool isPresentInput(const Regressor& variable) {
 }
 
 }  // namespace
+
+// A zero width is an infinite slope: a crisp edge.
+double ChoiceModel::Set::degree(double z) const {
+  if (!straight) return std::exp(membership.logDegree(z));
+  if (z < left) return std::max(1.0 - (left - z) * left_slope, 0.0);
+  if (z > right) return std::max(1.0 - (z - right) * right_slope, 0.0);
+  return 1.0;
+}
+
+ChoiceModel::Set ChoiceModel::makeSet(Index source, const Membership& m) {
+  Set set{source, m, false, 0.0, 0.0, 0.0, 0.0};
+  const auto& p = m.parameters;
+  set.straight =
+      m.shape == MembershipShape::kTriangular || m.shape == MembershipShape::kTrapezoidal;
+  if (!set.straight) return set;
+  const std::size_t right = p.size() - 2;
+  set.left = p[1];
+  set.right = p[right];
+  set.left_slope = 1.0 / (p[1] - p[0]);
+  set.right_slope = 1.0 / (p[right + 1] - p[right]);
+  return set;
+}
 
 ChoiceModel::ChoiceModel(TsModel model, Matrix choices)
     : model_(std::move(model)), choices_(std::move(choices)) {
@@ -99,9 +104,10 @@ ChoiceModel::CompiledRule ChoiceModel::compileRule(const OutputModel& output, co
   for (std::size_t i = 0; i < output.antecedents.size(); ++i) {
     const Regressor& variable = output.antecedents[i];
     if (isPresentInput(variable))
-      compiled.degree *= degree(rule.antecedents[i], choices_(variable.index, choice));
+      compiled.degree *=
+          makeSet(0, rule.antecedents[i]).degree(choices_(variable.index, choice));
     else
-      compiled.sets.push_back({sourceOf(variable), rule.antecedents[i]});
+      compiled.sets.push_back(makeSet(sourceOf(variable), rule.antecedents[i]));
   }
   std::vector<double> coefficients;
   for (std::size_t i = 0; i < output.regressors.size(); ++i) {
@@ -186,7 +192,7 @@ double ChoiceModel::predict(std::size_t output, int choice, bool& fired) {
   for (const CompiledRule& rule : submodel.rules[at(choice)]) {
     double weight = rule.degree;
     for (const Set& set : rule.sets) {
-      weight *= degree(set.membership, source_[set.source]);
+      weight *= set.degree(source_[set.source]);
       if (weight == 0.0) break;
     }
     if (weight == 0.0) continue;

@@ -38,9 +38,13 @@ class ChoiceModel {
   bool step(int choice, VectorRef disturbances, Eigen::Ref<Vector> state);
 
  private:
+  /// A set on one source; triangles and trapezes by their shoulders and slopes.
   struct Set {
     Eigen::Index source;
     Membership membership;
+    bool straight;
+    double left, right, left_slope, right_slope;
+    double degree(double z) const;
   };
   struct CompiledRule {
     double degree;           // of the antecedents that the choice settles
@@ -54,6 +58,7 @@ class ChoiceModel {
   };
 
   static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+  static Set makeSet(Eigen::Index source, const Membership& membership);
   void layOut();
   void compile(std::size_t output);
   CompiledRule compileRule(const OutputModel& output, const Rule& rule, int choice) const;
