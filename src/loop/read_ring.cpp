@@ -85,10 +85,11 @@ void readLine(YamlSection& item, const YamlSection& tf, LoopFile& loop, const Lo
   loop.tf.sample_lines.push_back(std::move(line));
 }
 
-ReportWindow readWindow(YamlSection& item) {
+ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outputs) {
   ReportWindow window;
   need(item, "name", "a name");
   item.text("name", window.name);
+  item.oneOf("output", window.output, outputs);
   window.to_h = -1.0;
   readHours(item, "from", window.from_h);
   readHours(item, "to", window.to_h);
@@ -146,7 +147,8 @@ void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.byName("output_lower", lower, names.outputs);
   section.byName("output_upper", upper, names.outputs);
   if ((lower.array() > upper.array()).any()) section.fail("output_upper", "limits >= output_lower");
-  for (auto& item : section.list("windows")) loop.report.windows.push_back(readWindow(item));
+  for (auto& item : section.list("windows"))
+    loop.report.windows.push_back(readWindow(item, names.outputs));
   readConsumption(section, names, loop.report.consumption);
   loop.report.output_lower = toStd(lower);
   loop.report.output_upper = toStd(upper);

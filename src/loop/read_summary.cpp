@@ -25,7 +25,7 @@ void readOutputs(const Json& json, Summary& summary) {
          numberOf(y, "rmse"), numberOf(y, "ise_reference")});
     if (!y.contains("windows")) continue;
     for (const Json& w : y.at("windows"))
-      summary.windows.push_back({{w.at("name"), w.at("from_h"), w.at("to_h")},
+      summary.windows.push_back({{w.at("name"), name, w.at("from_h"), w.at("to_h")},
                                  name,
                                  numberOf(w, "rmse"),
                                  numberOf(w, "mean_error"),

@@ -164,7 +164,8 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
     summary.output_names.push_back(output.name);
     summary.outputs.push_back(indicesOfOutput(record, i, sample_time_h));
     for (const auto& window : loop.report.windows)
-      summary.windows.push_back(indicesOfWindow(record, i, window, sample_time_h));
+      if (window.output.empty() || window.output == output.name)
+        summary.windows.push_back(indicesOfWindow(record, i, window, sample_time_h));
   }
   for (const auto& input : loop.plant_info.inputs) {
     summary.inputs.push_back(

@@ -55,6 +55,7 @@ struct DisturbanceParams {
 /// A stretch of the run that is judged by itself, both ends included.
 struct ReportWindow {
   std::string name;
+  std::string output;  ///< empty: all
   double from_h{}, to_h{};
 };
 
