@@ -187,7 +187,7 @@ void SetpointSource::scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) co
   const SetpointStep& entry = params_.schedule[index];
   value = entry.value;
   const double late_h = clock_.hoursAt(at) - entry.time_h;
-  if (late_h >= entry.ramp_h) return;
+  if (entry.ramp_h == 0.0 || late_h >= entry.ramp_h) return;
   const Vector& before = index == 0 ? params_.initial : params_.schedule[index - 1].value;
   value = before + std::max(late_h, 0.0) / entry.ramp_h * (entry.value - before);
 }
