@@ -5,6 +5,11 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
+namespace {
+
+constexpr double kMoved = 1e-9;
+
+}  // namespace
 
 OutputIndices outputIndices(VectorRef y, VectorRef setpoint, VectorRef reference,
                             double sample_time_h) {
@@ -27,13 +32,17 @@ OutputIndices outputIndices(VectorRef y, VectorRef setpoint, VectorRef reference
 }
 
 InputIndices inputIndices(VectorRef applied, double before) {
-  InputIndices result{before, before, 0.0};
+  InputIndices result;
+  result.min = result.max = before;
   if (applied.size() == 0) return result;
   result.min = applied.minCoeff<Eigen::PropagateNaN>();
   result.max = applied.maxCoeff<Eigen::PropagateNaN>();
-  for (Eigen::Index k = 0; k < applied.size(); ++k)
-    result.mean_abs_move += std::abs(applied[k] - (k == 0 ? before : applied[k - 1]));
-  result.mean_abs_move /= static_cast<double>(applied.size());
+  for (Eigen::Index k = 0; k < applied.size(); ++k) {
+    const double move = std::abs(applied[k] - (k == 0 ? before : applied[k - 1]));
+    result.travel += move;
+    result.switches += move > kMoved;
+  }
+  result.mean_abs_move = result.travel / static_cast<double>(applied.size());
   return result;
 }
 

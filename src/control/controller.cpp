@@ -4,6 +4,10 @@ namespace fpc {
 
 void Controller::setModel(const TsModel& /*model*/) {}
 
+bool Controller::mayBeSent(VectorRef /*input*/) const { return true; }
+
+void Controller::makeSendable(Eigen::Ref<Vector> /*input*/) const {}
+
 const std::vector<std::pair<std::string, double>>& Controller::signals() const {
   static const std::vector<std::pair<std::string, double>> none;
   return none;

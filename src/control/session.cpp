@@ -114,6 +114,7 @@ void ControllerSession::hold(const Measurement& m, const char* remark) {
   Vector& input = answer_.base.input;
   input = m.input_applied.allFinite() ? m.input_applied : last_input_;
   limits_.clip(input, input);
+  controller_->makeSendable(input);
   answer_.base.source = output_.source = ActionSource::kHeld;
   output_.ok = output_.predictive = false;
   output_.remark = remark;
@@ -124,6 +125,7 @@ void ControllerSession::sendManual(const Measurement& m) {
   manual_given_ = true;
   answer_.base.input = manual_input_;
   limits_.clip(answer_.base.input, m.input_applied);
+  controller_->makeSendable(answer_.base.input);
   answer_.base.source = output_.source = ActionSource::kManual;
   if (controller_->followsSetpoint()) answer_.tracking.reference = m.outputs;
   output_.ok = true;
@@ -149,6 +151,7 @@ void ControllerSession::runLaw(const Measurement& m) {
     return hold(m, "the law gave no finite input: input held");
   answer_.base.input = output_.input;
   limits_.clip(answer_.base.input, m.input_applied);
+  controller_->makeSendable(answer_.base.input);
   answer_.base.source = output_.source;
   answer_.has_prediction = output_.predictive && !m.final;
   if (!answer_.has_prediction) return;
@@ -173,6 +176,7 @@ void ControllerSession::manualInput(VectorRef input) {
   require(input.size() == last_input_.size(), "manual input",
           std::to_string(last_input_.size()) + " numbers");
   require(input.allFinite(), "manual input", "finite numbers");
+  require(controller_->mayBeSent(input), "manual input", "an input that the controller may send");
   manual_input_ = input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
   manual_given_ = true;
 }

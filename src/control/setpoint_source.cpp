@@ -44,10 +44,13 @@ void SetpointParams::validate(Eigen::Index n_y) const {
     const std::string key = "setpoint.schedule[" + std::to_string(i) + "].";
     require(std::isfinite(schedule[i].time_h) && schedule[i].time_h >= 0.0, key + "time_h",
             "a time >= 0 h");
-    require(schedule[i].time_h >= previous, key + "time_h", "a time not before the previous one");
+    require(schedule[i].time_h >= previous, key + "time_h",
+            "a time not before the previous one and the end of its ramp");
     require(schedule[i].value.size() == n_y, key + "value", count);
     require(!schedule[i].value.array().isInf().any(), key + "value", "finite numbers");
-    previous = schedule[i].time_h;
+    require(std::isfinite(schedule[i].ramp_h) && schedule[i].ramp_h >= 0.0, key + "ramp_h",
+            "a time >= 0 h");
+    previous = schedule[i].time_h + schedule[i].ramp_h * (1.0 - 1e-12);
   }
   validateOptional(lower, n_y, "setpoint.lower");
   validateOptional(upper, n_y, "setpoint.upper");
@@ -103,8 +106,8 @@ void SetpointSource::restart() {
   waiting_.clear();
   effects_.clear();
   playParams();
-  next_step_ = 0;
-  started_ = false;
+  next_step_ = shift_ = 0;
+  started_ = hold_wanted_ = held_ = false;
   fresh_ = true;
 }
 
@@ -141,6 +144,7 @@ void SetpointSource::acceptWaiting(std::uint32_t step) {
 
 const Vector& SetpointSource::advance(std::uint32_t step) {
   if (!started_) acceptWaiting(step);
+  settleHold(step);
   effects_.clear();
   for (const Command& command : commands_.advance(step))
     effects_.push_back({{clock_.timeAt(step) + clock_shift_ns_, 0, step}, command});
@@ -158,12 +162,34 @@ const Vector& SetpointSource::advance(std::uint32_t step) {
   return present_;
 }
 
-void SetpointSource::scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const {
-  const auto after = std::upper_bound(schedule_steps_.begin(), schedule_steps_.end(), step);
-  if (after == schedule_steps_.begin())
-    value = params_.initial;
+void SetpointSource::settleHold(std::uint32_t step) {
+  if (hold_wanted_ == held_) return;
+  if (hold_wanted_)
+    held_at_ = recipeStep(step);
   else
-    value = params_.schedule[static_cast<std::size_t>(after - schedule_steps_.begin()) - 1].value;
+    shift_ = step - held_at_;
+  held_ = hold_wanted_;
+}
+
+std::uint32_t SetpointSource::recipeStep(std::uint32_t step) const {
+  if (held_) return held_at_;
+  return step >= shift_ ? step - shift_ : 0;
+}
+
+void SetpointSource::scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const {
+  const std::uint32_t at = recipeStep(step);
+  const auto after = std::upper_bound(schedule_steps_.begin(), schedule_steps_.end(), at);
+  if (after == schedule_steps_.begin()) {
+    value = params_.initial;
+    return;
+  }
+  const auto index = static_cast<std::size_t>(after - schedule_steps_.begin()) - 1;
+  const SetpointStep& entry = params_.schedule[index];
+  value = entry.value;
+  const double late_h = clock_.hoursAt(at) - entry.time_h;
+  if (entry.ramp_h == 0.0 || late_h >= entry.ramp_h) return;
+  const Vector& before = index == 0 ? params_.initial : params_.schedule[index - 1].value;
+  value = before + std::max(late_h, 0.0) / entry.ramp_h * (entry.value - before);
 }
 
 void SetpointSource::scheduled(std::uint32_t step, Eigen::Ref<Vector> value) const {

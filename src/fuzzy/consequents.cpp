@@ -11,6 +11,7 @@
 #include "fmbpc/fuzzy/partition.hpp"
 #include "fmbpc/optim/least_squares.hpp"
 #include "fmbpc/optim/rls.hpp"
+#include "fuzzy/rule_neighbour.hpp"
 
 namespace fpc {
 namespace {
@@ -85,7 +86,9 @@ void fitLocal(ScaledRows& rows, const Matrix& weights, const ConsequentParams& p
     LeastSquares squares(rows.unknowns());
     for (Index k = 0; k < weights.cols(); ++k) {
       const double weight = weights(static_cast<Index>(i), k);
-      if (weight >= kFaintestWeight) squares.add(rows.row(k), rows.rest(k), weight);
+      if (weight < std::max(kFaintestWeight, params.weight_threshold)) continue;
+      squares.add(rows.row(k), rows.rest(k),
+                  params.weight_power == 1.0 ? weight : std::pow(weight, params.weight_power));
     }
     const auto solution = squares.solve(params.ridge);
     fits[i].condition = solution.condition;
@@ -143,9 +146,20 @@ std::string scarcity(const RuleFit& fit, Index unknowns, const ConsequentParams&
   return "";
 }
 
+/// The nearest rules that were fitted stand in; without any the linear model stays.
+void borrowFromNeighbours(std::vector<RuleFit>& fits, OutputModel& model) {
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    if (fits[i].status != RuleStatus::kBorrowed) continue;
+    fits[i].lender = nearestFitted(model, fits, i);
+    if (fits[i].lender < 0) continue;
+    const Rule& lender = model.rules[static_cast<std::size_t>(fits[i].lender)];
+    model.rules[i].coefficients = lender.coefficients;
+    model.rules[i].offset = lender.offset;
+  }
+}
+
 void settleScarce(std::vector<RuleFit>& fits, const Rule& linear, Index unknowns,
                   const ConsequentParams& params, OutputModel& model) {
-  std::vector<Rule> kept;
   for (std::size_t i = 0; i < fits.size(); ++i) {
     Rule& rule = model.rules[i];
     fits[i].remark = scarcity(fits[i], unknowns, params);
@@ -160,8 +174,11 @@ void settleScarce(std::vector<RuleFit>& fits, const Rule& linear, Index unknowns
       rule.offset = linear.offset;
     }
     rule.data_count = static_cast<std::uint64_t>(std::llround(fits[i].evidence));
-    if (fits[i].status != RuleStatus::kDropped) kept.push_back(rule);
   }
+  if (params.scarce == ScarceRule::kNeighbour) borrowFromNeighbours(fits, model);
+  std::vector<Rule> kept;
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    if (fits[i].status != RuleStatus::kDropped) kept.push_back(model.rules[i]);
   require(!kept.empty(), "rules", "data for at least one; all were dropped");
   model.rules = std::move(kept);
 }

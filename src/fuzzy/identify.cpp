@@ -68,7 +68,10 @@ void addRemarks(const OutputIdentification& found, std::vector<std::string>& rem
     if (fit.status == RuleStatus::kFitted) continue;
     remarks.push_back(
         found.output + " rule " + std::to_string(i + 1) + ": " + fit.remark +
-        (fit.status == RuleStatus::kBorrowed ? "; the linear model stands in" : "; dropped"));
+        (fit.status == RuleStatus::kDropped ? "; dropped"
+         : fit.lender < 0                   ? "; the linear model stands in"
+                                            : "; rule " + std::to_string(fit.lender + 1) +
+                                                  " stands in"));
   }
 }
 

@@ -36,7 +36,7 @@ void checkConsequents(const ConsequentParams& c) {
 }
 
 void checkSets(const std::string& where, const OutputStructure& s) {
-  require(s.sets.size() == s.antecedents.size() && !s.sets.empty(), where + ".sets",
+  require(s.sets.size() == s.antecedents.size(), where + ".sets",
           "a list of sets per antecedent");
   std::size_t n_rules = 1;
   for (const auto& sets : s.sets) {

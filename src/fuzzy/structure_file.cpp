@@ -171,9 +171,11 @@ void readPartition(YamlSection section, PartitionParams& p) {
 void readConsequents(YamlSection section, ConsequentParams& c) {
   choice(section, "method", c.method, {"local", "global", "recursive"});
   section.number("ridge", c.ridge);
+  section.number("weight_power", c.weight_power, Range::positive());
+  section.number("weight_threshold", c.weight_threshold, {0.0, 1.0});
   section.number("samples_per_coefficient", c.samples_per_coefficient);
   section.number("max_condition", c.max_condition);
-  choice(section, "scarce", c.scarce, {"borrow", "drop", "error"});
+  choice(section, "scarce", c.scarce, {"borrow", "drop", "error", "neighbour"});
   section.number("forgetting", c.forgetting);
   section.integer("free_run_iterations", c.free_run_iterations, 0);
   section.number("one_step_weight", c.one_step_weight, Range::notNegative());

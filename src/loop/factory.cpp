@@ -20,6 +20,8 @@ std::unique_ptr<Controller> makeController(const LoopFile& loop) {
     return std::make_unique<ExcitationController>(loop.excitation, limits,
                                                   loop.simulation.actuator.initial,
                                                   loop.plant_info);
+  if (loop.controller == "hybrid_mpc")
+    return std::make_unique<HybridMpc>(loop.hybrid, limits, loop.plant_info);
   return std::make_unique<FmbpcLaw>(loop.fmbpc, limits, loop.plant_info);
 }
 

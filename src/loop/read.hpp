@@ -39,6 +39,12 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readController(YamlSection& root, LoopFile& loop, const LoopNames& names);
 /// Keys of `controller` with type excitation.
 void readExcitation(YamlSection& section, LoopFile& loop, const LoopNames& names);
+void readHybridMpc(YamlSection& section, LoopFile& loop, const LoopNames& names);
+/// `recipe`: what a batch plant does one after the other, as entries of a schedule.
+std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
+                                     const std::vector<std::string>& outputs);
+/// A time under the key `stem`_s, `stem`_min or `stem`_h, in hours; unchanged if there is none.
+void readHours(YamlSection& section, const std::string& stem, double& hours);
 void readModelSection(YamlSection& root, LoopFile& loop);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);

@@ -29,6 +29,7 @@ SetpointStep readSetpointStep(YamlSection& item, const std::vector<std::string>&
   SetpointStep step;
   need(item, "time_h", "a time >= 0");
   item.number("time_h", step.time_h, {0.0, 1e7});
+  item.number("ramp_h", step.ramp_h, {0.0, 1e7});
   step.value = Vector::Constant(count(outputs), std::nan(""));
   for (Eigen::Index i = 0; i < step.value.size(); ++i)
     item.number(outputs[static_cast<std::size_t>(i)], step.value[i], kFinite);
@@ -182,6 +183,10 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
         params.schedule.end()[-2].time_h > params.schedule.back().time_h)
       item.fail("time_h", "times that do not decrease");
   }
+  const std::vector<SetpointStep> recipe = readRecipe(section, names.outputs);
+  if (!recipe.empty() && !params.schedule.empty())
+    section.fail("recipe", "either schedule or recipe");
+  if (!recipe.empty()) params.schedule = recipe;
   section.byName("lower", params.lower, names.outputs);
   section.byName("upper", params.upper, names.outputs);
   section.byName("rate_per_h", params.rate_per_h, names.outputs, Range{0.0, kInfinite, true});
@@ -210,11 +215,13 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 
 void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("controller");
-  need(section, "type", "one of fmbpc, pi, excitation");
+  need(section, "type", "one of fmbpc, hybrid_mpc, pi, excitation");
   loop.controller = "fmbpc";
-  section.oneOf("type", loop.controller, {"fmbpc", "pi", "excitation"});
+  section.oneOf("type", loop.controller, {"fmbpc", "hybrid_mpc", "pi", "excitation"});
   if (loop.controller == "fmbpc") {
     readFmbpc(section, loop, names);
+  } else if (loop.controller == "hybrid_mpc") {
+    readHybridMpc(section, loop, names);
   } else if (loop.controller == "excitation") {
     readExcitation(section, loop, names);
   } else {

@@ -47,9 +47,10 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
   readIdentify(section, loop);
   section.finish();
   loop.has_model = !loop.model_file.empty();
-  if (loop.controller == "fmbpc" && !loop.has_model && !(loop.has_identify && loop.external_plant))
-    section.fail(
-        "file", "a model file for controller fmbpc (a simulated plant does not start without one)");
+  const bool needs_model = loop.controller == "fmbpc" || loop.controller == "hybrid_mpc";
+  if (needs_model && !loop.has_model && !(loop.has_identify && loop.external_plant))
+    section.fail("file", "a model file for controller " + loop.controller +
+                             " (a simulated plant does not start without one)");
   if (!loop.has_model) return;
   try {
     loop.model = matchToPlant(readModel(loop.model_file), loop.plant_info);

@@ -19,7 +19,8 @@ std::vector<std::string> ringNodes(const LoopFile& loop) {
   const bool open_loop = loop.controller == "excitation";
   std::vector<std::string> nodes{
       "loop_recorder", open_loop ? "excitation_generator" : loop.controller + "_controller"};
-  if (loop.controller == "fmbpc" || loop.has_identify) nodes.emplace_back("fuzzy_identifier");
+  const bool has_law = loop.controller == "fmbpc" || loop.controller == "hybrid_mpc";
+  if (has_law || loop.has_identify) nodes.emplace_back("fuzzy_identifier");
   if (loop.has_clp) nodes.emplace_back("clp_optimizer");
   return nodes;
 }
@@ -84,6 +85,30 @@ void readLine(YamlSection& item, const YamlSection& tf, LoopFile& loop, const Lo
   loop.tf.sample_lines.push_back(std::move(line));
 }
 
+ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outputs) {
+  ReportWindow window;
+  need(item, "name", "a name");
+  item.text("name", window.name);
+  item.oneOf("output", window.output, outputs);
+  window.to_h = -1.0;
+  readHours(item, "from", window.from_h);
+  readHours(item, "to", window.to_h);
+  if (!(window.to_h >= window.from_h)) item.fail("to_h", "a time not before from");
+  item.finish();
+  return window;
+}
+
+void readConsumption(YamlSection& report, const LoopNames& names,
+                     std::vector<Consumption>& consumption) {
+  YamlSection section = report.section("consumption");
+  for (const auto& name : section.keys()) {
+    Consumption entry{name, Vector::Zero(static_cast<Eigen::Index>(names.inputs.size()))};
+    section.byName(name, entry.rate, names.inputs, kFinite);
+    consumption.push_back(std::move(entry));
+  }
+  section.finish();
+}
+
 std::vector<double> toStd(const Vector& v) { return {v.data(), v.data() + v.size()}; }
 
 }  // namespace
@@ -122,6 +147,9 @@ void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.byName("output_lower", lower, names.outputs);
   section.byName("output_upper", upper, names.outputs);
   if ((lower.array() > upper.array()).any()) section.fail("output_upper", "limits >= output_lower");
+  for (auto& item : section.list("windows"))
+    loop.report.windows.push_back(readWindow(item, names.outputs));
+  readConsumption(section, names, loop.report.consumption);
   loop.report.output_lower = toStd(lower);
   loop.report.output_upper = toStd(upper);
   section.finish();

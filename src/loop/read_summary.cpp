@@ -23,13 +23,21 @@ void readOutputs(const Json& json, Summary& summary) {
     summary.outputs.push_back(
         {numberOf(y, "ise"), numberOf(y, "iae"), numberOf(y, "itae"), numberOf(y, "itse"),
          numberOf(y, "rmse"), numberOf(y, "ise_reference")});
+    if (!y.contains("windows")) continue;
+    for (const Json& w : y.at("windows"))
+      summary.windows.push_back({{w.at("name"), name, w.at("from_h"), w.at("to_h")},
+                                 name,
+                                 numberOf(w, "rmse"),
+                                 numberOf(w, "mean_error"),
+                                 w.at("samples")});
   }
 }
 
 void readInputs(const Json& json, Summary& summary) {
   for (const auto& [name, u] : json.items()) {
     summary.input_names.push_back(name);
-    summary.inputs.push_back({u.at("min"), u.at("max"), u.at("mean_abs_move")});
+    summary.inputs.push_back(
+        {u.at("min"), u.at("max"), u.at("mean_abs_move"), u.at("travel"), u.at("switches")});
   }
 }
 

@@ -26,9 +26,17 @@ Json outputsOf(const Summary& summary) {
   Json outputs = Json::object();
   for (std::size_t i = 0; i < summary.outputs.size(); ++i) {
     const OutputIndices& y = summary.outputs[i];
-    outputs[summary.output_names[i]] = {{"ise", y.ise},   {"iae", y.iae},
-                                        {"itae", y.itae}, {"itse", y.itse},
-                                        {"rmse", y.rmse}, {"ise_reference", y.ise_reference}};
+    Json& output = outputs[summary.output_names[i]];
+    output = {{"ise", y.ise},   {"iae", y.iae},   {"itae", y.itae},
+              {"itse", y.itse}, {"rmse", y.rmse}, {"ise_reference", y.ise_reference}};
+    for (const WindowIndices& w : summary.windows)
+      if (w.output == summary.output_names[i])
+        output["windows"].push_back({{"name", w.window.name},
+                                     {"from_h", w.window.from_h},
+                                     {"to_h", w.window.to_h},
+                                     {"rmse", w.rmse},
+                                     {"mean_error", w.mean_error},
+                                     {"samples", w.samples}});
   }
   return outputs;
 }
@@ -38,7 +46,8 @@ Json inputsOf(const Summary& summary) {
   for (std::size_t i = 0; i < summary.inputs.size(); ++i) {
     const InputIndices& u = summary.inputs[i];
     inputs[summary.input_names[i]] = {
-        {"min", u.min}, {"max", u.max}, {"mean_abs_move", u.mean_abs_move}};
+        {"min", u.min},           {"max", u.max},       {"mean_abs_move", u.mean_abs_move},
+        {"switches", u.switches}, {"travel", u.travel}};
   }
   return inputs;
 }
@@ -198,6 +207,7 @@ std::string toJson(const Summary& summary) {
   json["sources"] = Json::object();
   for (std::size_t i = 1; i < summary.sources.size(); ++i)
     json["sources"][kSourceNames[i]] = summary.sources[i];
+  for (const auto& [name, value] : summary.consumption) json[name] = value;
   json["repaired_cells"] = summary.repaired_cells;
   json["limits"] = limitsOf(summary);
   return json.dump(2);

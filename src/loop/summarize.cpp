@@ -42,6 +42,35 @@ InputIndices indicesOfInput(const RunRecord& record, Eigen::Index i) {
   return inputIndices(toVector(applied), before);
 }
 
+WindowIndices indicesOfWindow(const RunRecord& record, Eigen::Index i, const ReportWindow& window,
+                              double sample_time_h) {
+  WindowIndices indices{window, record.info.outputs[static_cast<std::size_t>(i)].name, 0.0, 0.0, 0};
+  const double rounding = 1e-6 * sample_time_h;
+  for (std::size_t k = 0; k < record.samples.size(); ++k) {
+    const auto& sample = record.samples[k];
+    const double time_h = static_cast<double>(k) * sample_time_h;
+    if (!sample.has_measurement || !sample.has_tracking) continue;
+    if (time_h < window.from_h - rounding || time_h > window.to_h + rounding) continue;
+    const double error = sample.measurement.outputs[i] - sample.tracking.setpoint[i];
+    indices.mean_error += error;
+    indices.rmse += error * error;
+    ++indices.samples;
+  }
+  const auto n = static_cast<double>(indices.samples);
+  indices.rmse = std::sqrt(indices.rmse / n);
+  indices.mean_error /= n;
+  return indices;
+}
+
+/// Of the inputs really applied, each held over its sample.
+double consumed(const RunRecord& record, const Vector& rate, double sample_time_s) {
+  double sum = 0.0;
+  for (std::size_t k = 1; k < record.samples.size(); ++k)
+    if (record.samples[k].has_measurement)
+      sum += rate.dot(record.samples[k].measurement.input_applied) * sample_time_s;
+  return sum;
+}
+
 double toleranceOf(const InputLimits& limits, Eigen::Index i) {
   const double range = limits.upper[i] - limits.lower[i];
   return kTolerance * (std::isfinite(range) ? range : 1.0);
@@ -134,12 +163,17 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
     const auto i = static_cast<Eigen::Index>(summary.output_names.size());
     summary.output_names.push_back(output.name);
     summary.outputs.push_back(indicesOfOutput(record, i, sample_time_h));
+    for (const auto& window : loop.report.windows)
+      if (window.output.empty() || window.output == output.name)
+        summary.windows.push_back(indicesOfWindow(record, i, window, sample_time_h));
   }
   for (const auto& input : loop.plant_info.inputs) {
     summary.inputs.push_back(
         indicesOfInput(record, static_cast<Eigen::Index>(summary.input_names.size())));
     summary.input_names.push_back(input.name);
   }
+  for (const auto& [name, rate] : loop.report.consumption)
+    summary.consumption.emplace_back(name, consumed(record, rate, loop.plant_info.sample_time_s));
   countSamples(record, summary);
   summary.has_clp = loop.has_clp;
   if (loop.has_clp) summarizeSolves(record, summary);

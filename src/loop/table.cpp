@@ -21,11 +21,18 @@ void addInputRows(const Summary& s, std::vector<Row>& rows) {
     const InputIndices& u = s.inputs[i];
     const bool first = i == 0;
     rows.push_back({first ? s.loop : "", s.input_names[i], shortText(u.min), shortText(u.max),
-                    shortText(u.mean_abs_move), first ? std::to_string(s.input_violations) : "",
+                    shortText(u.mean_abs_move), std::to_string(u.switches),
+                    shortText(u.travel), first ? std::to_string(s.input_violations) : "",
                     first ? std::to_string(s.move_violations) : "",
                     first ? std::to_string(s.actuator_clips) : "",
                     first ? std::to_string(s.steps) : "", first ? shortText(s.wall_s) : ""});
   }
+}
+
+void addWindowRows(const Summary& s, std::vector<Row>& rows) {
+  for (const WindowIndices& w : s.windows)
+    rows.push_back({s.loop, w.output, w.window.name, shortText(w.window.from_h),
+                    shortText(w.window.to_h), shortText(w.rmse), shortText(w.mean_error)});
 }
 
 }  // namespace
@@ -33,11 +40,13 @@ void addInputRows(const Summary& s, std::vector<Row>& rows) {
 std::string toTable(const std::vector<Summary>& summaries) {
   std::vector<Row> outputs{
       {"loop", "output", "ISE", "IAE", "ITAE", "ITSE", "rmse", "ISE ref", "beyond"}};
-  std::vector<Row> inputs{{"loop", "input", "min", "max", "mean move", "beyond", "moves beyond",
+  std::vector<Row> inputs{{"loop", "input", "min", "max", "mean move", "switches", "travel", "beyond", "moves beyond",
                            "clips", "steps", "wall s"}};
   std::vector<Row> solves{
       {"optimizer of", "solves", "infeasible", "failed", "median us", "p99 us"}};
+  std::vector<Row> windows{{"loop", "output", "window", "from h", "to h", "rmse", "mean error"}};
   for (const auto& summary : summaries) {
+    addWindowRows(summary, windows);
     addOutputRows(summary, outputs);
     addInputRows(summary, inputs);
     if (summary.has_clp)
@@ -47,6 +56,10 @@ std::string toTable(const std::vector<Summary>& summaries) {
   }
   std::string text = alignedTable(outputs) + "\n" + alignedTable(inputs);
   if (solves.size() > 1) text += "\n" + alignedTable(solves);
+  if (windows.size() > 1) text += "\n" + alignedTable(windows);
+  for (const auto& summary : summaries)
+    for (const auto& [name, value] : summary.consumption)
+      text += summary.loop + ": " + name + " " + shortText(value) + "\n";
   for (const auto& summary : summaries)
     if (summary.repaired_cells > 0)
       text += "\n" + summary.loop + ": " + std::to_string(summary.repaired_cells) +

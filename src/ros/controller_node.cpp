@@ -28,6 +28,9 @@ std::string FmbpcControllerNode::idleReason(const LoopFile& loop) {
 std::string ExcitationGeneratorNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "excitation");
 }
+std::string HybridMpcControllerNode::idleReason(const LoopFile& loop) {
+  return wrongType(loop, "hybrid_mpc");
+}
 std::string PiControllerNode::idleReason(const LoopFile& loop) { return wrongType(loop, "pi"); }
 
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node,
@@ -55,6 +58,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       manual_(private_node.advertiseService(topics::kManual, &ControllerNode::onManual, this)),
       manual_input_(private_node.advertiseService(topics::kManualInput,
                                                   &ControllerNode::onManualInput, this)),
+      hold_(private_node.advertiseService(topics::kHold, &ControllerNode::onHold, this)),
       diagnostics_(node, private_node, "controller", loop.name,
                    [this](Diagnostics::Status& status) { report(status); }) {
   if (!session_.controller().followsSetpoint()) return;
@@ -155,6 +159,15 @@ bool ControllerNode::onManualInput(fmbpc::ManualInput::Request& request,
   return true;
 }
 
+bool ControllerNode::onHold(std_srvs::SetBool::Request& request,
+                            std_srvs::SetBool::Response& response) {
+  session_.holdRecipe(request.data != 0);
+  response.success = true;
+  response.message = session_.setpoint().held() ? "recipe held" : "recipe running";
+  ROS_INFO("%s: %s", ros::this_node::getName().c_str(), response.message.c_str());
+  return true;
+}
+
 void ControllerNode::publish(bool repeated) {
   const ControllerAnswer& answer = session_.answer();
   if (answer.has_prediction && prediction_.getNumSubscribers() > 0)
@@ -167,7 +180,8 @@ void ControllerNode::publish(bool repeated) {
   if (!session_.resetReason().empty())
     ROS_INFO("%s: reset: %s", ros::this_node::getName().c_str(), session_.resetReason().c_str());
   const bool held = answer.has_action && answer.base.source == ActionSource::kHeld;
-  if ((held || !session_.output().ok) && log_.pass())
+  const bool remarkable = *session_.output().remark != '\0';
+  if ((held || remarkable) && log_.pass())
     ROS_WARN("%s: sample %u: %s", ros::this_node::getName().c_str(), answer.tracking.header.step,
              session_.output().remark);
 }
@@ -199,7 +213,8 @@ void ControllerNode::reportWords(Diagnostics::Status& status) const {
     status.summary(DiagnosticStatus::WARN, "manual");
   else if (session_.counts().accepted == 0)
     status.summary(DiagnosticStatus::OK, "waiting for the first measurement");
-  else if (!session_.output().ok || session_.answer().base.source == ActionSource::kHeld)
+  else if (*session_.output().remark != '\0' ||
+           session_.answer().base.source == ActionSource::kHeld)
     status.summary(DiagnosticStatus::WARN, session_.output().remark);
   else if (!model_problem_.empty())
     status.summary(DiagnosticStatus::WARN, "controlling; refused: " + model_problem_);
@@ -210,6 +225,7 @@ void ControllerNode::reportWords(Diagnostics::Status& status) const {
 void ControllerNode::report(Diagnostics::Status& status) const {
   reportWords(status);
   status.add("mode", session_.isManual() ? "manual" : "auto");
+  status.add("recipe", session_.setpoint().held() ? "held" : "running");
   status.add("step", session_.answer().tracking.header.step);
   addCounts(status, session_.counts());
   status.add("dropped: run not announced", plant_.foreign());

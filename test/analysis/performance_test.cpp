@@ -63,6 +63,8 @@ TEST(InputIndices, CountTheFirstMoveToo) {
   EXPECT_EQ(i.min, 500.0);
   EXPECT_EQ(i.max, 750.0);
   EXPECT_DOUBLE_EQ(i.mean_abs_move, (30.0 + 100.0 + 0.0 + 250.0) / 4.0);
+  EXPECT_EQ(i.travel, 380.0);
+  EXPECT_EQ(i.switches, 3U);
 }
 
 TEST(InputIndices, WithoutSamplesTheInputStayed) {

@@ -41,10 +41,11 @@ std::map<std::string, Row> documented() {
 std::string general(std::string path) {
   path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
   const std::regex named(
-      R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames)\.\w+)");
+      R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|)"
+      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.\w+)");
   path = std::regex_replace(path, named, "$1.NAME");
-  const std::regex outputs(R"(^setpoint\.schedule\[\]\.(s|x)$)");
-  return std::regex_replace(path, outputs, "setpoint.schedule[].NAME");
+  const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(s|x|T|Tw)$)");
+  return std::regex_replace(path, outputs, "setpoint.$1[].NAME");
 }
 
 std::set<std::string> asked(const std::string& text) {
@@ -84,10 +85,20 @@ std::set<std::string> readerKeys() {
   const std::string levels =
       controlled(excitation + "multi_level, hold_lower_steps: 1, hold_upper_steps: 2}]\n");
   const std::string steps = controlled(excitation + "steps, schedule: [{time_h: 1, value: 2}]}]\n");
+  const std::string batch =
+      "plant: {type: batch_reactor}\nsampling: {sample_time_s: 10, duration_h: 1}\n"
+      "setpoint: {recipe: [{T: 30, hold_h: 1}]}\nmodel: {file: " +
+      std::string(FMBPC_SOURCE_DIR) + "/config/model/batch_fuzzy.yaml}\n" +
+      "actuator: {initial: {kM: 0}}\ncontroller:\n  type: hybrid_mpc\n  horizon_blocks: 1\n  ";
+  const std::string rest =
+      "\n  forbidden: [{kM: 0.5, kC: 1}]\n  forbidden_transitions: [{from: {kM: 0}, to: {kM: 2}}]\n"
+      "  cost: {switching: [{before: kH, after: kC, weight: 1}], travel: [{input: kM, weight: 1}]}\n"
+      "report: {windows: [{name: w, to_h: 1}], consumption: {water_kg: {kM: 1}}}\n";
   std::set<std::string> keys;
   std::set<std::string> sections;
-  for (const auto& text :
-       {controlled(fmbpc + lists), controlled(external), prbs, levels, steps})
+  for (const auto& text : {controlled(fmbpc + lists), controlled(external), prbs, levels, steps,
+                           batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
+                           batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest})
     for (const auto& path : asked(text)) {
       keys.insert(general(path));
       for (auto cut = path.find('.'); cut != std::string::npos; cut = path.find('.', cut + 1))

@@ -2,6 +2,8 @@
 // without Ts.
 #pragma once
 
+#include <cstdint>
+
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {
@@ -19,6 +21,8 @@ struct OutputIndices {
 /// Of one input, over the applied values u(0)..u(N-1); moves include u(0) - u(-1).
 struct InputIndices {
   double min{}, max{}, mean_abs_move{};
+  double travel{};           ///< sum of |moves|
+  std::uint64_t switches{};  ///< moves of more than 1e-9
 };
 
 /// y, setpoint, reference: k = 0..N. A sample that is not finite makes the sums NaN: nothing is

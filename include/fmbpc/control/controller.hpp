@@ -23,7 +23,7 @@ struct ControllerOutput {
   bool predictive{false};  ///< `prediction` is valid
   PredictiveAction prediction;
   bool ok{true};           ///< false: no rule fired, nothing finite came out, ... (see remark)
-  const char* remark{""};  ///< words for diagnostics; a string literal
+  const char* remark{""};  ///< words for diagnostics, also when ok; lives as long as the controller
 };
 
 class Controller {
@@ -42,6 +42,11 @@ class Controller {
   /// Takes a new model between two samples, bumplessly. A law without a model ignores it.
   /// @throws InputError if it does not fit; the old one stays.
   virtual void setModel(const TsModel& model);
+  /// Whether an input that does not come from step() (a person's) may be sent. Default: any.
+  virtual bool mayBeSent(VectorRef input) const;
+  /// Moves an input that does not come from step() (held, manual) to the nearest one that may be
+  /// sent. Default: nothing.
+  virtual void makeSendable(Eigen::Ref<Vector> input) const;
   /// Signals for plotting, "NAME" -> value, refreshed by step(). Default: none.
   virtual const std::vector<std::pair<std::string, double>>& signals() const;
 };

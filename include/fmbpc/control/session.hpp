@@ -66,10 +66,12 @@ class ControllerSession {
   /// made.
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
   bool restore(const Command& setpoint) { return setpoint_.restore(setpoint); }
+  /// Holds the setpoint schedule, or lets it go on (a recipe waits for its operator).
+  void holdRecipe(bool on) { setpoint_.hold(on); }
   void manual(bool on);  ///< acts from the next sample, bumpless both ways
   /// Acts from the next sample; until it is called, manual keeps the last applied input.
   /// Clipped to the bounds at once and to the move limit sample by sample.
-  /// @throws InputError on size or NaN, and in auto.
+  /// @throws InputError on size or NaN, in auto, and for an input that the controller refuses.
   void manualInput(VectorRef input);
   bool isManual() const { return manual_; }
 

@@ -12,15 +12,17 @@
 
 namespace fpc {
 
-/// From `time_h` on, `value[i]` is the setpoint of output i; NaN leaves that output as it was.
+/// From `time_h` on, `value[i]` is the setpoint of output i; NaN leaves that output as it was. With
+/// `ramp_h` it is reached in a straight line at time_h + ramp_h.
 struct SetpointStep {
   double time_h{};
   Vector value;
+  double ramp_h{};
 };
 
 struct SetpointParams {
   Vector initial;                      ///< n_y
-  std::vector<SetpointStep> schedule;  ///< times not decreasing
+  std::vector<SetpointStep> schedule;  ///< times not decreasing, ramps end before the next entry
   Vector lower, upper;                 ///< n_y, clamp (infinite if absent)
   Vector rate_per_h;                   ///< n_y, largest change per hour (infinite if absent)
   std::vector<Command> commands;       ///< played like a person's, with time_ns = absolute stamps
@@ -39,7 +41,11 @@ class SetpointSource {
 
   /// Forgets memory of the rate limiter; commands in force stay.
   void reset();
-  /// Releases all commands and replays those of the params (a new run).
+  /// Stops the schedule's time from the next sample on (a recipe waits for its operator), or lets it
+  /// go on from where it stopped. Commands act meanwhile.
+  void hold(bool on) { hold_wanted_ = on; }
+  bool held() const { return hold_wanted_; }
+  /// Releases all commands and any hold, and replays the commands of the params (a new run).
   void restart();
   /// Tells the time that the plant gives to a sample, in case its t0 is not the clock's: the stamps
   /// of people's commands are then the plant's. The schedule goes by step.
@@ -66,6 +72,8 @@ class SetpointSource {
   const CommandTable& table() const { return commands_; }
 
  private:
+  void settleHold(std::uint32_t step);
+  std::uint32_t recipeStep(std::uint32_t step) const;
   void scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const;
   std::uint32_t fileStep(std::int64_t time_ns) const;
   std::uint32_t scheduleStep(double time_h) const;
@@ -83,6 +91,8 @@ class SetpointSource {
   std::int64_t clock_shift_ns_{};
   std::uint32_t next_step_{};
   bool started_{false}, fresh_{true};
+  bool hold_wanted_{false}, held_{false};
+  std::uint32_t held_at_{}, shift_{};  // recipe step while held; samples the recipe is late
 };
 
 }  // namespace fpc

@@ -50,12 +50,14 @@ struct PartitionParams {
 };
 
 enum class ConsequentMethod { kLocal, kGlobal, kRecursive };
-enum class ScarceRule { kBorrow, kDrop, kError };
+enum class ScarceRule { kBorrow, kDrop, kError, kNeighbour };
 
 /// How the consequents are fitted, and what happens to rules without enough data.
 struct ConsequentParams {
   ConsequentMethod method{ConsequentMethod::kLocal};
   double ridge{0.1};  ///< >= 0: weight of the linear model in each coefficient, in samples
+  double weight_power{1.0};  ///< local: squared errors weigh firing weight ^ power; 2 in Karer 2007
+  double weight_threshold{};  ///< local: samples with a lower firing weight are left out (delta)
   double samples_per_coefficient{3.0};  ///< rules with less (sum of firing weights) are scarce
   double max_condition{1e8};  ///< of scaled columns, without ridge; rules beyond it are scarce too
   ScarceRule scarce{ScarceRule::kBorrow};

@@ -8,6 +8,7 @@
 #include "fmbpc/control/closed_loop_paradigm.hpp"
 #include "fmbpc/control/excitation.hpp"
 #include "fmbpc/control/fmbpc_law.hpp"
+#include "fmbpc/control/hybrid_mpc.hpp"
 #include "fmbpc/control/pi.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
@@ -51,11 +52,26 @@ struct DisturbanceParams {
   CsvDisturbanceParams csv;
 };
 
+/// A stretch of the run that is judged by itself, both ends included.
+struct ReportWindow {
+  std::string name;
+  std::string output;  ///< empty: all
+  double from_h{}, to_h{};
+};
+
+/// What the inputs use up: the integral of rate . u over the run.
+struct Consumption {
+  std::string name;  ///< its key in summary.json, with its unit: water_kg
+  Vector rate;       ///< n_u, per second and unit of the input
+};
+
 /// Section `report`.
 struct ReportParams {
   std::string title;
   std::vector<double> output_lower,
       output_upper;  ///< n_y limits for violations.output; infinite if absent
+  std::vector<ReportWindow> windows;
+  std::vector<Consumption> consumption;
 };
 
 /// Section `model.identify`: how fuzzy_identifier finds models while the plant runs.
@@ -83,10 +99,11 @@ struct LoopFile {
   double max_pole{1.0};    ///< a model that replaces another in a run is refused beyond
   bool has_identify{false};
   IdentifyParams identify;
-  std::string controller;  ///< fmbpc, pi or excitation
+  std::string controller;  ///< fmbpc, hybrid_mpc, pi or excitation
   FmbpcParams fmbpc;
   PiParams pi;
   ExcitationParams excitation;
+  HybridMpcParams hybrid;
   bool has_clp{false};
   ClpParams clp;
   RingParams ring;

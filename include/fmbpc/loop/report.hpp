@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fmbpc/analysis/performance.hpp"
@@ -10,6 +11,14 @@
 #include "fmbpc/loop/record.hpp"
 
 namespace fpc {
+
+/// One output over one stretch of the run, on the measured values. No samples: NaN.
+struct WindowIndices {
+  ReportWindow window;
+  std::string output;
+  double rmse{}, mean_error{};  ///< of y - setpoint
+  std::uint64_t samples{};
+};
 
 struct Summary {
   std::string loop;
@@ -20,6 +29,8 @@ struct Summary {
   std::vector<std::string> output_names, input_names;
   std::vector<OutputIndices> outputs;
   std::vector<InputIndices> inputs;
+  std::vector<WindowIndices> windows;  ///< per output, the windows of the loop file
+  std::vector<std::pair<std::string, double>> consumption;
   std::uint64_t input_violations{}, move_violations{}, output_violations{}, actuator_clips{};
   bool has_clp{};
   std::uint64_t clp_solves{}, clp_infeasible{};

@@ -28,7 +28,7 @@ namespace fpc {
 /// Ready when a fitting plant has introduced itself and, for laws that need one, a fitting model
 /// has come. Base actions go out on base_action, or straight on control_action if the loop has no
 /// optimizer (or ~final_action is true). Services: ~manual (SetBool: true is manual),
-/// ~manual_input.
+/// ~manual_input, ~hold (SetBool: true stops the setpoint schedule, false lets it go on).
 class ControllerNode : public Node {
  public:
   /// @throws InputError
@@ -42,6 +42,7 @@ class ControllerNode : public Node {
   void onSetpointActive(const fmbpc::Setpoint::ConstPtr& msg);
   bool onManual(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onManualInput(fmbpc::ManualInput::Request& request, fmbpc::ManualInput::Response& response);
+  bool onHold(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void announceIfReady();
   bool mustAwaitSetpoints(const Measurement& measurement);
   void publish(bool repeated);
@@ -63,16 +64,20 @@ class ControllerNode : public Node {
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       setpoint_subscriber_, setpoint_active_subscriber_;
-  ros::ServiceServer manual_, manual_input_;
+  ros::ServiceServer manual_, manual_input_, hold_;
   Diagnostics diagnostics_;
 };
 
-/// The nodes fmbpc_controller, excitation_generator and pi_controller.
+/// The nodes fmbpc_controller, hybrid_mpc_controller, excitation_generator and pi_controller.
 struct FmbpcControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
 };
 struct ExcitationGeneratorNode : ControllerNode {
+  using ControllerNode::ControllerNode;
+  static std::string idleReason(const LoopFile& loop);
+};
+struct HybridMpcControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
 };

@@ -32,6 +32,7 @@ inline constexpr char kStep[] = "step";
 inline constexpr char kReset[] = "reset";
 inline constexpr char kManual[] = "manual";
 inline constexpr char kManualInput[] = "manual_input";
+inline constexpr char kHold[] = "hold";
 
 // Parameters: the loop as text (`fmbpc resolve`), searched upwards from the node's namespace.
 inline constexpr char kLoopText[] = "loop_text";

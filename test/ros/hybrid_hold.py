@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""A recipe is held and resumed by service, a person's input that is not allowed is refused, and whatever happens only
+allowed input vectors are sent."""
+import csv
+import os
+import sys
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from fmbpc.msg import ControlAction, NodeReady
+from fmbpc.srv import ManualInput
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+
+import ring
+
+ALLOWED = {(0.0, 0.0, 1.0), (0.01, 0.0, 1.0), (0.02, 0.0, 1.0), (0.05, 0.0, 1.0), (0.1, 0.0, 1.0), (1.0, 0.0, 1.0),
+           (1.0, 1.0, 0.0)}
+
+
+def column(folder, name):
+    with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    key = next(k for k in rows[0] if k.partition("[")[0] == name)
+    return [float(row[key]) for row in rows if row[key]]
+
+
+def service(name, kind):
+    rospy.wait_for_service("/hybrid_mpc_controller/" + name, ring.PATIENCE)
+    return rospy.ServiceProxy("/hybrid_mpc_controller/" + name, kind)
+
+
+class HybridHold(unittest.TestCase):
+    def test_hold_resume_and_manual(self):
+        recorded, actions = ring.Listener("recorded", String), ring.Listener("control_action", ControlAction)
+        actions.wait_for_publisher()
+        hold, manual, manual_input = service("hold", SetBool), service("manual", SetBool), service("manual_input",
+                                                                                                   ManualInput)
+        self.assertEqual("recipe held", hold(True).message)
+        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
+        ready.publish(node=rospy.get_name())
+        actions.wait(lambda a: a.step >= 30)
+        self.assertEqual("recipe running", hold(False).message)
+        actions.wait(lambda a: a.step >= 60)
+        manual(True)
+        for refused in ([0.5, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 0.0]):
+            self.assertFalse(manual_input(refused).success)
+        self.assertTrue(manual_input([0.1, 0.0, 1.0]).success)
+        by_hand = actions.wait(lambda a: a.source == ControlAction.MANUAL and list(a.input) == [0.1, 0.0, 1.0]).step
+        actions.wait(lambda a: a.step >= by_hand + 5)
+        manual(False)
+
+        folder = recorded.wait().data
+        self.assertTrue(ring.summary(folder)["complete"])
+        self.assertLessEqual({tuple(a.input) for a in actions.messages}, ALLOWED)
+        with tempfile.TemporaryDirectory() as reference:
+            ring.run_in_process(rospy.get_param("~loop"), reference, [])
+            planned = column(reference, "T_setpoint")
+        followed = column(folder, "T_setpoint")
+        self.assertEqual(361, len(followed))
+        self.assertEqual((30.0, 40.0), (planned[0], planned[-1]))
+        late = next(k for k, value in enumerate(followed) if value != 30.0) - \
+            next(k for k, value in enumerate(planned) if value != 30.0)
+        self.assertGreaterEqual(late, 30)
+        self.assertLess(late, 60)
+        self.assertEqual(planned[:361 - late], followed[late:])
+
+
+if __name__ == "__main__":
+    rospy.init_node("hybrid_hold")
+    rostest.rosrun("fmbpc", "hybrid_hold", HybridHold, sys.argv)
