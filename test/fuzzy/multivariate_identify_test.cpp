@@ -146,7 +146,7 @@ TEST(MultivariateIdentify, RegionsAcrossTheAxesAreLostByProjectionAndKeptByEllip
     return fitFigures(held_out.values.col(0), predictFreeRun(model, held_out).col(0)).rmse;
   };
   const auto structure = [](const std::string& membership) {
-    return knownStructure("clusters: 3", "partition: {membership: " + membership + "}\n");
+    return knownStructure("clusters: 2", "partition: {membership: " + membership + "}\n");
   };
   const auto projected = identify(data, structure("gaussian"));
   const auto found = identify(data, structure("multivariate"));
