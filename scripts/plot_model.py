@@ -68,7 +68,9 @@ def draw_memberships(plt, report, folder):
             axis.set_visible(False)
         row[0].set_ylabel("membership, %s" % output)
     handles, labels = max((row[0].get_legend_handles_labels() for row in axes), key=lambda pair: len(pair[1]))
-    figure.suptitle("%s: fuzzy sets of the rules" % report["name"], fontsize=11)
+    projected = any(panel["projected"] for _, sets in outputs for panel in sets)
+    figure.suptitle("%s: %s" % (report["name"], "multivariate sets of the rules, projected on each variable"
+                                if projected else "fuzzy sets of the rules"), fontsize=11)
     figure.legend(handles, labels, loc="lower center", ncol=min(len(labels), 8), fontsize=8, frameon=False)
     figure.tight_layout(rect=(0, 0.35 / figure.get_figheight(), 1, 1))
     figure.savefig(os.path.join(folder, "memberships.png"), dpi=110)

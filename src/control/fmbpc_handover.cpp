@@ -16,6 +16,10 @@ bool sameLags(const TsModel& a, const TsModel& b) {
 
 bool sameSets(const Rule& a, const Rule& b) {
   if (a.antecedents.size() != b.antecedents.size()) return false;
+  if (a.multivariate.has_value() != b.multivariate.has_value()) return false;
+  if (a.multivariate && (a.multivariate->center != b.multivariate->center ||
+                         a.multivariate->inverse_covariance != b.multivariate->inverse_covariance))
+    return false;
   for (std::size_t j = 0; j < a.antecedents.size(); ++j)
     if (a.antecedents[j].shape != b.antecedents[j].shape ||
         a.antecedents[j].parameters != b.antecedents[j].parameters)

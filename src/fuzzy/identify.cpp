@@ -43,7 +43,8 @@ std::string provenance(const DataSet& data, const Structure& s) {
     text += ", " + words + " " + exactText(value);
   };
   if (s.partition.method != PartitionMethod::kGrid) {
-    text += ", " + fpc::name(s.partition.membership) + " sets";
+    text += ", " + (s.partition.multivariate ? "multivariate" : fpc::name(s.partition.membership)) +
+            " sets";
     add("fuzziness", s.partition.fuzziness);
     add("regularisation", s.partition.regularisation);
     add("width", s.partition.width);

@@ -6,35 +6,14 @@
 #include <cmath>
 #include <limits>
 
-#include "base/yaml_section.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/text.hpp"
+#include "fuzzy/model_file_parts.hpp"
 #include "fuzzy/regressor_text.hpp"
 
 namespace fpc {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
-void requireKey(const YamlSection& section, const std::string& key, const std::string& expected) {
-  if (!section.has(key)) section.fail(key, expected + " (the key is missing)");
-}
-
-/// Like section(), but the key must be there and hold a mapping; the error names the line.
-YamlSection requiredMapping(YamlSection& section, const std::string& key,
-                            const std::string& expected) {
-  requireKey(section, key, expected);
-  if (!section.raw(key).IsMap()) section.fail(key, expected);
-  return section.section(key);
-}
-
-double finiteNumber(YamlSection& section, const std::string& key) {
-  requireKey(section, key, "a finite number");
-  double value = 0.0;
-  section.number(key, value);
-  if (!std::isfinite(value)) section.fail(key, "a finite number");
-  return value;
-}
 
 std::vector<SignalInfo> readSignals(YamlSection& top, const std::string& key, bool required) {
   std::vector<SignalInfo> signals;
@@ -83,30 +62,9 @@ std::vector<Regressor> readRegressors(YamlSection& section, const std::string& k
   return regressors;
 }
 
-Membership readMembership(YamlSection& when, const std::string& key) {
-  YamlSection set = requiredMapping(when, key, "a membership like {exponential: [1, 2, 3, 4]}");
-  const auto shapes = set.keys();
-  if (shapes.size() != 1) when.fail(key, "one membership");
-  Membership membership;
-  try {
-    membership.shape = membershipShape(shapes.front());
-  } catch (const InputError& e) {
-    throw InputError(set.where(shapes.front()) + ": " + e.what());
-  }
-  set.numbers(shapes.front(), membership.parameters);
-  membership.validate(set.where(shapes.front()));
-  return membership;
-}
-
 Rule readRule(YamlSection& section, const TsModel& model, const OutputModel& output) {
   Rule rule;
-  if (!output.antecedents.empty() || section.has("when")) {
-    YamlSection when =
-        requiredMapping(section, "when", "a mapping of antecedent variables to memberships");
-    for (const auto& variable : output.antecedents)
-      rule.antecedents.push_back(readMembership(when, model.text(variable)));
-    when.finish();
-  }
+  readWhen(section, model, output, rule);
   YamlSection then =
       requiredMapping(section, "then", "a mapping of regressors and offset to numbers");
   rule.coefficients.resize(static_cast<Eigen::Index>(output.regressors.size()));
@@ -156,22 +114,11 @@ TsModel readSections(YamlSection& top) {
   return model;
 }
 
-std::string yamlNumber(double value) {
-  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
-  return exactText(value);
-}
-
 void writeSignals(YAML::Emitter& out, const std::string& key,
                   const std::vector<SignalInfo>& signals) {
   out << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginMap;
   for (const auto& signal : signals) out << YAML::Key << signal.name << YAML::Value << signal.unit;
   out << YAML::EndMap;
-}
-
-void writeNumbers(YAML::Emitter& out, const std::vector<double>& values) {
-  out << YAML::Flow << YAML::BeginSeq;
-  for (const double value : values) out << yamlNumber(value);
-  out << YAML::EndSeq;
 }
 
 void writeRanges(YAML::Emitter& out, const TsModel& model) {
@@ -198,18 +145,7 @@ void writeRegressors(YAML::Emitter& out, const std::string& key, const TsModel& 
 void writeRule(YAML::Emitter& out, const TsModel& model, const OutputModel& submodel,
                const Rule& rule) {
   out << YAML::BeginMap;
-  if (!rule.antecedents.empty()) {
-    out << YAML::Key << "when" << YAML::Value << YAML::BeginMap;
-    for (std::size_t i = 0; i < rule.antecedents.size(); ++i) {
-      const Membership& set = rule.antecedents[i];
-      out << YAML::Key << model.text(submodel.antecedents[i]) << YAML::Value << YAML::Flow
-          << YAML::BeginMap;
-      out << YAML::Key << name(set.shape) << YAML::Value;
-      writeNumbers(out, set.parameters);
-      out << YAML::EndMap;
-    }
-    out << YAML::EndMap;
-  }
+  writeWhen(out, model, submodel, rule);
   out << YAML::Key << "then" << YAML::Value << YAML::Flow << YAML::BeginMap;
   for (std::size_t i = 0; i < submodel.regressors.size(); ++i)
     out << YAML::Key << model.text(submodel.regressors[i]) << YAML::Value

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "fmbpc/fuzzy/validation.hpp"
+#include "fuzzy/rule_poles.hpp"
 
 namespace fpc {
 namespace {
@@ -13,8 +14,10 @@ bool isOwn(const Regressor& r, std::size_t output) {
   return r.kind == SignalKind::kOutput && static_cast<std::size_t>(r.index) == output;
 }
 
-std::vector<std::complex<double>> polesOf(const OutputModel& model, const Rule& rule,
-                                          std::size_t output) {
+}  // namespace
+
+std::vector<std::complex<double>> rulePoles(const OutputModel& model, const Rule& rule,
+                                            std::size_t output) {
   int n_lags = 0;
   for (const auto& r : model.regressors)
     if (isOwn(r, output)) n_lags = std::max(n_lags, r.lag + 1);
@@ -31,6 +34,8 @@ std::vector<std::complex<double>> polesOf(const OutputModel& model, const Rule& 
   });
   return poles;
 }
+
+namespace {
 
 void addGains(const TsModel& names, const OutputModel& model, const Rule& rule, std::size_t output,
               RuleDynamics& dynamics) {
@@ -63,7 +68,7 @@ std::vector<RuleDynamics> ruleDynamics(const TsModel& model) {
       dynamics.output = model.outputs[i].name;
       dynamics.rule = r + 1;
       dynamics.data_count = rule.data_count;
-      dynamics.poles = polesOf(model.submodels[i], rule, i);
+      dynamics.poles = rulePoles(model.submodels[i], rule, i);
       addGains(model, model.submodels[i], rule, i, dynamics);
       all.push_back(dynamics);
     }

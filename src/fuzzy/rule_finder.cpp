@@ -75,10 +75,13 @@ class Finder {
     return model;
   }
 
-  OutputModel modelOf(const Regression& rows, const Clusters& clusters) const {
+  OutputModel modelOf(const Regression& rows, const Clusters& clusters,
+                      const ColumnScaling& scaling) const {
     OutputModel model = emptyModel();
-    model.rules =
-        projectClusters(rows.antecedents, clusters, settings_.partition, rows.regressors.cols());
+    const PartitionParams& p = settings_.partition;
+    const Index n = rows.regressors.cols();
+    model.rules = p.multivariate ? multivariateRules(rows.antecedents, clusters, scaling, p, n)
+                                 : projectClusters(rows.antecedents, clusters, p, n);
     return model;
   }
 
@@ -147,7 +150,7 @@ int Finder::chooseNumber(const Regression& rows, const ColumnScaling& scaling,
        ++number) {
     const double done = number - structure_.clusters_min;
     const Clusters clusters = cluster(early_points, number, done / tries, (done + 1.0) / tries);
-    OutputModel model = modelOf(early, clusters);
+    OutputModel model = modelOf(early, clusters, scaling);
     fitConsequents(early, linear_, settings_.consequents, model);
     trials.push_back(judge(late, late_points, clusters, model));
   }
@@ -181,7 +184,7 @@ bool findRules(const Regression& rows, const OutputStructure& structure, const S
     if (finder.cancelled()) return false;
     found.objective = clusters.objective;
     found.converged = clusters.converged;
-    model = finder.modelOf(rows, clusters);
+    model = finder.modelOf(rows, clusters, scaling);
   }
   IdentifyProgress progress;
   progress.stage = "consequents";

@@ -24,7 +24,9 @@ void checkPartition(const PartitionParams& p) {
   require(p.held_out > 0.0 && p.held_out < 0.9, "partition.held_out", "a share in (0, 0.9)");
   require(p.method == PartitionMethod::kGrid || p.membership == MembershipShape::kGaussian ||
               p.membership == MembershipShape::kExponential,
-          "partition.membership", "gaussian or exponential");
+          "partition.membership", "gaussian, exponential or multivariate");
+  require(p.method != PartitionMethod::kGrid || !p.multivariate, "partition.membership",
+          "gaussian or exponential with a grid: multivariate needs clusters");
 }
 
 void checkConsequents(const ConsequentParams& c) {

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kLongestOrder = 1000;
+const std::string kMultivariate = "multivariate";
 
 /// Reads one of the words into an enum whose values are in the same order.
 template <typename Enum>
@@ -153,8 +154,9 @@ OutputStructure readSubmodel(YamlSection& submodels, const TsModel& model,
 void readPartition(YamlSection section, PartitionParams& p) {
   choice(section, "method", p.method, {"gustafson_kessel", "fuzzy_c_means", "grid"});
   std::string shape = name(p.membership);
-  section.oneOf("membership", shape, {"gaussian", "exponential"});
-  p.membership = membershipShape(shape);
+  section.oneOf("membership", shape, {"gaussian", "exponential", kMultivariate});
+  p.multivariate = shape == kMultivariate;
+  if (!p.multivariate) p.membership = membershipShape(shape);
   choice(section, "scaling", p.scaling, {"deviation", "range", "none"});
   section.boolean("with_output", p.with_output);
   section.number("fuzziness", p.fuzziness);

@@ -41,11 +41,22 @@ void checkRegressors(const std::string& where, const TsModel& model,
   }
 }
 
-void checkRule(const std::string& where, const OutputModel& model, const Rule& rule) {
+void checkAntecedents(const std::string& where, const OutputModel& model, const Rule& rule) {
+  require(rule.multivariate.has_value() == model.rules.front().multivariate.has_value(), where,
+          "multivariate memberships in all rules of an output or in none");
+  if (rule.multivariate) {
+    require(rule.antecedents.empty(), where, "either a multivariate membership or one-dimensional");
+    rule.multivariate->validate(where, static_cast<Eigen::Index>(model.antecedents.size()));
+    return;
+  }
   require(rule.antecedents.size() == model.antecedents.size(), where,
           std::to_string(model.antecedents.size()) + " antecedents");
   for (std::size_t i = 0; i < rule.antecedents.size(); ++i)
     rule.antecedents[i].validate(where + " antecedent " + std::to_string(i + 1));
+}
+
+void checkRule(const std::string& where, const OutputModel& model, const Rule& rule) {
+  checkAntecedents(where, model, rule);
   require(rule.coefficients.size() == static_cast<Eigen::Index>(model.regressors.size()), where,
           std::to_string(model.regressors.size()) + " coefficients");
   require(rule.coefficients.allFinite() && std::isfinite(rule.offset), where,
@@ -53,19 +64,26 @@ void checkRule(const std::string& where, const OutputModel& model, const Rule& r
 }
 
 double logFiring(const Rule& rule, VectorRef values) {
+  if (rule.multivariate) return rule.multivariate->logDegree(values);
   double sum = 0.0;
   for (std::size_t i = 0; i < rule.antecedents.size(); ++i)
     sum += rule.antecedents[i].logDegree(values[static_cast<Eigen::Index>(i)]);
   return std::isnan(sum) ? -std::numeric_limits<double>::infinity() : sum;
 }
 
+double distanceOf(const Rule& rule, VectorRef values) {
+  if (rule.multivariate) return rule.multivariate->distance(values);
+  double distance = 0.0;
+  for (std::size_t i = 0; i < rule.antecedents.size(); ++i)
+    distance += rule.antecedents[i].distance(values[static_cast<Eigen::Index>(i)]);
+  return distance;
+}
+
 Eigen::Index nearestRule(const OutputModel& model, VectorRef values) {
   Eigen::Index nearest = 0;
   double shortest = std::numeric_limits<double>::infinity();
   for (std::size_t r = 0; r < model.rules.size(); ++r) {
-    double distance = 0.0;
-    for (std::size_t i = 0; i < model.antecedents.size(); ++i)
-      distance += model.rules[r].antecedents[i].distance(values[static_cast<Eigen::Index>(i)]);
+    const double distance = distanceOf(model.rules[r], values);
     if (distance < shortest) {
       shortest = distance;
       nearest = static_cast<Eigen::Index>(r);

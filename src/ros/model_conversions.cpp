@@ -1,4 +1,6 @@
 // Takagi-Sugeno models as messages.
+#include <optional>
+
 #include "conversion_parts.hpp"
 
 namespace fpc {
@@ -40,6 +42,28 @@ std::vector<Regressor> regressorStructs(const std::vector<fmbpc::FuzzyRegressor>
   return regressors;
 }
 
+void fillMultivariate(const MultivariateMembership& set, fmbpc::FuzzyRule& msg) {
+  const Matrix& S = set.inverse_covariance;
+  msg.center = conversion::numbers(set.center);
+  for (Eigen::Index i = 0; i < S.rows(); ++i)
+    for (Eigen::Index j = 0; j < S.cols(); ++j) msg.inverse_covariance.push_back(S(i, j));
+}
+
+std::optional<MultivariateMembership> multivariateStruct(const fmbpc::FuzzyRule& msg) {
+  if (msg.center.empty() && msg.inverse_covariance.empty()) return {};
+  const std::size_t n = msg.center.size();
+  require(msg.inverse_covariance.size() == n * n, "inverse_covariance",
+          std::to_string(n * n) + " numbers for a center of " + std::to_string(n));
+  MultivariateMembership set;
+  set.center = conversion::vector(msg.center);
+  const auto size = static_cast<Eigen::Index>(n);
+  set.inverse_covariance.resize(size, size);
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (Eigen::Index j = 0; j < size; ++j)
+      set.inverse_covariance(i, j) = msg.inverse_covariance[static_cast<std::size_t>(i * size + j)];
+  return set;
+}
+
 fmbpc::FuzzyRule ruleMsg(const Rule& rule) {
   fmbpc::FuzzyRule msg;
   for (const Membership& membership : rule.antecedents) {
@@ -48,6 +72,7 @@ fmbpc::FuzzyRule ruleMsg(const Rule& rule) {
     set.parameters = membership.parameters;
     msg.antecedents.push_back(set);
   }
+  if (rule.multivariate) fillMultivariate(*rule.multivariate, msg);
   msg.coefficients = conversion::numbers(rule.coefficients);
   msg.offset = rule.offset;
   msg.data_count = rule.data_count;
@@ -60,6 +85,7 @@ Rule ruleStruct(const fmbpc::FuzzyRule& msg) {
     rule.antecedents.push_back({enumeration(set.shape, MembershipShape::kExponential,
                                             MembershipShape::kTrapezoidal, "shape"),
                                 set.parameters});
+  rule.multivariate = multivariateStruct(msg);
   rule.coefficients = conversion::vector(msg.coefficients);
   rule.offset = msg.offset;
   rule.data_count = msg.data_count;

@@ -20,6 +20,14 @@ using Json = nlohmann::ordered_json;
 constexpr int kPoints = 301;
 constexpr double kMargin = 0.05;  // of the data's range, on both sides
 
+/// Degree of one variable, the others where they are best.
+double degreeOf(const Rule& rule, std::size_t variable, double value) {
+  if (!rule.multivariate) return std::exp(rule.antecedents[variable].logDegree(value));
+  const auto row = static_cast<Index>(variable);
+  const double away = value - rule.multivariate->center[row];
+  return std::exp(-0.5 * rule.multivariate->projectedPrecision(row) * away * away);
+}
+
 /// What one variable's sets look like over the range of the data.
 Json membershipsOf(const TsModel& model, const OutputModel& submodel, std::size_t variable) {
   const Regressor& r = submodel.antecedents[variable];
@@ -33,11 +41,14 @@ Json membershipsOf(const TsModel& model, const OutputModel& submodel, std::size_
   z = grid;
   for (const auto& rule : submodel.rules) {
     std::vector<double> of_rule;
-    for (const double value : grid)
-      of_rule.push_back(std::exp(rule.antecedents[variable].logDegree(value)));
+    for (const double value : grid) of_rule.push_back(degreeOf(rule, variable, value));
     degrees.push_back(of_rule);
   }
-  return {{"variable", model.text(r)}, {"unit", signal.unit}, {"z", z}, {"degrees", degrees}};
+  return {{"variable", model.text(r)},
+          {"unit", signal.unit},
+          {"projected", submodel.rules.front().multivariate.has_value()},
+          {"z", z},
+          {"degrees", degrees}};
 }
 
 std::vector<double> listOf(const Vector& values) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "control/law_fixture.hpp"
+#include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {
 namespace {
@@ -62,9 +63,9 @@ TEST(FmbpcLawMemory, StepDoesNotAllocate) {
       general.prediction_steps = 42;
       general.realisation = realisation;
       general.preview = preview;
-      EXPECT_EQ(
-          Steady(general, test::randomModel(generator, {3, 3, 2, 5, 3, 1, 3, 3})).allocations(200),
-          0U);
+      const TsModel model = test::randomModel(generator, {3, 3, 2, 5, 3, 1, 3, 3});
+      EXPECT_EQ(Steady(general, model).allocations(200), 0U);
+      EXPECT_EQ(Steady(general, test::multivariate(model)).allocations(200), 0U);
     }
 }
 

@@ -100,6 +100,29 @@ TEST(StructureDocs, EverySettingOfTheReaderIsDocumented) {
   }
 }
 
+/// The words of a list "gaussian, exponential or multivariate".
+std::set<std::string> words(const std::string& text) {
+  std::set<std::string> found;
+  const std::regex word(R"([a-z_]+)");
+  for (std::sregex_iterator w(text.begin(), text.end(), word), end; w != end; ++w)
+    found.insert((*w).str());
+  return found;
+}
+
+TEST(StructureDocs, EveryMembershipOfTheReaderIsDocumented) {
+  std::ifstream stream(std::string(FMBPC_SOURCE_DIR) + "/docs/identification.md");
+  std::string row;
+  while (std::getline(stream, row) && row.rfind("| `.membership` |", 0) != 0) {
+  }
+  const std::set<std::string> told = words(row);
+  const std::string error = errorOf(kBase + "partition: {membership: nonsense}\n");
+  for (const char* shape : {"gaussian", "exponential", "multivariate"}) {
+    EXPECT_EQ(told.count(shape), 1U) << row;
+    EXPECT_NE(error.find(shape), std::string::npos) << error;
+    EXPECT_EQ(errorOf(kBase + "partition: {membership: " + shape + "}\n"), "");
+  }
+}
+
 TEST(StructureDocs, DefaultsAreThoseOfTheStructs) {
   const auto rows = documented();
   const PartitionParams p;

@@ -1,6 +1,8 @@
 // Takagi-Sugeno models survive the way through a message; broken ones are refused.
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "fmbpc/base/input_error.hpp"
 #include "same_bits.hpp"
 
@@ -56,6 +58,47 @@ TEST(ModelConversions, FuzzyModelSurvives) {
     EXPECT_TRUE(sameBits(a.offset, b.offset));
     EXPECT_EQ(a.data_count, b.data_count);
   }
+}
+
+TsModel multivariateModel() {
+  TsModel model = smallModel();
+  for (Rule& rule : model.submodels[0].rules) {
+    rule.antecedents.clear();
+    rule.multivariate = {Eigen::Vector2d(1.0 / 3.0, -1e-300),
+                         (Matrix(2, 2) << 2.0, 1.0 / 7.0, 1.0 / 7.0, 1.0 / 3.0).finished()};
+  }
+  model.submodels[0].rules[1].multivariate->inverse_covariance.setZero();
+  return model;
+}
+
+TEST(ModelConversions, MultivariateMembershipsSurvive) {
+  const TsModel m = multivariateModel();
+  const TsModel r = fromMsg(sent(toMsg(m)));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& a = m.submodels[0].rules[i].multivariate;
+    const auto& b = r.submodels[0].rules[i].multivariate;
+    ASSERT_TRUE(b.has_value());
+    EXPECT_TRUE(sameNumbers(a->center, b->center));
+    EXPECT_TRUE(sameMatrix(a->inverse_covariance, b->inverse_covariance));
+    EXPECT_TRUE(r.submodels[0].rules[i].antecedents.empty());
+  }
+  EXPECT_FALSE(fromMsg(sent(toMsg(smallModel()))).submodels[0].rules[0].multivariate);
+}
+
+TEST(ModelConversions, BrokenMultivariateMembershipsAreRefused) {
+  const auto refuse = [](const std::function<void(fmbpc::FuzzyRule&)>& spoil) {
+    fmbpc::FuzzyModel msg = toMsg(multivariateModel());
+    spoil(msg.submodels[0].rules[0]);
+    EXPECT_THROW(fromMsg(msg), InputError);
+  };
+  refuse([](auto& rule) { rule.center.pop_back(); });
+  refuse([](auto& rule) { rule.inverse_covariance.pop_back(); });
+  refuse([](auto& rule) { rule.center.clear(); });
+  refuse([](auto& rule) { rule.inverse_covariance[1] = 5.0; });  // not symmetric
+  refuse([](auto& rule) { rule.inverse_covariance[0] = -1.0; });
+  refuse([](auto& rule) {  // mixed with the other rule
+    rule = toMsg(smallModel()).submodels[0].rules[0];
+  });
 }
 
 TEST(ModelConversions, BrokenFuzzyModelsAreRefused) {

@@ -90,6 +90,13 @@ TEST_F(IdentifyErrors, FilesThatCannotBeReadOrWritten) {
   }
 }
 
+#ifdef FMBPC_WITHOUT_ROS
+TEST_F(IdentifyErrors, ABagSaysThatThisProgramReadsNone) {
+  expectError(write("loop.bag", "#ROSBAG V2.0"), {"loop.bag", "expected a CSV", "without ROS"});
+  expectError(write("renamed.csv", "#ROSBAG V2.0"), {"renamed.csv", "without ROS"});
+}
+#endif
+
 TEST_F(IdentifyErrors, UnknownStructuresAreAnsweredWithTheKnownOnes) {
   const Outcome outcome = tool("identify " + data_ + " nobody", true);
   EXPECT_EQ(outcome.code, 1);

@@ -29,6 +29,14 @@ Membership projectCluster(const Eigen::Ref<const Vector>& values,
 std::vector<Rule> projectClusters(MatrixRef antecedents, const Clusters& clusters,
                                   const PartitionParams& params, Eigen::Index n_regressors);
 
+/// One rule per cluster, its membership the cluster's ellipsoid over the antecedents in their own
+/// units: S = (width^2 F)^-1, F the antecedents' block of the cluster's covariance (c-means: of the
+/// scatter weighted by u^m). `scaling` is that of the cluster space, whose first variables are the
+/// antecedents (samples x variables). A variable that does not move gets no weight.
+std::vector<Rule> multivariateRules(MatrixRef antecedents, const Clusters& clusters,
+                                    const ColumnScaling& scaling, const PartitionParams& params,
+                                    Eigen::Index n_regressors);
+
 /// One rule per combination of the sets, the last variable's sets changing fastest.
 std::vector<Rule> gridRules(const std::vector<std::vector<Membership>>& sets,
                             Eigen::Index n_regressors);

@@ -35,13 +35,14 @@ struct PartitionParams {
   PartitionMethod method{PartitionMethod::kGustafsonKessel};
   MembershipShape membership{
       MembershipShape::kGaussian};  ///< gaussian or exponential, for clusters
+  bool multivariate{false};         ///< the clusters' ellipsoids instead of sets of that shape
   Scaling scaling{Scaling::kDeviation};
   bool with_output{
       true};  ///< cluster in the space of antecedents and predicted output, else antecedents only
   double fuzziness{1.5};  ///< m > 1; near 2, clusters in many dimensions fall together
   double regularisation{
       0.05};          ///< gamma in [0, 1): share of the data's own spread in each covariance
-  double width{1.0};  ///< > 0: the projected sets are made this much wider
+  double width{1.0};  ///< > 0: the sets are made this much wider
   int max_iterations{200};
   double tolerance{1e-4};  ///< stops when no membership moves by more
   int restarts{3};         ///< random starts; the one with the lowest objective is kept

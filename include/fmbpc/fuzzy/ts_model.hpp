@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/types.hpp"
 #include "fmbpc/fuzzy/membership.hpp"
+#include "fmbpc/fuzzy/multivariate_membership.hpp"
 
 namespace fpc {
 
@@ -26,10 +28,13 @@ struct Regressor {
 
 /// If every antecedent holds, then y(k+1) = coefficients . regressors + offset.
 struct Rule {
-  std::vector<Membership> antecedents;  ///< one per antecedent variable of the output
+  std::vector<Membership> antecedents;  ///< one per antecedent variable; none if multivariate
   Vector coefficients;                  ///< one per regressor of the output
   double offset{};
   std::uint64_t data_count{};  ///< identification data behind it, 0 if unknown
+  /// Instead of `antecedents`, one set on all antecedent variables; in all rules of an output or in
+  /// none.
+  std::optional<MultivariateMembership> multivariate{};
 };
 
 /// The submodel of one output.
@@ -50,7 +55,7 @@ struct TsModel {
   std::vector<OutputModel> submodels;  ///< one per output
 
   /// @throws InputError naming the part: sizes, indices, lags, non-finite coefficients, no rules,
-  /// repeated names.
+  /// repeated names, multivariate rules among others.
   void validate() const;
   int maxLag(SignalKind kind, int index) const;  ///< -1 if unused
   const std::vector<SignalInfo>& signals(SignalKind kind) const;

@@ -1,0 +1,28 @@
+// What the parts of the model file's reader and writer share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/yaml_section.hpp"
+#include "fmbpc/fuzzy/ts_model.hpp"
+
+namespace fpc {
+
+void requireKey(const YamlSection& section, const std::string& key, const std::string& expected);
+/// Like section(), but the key must be there and hold a mapping; the error names the line.
+YamlSection requiredMapping(YamlSection& section, const std::string& key,
+                            const std::string& expected);
+double finiteNumber(YamlSection& section, const std::string& key);
+
+std::string yamlNumber(double value);
+void writeNumbers(YAML::Emitter& out, const std::vector<double>& values);
+
+/// The memberships of a rule, its key `when`: one set per variable, or `center` and
+/// `inverse_covariance`.
+void readWhen(YamlSection& rule_section, const TsModel& model, const OutputModel& output,
+              Rule& rule);
+void writeWhen(YAML::Emitter& out, const TsModel& model, const OutputModel& output,
+               const Rule& rule);
+
+}  // namespace fpc
