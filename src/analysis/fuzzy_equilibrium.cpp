@@ -12,6 +12,11 @@ namespace {
 constexpr double kSame = 1e-6;  // relative
 constexpr int kGrid = 9;
 
+double centreOf(const Rule& rule, std::size_t antecedent) {
+  return rule.multivariate ? rule.multivariate->center[static_cast<Eigen::Index>(antecedent)]
+                           : centre(rule.antecedents[antecedent]);
+}
+
 /// Values of output i that its sets name, and points between and around them.
 std::vector<double> candidates(const TsModel& model, int output) {
   std::vector<double> values;
@@ -19,13 +24,12 @@ std::vector<double> candidates(const TsModel& model, int output) {
     for (std::size_t a = 0; a < submodel.antecedents.size(); ++a) {
       const Regressor& r = submodel.antecedents[a];
       if (r.kind != SignalKind::kOutput || r.index != output) continue;
-      for (const auto& rule : submodel.rules) values.push_back(centre(rule.antecedents[a]));
+      for (const auto& rule : submodel.rules) values.push_back(centreOf(rule, a));
     }
   if (values.empty()) values.push_back(usualValue(model, SignalKind::kOutput, output));
   const auto [least, most] = std::minmax_element(values.begin(), values.end());
   const double lower = *least, span = std::max(*most - *least, 1e-3);
-  for (int i = 0; i < kGrid; ++i)
-    values.push_back(lower + span * (1.5 * i / (kGrid - 1) - 0.25));
+  for (int i = 0; i < kGrid; ++i) values.push_back(lower + span * (1.5 * i / (kGrid - 1) - 0.25));
   return values;
 }
 
@@ -50,7 +54,7 @@ double usualValue(const TsModel& model, SignalKind kind, int index) {
     for (std::size_t a = 0; a < submodel.antecedents.size(); ++a)
       if (submodel.antecedents[a].kind == kind && submodel.antecedents[a].index == index)
         for (const auto& rule : submodel.rules) {
-          sum += centre(rule.antecedents[a]);
+          sum += centreOf(rule, a);
           ++count;
         }
   if (count > 0) return sum / count;

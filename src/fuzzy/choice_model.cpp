@@ -55,6 +55,9 @@ ChoiceModel::ChoiceModel(TsModel model, Matrix choices)
   require(choices_.rows() == static_cast<Index>(model_.inputs.size()) && choices_.cols() > 0,
           "choices", "at least one vector of " + std::to_string(model_.inputs.size()) + " inputs");
   require(choices_.allFinite(), "choices", "finite numbers");
+  for (const auto& submodel : model_.submodels)
+    require(!submodel.rules.front().multivariate, "model",
+            "one set per antecedent: a choice model knows no multivariate memberships");
   layOut();
   source_ = Vector::Zero(n_x_ + static_cast<Index>(model_.disturbances.size()));
   next_ = Vector::Zero(static_cast<Index>(model_.outputs.size()));
@@ -104,8 +107,7 @@ ChoiceModel::CompiledRule ChoiceModel::compileRule(const OutputModel& output, co
   for (std::size_t i = 0; i < output.antecedents.size(); ++i) {
     const Regressor& variable = output.antecedents[i];
     if (isPresentInput(variable))
-      compiled.degree *=
-          makeSet(0, rule.antecedents[i]).degree(choices_(variable.index, choice));
+      compiled.degree *= makeSet(0, rule.antecedents[i]).degree(choices_(variable.index, choice));
     else
       compiled.sets.push_back(makeSet(sourceOf(variable), rule.antecedents[i]));
   }

@@ -21,14 +21,19 @@ double centre(const Membership& set) {
   return p[0] == p[1] ? p[2] : p[2] == p[3] ? p[1] : 0.5 * (p[1] + p[2]);  // a shoulder ends there
 }
 
+double centreOf(const Rule& rule, std::size_t variable) {
+  return rule.multivariate ? rule.multivariate->center[static_cast<Eigen::Index>(variable)]
+                           : centre(rule.antecedents[variable]);
+}
+
 /// How far the centres of all rules' sets on each variable lie apart.
 std::vector<double> spansOf(const OutputModel& model) {
   std::vector<double> spans;
   for (std::size_t v = 0; v < model.antecedents.size(); ++v) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Rule& rule : model.rules) {
-      low = std::min(low, centre(rule.antecedents[v]));
-      high = std::max(high, centre(rule.antecedents[v]));
+      low = std::min(low, centreOf(rule, v));
+      high = std::max(high, centreOf(rule, v));
     }
     spans.push_back(high > low ? high - low : 1.0);
   }
@@ -37,6 +42,8 @@ std::vector<double> spansOf(const OutputModel& model) {
 
 double distance(const Rule& a, const Rule& b, const std::vector<double>& spans) {
   double sum = 0.0;
+  for (std::size_t i = 0; a.multivariate && i < spans.size(); ++i)
+    sum += std::abs(centreOf(a, i) - centreOf(b, i)) / spans[i];
   for (std::size_t i = 0; i < a.antecedents.size(); ++i) {
     const Membership &one = a.antecedents[i], &other = b.antecedents[i];
     if (one == other) continue;
