@@ -7,7 +7,7 @@ namespace {
 
 std::vector<std::string> disturbanceNames(const LoopFile& loop) {
   std::vector<std::string> names;
-  const auto plant = makePlant(loop.simulation.plant);
+  const auto plant = makePlant(loop.simulation);
   for (const auto& quantity : plant->description().disturbances) names.push_back(quantity.name);
   return names;
 }
