@@ -22,6 +22,8 @@ std::unique_ptr<Controller> makeController(const LoopFile& loop) {
                                                   loop.plant_info);
   if (loop.controller == "hybrid_mpc")
     return std::make_unique<HybridMpc>(loop.hybrid, limits, loop.plant_info);
+  if (loop.controller == "adaptive_pi")
+    return std::make_unique<AdaptivePi>(loop.adaptive_pi, limits, loop.plant_info);
   return std::make_unique<FmbpcLaw>(loop.fmbpc, limits, loop.plant_info);
 }
 

@@ -1,0 +1,305 @@
+// Order within a sample: what was applied is recorded, gains are learned from the new outputs, the
+// loops are retuned inside the guards, then the PI terms and the decoupling give u(k).
+#include "fmbpc/control/adaptive_pi.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/control/decoupling.hpp"
+#include "fmbpc/control/pi_tuning.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr std::array<std::size_t, 2> kLoops{0, 1};
+
+using Gains = std::array<std::array<double, 2>, 2>;
+
+Gains gainsOf(const FopdtMatrix& model) {
+  return {{{model[0][0].gain, model[0][1].gain}, {model[1][0].gain, model[1][1].gain}}};
+}
+
+double wordOf(bool value) { return value ? 1.0 : 0.0; }
+
+}  // namespace
+
+struct AdaptivePi::State {
+  State(const AdaptivePiParams& p, InputLimits l, PlantInfo i)
+      : params(p), limits(std::move(l)), plant(std::move(i)), dt(plant.sample_time_s / 60.0) {}
+
+  struct Loop {
+    double kp_model{}, ti{};  ///< for the nominal gain
+    double kp{};
+    double integral{};  ///< int e dt, min
+    double error{};
+    double rest_input{}, rest_output{};
+  };
+
+  AdaptivePiParams params;
+  InputLimits limits;
+  PlantInfo plant;
+  double dt;  // sample time, min
+  std::array<Loop, 2> loops;
+  std::optional<InvertedDecoupling> decoupling;
+  std::vector<GainEstimator> estimators;  // one per loop's output
+  Gains in_use{};
+  std::array<int, 2> refused{};  // samples, of each output
+  std::array<bool, 2> learned{};
+  bool adapting{true}, transfer{false}, started{false};
+  int waiting{};     // samples until anything is learned: the lags do not know the past
+  int experience{};  // samples learned since the start
+  std::vector<std::pair<std::string, double>> signals;
+};
+
+void AdaptationParams::validate() const {
+  estimator.validate();
+  require(start_steps >= 0, "start_steps", "an integer >= 0");
+  require(change_upper > 0.0 && change_upper <= 1.0, "change_upper", "a number in (0, 1]");
+  require(std::isfinite(ratio_upper) && ratio_upper > 1.0, "ratio_upper", "a number > 1");
+  require(deviation_upper > 0.0, "deviation_upper", "a number > 0");
+  require(refused_steps >= 1, "refused_steps", "an integer >= 1");
+}
+
+void AdaptivePiParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
+  require(n_y == 2 && n_u == 2, "controller.type adaptive_pi", "a plant of two inputs and outputs");
+  require(tuning == "given" || tuning == "imc" || tuning == "pso", "controller.tuning",
+          "given, imc or pso");
+  for (const std::size_t i : kLoops) {
+    const AdaptiveLoop& loop = loops[i];
+    const std::string key = "controller.loops[" + std::to_string(i) + "].";
+    require(loop.input >= 0 && loop.input < 2, key + "input", "one of the plant's inputs");
+    require(loop.output >= 0 && loop.output < 2, key + "output", "one of the plant's outputs");
+    require(tuning != "imc" || loop.imc_time_constant_min > 0.0, key + "imc_time_constant_min",
+            "a time > 0");
+    if (tuning != "given") continue;
+    require(std::isfinite(loop.kp), key + "kp", "a finite number");
+    require(std::isfinite(loop.integral_time_min) && loop.integral_time_min > 0.0,
+            key + "integral_time_min", "a time > 0");
+  }
+  require(loops[0].input != loops[1].input, "controller.loops", "two different inputs");
+  require(loops[0].output != loops[1].output, "controller.loops", "two different outputs");
+  if (decoupling || adaptation.enabled || tuning != "given")
+    for (const std::size_t i : kLoops)
+      for (const std::size_t j : kLoops) model[i][j].validate("controller.model: ");
+  adaptation.validate();
+}
+
+AdaptivePi::AdaptivePi(const AdaptivePiParams& params, InputLimits limits, PlantInfo plant) {
+  params.validate(static_cast<Eigen::Index>(plant.outputs.size()),
+                  static_cast<Eigen::Index>(plant.inputs.size()));
+  limits.validate(2);
+  state_ = std::make_unique<State>(params, std::move(limits), std::move(plant));
+  State& s = *state_;
+  s.in_use = gainsOf(params.model);
+  if (params.decoupling) s.decoupling.emplace(params.model, s.dt);
+  for (const std::size_t i : kLoops) {
+    const AdaptiveLoop& loop = params.loops[i];
+    PiTuning tuning{loop.kp, loop.integral_time_min};
+    if (params.tuning == "imc") tuning = imcTuning(params.model[i][i], loop.imc_time_constant_min);
+    if (params.tuning == "pso") tuning = swarmTuning(params.model[i][i], TuningCost::kStepTimes);
+    s.loops[i].kp = s.loops[i].kp_model = tuning.kp;
+    s.loops[i].ti = tuning.integral_time_min;
+    if (params.adaptation.enabled)
+      s.estimators.emplace_back(params.model[i], s.dt, params.adaptation.estimator);
+  }
+  for (const std::size_t i : kLoops) {
+    const auto& output = s.plant.outputs[static_cast<std::size_t>(params.loops[i].output)].name;
+    for (const std::size_t j : kLoops) {
+      const auto& input = s.plant.inputs[static_cast<std::size_t>(params.loops[j].input)].name;
+      const std::string pair = "_" + output + "_" + input;
+      for (const char* what : {"gain", "gain_deviation", "gain_in_use"})
+        s.signals.emplace_back(what + pair, 0.0);
+    }
+    s.signals.emplace_back("kp_" + output, s.loops[i].kp);
+    s.signals.emplace_back("learned_" + output, 0.0);
+  }
+  s.signals.emplace_back("adapting", 0.0);
+}
+
+AdaptivePi::~AdaptivePi() = default;
+
+void AdaptivePi::reset(const Measurement& start) {
+  State& s = *state_;
+  std::array<double, 2> zero{};
+  const bool fresh = start.header.step == 0;
+  for (const std::size_t i : kLoops) {
+    State::Loop& loop = s.loops[i];
+    loop.integral = 0.0;
+    loop.rest_input = start.input_applied[s.params.loops[i].input];
+    loop.rest_output = start.outputs[s.params.loops[i].output];
+  }
+  if (s.decoupling) s.decoupling->rest(zero[0], zero[1]);
+  for (std::size_t i = 0; i < s.estimators.size(); ++i) {
+    s.estimators[i].rest(zero[0], zero[1]);
+    if (fresh) s.estimators[i].restart(s.params.model[i][0].gain, s.params.model[i][1].gain);
+  }
+  if (fresh) {
+    s.in_use = gainsOf(s.params.model);
+    for (const std::size_t i : kLoops) s.loops[i].kp = s.loops[i].kp_model;
+    if (s.decoupling) s.decoupling->setGains(s.in_use);
+    s.experience = 0;
+  }
+  s.waiting = fresh ? 0 : s.params.adaptation.start_steps;
+  s.transfer = !fresh;
+  s.started = false;
+  s.refused = {};
+}
+
+bool AdaptivePi::adapt(bool on) {
+  if (state_->estimators.empty()) return false;
+  state_->adapting = on;
+  return true;
+}
+
+void AdaptivePi::learn(const Measurement& now) {
+  State& s = *state_;
+  s.learned = {};
+  if (!s.adapting || s.estimators.empty()) return;
+  if (s.waiting > 0) {
+    --s.waiting;
+    return;
+  }
+  for (const std::size_t i : kLoops) {
+    const int output = s.params.loops[i].output;
+    const SignalInfo& range = s.plant.outputs[static_cast<std::size_t>(output)];
+    const double y = now.outputs[output];
+    if (y < range.lower || y > range.upper) continue;
+    s.learned[i] = s.estimators[i].update(y - s.loops[i].rest_output);
+  }
+  ++s.experience;
+}
+
+bool AdaptivePi::acceptable(std::size_t output) const {
+  const State& s = *state_;
+  const AdaptationParams& guard = s.params.adaptation;
+  for (const std::size_t j : kLoops) {
+    const double ratio = s.estimators[output].gain(j) / s.params.model[output][j].gain;
+    if (!(ratio >= 1.0 / guard.ratio_upper && ratio <= guard.ratio_upper)) return false;
+    if (!(s.estimators[output].deviation(j) <= guard.deviation_upper * ratio)) return false;
+  }
+  return true;
+}
+
+void AdaptivePi::retune() {
+  State& s = *state_;
+  const AdaptationParams& guard = s.params.adaptation;
+  if (!s.adapting || s.estimators.empty() || s.experience <= guard.start_steps) return;
+  for (const std::size_t i : kLoops) {
+    if (!s.learned[i]) continue;
+    if (!acceptable(i)) {
+      if (++s.refused[i] >= guard.refused_steps) {
+        s.estimators[i].restart(s.in_use[i][0], s.in_use[i][1]);
+        s.refused[i] = 0;
+      }
+      continue;
+    }
+    s.refused[i] = 0;
+    for (const std::size_t j : kLoops) {
+      const double most = guard.change_upper * std::abs(s.in_use[i][j]);
+      s.in_use[i][j] += std::clamp(s.estimators[i].gain(j) - s.in_use[i][j], -most, most);
+    }
+    s.loops[i].kp = s.loops[i].kp_model * s.params.model[i][i].gain / s.in_use[i][i];
+  }
+  if (s.decoupling) s.decoupling->setGains(s.in_use);
+}
+
+void AdaptivePi::integrate(const ControllerOutput& output,
+                           const std::array<double, 2>& wanted) {
+  State& s = *state_;
+  for (const std::size_t i : kLoops) {
+    const int input = s.params.loops[i].input;
+    State::Loop& loop = s.loops[i];
+    const double push = loop.kp * loop.error;  // the way the input would go
+    const bool held_back = (wanted[i] > output.input[input] && push > 0.0) ||
+                           (wanted[i] < output.input[input] && push < 0.0);
+    const double next = loop.integral + loop.error * s.dt;
+    if (!held_back && std::isfinite(next)) loop.integral = next;
+  }
+}
+
+void AdaptivePi::step(const Measurement& now, const SetpointSource& setpoint,
+                      ControllerOutput& output) {
+  State& s = *state_;
+  std::array<double, 2> applied{}, wanted{}, cross{};
+  for (const std::size_t i : kLoops)
+    applied[i] = now.input_applied[s.params.loops[i].input] - s.loops[i].rest_input;
+  if (s.started) {
+    if (s.decoupling) s.decoupling->record(applied[0], applied[1]);
+    for (GainEstimator& estimator : s.estimators) estimator.advance(applied[0], applied[1]);
+  }
+  s.started = true;
+  learn(now);
+  retune();
+  for (const std::size_t i : kLoops) {
+    State::Loop& loop = s.loops[i];
+    const int y = s.params.loops[i].output;
+    loop.error = setpoint.present()[y] - now.outputs[y];
+    wanted[i] = loop.kp * (loop.error + loop.integral / loop.ti);
+  }
+  if (s.decoupling) {
+    s.decoupling->apply(wanted);
+    cross = s.decoupling->cross();
+  }
+  if (s.transfer) {
+    for (const std::size_t i : kLoops) {
+      State::Loop& loop = s.loops[i];
+      if (loop.kp != 0.0)
+        loop.integral = ((applied[i] + cross[i]) / loop.kp - loop.error) * loop.ti;
+      wanted[i] = applied[i] + cross[i];
+    }
+    s.transfer = false;
+  }
+  output.input = now.input_applied;
+  output.reference = setpoint.present();
+  output.predictive = false;
+  output.ok = true;
+  output.remark = "";
+  for (const std::size_t i : kLoops) {
+    wanted[i] += s.loops[i].rest_input - cross[i];
+    if (std::isfinite(wanted[i]))
+      output.input[s.params.loops[i].input] = wanted[i];
+    else
+      output.ok = false;
+  }
+  s.limits.clip(output.input, now.input_applied);
+  output.source = ActionSource::kBase;
+  for (const std::size_t i : kLoops)
+    if (output.input[s.params.loops[i].input] != wanted[i]) output.source = ActionSource::kClipped;
+  integrate(output, wanted);
+  refreshSignals();
+  if (output.ok) return;
+  output.source = ActionSource::kHeld;
+  output.remark = "the control law overflowed: input held";
+}
+
+void AdaptivePi::refreshSignals() {
+  State& s = *state_;
+  std::size_t place = 0;
+  for (const std::size_t i : kLoops) {
+    for (const std::size_t j : kLoops) {
+      const bool learns = !s.estimators.empty();
+      s.signals[place++].second = learns ? s.estimators[i].gain(j) : s.in_use[i][j];
+      s.signals[place++].second = learns ? s.estimators[i].deviation(j) : 0.0;
+      s.signals[place++].second = s.in_use[i][j];
+    }
+    s.signals[place++].second = s.loops[i].kp;
+    s.signals[place++].second = wordOf(s.learned[i]);
+  }
+  s.signals[place].second = wordOf(s.adapting && !s.estimators.empty());
+}
+
+const std::vector<std::pair<std::string, double>>& AdaptivePi::signals() const {
+  return state_->signals;
+}
+double AdaptivePi::kp(std::size_t loop) const { return state_->loops[loop].kp; }
+double AdaptivePi::integralTime(std::size_t loop) const { return state_->loops[loop].ti; }
+double AdaptivePi::gainInUse(std::size_t output, std::size_t input) const {
+  return state_->in_use[output][input];
+}
+const GainEstimator& AdaptivePi::estimator(std::size_t output) const {
+  return state_->estimators.at(output);
+}
+
+}  // namespace fpc
