@@ -32,7 +32,8 @@ struct AdaptivePi::State {
   struct Loop {
     double kp_model{}, ti{};  ///< for the nominal gain
     double kp{};
-    double integral{};  ///< int e dt, min
+    double integral{};       ///< int e dt, min
+    double next_integral{};  ///< with the present error, unless the limits hold it back
     double error{};
     double rest_input{}, rest_output{};
   };
@@ -214,8 +215,7 @@ void AdaptivePi::integrate(const ControllerOutput& output,
     const double push = loop.kp * loop.error;  // the way the input would go
     const bool held_back = (wanted[i] > output.input[input] && push > 0.0) ||
                            (wanted[i] < output.input[input] && push < 0.0);
-    const double next = loop.integral + loop.error * s.dt;
-    if (!held_back && std::isfinite(next)) loop.integral = next;
+    if (!held_back && std::isfinite(loop.next_integral)) loop.integral = loop.next_integral;
   }
 }
 
@@ -236,7 +236,8 @@ void AdaptivePi::step(const Measurement& now, const SetpointSource& setpoint,
     State::Loop& loop = s.loops[i];
     const int y = s.params.loops[i].output;
     loop.error = setpoint.present()[y] - now.outputs[y];
-    wanted[i] = loop.kp * (loop.error + loop.integral / loop.ti);
+    loop.next_integral = loop.integral + loop.error * s.dt;
+    wanted[i] = loop.kp * (loop.error + loop.next_integral / loop.ti);
   }
   if (s.decoupling) {
     s.decoupling->apply(wanted);
@@ -246,7 +247,8 @@ void AdaptivePi::step(const Measurement& now, const SetpointSource& setpoint,
     for (const std::size_t i : kLoops) {
       State::Loop& loop = s.loops[i];
       if (loop.kp != 0.0)
-        loop.integral = ((applied[i] + cross[i]) / loop.kp - loop.error) * loop.ti;
+        loop.next_integral = ((applied[i] + cross[i]) / loop.kp - loop.error) * loop.ti;
+      loop.integral = loop.next_integral;
       wanted[i] = applied[i] + cross[i];
     }
     s.transfer = false;

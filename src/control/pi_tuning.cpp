@@ -43,8 +43,8 @@ StepQuality StepExperiment::run(const PiTuning& tuning) {
     const double error = 1.0 - y;
     iae += std::abs(error) * dt;
     peak = std::max(peak, y);
-    const double input = tuning.kp * (error + integral / tuning.integral_time_min);
     integral += error * dt;
+    const double input = tuning.kp * (error + integral / tuning.integral_time_min);
     y = element_.gain * response_.advance(input);
     if (!(std::abs(y) < kRunaway)) return quality;
   }

@@ -14,7 +14,8 @@
 
 namespace fpc {
 
-/// u = rest + kp (e + (1/Ti) int e dt) - what the decoupling takes out, e = setpoint - y.
+/// u = rest + kp (e + (1/Ti) int e dt) - what the decoupling takes out, e = setpoint - y. The
+/// integral counts the present error (backward Euler).
 struct AdaptiveLoop {
   int input{}, output{};
   double kp{};                 ///< input units per output unit; tuning given

@@ -32,7 +32,7 @@ struct StepTest {
   double duration_min{60.0};
   double sample_time_min{0.02};
 };
-/// The PI is sampled (forward Euler), the element exact. A rise or settling that does not happen
+/// The PI is sampled (backward Euler), the element exact. A rise or settling that does not happen
 /// counts as the whole duration; a loop that runs away gives infinite numbers. No allocation in
 /// run(), so that a swarm can call it often.
 class StepExperiment {
