@@ -172,13 +172,22 @@ void AdaptivePi::learn(const Measurement& now) {
   ++s.experience;
 }
 
-bool AdaptivePi::acceptable(std::size_t output) const {
+bool AdaptivePi::plausible(std::size_t output) const {
   const State& s = *state_;
-  const AdaptationParams& guard = s.params.adaptation;
+  const double upper = s.params.adaptation.ratio_upper;
   for (const std::size_t j : kLoops) {
     const double ratio = s.estimators[output].gain(j) / s.params.model[output][j].gain;
-    if (!(ratio >= 1.0 / guard.ratio_upper && ratio <= guard.ratio_upper)) return false;
-    if (!(s.estimators[output].deviation(j) <= guard.deviation_upper * ratio)) return false;
+    if (!(ratio >= 1.0 / upper && ratio <= upper)) return false;
+  }
+  return true;
+}
+
+bool AdaptivePi::certain(std::size_t output) const {
+  const State& s = *state_;
+  for (const std::size_t j : kLoops) {
+    const double ratio = s.estimators[output].gain(j) / s.params.model[output][j].gain;
+    if (!(s.estimators[output].deviation(j) <= s.params.adaptation.deviation_upper * ratio))
+      return false;
   }
   return true;
 }
@@ -189,14 +198,13 @@ void AdaptivePi::retune() {
   if (!s.adapting || s.estimators.empty() || s.experience <= guard.start_steps) return;
   for (const std::size_t i : kLoops) {
     if (!s.learned[i]) continue;
-    if (!acceptable(i)) {
-      if (++s.refused[i] >= guard.refused_steps) {
-        s.estimators[i].restart(s.in_use[i][0], s.in_use[i][1]);
-        s.refused[i] = 0;
-      }
+    s.refused[i] = plausible(i) ? 0 : s.refused[i] + 1;
+    if (s.refused[i] >= guard.refused_steps) {
+      s.estimators[i].restart(s.in_use[i][0], s.in_use[i][1]);
+      s.refused[i] = 0;
       continue;
     }
-    s.refused[i] = 0;
+    if (s.refused[i] > 0 || !certain(i)) continue;
     for (const std::size_t j : kLoops) {
       const double most = guard.change_upper * std::abs(s.in_use[i][j]);
       s.in_use[i][j] += std::clamp(s.estimators[i].gain(j) - s.in_use[i][j], -most, most);

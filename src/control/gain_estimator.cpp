@@ -64,13 +64,14 @@ bool GainEstimator::update(double y) {
   if (params_.bias) regressor_[2] = 1.0;
   const double error = y - regressor_.dot(rls_.theta());
   if (!rls_.update(regressor_, y)) return false;
+  const double left = y - regressor_.dot(rls_.theta());  // error * left: free of what P(0) added
   weight_ = params_.forgetting * weight_ + 1.0;
-  error_variance_ += (error * error - error_variance_) / weight_;
+  error_variance_ += (error * left - error_variance_) / weight_;
   return true;
 }
 
 double GainEstimator::deviation(std::size_t j) const {
-  return std::sqrt(rls_.variance(index(j)) * error_variance_);
+  return std::sqrt(rls_.variance(index(j)) * std::max(error_variance_, 0.0));
 }
 
 }  // namespace fpc

@@ -100,7 +100,8 @@ bool MisoEstimator::update(VectorRef input, double y) {
     learned = rls_.update(regressor_, y);
     if (learned) {
       weight_ = params_.rls.forgetting * weight_ + 1.0;
-      residual_variance_ += (error * error - residual_variance_) / weight_;
+      const double left = y - regressor_.dot(rls_.theta());
+      residual_variance_ += (error * left - residual_variance_) / weight_;
     }
   }
   model_output_ = own ? regressor_.dot(rls_.theta()) : y;  // after learning: a posteriori
@@ -149,6 +150,6 @@ double MisoEstimator::gainDeviation(int input) const {
   return residualDeviation() * std::sqrt(gradient.dot(rls_.covariance() * gradient));
 }
 
-double MisoEstimator::residualDeviation() const { return std::sqrt(residual_variance_); }
+double MisoEstimator::residualDeviation() const { return std::sqrt(std::max(residual_variance_, 0.0)); }
 
 }  // namespace fpc

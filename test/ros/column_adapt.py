@@ -13,7 +13,7 @@ from std_srvs.srv import SetBool, Trigger
 import ring
 
 OVERRIDE, RELEASE = 1, 3
-NOMINAL, JUMPED, RATIO_UPPER, LIMIT, SAMPLES = 12.8, 15.36, 3.0, 2.0, 900
+NOMINAL, JUMPED, RATIO_UPPER, LIMIT, SAMPLES = 12.8, 15.36, 2.0, 2.0, 900
 
 
 class ColumnAdapt(unittest.TestCase):

@@ -29,10 +29,10 @@ struct AdaptationParams {
   GainEstimatorParams estimator;
   int start_steps{60};           ///< samples of learning after a start before anything is retuned
   double change_upper{0.1};      ///< largest relative change of a gain in use per sample
-  double ratio_upper{3.0};       ///< > 1: gains beyond nominal / ratio .. nominal * ratio are refused
-  double deviation_upper{0.25};  ///< gains less certain than this (relative) are refused
-  int refused_steps{30};         ///< refused for this long, the estimator starts again at the last
-                                 ///< good gains
+  double ratio_upper{2.0};       ///< > 1: gains beyond nominal / ratio .. nominal * ratio are refused
+  double deviation_upper{0.1};   ///< gains less certain than this (relative) are refused
+  int refused_steps{60};         ///< beyond that range for so long: the estimator starts again at
+                                 ///< the last good gains
   void validate() const;         ///< @throws InputError naming the field
 };
 
@@ -71,7 +71,8 @@ class AdaptivePi final : public Controller {
   struct State;
   void learn(const Measurement& now);
   void retune();
-  bool acceptable(std::size_t output) const;
+  bool plausible(std::size_t output) const;
+  bool certain(std::size_t output) const;
   void integrate(const ControllerOutput& output, const std::array<double, 2>& wanted);
   void refreshSignals();
   std::unique_ptr<State> state_;
