@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/control/decoupling.hpp"
 #include "fmbpc/control/pi_tuning.hpp"
 
@@ -48,44 +47,12 @@ struct AdaptivePi::State {
   Gains in_use{};
   std::array<int, 2> refused{};  // samples, of each output
   std::array<bool, 2> learned{};
+  std::array<double, 2> applied{}, wanted{};  // inputs: from rest; absolute, before the limits
   bool adapting{true}, transfer{false}, started{false};
   int waiting{};     // samples until anything is learned: the lags do not know the past
   int experience{};  // samples learned since the start
   std::vector<std::pair<std::string, double>> signals;
 };
-
-void AdaptationParams::validate() const {
-  estimator.validate();
-  require(start_steps >= 0, "start_steps", "an integer >= 0");
-  require(change_upper > 0.0 && change_upper <= 1.0, "change_upper", "a number in (0, 1]");
-  require(std::isfinite(ratio_upper) && ratio_upper > 1.0, "ratio_upper", "a number > 1");
-  require(deviation_upper > 0.0, "deviation_upper", "a number > 0");
-  require(refused_steps >= 1, "refused_steps", "an integer >= 1");
-}
-
-void AdaptivePiParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
-  require(n_y == 2 && n_u == 2, "controller.type adaptive_pi", "a plant of two inputs and outputs");
-  require(tuning == "given" || tuning == "imc" || tuning == "pso", "controller.tuning",
-          "given, imc or pso");
-  for (const std::size_t i : kLoops) {
-    const AdaptiveLoop& loop = loops[i];
-    const std::string key = "controller.loops[" + std::to_string(i) + "].";
-    require(loop.input >= 0 && loop.input < 2, key + "input", "one of the plant's inputs");
-    require(loop.output >= 0 && loop.output < 2, key + "output", "one of the plant's outputs");
-    require(tuning != "imc" || loop.imc_time_constant_min > 0.0, key + "imc_time_constant_min",
-            "a time > 0");
-    if (tuning != "given") continue;
-    require(std::isfinite(loop.kp), key + "kp", "a finite number");
-    require(std::isfinite(loop.integral_time_min) && loop.integral_time_min > 0.0,
-            key + "integral_time_min", "a time > 0");
-  }
-  require(loops[0].input != loops[1].input, "controller.loops", "two different inputs");
-  require(loops[0].output != loops[1].output, "controller.loops", "two different outputs");
-  if (decoupling || adaptation.enabled || tuning != "given")
-    for (const std::size_t i : kLoops)
-      for (const std::size_t j : kLoops) model[i][j].validate("controller.model: ");
-  adaptation.validate();
-}
 
 AdaptivePi::AdaptivePi(const AdaptivePiParams& params, InputLimits limits, PlantInfo plant) {
   params.validate(static_cast<Eigen::Index>(plant.outputs.size()),
@@ -105,10 +72,15 @@ AdaptivePi::AdaptivePi(const AdaptivePiParams& params, InputLimits limits, Plant
     if (params.adaptation.enabled)
       s.estimators.emplace_back(params.model[i], s.dt, params.adaptation.estimator);
   }
+  nameSignals();
+}
+
+void AdaptivePi::nameSignals() {
+  State& s = *state_;
   for (const std::size_t i : kLoops) {
-    const auto& output = s.plant.outputs[static_cast<std::size_t>(params.loops[i].output)].name;
+    const auto& output = s.plant.outputs[static_cast<std::size_t>(s.params.loops[i].output)].name;
     for (const std::size_t j : kLoops) {
-      const auto& input = s.plant.inputs[static_cast<std::size_t>(params.loops[j].input)].name;
+      const auto& input = s.plant.inputs[static_cast<std::size_t>(s.params.loops[j].input)].name;
       const std::string pair = "_" + output + "_" + input;
       for (const char* what : {"gain", "gain_deviation", "gain_in_use"})
         s.signals.emplace_back(what + pair, 0.0);
@@ -123,7 +95,6 @@ AdaptivePi::~AdaptivePi() = default;
 
 void AdaptivePi::reset(const Measurement& start) {
   State& s = *state_;
-  std::array<double, 2> zero{};
   const bool fresh = start.header.step == 0;
   for (const std::size_t i : kLoops) {
     State::Loop& loop = s.loops[i];
@@ -131,9 +102,9 @@ void AdaptivePi::reset(const Measurement& start) {
     loop.rest_input = start.input_applied[s.params.loops[i].input];
     loop.rest_output = start.outputs[s.params.loops[i].output];
   }
-  if (s.decoupling) s.decoupling->rest(zero[0], zero[1]);
+  if (s.decoupling) s.decoupling->rest(0.0, 0.0);
   for (std::size_t i = 0; i < s.estimators.size(); ++i) {
-    s.estimators[i].rest(zero[0], zero[1]);
+    s.estimators[i].rest(0.0, 0.0);
     if (fresh) s.estimators[i].restart(s.params.model[i][0].gain, s.params.model[i][1].gain);
   }
   if (fresh) {
@@ -214,74 +185,81 @@ void AdaptivePi::retune() {
   if (s.decoupling) s.decoupling->setGains(s.in_use);
 }
 
-void AdaptivePi::integrate(const ControllerOutput& output,
-                           const std::array<double, 2>& wanted) {
+/// Not further the way a limit holds back.
+void AdaptivePi::integrate(const ControllerOutput& output) {
   State& s = *state_;
   for (const std::size_t i : kLoops) {
-    const int input = s.params.loops[i].input;
+    const double sent = output.input[s.params.loops[i].input];
     State::Loop& loop = s.loops[i];
-    const double push = loop.kp * loop.error;  // the way the input would go
-    const bool held_back = (wanted[i] > output.input[input] && push > 0.0) ||
-                           (wanted[i] < output.input[input] && push < 0.0);
+    const double push = loop.kp * loop.error;
+    const bool held_back = (s.wanted[i] > sent && push > 0.0) || (s.wanted[i] < sent && push < 0.0);
     if (!held_back && std::isfinite(loop.next_integral)) loop.integral = loop.next_integral;
   }
 }
 
-void AdaptivePi::step(const Measurement& now, const SetpointSource& setpoint,
-                      ControllerOutput& output) {
+void AdaptivePi::observe(const Measurement& now) {
   State& s = *state_;
-  std::array<double, 2> applied{}, wanted{}, cross{};
   for (const std::size_t i : kLoops)
-    applied[i] = now.input_applied[s.params.loops[i].input] - s.loops[i].rest_input;
+    s.applied[i] = now.input_applied[s.params.loops[i].input] - s.loops[i].rest_input;
   if (s.started) {
-    if (s.decoupling) s.decoupling->record(applied[0], applied[1]);
-    for (GainEstimator& estimator : s.estimators) estimator.advance(applied[0], applied[1]);
+    if (s.decoupling) s.decoupling->record(s.applied[0], s.applied[1]);
+    for (GainEstimator& estimator : s.estimators) estimator.advance(s.applied[0], s.applied[1]);
   }
   s.started = true;
-  learn(now);
-  retune();
+}
+
+void AdaptivePi::propose(const Measurement& now, const SetpointSource& setpoint) {
+  State& s = *state_;
   for (const std::size_t i : kLoops) {
     State::Loop& loop = s.loops[i];
     const int y = s.params.loops[i].output;
     loop.error = setpoint.present()[y] - now.outputs[y];
     loop.next_integral = loop.integral + loop.error * s.dt;
-    wanted[i] = loop.kp * (loop.error + loop.next_integral / loop.ti);
+    s.wanted[i] = loop.kp * (loop.error + loop.next_integral / loop.ti);
   }
+  std::array<double, 2> cross{};
   if (s.decoupling) {
-    s.decoupling->apply(wanted);
+    s.decoupling->apply(s.wanted);
     cross = s.decoupling->cross();
   }
-  if (s.transfer) {
-    for (const std::size_t i : kLoops) {
-      State::Loop& loop = s.loops[i];
-      if (loop.kp != 0.0)
-        loop.next_integral = ((applied[i] + cross[i]) / loop.kp - loop.error) * loop.ti;
-      loop.integral = loop.next_integral;
-      wanted[i] = applied[i] + cross[i];
-    }
-    s.transfer = false;
-  }
-  output.input = now.input_applied;
-  output.reference = setpoint.present();
-  output.predictive = false;
-  output.ok = true;
-  output.remark = "";
   for (const std::size_t i : kLoops) {
-    wanted[i] += s.loops[i].rest_input - cross[i];
-    if (std::isfinite(wanted[i]))
-      output.input[s.params.loops[i].input] = wanted[i];
-    else
-      output.ok = false;
+    State::Loop& loop = s.loops[i];
+    if (s.transfer) {
+      s.wanted[i] = s.applied[i] + cross[i];
+      if (loop.kp != 0.0) loop.next_integral = (s.wanted[i] / loop.kp - loop.error) * loop.ti;
+      loop.integral = loop.next_integral;
+    }
+    s.wanted[i] += loop.rest_input - cross[i];
   }
+  s.transfer = false;
+}
+
+void AdaptivePi::send(const Measurement& now, ControllerOutput& output) {
+  State& s = *state_;
+  output.input = now.input_applied;
+  output.predictive = false;
+  output.ok = std::isfinite(s.wanted[0]) && std::isfinite(s.wanted[1]);
+  output.remark = output.ok ? "" : "the control law overflowed: input held";
+  for (const std::size_t i : kLoops)
+    if (std::isfinite(s.wanted[i])) output.input[s.params.loops[i].input] = s.wanted[i];
   s.limits.clip(output.input, now.input_applied);
   output.source = ActionSource::kBase;
   for (const std::size_t i : kLoops)
-    if (output.input[s.params.loops[i].input] != wanted[i]) output.source = ActionSource::kClipped;
-  integrate(output, wanted);
+    if (output.input[s.params.loops[i].input] != s.wanted[i])
+      output.source = ActionSource::kClipped;
+  if (!output.ok) output.source = ActionSource::kHeld;
+}
+
+void AdaptivePi::step(const Measurement& now, const SetpointSource& setpoint,
+                      ControllerOutput& output) {
+  output.reference = setpoint.present();
+  observe(now);
+  learn(now);
+  retune();
+  propose(now, setpoint);
+  send(now, output);
+  integrate(output);
   refreshSignals();
-  if (output.ok) return;
-  output.source = ActionSource::kHeld;
-  output.remark = "the control law overflowed: input held";
 }
 
 void AdaptivePi::refreshSignals() {

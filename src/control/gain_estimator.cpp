@@ -59,8 +59,7 @@ void GainEstimator::advance(double input_1, double input_2) {
 
 bool GainEstimator::update(double y) {
   if (!(excitation_ >= params_.excitation_lower)) return false;
-  for (std::size_t j = 0; j < 2; ++j)
-    regressor_[index(j)] = row_[j].gain * responses_[j].value();
+  for (std::size_t j = 0; j < 2; ++j) regressor_[index(j)] = row_[j].gain * responses_[j].value();
   if (params_.bias) regressor_[2] = 1.0;
   const double error = y - regressor_.dot(rls_.theta());
   if (!rls_.update(regressor_, y)) return false;

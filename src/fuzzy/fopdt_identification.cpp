@@ -126,8 +126,8 @@ std::optional<Fopdt> MisoEstimator::element(int input) const {
   std::array<Vector, 2> own{numerator(0), numerator(1)};
   for (std::size_t first = 0; first < 2; ++first) {
     Vector b0 = numerator(0), b1 = numerator(1);
-    remainder[first] = deflate(b0, poles[1 - first]) / own[0].norm() +
-                       deflate(b1, poles[first]) / own[1].norm();
+    remainder[first] =
+        deflate(b0, poles[1 - first]) / own[0].norm() + deflate(b1, poles[first]) / own[1].norm();
   }
   const std::size_t first = remainder[0] <= remainder[1] ? 0 : 1;
   const std::size_t mine = input == 0 ? first : 1 - first;
@@ -150,6 +150,8 @@ double MisoEstimator::gainDeviation(int input) const {
   return residualDeviation() * std::sqrt(gradient.dot(rls_.covariance() * gradient));
 }
 
-double MisoEstimator::residualDeviation() const { return std::sqrt(std::max(residual_variance_, 0.0)); }
+double MisoEstimator::residualDeviation() const {
+  return std::sqrt(std::max(residual_variance_, 0.0));
+}
 
 }  // namespace fpc

@@ -28,8 +28,8 @@ class Submodel {
   }
   OutputModel finish(double offset) {
     Rule rule;
-    rule.coefficients =
-        Eigen::Map<const Vector>(coefficients.data(), static_cast<Eigen::Index>(coefficients.size()));
+    rule.coefficients = Eigen::Map<const Vector>(coefficients.data(),
+                                                 static_cast<Eigen::Index>(coefficients.size()));
     rule.offset = offset;
     model.rules.push_back(std::move(rule));
     return std::move(model);
@@ -70,7 +70,9 @@ OutputModel submodelOf(int output, const std::vector<LinearElement>& elements,
 
 TsModel linearModel(const TsModel& names, const std::vector<LinearElement>& elements,
                     const LinearPoint& point) {
-  const auto size = [](const std::vector<SignalInfo>& s) { return static_cast<Eigen::Index>(s.size()); };
+  const auto size = [](const std::vector<SignalInfo>& s) {
+    return static_cast<Eigen::Index>(s.size());
+  };
   require(point.outputs.size() == size(names.outputs) &&
               point.inputs.size() == size(names.inputs) &&
               point.disturbances.size() == size(names.disturbances),

@@ -117,7 +117,8 @@ SwarmResult minimizeBySwarm(const std::function<double(const Vector&)>& cost, co
       swarm.result().stopped = true;
       break;
     }
-    const double part = params.iterations > 1 ? static_cast<double>(t) / (params.iterations - 1) : 0.0;
+    const double part =
+        params.iterations > 1 ? static_cast<double>(t) / (params.iterations - 1) : 0.0;
     swarm.move(params.inertia_start + part * (params.inertia_end - params.inertia_start));
     swarm.evaluate();
   }

@@ -35,8 +35,8 @@ void requireSignals(const TransferMatrix& matrix) {
 void requireElement(const TransferMatrix& matrix, const TransferElement& e,
                     const std::string& key) {
   require(find(matrix.outputs, e.output) >= 0, key + "output", "one of the matrix's outputs");
-  require(find(matrix.inputs, e.from) >= 0 || find(matrix.disturbances, e.from) >= 0,
-          key + "from", "one of the matrix's inputs or disturbances");
+  require(find(matrix.inputs, e.from) >= 0 || find(matrix.disturbances, e.from) >= 0, key + "from",
+          "one of the matrix's inputs or disturbances");
   require(std::isfinite(e.gain) && std::abs(e.gain) <= kWide, key + "gain", "a finite number");
   require(std::isfinite(e.time_constant) && e.time_constant > 0.0, key + "time_constant_min",
           "a time > 0");
@@ -72,8 +72,8 @@ TransferMatrix woodBerry() {
   m.outputs = {{"y_D", "mol%", 96.25, 0.0, 200.0}, {"x_B", "mol%", 0.5, -100.0, 100.0}};
   m.inputs = {{"L", "lb/min", 0.0, -2.0, 2.0}, {"V", "lb/min", 0.0, -2.0, 2.0}};
   m.disturbances = {{"F", "lb/min", 0.0, -2.0, 2.0}};
-  m.elements = {{"y_D", "L", 12.8, 16.7, 1.0}, {"y_D", "V", -18.9, 21.0, 3.0},
-                {"y_D", "F", 3.8, 14.9, 8.0},  {"x_B", "L", 6.6, 10.9, 7.0},
+  m.elements = {{"y_D", "L", 12.8, 16.7, 1.0},  {"y_D", "V", -18.9, 21.0, 3.0},
+                {"y_D", "F", 3.8, 14.9, 8.0},   {"x_B", "L", 6.6, 10.9, 7.0},
                 {"x_B", "V", -19.4, 14.4, 3.0}, {"x_B", "F", 4.9, 13.2, 3.0}};
   return m;
 }

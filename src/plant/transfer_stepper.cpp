@@ -9,7 +9,8 @@ namespace fpc {
 namespace {
 
 constexpr double kMostSamples = 1e6;
-constexpr double kSnap = 1e-9;  // samples: a dead time this near to whole samples is meant to be whole
+constexpr double kSnap =
+    1e-9;  // samples: a dead time this near to whole samples is meant to be whole
 
 /// (1 - exp(-z)) / z, and its limit.
 double meanDecay(double z) { return std::abs(z) < 1e-12 ? 1.0 : -std::expm1(-z) / z; }

@@ -50,8 +50,8 @@ std::array<double, 2> errors(const Case& c) {
   std::mt19937_64 generator(9);
   std::normal_distribution<double> normal;
   for (int k = 0; k < c.samples; ++k) {
-    const double y = process.advance() + c.noise * normal(generator) +
-                     (k >= 200 ? c.step_at_200 : 0.0);
+    const double y =
+        process.advance() + c.noise * normal(generator) + (k >= 200 ? c.step_at_200 : 0.0);
     estimator.advance(process.inputs[0], process.inputs[1]);
     estimator.update(y);
   }

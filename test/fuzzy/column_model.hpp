@@ -28,8 +28,8 @@ inline TsModel columnModel(double sample_time_s, bool feed) {
       elements.push_back({i, SignalKind::kInput, j,
                           matrix[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]});
     if (feed)
-      elements.push_back({i, SignalKind::kDisturbance, 0,
-                          i == 0 ? Fopdt{3.8, 14.9, 8.0} : Fopdt{4.9, 13.2, 3.0}});
+      elements.push_back(
+          {i, SignalKind::kDisturbance, 0, i == 0 ? Fopdt{3.8, 14.9, 8.0} : Fopdt{4.9, 13.2, 3.0}});
   }
   LinearPoint point{(Vector(2) << 96.25, 0.5).finished(), Vector::Zero(2),
                     Vector::Zero(feed ? 1 : 0)};

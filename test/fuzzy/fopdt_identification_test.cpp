@@ -103,7 +103,8 @@ int samplesNeeded(const Fopdt& truth, std::uint64_t seed) {
   return last_wrong + 1;
 }
 
-/// Records differ in when their input first changes sign: an input that has not moved shows nothing.
+/// Records differ in when their input first changes sign: an input that has not moved shows
+/// nothing.
 TEST(MisoEstimator, FindsOneElementInAtMostTwentyNoiseFreeSamples) {
   for (const auto& row : test::columnMatrix())
     for (const Fopdt& truth : row) {

@@ -71,9 +71,9 @@ TEST(LinearModel, RefusesElementsOfNobody) {
   const LinearPoint point{Vector::Zero(2), Vector::Zero(2), Vector()};
   const Fopdt e{1.0, 1.0, 0.0};
   EXPECT_THROW(linearModel(names, {{0, SignalKind::kInput, 0, e}}, point), InputError);
-  EXPECT_THROW(linearModel(names, {{0, SignalKind::kInput, 2, e}, {1, SignalKind::kInput, 0, e}},
-                           point),
-               InputError);
+  EXPECT_THROW(
+      linearModel(names, {{0, SignalKind::kInput, 2, e}, {1, SignalKind::kInput, 0, e}}, point),
+      InputError);
   EXPECT_THROW(linearModel(names, {}, {Vector::Zero(1), Vector::Zero(2), Vector()}), InputError);
 }
 

@@ -12,9 +12,7 @@ namespace {
 
 Vector two(double a, double b) { return (Vector(2) << a, b).finished(); }
 
-double bowl(const Vector& x) {
-  return std::pow(x[0] - 0.3, 2) + 10.0 * std::pow(x[1] + 0.2, 2);
-}
+double bowl(const Vector& x) { return std::pow(x[0] - 0.3, 2) + 10.0 * std::pow(x[1] + 0.2, 2); }
 
 TEST(ParticleSwarm, FindsTheBottomOfABowlWithBothUsualSettings) {
   SwarmParams falling, constriction;
@@ -78,8 +76,7 @@ TEST(ParticleSwarm, NeverLeavesTheBox) {
 TEST(ParticleSwarm, BeginsAtTheStartAndTakesNothingWorse) {
   SwarmParams params;
   params.iterations = 0;
-  const SwarmResult found =
-      minimizeBySwarm(bowl, two(-1, -1), two(1, 1), params, two(0.3, -0.2));
+  const SwarmResult found = minimizeBySwarm(bowl, two(-1, -1), two(1, 1), params, two(0.3, -0.2));
   EXPECT_EQ(found.cost, 0.0);
   EXPECT_EQ(found.best, two(0.3, -0.2));
 }

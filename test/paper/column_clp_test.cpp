@@ -18,8 +18,8 @@ using test::columnIndices;
 using test::columnRun;
 
 struct Outcome {
-  double top{}, bottom{};       ///< ISE over the samples, mol%^2
-  double y2_below{}, y_out{};   ///< largest excess of the lower limit of x_B, of any limit
+  double top{}, bottom{};      ///< ISE over the samples, mol%^2
+  double y2_below{}, y_out{};  ///< largest excess of the lower limit of x_B, of any limit
   std::uint64_t violations{};
 };
 
@@ -34,14 +34,15 @@ Outcome outcome(const char* title, const LoopFile& loop) {
     o.y2_below = std::max(o.y2_below, -0.05 - y[1]);
     for (Eigen::Index i = 0; i < 2; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      o.y_out = std::max({o.y_out, loop.report.output_lower[k] - y[i], y[i] - loop.report.output_upper[k]});
+      o.y_out = std::max(
+          {o.y_out, loop.report.output_lower[k] - y[i], y[i] - loop.report.output_upper[k]});
     }
   }
   o.violations = summary.input_violations + summary.move_violations;
-  std::printf("%-36s ISE y_D %.3f, x_B %.3f; x_B below its limit by %.4f, largest excess %.4f, "
-              "violations %llu\n",
-              title, o.top, o.bottom, o.y2_below, o.y_out,
-              static_cast<unsigned long long>(o.violations));
+  std::printf(
+      "%-36s ISE y_D %.3f, x_B %.3f; x_B below its limit by %.4f, largest excess %.4f, "
+      "violations %llu\n",
+      title, o.top, o.bottom, o.y2_below, o.y_out, static_cast<unsigned long long>(o.violations));
   return o;
 }
 
@@ -79,8 +80,8 @@ TEST(ColumnClp, DoesAsWellAsAPlainConstrainedLinearController) {
       const Vector y = rival.step();
       top += (1.0 - y[0]) * (1.0 - y[0]);
       bottom += (-0.5 - y[1]) * (-0.5 - y[1]);
-      excess = std::max({excess, (y - settings.output_upper).maxCoeff(),
-                         (settings.output_lower - y).maxCoeff()});
+      excess = std::max(
+          {excess, (y - settings.output_upper).maxCoeff(), (settings.output_lower - y).maxCoeff()});
       EXPECT_LE(rival.input().cwiseAbs().maxCoeff(), 0.25 + 1e-9);
     }
     EXPECT_FALSE(rival.failed());
@@ -135,8 +136,8 @@ TEST(ColumnClp, WorksTheSameOnAModelIdentifiedFromTheMeasuredSums) {
   for (const auto& element : identifiedRow(1)) elements.push_back(element);
   LoopFile loop = readLoop("column_clp_tracking");
   const LinearPoint point{(Vector(2) << 96.25, 0.5).finished(), Vector::Zero(2), Vector()};
-  loop.model = matchToPlant(linearModel(test::columnModel(60.0, false), elements, point),
-                            loop.plant_info);
+  loop.model =
+      matchToPlant(linearModel(test::columnModel(60.0, false), elements, point), loop.plant_info);
   const Outcome identified = outcome("tracking, identified model", loop);
   const Outcome clip = outcome("clipped", "column_clip");
   EXPECT_LE(identified.top, 0.75 * clip.top);

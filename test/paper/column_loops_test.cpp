@@ -73,8 +73,9 @@ TEST(ColumnTables, PsoLoopTwoAsPrintedIsNotThatOfTheTablesButAFitIs) {
 }
 
 TEST(ColumnTables, ThePrintedTiReadAsATimeIsUnstable) {
-  const RunRecord run = columnRun("column_pso", {{"controller.loops.0.integral_time_min", "0.0475"},
-                                                 {"controller.loops.1.integral_time_min", "0.0312"}});
+  const RunRecord run =
+      columnRun("column_pso", {{"controller.loops.0.integral_time_min", "0.0475"},
+                               {"controller.loops.1.integral_time_min", "0.0312"}});
   EXPECT_GT(columnIndices(run, 0).iae, 10.0 * columnIndices(columnRun("column_pso"), 0).iae);
 }
 
@@ -86,8 +87,9 @@ double peak(const RunRecord& record, Eigen::Index i) {
 }
 
 TEST(ColumnTables, TheFeedMovesBothCompositionsAsTheTextSays) {
-  const RunRecord run = columnRun("column_pso_feed", {{"controller.loops.1.kp", "-0.1207"},
-                                                      {"controller.loops.1.integral_time_min", "14.94"}});
+  const RunRecord run = columnRun(
+      "column_pso_feed",
+      {{"controller.loops.1.kp", "-0.1207"}, {"controller.loops.1.integral_time_min", "14.94"}});
   const double top = 100.0 * peak(run, 0) / 96.25, bottom = 100.0 * peak(run, 1) / 0.5;
   std::printf("peaks under feed: y_D %.4f %% (0.0995), x_B %.2f %% (63.82; reference 63.5)\n", top,
               bottom);
@@ -100,7 +102,8 @@ TEST(ColumnTables, AStepOfOneLoopDoesNotReachTheOtherOutput) {
     EXPECT_LT(columnIndices(columnRun(name), 1).iae, 0.002) << name;
   for (const char* name : {"column_imc_bottom", "column_pso_bottom"})
     EXPECT_LT(columnIndices(columnRun(name), 0).iae, 0.002) << name;
-  const double coupled = columnIndices(columnRun("column_imc", {{"controller.decoupling", "false"}}), 1).iae;
+  const double coupled =
+      columnIndices(columnRun("column_imc", {{"controller.decoupling", "false"}}), 1).iae;
   std::printf("cross IAE of x_B without decoupling %.3f\n", coupled);
   EXPECT_GT(coupled, 1.0);
 }
@@ -186,11 +189,12 @@ TEST(ColumnAdaptation, SurvivesNoiseAnUnmeasuredFeedAndASensorThatTellsNonsense)
   const Late fed_best = late("Max, oracle, feed", "column_fixed", both(feed, oracle(1.2, 0.8)));
   EXPECT_LT(fed.top, 1.1 * fed_best.top);
   EXPECT_LT(fed.bottom, 1.1 * fed_best.bottom);
-  const Overrides stuck = {
-      {"disturbance.commands", jump + " {time_h: 6.5, name: output/y_D, value: 120}, {time_h: 6.75, "
-                                      "name: output/y_D, mode: release}]"}};
+  const Overrides stuck = {{"disturbance.commands",
+                            jump + " {time_h: 6.5, name: output/y_D, value: 120}, {time_h: 6.75, "
+                                   "name: output/y_D, mode: release}]"}};
   const Late hit = late("Max, adaptive, y_D stuck at 120", "column_adaptive", stuck);
-  const Late hit_best = late("Max, oracle, y_D stuck", "column_fixed", both(stuck, oracle(1.2, 0.8)));
+  const Late hit_best =
+      late("Max, oracle, y_D stuck", "column_fixed", both(stuck, oracle(1.2, 0.8)));
   EXPECT_LT(hit.top, 1.1 * hit_best.top);
   EXPECT_LT(hit.bottom, 1.1 * hit_best.bottom);
 }

@@ -18,8 +18,8 @@ namespace fpc {
 /// integral counts the present error (backward Euler).
 struct AdaptiveLoop {
   int input{}, output{};
-  double kp{};                 ///< input units per output unit; tuning given
-  double integral_time_min{};  ///< Ti > 0; tuning given
+  double kp{};                         ///< input units per output unit; tuning given
+  double integral_time_min{};          ///< Ti > 0; tuning given
   double imc_time_constant_min{10.0};  ///< lambda, of the closed loop asked for; tuning imc
 };
 
@@ -27,18 +27,18 @@ struct AdaptiveLoop {
 struct AdaptationParams {
   bool enabled{false};
   GainEstimatorParams estimator;
-  int start_steps{60};           ///< samples of learning after a start before anything is retuned
-  double change_upper{0.1};      ///< largest relative change of a gain in use per sample
-  double ratio_upper{2.0};       ///< > 1: gains beyond nominal / ratio .. nominal * ratio are refused
-  double deviation_upper{0.1};   ///< gains less certain than this (relative) are refused
-  int refused_steps{60};         ///< beyond that range for so long: the estimator starts again at
-                                 ///< the last good gains
-  void validate() const;         ///< @throws InputError naming the field
+  int start_steps{60};       ///< samples of learning after a start before anything is retuned
+  double change_upper{0.1};  ///< largest relative change of a gain in use per sample
+  double ratio_upper{2.0};   ///< > 1: gains beyond nominal / ratio .. nominal * ratio are refused
+  double deviation_upper{0.1};  ///< gains less certain than this (relative) are refused
+  int refused_steps{60};        ///< beyond that range for so long: the estimator starts again at
+                                ///< the last good gains
+  void validate() const;        ///< @throws InputError naming the field
 };
 
 struct AdaptivePiParams {
   std::array<AdaptiveLoop, 2> loops;
-  FopdtMatrix model{};          ///< [loop of the output][loop of the input], minutes
+  FopdtMatrix model{};  ///< [loop of the output][loop of the input], minutes
   bool decoupling{true};
   std::string tuning{"given"};  ///< given, imc or pso: from the model, at construction
   AdaptationParams adaptation;
@@ -73,7 +73,11 @@ class AdaptivePi final : public Controller {
   void retune();
   bool plausible(std::size_t output) const;
   bool certain(std::size_t output) const;
-  void integrate(const ControllerOutput& output, const std::array<double, 2>& wanted);
+  void observe(const Measurement& now);
+  void propose(const Measurement& now, const SetpointSource& setpoint);
+  void send(const Measurement& now, ControllerOutput& output);
+  void integrate(const ControllerOutput& output);
+  void nameSignals();
   void refreshSignals();
   std::unique_ptr<State> state_;
 };

@@ -10,17 +10,17 @@
 namespace fpc {
 
 struct GainEstimatorParams {
-  double forgetting{0.98};          ///< of the least squares, (0, 1]
+  double forgetting{0.98};           ///< of the least squares, (0, 1]
   double initial_covariance{100.0};  ///< of the ratios gain / nominal gain
   double covariance_bound{1e4};
-  bool bias{true};               ///< a column that takes what no input explains (an unmeasured feed)
+  bool bias{true};  ///< a column that takes what no input explains (an unmeasured feed)
   double excitation_lower{0.0};  ///< output units: without this much movement nothing is learned
   void validate() const;         ///< @throws InputError naming the field
 };
 
 /// y(k) = sum_j K_j phi_j(k) + bias, phi_j the unit-gain answer of element j (its lag and dead time
-/// are taken as known) to the inputs applied. The regressors are free of measurement noise, so noise
-/// does not bias the gains. Parameters are ratios to the nominal gains, so their scale is 1.
+/// are taken as known) to the inputs applied. The regressors are free of measurement noise, so
+/// noise does not bias the gains. Parameters are ratios to the nominal gains, so their scale is 1.
 class GainEstimator {
  public:
   /// @throws InputError naming the field.

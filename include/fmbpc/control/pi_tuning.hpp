@@ -22,10 +22,10 @@ PiTuning imcTuning(const Fopdt& element, double lambda_min);
 
 /// How the closed loop answers a unit step of the setpoint.
 struct StepQuality {
-  double rise_time{};  ///< 10 to 90 %, min
-  double settling_time{};  ///< into 2 % for good, min
-  double overshoot{};      ///< fraction of the step
-  double iae{};            ///< integral of |e|, min
+  double rise_time{};                                                    ///< 10 to 90 %, min
+  double settling_time{};                                                ///< into 2 % for good, min
+  double overshoot{};                                                    ///< fraction of the step
+  double iae{};                                                          ///< integral of |e|, min
   double cost() const { return rise_time + settling_time + overshoot; }  ///< J of Mekki and Saad
 };
 struct StepTest {

@@ -13,8 +13,8 @@
 
 namespace fpc {
 
-/// From y(k+1) = a y(k) + sum_r b_r u(k+1-r): K = S / (1 - a), S = sum b, tau = -Ts / ln a. With the
-/// centroid sum r b_r / S = 1 + d + w, 0 <= w < 1, a held input of dead time (d + f) Ts gives
+/// From y(k+1) = a y(k) + sum_r b_r u(k+1-r): K = S / (1 - a), S = sum b, tau = -Ts / ln a. With
+/// the centroid sum r b_r / S = 1 + d + w, 0 <= w < 1, a held input of dead time (d + f) Ts gives
 /// f = 1 - ln(a + w (1 - a)) / ln a. Empty unless 0 < a < 1, S is not lost in rounding, and the
 /// centroid is at least 1.
 std::optional<Fopdt> recoverFopdt(double a, VectorRef b, double sample_time_min);
@@ -23,15 +23,16 @@ std::optional<Fopdt> recoverFopdt(double a, VectorRef b, double sample_time_min)
 std::optional<Fopdt> recoverFopdtRounded(double a, VectorRef b, double sample_time_min);
 
 struct MisoParams {
-  int numerator_terms{10};  ///< m: b_1..b_m of each input; reaches dead times of m - n_u - 1 samples
-  bool bias{true};          ///< a column of ones, for what no input explains
+  int numerator_terms{
+      10};          ///< m: b_1..b_m of each input; reaches dead times of m - n_u - 1 samples
+  bool bias{true};  ///< a column of ones, for what no input explains
   RlsParams rls{1.0, 1e6, 1e8};
   /// arx: measured y in the regressor; noise biases it whatever the amount of data. output_error:
   /// the model's own output there (Landau 1976), unbiased; one input only, as 1/A - 1/2 must be
   /// positive real, which a first-order A always is.
   std::string method{"arx"};
-  int warm_up_steps{60};  ///< output_error: so many samples by arx first
-  int quiet_steps{0};     ///< > 0: inputs that have not moved for so long teach nothing
+  int warm_up_steps{60};         ///< output_error: so many samples by arx first
+  int quiet_steps{0};            ///< > 0: inputs that have not moved for so long teach nothing
   void validate(int n_u) const;  ///< @throws InputError naming the field
 };
 

@@ -1,6 +1,6 @@
-// Particle swarm: minimises any function inside bounds, without derivatives; the same seed gives the
-// same answer. Source: Kennedy and Eberhart (1995); inertia that falls: Shi and Eberhart (1998).
-// The constant inertia 0.9 with C = 1.8 of Mekki and Saad does not converge.
+// Particle swarm: minimises any function inside bounds, without derivatives; the same seed gives
+// the same answer. Source: Kennedy and Eberhart (1995); inertia that falls: Shi and Eberhart
+// (1998). The constant inertia 0.9 with C = 1.8 of Mekki and Saad does not converge.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@ struct SwarmParams {
 
 struct SwarmResult {
   Vector best;
-  double cost{};         ///< infinite if no point had a finite cost
+  double cost{};  ///< infinite if no point had a finite cost
   int evaluations{};
-  bool stopped{false};   ///< by the callback
+  bool stopped{false};  ///< by the callback
 };
 
 /// After each iteration: its number and the best so far. Returns true to stop.

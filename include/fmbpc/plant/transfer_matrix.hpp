@@ -12,10 +12,10 @@ namespace fpc {
 
 /// One element: K exp(-theta s) / ((tau s + 1) (tau_2 s + 1)), from an input or a disturbance.
 struct TransferElement {
-  std::string output, from;  ///< names; `from` is an input or a disturbance
-  double gain{};             ///< output unit per unit of `from`
-  double time_constant{};    ///< tau > 0, time units of the matrix
-  double dead_time{};        ///< theta >= 0
+  std::string output, from;       ///< names; `from` is an input or a disturbance
+  double gain{};                  ///< output unit per unit of `from`
+  double time_constant{};         ///< tau > 0, time units of the matrix
+  double dead_time{};             ///< theta >= 0
   double second_time_constant{};  ///< tau_2 >= 0; 0 is a first-order element
 };
 
@@ -36,11 +36,11 @@ struct TransferMatrix {
 TransferMatrix woodBerry();
 
 /// States: the outputs, then what each element but the first contributes to its output ("y_D_V"),
-/// and the inner lag of each second-order element ("y_D_V_inner"); the first element's share is what
-/// is left. Disturbances: those of the matrix, then "gain/OUTPUT/FROM" of every element, which a
-/// command or a record may change while the plant runs (hidden from controllers). A gain acts on the
-/// lag's input, after the dead time. derivatives() are those without dead times: the same steady
-/// states.
+/// and the inner lag of each second-order element ("y_D_V_inner"); the first element's share is
+/// what is left. Disturbances: those of the matrix, then "gain/OUTPUT/FROM" of every element, which
+/// a command or a record may change while the plant runs (hidden from controllers). A gain acts on
+/// the lag's input, after the dead time. derivatives() are those without dead times: the same
+/// steady states.
 class TransferMatrixPlant final : public Plant {
  public:
   /// @throws InputError, see TransferMatrix::validate().
@@ -52,9 +52,9 @@ class TransferMatrixPlant final : public Plant {
   /// Where an element lives in x, u and d.
   struct Place {
     Eigen::Index output{};
-    Eigen::Index share{-1};   ///< its state; -1: the first element of its output
-    Eigen::Index inner{-1};   ///< its inner lag; -1: first order
-    Eigen::Index source{};    ///< of u, or of d if from_disturbance
+    Eigen::Index share{-1};  ///< its state; -1: the first element of its output
+    Eigen::Index inner{-1};  ///< its inner lag; -1: first order
+    Eigen::Index source{};   ///< of u, or of d if from_disturbance
     bool from_disturbance{};
     Eigen::Index gain{};  ///< of d
     double source_nominal{}, output_nominal{};

@@ -1,4 +1,5 @@
-// What `fmbpc reproduce column` shows: tables 3, 4 and 5 of Mekki and Saad on the Wood-Berry column.
+// What `fmbpc reproduce column` shows: tables 3, 4 and 5 of Mekki and Saad on the Wood-Berry
+// column.
 #pragma once
 
 #include <string>
@@ -8,8 +9,8 @@ namespace fpc::tool {
 
 /// One figure of a paper beside ours.
 struct ColumnRow {
-  std::string name;      ///< of the experiment
-  std::string source;    ///< where the paper's figure stands
+  std::string name;    ///< of the experiment
+  std::string source;  ///< where the paper's figure stands
   std::string quantity;
   double paper{}, here{};
   std::string unit;
