@@ -42,7 +42,7 @@ std::string general(std::string path) {
   path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
   const std::regex named(
       R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|)"
-      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.\w+)");
+      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(s|x|T|Tw)$)");
   return std::regex_replace(path, outputs, "setpoint.$1[].NAME");

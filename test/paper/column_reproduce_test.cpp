@@ -3,24 +3,26 @@
 
 #include <cstdio>
 
-#include "tool/reproduce/column.hpp"
+#include "tool/reproduce/experiment.hpp"
 
 namespace fpc::tool {
 namespace {
 
 TEST(ColumnReproduction, ReachesEveryFigureButThoseOfThePrintedLoopTwo) {
-  const auto rows = reproduceColumn();
-  ASSERT_EQ(rows.size(), 8U + 10U * 4U);
-  for (const ColumnRow& row : rows) {
-    std::printf("%-18s %-8s %-5s %10.4g %10.4g %-12s %-16s %s\n", row.name.c_str(),
-                row.source.c_str(), row.quantity.c_str(), row.paper, row.here, row.unit.c_str(),
-                row.verdict.c_str(), row.note.c_str());
-    const bool misprint = row.note.find("as printed") != std::string::npos ||
-                          row.note.find("contradicts") != std::string::npos;
-    if (!misprint) EXPECT_NE(row.verdict, "not reproducible") << row.name << ' ' << row.quantity;
-    EXPECT_FALSE(row.unit.empty());
-    if (row.verdict == "not reproducible") EXPECT_FALSE(row.note.empty());
+  std::size_t count = 0;
+  for (const Experiment& experiment : experiments()) {
+    if (experiment.name.rfind("column_table", 0) != 0) continue;
+    for (const ReproduceRow& row : experiment.rows()) {
+      std::printf("%-14s %-28s %10.4g %10.4g %-14s %-16s %s\n", experiment.name.c_str(),
+                  row.quantity.c_str(), row.paper, row.here, row.unit.c_str(), name(row.verdict),
+                  row.note.c_str());
+      const bool misprint = row.note.find("contradicts") != std::string::npos;
+      EXPECT_TRUE(misprint || row.verdict != Verdict::kNotReproducible) << row.quantity;
+      EXPECT_FALSE(row.unit.empty());
+      ++count;
+    }
   }
+  EXPECT_EQ(count, 8U + 2U * 5U * 4U);
 }
 
 }  // namespace

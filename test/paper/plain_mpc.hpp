@@ -14,9 +14,9 @@ struct PlainMpcSettings {
   double move_weight{0.1};
   double input_limit{0.25}, move_limit{0.02}, pole{0.85};
   double output_penalty{1e4};
-  Vector target = (Vector(2) << 1.0, -0.5).finished();
-  Vector output_lower = (Vector(2) << -0.05, -0.55).finished();
-  Vector output_upper = (Vector(2) << 1.05, 0.05).finished();
+  Eigen::Vector2d target{1.0, -0.5};
+  Eigen::Vector2d output_lower{-0.05, -0.55};
+  Eigen::Vector2d output_upper{1.05, 0.05};
 };
 
 class PlainMpc {
