@@ -2,6 +2,8 @@
 
 namespace fpc {
 
+bool Controller::adapt(bool /*on*/) { return false; }
+
 void Controller::setModel(const TsModel& /*model*/) {}
 
 bool Controller::mayBeSent(VectorRef /*input*/) const { return true; }

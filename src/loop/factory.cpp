@@ -7,7 +7,7 @@ namespace {
 
 std::vector<std::string> disturbanceNames(const LoopFile& loop) {
   std::vector<std::string> names;
-  const auto plant = makePlant(loop.simulation.plant);
+  const auto plant = makePlant(loop.simulation);
   for (const auto& quantity : plant->description().disturbances) names.push_back(quantity.name);
   return names;
 }
@@ -22,6 +22,8 @@ std::unique_ptr<Controller> makeController(const LoopFile& loop) {
                                                   loop.plant_info);
   if (loop.controller == "hybrid_mpc")
     return std::make_unique<HybridMpc>(loop.hybrid, limits, loop.plant_info);
+  if (loop.controller == "adaptive_pi")
+    return std::make_unique<AdaptivePi>(loop.adaptive_pi, limits, loop.plant_info);
   return std::make_unique<FmbpcLaw>(loop.fmbpc, limits, loop.plant_info);
 }
 

@@ -29,6 +29,8 @@ struct LoopNames {
 LoopFile readSections(YamlSection& root, const std::string& name);
 
 void readPlant(YamlSection& root, LoopFile& loop, LoopNames& names);
+/// Key plant.matrix: the elements of a plant that is a transfer matrix, over its own.
+void readMatrix(YamlSection& plant, SimulationParams& simulation);
 void readSampling(YamlSection& root, LoopFile& loop);
 void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readNoise(YamlSection& root, LoopFile& loop, const LoopNames& names);
@@ -45,6 +47,8 @@ std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
                                      const std::vector<std::string>& outputs);
 /// A time under the key `stem`_s, `stem`_min or `stem`_h, in hours; unchanged if there is none.
 void readHours(YamlSection& section, const std::string& stem, double& hours);
+/// Keys of `controller` with type adaptive_pi.
+void readAdaptivePi(YamlSection& section, LoopFile& loop, const LoopNames& names);
 void readModelSection(YamlSection& root, LoopFile& loop);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);

@@ -215,13 +215,16 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 
 void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("controller");
-  need(section, "type", "one of fmbpc, hybrid_mpc, pi, excitation");
+  const std::vector<std::string> types{"fmbpc", "hybrid_mpc", "pi", "adaptive_pi", "excitation"};
+  need(section, "type", "one of " + join(types));
   loop.controller = "fmbpc";
-  section.oneOf("type", loop.controller, {"fmbpc", "hybrid_mpc", "pi", "excitation"});
+  section.oneOf("type", loop.controller, types);
   if (loop.controller == "fmbpc") {
     readFmbpc(section, loop, names);
   } else if (loop.controller == "hybrid_mpc") {
     readHybridMpc(section, loop, names);
+  } else if (loop.controller == "adaptive_pi") {
+    readAdaptivePi(section, loop, names);
   } else if (loop.controller == "excitation") {
     readExcitation(section, loop, names);
   } else {

@@ -69,7 +69,8 @@ void readInitialState(YamlSection& plant, const PlantDescription& description, V
 
 void readSimulated(YamlSection& plant, LoopFile& loop, LoopNames& names) {
   SimulationParams& sim = loop.simulation;
-  names.plant = makePlant(sim.plant)->description();
+  readMatrix(plant, sim);
+  names.plant = makePlant(sim)->description();
   readParameters(plant, names.plant, sim.parameters);
   readInitialState(plant, names.plant, sim.initial_state);
   names.inputs = namesOf(names.plant.inputs);
@@ -77,7 +78,10 @@ void readSimulated(YamlSection& plant, LoopFile& loop, LoopNames& names) {
   sim.outputs = names.plant.outputs;
   readSubset(plant, "outputs", sim.outputs, namesOf(names.plant.states));
   if (sim.outputs.empty()) plant.fail("outputs", "at least one name");
-  sim.measured_disturbances = names.disturbances;
+  for (const auto& name : names.disturbances)
+    if (std::count(names.plant.hidden_disturbances.begin(), names.plant.hidden_disturbances.end(),
+                   name) == 0)
+      sim.measured_disturbances.push_back(name);
   readSubset(plant, "measured_disturbances", sim.measured_disturbances, names.disturbances);
   names.outputs = sim.outputs;
   for (const auto& name : names.disturbances)  // PlantInfo keeps the plant's order

@@ -24,6 +24,8 @@ std::string namesOf(const std::vector<Named>& things) {
 
 }  // namespace
 
+std::unique_ptr<PlantStepper> Plant::makeStepper(double) const { return nullptr; }
+
 bool registerPlant(const std::string& name, PlantFactory factory) {
   return registry().emplace(name, std::move(factory)).second;
 }

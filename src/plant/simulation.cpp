@@ -32,10 +32,11 @@ Eigen::Index indexOf(const std::vector<Quantity>& quantities, const std::string&
 
 Simulation::Simulation(SimulationParams params)
     : params_(std::move(params)),
-      plant_(makePlant(params_.plant, params_.parameters)),
+      plant_(makePlant(params_)),
       clock_(params_.sample_time_s, params_.start_time_s),
       actuator_((params_ = checked(std::move(params_), *plant_)).actuator),
       integrator_(*plant_, params_.integrator),
+      stepper_(plant_->makeStepper(params_.sample_time_s)),
       commands_(namesForCommands(params_, plant_->description())),
       info_(makePlantInfo(params_, plant_->description())) {
   const PlantDescription& plant = plant_->description();
@@ -60,6 +61,7 @@ const Measurement& Simulation::reset(std::uint64_t run_id) {
   state_.actuator_clips = 0;
   state_.input_missing = false;
   actuator_.reset();
+  if (stepper_) stepper_->reset(params_.actuator.initial, params_.disturbance_nominal);
   noise_.seed(params_.noise_seed);
   trouble_.clear();
   for (std::size_t i = 0; i < delays_.size(); ++i) delays_[i].reset(state_.state[output_state_[i]]);
@@ -103,9 +105,7 @@ const Measurement& Simulation::integrate() {
   }
   const std::uint32_t step = measurement_.header.step;
   passLocalLoop();
-  const IntegrationResult result = integrator_.advance(state_.state, plant_input_,
-                                                       state_.disturbances, params_.sample_time_s);
-  if (!result.ok()) trouble_ = "sample " + std::to_string(step) + ": " + result.reason;
+  movePlant();
   measurement_.header = clock_.header(measurement_.header.run_id, step + 1);
   state_.actuator_clips = actuator_.clips();
   state_.input_missing = actuator_.missing();
@@ -124,6 +124,15 @@ void Simulation::passLocalLoop() {
     double& input = plant_input_[static_cast<Eigen::Index>(i)];
     input = std::clamp(input, ranges[i].lower, ranges[i].upper);
   }
+}
+
+void Simulation::movePlant() {
+  const Vector &u = plant_input_, &d = state_.disturbances;
+  if (stepper_) return stepper_->advance(state_.state, u, d);
+  const IntegrationResult result =
+      integrator_.advance(state_.state, u, d, params_.sample_time_s);
+  if (!result.ok())
+    trouble_ = "sample " + std::to_string(measurement_.header.step) + ": " + result.reason;
 }
 
 void Simulation::updateDisturbances() {

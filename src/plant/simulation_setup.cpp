@@ -80,6 +80,11 @@ void checkSensors(SimulationParams& params) {
 
 }  // namespace
 
+std::unique_ptr<Plant> makePlant(const SimulationParams& params) {
+  if (params.matrix.empty()) return makePlant(params.plant, params.parameters);
+  return std::make_unique<TransferMatrixPlant>(params.matrix);
+}
+
 SimulationParams checked(SimulationParams params, const Plant& plant) {
   const PlantDescription& description = plant.description();
   if (params.outputs.empty()) params.outputs = description.outputs;

@@ -25,6 +25,9 @@ const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_nod
 std::string FmbpcControllerNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "fmbpc");
 }
+std::string AdaptivePiControllerNode::idleReason(const LoopFile& loop) {
+  return wrongType(loop, "adaptive_pi");
+}
 std::string ExcitationGeneratorNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "excitation");
 }
@@ -59,6 +62,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       manual_input_(private_node.advertiseService(topics::kManualInput,
                                                   &ControllerNode::onManualInput, this)),
       hold_(private_node.advertiseService(topics::kHold, &ControllerNode::onHold, this)),
+      adapt_(private_node.advertiseService(topics::kAdapt, &ControllerNode::onAdapt, this)),
       diagnostics_(node, private_node, "controller", loop.name,
                    [this](Diagnostics::Status& status) { report(status); }) {
   if (!session_.controller().followsSetpoint()) return;
@@ -144,6 +148,15 @@ bool ControllerNode::onManual(std_srvs::SetBool::Request& request,
   session_.manual(request.data != 0);
   response.success = true;
   response.message = session_.isManual() ? "manual" : "auto";
+  return true;
+}
+
+bool ControllerNode::onAdapt(std_srvs::SetBool::Request& request,
+                             std_srvs::SetBool::Response& response) {
+  response.success = session_.adapt(request.data != 0);
+  response.message = !response.success   ? "this controller does not adapt"
+                     : request.data != 0 ? "adapting"
+                                         : "frozen";
   return true;
 }
 

@@ -42,7 +42,7 @@ std::string general(std::string path) {
   path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
   const std::regex named(
       R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|)"
-      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.\w+)");
+      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(s|x|T|Tw)$)");
   return std::regex_replace(path, outputs, "setpoint.$1[].NAME");
@@ -94,9 +94,23 @@ std::set<std::string> readerKeys() {
       "\n  forbidden: [{kM: 0.5, kC: 1}]\n  forbidden_transitions: [{from: {kM: 0}, to: {kM: 2}}]\n"
       "  cost: {switching: [{before: kH, after: kC, weight: 1}], travel: [{input: kM, weight: 1}]}\n"
       "report: {windows: [{name: w, to_h: 1}], consumption: {water_kg: {kM: 1}}}\n";
+  const std::string signal = "[{name: NAME, unit: g, nominal: 0, lower: -1, upper: 1}]";
+  const auto named = [&](const std::string& name) {
+    return std::regex_replace(signal, std::regex("NAME"), name);
+  };
+  const std::string column =
+      "plant: {type: distillation_column, matrix: {outputs: " + named("a") + ", inputs: " +
+      named("b") + ", disturbances: " + named("c") +
+      ", elements: [{output: a, from: b, gain: 1, time_constant_min: 1}]}}\n"
+      "controller: {type: pi, loops: [{input: b, output: a, kp: 1}]}\n";
+  const std::string adaptive =
+      "plant: {type: distillation_column}\ncontroller: {type: adaptive_pi, decoupling: false, loops: "
+      "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
+      "integral_time_min: 1}], model: [{output: y_D, input: L, gain: 1, time_constant_min: 1}]}\n";
   std::set<std::string> keys;
   std::set<std::string> sections;
-  for (const auto& text : {controlled(fmbpc + lists), controlled(external), prbs, levels, steps,
+  for (const auto& text : {controlled(fmbpc + lists), controlled(external), controlled(column),
+                           controlled(adaptive), prbs, levels, steps,
                            batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
                            batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest})
     for (const auto& path : asked(text)) {

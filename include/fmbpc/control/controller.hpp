@@ -47,6 +47,8 @@ class Controller {
   /// Moves an input that does not come from step() (held, manual) to the nearest one that may be
   /// sent. Default: nothing.
   virtual void makeSendable(Eigen::Ref<Vector> input) const;
+  /// Whether the controller may change itself from now on. Returns false if it never does.
+  virtual bool adapt(bool on);
   /// Signals for plotting, "NAME" -> value, refreshed by step(). Default: none.
   virtual const std::vector<std::pair<std::string, double>>& signals() const;
 };

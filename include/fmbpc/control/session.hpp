@@ -74,6 +74,8 @@ class ControllerSession {
   /// @throws InputError on size or NaN, in auto, and for an input that the controller refuses.
   void manualInput(VectorRef input);
   bool isManual() const { return manual_; }
+  /// Lets the controller change itself, or freezes it; false if it never does.
+  bool adapt(bool on) { return controller_->adapt(on); }
 
   const ArrivalCounts& counts() const { return gate_.counts(); }
   const SetpointSource& setpoint() const { return setpoint_; }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/control/adaptive_pi.hpp"
 #include "fmbpc/control/closed_loop_paradigm.hpp"
 #include "fmbpc/control/excitation.hpp"
 #include "fmbpc/control/fmbpc_law.hpp"
@@ -99,9 +100,10 @@ struct LoopFile {
   double max_pole{1.0};    ///< a model that replaces another in a run is refused beyond
   bool has_identify{false};
   IdentifyParams identify;
-  std::string controller;  ///< fmbpc, hybrid_mpc, pi or excitation
+  std::string controller;  ///< fmbpc, hybrid_mpc, pi, adaptive_pi or excitation
   FmbpcParams fmbpc;
   PiParams pi;
+  AdaptivePiParams adaptive_pi;
   ExcitationParams excitation;
   HybridMpcParams hybrid;
   bool has_clp{false};

@@ -33,6 +33,8 @@ class RecursiveLeastSquares {
   void reset(VectorRef theta_0);
   const Vector& theta() const { return theta_; }
   Matrix covariance() const { return root_ * root_.transpose(); }
+  /// P(i, i), without allocation.
+  double variance(Eigen::Index i) const { return root_.row(i).squaredNorm(); }
   std::uint64_t skipped() const { return skipped_; }  ///< samples that were not finite
   std::uint64_t bounded() const { return bounded_; }  ///< updates in which the bound acted
 

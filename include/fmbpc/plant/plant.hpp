@@ -41,6 +41,17 @@ struct PlantDescription {
   std::vector<Quantity> parameters;    ///< what a loop file may override under plant.parameters
   std::vector<EquipmentFrame> frames;  ///< the first one is the plant's own frame
   std::map<std::string, std::string> output_frames;  ///< state name -> frame of its analyser
+  std::vector<std::string> hidden_disturbances;  ///< not measured unless a loop file says so
+};
+
+/// Moves a plant that remembers more than its state shows (dead times), exactly, one sample at a
+/// time, in place of an integrator.
+class PlantStepper {
+ public:
+  virtual ~PlantStepper() = default;
+  virtual void reset(VectorRef u, VectorRef d) = 0;  ///< the plant has rested at these
+  /// Moves x over the sample with u and d held. No allocation.
+  virtual void advance(Eigen::Ref<Vector> x, VectorRef u, VectorRef d) = 0;
 };
 
 /// dx/dt = f(x, u, d), measured outputs are states.
@@ -56,6 +67,9 @@ class Plant {
   /// before: one sample ago (at the start the same). Controllers never see what it adds. Default:
   /// no such loop.
   virtual void localLoop(VectorRef x, VectorRef before, Eigen::Ref<Vector> u) const;
+  /// nullptr (default): derivatives() say everything and an integrator moves the plant. May keep a
+  /// reference to the plant.
+  virtual std::unique_ptr<PlantStepper> makeStepper(double sample_time_s) const;
 };
 
 /// Parameter values by name; absent names keep the description's nominal values.

@@ -15,6 +15,7 @@
 #include "fmbpc/plant/disturbance.hpp"
 #include "fmbpc/plant/integrator.hpp"
 #include "fmbpc/plant/plant.hpp"
+#include "fmbpc/plant/transfer_matrix.hpp"
 #include "fmbpc/plant/transport_delay.hpp"
 
 namespace fpc {
@@ -28,6 +29,7 @@ struct ScheduledCommand {
 struct SimulationParams {
   std::string plant;
   PlantParameters parameters;
+  TransferMatrix matrix;  ///< if not empty it is the plant, and `plant` its name
   Vector initial_state;              ///< n_states
   std::vector<std::string> outputs;  ///< measured states, in this order; empty: the plant's default
   std::vector<double> output_delay_s;  ///< transport delay of each measured output; empty: none
@@ -43,6 +45,9 @@ struct SimulationParams {
   double start_time_s{1.0};
   std::uint32_t samples{};  ///< N; 0 is endless
 };
+
+/// The plant of these params. @throws InputError as makePlant() and TransferMatrix::validate().
+std::unique_ptr<Plant> makePlant(const SimulationParams& params);
 
 /// Owns the state of a simulated plant. Deterministic: same params, commands and actions give the
 /// same bits.
@@ -94,12 +99,14 @@ class Simulation {
   void passLocalLoop();
   void measure();
   const Measurement& integrate();
+  void movePlant();
 
   SimulationParams params_;
   std::unique_ptr<Plant> plant_;
   SampleClock clock_;
   Actuator actuator_;
   Integrator integrator_;
+  std::unique_ptr<PlantStepper> stepper_;  // moves the plant if there is one
   CommandTable commands_;
   PlantInfo info_;
   Measurement measurement_;

@@ -28,7 +28,8 @@ namespace fpc {
 /// Ready when a fitting plant has introduced itself and, for laws that need one, a fitting model
 /// has come. Base actions go out on base_action, or straight on control_action if the loop has no
 /// optimizer (or ~final_action is true). Services: ~manual (SetBool: true is manual),
-/// ~manual_input, ~hold (SetBool: true stops the setpoint schedule, false lets it go on).
+/// ~manual_input, ~hold (SetBool: true stops the setpoint schedule, false lets it go on), ~adapt
+/// (SetBool: false freezes a controller that retunes itself).
 class ControllerNode : public Node {
  public:
   /// @throws InputError
@@ -43,6 +44,7 @@ class ControllerNode : public Node {
   bool onManual(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onManualInput(fmbpc::ManualInput::Request& request, fmbpc::ManualInput::Response& response);
   bool onHold(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool onAdapt(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void announceIfReady();
   bool mustAwaitSetpoints(const Measurement& measurement);
   void publish(bool repeated);
@@ -64,12 +66,17 @@ class ControllerNode : public Node {
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       setpoint_subscriber_, setpoint_active_subscriber_;
-  ros::ServiceServer manual_, manual_input_, hold_;
+  ros::ServiceServer manual_, manual_input_, hold_, adapt_;
   Diagnostics diagnostics_;
 };
 
-/// The nodes fmbpc_controller, hybrid_mpc_controller, excitation_generator and pi_controller.
+/// The nodes fmbpc_controller, hybrid_mpc_controller, adaptive_pi_controller, excitation_generator and
+/// pi_controller.
 struct FmbpcControllerNode : ControllerNode {
+  using ControllerNode::ControllerNode;
+  static std::string idleReason(const LoopFile& loop);
+};
+struct AdaptivePiControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
 };

@@ -31,6 +31,7 @@ inline constexpr char kPause[] = "pause";
 inline constexpr char kStep[] = "step";
 inline constexpr char kReset[] = "reset";
 inline constexpr char kManual[] = "manual";
+inline constexpr char kAdapt[] = "adapt";
 inline constexpr char kManualInput[] = "manual_input";
 inline constexpr char kHold[] = "hold";
 

@@ -1,0 +1,29 @@
+// The rows of `fmbpc reproduce` for the column: which figures are reached, and which cannot be.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tool/reproduce/experiment.hpp"
+
+namespace fpc::tool {
+namespace {
+
+TEST(ColumnReproduction, ReachesEveryFigureButThoseOfThePrintedLoopTwo) {
+  std::size_t count = 0;
+  for (const Experiment& experiment : experiments()) {
+    if (experiment.name.rfind("column_table", 0) != 0) continue;
+    for (const ReproduceRow& row : experiment.rows()) {
+      std::printf("%-14s %-28s %10.4g %10.4g %-14s %-16s %s\n", experiment.name.c_str(),
+                  row.quantity.c_str(), row.paper, row.here, row.unit.c_str(), name(row.verdict),
+                  row.note.c_str());
+      const bool misprint = row.note.find("contradicts") != std::string::npos;
+      EXPECT_TRUE(misprint || row.verdict != Verdict::kNotReproducible) << row.quantity;
+      EXPECT_FALSE(row.unit.empty());
+      ++count;
+    }
+  }
+  EXPECT_EQ(count, 8U + 2U * 5U * 4U);
+}
+
+}  // namespace
+}  // namespace fpc::tool
