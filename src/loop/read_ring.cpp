@@ -95,7 +95,9 @@ ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outpu
   ReportWindow window;
   need(item, "name", "a name");
   item.text("name", window.name);
-  item.oneOf("output", window.output, outputs);
+  item.text("output", window.output);
+  if (item.has("output") && std::count(outputs.begin(), outputs.end(), window.output) == 0)
+    item.fail("output", "one of " + join(outputs));
   window.to_h = -1.0;
   readHours(item, "from", window.from_h);
   readHours(item, "to", window.to_h);
