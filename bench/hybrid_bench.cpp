@@ -55,10 +55,10 @@ void run(benchmark::State& state, fpc::HybridMpcParams params, int n_cases) {
   double nodes = 0.0;
   for (auto _ : state) {
     for (const Case& c : all) {
-      const fpc::Matrix reference =
-          Eigen::Vector2d(c.reference, 0.0).replicate(1, 15 * levels);
+      const fpc::Matrix reference = Eigen::Vector2d(c.reference, 0.0).replicate(1, 15 * levels);
       const auto start = std::chrono::steady_clock::now();
-      nodes += static_cast<double>(mpc->decide(c.outputs, c.input, fpc::Vector(0), reference).nodes);
+      nodes +=
+          static_cast<double>(mpc->decide(c.outputs, c.input, fpc::Vector(0), reference).nodes);
       times.push_back(
           std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start)
               .count());
@@ -75,9 +75,14 @@ void BM_Decision(benchmark::State& state) {
   const int levels = static_cast<int>(state.range(0));
   state.SetLabel(boundOf(state.range(1)));
   run(state, fpc::test::batchReactorParams(45, boundOf(state.range(1)), levels),
-      levels == 4 ? 1000 : levels == 6 ? 200 : 20);
+      levels == 4   ? 1000
+      : levels == 6 ? 200
+                    : 20);
 }
-BENCHMARK(BM_Decision)->ArgsProduct({{4, 6, 8}, {0, 1}})->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Decision)
+    ->ArgsProduct({{4, 6, 8}, {0, 1}})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 void BM_Growth(benchmark::State& state) {
   const int levels = static_cast<int>(state.range(0)), n = static_cast<int>(state.range(1));
@@ -86,7 +91,13 @@ void BM_Growth(benchmark::State& state) {
   state.SetLabel(boundOf(state.range(2)));
   run(state, std::move(params), 40);
 }
-BENCHMARK(BM_Growth)->ArgsProduct({{1, 2, 3, 4, 5, 6}, {7}, {0, 1}})->Iterations(1)->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_Growth)->ArgsProduct({{4}, {2, 3, 5, 9, 12}, {0, 1}})->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Growth)
+    ->ArgsProduct({{1, 2, 3, 4, 5, 6}, {7}, {0, 1}})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Growth)
+    ->ArgsProduct({{4}, {2, 3, 5, 9, 12}, {0, 1}})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace

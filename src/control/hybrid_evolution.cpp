@@ -11,9 +11,9 @@ namespace {
 using Eigen::Index;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kSame = 1e-9;         // values of an input that differ by less are the same
-constexpr double kGridPoints = 4000;   // of all outputs together, where extremes are checked
-constexpr double kSlack = 1e-12;       // of the comparison of two predictions
+constexpr double kSame = 1e-9;        // values of an input that differ by less are the same
+constexpr double kGridPoints = 4000;  // of all outputs together, where extremes are checked
+constexpr double kSlack = 1e-12;      // of the comparison of two predictions
 
 bool matches(const Vector& pattern, VectorRef input) {
   for (Index i = 0; i < pattern.size(); ++i)
@@ -160,7 +160,8 @@ int HybridEvolution::extremeChoice(double sign) {
 // On a grid: no choice leads further, and the map grows with every output.
 bool HybridEvolution::isExtreme(int choice, double sign) {
   const auto n_y = static_cast<std::size_t>(model_.stateSize());
-  const int n = std::max(3, static_cast<int>(std::pow(kGridPoints, 1.0 / static_cast<double>(n_y))));
+  const int n =
+      std::max(3, static_cast<int>(std::pow(kGridPoints, 1.0 / static_cast<double>(n_y))));
   std::vector<int> index(n_y, 0);
   Vector step(model_.stateSize()), state(model_.stateSize());
   const auto& outputs = model_.model().outputs;

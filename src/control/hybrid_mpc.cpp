@@ -46,7 +46,8 @@ void HybridMpcParams::validate(Index n_y, Index n_u) const {
   for (const SwitchTerm& s : switching) {
     checkTerm(s.weight, s.before, n_u, "controller.cost.switching");
     checkTerm(s.weight, s.after, n_u, "controller.cost.switching");
-    signs = signs && choices.row(s.before).minCoeff() >= 0.0 && choices.row(s.after).minCoeff() >= 0.0;
+    signs =
+        signs && choices.row(s.before).minCoeff() >= 0.0 && choices.row(s.after).minCoeff() >= 0.0;
   }
   for (const TravelTerm& t : travel) {
     checkTerm(t.weight, t.input, n_u, "controller.cost.travel");
@@ -89,9 +90,10 @@ void HybridMpc::setModel(const TsModel& model) {
   require(model.outputs.size() == plant_.outputs.size() &&
               model.disturbances.size() == plant_.disturbances.size(),
           "model", "a model matched to the plant");
-  const TreeSearchParams tree{params_.horizon_blocks, params_.bound == "reach" &&
-                              (evolution->highest() >= 0 || evolution->lowest() >= 0),
-                              params_.node_budget};
+  const TreeSearchParams tree{
+      params_.horizon_blocks,
+      params_.bound == "reach" && (evolution->highest() >= 0 || evolution->lowest() >= 0),
+      params_.node_budget};
   tree_ = std::make_unique<TreeSearch>(evolution->model().stateSize(),
                                        static_cast<int>(params_.choices.cols()), tree);
   evolution_ = std::move(evolution);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -85,11 +86,18 @@ void readLine(YamlSection& item, const YamlSection& tf, LoopFile& loop, const Lo
   loop.tf.sample_lines.push_back(std::move(line));
 }
 
+/// Keys of summary.json; what is consumed stands beside them.
+const std::set<std::string> kSummaryKeys{
+    "loop",       "title",          "complete", "steps",   "wall_s",         "outputs", "inputs",
+    "violations", "actuator_clips", "clp",      "sources", "repaired_cells", "limits"};
+
 ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outputs) {
   ReportWindow window;
   need(item, "name", "a name");
   item.text("name", window.name);
-  item.oneOf("output", window.output, outputs);
+  item.text("output", window.output);
+  if (item.has("output") && std::count(outputs.begin(), outputs.end(), window.output) == 0)
+    item.fail("output", "one of " + join(outputs));
   window.to_h = -1.0;
   readHours(item, "from", window.from_h);
   readHours(item, "to", window.to_h);
@@ -102,6 +110,7 @@ void readConsumption(YamlSection& report, const LoopNames& names,
                      std::vector<Consumption>& consumption) {
   YamlSection section = report.section("consumption");
   for (const auto& name : section.keys()) {
+    if (kSummaryKeys.count(name) > 0) section.fail(name, "a name that the summary does not use");
     Consumption entry{name, Vector::Zero(static_cast<Eigen::Index>(names.inputs.size()))};
     section.byName(name, entry.rate, names.inputs, kFinite);
     consumption.push_back(std::move(entry));

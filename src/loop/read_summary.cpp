@@ -20,9 +20,9 @@ double numberOf(const Json& y, const char* key) {
 void readOutputs(const Json& json, Summary& summary) {
   for (const auto& [name, y] : json.items()) {
     summary.output_names.push_back(name);
-    summary.outputs.push_back(
-        {numberOf(y, "ise"), numberOf(y, "iae"), numberOf(y, "itae"), numberOf(y, "itse"),
-         numberOf(y, "rmse"), numberOf(y, "ise_reference")});
+    summary.outputs.push_back({numberOf(y, "ise"), numberOf(y, "iae"), numberOf(y, "itae"),
+                               numberOf(y, "itse"), numberOf(y, "rmse"),
+                               numberOf(y, "ise_reference")});
     if (!y.contains("windows")) continue;
     for (const Json& w : y.at("windows"))
       summary.windows.push_back({{w.at("name"), name, w.at("from_h"), w.at("to_h")},

@@ -45,9 +45,11 @@ Json inputsOf(const Summary& summary) {
   Json inputs = Json::object();
   for (std::size_t i = 0; i < summary.inputs.size(); ++i) {
     const InputIndices& u = summary.inputs[i];
-    inputs[summary.input_names[i]] = {
-        {"min", u.min},           {"max", u.max},       {"mean_abs_move", u.mean_abs_move},
-        {"switches", u.switches}, {"travel", u.travel}};
+    inputs[summary.input_names[i]] = {{"min", u.min},
+                                      {"max", u.max},
+                                      {"mean_abs_move", u.mean_abs_move},
+                                      {"switches", u.switches},
+                                      {"travel", u.travel}};
   }
   return inputs;
 }

@@ -21,8 +21,8 @@ void addInputRows(const Summary& s, std::vector<Row>& rows) {
     const InputIndices& u = s.inputs[i];
     const bool first = i == 0;
     rows.push_back({first ? s.loop : "", s.input_names[i], shortText(u.min), shortText(u.max),
-                    shortText(u.mean_abs_move), std::to_string(u.switches),
-                    shortText(u.travel), first ? std::to_string(s.input_violations) : "",
+                    shortText(u.mean_abs_move), std::to_string(u.switches), shortText(u.travel),
+                    first ? std::to_string(s.input_violations) : "",
                     first ? std::to_string(s.move_violations) : "",
                     first ? std::to_string(s.actuator_clips) : "",
                     first ? std::to_string(s.steps) : "", first ? shortText(s.wall_s) : ""});
@@ -40,8 +40,8 @@ void addWindowRows(const Summary& s, std::vector<Row>& rows) {
 std::string toTable(const std::vector<Summary>& summaries) {
   std::vector<Row> outputs{
       {"loop", "output", "ISE", "IAE", "ITAE", "ITSE", "rmse", "ISE ref", "beyond"}};
-  std::vector<Row> inputs{{"loop", "input", "min", "max", "mean move", "switches", "travel", "beyond", "moves beyond",
-                           "clips", "steps", "wall s"}};
+  std::vector<Row> inputs{{"loop", "input", "min", "max", "mean move", "switches", "travel",
+                           "beyond", "moves beyond", "clips", "steps", "wall s"}};
   std::vector<Row> solves{
       {"optimizer of", "solves", "infeasible", "failed", "median us", "p99 us"}};
   std::vector<Row> windows{{"loop", "output", "window", "from h", "to h", "rmse", "mean error"}};

@@ -11,7 +11,8 @@ namespace fpc {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-// A bound is a sum in another order than the cost it stays below: rounding must not cut the optimum.
+// A bound is a sum in another order than the cost it stays below: rounding must not cut the
+// optimum.
 constexpr double kRounding = 1.0 - 1e-9;
 constexpr std::uint64_t kNodesPerQuestion = 64;
 

@@ -34,12 +34,10 @@ PlantDescription describe() {
       {"jacket_to_ambient", "W/K", 504.0, 0.0, 1e6},
       {"water_flow", "kg/s", 3.74, 0.0, 1e3},  // phi
   };
-  p.frames = {{"reactor", "map", 0.0, 0.0, 0.0},
-              {"core", "reactor", 0.0, 0.0, 1.0},
-              {"jacket", "reactor", 0.8, 0.0, 1.0},
-              {"valves", "reactor", 2.0, 0.5, 0.5},
-              {"core_thermometer", "core", 0.1, 0.0, 0.4},
-              {"jacket_thermometer", "jacket", 0.1, 0.0, 0.6}};
+  p.frames = {
+      {"reactor", "map", 0.0, 0.0, 0.0},           {"core", "reactor", 0.0, 0.0, 1.0},
+      {"jacket", "reactor", 0.8, 0.0, 1.0},        {"valves", "reactor", 2.0, 0.5, 0.5},
+      {"core_thermometer", "core", 0.1, 0.0, 0.4}, {"jacket_thermometer", "jacket", 0.1, 0.0, 0.6}};
   p.output_frames = {{"T", "core_thermometer"}, {"Tw", "jacket_thermometer"}};
   return p;
 }
@@ -55,8 +53,7 @@ class BatchReactor final : public Plant {
     flow_rate_ = p[5] / p[1];
   }
   const PlantDescription& description() const override { return description_; }
-  void derivatives(VectorRef x, VectorRef u, VectorRef d,
-                   Eigen::Ref<Vector> dxdt) const override {
+  void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     const double T = x[0], Tw = x[1];
     const double kM = u[0], kC = u[1], kH = u[2];
     // k (Tin - Tw), also where both valves are closed

@@ -58,8 +58,8 @@ TEST(HybridMpc, TheCostOfABlockIsThatOfEquation45) {
     Vector state = at;
     const double cost = mpc->problem().advance(0, -1, choice, state);
     const double error = 0.0033 * 41.0 + 0.9967 * 39.0 - 40.0;
-    const double expected = 2.0 * error * error + 0.5 * u[0] + 15.0 * u[1] * 1.0 +
-                            0.03 * std::abs(u[0] - 0.1) * 1.0;
+    const double expected =
+        2.0 * error * error + 0.5 * u[0] + 15.0 * u[1] * 1.0 + 0.03 * std::abs(u[0] - 0.1) * 1.0;
     EXPECT_NEAR(cost, expected, 1e-12) << "choice " << choice;
   }
 }
@@ -98,8 +98,7 @@ TEST(HybridMpc, ForbiddenTransitionsAndMoveLimitsAreKept) {
 TEST(HybridMpc, WhereNothingIsAllowedTheNearestAllowedInputIsSentAndSaid) {
   HybridMpcParams params = test::batchReactorParams(44, "reach", 2);
   const double any = std::nan("");
-  params.forbidden_transitions = {
-      {Eigen::Vector3d(0.3, any, any), Eigen::Vector3d(any, any, any)}};
+  params.forbidden_transitions = {{Eigen::Vector3d(0.3, any, any), Eigen::Vector3d(any, any, any)}};
   ControllerSession session = sessionOf(params);
   session.receive(measured(0, 30.0, 30.0, Eigen::Vector3d(0.3, 0.0, 1.0)));
   EXPECT_EQ(session.answer().base.input, Vector(Eigen::Vector3d(0.1, 0.0, 1.0)));
@@ -169,7 +168,10 @@ TEST(HybridMpc, EachParameterIsChecked) {
   EXPECT_NO_THROW(test::batchReactorParams(45, "reach").validate(2, 3));
   refused([](HybridMpcParams& p) { p.choices.col(1) = p.choices.col(0); });
   refused([](HybridMpcParams& p) { p.choices = Matrix(3, 0); });
-  refused([](HybridMpcParams& p) { p.choices(0, 2) = -0.1; p.weight_consumption[0] = 1.0; });
+  refused([](HybridMpcParams& p) {
+    p.choices(0, 2) = -0.1;
+    p.weight_consumption[0] = 1.0;
+  });
   refused([](HybridMpcParams& p) { p.choices(2, 2) = -1.0; });
   refused([](HybridMpcParams& p) { p.hold_samples = 0; });
   refused([](HybridMpcParams& p) { p.horizon_blocks = 0; });

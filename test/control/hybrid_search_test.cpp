@@ -77,7 +77,8 @@ TEST_P(HybridSearch, EqualsEnumerationOnAThousandStatesWithFewNodes) {
   RecordProperty("nodes_reach", std::to_string(nodes_reach));
   EXPECT_LE(nodes_cost, GetParam() == 44 ? 950.0 : 1200.0);
   EXPECT_LT(nodes_reach, 0.5 * nodes_cost);
-  std::printf("eq. %d: mean nodes of 2800: %.0f by cost, %.0f by reach\n", GetParam(), nodes_cost, nodes_reach);
+  std::printf("eq. %d: mean nodes of 2800: %.0f by cost, %.0f by reach\n", GetParam(), nodes_cost,
+              nodes_reach);
 }
 
 INSTANTIATE_TEST_SUITE_P(Costs, HybridSearch, ::testing::Values(44, 45));

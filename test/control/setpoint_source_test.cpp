@@ -250,55 +250,6 @@ TEST(SetpointSource, PreviewTouchesNoMemory) {
   for (std::uint32_t k = 1; k < 8; ++k) EXPECT_EQ(s.advance(k), untouched.advance(k));
 }
 
-// 0.2 h a sample: from 2000 at 0.4 h to 2400 at 1.2 h, 100 a sample.
-TEST(SetpointSource, ARampIsAStraightLineFromTheEntryBefore) {
-  SetpointParams p = params();
-  p.schedule = {{0.4, two(kNaN, 2400.0), 0.8}, {2.0, two(kNaN, 2000.0)}};
-  SetpointSource s = source(p);
-  const double expected[] = {2000, 2000, 2000, 2100, 2200, 2300, 2400, 2400, 2400, 2400, 2000};
-  for (std::uint32_t k = 0; k <= 10; ++k) {
-    EXPECT_NEAR(s.advance(k)[1], expected[k], 1e-9) << "sample " << k;
-    EXPECT_EQ(s.present()[0], 55.0);
-  }
-  Vector ahead(2);
-  s.scheduled(4, ahead);
-  EXPECT_NEAR(ahead[1], 2200.0, 1e-9);
-}
-
-TEST(SetpointSource, AHeldScheduleWaitsAndGoesOnWhereItStopped) {
-  SetpointParams p = params();
-  p.schedule = {{0.4, two(kNaN, 2400.0), 0.8}, {2.0, two(kNaN, 2000.0)}};
-  SetpointSource s = source(p), planned = source(p);
-  std::vector<double> plan;
-  for (std::uint32_t k = 0; k <= 12; ++k) plan.push_back(planned.advance(k)[1]);
-  Vector ahead(2);
-  for (std::uint32_t k = 0; k <= 22; ++k) {
-    if (k == 3) s.hold(true);
-    if (k == 10) s.hold(false);
-    if (k == 15) s.hold(true);
-    if (k == 18) s.hold(false);
-    s.advance(k);
-    const std::uint32_t late = k < 3 ? 0 : k < 10 ? k - 3 : k < 15 ? 7 : k < 18 ? k - 8 : 10;
-    EXPECT_EQ(s.present()[1], plan[k - late]) << "sample " << k;
-    s.scheduled(k + 5, ahead);
-    if (s.held()) {
-      EXPECT_EQ(ahead[1], s.present()[1]) << "sample " << k;
-    }
-  }
-  s.hold(true);
-  s.restart();
-  EXPECT_FALSE(s.held());
-  EXPECT_EQ(s.advance(4)[1], plan[4]);
-}
-
-TEST(SetpointSource, CommandsActWhileTheScheduleIsHeld) {
-  SetpointSource s = source(params());
-  s.hold(true);
-  s.advance(0);
-  s.command(command("x", 1500.0));
-  EXPECT_EQ(s.advance(1)[1], 1500.0);
-}
-
 TEST(SetpointParams, ValidationNamesTheField) {
   EXPECT_EQ(messageOf(params()), "");
   SetpointParams p = params();

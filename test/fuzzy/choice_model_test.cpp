@@ -62,7 +62,7 @@ TEST(ChoiceModel, AnInputOfNoModeTakesTheNearestRuleAndSaysSo) {
 
 // The same rows as the identifier's own predictor sees them.
 void expectSamePredictions(const TsModel& matched, const Matrix& choices, const DataSet& data,
-                         const std::vector<int>& chosen) {
+                           const std::vector<int>& chosen) {
   ChoiceModel model(matched, choices);
   const auto n_y = static_cast<Eigen::Index>(matched.outputs.size());
   const auto n_u = choices.rows();

@@ -71,7 +71,8 @@ TEST_P(TreeSearchKinds, EqualsEnumerationBitForBit) {
   std::mt19937_64 generator(kSeed);
   int impossible = 0;
   for (int trial = 0; trial < 500; ++trial) {
-    const int n = 1 + static_cast<int>(generator() % 5), levels = 1 + static_cast<int>(generator() % 5);
+    const int n = 1 + static_cast<int>(generator() % 5),
+              levels = 1 + static_cast<int>(generator() % 5);
     RandomTree tree(generator, n, levels, ties, forbidden);
     const Vector start = Vector::Constant(1, 0.25);
     std::vector<int> path(static_cast<std::size_t>(levels));
@@ -90,7 +91,8 @@ TEST_P(TreeSearchKinds, EqualsEnumerationBitForBit) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, TreeSearchKinds,
-                         ::testing::Combine(::testing::Bool(), ::testing::Bool(), ::testing::Bool()));
+                         ::testing::Combine(::testing::Bool(), ::testing::Bool(),
+                                            ::testing::Bool()));
 
 TEST(TreeSearch, TheFullTreeIsCountedWithoutItsRoot) {
   EXPECT_EQ(TreeSearch::fullTree(7, 4), 2800.0);

@@ -15,7 +15,7 @@ namespace fpc {
 namespace {
 
 struct Pooled {
-  double rms[3]{};          // windows at 62, 26, 35 degC
+  double rms[3]{};  // windows at 62, 26, 35 degC
   double mean_error[3]{};
   std::vector<double> switches, water;  // per start; kC
 };

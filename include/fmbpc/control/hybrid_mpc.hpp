@@ -17,7 +17,8 @@ namespace fpc {
 
 class HybridEvolution;
 
-/// weight * u_before(previous block) * u_after(this block), once per block. Karer 2007, w2 of eq. 45.
+/// weight * u_before(previous block) * u_after(this block), once per block. Karer 2007, w2 of
+/// eq. 45.
 struct SwitchTerm {
   int before{}, after{};  ///< inputs
   double weight{};
@@ -35,12 +36,12 @@ struct ForbiddenTransition {
 
 /// Section `controller` of a loop file, type hybrid_mpc.
 struct HybridMpcParams {
-  Matrix choices;           ///< n_u n_choices, the input vectors that may be sent, one per column
+  Matrix choices;  ///< n_u n_choices, the input vectors that may be sent, one per column
   std::vector<ForbiddenTransition> forbidden_transitions;
-  int hold_samples{15};     ///< Z, samples of a block
-  int horizon_blocks{4};    ///< H_Z
-  bool preview{true};       ///< the recipe ahead is known; otherwise the present setpoint is held
-  Vector weight_tracking;   ///< n_y, of (y - setpoint)^2, per sample
+  int hold_samples{15};       ///< Z, samples of a block
+  int horizon_blocks{4};      ///< H_Z
+  bool preview{true};         ///< the recipe ahead is known; otherwise the present setpoint is held
+  Vector weight_tracking;     ///< n_y, of (y - setpoint)^2, per sample
   Vector weight_consumption;  ///< n_u, of the input, per sample
   std::vector<SwitchTerm> switching;
   std::vector<TravelTerm> travel;
@@ -103,10 +104,10 @@ class HybridMpc final : public Controller {
   std::unique_ptr<TreeSearch> tree_;
   TreeResult decision_;
   Vector state_, past_disturbances_;
-  Matrix reference_;             // n_y Z H_Z, from the next sample on
-  bool fresh_{true};             // the state is to be made from the next measurement
-  bool sent_before_{false};      // choice_ went out one sample ago
-  int samples_left_{0};          // of the block
+  Matrix reference_;         // n_y Z H_Z, from the next sample on
+  bool fresh_{true};         // the state is to be made from the next measurement
+  bool sent_before_{false};  // choice_ went out one sample ago
+  int samples_left_{0};      // of the block
   Eigen::Index choice_{0};
   std::vector<std::string> stuck_;  // what to say of each input that is not where it was sent
   std::function<bool()> stop_;      // the time budget

@@ -41,8 +41,8 @@ class SetpointSource {
 
   /// Forgets memory of the rate limiter; commands in force stay.
   void reset();
-  /// Stops the schedule's time from the next sample on (a recipe waits for its operator), or lets it
-  /// go on from where it stopped. Commands act meanwhile.
+  /// Stops the schedule's time from the next sample on (a recipe waits for its operator), or lets
+  /// it go on from where it stopped. Commands act meanwhile.
   void hold(bool on) { hold_wanted_ = on; }
   bool held() const { return hold_wanted_; }
   /// Releases all commands and any hold, and replays the commands of the params (a new run).

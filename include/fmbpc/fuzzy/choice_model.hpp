@@ -8,10 +8,10 @@
 
 namespace fpc {
 
-/// A hybrid model is a Takagi-Sugeno model whose rules also hold crisp sets on inputs or states: the
-/// operating modes (Karer et al. 2007, eqs. 3, 4). Unlike a law, a search knows the u(k) it tries,
-/// so that antecedents on u(k) take it as it is. The state stacks, for each output, its lags 0..,
-/// then, for each input and disturbance, the past values that the model uses (often none).
+/// A hybrid model is a Takagi-Sugeno model whose rules also hold crisp sets on inputs or states:
+/// the operating modes (Karer et al. 2007, eqs. 3, 4). Unlike a law, a search knows the u(k) it
+/// tries, so that antecedents on u(k) take it as it is. The state stacks, for each output, its lags
+/// 0.., then, for each input and disturbance, the past values that the model uses (often none).
 class ChoiceModel {
  public:
   /// `model` matched to the plant; choices: n_u n_choices, one input vector per column.
@@ -47,10 +47,10 @@ class ChoiceModel {
     double degree(double z) const;
   };
   struct CompiledRule {
-    double degree;           // of the antecedents that the choice settles
-    std::vector<Set> sets;   // on the other antecedents
-    Vector coefficients;     // of the output's sources
-    double offset;           // with the terms in u(k)
+    double degree;          // of the antecedents that the choice settles
+    std::vector<Set> sets;  // on the other antecedents
+    Vector coefficients;    // of the output's sources
+    double offset;          // with the terms in u(k)
   };
   struct Submodel {
     std::vector<Eigen::Index> sources;             // of the regressors that are not u(k)

@@ -10,12 +10,13 @@
 
 namespace fpc {
 
-/// What a search asks of a process. A level of the tree is one choice, held for as long as it likes.
+/// What a search asks of a process. A level of the tree is one choice, held for as long as it
+/// likes.
 class TreeProblem {
  public:
   virtual ~TreeProblem() = default;
-  /// Cost >= 0 of taking `choice` at `level` (from 0) after `before` (the choice one level up, -1 at
-  /// level 0), infinite (or NaN) if that is not allowed. Moves `state` on, in place.
+  /// Cost >= 0 of taking `choice` at `level` (from 0) after `before` (the choice one level up, -1
+  /// at level 0), infinite (or NaN) if that is not allowed. Moves `state` on, in place.
   virtual double advance(int level, int before, int choice, Eigen::Ref<Vector> state) = 0;
   /// No more than what the way from `state`, which stands at the beginning of `level`, to the last
   /// level must cost. May stop as soon as it exceeds `enough`. May change `state`.
@@ -23,9 +24,9 @@ class TreeProblem {
 };
 
 struct TreeSearchParams {
-  int levels{4};             ///< H_Z
-  bool cost_to_go{false};    ///< bound = cost so far + leastCostToGo; false: cost so far only
-  std::uint64_t budget{0};   ///< nodes after which the best sequence so far is taken; 0: none
+  int levels{4};            ///< H_Z
+  bool cost_to_go{false};   ///< bound = cost so far + leastCostToGo; false: cost so far only
+  std::uint64_t budget{0};  ///< nodes after which the best sequence so far is taken; 0: none
   void validate(int choices) const;  ///< @throws InputError naming the field
 };
 
@@ -37,10 +38,10 @@ enum class TreeStatus {
 
 struct TreeResult {
   TreeStatus status{TreeStatus::kImpossible};
-  double cost{};              ///< of the sequence
-  std::vector<int> choices;   ///< one per level; the first one is to be applied
-  std::uint64_t nodes{};      ///< states computed, allowed or not
-  std::uint64_t bounds{};     ///< calls of leastCostToGo
+  double cost{};             ///< of the sequence
+  std::vector<int> choices;  ///< one per level; the first one is to be applied
+  std::uint64_t nodes{};     ///< states computed, allowed or not
+  std::uint64_t bounds{};    ///< calls of leastCostToGo
   bool usable() const { return status != TreeStatus::kImpossible; }
 };
 

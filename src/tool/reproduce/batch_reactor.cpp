@@ -59,17 +59,18 @@ std::vector<ReproduceRow> valves(const std::string& loop) {
   const bool priced = loop != "batch_fuzzy_eq44";
   const bool fewer = here.switches <= plain.switches && here.water <= plain.water;
   const Verdict verdict = !priced || fewer ? Verdict::kReproduced : Verdict::kNotReproducible;
-  const std::string note = priced ? "not more than with eq. 44: " : "the valves move more than needed";
+  const std::string note =
+      priced ? "not more than with eq. 44: " : "the valves move more than needed";
   const auto against = [&](double other) {
     return priced ? note + std::to_string(static_cast<long>(std::lround(other))) : note;
   };
-  return {state("switches of an on/off valve", here.switches, "-", verdict,
-                against(plain.switches)),
-          state("moves of the mixing valve", here.mixing_moves, "-",
-                here.mixing_moves <= plain.mixing_moves ? Verdict::kReproduced
-                                                        : Verdict::kNotReproducible,
-                against(plain.mixing_moves)),
-          state("fresh water", here.water, "kg", verdict, against(plain.water))};
+  return {
+      state("switches of an on/off valve", here.switches, "-", verdict, against(plain.switches)),
+      state("moves of the mixing valve", here.mixing_moves, "-",
+            here.mixing_moves <= plain.mixing_moves ? Verdict::kReproduced
+                                                    : Verdict::kNotReproducible,
+            against(plain.mixing_moves)),
+      state("fresh water", here.water, "kg", verdict, against(plain.water))};
 }
 
 /// Figures 12 to 14: the hybrid fuzzy model against the hybrid linear one.
@@ -97,15 +98,15 @@ bool add(const std::string& figure, std::function<std::vector<ReproduceRow>()> r
       {"batch_figure_" + figure, std::string(kSource) + ", figure " + figure, std::move(rows)});
 }
 
-const bool kRegistered =
-    add("06", [] { return followed("batch_fuzzy_eq44", 0.5); }) &&
-    add("07", [] { return valves("batch_fuzzy_eq44"); }) &&
-    add("08", [] { return followed("batch_fuzzy_eq45", 0.5); }) &&
-    add("09", [] { return valves("batch_fuzzy_eq45"); }) &&
-    add("10", [] { return followed("batch_linear_eq45", 2.0); }) &&
-    add("11", [] { return valves("batch_linear_eq45"); }) &&
-    add("12", [] { return compared(0, true); }) && add("13", [] { return compared(1, false); }) &&
-    add("14", [] { return compared(2, true); });
+const bool kRegistered = add("06", [] { return followed("batch_fuzzy_eq44", 0.5); }) &&
+                         add("07", [] { return valves("batch_fuzzy_eq44"); }) &&
+                         add("08", [] { return followed("batch_fuzzy_eq45", 0.5); }) &&
+                         add("09", [] { return valves("batch_fuzzy_eq45"); }) &&
+                         add("10", [] { return followed("batch_linear_eq45", 2.0); }) &&
+                         add("11", [] { return valves("batch_linear_eq45"); }) &&
+                         add("12", [] { return compared(0, true); }) &&
+                         add("13", [] { return compared(1, false); }) &&
+                         add("14", [] { return compared(2, true); });
 
 }  // namespace
 }  // namespace fpc::tool
