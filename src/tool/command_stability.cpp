@@ -211,6 +211,7 @@ Json reportOf(const StabilitySubject& s, const StabilityArguments& a) {
   const auto range = parseHorizon(a.horizon);
   const Stage stage;
   Json json = {{"name", s.name}};
+  if (!s.note.empty()) json["note"] = s.note;
   if (s.has_model) {
     stage.show("rules");
     json["model"] = s.model.name;

@@ -101,6 +101,7 @@ std::string branchesText(const Json& s) {
 
 std::string stabilityTable(const Json& report) {
   std::string out = report["name"].get<std::string>() + "\n";
+  if (report.contains("note")) out += "warning: " + report["note"].get<std::string>() + "\n";
   if (report.contains("model")) out += modelText(report) + certificateText(report["certificate"]);
   if (report.contains("advice")) {
     out += "\nadvice\n";

@@ -90,6 +90,10 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
   subject.law.published = loop.fmbpc.law != "general";
   subject.law.weight_output = loop.fmbpc.weight_output;
   subject.law.weight_move = loop.fmbpc.weight_move;
+  if (loop.has_model && loop.fmbpc.realisation == "literal")
+    subject.note =
+        "controller.realisation is literal; what follows is of the input-output states (past outputs "
+        "and inputs), not of the printed state space, which adds one sample of delay";
   if (!loop.external_plant)
     subject.plant = makePlant(loop.simulation.plant, loop.simulation.parameters);
 }
