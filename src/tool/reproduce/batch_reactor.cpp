@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "tool/reproduce/experiment.hpp"
@@ -47,7 +48,7 @@ std::vector<ReproduceRow> followed(const std::string& loop, double most) {
     const double rms = runs(loop).rms[w];
     rows.push_back(state(std::string("steady rms at ") + kWindows[w], rms, "K",
                          rms <= most ? Verdict::kReproduced : Verdict::kNotReproducible,
-                         "the core follows the recipe; the figure has no scale finer than 10 K"));
+                         "the core follows the recipe; the paper prints no number"));
   }
   return rows;
 }
@@ -62,7 +63,7 @@ std::vector<ReproduceRow> valves(const std::string& loop) {
   const std::string note =
       priced ? "not more than with eq. 44: " : "the valves move more than needed";
   const auto against = [&](double other) {
-    return priced ? note + std::to_string(static_cast<long>(std::lround(other))) : note;
+    return priced ? note + exactText(std::round(10.0 * other) / 10.0) : note;
   };
   return {
       state("switches of an on/off valve", here.switches, "-", verdict, against(plain.switches)),
