@@ -97,6 +97,24 @@ TEST_F(Tool, StabilityJsonHoldsRulesHorizonsCertificateAndSteadyStates) {
     EXPECT_EQ(tool(wrong).code, 1) << wrong;
 }
 
+TEST_F(Tool, StabilitySaysThatItDoesNotAnalyseThePrintedStateSpace) {
+  const auto note = [&](const std::string& loop) {
+    const Outcome outcome = tool("stability " + loop + " --json --horizon 9..9");
+    EXPECT_EQ(outcome.code, 0) << loop;
+    return nlohmann::json::parse(outcome.printed).value("note", "");
+  };
+  EXPECT_NE(note("cstr_tracking_literal").find("literal"), std::string::npos);
+  EXPECT_EQ(note("cstr_tracking"), "");
+}
+
+TEST_F(Tool, ReproduceIdentifiesTheModelsOfTheThesisAndJudgesThemOnTheirRecord) {
+  const auto json = nlohmann::json::parse(
+      tool("reproduce asp_c_identification asp_d_identification --json").printed);
+  ASSERT_EQ(json.size(), 4U);
+  const double least[] = {97.0, 82.0, 97.0, 75.0};  // s and x, case C on its own data, D held out
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_GE(json[i]["here"].get<double>(), least[i]) << i;
+}
+
 TEST_F(Tool, ReproduceJsonIsAListOfRowsWithAVerdictEach) {
   const auto json =
       nlohmann::json::parse(tool("reproduce asp_table_8 cstr_steady_states --json").printed);

@@ -40,6 +40,7 @@ ReproduceRow compare(const std::string& quantity, double paper, double here,
   char within[80];
   std::snprintf(within, sizeof within, "within %.2g %%", 100.0 * off);
   if (off <= kExact) return {quantity, paper, here, unit, Verdict::kReproduced, within};
+  if (off > close) std::snprintf(within, sizeof within, "off by %.3g %%", 100.0 * off);
   const std::string note = reason.empty() ? within : std::string(within) + "; " + reason;
   return {quantity, paper, here, unit, off <= close ? Verdict::kClose : Verdict::kNotReproducible,
           note};
