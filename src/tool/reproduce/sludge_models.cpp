@@ -16,8 +16,9 @@ constexpr char kArticle[] = "Vallejo Llamas 2021, article 1, ";
 constexpr char kRecord[] = "the identification record was never published";
 
 /// Row k holds y(k) and the u(k), d(k) that act from then on; the last sample has no action.
-DataSet dataOf(const std::string& loop, const Structure& structure) {
-  const RunRecord& run = recordOf(loop);
+DataSet dataOf(const std::string& loop, const Structure& structure,
+               const Overrides& overrides = {}) {
+  const RunRecord& run = recordOf(loop, overrides);
   const auto rows = static_cast<Eigen::Index>(run.samples.size()) - 1;
   std::vector<Vector> columns;
   const auto take = [&](const std::vector<StructureSignal>& wanted,
@@ -57,6 +58,12 @@ struct Printed {
   const char* words;  // instead of a number
 };
 
+ReproduceRow vaf(const std::string& what, double paper, double here) {
+  ReproduceRow row = compare(what, paper, here, "%", 0.05, kRecord);
+  if (here > paper && row.verdict != Verdict::kReproduced) row.verdict = Verdict::kBetter;
+  return row;
+}
+
 std::vector<ReproduceRow> validated(const std::string& name, const Printed& paper) {
   const Identification& found = identified(name);
   const Structure structure = readStructure(findStructure(name));
@@ -65,12 +72,26 @@ std::vector<ReproduceRow> validated(const std::string& name, const Printed& pape
   std::vector<ReproduceRow> rows;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const double here = outputs[i].free_run.vaf, printed = i == 0 ? paper.s : paper.x;
-    rows.push_back(compare("VAF of " + outputs[i].output + " in free run on " + record, printed,
-                           here, "%", 0.05, kRecord));
-    ReproduceRow& row = rows.back();
-    if (here > printed && row.verdict != Verdict::kReproduced) row.verdict = Verdict::kBetter;
-    row.note += std::string("; ") + paper.words + "; linear ARX " +
+    rows.push_back(vaf("VAF of " + outputs[i].output + " in free run on " + record, printed, here));
+    rows.back().note += std::string("; ") + paper.words + "; linear ARX " +
                 std::to_string(std::lround(outputs[i].linear_free_run.vaf)) + " %";
+  }
+  return rows;
+}
+
+/// Case A on a record whose inflow, which its models do not see, swings a quarter as much.
+std::vector<ReproduceRow> validatedWithCalmInflow(const Printed& paper) {
+  const Overrides calm{{"disturbance.pattern.channels.q_i.lower", "1100"},
+                       {"disturbance.pattern.channels.q_i.upper", "1500"}};
+  const Structure structure = readStructure(findStructure("asp_a"));
+  const DataSet data = dataOf("asp_excite", structure, calm);
+  const Identification found = identify(data, structure);
+  std::vector<ReproduceRow> rows;
+  for (const auto& output : validateModel(found.model, found.linear, data)) {
+    const double here = output.free_run.vaf, printed = output.output == "s" ? paper.s : paper.x;
+    rows.push_back(
+        vaf("the same for " + output.output + ", inflow 1100..1500 m3/h", printed, here));
+    rows.back().note += "; the swing of the unseen inflow makes most of the gap";
   }
   return rows;
 }
@@ -169,7 +190,11 @@ const bool kRegistered = [] {
     registerExperiment({std::string(c.name) + "_identification",
                         std::string(kArticle) + c.figure + ", table 9",
                         [name = std::string(c.name), paper = c.paper] {
-                          return validated(name, paper);
+                          auto rows = validated(name, paper);
+                          if (name != "asp_a") return rows;
+                          const auto calm = validatedWithCalmInflow(paper);
+                          rows.insert(rows.end(), calm.begin(), calm.end());
+                          return rows;
                         }});
   registerExperiment({"asp_d_rules_s", std::string(kArticle) + "tables 5, 6", rulesOfSubstrate});
   registerExperiment({"asp_d_rules_x", std::string(kArticle) + "tables 7, 8", rulesOfBiomass});
