@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kEnough = 1e-4;    // relative gain below which another round is not worth it
 constexpr double kSmallest = 0.05;  // share of a step below which it is given up
+constexpr double kFlat = 1e-12;    // slope that is none, relative
 constexpr double kStep = 1e-4;      // of finite differences, relative
 
 }  // namespace
@@ -121,6 +122,53 @@ void PathPlanner::slope(Eigen::Index i) {
   for (Eigen::Index a = 0; a < n_u_; ++a) difference(input_[a], B.col(a));
 }
 
+/// Into wish_ the least of 1/2 x' Quu x + Qu' x with the fixed inputs where wish_ has them.
+bool PathPlanner::solveFree() {
+  free_Quu_ = Quu_;
+  input_ = -Qu_;
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    if (!fixed_[static_cast<std::size_t>(a)]) continue;
+    input_ -= wish_[a] * Quu_.col(a);
+    free_Quu_.row(a).setZero();
+    free_Quu_.col(a).setZero();
+    free_Quu_(a, a) = 1.0;
+  }
+  for (Eigen::Index a = 0; a < n_u_; ++a)
+    if (fixed_[static_cast<std::size_t>(a)]) input_[a] = wish_[a];
+  factor_.compute(free_Quu_);
+  if (factor_.info() != Eigen::Success) return false;
+  factor_.solveInPlace(input_);
+  wish_ = input_;
+  return true;
+}
+
+/// Puts every free input that is out of its limits on them. False if there is none.
+bool PathPlanner::fixMore() {
+  bool more = false;
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    wish_[a] = std::clamp(input_[a], lower_[a], upper_[a]);
+    if (wish_[a] == input_[a] || fixed_[static_cast<std::size_t>(a)]) continue;
+    fixed_[static_cast<std::size_t>(a)] = more = true;
+  }
+  return more;
+}
+
+/// Frees the fixed input that would gain most by moving inwards. False if none would.
+bool PathPlanner::release() {
+  Eigen::Index best = -1;
+  double gain = 0.0;
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    if (!fixed_[static_cast<std::size_t>(a)] || lower_[a] == upper_[a]) continue;
+    const double slope = Quu_.row(a).dot(wish_) + Qu_[a];
+    const double inwards = wish_[a] == lower_[a] ? -slope : slope;
+    if (inwards <= kFlat * (1.0 + std::abs(Qu_[a])) || inwards <= gain) continue;
+    gain = inwards;
+    best = a;
+  }
+  if (best >= 0) fixed_[static_cast<std::size_t>(best)] = false;
+  return best >= 0;
+}
+
 /// The best input of sample i for the cost to go, those at a limit fixed there.
 bool PathPlanner::chooseInput(Eigen::Index i) {
   for (Eigen::Index a = 0; a < n_u_; ++a) {
@@ -130,27 +178,9 @@ bool PathPlanner::chooseInput(Eigen::Index i) {
     lower_[a] = std::min(lower_[a], upper_[a]);
     fixed_[static_cast<std::size_t>(a)] = false;
   }
-  for (bool again = true; again;) {
-    again = false;
-    free_Quu_ = Quu_;
-    input_ = -Qu_;
-    for (Eigen::Index a = 0; a < n_u_; ++a) {
-      if (!fixed_[static_cast<std::size_t>(a)]) continue;
-      input_ -= wish_[a] * Quu_.col(a);
-      free_Quu_.row(a).setZero();
-      free_Quu_.col(a).setZero();
-      free_Quu_(a, a) = 1.0;
-    }
-    for (Eigen::Index a = 0; a < n_u_; ++a)
-      if (fixed_[static_cast<std::size_t>(a)]) input_[a] = wish_[a];
-    factor_.compute(free_Quu_);
-    if (factor_.info() != Eigen::Success) return false;
-    factor_.solveInPlace(input_);
-    for (Eigen::Index a = 0; a < n_u_; ++a) {
-      wish_[a] = std::clamp(input_[a], lower_[a], upper_[a]);
-      if (wish_[a] == input_[a] || fixed_[static_cast<std::size_t>(a)]) continue;
-      fixed_[static_cast<std::size_t>(a)] = again = true;
-    }
+  for (Eigen::Index round = 0; round < 4 * n_u_ + 1; ++round) {
+    if (!solveFree()) return false;
+    if (!fixMore() && !release()) break;
   }
   Matrix& K = K_[static_cast<std::size_t>(i)];
   K = -Qux_;

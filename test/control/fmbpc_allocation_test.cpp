@@ -69,6 +69,19 @@ TEST(FmbpcLawMemory, StepDoesNotAllocate) {
     }
 }
 
+TEST(FmbpcLawMemory, PlanningAlongThePathDoesNotAllocate) {
+  if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  std::mt19937_64 generator(1);
+  FmbpcParams params = test::generalParams(2, 2, 20, 0.5, 0.1);
+  params.law = "iterated";
+  params.horizon_steps = 20;
+  params.forecast_period_steps = 30;
+  const TsModel model = test::randomModel(generator, {});
+  EXPECT_EQ(Steady(params, model).allocations(100), 0U);
+  params.preview = true;
+  EXPECT_EQ(Steady(params, test::multivariate(model)).allocations(100), 0U);
+}
+
 TEST(FmbpcLawMemory, WithADelayTakenOutNothingIsAllocatedEither) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   for (const char* realisation : {"parallel", "literal"})

@@ -6,7 +6,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/data_set.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
-#include "fuzzy/model_fixture.hpp"
+#include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {
 namespace {
@@ -117,6 +117,12 @@ TEST(ChoiceModel, WrongSizesAreRefused) {
   const TsModel model = test::shippedModel("batch_fuzzy");
   EXPECT_THROW(ChoiceModel(model, Matrix::Zero(2, 7)), InputError);
   EXPECT_THROW(ChoiceModel(model, Matrix(3, 0)), InputError);
+}
+
+TEST(ChoiceModel, MultivariateMembershipsAreRefused) {
+  std::mt19937_64 generator(1);
+  const TsModel model = test::multivariate(test::randomModel(generator, {}));
+  EXPECT_THROW(ChoiceModel(model, Matrix::Zero(2, 3)), InputError);
 }
 
 TEST(HybridModel, FileAndBackLosesNothing) {

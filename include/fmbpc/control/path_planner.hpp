@@ -39,6 +39,9 @@ class PathPlanner {
   void slope(Eigen::Index i);
   bool sweep();
   bool chooseInput(Eigen::Index i);
+  bool solveFree();
+  bool fixMore();
+  bool release();
   double weigh(Eigen::Index i, const Matrix& states, const Matrix& inputs) const;
 
   LocalModel model_;
