@@ -3,14 +3,15 @@
 
     plot_loop.py DIR [DIR ...] [--out FILE]
 
-Outputs with setpoint and reference, inputs with their limits and the optimizer's perturbation, disturbances; time in
-hours. One folder: DIR/plot.png. Several folders are compared, one colour each, in comparison.png of the current folder.
+Outputs with setpoint and reference, inputs with their limits and the optimizer's perturbation, disturbances that change; time
+in hours. One folder: DIR/plot.png. Several folders are compared, one colour each, in comparison.png of the current folder.
 """
 import argparse
 import csv
 import json
 import os
 import sys
+import textwrap
 
 COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a"]
 SUFFIXES = ("_setpoint", "_reference", "_true", "_commanded", "_base", "_perturbation")
@@ -52,7 +53,9 @@ class Run:
 
 
 def label(run, name):
-    return "%s [%s]" % (name, run.units[name]) if run.units.get(name) else name
+    """Name and unit, on two lines if they are long."""
+    unit = run.units.get(name)
+    return "%s%s[%s]" % (name, "\n" if len(name + unit) > 14 else " ", unit) if unit else name
 
 
 def draw_limits(axis, limits, values, always):
@@ -63,18 +66,6 @@ def draw_limits(axis, limits, values, always):
         near = finite and limit is not None and min(finite) - 1e-9 <= limit <= max(finite) + 1e-9
         if limit is not None and (always or near):
             axis.axhline(limit, color="black", linewidth=1.1, linestyle=":", zorder=3)
-
-
-def robust_range(axis, series, skip):
-    """Leaves a start far outside (s = 200 mg/l, say) out of the frame rather than flatten everything else."""
-    values = sorted(v for one in series for v in one[skip:] if v == v)
-    everything = sorted(v for one in series for v in one if v == v)
-    if not values or not everything:
-        return
-    low, high = values[0], values[-1]
-    span = (high - low) or max(abs(high), 1.0)
-    if everything[-1] - everything[0] > 2.0 * span:
-        axis.set_ylim(low - 0.08 * span, high + 0.12 * span)
 
 
 def draw_output(axis, runs, name):
@@ -89,8 +80,6 @@ def draw_output(axis, runs, name):
     for run, colour in zip(runs, COLOURS):
         axis.plot(run.time, run.columns[name], color=colour, linewidth=1.2, label=name if single else run.name)
     draw_limits(axis, first.limits("outputs", name), [], True)
-    robust_range(axis, [run.columns[name] for run in runs] + [first.columns[name + "_setpoint"]],
-                 len(first.time) // 10)
     axis.set_ylabel(label(first, name))
 
 
@@ -119,6 +108,15 @@ def draw_disturbance(axis, runs, name):
     axis.set_ylabel(label(runs[0], name))
 
 
+def changes(runs, name):
+    return any(len(set(v for v in run.columns.get(name, []) if v == v)) > 1 for run in runs)
+
+
+def held(run, names):
+    """One line on the disturbances that never change."""
+    return ", ".join(("%s %.4g %s" % (name, run.columns[name][0], run.units[name])).strip() for name in names)
+
+
 def title_of(runs):
     return runs[0].summary.get("title") or runs[0].name if len(runs) == 1 else "Comparison"
 
@@ -129,7 +127,7 @@ def draw(runs, file):
     import matplotlib.pyplot as plt
     first = runs[0]
     panels = [(draw_output, n, 2.0) for n in first.outputs()] + [(draw_input, n, 1.7) for n in first.inputs()]
-    panels += [(draw_disturbance, n, 1.0) for n in first.disturbances()]
+    panels += [(draw_disturbance, n, 1.0) for n in first.disturbances() if changes(runs, n)]
     heights = [height for _, _, height in panels]
     figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(9.0, 1.15 * sum(heights) + 1.0),
                                 gridspec_kw={"height_ratios": heights})
@@ -143,7 +141,8 @@ def draw(runs, file):
             axis.set_ylim(low, high + 0.16 * (high - low))  # room for the legend
             axis.legend(loc="upper right", ncol=min(len(handles), 4), fontsize=8, framealpha=0.85, borderpad=0.3)
     figure.align_ylabels(axes[:, 0])
-    axes[-1, 0].set_xlabel("time [h]")
+    constant = held(first, [n for n in first.disturbances() if not changes(runs, n)])
+    axes[-1, 0].set_xlabel("time [h]" + ("\nheld: " + textwrap.fill(constant, 110) if constant else ""))
     axes[0, 0].set_title(title_of(runs), fontsize=11)
     figure.tight_layout()
     figure.savefig(file, dpi=110)

@@ -47,7 +47,7 @@ int settlingSamples(const LinearModel& model, const LoopLaw& law, double referen
   return outside == kSimulated - 1 ? -1 : outside + 1;
 }
 
-HorizonFigures horizonFigures(const LinearModel& model, LoopLaw law) {
+HorizonFigures horizonFigures(const LinearModel& model, const LoopLaw& law) {
   HorizonFigures figures;
   figures.coincidence_steps = law.coincidence_steps;
   const ClosedLoop loop = closeLoop(model, law);

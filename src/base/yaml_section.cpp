@@ -165,6 +165,16 @@ void YamlSection::names(const std::string& key, std::vector<std::string>& value)
   }
 }
 
+void YamlSection::subset(const std::string& key, std::vector<std::string>& value, const std::vector<std::string>& known) {
+  names(key, value);
+  for (auto here = value.begin(); here != value.end(); ++here) {
+    const bool exists = std::find(known.begin(), known.end(), *here) != known.end();
+    const bool repeated = std::find(value.begin(), here, *here) != here;
+    if (!exists || repeated)
+      throw InputError(where(key) + ": expected names out of " + join(known) + ", each once, got '" + *here + "'");
+  }
+}
+
 void YamlSection::numbers(const std::string& key, std::vector<double>& value, Range range) {
   const YAML::Node node = raw(key);
   if (!node.IsDefined()) return;

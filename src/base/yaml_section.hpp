@@ -49,6 +49,8 @@ class YamlSection {
   void text(const std::string& key, std::string& value);
   void oneOf(const std::string& key, std::string& value, const std::vector<std::string>& choices);
   void names(const std::string& key, std::vector<std::string>& value);
+  /// Names out of `known`, each once.
+  void subset(const std::string& key, std::vector<std::string>& value, const std::vector<std::string>& known);
   void numbers(const std::string& key, std::vector<double>& value, Range range = {});
   /// n numbers; also accepts one number for all n. `.inf` and `-.inf` pass when the range allows them.
   void vector(const std::string& key, Vector& value, Eigen::Index n, Range range = {});

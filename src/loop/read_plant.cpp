@@ -21,20 +21,6 @@ Range rangeOf(const Quantity& quantity) {
   return {std::max(quantity.lower, -kLargest), std::min(quantity.upper, kLargest)};
 }
 
-/// A list of names out of `known`, each once.
-void readSubset(YamlSection& section, const std::string& key, std::vector<std::string>& value,
-                const std::vector<std::string>& known) {
-  section.names(key, value);
-  for (std::size_t i = 0; i < value.size(); ++i) {
-    const bool exists = std::find(known.begin(), known.end(), value[i]) != known.end();
-    const auto here = value.begin() + static_cast<std::ptrdiff_t>(i);
-    const bool repeated = std::find(value.begin(), here, value[i]) != here;
-    if (!exists || repeated)
-      throw InputError(section.where(key) + ": expected names out of " + join(known) +
-                       ", each once, got '" + value[i] + "'");
-  }
-}
-
 void readIntegrator(YamlSection& plant, IntegratorParams& params) {
   YamlSection section = plant.section("integrator");
   section.number("relative_tolerance", params.relative_tolerance, kFinitePositive);
@@ -76,13 +62,13 @@ void readSimulated(YamlSection& plant, LoopFile& loop, LoopNames& names) {
   names.inputs = namesOf(names.plant.inputs);
   names.disturbances = namesOf(names.plant.disturbances);
   sim.outputs = names.plant.outputs;
-  readSubset(plant, "outputs", sim.outputs, namesOf(names.plant.states));
+  plant.subset("outputs", sim.outputs, namesOf(names.plant.states));
   if (sim.outputs.empty()) plant.fail("outputs", "at least one name");
   for (const auto& name : names.disturbances)
     if (std::count(names.plant.hidden_disturbances.begin(), names.plant.hidden_disturbances.end(),
                    name) == 0)
       sim.measured_disturbances.push_back(name);
-  readSubset(plant, "measured_disturbances", sim.measured_disturbances, names.disturbances);
+  plant.subset("measured_disturbances", sim.measured_disturbances, names.disturbances);
   names.outputs = sim.outputs;
   for (const auto& name : names.disturbances)  // PlantInfo keeps the plant's order
     if (std::count(sim.measured_disturbances.begin(), sim.measured_disturbances.end(), name) > 0)

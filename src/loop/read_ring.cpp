@@ -159,6 +159,11 @@ void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   for (auto& item : section.list("windows"))
     loop.report.windows.push_back(readWindow(item, names.outputs));
   readConsumption(section, names, loop.report.consumption);
+  std::vector<std::string> free;
+  section.subset("without_setpoint", free, names.outputs);
+  for (const auto& name : free)
+    loop.report.without_setpoint.push_back(
+        std::find(names.outputs.begin(), names.outputs.end(), name) - names.outputs.begin());
   loop.report.output_lower = toStd(lower);
   loop.report.output_upper = toStd(upper);
   section.finish();

@@ -1,10 +1,12 @@
 #include "fmbpc/loop/record.hpp"
 
+#include <limits>
 #include <utility>
 
 namespace fpc {
 namespace {
 constexpr std::uint32_t kLargestJump = 100000;  // a stray step number must not ask for gigabytes
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 }
 
 Recorder::Recorder(std::string loop, PlantInfo info, bool has_optimizer, bool has_state,
@@ -45,6 +47,8 @@ void Recorder::add(const PlantState& s) {
 void Recorder::add(const Tracking& t) {
   if (SampleRecord* sample = at(t.header)) {
     sample->tracking = t;
+    for (const Eigen::Index i : without_setpoint_)
+      sample->tracking.setpoint[i] = sample->tracking.reference[i] = kMissing;
     sample->has_tracking = true;
   }
 }

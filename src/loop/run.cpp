@@ -45,7 +45,9 @@ class Ring {
       names.push_back(state.name);
       units.push_back(state.unit);
     }
-    return {loop.name, simulation_.info(), loop.has_clp, true, names, units};
+    Recorder recorder(loop.name, simulation_.info(), loop.has_clp, true, names, units);
+    recorder.leaveOut(loop.report.without_setpoint);
+    return recorder;
   }
 
   const Vector& optimize(const ControllerAnswer& answer) {

@@ -38,7 +38,9 @@ Recorder makeRecorder(const LoopFile& loop) {
       units.push_back(state.unit);
     }
   }
-  return {loop.name, loop.plant_info, loop.has_clp, !loop.external_plant, names, units};
+  Recorder recorder(loop.name, loop.plant_info, loop.has_clp, !loop.external_plant, names, units);
+  recorder.leaveOut(loop.report.without_setpoint);
+  return recorder;
 }
 
 template <typename List>

@@ -44,7 +44,7 @@ void print(const Experiment& experiment, const std::vector<ReproduceRow>& rows) 
     char line[600];
     std::snprintf(line, sizeof line, "  %-52s %12s %12s %9s %-9s %-16s %s\n",
                   row.quantity.c_str(), cell(row.paper).c_str(), cell(row.here).c_str(),
-                  cell(row.here / row.paper).c_str(), row.unit.c_str(), name(row.verdict),
+                  cell(row.paper == 0.0 ? std::nan("") : row.here / row.paper).c_str(), row.unit.c_str(), name(row.verdict),
                   row.note.c_str());
     std::cout << line;
   }

@@ -76,7 +76,7 @@ Json equilibriaOf(const StabilitySubject& s) {
   return list;
 }
 
-Json linearOf(const LinearModel& model, LoopLaw law, int longest) {
+Json linearOf(const LinearModel& model, const LoopLaw& law, int longest) {
   const Transfer transfer = transferOf(model.affine, 0, model.affine.C.rows() - 1);
   const ClosedLoop loop = closeLoop(model, law);
   return {{"open_loop", jsonOf(transfer.poles)},

@@ -16,7 +16,7 @@ struct HorizonFigures {
   double noise_gain{};  ///< std of u per std of white measurement noise [input/output unit]
   int settling{};       ///< samples until a setpoint step stays within 2 %, a_r = 0; -1: never seen
 };
-HorizonFigures horizonFigures(const LinearModel& model, LoopLaw law);
+HorizonFigures horizonFigures(const LinearModel& model, const LoopLaw& law);
 /// The same settling with a reference of pole a_r in [0, 1).
 int settlingSamples(const LinearModel& model, const LoopLaw& law, double reference_pole);
 

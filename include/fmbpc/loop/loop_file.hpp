@@ -73,6 +73,7 @@ struct ReportParams {
       output_upper;  ///< n_y limits for violations.output; infinite if absent
   std::vector<ReportWindow> windows;
   std::vector<Consumption> consumption;
+  std::vector<Eigen::Index> without_setpoint;  ///< outputs that nobody asks anything of
 };
 
 /// Section `model.identify`: how fuzzy_identifier finds models while the plant runs.

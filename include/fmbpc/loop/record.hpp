@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fmbpc/base/ring.hpp"
@@ -37,6 +38,8 @@ class Recorder {
   /// has_optimizer: actions and reports of the optimizer are expected besides the base actions.
   Recorder(std::string loop, PlantInfo info, bool has_optimizer, bool has_state,
            std::vector<std::string> states, std::vector<std::string> state_units);
+  /// Setpoints and references of these outputs are recorded as missing.
+  void leaveOut(std::vector<Eigen::Index> outputs) { without_setpoint_ = std::move(outputs); }
   void add(const Measurement& m);
   void add(const PlantState& s);
   void add(const Tracking& t);
@@ -53,6 +56,7 @@ class Recorder {
  private:
   SampleRecord* at(const StepHeader& header);
   RunRecord record_;
+  std::vector<Eigen::Index> without_setpoint_;
   std::uint64_t run_id_{};
   bool has_optimizer_, has_state_;
 };
