@@ -86,7 +86,7 @@ void validateSignal(const ExcitationSignal& s, const std::string& key, const Inp
 
 }  // namespace
 
-void ExcitationParams::validate(const InputLimits& limits) const {
+void ExcitationParams::validate(const InputLimits& limits, Eigen::Index n_y) const {
   require(!signals.empty(), "controller.signals", "at least one signal");
   std::set<int> moved;
   for (std::size_t i = 0; i < signals.size(); ++i) {
@@ -94,6 +94,14 @@ void ExcitationParams::validate(const InputLimits& limits) const {
     validateSignal(signals[i], key, limits);
     require(moved.insert(signals[i].input).second, key + "input",
             "an input that no other signal moves");
+  }
+  for (std::size_t i = 0; i < feedback.size(); ++i) {
+    const std::string key = "controller.feedback[" + std::to_string(i) + "].";
+    require(feedback[i].input >= 0 && feedback[i].input < limits.lower.size(), key + "input",
+            "one of the plant's inputs");
+    require(feedback[i].output >= 0 && feedback[i].output < n_y, key + "output",
+            "one of the plant's outputs");
+    require(std::isfinite(feedback[i].gain), key + "gain", "a finite number");
   }
 }
 
@@ -164,29 +172,34 @@ void ExcitationStream::nextLevel() {
 ExcitationController::ExcitationController(ExcitationParams params, InputLimits limits,
                                            Vector start_input, const PlantInfo& plant)
     : limits_(std::move(limits)),
-      wanted_(std::move(start_input)),
+      feedback_(params.feedback),
+      signal_(std::move(start_input)),
+      wanted_(signal_),
       no_reference_(Vector::Constant(static_cast<Eigen::Index>(plant.outputs.size()),
                                      std::numeric_limits<double>::quiet_NaN())) {
   const auto n_u = static_cast<Eigen::Index>(plant.inputs.size());
   limits_.validate(n_u);
-  require(wanted_.size() == n_u && wanted_.allFinite(), "actuator.initial",
+  require(signal_.size() == n_u && signal_.allFinite(), "actuator.initial",
           std::to_string(n_u) + " finite numbers");
-  params.validate(limits_);
+  params.validate(limits_, no_reference_.size());
   for (ExcitationSignal& signal : params.signals) {
-    const double start = wanted_[signal.input];
+    const double start = signal_[signal.input];
     streams_.emplace_back(std::move(signal), params.seed, start);
   }
 }
 
 void ExcitationController::reset(const Measurement& /*start*/) {}
 
-void ExcitationController::step(const Measurement& now, const SetpointSource& /*setpoint*/,
+void ExcitationController::step(const Measurement& now, const SetpointSource& setpoint,
                                 ControllerOutput& output) {
-  for (ExcitationStream& stream : streams_) wanted_[stream.input()] = stream.at(now.header.step);
+  for (ExcitationStream& stream : streams_) signal_[stream.input()] = stream.at(now.header.step);
+  wanted_ = signal_;
+  for (const ExcitationFeedback& f : feedback_)
+    wanted_[f.input] += f.gain * (setpoint.present()[f.output] - now.outputs[f.output]);
   output.input = wanted_;
   limits_.clip(output.input, now.input_applied);
   output.source = output.input == wanted_ ? ActionSource::kBase : ActionSource::kClipped;
-  output.reference = no_reference_;
+  output.reference = feedback_.empty() ? no_reference_ : setpoint.present();
   output.predictive = false;
   output.ok = true;
   output.remark = "";

@@ -1,4 +1,4 @@
-// Section `controller` of type excitation: open-loop experiments. Times are given in samples or in
+// Section `controller` of type excitation: experiments for identification. Times are given in samples or in
 // seconds that are a whole number of samples.
 #include <cmath>
 #include <set>
@@ -93,6 +93,16 @@ ExcitationSignal readSignal(YamlSection& item, const LoopFile& loop, const LoopN
   return signal;
 }
 
+ExcitationFeedback readFeedback(YamlSection& item, const LoopNames& names) {
+  ExcitationFeedback feedback;
+  feedback.input = indexByName(item, "input", names.inputs);
+  feedback.output = indexByName(item, "output", names.outputs);
+  need(item, "gain", "a number");
+  item.number("gain", feedback.gain, kFinite);
+  item.finish();
+  return feedback;
+}
+
 }  // namespace
 
 void readExcitation(YamlSection& section, LoopFile& loop, const LoopNames& names) {
@@ -104,7 +114,10 @@ void readExcitation(YamlSection& section, LoopFile& loop, const LoopNames& names
     if (!moved.insert(loop.excitation.signals.back().input).second)
       item.fail("input", "an input that no other signal moves");
   }
-  checked(section, [&] { loop.excitation.validate(loop.simulation.actuator.limits); });
+  for (auto& item : section.list("feedback"))
+    loop.excitation.feedback.push_back(readFeedback(item, names));
+  const auto n_y = static_cast<Eigen::Index>(names.outputs.size());
+  checked(section, [&] { loop.excitation.validate(loop.simulation.actuator.limits, n_y); });
 }
 
 }  // namespace fpc

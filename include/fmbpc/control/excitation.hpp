@@ -1,6 +1,7 @@
-// Open-loop experiments for identification: each input follows a signal of its own that does not
-// depend on what the plant does. Pseudo-random binary signals from shift registers of maximal
-// length (Golomb 1967), random levels held for random times, given staircases.
+// Experiments for identification: each input follows a signal of its own that does not depend on
+// what the plant does; a plant that is unstable where it is to be known needs feedback beside it
+// (Ljung, System Identification (1999), sec. 13.4). Pseudo-random binary signals from shift
+// registers of maximal length (Golomb 1967), random levels held for random times, given staircases.
 #pragma once
 
 #include <cstdint>
@@ -32,12 +33,19 @@ struct ExcitationSignal {
   std::vector<ExcitationStep> schedule;  ///< steps: a staircase, samples increasing
 };
 
+/// Holds a plant in its range that would not stay there by itself: adds gain * (setpoint - y).
+struct ExcitationFeedback {
+  int input{}, output{};  ///< indices
+  double gain{};          ///< input unit per output unit
+};
+
 struct ExcitationParams {
   std::uint64_t seed{1};
-  std::vector<ExcitationSignal> signals;  ///< inputs without one keep the start input
+  std::vector<ExcitationSignal> signals;     ///< inputs without one keep the start input
+  std::vector<ExcitationFeedback> feedback;  ///< empty: an open-loop experiment
   /// @throws InputError naming the field: indices, words, two signals for one input, levels beyond
-  /// the bounds of the inputs, times.
-  void validate(const InputLimits& limits) const;
+  /// the bounds of the inputs, times, feedback of an unknown output.
+  void validate(const InputLimits& limits, Eigen::Index n_y) const;
 };
 
 /// Two levels: the bits of a shift register with feedback, period 2^bits - 1.
@@ -72,15 +80,16 @@ class ExcitationStream {
   double start_input_;
   std::mt19937_64 first_engine_, engine_;
   ShiftRegister first_register_, register_;
-  std::size_t entry_{};                // steps: the next of the schedule
-  std::int64_t begin_{}, end_{};       // samples of value_: begin_ <= step < end_
+  std::size_t entry_{};           // steps: the next of the schedule
+  std::int64_t begin_{}, end_{};  // samples of value_: begin_ <= step < end_
   double value_{};
 };
 
-/// u(k) = signal of each input, clipped to move limit and bounds: where a level is further away
-/// than one move, the input walks there; the hold time counts from the choice of the level. Streams
-/// are independent: the bits of an input depend on the seed and its own settings only. After a gap,
-/// a restart or manual mode the signal is where it would have been. Setpoints have no meaning.
+/// u(k) = signal of each input, plus the feedback's share if there is any, clipped to move limit
+/// and bounds: where a level is further away than one move, the input walks there; the hold time
+/// counts from the choice of the level. Streams are independent: the bits of an input depend on the
+/// seed and its own settings only. After a gap, a restart or manual mode the signal is where it
+/// would have been. Setpoints have a meaning for feedback only.
 class ExcitationController final : public Controller {
  public:
   /// start_input: n_u, the input before sample 0. @throws InputError naming the field.
@@ -89,11 +98,13 @@ class ExcitationController final : public Controller {
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
-  bool followsSetpoint() const override { return false; }
+  bool followsSetpoint() const override { return !feedback_.empty(); }
 
  private:
   InputLimits limits_;
-  Vector wanted_;  // start input, overwritten by the streams
+  std::vector<ExcitationFeedback> feedback_;
+  Vector signal_;  // start input, overwritten by the streams
+  Vector wanted_;
   Vector no_reference_;
   std::vector<ExcitationStream> streams_;
 };
