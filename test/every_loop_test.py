@@ -37,7 +37,8 @@ class EveryLoop(unittest.TestCase):
                 self.compare(loop, folder)
 
     def compare(self, loop, folder):
-        seconds = 6 if loop.startswith("cstr") else 10 if loop.startswith("batch") else 720
+        sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6}
+        seconds = next((s for name, s in sample_times.items() if loop.startswith(name)), 720)
         duration = f"sampling.duration_h={480 * seconds / 3600}"
         port = free_port()
         topics = run(f"roslaunch -p {port} fmbpc loop.launch loop:={loop} pace:=lockstep draw:=false "

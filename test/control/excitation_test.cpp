@@ -151,9 +151,11 @@ InputLimits limits(double move) {
   return {Vector::Zero(2), Vector::Constant(2, 1000.0), Vector::Constant(2, move)};
 }
 
-ControllerSession session(const std::vector<ExcitationSignal>& signals, double move = kInfinity) {
+ControllerSession session(const std::vector<ExcitationSignal>& signals, double move = kInfinity,
+                          const std::vector<ExcitationFeedback>& feedback = {}) {
   ExcitationParams params;
   params.signals = signals;
+  params.feedback = feedback;
   SetpointParams setpoint;
   setpoint.initial = Vector::Constant(1, 5.0);
   const Vector start = Vector::Constant(2, 570.0);
@@ -206,6 +208,28 @@ TEST(ExcitationController, AfterManualAndGapsTheSignalIsWhereItWouldHaveBeen) {
   }
 }
 
+// The setpoint is 5, y is 0.5: 4.5 times the gain.
+TEST(ExcitationController, FeedbackAddsItsShareToSignalsAndStillInputs) {
+  auto plain = session({multiLevel(1)}),
+       fed = session({multiLevel(1)}, kInfinity, {{1, 0, 2.0}, {0, 0, -10.0}, {0, 0, 3.0}});
+  const Vector start = Vector::Constant(2, 570.0);
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    plain.receive(sample(k, start));
+    fed.receive(sample(k, start));
+    EXPECT_EQ(fed.answer().base.input[1], plain.answer().base.input[1] + 9.0);
+    EXPECT_EQ(fed.answer().base.input[0], 570.0 - 31.5);
+  }
+  EXPECT_EQ(fed.answer().tracking.setpoint[0], 5.0);
+  EXPECT_EQ(fed.answer().tracking.reference[0], 5.0);
+}
+
+TEST(ExcitationController, FeedbackEndsAtTheLimits) {
+  auto fed = session({prbs(0)}, kInfinity, {{0, 0, 1e6}});
+  fed.receive(sample(0, Vector::Constant(2, 570.0)));
+  EXPECT_EQ(fed.answer().base.input[0], 1000.0);
+  EXPECT_EQ(fed.answer().base.source, ActionSource::kClipped);
+}
+
 TEST(ExcitationController, FollowsNothing) {
   auto open = session({prbs(0)});
   open.receive(sample(0, Vector::Constant(2, 570.0)));
@@ -219,7 +243,7 @@ TEST(ExcitationParams, MistakesNameTheField) {
     ExcitationParams params;
     params.signals = {signal};
     try {
-      params.validate(limits(kInfinity));
+      params.validate(limits(kInfinity), 1);
     } catch (const InputError& error) {
       return error.what();
     }
@@ -238,8 +262,17 @@ TEST(ExcitationParams, MistakesNameTheField) {
   EXPECT_NE(errorOf(nan).find("signals[0].levels"), std::string::npos);
   ExcitationParams twice;
   twice.signals = {prbs(0), multiLevel(0)};
-  EXPECT_THROW(twice.validate(limits(kInfinity)), InputError);
-  EXPECT_THROW(ExcitationParams{}.validate(limits(kInfinity)), InputError);
+  EXPECT_THROW(twice.validate(limits(kInfinity), 1), InputError);
+  EXPECT_THROW(ExcitationParams{}.validate(limits(kInfinity), 1), InputError);
+  ExcitationParams fed;
+  fed.signals = {prbs(0)};
+  fed.feedback = {{1, 0, 2.0}};
+  EXPECT_NO_THROW(fed.validate(limits(kInfinity), 1));
+  for (const auto& wrong : {ExcitationFeedback{2, 0, 2.0}, ExcitationFeedback{1, 1, 2.0},
+                            ExcitationFeedback{1, 0, std::nan("")}}) {
+    fed.feedback = {wrong};
+    EXPECT_THROW(fed.validate(limits(kInfinity), 1), InputError);
+  }
 }
 
 }  // namespace

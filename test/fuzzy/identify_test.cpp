@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
+
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/model_file.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
@@ -46,6 +49,42 @@ TEST(Identify, ClustersBeatTheLinearModelOnHeldOutData) {
       const DataSet held_out = dataOf(knownRecord(500, 2, 0.01), structure);
       EXPECT_LT(freeRunRmse(found.model, held_out), 0.8 * freeRunRmse(found.linear, held_out));
     }
+}
+
+/// Two outputs that wander on their own, moved by one input.
+Matrix twoOutputRecord(Eigen::Index rows) {
+  std::mt19937_64 generator(7);
+  std::uniform_real_distribution<double> level(-1.0, 1.0);
+  Matrix values(rows, 3);
+  double a = 0.0, b = 0.0;
+  for (Eigen::Index k = 0; k < rows; ++k) {
+    const double u = level(generator);
+    values.row(k) << a, b, u;
+    const double before = a;
+    a = 0.8 * a + 0.3 * std::sin(2.0 * b) + 0.2 * u;
+    b = 0.7 * b - 0.2 * before * before + 0.4 * u;
+  }
+  return values;
+}
+
+TEST(Identify, WithoutTheOutputInTheClusterSpaceAllOutputsShareOnePartition) {
+  const auto found = [](const std::string& with_output) {
+    const Structure structure = parseStructure(
+        "name: two\nsample_time_s: 1\noutputs: {a: {}, b: {}}\ninputs: {u: {}}\nsubmodels:\n"
+        "  a: &both\n    regressors: [a(k), b(k), u(k)]\n    antecedents: [a(k), b(k)]\n"
+        "    clusters: 4\n  b: *both\npartition: {method: fuzzy_c_means, with_output: " +
+            with_output + "}\nconsequents: {method: recursive}\n",
+        "two.yaml");
+    return identify(dataOf(twoOutputRecord(600), structure), structure).model;
+  };
+  const auto antecedents = [](const TsModel& model, std::size_t output) {
+    std::vector<std::vector<Membership>> sets;
+    for (const Rule& rule : model.submodels[output].rules) sets.push_back(rule.antecedents);
+    return sets;
+  };
+  const TsModel shared = found("false"), apart = found("true");
+  EXPECT_EQ(antecedents(shared, 0), antecedents(shared, 1));
+  EXPECT_NE(antecedents(apart, 0), antecedents(apart, 1));
 }
 
 TEST(Identify, SameSeedSameModel) {

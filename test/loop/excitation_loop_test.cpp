@@ -57,6 +57,10 @@ TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {
   expectWords(errorWith("signal: prbs, upper: 1e6"), {"signals[0].upper"});
   expectWords(errorWith("signal: prbs, lower: 20, upper: 10"), {"upper", "above lower"});
   expectWords(errorWith("signal: prbs, hold_lower_steps: 3"), {"hold_lower_steps: unknown key"});
+  expectWords(errorWith("signal: none}\n  feedback:\n    - {input: q_r, output: y, gain: 1"),
+              {"feedback[0].output"});
+  expectWords(errorWith("signal: none}\n  feedback:\n    - {input: q_r, output: s"),
+              {"feedback[0].gain"});
   expectWords(errorWith("signal: sine"), {"signals[0].signal", "prbs, multi_level, steps, none"});
   expectWords(errorWith("signal: multi_level"), {"signals[0].hold_lower_steps"});
   expectWords(errorWith(holds + "hold_upper_steps: 0"), {"signals[0].hold_upper_steps"});

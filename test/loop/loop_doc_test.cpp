@@ -81,7 +81,8 @@ std::set<std::string> readerKeys() {
   const std::string excitation =
       "plant: {type: activated_sludge}\ncontroller:\n  type: excitation\n  signals: [{input: q_r, "
       "signal: ";
-  const std::string prbs = controlled(excitation + "prbs}]\n");
+  const std::string prbs =
+      controlled(excitation + "prbs}]\n  feedback: [{input: q_r, output: s, gain: 1}]\n");
   const std::string levels =
       controlled(excitation + "multi_level, hold_lower_steps: 1, hold_upper_steps: 2}]\n");
   const std::string steps = controlled(excitation + "steps, schedule: [{time_h: 1, value: 2}]}]\n");
