@@ -169,7 +169,7 @@ Eigen::Vector2d shortRunFit(const TsModel& model, const DataSet& data, Eigen::In
     error += (measured - y).cwiseAbs2();
     spread += (measured - mean).cwiseAbs2();
   }
-  return 100.0 * (1.0 - error.cwiseQuotient(spread).cwiseSqrt().array());
+  return (100.0 * (1.0 - error.cwiseQuotient(spread).cwiseSqrt().array())).matrix();
 }
 
 TEST(MimoCstrModel, SharesItsPartitionAndKnowsTheReactorAtTheSetpoints) {
@@ -229,9 +229,8 @@ TEST(SurgeTankBound, NoControllerRisesFasterThanThePumpAllows) {
 TEST(SurgeTankBound, TheOutletSetsThePaceOfAStepDown) {
   const ShortestStep bound = shortestStep(readLoop("surge_tank_down"), 0.25, 0.5);
   std::printf("0.30 to 0.25 m: at least %.3f s\n", bound.rise_s);
-  // 11.8148 s of Torricelli with the pump off; the last of its flow lengthens it, Euler steps do
-  // not
-  EXPECT_NEAR(bound.rise_s, 11.82, 0.05);
+  EXPECT_GE(bound.rise_s, 11.82) << "Torricelli's time, without the rest of the pump's flow";
+  EXPECT_LE(bound.rise_s, 12.0);
 }
 
 TEST(SurgeTankBound, MoreOvershootAndMoreCurrentAllowAFasterStep) {
