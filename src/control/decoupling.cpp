@@ -58,7 +58,7 @@ InvertedDecoupling::InvertedDecoupling(const FopdtMatrix& model, double sample_t
 
 /// v(k - whole - more), where v(k) is `present`.
 double InvertedDecoupling::Path::delayed(double present, int more) const {
-  const std::size_t lag = static_cast<std::size_t>(whole + more);
+  const std::size_t lag = static_cast<std::size_t>(whole) + static_cast<std::size_t>(more);
   if (lag == 0) return present;
   return past[(next + past.size() - lag) % past.size()];
 }
