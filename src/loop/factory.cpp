@@ -20,6 +20,8 @@ std::unique_ptr<Controller> makeController(const LoopFile& loop) {
     return std::make_unique<ExcitationController>(loop.excitation, limits,
                                                   loop.simulation.actuator.initial,
                                                   loop.plant_info);
+  if (loop.controller == "fuzzy_optimal")
+    return std::make_unique<FuzzyOptimalLaw>(loop.fuzzy_optimal, limits, loop.plant_info);
   if (loop.controller == "hybrid_mpc")
     return std::make_unique<HybridMpc>(loop.hybrid, limits, loop.plant_info);
   if (loop.controller == "adaptive_pi")

@@ -41,6 +41,12 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readController(YamlSection& root, LoopFile& loop, const LoopNames& names);
 /// Keys of `controller` with type excitation.
 void readExcitation(YamlSection& section, LoopFile& loop, const LoopNames& names);
+/// Keys of `controller` with type fuzzy_optimal.
+void readFuzzyOptimal(YamlSection& section, LoopFile& loop, const LoopNames& names);
+/// Nominal values of the measured disturbances.
+Vector nominalDisturbances(const LoopFile& loop, const LoopNames& names);
+/// Key prediction_steps, which an optimizer fixes.
+void readPredictionSteps(YamlSection& section, const LoopFile& loop, int& steps);
 void readHybridMpc(YamlSection& section, LoopFile& loop, const LoopNames& names);
 /// `recipe`: what a batch plant does one after the other, as entries of a schedule.
 std::vector<SetpointStep> readRecipe(YamlSection& setpoint,

@@ -43,13 +43,7 @@ void readFmbpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
   params.reference_pole = Vector::Constant(n_y, 0.9);
   params.weight_output = Vector::Ones(n_y);
   params.weight_move = Vector::Zero(n_u);
-  params.disturbance_nominal.resize(count(names.seen_disturbances));
-  for (Eigen::Index i = 0; i < params.disturbance_nominal.size(); ++i) {
-    const auto& all = names.disturbances;
-    const auto at =
-        std::find(all.begin(), all.end(), names.seen_disturbances[static_cast<std::size_t>(i)]);
-    params.disturbance_nominal[i] = loop.simulation.disturbance_nominal[at - all.begin()];
-  }
+  params.disturbance_nominal = nominalDisturbances(loop, names);
   section.oneOf("law", params.law, {"published", "general", "iterated"});
   section.integer("coincidence_steps", params.coincidence_steps, 1, 100000);
   section.byName("reference_pole", params.reference_pole, names.outputs, {0.0, 1.0});
@@ -72,11 +66,7 @@ void readFmbpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
   section.byName("disturbance_nominal", params.disturbance_nominal, names.seen_disturbances,
                  kFinite);
   section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
-  if (loop.has_clp) params.prediction_steps = loop.clp.perturbation_steps;
-  section.integer("prediction_steps", params.prediction_steps, 1, 10000);
-  if (loop.has_clp && params.prediction_steps != loop.clp.perturbation_steps)
-    section.fail("prediction_steps",
-                 "clp.perturbation_steps (" + std::to_string(loop.clp.perturbation_steps) + ")");
+  readPredictionSteps(section, loop, params.prediction_steps);
   checked(section, [&] { params.validate(n_y, n_u); });
 }
 
@@ -166,6 +156,25 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
 
 }  // namespace
 
+Vector nominalDisturbances(const LoopFile& loop, const LoopNames& names) {
+  Vector nominal(count(names.seen_disturbances));
+  for (Eigen::Index i = 0; i < nominal.size(); ++i) {
+    const auto& all = names.disturbances;
+    const auto at =
+        std::find(all.begin(), all.end(), names.seen_disturbances[static_cast<std::size_t>(i)]);
+    nominal[i] = loop.simulation.disturbance_nominal[at - all.begin()];
+  }
+  return nominal;
+}
+
+void readPredictionSteps(YamlSection& section, const LoopFile& loop, int& steps) {
+  if (loop.has_clp) steps = loop.clp.perturbation_steps;
+  section.integer("prediction_steps", steps, 1, 10000);
+  if (loop.has_clp && steps != loop.clp.perturbation_steps)
+    section.fail("prediction_steps",
+                 "clp.perturbation_steps (" + std::to_string(loop.clp.perturbation_steps) + ")");
+}
+
 void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("setpoint");
   SetpointParams& params = loop.setpoint;
@@ -215,12 +224,15 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 
 void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("controller");
-  const std::vector<std::string> types{"fmbpc", "hybrid_mpc", "pi", "adaptive_pi", "excitation"};
+  const std::vector<std::string> types{"fmbpc", "fuzzy_optimal", "hybrid_mpc",
+                                       "pi",    "adaptive_pi",   "excitation"};
   need(section, "type", "one of " + join(types));
   loop.controller = "fmbpc";
   section.oneOf("type", loop.controller, types);
   if (loop.controller == "fmbpc") {
     readFmbpc(section, loop, names);
+  } else if (loop.controller == "fuzzy_optimal") {
+    readFuzzyOptimal(section, loop, names);
   } else if (loop.controller == "hybrid_mpc") {
     readHybridMpc(section, loop, names);
   } else if (loop.controller == "adaptive_pi") {
@@ -231,9 +243,9 @@ void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
     readPi(section, loop, names);
   }
   section.finish();
-  if (loop.has_clp && loop.controller != "fmbpc")
+  if (loop.has_clp && loop.controller != "fmbpc" && loop.controller != "fuzzy_optimal")
     section.fail("type",
-                 "a controller that predicts (fmbpc) for clp; clp.enabled: false switches the "
+                 "a controller that predicts (fmbpc, fuzzy_optimal) for clp; clp.enabled: false switches the "
                  "optimizer off");
 }
 

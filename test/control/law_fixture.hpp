@@ -84,7 +84,7 @@ class ModelPlant {
 using Visitor = std::function<void(const Measurement&, const ControllerOutput&)>;
 
 /// Samples [from, to) of a closed loop; the law must have been reset.
-inline void run(FmbpcLaw& law, ModelPlant& plant, SetpointSource& setpoint, std::uint32_t from,
+inline void run(Controller& law, ModelPlant& plant, SetpointSource& setpoint, std::uint32_t from,
                 std::uint32_t to, const Visitor& visit = {}) {
   ControllerOutput output;
   for (std::uint32_t k = from; k < to; ++k) {
@@ -97,7 +97,7 @@ inline void run(FmbpcLaw& law, ModelPlant& plant, SetpointSource& setpoint, std:
 }
 
 /// Reset at sample 0, then samples [0, to).
-inline void start(FmbpcLaw& law, ModelPlant& plant, SetpointSource& setpoint, std::uint32_t to,
+inline void start(Controller& law, ModelPlant& plant, SetpointSource& setpoint, std::uint32_t to,
                   const Visitor& visit = {}) {
   law.reset(plant.measure(0));
   run(law, plant, setpoint, 0, to, visit);

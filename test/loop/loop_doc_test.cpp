@@ -104,6 +104,11 @@ std::set<std::string> readerKeys() {
       named("b") + ", disturbances: " + named("c") +
       ", elements: [{output: a, from: b, gain: 1, time_constant_min: 1}]}}\n"
       "controller: {type: pi, loops: [{input: b, output: a, kp: 1}]}\n";
+  const std::string optimal =
+      "plant: {type: distillation_column}\nsampling: {sample_time_s: 60, duration_h: 1}\nmodel: "
+      "{file: " +
+      std::string(FMBPC_SOURCE_DIR) +
+      "/config/model/wood_berry.yaml}\ncontroller: {type: fuzzy_optimal, rules: [{}]}\n";
   const std::string adaptive =
       "plant: {type: distillation_column}\ncontroller: {type: adaptive_pi, decoupling: false, loops: "
       "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
@@ -111,7 +116,7 @@ std::set<std::string> readerKeys() {
   std::set<std::string> keys;
   std::set<std::string> sections;
   for (const auto& text : {controlled(fmbpc + lists), controlled(external), controlled(column),
-                           controlled(adaptive), prbs, levels, steps,
+                           controlled(adaptive), optimal, prbs, levels, steps,
                            batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
                            batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest})
     for (const auto& path : asked(text)) {
@@ -166,6 +171,7 @@ std::map<std::string, std::string> structDefaults() {
   const LoopFile loop;
   const ClpParams& clp = loop.clp;
   const FmbpcParams& law = loop.fmbpc;
+  const FuzzyOptimalParams& optimal = loop.fuzzy_optimal;
   const IntegratorParams& integrator = loop.simulation.integrator;
   const CsvDisturbanceParams& csv = loop.disturbance.csv;
   const PiLoop pi;
@@ -195,6 +201,10 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.offset_gain", exactText(law.offset_gain)},
           {"controller.disturbance_feedforward", word(law.disturbance_feedforward)},
           {"controller.transfer_decay", exactText(law.transfer_decay)},
+          {"controller.move_steps", std::to_string(optimal.tuning.move_steps)},
+          {"controller.solve", optimal.solve},
+          {"controller.disturbance", optimal.disturbance},
+          {"controller.disturbance_gain", exactText(optimal.disturbance_gain)},
           {"controller.loops[].ki_per_h", exactText(pi.ki_per_h)},
           {"controller.loops[].reverse", word(pi.reverse)},
           {"controller.loops[].anti_windup", pi.anti_windup},

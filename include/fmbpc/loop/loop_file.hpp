@@ -9,6 +9,7 @@
 #include "fmbpc/control/closed_loop_paradigm.hpp"
 #include "fmbpc/control/excitation.hpp"
 #include "fmbpc/control/fmbpc_law.hpp"
+#include "fmbpc/control/fuzzy_optimal.hpp"
 #include "fmbpc/control/hybrid_mpc.hpp"
 #include "fmbpc/control/pi.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
@@ -101,8 +102,9 @@ struct LoopFile {
   double max_pole{1.0};    ///< a model that replaces another in a run is refused beyond
   bool has_identify{false};
   IdentifyParams identify;
-  std::string controller;  ///< fmbpc, hybrid_mpc, pi, adaptive_pi or excitation
+  std::string controller;  ///< fmbpc, fuzzy_optimal, hybrid_mpc, pi, adaptive_pi or excitation
   FmbpcParams fmbpc;
+  FuzzyOptimalParams fuzzy_optimal;
   PiParams pi;
   AdaptivePiParams adaptive_pi;
   ExcitationParams excitation;

@@ -70,8 +70,8 @@ class ControllerNode : public Node {
   Diagnostics diagnostics_;
 };
 
-/// The nodes fmbpc_controller, hybrid_mpc_controller, adaptive_pi_controller, excitation_generator and
-/// pi_controller.
+/// The nodes fmbpc_controller, fuzzy_optimal_controller, hybrid_mpc_controller,
+/// adaptive_pi_controller, excitation_generator and pi_controller.
 struct FmbpcControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
@@ -81,6 +81,10 @@ struct AdaptivePiControllerNode : ControllerNode {
   static std::string idleReason(const LoopFile& loop);
 };
 struct ExcitationGeneratorNode : ControllerNode {
+  using ControllerNode::ControllerNode;
+  static std::string idleReason(const LoopFile& loop);
+};
+struct FuzzyOptimalControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
 };
