@@ -2,6 +2,10 @@
 
 namespace fpc {
 
+Settings Controller::settings() const { return {}; }
+
+bool Controller::retune(const Settings& /*settings*/) { return false; }
+
 bool Controller::adapt(bool /*on*/) { return false; }
 
 void Controller::setModel(const TsModel& /*model*/) {}

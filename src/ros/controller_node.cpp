@@ -31,9 +31,6 @@ std::string AdaptivePiControllerNode::idleReason(const LoopFile& loop) {
 std::string ExcitationGeneratorNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "excitation");
 }
-std::string FuzzyOptimalControllerNode::idleReason(const LoopFile& loop) {
-  return wrongType(loop, "fuzzy_optimal");
-}
 std::string HybridMpcControllerNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "hybrid_mpc");
 }

@@ -123,6 +123,50 @@ TEST(FuzzyOptimalRetune, BeforeTheFirstSampleTheNewTuningIsSimplyThere) {
   for (int i = 0; i < 20; ++i) EXPECT_EQ(retuned.step(), other.step());
 }
 
+TEST(FuzzyOptimalSettings, AreTextsThatReadBack) {
+  std::mt19937_64 generator(4);
+  const TsModel model = test::dominantModel(generator, 2);
+  FuzzyOptimalParams p = test::optimalParams(2, 2, 5, 1, 0.1);
+  FuzzyOptimalLaw law(p, test::wideLimits(2), test::infoOf(model));
+  law.setModel(model);
+  const Settings before = law.settings();
+  EXPECT_EQ(before[2], (std::pair<std::string, std::string>{"weight_output", "y1=1 y2=1"}));
+  EXPECT_TRUE(law.retune(before));
+  EXPECT_EQ(law.settings(), before);
+  law.retune({{"weight_move", "u2=0.5"}, {"horizon_steps", "7"}, {"weight_output", "2"}});
+  EXPECT_EQ(law.tuning().weight.move, test::pair(0.1, 0.5));
+  EXPECT_EQ(law.tuning().weight.output, test::pair(2.0, 2.0));
+  EXPECT_EQ(law.tuning().horizon_steps, 7);
+  law.retune({{"weight_move", "u1=1; 2, 3; 4"}});
+  ASSERT_EQ(law.tuning().rules.size(), 3U);
+  EXPECT_EQ(law.tuning().rules[0].move, test::pair(1.0, 0.5));
+  EXPECT_EQ(law.tuning().rules[1].move, test::pair(2.0, 3.0));
+  EXPECT_EQ(law.tuning().rules[2].move, test::pair(4.0, 4.0));
+  EXPECT_EQ(law.tuning().rules[2].output, test::pair(2.0, 2.0));
+  const Settings by_rule = law.settings();
+  EXPECT_EQ(by_rule[3].second, "u1=1 u2=0.5; u1=2 u2=3; u1=4 u2=4");
+  law.retune(by_rule);
+  EXPECT_EQ(law.settings(), by_rule);
+}
+
+TEST(FuzzyOptimalSettings, WhatIsNoneIsRefusedByKey) {
+  Loop loop(params());
+  const std::pair<std::string, std::string> bad[] = {
+      {"weight_move", "z=1"},  {"weight_move", "1 2"},  {"weight_move", "1; 2"},
+      {"weight_move", ""},     {"weight_move", "-1"},   {"weight_output", "much"},
+      {"move_steps", "9"},     {"horizon_steps", "0"},  {"horizon_steps", "2.5"},
+      {"input_target", "inf"}, {"reference_pole", "0.5"}};
+  const Settings before = loop.law.settings();
+  for (const auto& setting : bad) try {
+      loop.law.retune({setting});
+      ADD_FAILURE() << setting.first << ": " << setting.second << " was taken";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("controller." + setting.first), std::string::npos)
+          << error.what();
+    }
+  EXPECT_EQ(loop.law.settings(), before);
+}
+
 TEST(FuzzyOptimalRetune, AStartInTheMiddleOfARunGoesOnFromTheAppliedInput) {
   Loop loop(params());
   loop.run(5);

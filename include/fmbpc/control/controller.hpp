@@ -26,6 +26,9 @@ struct ControllerOutput {
   const char* remark{""};  ///< words for diagnostics, also when ok; lives as long as the controller
 };
 
+/// Keys and values, as a person writes them.
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
 class Controller {
  public:
   virtual ~Controller() = default;
@@ -49,6 +52,11 @@ class Controller {
   virtual void makeSendable(Eigen::Ref<Vector> input) const;
   /// Whether the controller may change itself from now on. Returns false if it never does.
   virtual bool adapt(bool on);
+  /// What may be changed while it runs, as it is now. Default: nothing.
+  virtual Settings settings() const;
+  /// Takes these from the next sample on, without a bump; others stay. Returns false if there is
+  /// nothing to change. @throws InputError, then nothing is taken.
+  virtual bool retune(const Settings& settings);
   /// Signals for plotting, "NAME" -> value, refreshed by step(). Default: none.
   virtual const std::vector<std::pair<std::string, double>>& signals() const;
 };

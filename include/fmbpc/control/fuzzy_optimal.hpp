@@ -66,6 +66,11 @@ class FuzzyOptimalLaw final : public Controller {
   /// From the next sample on, without a bump. @throws InputError, then nothing changes.
   void retune(FuzzyOptimalTuning tuning);
   const FuzzyOptimalTuning& tuning() const;  ///< the latest
+  /// The tuning under the keys of a loop file. Weights and targets: one number for all, one for
+  /// each signal, or NAME=number; groups for each rule are separated by semicolons, a single group
+  /// is for all rules.
+  Settings settings() const override;
+  bool retune(const Settings& settings) override;
   const std::vector<std::pair<std::string, double>>& signals() const override;
 
  private:

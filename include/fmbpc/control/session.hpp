@@ -77,6 +77,9 @@ class ControllerSession {
   /// Lets the controller change itself, or freezes it; false if it never does.
   bool adapt(bool on) { return controller_->adapt(on); }
 
+  /// New settings of the law from the next sample on; see Controller::retune().
+  bool retune(const Settings& settings) { return controller_->retune(settings); }
+
   const ArrivalCounts& counts() const { return gate_.counts(); }
   const SetpointSource& setpoint() const { return setpoint_; }
   const Controller& controller() const { return *controller_; }

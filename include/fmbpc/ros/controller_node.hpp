@@ -35,6 +35,9 @@ class ControllerNode : public Node {
   /// @throws InputError
   ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop);
 
+ protected:
+  ControllerSession& session() { return session_; }
+
  private:
   void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg);
   void onModel(const fmbpc::FuzzyModel::ConstPtr& msg);
@@ -70,8 +73,8 @@ class ControllerNode : public Node {
   Diagnostics diagnostics_;
 };
 
-/// The nodes fmbpc_controller, fuzzy_optimal_controller, hybrid_mpc_controller,
-/// adaptive_pi_controller, excitation_generator and pi_controller.
+/// The nodes fmbpc_controller, hybrid_mpc_controller, adaptive_pi_controller, excitation_generator and
+/// pi_controller.
 struct FmbpcControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
@@ -81,10 +84,6 @@ struct AdaptivePiControllerNode : ControllerNode {
   static std::string idleReason(const LoopFile& loop);
 };
 struct ExcitationGeneratorNode : ControllerNode {
-  using ControllerNode::ControllerNode;
-  static std::string idleReason(const LoopFile& loop);
-};
-struct FuzzyOptimalControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
 };
