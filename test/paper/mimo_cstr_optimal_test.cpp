@@ -51,7 +51,7 @@ TEST(MimoCstrOptimal, EveryStepIsFastWithoutOvershootOrOffset) {
 }
 
 TEST(MimoCstrOptimal, TheOneStepLawReachesEverySetpointToo) {
-  const auto all = steps(wholeRun("mimo_cstr_tracking", {{"controller.horizon_steps", "1"}}));
+  const auto all = steps(wholeRun("mimo_cstr_steps_p1", {{"disturbance.commands", "[]"}}));
   std::printf("one step: mean cost %.4f\n", meanCost(all));
   for (const StepFigures& f : all) EXPECT_LE(f.offset, 0.01);
 }
