@@ -1,4 +1,4 @@
-// What a sample costs: one FMBPC step, one plant sample, a whole run in process.
+// What a sample costs: one step of a predictive law, one plant sample, a whole run in process.
 #include <benchmark/benchmark.h>
 
 #include "fmbpc/loop/factory.hpp"
@@ -20,9 +20,15 @@ void controllerStep(benchmark::State& state, const char* name) {
 
 void fmbpcStep(benchmark::State& state) { controllerStep(state, "asp_case1"); }
 void fmbpcStepWithPrediction(benchmark::State& state) { controllerStep(state, "asp_case1_clp"); }
+void fuzzyOptimalStep(benchmark::State& state) { controllerStep(state, "mimo_cstr_steps"); }
+void fuzzyOptimalStepWithPrediction(benchmark::State& state) {
+  controllerStep(state, "mimo_cstr_steps_clp");
+}
 void piStep(benchmark::State& state) { controllerStep(state, "asp_case1_pi_x"); }
 BENCHMARK(fmbpcStep);
 BENCHMARK(fmbpcStepWithPrediction);
+BENCHMARK(fuzzyOptimalStep);
+BENCHMARK(fuzzyOptimalStepWithPrediction);
 BENCHMARK(piStep);
 
 void plantSample(benchmark::State& state) {

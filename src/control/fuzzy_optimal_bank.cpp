@@ -22,7 +22,7 @@ Matrix correctionOf(const QuadraticLaw& law, const LocalModel& model, bool insid
 }
 
 FuzzyOptimalRule makeRule(const TsModel& model, const FuzzyOptimalParams& params,
-                                        const QuadraticWeights& weights, std::size_t rule) {
+                          const QuadraticWeights& weights, std::size_t rule) {
   const FuzzyOptimalTuning& tuning = params.tuning;
   LocalModel local(model);
   local.blend(Vector::Zero(local.stateSize()), Vector::Zero(count(model.disturbances)));

@@ -20,7 +20,8 @@ struct FuzzyOptimalRule {
   Vector constant;     ///< n_u: what does not depend on state and references
 };
 
-/// Per sample: rest() or advance(), then estimate(), then blend(), then forward(). No allocation in them.
+/// Per sample: rest() or advance(), then estimate(), then blend(), then forward(). No allocation in
+/// them.
 struct FuzzyOptimalLaw::Bank {
   /// `model` is matched to the plant. @throws InputError, see setModel() and retune().
   Bank(const TsModel& model, const FuzzyOptimalParams& params);
@@ -40,16 +41,16 @@ struct FuzzyOptimalLaw::Bank {
   FuzzyOptimalTuning tuning;
   bool inside, estimated;
   double gain;
-  LocalModel local;          ///< all rules: firing weights, blended matrices
-  std::size_t partition;     ///< output whose firing weights count
+  LocalModel local;       ///< all rules: firing weights, blended matrices
+  std::size_t partition;  ///< output whose firing weights count
   std::vector<FuzzyOptimalRule> rules;
-  bool short_sighted{false}; ///< some rule's horizon is too short for some input
-  bool begun{false};         ///< the d_g have been estimated since rest()
-  Vector state, before;      ///< x(k), x(k-1): measured values
-  Vector predicted;          ///< of one rule
-  Vector error;              ///< y - y_hat(k|k-1), blended
-  Matrix future;             ///< col(i) = y_r(k+1+i)
-  Matrix K, reference;       ///< blended
+  bool short_sighted{false};  ///< some rule's horizon is too short for some input
+  bool begun{false};          ///< the d_g have been estimated since rest()
+  Vector state, before;       ///< x(k), x(k-1): measured values
+  Vector predicted;           ///< of one rule
+  Vector error;               ///< y - y_hat(k|k-1), blended
+  Matrix future;              ///< col(i) = y_r(k+1+i)
+  Matrix K, reference;        ///< blended
   Vector constant, offset_state, offset_output;
 };
 

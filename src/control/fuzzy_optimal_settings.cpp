@@ -82,8 +82,7 @@ std::string weightText(const FuzzyOptimalTuning& tuning, Weight weight,
                        const std::vector<SignalInfo>& signals) {
   if (tuning.rules.empty()) return textOf(tuning.weight.*weight, signals);
   std::vector<std::string> groups;
-  for (const QuadraticWeights& rule : tuning.rules)
-    groups.push_back(textOf(rule.*weight, signals));
+  for (const QuadraticWeights& rule : tuning.rules) groups.push_back(textOf(rule.*weight, signals));
   return join(groups, "; ");
 }
 

@@ -34,8 +34,9 @@ FuzzyOptimalControllerNode::FuzzyOptimalControllerNode(ros::NodeHandle node,
                                                        ros::NodeHandle private_node,
                                                        const LoopFile& loop)
     : ControllerNode(node, private_node, loop), server_(private_node) {
-  server_.setCallback(
-      [this](fmbpc::FuzzyOptimalConfig& config, std::uint32_t /*level*/) { onReconfigure(config); });
+  server_.setCallback([this](fmbpc::FuzzyOptimalConfig& config, std::uint32_t /*level*/) {
+    onReconfigure(config);
+  });
 }
 
 void FuzzyOptimalControllerNode::onReconfigure(fmbpc::FuzzyOptimalConfig& config) {

@@ -41,9 +41,10 @@ struct Mismatch {
 };
 
 TEST(FuzzyOptimalOffset, NoneUnderInputOutputAndParameterMismatchForAnyHorizon) {
-  const Mismatch mismatches[] = {
-      {"input", 0.0, 0.4, 0.0}, {"output", 0.0, 0.0, 0.3}, {"parameters", 0.15, 0.0, 0.0},
-      {"all", 0.15, 0.4, 0.3}};
+  const Mismatch mismatches[] = {{"input", 0.0, 0.4, 0.0},
+                                 {"output", 0.0, 0.0, 0.3},
+                                 {"parameters", 0.15, 0.0, 0.0},
+                                 {"all", 0.15, 0.4, 0.3}};
   const int horizons[][2] = {{1, 1}, {5, 1}, {12, 3}};
   for (std::uint64_t seed = 1; seed <= 10; ++seed)
     for (const Mismatch& m : mismatches)

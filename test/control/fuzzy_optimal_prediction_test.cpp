@@ -96,8 +96,8 @@ Constrained runConstrained(bool with_optimizer) {
     Vector input = output.input;
     if (with_optimizer) {
       if (!optimizer)
-        optimizer = std::make_unique<ClosedLoopParadigm>(clp, limits, output.prediction.state.size(),
-                                                         2, 2);
+        optimizer =
+            std::make_unique<ClosedLoopParadigm>(clp, limits, output.prediction.state.size(), 2, 2);
       optimizer->step(output.prediction, action, report);
       EXPECT_EQ(report.status, SolveStatus::kSolved);
       input = action.input;

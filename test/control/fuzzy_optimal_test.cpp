@@ -86,7 +86,8 @@ TEST(FuzzyOptimalLaw, LimitsHoldAtEverySample) {
   test::start(law, plant, setpoint, 100, [&](const Measurement& now, const ControllerOutput& out) {
     EXPECT_TRUE((out.input.array() <= limits.upper.array()).all());
     EXPECT_TRUE((out.input.array() >= limits.lower.array()).all());
-    EXPECT_TRUE(((out.input - now.input_applied).array().abs() <= limits.move.array() + 1e-12).all());
+    EXPECT_TRUE(
+        ((out.input - now.input_applied).array().abs() <= limits.move.array() + 1e-12).all());
     clipped = clipped || out.source == ActionSource::kClipped;
   });
   EXPECT_TRUE(clipped);

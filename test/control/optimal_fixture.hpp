@@ -28,8 +28,8 @@ inline TsModel sharedRandomModel(std::mt19937_64& generator, const RandomModelSh
   return model;
 }
 
-/// n outputs and inputs; in each of three rules, told apart by y1, output i is mainly moved by input
-/// i, with two lags of itself and poles between 0.4 and 0.8.
+/// n outputs and inputs; in each of three rules, told apart by y1, output i is mainly moved by
+/// input i, with two lags of itself and poles between 0.4 and 0.8.
 inline TsModel dominantModel(std::mt19937_64& generator, int n) {
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   TsModel model;

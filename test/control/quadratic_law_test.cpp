@@ -99,7 +99,8 @@ TEST(QuadraticLaw, LinearExampleHasNoGradientLeft) {
     const QuadraticLaw law = makeQuadraticLaw(model, {}, weights);
     for (int i = 0; i < 100; ++i) {
       const Vector x = Vector::NullaryExpr(4, [&] { return unit(generator); });
-      const Vector u = law.reference * test::linearSetpoint() - law.K * x + law.target * Vector::Ones(2);
+      const Vector u =
+          law.reference * test::linearSetpoint() - law.K * x + law.target * Vector::Ones(2);
       const Matrix G = model.C * model.B;
       const Vector error = model.C * (model.A * x + model.B * u) - test::linearSetpoint();
       const Vector gradient = 2.0 * (G.transpose() * weights.output.asDiagonal() * error +

@@ -11,8 +11,8 @@ namespace {
 using test::StepFigures;
 using test::wholeRun;
 
-constexpr double kSampleTime = 0.01;           // [min]
-constexpr std::size_t kHold = 5000;            // samples of each pair
+constexpr double kSampleTime = 0.01;  // [min]
+constexpr std::size_t kHold = 5000;   // samples of each pair
 constexpr double kSetpoint[4][2] = {{0.1, 441}, {0.05, 450}, {0.15, 430}, {0.25, 416}};
 
 /// The three steps of Ca and the four of T.
@@ -21,8 +21,7 @@ std::vector<StepFigures> steps(const RunRecord& record) {
   for (std::size_t p = 0; p < 4; ++p)
     for (Eigen::Index i = 0; i < 2; ++i) {
       if (p == 0 && i == 0) continue;  // Ca stays
-      all.push_back(
-          test::stepFigures(record, i, p * kHold, (p + 1) * kHold - 1, kSetpoint[p][i]));
+      all.push_back(test::stepFigures(record, i, p * kHold, (p + 1) * kHold - 1, kSetpoint[p][i]));
       const StepFigures& f = all.back();
       std::printf("%s to %g: Tr %.3f  Ts %.3f min  Ov %.3f %%  Es %.2g %%\n", i == 0 ? "Ca" : "T",
                   kSetpoint[p][i], kSampleTime * f.rise, kSampleTime * f.settling, f.overshoot,

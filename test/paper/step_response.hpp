@@ -13,8 +13,8 @@
 namespace fpc::test {
 
 struct StepFigures {
-  double rise{}, settling{};      ///< [samples], linear between them
-  double overshoot{}, offset{};   ///< [%]; offset: mean over the last tenth
+  double rise{}, settling{};     ///< [samples], linear between them
+  double overshoot{}, offset{};  ///< [%]; offset: mean over the last tenth
   double cost(double dt) const { return 10.0 * offset + overshoot + dt * (settling + rise); }
 };
 
@@ -34,8 +34,7 @@ inline StepFigures stepFigures(const RunRecord& record, Eigen::Index i, std::siz
   for (std::size_t k = first; k <= last; ++k) z.push_back((output(k) - from) / (to - from));
   const auto crossing = [&](double level) {
     for (std::size_t k = 1; k < z.size(); ++k)
-      if (z[k] >= level)
-        return static_cast<double>(k - 1) + (level - z[k - 1]) / (z[k] - z[k - 1]);
+      if (z[k] >= level) return static_cast<double>(k - 1) + (level - z[k - 1]) / (z[k] - z[k - 1]);
     return HUGE_VAL;
   };
   StepFigures f;

@@ -47,8 +47,7 @@ TEST(SurgeTankOptimal, AFeedIsTakenOutCompletely) {
 TEST(SurgeTankOptimal, WithTheEstimateOutsideTheRecursionAnOffsetStays) {
   const RunRecord record =
       wholeRun("surge_tank_disturbance", {{"controller.disturbance", "outside"}});
-  const double percent =
-      100.0 * std::abs(record.samples[600].state.outputs[0] - 0.20) / 0.05;
+  const double percent = 100.0 * std::abs(record.samples[600].state.outputs[0] - 0.20) / 0.05;
   std::printf("outside: offset at 60 s %.3g %% of 0.05 m\n", percent);
   EXPECT_GT(percent, 0.5);
 }

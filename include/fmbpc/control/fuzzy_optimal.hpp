@@ -13,11 +13,11 @@ namespace fpc {
 
 /// What may be changed while the loop runs.
 struct FuzzyOptimalTuning {
-  int horizon_steps{40};            ///< P
-  int move_steps{1};                ///< M
-  QuadraticWeights weight;          ///< of every rule, unless it has its own
+  int horizon_steps{40};                ///< P
+  int move_steps{1};                    ///< M
+  QuadraticWeights weight;              ///< of every rule, unless it has its own
   std::vector<QuadraticWeights> rules;  ///< empty, or one for each rule of the model
-  Vector input_target;              ///< n_u, u_t; matters where an input has a weight
+  Vector input_target;                  ///< n_u, u_t; matters where an input has a weight
   /// @throws InputError naming the field ("controller.weight_move").
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
 };
