@@ -81,16 +81,20 @@ void settleOn(StabilitySubject& subject) {
 void readLoopInto(StabilitySubject& subject, const std::string& name) {
   const LoopFile loop = readLoop(name);
   subject.name = loop.name;
-  subject.has_model = loop.has_model;
+  subject.has_model = loop.has_model && loop.controller != "fuzzy_optimal";
   subject.sample_time_s = loop.plant_info.sample_time_s;
-  if (loop.has_model) subject.model = withoutDelay(loop.model, loop.fmbpc.delay_steps);
+  if (loop.has_model && !subject.has_model)
+    subject.note =
+        "the law of controller.type fuzzy_optimal is not analysed; name the model file instead of "
+        "the loop for that of fmbpc";
+  if (subject.has_model) subject.model = withoutDelay(loop.model, loop.fmbpc.delay_steps);
   require(loop.fmbpc.law == "published" || loop.fmbpc.law == "general", name + ": controller.law",
           "published or general: no other law is linear around its model");
   subject.law.coincidence_steps = loop.fmbpc.coincidence_steps;
   subject.law.published = loop.fmbpc.law != "general";
   subject.law.weight_output = loop.fmbpc.weight_output;
   subject.law.weight_move = loop.fmbpc.weight_move;
-  if (loop.has_model && loop.fmbpc.realisation == "literal")
+  if (subject.has_model && loop.fmbpc.realisation == "literal")
     subject.note =
         "controller.realisation is literal; what follows is of the input-output states (past outputs "
         "and inputs), not of the printed state space, which adds one sample of delay";
