@@ -30,8 +30,8 @@ FuzzyOptimalRule makeRule(const TsModel& model, const FuzzyOptimalParams& params
       local.affine(), {tuning.horizon_steps, tuning.move_steps, params.solve == "together"},
       weights);
   require(law.usable, "controller.horizon_steps",
-          "so many that every input has an effect in rule " + std::to_string(rule + 1) +
-              ", which tells the inputs apart, or a weight_move > 0");
+          "so many samples that in rule " + std::to_string(rule + 1) +
+              " every input has an effect of its own, or a weight_move > 0");
   const Matrix correction = correctionOf(law, local, params.disturbance == "inside");
   for (Index j = 0; j < law.previous.cols(); ++j)
     law.K.col(local.inputState(j, 1)) -= law.previous.col(j);
