@@ -92,7 +92,7 @@ TEST(FuzzyOptimalRetune, TheNextSetpointIsReachedAsTheNewWeightsSay) {
   retuned.run(300);
   fresh.run(300);
   retuned.law.retune(quick(retuned.law));
-  for (int i = 300; i < 420; ++i) {
+  for (int i = 300; i < 406; ++i) {
     calm.step();
     EXPECT_NEAR(retuned.step(), fresh.step(), 1e-7);
   }
