@@ -31,7 +31,7 @@ TEST(Linear2x2, InputsDrawnToZeroLeaveAnOffset) {
 
 TEST(Linear2x2, EachInputByItselfDiverges) {
   const RunRecord record = wholeRun("linear_2x2_each");
-  EXPECT_GT(errorAt(record, 40).norm(), 10.0 * errorAt(record, 20).norm());
+  EXPECT_GT(errorAt(record, 20).norm(), 4.0 * errorAt(record, 10).norm());  // 1.1778^10 = 5.1
 }
 
 TEST(Linear2x2, MoveWeightsLeaveNone) {
