@@ -73,19 +73,26 @@ FitnessParams readFitness(YamlSection& root) {
   return fitness;
 }
 
+/// Under `set`: changes of the loop as --set makes them.
+Overrides readSet(YamlSection& section) {
+  Overrides set;
+  const YAML::Node node = section.raw("set");
+  if (node.IsDefined() && !node.IsMap()) section.fail("set", "a mapping of key.path: value");
+  for (const auto& entry : node) {
+    YAML::Emitter text;
+    text << YAML::Flow << entry.second;
+    set.emplace_back(entry.first.Scalar(), text.c_str());
+  }
+  return set;
+}
+
 TuningScenario readScenario(YamlSection& item) {
   TuningScenario scenario;
   item.text("name", scenario.name);
   item.text("loop", scenario.loop);
   scenario.has_seed = item.has("seed");
   item.seed("seed", scenario.seed);
-  const YAML::Node set = item.raw("set");
-  if (set.IsDefined() && !set.IsMap()) item.fail("set", "a mapping of key.path: value");
-  for (const auto& entry : set) {
-    YAML::Emitter text;
-    text << YAML::Flow << entry.second;
-    scenario.set.emplace_back(entry.first.Scalar(), text.c_str());
-  }
+  scenario.set = readSet(item);
   item.finish();
   return scenario;
 }
@@ -167,6 +174,7 @@ TuningFile parseTuning(const std::string& text, const std::string& file) {
   tuning.file = file;
   tuning.text = text;
   root.text("title", tuning.title);
+  tuning.set = readSet(root);
   std::set<std::string> keys;
   for (auto& item : root.list("parameters")) {
     tuning.parameters.push_back(readParameter(item));

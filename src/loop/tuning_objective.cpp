@@ -50,16 +50,18 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning, Overrides set,
-                                 int threads)
-    : tuning_(std::move(tuning)), set_(std::move(set)), threads_(threads) {
+TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning,
+                                 const Overrides& set, int threads)
+    : tuning_(std::move(tuning)), set_(tuning_.set), threads_(threads) {
+  set_.insert(set_.end(), set.begin(), set.end());
   cases_ = casesOf(loop, tuning_.scenarios);
   held_out_ = casesOf(loop, tuning_.held_out);
   start_ = startOf();
   std::string all = tuning_.text;
   for (const auto* cases : {&cases_, &held_out_})
     for (const auto& scenario : *cases) {
-      checkFitness(tuning_.fitness, parseLoop(scenario.text, scenario.name, valueOverrides(start_)));
+      const LoopFile first = parseLoop(scenario.text, scenario.name, valueOverrides(start_));
+      checkFitness(tuning_.fitness, first);
       all += scenario.text;
     }
   fingerprint_ = hashOf(all);

@@ -1,5 +1,5 @@
-// Tuning of a cheap loop: better on what it has not seen, the same bits on any number of threads and
-// after a stop, the budget to the run, failures that do not win.
+// Tuning of a cheap loop: better on what it has not seen, the same bits on any number of threads
+// and after a stop, the budget to the run, failures that do not win.
 #include "fmbpc/loop/tune.hpp"
 
 #include <atomic>
@@ -44,7 +44,8 @@ TEST_F(Tune, ImprovesTheScoreOnScenariosItHasNotSeen) {
   for (const auto& method : searchMethods()) {
     const TuneResult tuned = tune(judge, search(method));
     ASSERT_GE(tuned.best, 0);
-    const auto held = judge.judgeHeldOut(tuned.history[static_cast<std::size_t>(tuned.best)].shares);
+    const TuningStep& best = tuned.history[static_cast<std::size_t>(tuned.best)];
+    const auto held = judge.judgeHeldOut(best.shares);
     EXPECT_LT(held->cost, 0.5 * judge.untouchedHeldOut().cost) << method;
     EXPECT_EQ(tuned.history.size(), 60U);
     EXPECT_EQ(tuned.failures, 0);
@@ -114,6 +115,14 @@ TEST_F(Tune, TheTunedFileRunsWithTheCostThatWasFound) {
   }
 }
 
+TEST_F(Tune, WhatTheFileSetsIsInEveryRunAndInTheTunedLoop) {
+  const TuningObjective judge = objective(lagTuning("set: {setpoint.initial.y: 2}\n"));
+  EXPECT_GT(judge.untouched().cost, 3.0 * objective(lagTuning()).untouched().cost);
+  const auto changes = judge.changes(judge.start());
+  ASSERT_EQ(changes.size(), 3U);
+  EXPECT_EQ(changes[0], (std::pair<std::string, std::string>{"setpoint.initial.y", "2"}));
+}
+
 TEST_F(Tune, ARunThatFailsCostsWhatTheFileSaysAndCannotWin) {
   std::string text = lagTuning();
   text.replace(text.find("upper: 100"), 10, "upper: 1e9");  // unstable beyond all measure
@@ -160,7 +169,8 @@ TEST_F(Tune, MistakesOfKeySignalAndSeedAreNamed) {
   std::string calm = lagLoop();
   calm.erase(calm.find("noise:"), calm.find("controller:") - calm.find("noise:"));
   expectWords(errorOf([&] {
-                TuningObjective(write("calm.yaml", calm), parseTuning(lagTuning(), "t.yaml"), {}, 1);
+                const TuningFile tuning = parseTuning(lagTuning(), "t.yaml");
+                TuningObjective(write("calm.yaml", calm), tuning, {}, 1);
               }),
               {"seed 1", "pattern or noise", "calm"});
   expectWords(error("scenarios: {seeds: [1, 2]}", "scenarios: [{loop: nothing}]"), {"nothing"});

@@ -23,11 +23,10 @@ std::string with(const std::string& from, const std::string& to) {
 }
 
 TEST(TuningFile, IsReadIntoItsStructs) {
-  const TuningFile tuning = parseTuning(
-      lagTuning("title: T\n").replace(lagTuning().find("scenarios: {seeds: [1, 2]}"), 26,
-                                      "scenarios: [{name: a, set: {setpoint.initial: {y: 2}, x.0.b: "
-                                      "[1, 2]}}, {seed: 7, loop: other}]"),
-      "t.yaml");
+  const std::string scenarios =
+      "scenarios: [{name: a, set: {setpoint.initial: {y: 2}, x.0.b: [1, 2]}}, {seed: 7, loop: "
+      "other}]\ntitle: T";
+  const TuningFile tuning = parseTuning(with("scenarios: {seeds: [1, 2]}", scenarios), "t.yaml");
   EXPECT_EQ(tuning.title, "T");
   ASSERT_EQ(tuning.parameters.size(), 2U);
   EXPECT_TRUE(tuning.parameters[0].logarithmic);

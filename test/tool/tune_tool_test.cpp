@@ -76,8 +76,8 @@ TEST_F(TuneTool, CtrlCSavesAndSaysHowToGoOn) {
   const std::string out = path("out");
   // The interrupt comes when the first generation stands in the state file.
   const std::string script =
-      std::string(FMBPC_TOOL) + " tune " + files() + " --no-plot --evaluations 100000 --out " + out +
-      " >/dev/null 2>" + path("errors") + " & P=$!; while ! [ -e " + out +
+      std::string(FMBPC_TOOL) + " tune " + files() + " --no-plot --evaluations 100000 --out " +
+      out + " >/dev/null 2>" + path("errors") + " & P=$!; while ! [ -e " + out +
       "/state.json ]; do kill -0 $P || exit 9; done; kill -INT $P; wait $P";
   const int code = WEXITSTATUS(std::system(("bash -c 'set -m; " + script + "'").c_str()));
   EXPECT_EQ(code, 130);

@@ -54,6 +54,7 @@ struct TuningFile {
   std::string file;
   std::string title;
   std::string text;  ///< as read
+  Overrides set;     ///< laid over the loop in every scenario, and kept in the tuned loop
   std::vector<TuningParameter> parameters;
   FitnessParams fitness;
   std::vector<TuningScenario> scenarios;  ///< at least one

@@ -22,14 +22,15 @@ class TuningObjective {
  public:
   using Stop = std::function<bool()>;  ///< may be empty; called from several threads
 
-  /// `set` is laid over the loop in every scenario. Runs the untouched loop on all scenarios.
+  /// `set` is laid over the loop (and the tuning file's own `set`) in every scenario. Runs the untouched loop on all scenarios.
   /// threads: 0 = all cores. @throws InputError: a key or signal that the loop has not, a scenario
   /// without what its seed is for, fitness.relative where the untouched loop fails or costs 0.
-  TuningObjective(const std::string& loop, TuningFile tuning, Overrides set, int threads);
+  TuningObjective(const std::string& loop, TuningFile tuning, const Overrides& set,
+                  int threads);
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(tuning_.parameters.size()); }
-  /// The loop's own numbers (or those of `start`), as shares 0..1 of the ranges; the middle where it
-  /// has none.
+  /// The loop's own numbers (or those of `start`), as shares 0..1 of the ranges; the middle where
+  /// it has none.
   const Vector& start() const { return start_; }
   std::vector<double> values(const Vector& shares) const;
   /// What a tuned loop file changes: `set` and the values.
