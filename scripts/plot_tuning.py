@@ -32,27 +32,35 @@ def draw_one(axis, folder):
         tuning = json.load(stream)
     if tuning["before"]["cost"] is not None:
         axis.axhline(tuning["before"]["cost"], color="k", ls=":", lw=1, label="untouched loop")
-    axis.set_title(f"{tuning['loop']}, {tuning['method']}", fontsize=10)
-
-
-def draw_comparison(axis, comparison, title=None):
-    for method in comparison["methods"]:
-        curves = numpy.array([[numpy.inf if c is None else c for c in curve] for curve in method["curves"]])
-        at = numpy.arange(1, curves.shape[1] + 1)
-        middle = numpy.median(curves, axis=0)
-        colour = COLOURS.get(method["method"])
-        axis.plot(at, numpy.where(numpy.isfinite(middle), middle, numpy.nan), color=colour, label=method["method"])
-        axis.fill_between(at, curves.min(axis=0), numpy.where(numpy.isfinite(curves.max(axis=0)), curves.max(axis=0), middle),
-                          color=colour, alpha=0.12, lw=0)
-    if comparison["before"] is not None:
-        axis.axhline(comparison["before"], color="k", ls=":", lw=1, label="untouched loop")
-    axis.set_title(title or f"{comparison['loop']}, median of {comparison['seeds']} seeds", fontsize=10)
-
-
-def finish(axis):
     low, high = axis.get_ylim()
     if low > 0 and high / low > 20:
         axis.set_yscale("log")
+    axis.set_ylabel("cost")
+    axis.set_title(f"{tuning['loop']}, {tuning['method']}", fontsize=10)
+
+
+def draw_comparison(axis, comparison):
+    """Cost above the least that any run found, in parts of it: methods differ in the last percent."""
+    methods = [(method["method"], numpy.array([[numpy.inf if c is None else c for c in curve] for curve in method["curves"]]))
+               for method in comparison["methods"]]
+    least = min(curves.min() for _, curves in methods)
+    for name, curves in methods:
+        above = numpy.maximum(curves / least - 1.0, 1e-7)
+        at = numpy.arange(1, curves.shape[1] + 1)
+        middle = numpy.median(above, axis=0)
+        colour = COLOURS.get(name)
+        axis.plot(at, numpy.where(numpy.isfinite(middle), middle, numpy.nan), color=colour, label=name)
+        axis.fill_between(at, above.min(axis=0), numpy.where(numpy.isfinite(above.max(axis=0)), above.max(axis=0), middle),
+                          color=colour, alpha=0.1, lw=0)
+    if comparison["before"] is not None:
+        axis.axhline(comparison["before"] / least - 1.0, color="k", ls=":", lw=1, label="untouched loop")
+    axis.set_yscale("log")
+    axis.set_ylim(bottom=1e-6)
+    axis.set_ylabel(f"cost above the least ({least:.4g}), relative")
+    axis.set_title(f"{comparison['loop']}, {comparison['seeds']} seeds", fontsize=10)
+
+
+def finish(axis):
     axis.set_xlabel("evaluations")
     axis.grid(True, which="major", color="#dddddd")
 
@@ -74,7 +82,6 @@ def main():
         else:
             draw_one(axis, folder)
         finish(axis)
-    axes[0][0].set_ylabel("cost of the best so far")
     axes[0][0].legend(fontsize=8)
     figure.tight_layout()
     figure.savefig(arguments.out or arguments.folders[0] / "convergence.png", dpi=110)
