@@ -26,10 +26,10 @@ void parallelFor(std::size_t n, int threads, const std::function<void(std::size_
       }
     }
   };
-  std::vector<std::thread> helpers;
-  for (std::size_t t = 1; t < std::min(wanted, n); ++t) helpers.emplace_back(serve);
+  std::vector<std::thread> others;
+  for (std::size_t t = 1; t < std::min(wanted, n); ++t) others.emplace_back(serve);
   serve();
-  for (auto& helper : helpers) helper.join();
+  for (auto& other : others) other.join();
   for (const auto& error : errors)
     if (error) std::rethrow_exception(error);
 }

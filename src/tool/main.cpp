@@ -94,7 +94,8 @@ void addTune(CLI::App& app, fpc::tool::TuneArguments& a) {
   tune->add_option("TUNING", a.tuning, "name of config/tuning, or path")->required();
   tune->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
       ->allow_extra_args(false);
-  tune->add_option("--out", a.out, "folder for the tuned loop, tuning.json, history.csv, state, plot");
+  tune->add_option("--out", a.out,
+                   "folder for the tuned loop, tuning.json, history.csv, state, plot");
   tune->add_option("--method", a.method, "apso, pso, random, de, cmaes");
   tune->add_option("--population", a.population, "points per generation");
   tune->add_option("--evaluations", a.evaluations, "points in all, each on every scenario");

@@ -79,7 +79,8 @@ TEST_F(TuneTool, CtrlCSavesAndSaysHowToGoOn) {
       std::string(FMBPC_TOOL) + " tune " + files() + " --no-plot --evaluations 100000 --out " +
       out + " >/dev/null 2>" + path("errors") + " & P=$!; while ! [ -e " + out +
       "/state.json ]; do kill -0 $P || exit 9; done; kill -INT $P; wait $P";
-  const int code = WEXITSTATUS(std::system(("bash -c 'set -m; " + script + "' 2>/dev/null").c_str()));
+  const std::string command = "bash -c 'set -m; " + script + "' 2>/dev/null";
+  const int code = WEXITSTATUS(std::system(command.c_str()));
   EXPECT_EQ(code, 130);
   std::ifstream errors(path("errors"));
   std::string line;

@@ -7,8 +7,8 @@
 
 namespace fpc {
 
-/// YAML text: `comment` (lines without #), `extends: LOOP`, a title and the overrides. Lists that an
-/// override changes are written out whole, because lists do not merge.
+/// YAML text: `comment` (lines without #), `extends: LOOP`, a title and the overrides. Lists that
+/// an override changes are written out whole, because lists do not merge.
 /// @throws InputError as resolveLoop().
 std::string extendingLoop(const std::string& name_or_path, const Overrides& overrides,
                           const std::string& title, const std::string& comment);
