@@ -40,6 +40,8 @@ InputIndices inputIndices(VectorRef applied, double before) {
   for (Eigen::Index k = 0; k < applied.size(); ++k) {
     const double move = std::abs(applied[k] - (k == 0 ? before : applied[k - 1]));
     result.travel += move;
+    result.effort += move * move;
+    result.energy += applied[k] * applied[k];
     result.switches += move > kMoved;
   }
   result.mean_abs_move = result.travel / static_cast<double>(applied.size());

@@ -7,6 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/loop/tuning_file.hpp"
 
 #ifndef FMBPC_SOURCE_CONFIG
 #define FMBPC_SOURCE_CONFIG ""
@@ -70,5 +71,9 @@ std::string findLoop(const std::string& name_or_path) { return find("loop", name
 std::string findStructure(const std::string& name_or_path) {
   return find("structure", name_or_path);
 }
+
+std::vector<std::string> tuningNames() { return namesIn("tuning"); }
+
+std::string findTuning(const std::string& name_or_path) { return find("tuning", name_or_path); }
 
 }  // namespace fpc

@@ -64,4 +64,10 @@ PlotResult drawStability(const std::string& folder) {
   return {(fs::path(folder) / "root_locus.png").string(), ""};
 }
 
+PlotResult drawTuning(const std::string& folder) {
+  const std::string warning = drawWith("plot_tuning.py", folder);
+  if (!warning.empty()) return {"", warning};
+  return {(fs::path(folder) / "convergence.png").string(), ""};
+}
+
 }  // namespace fpc

@@ -84,6 +84,18 @@ std::pair<std::string, std::string> parseOverride(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+LoopFile parseLoop(const std::string& text, const std::string& name, const Overrides& overrides) {
+  MergedLoop merged;
+  merged.root = YAML::Load(text);
+  applyOverrides(merged, overrides);
+  YamlSection root(merged.root, name, "", merged.trace());
+  LoopFile loop = readSections(root, name);
+  YAML::Emitter emitted;
+  emitted << merged.root;
+  loop.resolved = std::string(emitted.c_str()) + "\n";
+  return loop;
+}
+
 std::string resolveLoop(const std::string& name_or_path, const Overrides& overrides) {
   const std::string file = findLoop(name_or_path);
   MergedLoop merged = mergeLoop(file);

@@ -2,6 +2,7 @@
 // InputError.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,23 @@ struct ReproduceArguments {
   bool json{false};
 };
 
+struct TuneArguments {
+  std::string loop;
+  std::string tuning;
+  std::vector<std::string> set;
+  std::string out;              ///< folder, empty: nothing is written
+  std::string method;           ///< these five over the tuning file; empty or -1: as it says
+  int population{-1}, evaluations{-1};
+  std::int64_t seed{-1};
+  int threads{0};               ///< 0: all cores
+  bool resume{false};
+  bool compare{false};          ///< all methods at equal evaluations
+  int seeds{6};                 ///< of the comparison
+  std::vector<std::string> methods;  ///< of the comparison, empty: all
+  bool json{false};
+  bool no_plot{false};
+};
+
 int identify(const IdentifyArguments& arguments);
 int run(const RunArguments& arguments);
 int resolve(const std::string& loop, const std::vector<std::string>& set);
@@ -52,6 +70,7 @@ int model(const std::string& file, bool json);
 std::string findModel(const std::string& name);
 int stability(const StabilityArguments& arguments);
 int reproduce(const ReproduceArguments& arguments);
+int tune(const TuneArguments& arguments);
 int table(const std::vector<std::string>& folders);
 
 }  // namespace fpc::tool

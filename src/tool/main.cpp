@@ -87,6 +87,29 @@ void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
   reproduce->callback([&a] { chosen = [&a] { return fpc::tool::reproduce(a); }; });
 }
 
+void addTune(CLI::App& app, fpc::tool::TuneArguments& a) {
+  CLI::App* tune = app.add_subcommand(
+      "tune", "Searches the numbers of a loop file that a tuning file names, on all cores");
+  tune->add_option("LOOP", a.loop, "name of config/loop, or path")->required();
+  tune->add_option("TUNING", a.tuning, "name of config/tuning, or path")->required();
+  tune->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
+      ->allow_extra_args(false);
+  tune->add_option("--out", a.out,
+                   "folder for the tuned loop, tuning.json, history.csv, state, plot");
+  tune->add_option("--method", a.method, "apso, pso, random, de, cmaes");
+  tune->add_option("--population", a.population, "points per generation");
+  tune->add_option("--evaluations", a.evaluations, "points in all, each on every scenario");
+  tune->add_option("--seed", a.seed, "of the search");
+  tune->add_option("--threads", a.threads, "0: all cores; the answer does not depend on it");
+  tune->add_flag("--resume", a.resume, "go on with what --out holds");
+  tune->add_flag("--compare", a.compare, "all methods at equal evaluations instead of one tuning");
+  tune->add_option("--seeds", a.seeds, "seeds of the comparison");
+  tune->add_option("--methods", a.methods, "methods of the comparison")->delimiter(',');
+  tune->add_flag("--json", a.json, "print one JSON object and nothing else");
+  tune->add_flag("--no-plot", a.no_plot, "no plot");
+  tune->callback([&a] { chosen = [&a] { return fpc::tool::tune(a); }; });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -102,6 +125,8 @@ int main(int argc, char** argv) {
   addStability(app, stability);
   fpc::tool::ReproduceArguments reproduce;
   addReproduce(app, reproduce);
+  fpc::tool::TuneArguments tune;
+  addTune(app, tune);
   try {
     app.parse(argc, argv);
     return chosen();

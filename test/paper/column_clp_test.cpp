@@ -69,6 +69,15 @@ TEST(ColumnClp, BeatsClippingByAQuarterAndKeepsEveryLimit) {
   EXPECT_EQ(clip.violations + least.violations + limits.violations + tracking.violations, 0U);
 }
 
+TEST(ColumnClp, WithALawTunedAsAWholeItBeatsClippingInBothOutputs) {
+  const Outcome clip = outcome("clipped", "column_clip");
+  const Outcome tuned = outcome("tuned", "column_clp_tracking_tuned");
+  EXPECT_LE(tuned.top, 0.75 * clip.top);
+  EXPECT_LT(tuned.bottom, clip.bottom);
+  EXPECT_LT(tuned.y_out, 1e-6);
+  EXPECT_EQ(tuned.violations, 0U);
+}
+
 TEST(ColumnClp, DoesAsWellAsAPlainConstrainedLinearController) {
   const Outcome tracking = outcome("tracking", "column_clp_tracking");
   for (const double weight : {0.1, 10.0, 1000.0}) {

@@ -138,6 +138,8 @@ std::string findStructure(const std::string& name_or_path);
 std::string resolveLoop(const std::string& name_or_path, const Overrides& overrides = {});
 /// @throws InputError naming `name`, line, key and what was expected.
 LoopFile parseLoop(const std::string& text, const std::string& name);
+/// The same with overrides on the text; names of files in them must be absolute.
+LoopFile parseLoop(const std::string& text, const std::string& name, const Overrides& overrides);
 LoopFile readLoop(const std::string& name_or_path, const Overrides& overrides = {});
 
 }  // namespace fpc

@@ -15,6 +15,8 @@ struct PlotResult {
 PlotResult drawPlot(const std::string& folder);
 /// bifurcation.png and root_locus.png in a folder with a stability.json.
 PlotResult drawStability(const std::string& folder);
+/// convergence.png in a folder with a tuning.json or compare.json.
+PlotResult drawTuning(const std::string& folder);
 
 /// The same by scripts/plot_model.py for a folder that `fmbpc identify --plots` fills; several
 /// pictures, none is named.

@@ -1,0 +1,139 @@
+// fmbpc tune LOOP TUNING: numbers of a loop file found by search.
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/plot.hpp"
+#include "tool/commands.hpp"
+#include "tool/progress_bar.hpp"
+#include "tool/tune_report.hpp"
+
+namespace fpc::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+SearchParams searchOf(const TuneArguments& arguments, const TuningFile& tuning) {
+  SearchParams search = tuning.search;
+  if (!arguments.method.empty()) search.method = arguments.method;
+  if (arguments.population != -1) search.population = arguments.population;
+  if (arguments.evaluations != -1) search.evaluations = arguments.evaluations;
+  if (arguments.seed != -1) {
+    require(arguments.seed >= 0, "--seed", "an integer >= 0");
+    search.seed = static_cast<std::uint64_t>(arguments.seed);
+  }
+  search.validate();
+  return search;
+}
+
+std::string inFolder(const TuneArguments& arguments, const char* name) {
+  return (fs::path(arguments.out) / name).string();
+}
+
+void writeText(const std::string& text, const std::string& file) {
+  std::ofstream stream(file);
+  stream << text << "\n";
+  stream.close();
+  require(!stream.fail(), file, "a writable file");
+}
+
+void makeFolder(const std::string& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  require(!error, folder, "a folder that can be made (" + error.message() + ")");
+}
+
+void draw(const TuneArguments& arguments) {
+  if (arguments.out.empty() || arguments.no_plot) return;
+  const PlotResult plot = drawTuning(arguments.out);
+  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
+}
+
+int interrupted(const TuneArguments& arguments) {
+  std::fprintf(stderr, "fmbpc: interrupted%s\n",
+               arguments.out.empty() ? "" : "; --resume goes on with what is in --out");
+  return kInterrupted;
+}
+
+int compare(const TuneArguments& arguments, const TuningObjective& objective,
+            const SearchParams& search) {
+  require(arguments.seeds >= 1, "--seeds", "an integer >= 1");
+  const auto all = searchMethods();
+  CompareOptions options{arguments.loop, search,        arguments.methods, arguments.seeds,
+                         arguments.out,  arguments.resume, arguments.threads};
+  if (options.methods.empty()) {
+    options.methods = all;
+    if (!missingMethods().empty())
+      std::fprintf(stderr, "fmbpc: warning: %s\n", missingMethods().c_str());
+  }
+  for (const auto& method : options.methods) {
+    SearchParams tried = search;
+    tried.method = method;
+    tried.validate();
+  }
+  const Json comparison = compareMethods(objective, options);
+  if (!arguments.out.empty()) writeText(comparison.dump(), inFolder(arguments, "compare.json"));
+  if (!comparison["complete"]) return interrupted(arguments);
+  draw(arguments);
+  if (arguments.json) {
+    std::cout << comparison.dump(2) << "\n";
+  } else {
+    std::cout << comparisonTable(comparison);
+  }
+  return 0;
+}
+
+int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
+             const SearchParams& search) {
+  TuneOptions options;
+  if (!arguments.out.empty()) options.state = inFolder(arguments, "state.json");
+  options.resume = arguments.resume;
+  options.stop = [] { return interruption().load(); };
+  TunedLoop tuned{arguments.loop, {}, {}};
+  {
+    ProgressBar bar(search.method);
+    options.progress = [&](int n, double best) {
+      bar.show(static_cast<double>(n) / search.evaluations, "cost " + shortText(best));
+    };
+    tuned.result = fpc::tune(objective, search, options);
+  }
+  const TuneResult& result = tuned.result;
+  if (result.best >= 0 && !result.stopped && !objective.tuning().held_out.empty())
+    tuned.held_out = objective.judgeHeldOut(
+        result.history[static_cast<std::size_t>(result.best)].shares, options.stop);
+  const Json json = toJson(objective, tuned, arguments.threads);
+  std::string file;
+  if (!arguments.out.empty()) {
+    writeHistory(objective.tuning(), result, inFolder(arguments, "history.csv"));
+    writeText(json.dump(2), inFolder(arguments, "tuning.json"));
+    if (result.best >= 0) file = writeTunedLoop(objective, tuned, arguments.out);
+  }
+  std::cout << (arguments.json ? json.dump(2) + "\n" : toTable(objective, tuned));
+  if (interruption()) return interrupted(arguments);
+  draw(arguments);
+  if (!arguments.json && !file.empty()) std::cout << "written: " << file << "\n";
+  require(result.best >= 0, arguments.loop, "a run that does not fail: " + result.trouble);
+  return 0;
+}
+
+}  // namespace
+
+int tune(const TuneArguments& arguments) {
+  const TuningFile tuning = readTuning(arguments.tuning);
+  const SearchParams search = searchOf(arguments, tuning);
+  require(!arguments.resume || !arguments.out.empty(), "--resume", "--out with a stopped tuning");
+  Overrides overrides;
+  for (const auto& text : arguments.set) overrides.push_back(parseOverride(text));
+  const TuningObjective objective(arguments.loop, tuning, overrides, arguments.threads);
+  makeFolder(arguments.out);
+  catchInterrupts();
+  return arguments.compare ? compare(arguments, objective, search)
+                           : tuneOnce(arguments, objective, search);
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,156 @@
+#include "tool/tune_report.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/parallel.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/extending_loop.hpp"
+
+namespace fpc::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Rows = std::vector<std::vector<std::string>>;
+
+std::vector<double> valuesAfter(const TunedLoop& tuned) {
+  return tuned.result.history[static_cast<std::size_t>(tuned.result.best)].values;
+}
+
+double costAfter(const TunedLoop& tuned) {
+  return tuned.result.history[static_cast<std::size_t>(tuned.result.best)].cost;
+}
+
+Json scoresJson(const std::vector<TuningScenario>& scenarios, double cost,
+                const std::vector<double>& costs) {
+  Json json{{"cost", numberOrNull(cost)}, {"scenarios", Json::object()}};
+  for (std::size_t i = 0; i < scenarios.size(); ++i)
+    json["scenarios"][scenarios[i].name] = numberOrNull(costs[i]);
+  return json;
+}
+
+Json parametersJson(const TuningObjective& objective, const TunedLoop& tuned) {
+  Json list = Json::array();
+  const auto before = objective.values(objective.start());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const TuningParameter& p = objective.tuning().parameters[i];
+    Json parameter{{"key", p.key},
+                   {"lower", p.lower},
+                   {"upper", p.upper},
+                   {"scale", p.logarithmic ? "log" : "linear"},
+                   {"start", before[i]}};
+    if (tuned.result.best >= 0) parameter["value"] = valuesAfter(tuned)[i];
+    list.push_back(parameter);
+  }
+  return list;
+}
+
+void addScores(Rows& rows, const std::string& title, const std::vector<TuningScenario>& scenarios,
+               const TuningScore& before, const TuningScore& after) {
+  const auto ratio = [](double b, double a) { return shortText(a / b); };
+  for (std::size_t i = 0; i < scenarios.size(); ++i)
+    rows.push_back({"  " + scenarios[i].name, shortText(before.scenarios[i]),
+                    shortText(after.scenarios[i]),
+                    ratio(before.scenarios[i], after.scenarios[i])});
+  rows.push_back({title, shortText(before.cost), shortText(after.cost),
+                  ratio(before.cost, after.cost)});
+}
+
+}  // namespace
+
+Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json toJson(const TuningObjective& objective, const TunedLoop& tuned, int threads) {
+  const TuneResult& result = tuned.result;
+  const TuningFile& tuning = objective.tuning();
+  const double fresh = static_cast<double>(result.history.size());
+  Json json{{"loop", tuned.loop},
+            {"tuning", fs::path(tuning.file).stem().string()},
+            {"title", tuning.title},
+            {"method", result.search.method},
+            {"seed", result.search.seed},
+            {"population", result.search.population},
+            {"budget", result.search.evaluations},
+            {"evaluations", result.history.size()},
+            {"generations", result.generations},
+            {"resumed", result.resumed},
+            {"complete", !result.stopped},
+            {"threads", threads == 0 ? coreCount() : threads},
+            {"seconds", result.seconds},
+            {"evaluations_per_s", numberOrNull(fresh / result.seconds)},
+            {"failures", result.failures},
+            {"trouble", result.trouble},
+            {"parameters", parametersJson(objective, tuned)}};
+  const TuningScore& before = objective.untouched();
+  json["before"] = scoresJson(tuning.scenarios, before.cost, before.scenarios);
+  if (result.best >= 0)
+    json["after"] = scoresJson(
+        tuning.scenarios, costAfter(tuned),
+        result.history[static_cast<std::size_t>(result.best)].scenarios);
+  if (tuned.held_out) {
+    const TuningScore& held = objective.untouchedHeldOut();
+    json["held_out"] = {
+        {"before", scoresJson(tuning.held_out, held.cost, held.scenarios)},
+        {"after", scoresJson(tuning.held_out, tuned.held_out->cost, tuned.held_out->scenarios)}};
+  }
+  return json;
+}
+
+std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
+  const TuningFile& tuning = objective.tuning();
+  const TuneResult& result = tuned.result;
+  std::ostringstream text;
+  text << tuned.loop << ", " << result.search.method << ", seed " << result.search.seed << ": "
+       << result.history.size() << " evaluations of " << tuning.scenarios.size()
+       << (tuning.scenarios.size() == 1 ? " run" : " runs") << " in " << shortText(result.seconds)
+       << " s\n\n";
+  if (result.failures > 0)
+    text << result.failures << " runs failed; the first: " << result.trouble << "\n\n";
+  if (result.best < 0) return text.str() + "no run succeeded\n";
+  Rows rows{{"parameter", "before", "after", "lower", "upper"}};
+  const auto before = objective.values(objective.start()), after = valuesAfter(tuned);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const TuningParameter& p = tuning.parameters[i];
+    rows.push_back({p.key, shortText(before[i]), shortText(after[i]), shortText(p.lower),
+                    shortText(p.upper)});
+  }
+  text << alignedTable(rows) << "\n";
+  TuningScore tuned_score;
+  tuned_score.cost = costAfter(tuned);
+  tuned_score.scenarios = result.history[static_cast<std::size_t>(result.best)].scenarios;
+  Rows scores{{"cost", "before", "after", "after/before"}};
+  addScores(scores, "tuned on: " + tuning.fitness.across, tuning.scenarios, objective.untouched(),
+            tuned_score);
+  if (tuned.held_out)
+    addScores(scores, "held out: " + tuning.fitness.across, tuning.held_out,
+              objective.untouchedHeldOut(), *tuned.held_out);
+  return text.str() + alignedTable(scores);
+}
+
+std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tuned,
+                           const std::string& folder) {
+  const TuneResult& result = tuned.result;
+  const std::string stem = fs::path(findLoop(tuned.loop)).stem().string();
+  const TuningStep& best = result.history[static_cast<std::size_t>(result.best)];
+  std::string comment = "Tuned by `fmbpc tune " + stem + " " +
+                        fs::path(objective.tuning().file).stem().string() + "`, " +
+                        result.search.method + ", seed " + std::to_string(result.search.seed) +
+                        ", " + std::to_string(result.history.size()) + " evaluations.\nCost " +
+                        shortText(objective.untouched().cost) + " -> " + shortText(best.cost);
+  if (tuned.held_out)
+    comment += ", held out " + shortText(objective.untouchedHeldOut().cost) + " -> " +
+               shortText(tuned.held_out->cost);
+  const std::string title = readLoop(tuned.loop).report.title + ", tuned";
+  const std::string file = (fs::path(folder) / (stem + "_tuned.yaml")).string();
+  std::ofstream stream(file);
+  stream << extendingLoop(tuned.loop, objective.changes(best.shares), title, comment + ".");
+  stream.close();
+  require(!stream.fail(), file, "a writable file");
+  return file;
+}
+
+}  // namespace fpc::tool

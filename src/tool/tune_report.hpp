@@ -1,0 +1,43 @@
+// What `fmbpc tune` prints and writes.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fmbpc/loop/tune.hpp"
+
+namespace fpc::tool {
+
+/// A tuning and its score on the held-out scenarios (empty if there are none or it was stopped).
+struct TunedLoop {
+  std::string loop;  ///< as asked for
+  TuneResult result;
+  std::optional<TuningScore> held_out;
+};
+
+/// Infinite numbers are null.
+nlohmann::ordered_json numberOrNull(double value);
+nlohmann::ordered_json toJson(const TuningObjective& objective, const TunedLoop& tuned,
+                              int threads);
+std::string toTable(const TuningObjective& objective, const TunedLoop& tuned);
+/// LOOP_tuned.yaml: extends the loop. Returns the file's name.
+std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tuned,
+                           const std::string& folder);
+
+struct CompareOptions {
+  std::string loop;
+  SearchParams search;  ///< method is replaced, seeds count up from its seed
+  std::vector<std::string> methods;
+  int seeds{6};
+  std::string out;
+  bool resume{false};
+  int threads{0};
+};
+/// Every method with every seed. Prints nothing; state files in `out`. Stopped: `complete` false.
+nlohmann::ordered_json compareMethods(const TuningObjective& objective,
+                                      const CompareOptions& options);
+std::string comparisonTable(const nlohmann::ordered_json& comparison);
+
+}  // namespace fpc::tool

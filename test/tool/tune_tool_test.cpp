@@ -1,0 +1,130 @@
+// fmbpc tune as a person or a script calls it.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "fmbpc/optim/population_search.hpp"
+#include "loop/tuning_fixture.hpp"
+#include "tool/tool_run.hpp"
+
+namespace fpc {
+namespace {
+
+class TuneTool : public LoopFolder {
+ protected:
+  TuneTool() {
+    write("lag.yaml", lagLoop());
+    write("t.yaml", lagTuning());
+  }
+  std::string files() const { return path("lag.yaml") + " " + path("t.yaml"); }
+  nlohmann::json json(const std::string& arguments) const {
+    const Outcome outcome = tool("tune " + files() + " --json --no-plot " + arguments);
+    EXPECT_EQ(outcome.code, 0) << arguments;
+    return nlohmann::json::parse(outcome.printed);
+  }
+};
+
+TEST_F(TuneTool, WritesALoopThatIsBetterOnHeldOutScenarios) {
+  const auto tuned = json("--out " + path("out"));
+  EXPECT_EQ(tuned["evaluations"], 60);
+  EXPECT_LT(tuned["held_out"]["after"]["cost"].get<double>(),
+            0.5 * tuned["held_out"]["before"]["cost"].get<double>());
+  for (const char* file : {"history.csv", "tuning.json", "state.json", "lag_tuned.yaml"})
+    EXPECT_TRUE(std::filesystem::exists(path("out") + "/" + file)) << file;
+  const Outcome run = tool("run --json " + path("out") + "/lag_tuned.yaml");
+  ASSERT_EQ(run.code, 0);
+  const auto judged = nlohmann::json::parse(run.printed);
+  const auto before = nlohmann::json::parse(tool("run --json " + path("lag.yaml")).printed);
+  EXPECT_LT(judged["outputs"]["y"]["ise"].get<double>(),
+            before["outputs"]["y"]["ise"].get<double>());
+}
+
+TEST_F(TuneTool, PrintsTheSameAnswerForAnyNumberOfThreads) {
+  auto one = json("--threads 1"), four = json("--threads 4");
+  for (const char* key : {"threads", "seconds", "evaluations_per_s"}) {
+    one.erase(key);
+    four.erase(key);
+  }
+  EXPECT_EQ(one, four);
+}
+
+TEST_F(TuneTool, ResumesToTheSameTuning) {
+  const auto whole = json("--out " + path("whole"));
+  json("--out " + path("part") + " --method random --evaluations 24");
+  const Outcome other = tool("tune " + files() + " --resume --out " + path("part"), true);
+  EXPECT_EQ(other.code, 1);
+  EXPECT_NE(other.printed.find("state of this tuning"), std::string::npos) << other.printed;
+  // The state as a stop after three generations leaves it.
+  std::ifstream stream(path("whole") + "/state.json");
+  auto state = nlohmann::json::parse(stream);
+  auto& steps = state["evaluations"];
+  steps.erase(steps.begin() + 24, steps.end());
+  std::ofstream(path("part") + "/state.json") << state;
+  const auto rest = json("--resume --out " + path("part"));
+  EXPECT_EQ(rest["resumed"], 24);
+  EXPECT_EQ(rest["after"], whole["after"]);
+  EXPECT_EQ(rest["parameters"], whole["parameters"]);
+  const auto read = [](const std::string& file) {
+    std::ifstream text(file);
+    return std::string((std::istreambuf_iterator<char>(text)), {});
+  };
+  EXPECT_EQ(read(path("part") + "/history.csv"), read(path("whole") + "/history.csv"));
+}
+
+TEST_F(TuneTool, CtrlCSavesAndSaysHowToGoOn) {
+  const std::string out = path("out");
+  // The interrupt comes when the first generation stands in the state file.
+  const std::string script =
+      std::string(FMBPC_TOOL) + " tune " + files() + " --no-plot --evaluations 100000 --out " +
+      out + " >/dev/null 2>" + path("errors") + " & P=$!; while ! [ -e " + out +
+      "/state.json ]; do kill -0 $P || exit 9; done; kill -INT $P; wait $P";
+  const std::string command = "bash -c 'set -m; " + script + "' 2>/dev/null";
+  const int code = WEXITSTATUS(std::system(command.c_str()));
+  EXPECT_EQ(code, 130);
+  std::ifstream errors(path("errors"));
+  std::string line;
+  std::getline(errors, line);
+  EXPECT_NE(line.find("--resume"), std::string::npos) << line;
+  const auto tuned = nlohmann::json::parse(std::ifstream(out + "/tuning.json"));
+  EXPECT_EQ(tuned["complete"], false);
+  EXPECT_GE(tuned["evaluations"].get<int>(), 8);
+}
+
+TEST_F(TuneTool, ComparesMethodsAtEqualEvaluations) {
+  const auto compared = json("--compare --seeds 2 --methods apso,random --evaluations 24");
+  ASSERT_EQ(compared["methods"].size(), 2U);
+  for (const auto& method : compared["methods"]) {
+    EXPECT_EQ(method["evaluations"], nlohmann::json::array({24, 24}));
+    EXPECT_EQ(method["curves"][0].size(), 24U);
+    EXPECT_TRUE(method["held_out_cost"]["median"].is_number());
+  }
+  const Outcome table =
+      tool("tune " + files() + " --compare --seeds 1 --methods pso --evaluations 8");
+  EXPECT_NE(table.printed.find("held out"), std::string::npos) << table.printed;
+}
+
+TEST_F(TuneTool, DrawsItsConvergence) {
+  if (std::system("/usr/bin/python3 -c 'import matplotlib' 2>/dev/null") != 0)
+    GTEST_SKIP() << "python3-matplotlib is not installed";
+  const Outcome one = tool("tune " + files() + " --evaluations 8 --out " + path("one"), true);
+  EXPECT_EQ(one.printed, "");
+  EXPECT_TRUE(std::filesystem::exists(path("one") + "/convergence.png"));
+}
+
+TEST_F(TuneTool, MistakesAreOneLineOnStandardError) {
+  for (const std::string arguments :
+       {"nothing " + path("t.yaml"), path("lag.yaml") + " nothing", files() + " --method simplex",
+        files() + " --evaluations 0", files() + " --resume", files() + " --threads -1",
+        files() + " --seed -3", files() + " --set controller.loops.7.kp=1",
+        files() + " --compare --seeds 0"}) {
+    const Outcome outcome = tool("tune " + arguments, true);
+    EXPECT_EQ(outcome.code, 1) << arguments;
+    EXPECT_EQ(outcome.printed.rfind("fmbpc: ", 0), 0U) << outcome.printed;
+    EXPECT_EQ(std::count(outcome.printed.begin(), outcome.printed.end(), '\n'), 1)
+        << outcome.printed;
+  }
+}
+
+}  // namespace
+}  // namespace fpc
