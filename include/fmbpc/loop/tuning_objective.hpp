@@ -22,7 +22,8 @@ class TuningObjective {
  public:
   using Stop = std::function<bool()>;  ///< may be empty; called from several threads
 
-  /// `set` is laid over the loop (and the tuning file's own `set`) in every scenario. Runs the untouched loop on all scenarios.
+  /// `set` is laid over the loop (and the tuning file's own `set`) in every scenario. Runs the
+  /// untouched loop on all scenarios.
   /// threads: 0 = all cores. @throws InputError: a key or signal that the loop has not, a scenario
   /// without what its seed is for, fitness.relative where the untouched loop fails or costs 0.
   TuningObjective(const std::string& loop, TuningFile tuning, const Overrides& set,
