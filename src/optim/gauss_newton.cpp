@@ -86,8 +86,11 @@ const GaussNewtonResult& GaussNewton::solve(const Residuals& r, VectorRef start,
     const QpResult& step = proposeStep(limits, damping);
     if (!step.usable()) return result_;
     result_.status = SolveStatus::kSolved;
-    if (step.x.lpNorm<Eigen::Infinity>() <= settings_.tolerance) return result_;
     trial_ = (result_.x + step.x).cwiseMax(limits.x_lower).cwiseMin(limits.x_upper);
+    if (step.x.lpNorm<Eigen::Infinity>() <= settings_.tolerance) {
+      result_.x = trial_;  // the cost there is the same to rounding
+      return result_;
+    }
     fresh = r(trial_, trial_r_) && trial_r_.squaredNorm() < result_.cost;
     if (fresh) {
       result_.x = trial_;

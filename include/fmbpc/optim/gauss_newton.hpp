@@ -20,7 +20,7 @@ struct LinearLimits {
 
 struct GaussNewtonSettings {
   int max_iterations{30};   ///< steps tried
-  double tolerance{1e-9};   ///< a step that is shorter (largest element) ends the search
+  double tolerance{1e-9};   ///< a step that is shorter (largest element) is the last one
   double difference{1e-6};  ///< of the central differences, absolute: scale x to about 1
   void validate() const;    ///< @throws InputError naming the field
 };
