@@ -1,6 +1,7 @@
 #include "fmbpc/loop/factory.hpp"
 
 #include "fmbpc/base/input_error.hpp"
+#include "loop/plant_sample_model.hpp"
 
 namespace fpc {
 namespace {
@@ -24,6 +25,12 @@ std::unique_ptr<Controller> makeController(const LoopFile& loop) {
     return std::make_unique<FuzzyOptimalLaw>(loop.fuzzy_optimal, limits, loop.plant_info);
   if (loop.controller == "hybrid_mpc")
     return std::make_unique<HybridMpc>(loop.hybrid, limits, loop.plant_info);
+  if (loop.controller == "nmpc")
+    return std::make_unique<Nmpc>(
+        loop.nmpc, limits, loop.plant_info,
+        makePlantSampleModel(loop.simulation, loop.nmpc.integration_steps));
+  if (loop.controller == "swarm_mpc")
+    return std::make_unique<SwarmMpc>(loop.swarm_mpc, limits, loop.plant_info);
   if (loop.controller == "adaptive_pi")
     return std::make_unique<AdaptivePi>(loop.adaptive_pi, limits, loop.plant_info);
   return std::make_unique<FmbpcLaw>(loop.fmbpc, limits, loop.plant_info);

@@ -48,6 +48,8 @@ Vector nominalDisturbances(const LoopFile& loop, const LoopNames& names);
 /// Key prediction_steps, which an optimizer fixes.
 void readPredictionSteps(YamlSection& section, const LoopFile& loop, int& steps);
 void readHybridMpc(YamlSection& section, LoopFile& loop, const LoopNames& names);
+/// Keys of `controller` with type nmpc or swarm_mpc.
+void readHorizonMpc(YamlSection& section, LoopFile& loop, const LoopNames& names);
 /// `recipe`: what a batch plant does one after the other, as entries of a schedule.
 std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
                                      const std::vector<std::string>& outputs);

@@ -224,8 +224,8 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 
 void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("controller");
-  const std::vector<std::string> types{"fmbpc", "fuzzy_optimal", "hybrid_mpc",
-                                       "pi",    "adaptive_pi",   "excitation"};
+  const std::vector<std::string> types{"fmbpc",     "fuzzy_optimal", "hybrid_mpc",  "nmpc",
+                                       "swarm_mpc", "pi",            "adaptive_pi", "excitation"};
   need(section, "type", "one of " + join(types));
   loop.controller = "fmbpc";
   section.oneOf("type", loop.controller, types);
@@ -235,6 +235,8 @@ void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
     readFuzzyOptimal(section, loop, names);
   } else if (loop.controller == "hybrid_mpc") {
     readHybridMpc(section, loop, names);
+  } else if (loop.controller == "nmpc" || loop.controller == "swarm_mpc") {
+    readHorizonMpc(section, loop, names);
   } else if (loop.controller == "adaptive_pi") {
     readAdaptivePi(section, loop, names);
   } else if (loop.controller == "excitation") {

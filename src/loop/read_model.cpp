@@ -48,7 +48,7 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
   section.finish();
   loop.has_model = !loop.model_file.empty();
   const bool needs_model = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal" ||
-                           loop.controller == "hybrid_mpc";
+                           loop.controller == "hybrid_mpc" || loop.controller == "swarm_mpc";
   if (needs_model && !loop.has_model && !(loop.has_identify && loop.external_plant))
     section.fail("file", "a model file for controller " + loop.controller +
                              " (a simulated plant does not start without one)");

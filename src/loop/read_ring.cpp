@@ -21,7 +21,7 @@ std::vector<std::string> ringNodes(const LoopFile& loop) {
   std::vector<std::string> nodes{
       "loop_recorder", open_loop ? "excitation_generator" : loop.controller + "_controller"};
   const bool has_law = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal" ||
-                       loop.controller == "hybrid_mpc";
+                       loop.controller == "hybrid_mpc" || loop.controller == "swarm_mpc";
   if (has_law || loop.has_identify) nodes.emplace_back("fuzzy_identifier");
   if (loop.has_clp) nodes.emplace_back("clp_optimizer");
   return nodes;

@@ -41,11 +41,11 @@ Swarm::Swarm(const Vector& lower, const Vector& upper, const SwarmParams& params
 }
 
 void Swarm::scatter(const Vector& start) {
-  const Vector range = upper_ - lower_;
   for (Eigen::Index p = 0; p < places_.cols(); ++p)
     for (Eigen::Index i = 0; i < places_.rows(); ++i) {
-      places_(i, p) = lower_[i] + uniform(generator_) * range[i];
-      speeds_(i, p) = params_.speed_upper * (uniform(generator_) - 0.5) * range[i];
+      const double range = upper_[i] - lower_[i];
+      places_(i, p) = lower_[i] + uniform(generator_) * range;
+      speeds_(i, p) = params_.speed_upper * (uniform(generator_) - 0.5) * range;
     }
   if (start.size() > 0) places_.col(0) = start.cwiseMax(lower_).cwiseMin(upper_);
   own_best_ = places_;
@@ -53,7 +53,18 @@ void Swarm::scatter(const Vector& start) {
   result_.cost = kInfinity;
 }
 
-Matrix Swarm::ask() {
+void Swarm::restart(const Vector& lower, const Vector& upper, std::uint64_t seed,
+                    const Vector& start) {
+  lower_ = lower;
+  upper_ = upper;
+  generator_.seed(seed);
+  own_cost_.setConstant(kInfinity);
+  result_.evaluations = 0;
+  moves_ = -1;
+  scatter(start);
+}
+
+const Matrix& Swarm::next() {
   if (moves_ >= 0) move();
   ++moves_;
   return places_;

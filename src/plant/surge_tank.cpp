@@ -80,6 +80,7 @@ class EulerStepper final : public PlantStepper {
   EulerStepper(const SurgeTank& tank, double step_s, int steps)
       : tank_(tank), step_(step_s), steps_(steps) {}
   void reset(VectorRef, VectorRef) override {}
+  bool remembers() const override { return false; }
   void advance(Eigen::Ref<Vector> x, VectorRef u, VectorRef d) override {
     for (int i = 0; i < steps_; ++i) {
       tank_.derivatives(x, u, d, rate_);

@@ -34,6 +34,12 @@ std::string ExcitationGeneratorNode::idleReason(const LoopFile& loop) {
 std::string HybridMpcControllerNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "hybrid_mpc");
 }
+std::string NmpcControllerNode::idleReason(const LoopFile& loop) {
+  return wrongType(loop, "nmpc");
+}
+std::string SwarmMpcControllerNode::idleReason(const LoopFile& loop) {
+  return wrongType(loop, "swarm_mpc");
+}
 std::string PiControllerNode::idleReason(const LoopFile& loop) { return wrongType(loop, "pi"); }
 
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node,

@@ -113,10 +113,15 @@ std::set<std::string> readerKeys() {
       "plant: {type: distillation_column}\ncontroller: {type: adaptive_pi, decoupling: false, loops: "
       "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
       "integral_time_min: 1}], model: [{output: y_D, input: L, gain: 1, time_constant_min: 1}]}\n";
+  const std::string nmpc = "plant: {type: mimo_cstr}\ncontroller: {type: nmpc}\n";
+  const std::string swarm =
+      "plant: {type: mimo_cstr}\nsampling: {sample_time_s: 0.6, duration_h: 1}\ncontroller: {type: "
+      "swarm_mpc}\nmodel: {file: " +
+      std::string(FMBPC_SOURCE_DIR) + "/config/model/mimo_cstr.yaml}\n";
   std::set<std::string> keys;
   std::set<std::string> sections;
   for (const auto& text : {controlled(fmbpc + lists), controlled(external), controlled(column),
-                           controlled(adaptive), optimal, prbs, levels, steps,
+                           controlled(adaptive), optimal, controlled(nmpc), swarm, prbs, levels, steps,
                            batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
                            batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest})
     for (const auto& path : asked(text)) {
@@ -191,6 +196,16 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.law", law.law},
           {"controller.coincidence_steps", std::to_string(law.coincidence_steps)},
           {"controller.preview", word(law.preview)},
+          {"controller.max_iterations", std::to_string(loop.nmpc.solver.max_iterations)},
+          {"controller.integration_steps", std::to_string(loop.nmpc.integration_steps)},
+          {"controller.swarm.particles", std::to_string(loop.swarm_mpc.swarm.particles)},
+          {"controller.swarm.iterations", std::to_string(loop.swarm_mpc.swarm.iterations)},
+          {"controller.swarm.inertia_start", exactText(loop.swarm_mpc.swarm.inertia_start)},
+          {"controller.swarm.inertia_end", exactText(loop.swarm_mpc.swarm.inertia_end)},
+          {"controller.swarm.cognitive", exactText(loop.swarm_mpc.swarm.cognitive)},
+          {"controller.swarm.social", exactText(loop.swarm_mpc.swarm.social)},
+          {"controller.swarm.speed_upper", exactText(loop.swarm_mpc.swarm.speed_upper)},
+          {"controller.swarm.seed", std::to_string(loop.swarm_mpc.swarm.seed)},
           {"controller.horizon_steps", std::to_string(law.horizon_steps)},
           {"controller.iterations", std::to_string(law.iterations)},
           {"controller.forecast_pole", exactText(law.forecast_pole)},

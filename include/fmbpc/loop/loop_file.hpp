@@ -11,8 +11,10 @@
 #include "fmbpc/control/fmbpc_law.hpp"
 #include "fmbpc/control/fuzzy_optimal.hpp"
 #include "fmbpc/control/hybrid_mpc.hpp"
+#include "fmbpc/control/nmpc.hpp"
 #include "fmbpc/control/pi.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
+#include "fmbpc/control/swarm_mpc.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
 #include "fmbpc/fuzzy/structure.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
@@ -102,13 +104,15 @@ struct LoopFile {
   double max_pole{1.0};    ///< a model that replaces another in a run is refused beyond
   bool has_identify{false};
   IdentifyParams identify;
-  std::string controller;  ///< fmbpc, fuzzy_optimal, hybrid_mpc, pi, adaptive_pi or excitation
+  std::string controller;  ///< controller.type: fmbpc, fuzzy_optimal, nmpc, ...
   FmbpcParams fmbpc;
   FuzzyOptimalParams fuzzy_optimal;
   PiParams pi;
   AdaptivePiParams adaptive_pi;
   ExcitationParams excitation;
   HybridMpcParams hybrid;
+  NmpcParams nmpc;
+  SwarmMpcParams swarm_mpc;
   bool has_clp{false};
   ClpParams clp;
   RingParams ring;

@@ -40,8 +40,13 @@ class Swarm : public PopulationSearch {
   /// @throws InputError naming the field: bounds not finite or of different sizes, lower > upper.
   Swarm(const Vector& lower, const Vector& upper, const SwarmParams& params,
         const Vector& start = {});
-  Matrix ask() override;
+  Matrix ask() override { return next(); }
   void tell(const Vector& costs) override;
+  /// ask() without a copy and without allocation.
+  const Matrix& next();
+  /// Begins anew, in a box of the same size and without allocation; as a new swarm would.
+  /// Sizes must be those of the construction.
+  void restart(const Vector& lower, const Vector& upper, std::uint64_t seed, const Vector& start);
   const SwarmResult& result() const { return result_; }
   /// gbest/pbest kept in [0, 1]: 1 where both are 0 or the particle holds the best, 0 where its own
   /// best is infinite or the costs have no ratio (best < 0 < own).

@@ -44,14 +44,16 @@ struct PlantDescription {
   std::vector<std::string> hidden_disturbances;  ///< not measured unless a loop file says so
 };
 
-/// Moves a plant that remembers more than its state shows (dead times), exactly, one sample at a
-/// time, in place of an integrator.
+/// Moves a plant that is no differential equation in its state (dead times, difference equations),
+/// exactly, one sample at a time, in place of an integrator.
 class PlantStepper {
  public:
   virtual ~PlantStepper() = default;
   virtual void reset(VectorRef u, VectorRef d) = 0;  ///< the plant has rested at these
   /// Moves x over the sample with u and d held. No allocation.
   virtual void advance(Eigen::Ref<Vector> x, VectorRef u, VectorRef d) = 0;
+  /// False for a difference equation: x, u and d say everything, as with an integrator.
+  virtual bool remembers() const { return true; }
 };
 
 /// dx/dt = f(x, u, d), measured outputs are states.

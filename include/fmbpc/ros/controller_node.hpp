@@ -73,8 +73,8 @@ class ControllerNode : public Node {
   Diagnostics diagnostics_;
 };
 
-/// The nodes fmbpc_controller, hybrid_mpc_controller, adaptive_pi_controller, excitation_generator and
-/// pi_controller.
+/// The nodes fmbpc_controller, hybrid_mpc_controller, nmpc_controller, swarm_mpc_controller,
+/// adaptive_pi_controller, excitation_generator and pi_controller.
 struct FmbpcControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
@@ -88,6 +88,14 @@ struct ExcitationGeneratorNode : ControllerNode {
   static std::string idleReason(const LoopFile& loop);
 };
 struct HybridMpcControllerNode : ControllerNode {
+  using ControllerNode::ControllerNode;
+  static std::string idleReason(const LoopFile& loop);
+};
+struct NmpcControllerNode : ControllerNode {
+  using ControllerNode::ControllerNode;
+  static std::string idleReason(const LoopFile& loop);
+};
+struct SwarmMpcControllerNode : ControllerNode {
   using ControllerNode::ControllerNode;
   static std::string idleReason(const LoopFile& loop);
 };

@@ -1,0 +1,22 @@
+// Step indices of the loops of Taieb, Soltani and Chaari (2017), averaged, for several experiments.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fmbpc/analysis/performance.hpp"
+#include "fmbpc/loop/loop_file.hpp"
+
+namespace fpc::tool {
+
+inline constexpr char kTaieb[] = "Taieb, Soltani and Chaari 2017";
+
+/// Every step of one output of a shipped loop; times in units of `unit_s` seconds.
+std::vector<StepIndices> stepsOf(const std::string& loop, Eigen::Index output, double unit_s,
+                                 const Overrides& overrides = {});
+/// Rise, settling, overshoot and offset, each averaged.
+StepIndices meanOf(const std::vector<StepIndices>& steps);
+/// Sum of squares of all inputs of a run, each in shares of the input at its start.
+double inputEnergy(const std::string& loop, const Overrides& overrides = {});
+
+}  // namespace fpc::tool
