@@ -1,6 +1,7 @@
 // The tuning of the fuzzy optimal law as texts that a person can type while the loop runs.
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <sstream>
 
 #include "control/fuzzy_optimal_memory.hpp"
@@ -30,7 +31,7 @@ double numberOf(const std::string& text, const std::string& key) {
 
 int integerOf(const std::string& text, const std::string& key) {
   const double value = numberOf(text, key);
-  require(value == static_cast<double>(static_cast<int>(value)), key, "an integer");
+  require(std::abs(value) <= 1e9 && value == std::floor(value), key, "an integer");
   return static_cast<int>(value);
 }
 
