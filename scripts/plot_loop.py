@@ -4,7 +4,8 @@
     plot_loop.py DIR [DIR ...] [--out FILE]
 
 Outputs with setpoint and reference, inputs with their limits and the optimizer's perturbation, disturbances that change; time
-in hours. One folder: DIR/plot.png. Several folders are compared, one colour each, in comparison.png of the current folder.
+in hours, of short runs in seconds. One folder: DIR/plot.png. Several folders are compared, one colour each, in comparison.png
+of the current folder.
 """
 import argparse
 import csv
@@ -121,11 +122,19 @@ def title_of(runs):
     return runs[0].summary.get("title") or runs[0].name if len(runs) == 1 else "Comparison"
 
 
+def time_unit(runs):
+    """Hours, but seconds where the whole run is a few minutes: (per hour, name)."""
+    return (3600.0, "s") if max(run.time[-1] for run in runs) < 0.1 else (1.0, "h")
+
+
 def draw(runs, file):
     import matplotlib
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     first = runs[0]
+    per_hour, unit = time_unit(runs)
+    for run in runs:
+        run.time = [per_hour * hours for hours in run.time]
     panels = [(draw_output, n, 2.0) for n in first.outputs()] + [(draw_input, n, 1.7) for n in first.inputs()]
     panels += [(draw_disturbance, n, 1.0) for n in first.disturbances() if changes(runs, n)]
     heights = [height for _, _, height in panels]
@@ -142,7 +151,7 @@ def draw(runs, file):
             axis.legend(loc="upper right", ncol=min(len(handles), 4), fontsize=8, framealpha=0.85, borderpad=0.3)
     figure.align_ylabels(axes[:, 0])
     constant = held(first, [n for n in first.disturbances() if not changes(runs, n)])
-    axes[-1, 0].set_xlabel("time [h]" + ("\nheld: " + textwrap.fill(constant, 110) if constant else ""))
+    axes[-1, 0].set_xlabel("time [%s]" % unit + ("\nheld: " + textwrap.fill(constant, 110) if constant else ""))
     axes[0, 0].set_title(title_of(runs), fontsize=11)
     figure.tight_layout()
     figure.savefig(file, dpi=110)
