@@ -37,7 +37,7 @@ class EveryLoop(unittest.TestCase):
                 self.compare(loop, folder)
 
     def compare(self, loop, folder):
-        sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6}
+        sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6, "linear_2x2": 1, "column": 60}
         seconds = next((s for name, s in sample_times.items() if loop.startswith(name)), 720)
         duration = f"sampling.duration_h={480 * seconds / 3600}"
         port = free_port()
