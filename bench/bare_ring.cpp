@@ -1,5 +1,6 @@
-// The floor under the loop over topics: three processes that pass messages of the loop's own types and sizes round,
-// with its other publishers, and compute nothing. Roles: plant, controller, optimizer, listener.
+// The floor under the loop over topics: three processes that pass messages of the loop's own types
+// and sizes round, with its other publishers, and compute nothing. Roles: plant, controller,
+// optimizer, listener.
 //   bare_ring ROLE SAMPLES
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/Measurement.h>
@@ -20,7 +21,8 @@
 namespace {
 
 constexpr unsigned kQueue = 100000;
-constexpr int kOutputs = 2, kInputs = 1, kDisturbances = 2, kStates = 6, kModelState = 3, kSteps = 42;
+constexpr int kOutputs = 2, kInputs = 1, kDisturbances = 2, kStates = 6, kModelState = 3,
+              kSteps = 42;
 
 template <typename Msg>
 ros::Subscriber listen(ros::NodeHandle& node, const char* topic,
@@ -41,7 +43,8 @@ class Signals {
  public:
   Signals(ros::NodeHandle& node, const std::string& role, int count) {
     for (int i = 0; i < count; ++i)
-      publishers_.push_back(node.advertise<fmbpc::Signal>("signal/" + role + std::to_string(i), 1000));
+      publishers_.push_back(
+          node.advertise<fmbpc::Signal>("signal/" + role + std::to_string(i), 1000));
   }
   void publish() {
     for (auto& publisher : publishers_) publisher.publish(fmbpc::Signal());
@@ -72,22 +75,25 @@ void runPlant(ros::NodeHandle& node, std::uint32_t samples) {
     state.publish(truth);
     signals.publish();
   };
-  const auto answer = listen<fmbpc::ControlAction>(node, "control_action", [&](const fmbpc::ControlAction::ConstPtr& m) {
-    if (m->step != sample.step) return;
-    if (++sample.step < samples) return send();
-    std::printf("%.9f\n", (ros::WallTime::now() - start).toSec());
-    std::fflush(stdout);
-    ros::shutdown();
-  });
+  const auto answer = listen<fmbpc::ControlAction>(
+      node, "control_action", [&](const fmbpc::ControlAction::ConstPtr& m) {
+        if (m->step != sample.step) return;
+        if (++sample.step < samples) return send();
+        std::printf("%.9f\n", (ros::WallTime::now() - start).toSec());
+        std::fflush(stdout);
+        ros::shutdown();
+      });
   const auto ready = [&] {
-    return measured.getNumSubscribers() >= 2 && state.getNumSubscribers() >= 1 && answer.getNumPublishers() >= 1;
+    return measured.getNumSubscribers() >= 2 && state.getNumSubscribers() >= 1 &&
+           answer.getNumPublishers() >= 1;
   };
   // Sent again until it is answered: the others may not have found one another yet.
-  ros::WallTimer begin = node.createWallTimer(ros::WallDuration(0.1), [&](const ros::WallTimerEvent&) {
-    if (sample.step > 0 || !ready()) return;
-    start = ros::WallTime::now();
-    send();
-  });
+  ros::WallTimer begin =
+      node.createWallTimer(ros::WallDuration(0.1), [&](const ros::WallTimerEvent&) {
+        if (sample.step > 0 || !ready()) return;
+        start = ros::WallTime::now();
+        send();
+      });
   ros::spin();
 }
 
@@ -106,17 +112,18 @@ void runController(ros::NodeHandle& node) {
   predicted.K = matrix(kInputs, kModelState);
   predicted.feedforward = matrix(kInputs, kSteps);
   predicted.reference = matrix(kOutputs, kSteps);
-  const auto heard = listen<fmbpc::Measurement>(node, "measurement", [&](const fmbpc::Measurement::ConstPtr& m) {
-    fmbpc::ControlAction action;
-    action.step = predicted.step = m->step;
-    action.input = m->input_applied;
-    prediction.publish(predicted);
-    base.publish(action);
-    fmbpc::Tracking followed;
-    followed.setpoint = followed.reference = m->outputs;
-    tracking.publish(followed);
-    signals.publish();
-  });
+  const auto heard =
+      listen<fmbpc::Measurement>(node, "measurement", [&](const fmbpc::Measurement::ConstPtr& m) {
+        fmbpc::ControlAction action;
+        action.step = predicted.step = m->step;
+        action.input = m->input_applied;
+        prediction.publish(predicted);
+        base.publish(action);
+        fmbpc::Tracking followed;
+        followed.setpoint = followed.reference = m->outputs;
+        tracking.publish(followed);
+        signals.publish();
+      });
   ros::spin();
 }
 
@@ -124,24 +131,31 @@ void runOptimizer(ros::NodeHandle& node) {
   auto action = node.advertise<fmbpc::ControlAction>("control_action", kQueue);
   auto report = node.advertise<fmbpc::SolverReport>("solver_report", kQueue);
   Signals signals(node, "o", 2 * kInputs);
-  const auto predicted = listen<fmbpc::PredictiveAction>(node, "predictive_action", [](const fmbpc::PredictiveAction::ConstPtr&) {});
-  const auto heard = listen<fmbpc::ControlAction>(node, "base_action", [&](const fmbpc::ControlAction::ConstPtr& m) {
-    action.publish(*m);
-    fmbpc::SolverReport solved;
-    solved.perturbation = m->input;
-    report.publish(solved);
-    signals.publish();
-  });
+  const auto predicted = listen<fmbpc::PredictiveAction>(
+      node, "predictive_action", [](const fmbpc::PredictiveAction::ConstPtr&) {});
+  const auto heard = listen<fmbpc::ControlAction>(node, "base_action",
+                                                  [&](const fmbpc::ControlAction::ConstPtr& m) {
+                                                    action.publish(*m);
+                                                    fmbpc::SolverReport solved;
+                                                    solved.perturbation = m->input;
+                                                    report.publish(solved);
+                                                    signals.publish();
+                                                  });
   ros::spin();
 }
 
 void runListener(ros::NodeHandle& node) {
-  const auto a = listen<fmbpc::Measurement>(node, "measurement", [](const fmbpc::Measurement::ConstPtr&) {});
-  const auto b = listen<fmbpc::PlantState>(node, "plant_state", [](const fmbpc::PlantState::ConstPtr&) {});
-  const auto c = listen<fmbpc::ControlAction>(node, "base_action", [](const fmbpc::ControlAction::ConstPtr&) {});
-  const auto d = listen<fmbpc::ControlAction>(node, "control_action", [](const fmbpc::ControlAction::ConstPtr&) {});
+  const auto a =
+      listen<fmbpc::Measurement>(node, "measurement", [](const fmbpc::Measurement::ConstPtr&) {});
+  const auto b =
+      listen<fmbpc::PlantState>(node, "plant_state", [](const fmbpc::PlantState::ConstPtr&) {});
+  const auto c = listen<fmbpc::ControlAction>(node, "base_action",
+                                              [](const fmbpc::ControlAction::ConstPtr&) {});
+  const auto d = listen<fmbpc::ControlAction>(node, "control_action",
+                                              [](const fmbpc::ControlAction::ConstPtr&) {});
   const auto e = listen<fmbpc::Tracking>(node, "tracking", [](const fmbpc::Tracking::ConstPtr&) {});
-  const auto f = listen<fmbpc::SolverReport>(node, "solver_report", [](const fmbpc::SolverReport::ConstPtr&) {});
+  const auto f = listen<fmbpc::SolverReport>(node, "solver_report",
+                                             [](const fmbpc::SolverReport::ConstPtr&) {});
   ros::spin();
 }
 
@@ -152,9 +166,13 @@ int main(int argc, char** argv) {
   const std::string role = argv[1];
   ros::init(argc, argv, "bare_" + role);
   ros::NodeHandle node;
-  if (role == "plant") runPlant(node, static_cast<std::uint32_t>(std::atoi(argv[2])));
-  else if (role == "controller") runController(node);
-  else if (role == "optimizer") runOptimizer(node);
-  else runListener(node);
+  if (role == "plant")
+    runPlant(node, static_cast<std::uint32_t>(std::atoi(argv[2])));
+  else if (role == "controller")
+    runController(node);
+  else if (role == "optimizer")
+    runOptimizer(node);
+  else
+    runListener(node);
   return 0;
 }

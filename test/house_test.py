@@ -7,7 +7,7 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parent.parent
 ROS_INCLUDE = re.compile(r'#include *[<"](ros/|tf2|std_msgs|std_srvs|rosgraph|geometry_msgs|diagnostic|actionlib|dynamic_reconfigure|fmbpc/[A-Z])')
 ROS_CLOCK = re.compile(r"ros::Time::now|createTimer|ros::Timer\b|ros::Rate|ros::Duration\([^)]*\)\.sleep|rospy\.(Rate|sleep|Timer|get_rostime|Time\.now)")
-RANKS = {"base": 0, "optim": 1, "plant": 1, "fuzzy": 2, "control": 3, "analysis": 4, "loop": 5, "ros": 6}
+RANKS = {"base": 0, "optim": 1, "plant": 1, "fuzzy": 2, "control": 3, "analysis": 4, "config": 5, "loop": 6, "study": 7, "ros": 7}
 FORBIDDEN = {("optim", "plant"), ("plant", "optim"), ("fuzzy", "plant"), ("control", "plant"), ("analysis", "plant")}
 
 

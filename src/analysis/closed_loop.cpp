@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/coincidence.hpp"
+#include "fmbpc/control/fmbpc/coincidence.hpp"
 
 namespace fpc {
 
@@ -70,8 +70,8 @@ double forcedGain(const LinearModel& model, int horizon) {
 
 Matrix paperReducedLoop(MatrixRef A, MatrixRef B, int horizon) {
   require(A.rows() == 2 && A.cols() == 2 && A(1, 0) == 0.0, "A", "[a b; 0 f]");
-  require(B.rows() == 2 && B.cols() == 2 && B(1, 1) == 0.0 && B(0, 1) != 0.0 && B(1, 0) != 0.0,
-          "B", "[m n; p 0] with n and p other than 0");
+  require(B.rows() == 2 && B.cols() == 2 && B(1, 1) == 0.0 && B(0, 1) != 0.0 && B(1, 0) != 0.0, "B",
+          "[m n; p 0] with n and p other than 0");
   PowerSum powers(2);
   powers.compute(A, horizon);
   const Matrix& power = powers.power();

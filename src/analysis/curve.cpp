@@ -91,7 +91,8 @@ bool Curve::complete(const Vector& z, VectorRef direction, CurvePoint& point) co
   const Vector plain = z.cwiseProduct(sizes_);
   point.at.state = plain.head(size());
   point.at.parameter = plain[size()];
-  Matrix A = rows.asDiagonal() * J.leftCols(size()) * sizes_.head(size()).cwiseInverse().asDiagonal();
+  Matrix A =
+      rows.asDiagonal() * J.leftCols(size()) * sizes_.head(size()).cwiseInverse().asDiagonal();
   try {
     if (problem_.linearisation) A = problem_.linearisation(point.at.state, point.at.parameter);
   } catch (const std::exception&) {

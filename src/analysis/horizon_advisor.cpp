@@ -73,9 +73,8 @@ HorizonAdvice adviseHorizon(const LinearModel& model, LoopLaw law, const Horizon
     if (!figures.stable) continue;
     if (first_stable == 0) {
       first_stable = law.coincidence_steps;
-      advice.reasons.push_back(
-          sentence("H = %.0f is the shortest stable horizon, noise gain %.4g", first_stable,
-                   figures.noise_gain));
+      advice.reasons.push_back(sentence("H = %.0f is the shortest stable horizon, noise gain %.4g",
+                                        first_stable, figures.noise_gain));
     }
     if (figures.noise_gain > limits.noise_gain) continue;
     advice.figures = figures;
@@ -87,9 +86,8 @@ HorizonAdvice adviseHorizon(const LinearModel& model, LoopLaw law, const Horizon
     return advice;
   }
   if (advice.coincidence_steps == 0) {
-    advice.reasons.push_back(
-        sentence("no horizon up to %.0f keeps the noise gain below %.4g", limits.longest,
-                 limits.noise_gain));
+    advice.reasons.push_back(sentence("no horizon up to %.0f keeps the noise gain below %.4g",
+                                      limits.longest, limits.noise_gain));
     return advice;
   }
   advice.reasons.push_back(sentence("H = %.0f is the shortest that keeps the noise gain: %.4g",

@@ -39,9 +39,8 @@ bool findZero(const Curve& curve, const CurvePoint& from, double step, const Cur
   const bool positive = from.tangent[i] > 0.0;
   if (from.tangent[i] == 0.0 || positive == (to.tangent[i] > 0.0)) return false;
   Bracket bracket{0.0, step, to};
-  if (!bisect(curve, from, bracket, [&](const CurvePoint& p) {
-        return (p.tangent[i] > 0.0) != positive;
-      }))
+  if (!bisect(curve, from, bracket,
+              [&](const CurvePoint& p) { return (p.tangent[i] > 0.0) != positive; }))
     return false;
   found.parameter = bracket.at.at.parameter;
   found.state = bracket.at.at.state;

@@ -22,11 +22,10 @@ void CommandTable::accept(const Command& command, std::uint32_t step) {
   require(release || command.mode == CommandMode::kOverride || command.mode == CommandMode::kOffset,
           "mode", "1 (override), 2 (offset) or 3 (release)");
   require(!command.name.empty(), "name", "at least one name");
-  require((release && command.value.empty()) || command.value.size() == command.name.size(), "value",
-          "as many values as names");
+  require((release && command.value.empty()) || command.value.size() == command.name.size(),
+          "value", "as many values as names");
   for (const auto& name : command.name) indexOf(name);
-  for (const double value : command.value)
-    require(std::isfinite(value), "value", "finite numbers");
+  for (const double value : command.value) require(std::isfinite(value), "value", "finite numbers");
   pending_.push_back({step, command});
   std::stable_sort(pending_.begin(), pending_.end(),
                    [](const Pending& a, const Pending& b) { return a.step < b.step; });

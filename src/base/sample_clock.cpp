@@ -1,9 +1,7 @@
 #include "fmbpc/base/sample_clock.hpp"
 
 #include <algorithm>
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"

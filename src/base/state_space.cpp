@@ -9,7 +9,8 @@ PowerSum::PowerSum(Eigen::Index n_x)
 
 void PowerSum::compute(MatrixRef A, int horizon) {
   require(horizon >= 1, "horizon", "an integer >= 1");
-  require(A.rows() == power_.rows() && A.cols() == power_.cols(), "A", "a square matrix of the size given at construction");
+  require(A.rows() == power_.rows() && A.cols() == power_.cols(), "A",
+          "a square matrix of the size given at construction");
   power_.setIdentity();
   sum_.setZero();
   int bit = 1;

@@ -14,13 +14,24 @@ Arrival StepGate::classify(const StepHeader& header) const {
 Arrival StepGate::pass(const StepHeader& header) {
   const Arrival arrival = classify(header);
   switch (arrival) {
-    case Arrival::kRepeat: ++counts_.repeated; break;
-    case Arrival::kOld: ++counts_.old; break;
-    case Arrival::kOtherRun: ++counts_.other_run; break;
-    case Arrival::kGap: ++counts_.gaps; break;
-    case Arrival::kNewRun: ++counts_.new_runs; break;
+    case Arrival::kRepeat:
+      ++counts_.repeated;
+      break;
+    case Arrival::kOld:
+      ++counts_.old;
+      break;
+    case Arrival::kOtherRun:
+      ++counts_.other_run;
+      break;
+    case Arrival::kGap:
+      ++counts_.gaps;
+      break;
+    case Arrival::kNewRun:
+      ++counts_.new_runs;
+      break;
     case Arrival::kFirst:
-    case Arrival::kNext: break;
+    case Arrival::kNext:
+      break;
   }
   if (isNew(arrival)) {
     ++counts_.accepted;

@@ -15,7 +15,8 @@ std::string describe(const Range& range) {
   constexpr double kLargest = std::numeric_limits<double>::max();
   const bool has_lower = range.lower > -kLargest;
   const bool has_upper = range.upper < kLargest;
-  std::string words = range.lower == -kLargest || range.upper == kLargest ? "a finite number" : "a number";
+  std::string words =
+      range.lower == -kLargest || range.upper == kLargest ? "a finite number" : "a number";
   if (has_lower) words += (range.lower_open ? " > " : " >= ") + exactText(range.lower);
   if (has_upper) words += (has_lower ? " and <= " : " <= ") + exactText(range.upper);
   return words;
@@ -23,12 +24,14 @@ std::string describe(const Range& range) {
 
 bool inside(double value, const Range& range) {
   if (std::isnan(value)) return false;
-  if (std::isinf(value)) return value > 0 ? range.upper == value : range.lower == value && !range.lower_open;
+  if (std::isinf(value))
+    return value > 0 ? range.upper == value : range.lower == value && !range.lower_open;
   return (range.lower_open ? value > range.lower : value >= range.lower) && value <= range.upper;
 }
 
 std::string scalarText(const YAML::Node& node) {
-  return node.IsScalar() ? "'" + node.Scalar() + "'" : (node.IsNull() ? "nothing" : "a list or mapping");
+  return node.IsScalar() ? "'" + node.Scalar() + "'"
+                         : (node.IsNull() ? "nothing" : "a list or mapping");
 }
 
 }  // namespace
@@ -56,22 +59,28 @@ YamlSection YamlSection::parse(const std::string& text, const std::string& name)
   try {
     return {YAML::Load(text), name, ""};
   } catch (const YAML::Exception& e) {
-    throw InputError(name + ":" + std::to_string(e.mark.line + 1) + ": expected valid YAML: " + e.msg);
+    throw InputError(name + ":" + std::to_string(e.mark.line + 1) +
+                     ": expected valid YAML: " + e.msg);
   }
 }
 
-YamlSection::YamlSection(const YAML::Node& node, std::string file, std::string path, std::shared_ptr<YamlTrace> trace)
+YamlSection::YamlSection(const YAML::Node& node, std::string file, std::string path,
+                         std::shared_ptr<YamlTrace> trace)
     : node_(node),
       file_(std::move(file)),
       path_(std::move(path)),
       read_(std::make_shared<std::set<std::string>>()),
       trace_(std::move(trace)) {
-  if (!node_.IsDefined() || node_.IsNull()) node_.reset(YAML::Node(YAML::NodeType::Map));  // = would change the tree
-  require(node_.IsMap(), (trace_ ? trace_->originOf(path_, file_) : file_ + ": ") + (path_.empty() ? "top level" : path_),
+  if (!node_.IsDefined() || node_.IsNull())
+    node_.reset(YAML::Node(YAML::NodeType::Map));  // = would change the tree
+  require(node_.IsMap(),
+          (trace_ ? trace_->originOf(path_, file_) : file_ + ": ") +
+              (path_.empty() ? "top level" : path_),
           "a mapping of keys to values");
   std::set<std::string> seen;
   for (const auto& entry : node_)
-    require(seen.insert(entry.first.Scalar()).second, where(entry.first.Scalar()), "the key only once");
+    require(seen.insert(entry.first.Scalar()).second, where(entry.first.Scalar()),
+            "the key only once");
 }
 
 std::string YamlSection::where(const std::string& key) const {
@@ -86,7 +95,8 @@ std::string YamlSection::where(const std::string& key) const {
 void YamlSection::fail(const std::string& key, const std::string& expected) const {
   const YAML::Node& map = node_;
   const YAML::Node child = map[key];
-  throw InputError(where(key) + ": expected " + expected + (child.IsDefined() ? ", got " + scalarText(child) : ""));
+  throw InputError(where(key) + ": expected " + expected +
+                   (child.IsDefined() ? ", got " + scalarText(child) : ""));
 }
 
 void YamlSection::markRead(const std::string& key) const {
@@ -105,7 +115,8 @@ YAML::Node YamlSection::raw(const std::string& key) const {
   return map[key];
 }
 
-double YamlSection::toNumber(const YAML::Node& node, const std::string& key, const Range& range) const {
+double YamlSection::toNumber(const YAML::Node& node, const std::string& key,
+                             const Range& range) const {
   double value = std::numeric_limits<double>::quiet_NaN();
   const bool parsed = node.IsScalar() && YAML::convert<double>::decode(node, value);
   if (!parsed || !inside(value, range))
@@ -123,8 +134,9 @@ void YamlSection::integer(const std::string& key, int& value, int lower, int upp
   if (!node.IsDefined()) return;
   int read = 0;
   if (!node.IsScalar() || !YAML::convert<int>::decode(node, read) || read < lower || read > upper)
-    fail(key, "an integer >= " + std::to_string(lower) +
-                  (upper < std::numeric_limits<int>::max() ? " and <= " + std::to_string(upper) : ""));
+    fail(key,
+         "an integer >= " + std::to_string(lower) +
+             (upper < std::numeric_limits<int>::max() ? " and <= " + std::to_string(upper) : ""));
   value = read;
 }
 
@@ -149,9 +161,11 @@ void YamlSection::text(const std::string& key, std::string& value) {
   value = node.Scalar();
 }
 
-void YamlSection::oneOf(const std::string& key, std::string& value, const std::vector<std::string>& choices) {
+void YamlSection::oneOf(const std::string& key, std::string& value,
+                        const std::vector<std::string>& choices) {
   text(key, value);
-  if (std::find(choices.begin(), choices.end(), value) == choices.end()) fail(key, "one of " + join(choices));
+  if (std::find(choices.begin(), choices.end(), value) == choices.end())
+    fail(key, "one of " + join(choices));
 }
 
 void YamlSection::names(const std::string& key, std::vector<std::string>& value) {
@@ -165,13 +179,15 @@ void YamlSection::names(const std::string& key, std::vector<std::string>& value)
   }
 }
 
-void YamlSection::subset(const std::string& key, std::vector<std::string>& value, const std::vector<std::string>& known) {
+void YamlSection::subset(const std::string& key, std::vector<std::string>& value,
+                         const std::vector<std::string>& known) {
   names(key, value);
   for (auto here = value.begin(); here != value.end(); ++here) {
     const bool exists = std::find(known.begin(), known.end(), *here) != known.end();
     const bool repeated = std::find(value.begin(), here, *here) != here;
     if (!exists || repeated)
-      throw InputError(where(key) + ": expected names out of " + join(known) + ", each once, got '" + *here + "'");
+      throw InputError(where(key) + ": expected names out of " + join(known) +
+                       ", each once, got '" + *here + "'");
   }
 }
 
@@ -193,10 +209,12 @@ void YamlSection::vector(const std::string& key, Vector& value, Eigen::Index n, 
   if (!node.IsSequence() || static_cast<Eigen::Index>(node.size()) != n)
     fail(key, "a list of " + std::to_string(n) + " numbers");
   value.resize(n);
-  for (Eigen::Index i = 0; i < n; ++i) value[i] = toNumber(node[static_cast<std::size_t>(i)], key, range);
+  for (Eigen::Index i = 0; i < n; ++i)
+    value[i] = toNumber(node[static_cast<std::size_t>(i)], key, range);
 }
 
-void YamlSection::byName(const std::string& key, Vector& value, const std::vector<std::string>& names, Range range) {
+void YamlSection::byName(const std::string& key, Vector& value,
+                         const std::vector<std::string>& names, Range range) {
   const YAML::Node node = raw(key);
   if (!node.IsDefined()) return;
   if (!node.IsMap()) return vector(key, value, static_cast<Eigen::Index>(names.size()), range);

@@ -1,5 +1,5 @@
-// A YAML mapping in which typos cannot hide: every key is read once, over a default, and what is left is an error.
-// Private: yaml-cpp does not appear in public headers.
+// A YAML mapping in which typos cannot hide: every key is read once, over a default, and what is
+// left is an error. Private: yaml-cpp does not appear in public headers.
 #pragma once
 
 #include <yaml-cpp/yaml.h>
@@ -15,19 +15,25 @@
 
 namespace fpc {
 
-/// Closed range of a number; open ends by excluding the bound. Infinite numbers pass only when a bound is infinite.
+/// Closed range of a number; open ends by excluding the bound. Infinite numbers pass only when a
+/// bound is infinite.
 struct Range {
   double lower{-std::numeric_limits<double>::infinity()};
   double upper{std::numeric_limits<double>::infinity()};
   bool lower_open{false};
-  static Range positive() { return {0.0, std::numeric_limits<double>::max(), true}; }      ///< and finite
-  static Range notNegative() { return {0.0, std::numeric_limits<double>::max(), false}; }  ///< and finite
+  static Range positive() {
+    return {0.0, std::numeric_limits<double>::max(), true};
+  }  ///< and finite
+  static Range notNegative() {
+    return {0.0, std::numeric_limits<double>::max(), false};
+  }  ///< and finite
 };
 
-/// For a text merged from several files: where each path ("controller.loops[0].kp") was written, and which paths a
-/// reader asked for. Shared by all sections of the text.
+/// For a text merged from several files: where each path ("controller.loops[0].kp") was written,
+/// and which paths a reader asked for. Shared by all sections of the text.
 struct YamlTrace {
-  std::map<std::string, std::string> origins;  ///< path -> what stands before it in errors: "file:12: ", "--set "
+  std::map<std::string, std::string>
+      origins;  ///< path -> what stands before it in errors: "file:12: ", "--set "
   std::set<std::string> asked;
   /// Origin of the path, or of the nearest part of it that is known.
   std::string originOf(const std::string& path, const std::string& file) const;
@@ -39,25 +45,30 @@ class YamlSection {
   static YamlSection load(const std::string& file);
   static YamlSection parse(const std::string& text, const std::string& name);
   /// @throws InputError unless the node is a mapping (a null node is an empty one).
-  YamlSection(const YAML::Node& node, std::string file, std::string path, std::shared_ptr<YamlTrace> trace = nullptr);
+  YamlSection(const YAML::Node& node, std::string file, std::string path,
+              std::shared_ptr<YamlTrace> trace = nullptr);
 
   bool has(const std::string& key) const;
   void number(const std::string& key, double& value, Range range = {});
-  void integer(const std::string& key, int& value, int lower, int upper = std::numeric_limits<int>::max());
+  void integer(const std::string& key, int& value, int lower,
+               int upper = std::numeric_limits<int>::max());
   void seed(const std::string& key, std::uint64_t& value);
   void boolean(const std::string& key, bool& value);
   void text(const std::string& key, std::string& value);
   void oneOf(const std::string& key, std::string& value, const std::vector<std::string>& choices);
   void names(const std::string& key, std::vector<std::string>& value);
   /// Names out of `known`, each once.
-  void subset(const std::string& key, std::vector<std::string>& value, const std::vector<std::string>& known);
+  void subset(const std::string& key, std::vector<std::string>& value,
+              const std::vector<std::string>& known);
   void numbers(const std::string& key, std::vector<double>& value, Range range = {});
-  /// n numbers; also accepts one number for all n. `.inf` and `-.inf` pass when the range allows them.
+  /// n numbers; also accepts one number for all n. `.inf` and `-.inf` pass when the range allows
+  /// them.
   void vector(const std::string& key, Vector& value, Eigen::Index n, Range range = {});
-  /// A mapping name -> number over `names`: values of absent names stay; if `value` has another size than `names`, no
-  /// name may be absent. Also accepts a list of names.size() numbers.
-  void byName(const std::string& key, Vector& value, const std::vector<std::string>& names, Range range = {});
-  YamlSection section(const std::string& key);  ///< an absent key is an empty section
+  /// A mapping name -> number over `names`: values of absent names stay; if `value` has another
+  /// size than `names`, no name may be absent. Also accepts a list of names.size() numbers.
+  void byName(const std::string& key, Vector& value, const std::vector<std::string>& names,
+              Range range = {});
+  YamlSection section(const std::string& key);            ///< an absent key is an empty section
   std::vector<YamlSection> list(const std::string& key);  ///< a list of mappings
   std::vector<std::string> unreadKeys() const;
   std::vector<std::string> keys() const;
@@ -72,7 +83,9 @@ class YamlSection {
 
  private:
   const YAML::Node& node() const { return node_; }
-  std::string pathOf(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+  std::string pathOf(const std::string& key) const {
+    return path_.empty() ? key : path_ + "." + key;
+  }
   double toNumber(const YAML::Node& node, const std::string& key, const Range& range) const;
 
   YAML::Node node_;

@@ -5,7 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/model_check.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 namespace {

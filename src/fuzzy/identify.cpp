@@ -67,12 +67,11 @@ void addRemarks(const OutputIdentification& found, std::vector<std::string>& rem
   for (std::size_t i = 0; i < found.rules.size(); ++i) {
     const RuleFit& fit = found.rules[i];
     if (fit.status == RuleStatus::kFitted) continue;
-    remarks.push_back(
-        found.output + " rule " + std::to_string(i + 1) + ": " + fit.remark +
-        (fit.status == RuleStatus::kDropped ? "; dropped"
-         : fit.lender < 0                   ? "; the linear model stands in"
-                                            : "; rule " + std::to_string(fit.lender + 1) +
-                                                  " stands in"));
+    remarks.push_back(found.output + " rule " + std::to_string(i + 1) + ": " + fit.remark +
+                      (fit.status == RuleStatus::kDropped ? "; dropped"
+                       : fit.lender < 0
+                           ? "; the linear model stands in"
+                           : "; rule " + std::to_string(fit.lender + 1) + " stands in"));
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 namespace {

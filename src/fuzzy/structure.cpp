@@ -38,8 +38,7 @@ void checkConsequents(const ConsequentParams& c) {
 }
 
 void checkSets(const std::string& where, const OutputStructure& s) {
-  require(s.sets.size() == s.antecedents.size(), where + ".sets",
-          "a list of sets per antecedent");
+  require(s.sets.size() == s.antecedents.size(), where + ".sets", "a list of sets per antecedent");
   std::size_t n_rules = 1;
   for (const auto& sets : s.sets) {
     require(!sets.empty(), where + ".sets", "at least one set per antecedent");

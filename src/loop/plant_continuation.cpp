@@ -9,7 +9,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kFarthest = 3.0;      // starts and inputs, in nominal values
+constexpr double kFarthest = 3.0;  // starts and inputs, in nominal values
 
 Vector nominal(const std::vector<Quantity>& quantities) {
   Vector values(static_cast<Eigen::Index>(quantities.size()));
@@ -62,7 +62,12 @@ PlantContinuation plantContinuation(std::shared_ptr<const Plant> plant, Eigen::I
   const bool whole = lower > upper || (lower < 0.0 && upper < 0.0);
   p.upper = whole ? std::min(varied.upper, std::max(kFarthest * varied.nominal, 1.0)) : upper;
   p.lower = whole ? std::max(varied.lower, 0.01 * p.upper) : lower;
-  Held held{plant, nominal(about.inputs), nominal(about.disturbances), {}, {}, input,
+  Held held{plant,
+            nominal(about.inputs),
+            nominal(about.disturbances),
+            {},
+            {},
+            input,
             sample_time_s / about.time_unit_s};
   p.starts = nominal(about.states);
   const auto n = static_cast<Eigen::Index>(about.states.size());

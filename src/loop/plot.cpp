@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <filesystem>
 
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {
 namespace {

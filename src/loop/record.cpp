@@ -7,7 +7,7 @@ namespace fpc {
 namespace {
 constexpr std::uint32_t kLargestJump = 100000;  // a stray step number must not ask for gigabytes
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-}
+}  // namespace
 
 Recorder::Recorder(std::string loop, PlantInfo info, bool has_optimizer, bool has_state,
                    std::vector<std::string> states, std::vector<std::string> state_units)

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/config/disturbance_source.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/report.hpp"
 

@@ -57,8 +57,7 @@ pagmo::algorithm algorithmOf(const SearchParams& params) {
   if (params.method == "de")
     return pagmo::algorithm(pagmo::de(1, params.differential_weight, params.crossover,
                                       static_cast<unsigned>(params.variant), 0.0, 0.0, seed));
-  return pagmo::algorithm(
-      pagmo::cmaes(1, -1, -1, -1, -1, params.step, 0.0, 0.0, true, true, seed));
+  return pagmo::algorithm(pagmo::cmaes(1, -1, -1, -1, -1, params.step, 0.0, 0.0, true, true, seed));
 }
 
 class PagmoSearch : public PopulationSearch {
@@ -70,9 +69,8 @@ class PagmoSearch : public PopulationSearch {
         first_(first),
         book_(std::make_shared<Book>()),
         algorithm_(algorithmOf(params)),
-        population_(
-            pagmo::problem(BookProblem(static_cast<std::size_t>(lower.size()), book_)), 0U,
-            static_cast<unsigned>(params.seed)) {}
+        population_(pagmo::problem(BookProblem(static_cast<std::size_t>(lower.size()), book_)), 0U,
+                    static_cast<unsigned>(params.seed)) {}
 
   Matrix ask() override {
     if (population_.size() == 0) return first_;

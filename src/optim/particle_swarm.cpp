@@ -89,16 +89,15 @@ double Swarm::likeness(double best, double own) {
 }
 
 void Swarm::move() {
-  const double part =
-      params_.iterations > 1
-          ? std::min(1.0, static_cast<double>(moves_) / (params_.iterations - 1))
-          : 0.0;
+  const double part = params_.iterations > 1
+                          ? std::min(1.0, static_cast<double>(moves_) / (params_.iterations - 1))
+                          : 0.0;
   const double falling =
       params_.inertia_start + part * (params_.inertia_end - params_.inertia_start);
   for (Eigen::Index p = 0; p < places_.cols(); ++p) {
-    const double inertia =
-        params_.adaptive ? params_.adaptive_inertia - likeness(result_.cost, own_cost_[p])
-                         : falling;
+    const double inertia = params_.adaptive
+                               ? params_.adaptive_inertia - likeness(result_.cost, own_cost_[p])
+                               : falling;
     for (Eigen::Index i = 0; i < places_.rows(); ++i) {
       const double fastest = params_.speed_upper * (upper_[i] - lower_[i]);
       const double own = uniform(generator_), all = uniform(generator_);

@@ -64,8 +64,9 @@ std::vector<std::string> searchMethods() {
 }
 
 std::string missingMethods() {
-  return hasPagmo() ? "" : "de and cmaes need pagmo2, which was not there when this was built "
-                           "(Debian: libpagmo-dev)";
+  return hasPagmo() ? ""
+                    : "de and cmaes need pagmo2, which was not there when this was built "
+                      "(Debian: libpagmo-dev)";
 }
 
 void SearchParams::validate() const {

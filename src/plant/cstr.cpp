@@ -31,20 +31,20 @@ PlantDescription describe() {
   p.disturbances = {{"d_q_c", "l/min", 0.0, -100.0, 100.0}};
   p.outputs = {"CA"};
   p.parameters = {
-      {"feed_flow", "l/min", 100.0, 0.0, 1e6},                // q
-      {"feed_concentration", "mol/l", 1.0, 0.0, 1e3},         // CA0
-      {"feed_temperature", "K", 350.0, 200.0, 1000.0},        // T0
-      {"coolant_temperature", "K", 350.0, 200.0, 1000.0},     // Tc0
-      {"reactor_volume", "l", 100.0, 1e-3, 1e9},              // V
-      {"heat_transfer", "cal/(min K)", 7e5, 0.0, 1e12},       // hA
-      {"rate_constant", "1/min", 7.2e10, 0.0, 1e20},          // k0
-      {"activation_temperature", "K", 1e4, 0.0, 1e6},         // E/R
-      {"reaction_heat", "cal/mol", -2e5, -1e8, 1e8},          // dH
-      {"density", "g/l", 1e3, 1e-3, 1e6},                     // rho
-      {"coolant_density", "g/l", 1e3, 1e-3, 1e6},             // rho_c
-      {"heat_capacity", "cal/(g K)", 1.0, 1e-3, 1e3},         // Cp
-      {"coolant_heat_capacity", "cal/(g K)", 1.0, 1e-3, 1e3}, // Cpc
-      {"compensator_gain", "l/(min K)", 0.0, -100.0, 100.0},  // K
+      {"feed_flow", "l/min", 100.0, 0.0, 1e6},                 // q
+      {"feed_concentration", "mol/l", 1.0, 0.0, 1e3},          // CA0
+      {"feed_temperature", "K", 350.0, 200.0, 1000.0},         // T0
+      {"coolant_temperature", "K", 350.0, 200.0, 1000.0},      // Tc0
+      {"reactor_volume", "l", 100.0, 1e-3, 1e9},               // V
+      {"heat_transfer", "cal/(min K)", 7e5, 0.0, 1e12},        // hA
+      {"rate_constant", "1/min", 7.2e10, 0.0, 1e20},           // k0
+      {"activation_temperature", "K", 1e4, 0.0, 1e6},          // E/R
+      {"reaction_heat", "cal/mol", -2e5, -1e8, 1e8},           // dH
+      {"density", "g/l", 1e3, 1e-3, 1e6},                      // rho
+      {"coolant_density", "g/l", 1e3, 1e-3, 1e6},              // rho_c
+      {"heat_capacity", "cal/(g K)", 1.0, 1e-3, 1e3},          // Cp
+      {"coolant_heat_capacity", "cal/(g K)", 1.0, 1e-3, 1e3},  // Cpc
+      {"compensator_gain", "l/(min K)", 0.0, -100.0, 100.0},   // K
   };
   p.frames = {{"plant", "map", 0.0, 0.0, 0.0},
               {"reactor", "plant", 0.0, 0.0, 1.0},
@@ -73,8 +73,8 @@ class Cstr final : public Plant {
 Cstr::Cstr(const PlantParameters& parameters) : description_(describe()) {
   const Vector p = parameterValues(description_, parameters);
   Eigen::Index i = 0;
-  for (double* value : {&q_, &CA0_, &T0_, &Tc0_, &V_, &hA_, &k0_, &E_R_, &dH_, &rho_, &rho_c_,
-                        &Cp_, &Cpc_, &K_})
+  for (double* value :
+       {&q_, &CA0_, &T0_, &Tc0_, &V_, &hA_, &k0_, &E_R_, &dH_, &rho_, &rho_c_, &Cp_, &Cpc_, &K_})
     *value = p[i++];
 }
 
@@ -89,9 +89,8 @@ void Cstr::derivatives(VectorRef state, VectorRef u, VectorRef d, Eigen::Ref<Vec
             cooling / (rho_ * Cp_ * V_) * (Tc0_ - T);
 }
 
-const bool kRegistered = registerPlant("cstr", [](const PlantParameters& parameters) {
-  return std::make_unique<Cstr>(parameters);
-});
+const bool kRegistered = registerPlant(
+    "cstr", [](const PlantParameters& parameters) { return std::make_unique<Cstr>(parameters); });
 
 }  // namespace
 }  // namespace fpc

@@ -113,8 +113,8 @@ const Measurement& Simulation::integrate() {
   return measurement_;
 }
 
-// The actuator's limits bound what is applied; what the local loop adds is bounded by what the plant
-// can take at all.
+// The actuator's limits bound what is applied; what the local loop adds is bounded by what the
+// plant can take at all.
 void Simulation::passLocalLoop() {
   plant_input_ = actuator_.applied();
   plant_->localLoop(state_.state, state_before_, plant_input_);
@@ -129,8 +129,7 @@ void Simulation::passLocalLoop() {
 void Simulation::movePlant() {
   const Vector &u = plant_input_, &d = state_.disturbances;
   if (stepper_) return stepper_->advance(state_.state, u, d);
-  const IntegrationResult result =
-      integrator_.advance(state_.state, u, d, params_.sample_time_s);
+  const IntegrationResult result = integrator_.advance(state_.state, u, d, params_.sample_time_s);
   if (!result.ok())
     trouble_ = "sample " + std::to_string(measurement_.header.step) + ": " + result.reason;
 }

@@ -1,7 +1,7 @@
 #include "fmbpc/ros/controller_node.hpp"
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/ros/conversions.hpp"
 #include "fmbpc/ros/topics.hpp"
@@ -34,9 +34,7 @@ std::string ExcitationGeneratorNode::idleReason(const LoopFile& loop) {
 std::string HybridMpcControllerNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "hybrid_mpc");
 }
-std::string NmpcControllerNode::idleReason(const LoopFile& loop) {
-  return wrongType(loop, "nmpc");
-}
+std::string NmpcControllerNode::idleReason(const LoopFile& loop) { return wrongType(loop, "nmpc"); }
 std::string SwarmMpcControllerNode::idleReason(const LoopFile& loop) {
   return wrongType(loop, "swarm_mpc");
 }

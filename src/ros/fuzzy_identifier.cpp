@@ -1,12 +1,14 @@
 #include "fmbpc/ros/fuzzy_identifier.hpp"
+#include "fmbpc/config/structure_file.hpp"
 
 #include <filesystem>
 #include <fstream>
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/config/model_file.hpp"
 #include "fmbpc/fuzzy/model_check.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/ros/conversions.hpp"
 #include "fmbpc/ros/identify_messages.hpp"
 #include "fmbpc/ros/topics.hpp"

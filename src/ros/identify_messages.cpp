@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/config/model_file.hpp"
 
 namespace fpc {
 

@@ -6,8 +6,9 @@
 #include <iostream>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/config/model_file.hpp"
+#include "fmbpc/config/structure_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/identify_report.hpp"
 #include "tool/model_plots.hpp"

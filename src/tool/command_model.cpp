@@ -3,8 +3,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "fmbpc/fuzzy/model_file.hpp"
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/config/model_file.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

@@ -21,8 +21,8 @@ std::vector<Experiment> chosen(const std::vector<std::string>& names) {
   if (names.empty()) return all;
   std::vector<Experiment> some;
   for (const auto& name : names) {
-    const auto found = std::find_if(all.begin(), all.end(),
-                                    [&](const Experiment& e) { return e.name == name; });
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Experiment& e) { return e.name == name; });
     require(found != all.end(), name, "an experiment that fmbpc reproduce --list names");
     some.push_back(*found);
   }
@@ -42,10 +42,10 @@ void print(const Experiment& experiment, const std::vector<ReproduceRow>& rows) 
   std::cout << experiment.name << ": " << experiment.source << "\n";
   for (const auto& row : rows) {
     char line[600];
-    std::snprintf(line, sizeof line, "  %-52s %12s %12s %9s %-9s %-16s %s\n",
-                  row.quantity.c_str(), cell(row.paper).c_str(), cell(row.here).c_str(),
-                  cell(row.paper == 0.0 ? std::nan("") : row.here / row.paper).c_str(), row.unit.c_str(), name(row.verdict),
-                  row.note.c_str());
+    std::snprintf(line, sizeof line, "  %-52s %12s %12s %9s %-9s %-16s %s\n", row.quantity.c_str(),
+                  cell(row.paper).c_str(), cell(row.here).c_str(),
+                  cell(row.paper == 0.0 ? std::nan("") : row.here / row.paper).c_str(),
+                  row.unit.c_str(), name(row.verdict), row.note.c_str());
     std::cout << line;
   }
   std::cout << "\n";

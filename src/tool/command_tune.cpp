@@ -64,7 +64,7 @@ int compare(const TuneArguments& arguments, const TuningObjective& objective,
             const SearchParams& search) {
   require(arguments.seeds >= 1, "--seeds", "an integer >= 1");
   const auto all = searchMethods();
-  CompareOptions options{arguments.loop, search,        arguments.methods, arguments.seeds,
+  CompareOptions options{arguments.loop, search,           arguments.methods, arguments.seeds,
                          arguments.out,  arguments.resume, arguments.threads};
   if (options.methods.empty()) {
     options.methods = all;

@@ -28,11 +28,11 @@ struct IdentifyArguments {
 };
 
 struct StabilityArguments {
-  std::string name;             ///< model or loop
-  std::string at;               ///< "name=value,..."
+  std::string name;  ///< model or loop
+  std::string at;    ///< "name=value,..."
   std::string horizon{"1..200"};
   std::string out;
-  double noise_gain{0.0};       ///< limits of the advisor; 0: no advice
+  double noise_gain{0.0};  ///< limits of the advisor; 0: no advice
   int settling{0};
   bool json{false};
   bool no_plot{false};
@@ -48,14 +48,14 @@ struct TuneArguments {
   std::string loop;
   std::string tuning;
   std::vector<std::string> set;
-  std::string out;              ///< folder, empty: nothing is written
-  std::string method;           ///< these five over the tuning file; empty or -1: as it says
+  std::string out;     ///< folder, empty: nothing is written
+  std::string method;  ///< these five over the tuning file; empty or -1: as it says
   int population{-1}, evaluations{-1};
   std::int64_t seed{-1};
-  int threads{0};               ///< 0: all cores
+  int threads{0};  ///< 0: all cores
   bool resume{false};
-  bool compare{false};          ///< all methods at equal evaluations
-  int seeds{6};                 ///< of the comparison
+  bool compare{false};               ///< all methods at equal evaluations
+  int seeds{6};                      ///< of the comparison
   std::vector<std::string> methods;  ///< of the comparison, empty: all
   bool json{false};
   bool no_plot{false};

@@ -67,7 +67,8 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
   CLI::App* stability = app.add_subcommand(
       "stability", "Steady states, eigenvalues over the horizon, zeros, a Lyapunov certificate");
   stability->add_option("MODEL|LOOP", a.name, "model or loop, by name or path")->required();
-  stability->add_option("--at", a.at, "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
+  stability->add_option("--at", a.at,
+                        "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
   stability->add_option("--horizon", a.horizon, "coincidence horizons, FIRST..LAST");
   stability->add_option("--noise-gain", a.noise_gain,
                         "advise a horizon: largest std of the input per std of measurement noise");
@@ -79,8 +80,8 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
 }
 
 void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
-  CLI::App* reproduce =
-      app.add_subcommand("reproduce", "Runs the papers' experiments: paper | here | ratio | verdict");
+  CLI::App* reproduce = app.add_subcommand(
+      "reproduce", "Runs the papers' experiments: paper | here | ratio | verdict");
   reproduce->add_option("NAME", a.names, "experiments; all of them if none is named");
   reproduce->add_flag("--list", a.list, "only list their names and sources");
   reproduce->add_flag("--json", a.json, "print one JSON array and nothing else");

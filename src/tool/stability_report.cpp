@@ -32,10 +32,11 @@ std::string objectText(const Json& object) {
 
 std::string linearText(const std::string& name, const Json& j) {
   char line[400];
-  std::snprintf(line, sizeof line, "  %-8s %-10s %3d   %-10s %6d   %s\n", name.c_str(),
-                number(j["open_radius"].get<double>()).c_str(), j["relative_degree"].get<int>(),
-                j["applicable"].get<bool>() ? number(j["closed_radius"].get<double>()).c_str() : "-",
-                j["smallest_stable_horizon"].get<int>(), valuesText(j["closed_loop"]).c_str());
+  std::snprintf(
+      line, sizeof line, "  %-8s %-10s %3d   %-10s %6d   %s\n", name.c_str(),
+      number(j["open_radius"].get<double>()).c_str(), j["relative_degree"].get<int>(),
+      j["applicable"].get<bool>() ? number(j["closed_radius"].get<double>()).c_str() : "-",
+      j["smallest_stable_horizon"].get<int>(), valuesText(j["closed_loop"]).c_str());
   return line;
 }
 
@@ -44,7 +45,8 @@ std::string modelText(const Json& r) {
                     objectText(r["at"]["inputs"]) + "; " + objectText(r["at"]["disturbances"]) +
                     "\n\nequilibria of the model\n";
   for (const auto& e : r["equilibria"])
-    out += "  " + objectText(e["outputs"]) + (e["stable"].get<bool>() ? "  stable  " : "  UNSTABLE  ") +
+    out += "  " + objectText(e["outputs"]) +
+           (e["stable"].get<bool>() ? "  stable  " : "  UNSTABLE  ") +
            valuesText(e["eigenvalues"]) + "\n";
   if (r["equilibria"].empty()) out += "  none found; blended at the given outputs instead\n";
   out += "\nH = " + std::to_string(r["law"]["coincidence_steps"].get<int>()) +
@@ -73,8 +75,8 @@ std::string certificateText(const Json& c) {
   std::string rules;
   for (const auto& rule : c["region"]["rules"])
     rules += (rules.empty() ? "" : " ") + rule.get<std::string>();
-  out += "  largest set found (" + c["region"]["chosen"].get<std::string>() + "): " +
-         (rules.empty() ? "none" : rules);
+  out += "  largest set found (" + c["region"]["chosen"].get<std::string>() +
+         "): " + (rules.empty() ? "none" : rules);
   if (c["region"].contains("decay"))
     out += ", decay " + number(c["region"]["decay"].get<double>()) + " a sample";
   return out + "\n";

@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/config/model_file.hpp"
 #include "fmbpc/fuzzy/undelayed.hpp"
-#include "fmbpc/loop/loop_file.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {
@@ -41,9 +41,9 @@ bool isLoop(const std::string& name) {
 double nominalOf(const StabilitySubject& subject, SignalKind kind, int index) {
   const std::string& name = subject.model.signals(kind)[static_cast<std::size_t>(index)].name;
   if (subject.plant)
-    for (const auto* list : {&subject.plant->description().states,
-                             &subject.plant->description().inputs,
-                             &subject.plant->description().disturbances})
+    for (const auto* list :
+         {&subject.plant->description().states, &subject.plant->description().inputs,
+          &subject.plant->description().disturbances})
       for (const auto& quantity : *list)
         if (quantity.name == name) return quantity.nominal;
   return usualValue(subject.model, kind, index);
@@ -96,7 +96,8 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
   subject.law.weight_move = loop.fmbpc.weight_move;
   if (subject.has_model && loop.fmbpc.realisation == "literal")
     subject.note =
-        "controller.realisation is literal; what follows is of the input-output states (past outputs "
+        "controller.realisation is literal; what follows is of the input-output states (past "
+        "outputs "
         "and inputs), not of the printed state space, which adds one sample of delay";
   if (!loop.external_plant)
     subject.plant = makePlant(loop.simulation.plant, loop.simulation.parameters);

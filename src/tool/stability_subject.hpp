@@ -18,9 +18,9 @@ struct StabilitySubject {
   LoopLaw law;
   std::shared_ptr<const Plant> plant;  ///< none for a model alone
   double sample_time_s{};
-  std::string note;                    ///< what the analysis does not cover of this subject
-  Vector outputs, input, disturbances;           ///< the point, in the model's order
-  std::vector<FuzzyEquilibrium> equilibria;      ///< of the model for that input
+  std::string note;                          ///< what the analysis does not cover of this subject
+  Vector outputs, input, disturbances;       ///< the point, in the model's order
+  std::vector<FuzzyEquilibrium> equilibria;  ///< of the model for that input
 };
 
 /// Loops go before models of the same name. `at` is "name=value,...": outputs given choose the

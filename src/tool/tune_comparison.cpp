@@ -47,7 +47,8 @@ bool addRun(const TuningObjective& objective, const CompareOptions& options,
   one.stop = [] { return interruption().load(); };
   if (!options.out.empty()) {
     one.state = (fs::path(options.out) /
-                 (search.method + "_" + std::to_string(search.seed) + ".state.json")).string();
+                 (search.method + "_" + std::to_string(search.seed) + ".state.json"))
+                    .string();
     one.resume = options.resume && fs::exists(one.state);
   }
   ProgressBar bar(search.method + " " + std::to_string(search.seed));
@@ -57,8 +58,7 @@ bool addRun(const TuningObjective& objective, const CompareOptions& options,
   const TuneResult result = tune(objective, search, one);
   if (result.stopped) return false;
   const bool found = result.best >= 0;
-  const TuningStep* best =
-      found ? &result.history[static_cast<std::size_t>(result.best)] : nullptr;
+  const TuningStep* best = found ? &result.history[static_cast<std::size_t>(result.best)] : nullptr;
   method["costs"].push_back(found ? numberOrNull(best->cost) : Json(nullptr));
   if (!objective.tuning().held_out.empty()) {
     const auto held = found ? objective.judgeHeldOut(best->shares, one.stop) : std::nullopt;
@@ -94,8 +94,7 @@ Json compareMethods(const TuningObjective& objective, const CompareOptions& opti
                   {"complete", false},
                   {"before", numberOrNull(objective.untouched().cost)}};
   const bool has_held_out = !objective.tuning().held_out.empty();
-  if (has_held_out)
-    comparison["held_out_before"] = numberOrNull(objective.untouchedHeldOut().cost);
+  if (has_held_out) comparison["held_out_before"] = numberOrNull(objective.untouchedHeldOut().cost);
   comparison["methods"] = Json::array();
   for (const auto& name : options.methods) {
     Json method{{"method", name}};
@@ -119,8 +118,7 @@ std::string comparisonTable(const Json& comparison) {
                   has_held_out ? cell(comparison["held_out_before"]) : "-"});
   for (const Json& method : comparison["methods"]) {
     const Json& cost = method["cost"];
-    rows.push_back({method["method"], cell(cost["median"]), cell(cost["best"]),
-                    cell(cost["worst"]),
+    rows.push_back({method["method"], cell(cost["median"]), cell(cost["best"]), cell(cost["worst"]),
                     has_held_out ? cell(method["held_out_cost"]["median"]) : "-"});
   }
   return comparison["loop"].get<std::string>() + ", " +

@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/loop/extending_loop.hpp"
+#include "fmbpc/config/extending_loop.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -54,10 +54,9 @@ void addScores(Rows& rows, const std::string& title, const std::vector<TuningSce
   const auto ratio = [](double b, double a) { return shortText(a / b); };
   for (std::size_t i = 0; i < scenarios.size(); ++i)
     rows.push_back({"  " + scenarios[i].name, shortText(before.scenarios[i]),
-                    shortText(after.scenarios[i]),
-                    ratio(before.scenarios[i], after.scenarios[i])});
-  rows.push_back({title, shortText(before.cost), shortText(after.cost),
-                  ratio(before.cost, after.cost)});
+                    shortText(after.scenarios[i]), ratio(before.scenarios[i], after.scenarios[i])});
+  rows.push_back(
+      {title, shortText(before.cost), shortText(after.cost), ratio(before.cost, after.cost)});
 }
 
 }  // namespace
@@ -88,9 +87,8 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned, int thread
   const TuningScore& before = objective.untouched();
   json["before"] = scoresJson(tuning.scenarios, before.cost, before.scenarios);
   if (result.best >= 0)
-    json["after"] = scoresJson(
-        tuning.scenarios, costAfter(tuned),
-        result.history[static_cast<std::size_t>(result.best)].scenarios);
+    json["after"] = scoresJson(tuning.scenarios, costAfter(tuned),
+                               result.history[static_cast<std::size_t>(result.best)].scenarios);
   if (tuned.held_out) {
     const TuningScore& held = objective.untouchedHeldOut();
     json["held_out"] = {
@@ -115,8 +113,8 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   const auto before = objective.values(objective.start()), after = valuesAfter(tuned);
   for (std::size_t i = 0; i < before.size(); ++i) {
     const TuningParameter& p = tuning.parameters[i];
-    rows.push_back({p.key, shortText(before[i]), shortText(after[i]), shortText(p.lower),
-                    shortText(p.upper)});
+    rows.push_back(
+        {p.key, shortText(before[i]), shortText(after[i]), shortText(p.lower), shortText(p.upper)});
   }
   text << alignedTable(rows) << "\n";
   TuningScore tuned_score;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/loop/tune.hpp"
+#include "fmbpc/study/tune.hpp"
 
 namespace fpc::tool {
 

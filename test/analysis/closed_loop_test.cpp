@@ -101,9 +101,8 @@ TsModel delayedModel(double a, double b, double c, int delay) {
   model.inputs = {{"u", "-", -1e3, 1e3}};
   OutputModel submodel;
   submodel.antecedents = {{SignalKind::kOutput, 0, 0}};
-  submodel.regressors = {{SignalKind::kOutput, 0, 0},
-                         {SignalKind::kOutput, 0, 1},
-                         {SignalKind::kInput, 0, delay}};
+  submodel.regressors = {
+      {SignalKind::kOutput, 0, 0}, {SignalKind::kOutput, 0, 1}, {SignalKind::kInput, 0, delay}};
   Rule rule;
   rule.antecedents = {{MembershipShape::kGaussian, {0.0, 1.0}}};
   rule.coefficients = Eigen::Vector3d(a, b, c);

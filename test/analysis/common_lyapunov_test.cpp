@@ -12,7 +12,9 @@
 namespace fpc {
 namespace {
 
-Matrix of(double a, double b, double c, double d) { return (Matrix(2, 2) << a, b, c, d).finished(); }
+Matrix of(double a, double b, double c, double d) {
+  return (Matrix(2, 2) << a, b, c, d).finished();
+}
 
 double radius(const Matrix& A) { return spectralRadius(eigenvalues(A)); }
 

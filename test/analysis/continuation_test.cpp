@@ -71,11 +71,10 @@ TEST(Continuation, FindsEveryStateAtOneParameter) {
 }
 
 TEST(Continuation, ClosesAnIsolaWithItsFoldsAndExtremes) {
-  const ContinuationProblem circle{[](VectorRef x, double p, Eigen::Ref<Vector> f) {
-                                     f[0] = x[0] * x[0] + p * p - 1.0;
-                                   },
-                                   {},
-                                   false};
+  const ContinuationProblem circle{
+      [](VectorRef x, double p, Eigen::Ref<Vector> f) { f[0] = x[0] * x[0] + p * p - 1.0; },
+      {},
+      false};
   const auto branches = continueBranches(circle, box(-2.0, 2.0, 1, 2.0));
   ASSERT_EQ(branches.size(), 1U);
   EXPECT_TRUE(branches[0].closed);
@@ -151,7 +150,8 @@ TEST(Continuation, EndsWhereTheFieldCannotBeEvaluated) {
 }
 
 TEST(Continuation, RefusesParametersThatDoNotFit) {
-  const ContinuationProblem any{[](VectorRef x, double, Eigen::Ref<Vector> f) { f = x; }, {}, false};
+  const ContinuationProblem any{
+      [](VectorRef x, double, Eigen::Ref<Vector> f) { f = x; }, {}, false};
   EXPECT_THROW(continueBranches(any, box(1.0, -1.0, 1, 1.0)), InputError);
   ContinuationParams params = box(0.0, 1.0, 1, 1.0);
   params.state_size.setZero();

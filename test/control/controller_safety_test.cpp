@@ -1,5 +1,5 @@
 #include "control/session_fixture.hpp"
-#include "fmbpc/control/pi.hpp"
+#include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "control/clp_fixture.hpp"
+#include "control/clp/fixture.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/control/session.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "control/law_fixture.hpp"
+#include "control/fmbpc/law_fixture.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "allocation_counter.hpp"
-#include "control/clp_fixture.hpp"
-#include "fmbpc/control/excitation.hpp"
-#include "fmbpc/control/pi.hpp"
+#include "control/clp/fixture.hpp"
+#include "fmbpc/control/excitation/excitation.hpp"
+#include "fmbpc/control/pi/pi.hpp"
 #include "fmbpc/control/session.hpp"
 
 namespace fpc {
@@ -70,7 +70,8 @@ TEST(SessionAllocation, ControllerSessionDoesNotAllocatePerSample) {
   params.loops.resize(1);
   params.loops[0].kp = 1.0;
   params.loops[0].ki_per_h = 0.1;
-  expectNoAllocations(std::make_unique<PiController>(params, clp_test::sludgeLike(8).limits, plant()));
+  expectNoAllocations(
+      std::make_unique<PiController>(params, clp_test::sludgeLike(8).limits, plant()));
   expectNoAllocations(std::make_unique<PredictiveStub>());
   ExcitationParams excitation;
   excitation.signals.resize(1);

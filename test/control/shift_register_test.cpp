@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/excitation.hpp"
+#include "fmbpc/control/excitation/excitation.hpp"
 
 namespace fpc {
 namespace {

@@ -1,4 +1,5 @@
 #include "fmbpc/fuzzy/data_set.hpp"
+#include "fmbpc/config/structure_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
 
 namespace fpc::test {

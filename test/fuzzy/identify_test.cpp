@@ -1,4 +1,5 @@
 #include "fmbpc/fuzzy/identify.hpp"
+#include "fmbpc/config/structure_file.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +7,7 @@
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/config/model_file.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
 #include "fuzzy/identify_fixture.hpp"
 

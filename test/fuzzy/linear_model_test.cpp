@@ -5,7 +5,7 @@
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/config/model_file.hpp"
 #include "fuzzy/column_model.hpp"
 
 namespace fpc {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/config/model_file.hpp"
 
 namespace fpc::test {
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/config/model_file.hpp"
 #include "fmbpc/fuzzy/online_consequents.hpp"
 #include "fmbpc/fuzzy/partition.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"

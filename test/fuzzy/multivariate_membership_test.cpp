@@ -5,8 +5,9 @@
 #include <functional>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/config/model_file.hpp"
 #include "fmbpc/fuzzy/local_model.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {

@@ -40,17 +40,16 @@ TEST(RuleNeighbour, IsTheFittedRuleWithTheNearestCentre) {
 }
 
 TEST(RuleNeighbour, OfEllipsoidsIsTheOneWithTheNearestCentre) {
-  const OutputModel model =
-      of({ellipsoid(0.0, 0.0), ellipsoid(1.0, 1.0), ellipsoid(3.0, 0.0)}, 2);
+  const OutputModel model = of({ellipsoid(0.0, 0.0), ellipsoid(1.0, 1.0), ellipsoid(3.0, 0.0)}, 2);
   EXPECT_EQ(nearestFitted(model, fitted(3, {0}), 0), 2) << "1/1 of the spans 3/1 away against 3/0";
   EXPECT_EQ(nearestFitted(model, fitted(3, {0, 2}), 0), 1);
 }
 
 TEST(RuleNeighbour, MeasuresEachVariableByTheSpanOfItsCentres) {
   // By raw numbers the second variable would not count at all.
-  const OutputModel model = of({ellipsoid(0.0, 0.0), ellipsoid(300.0, 0.0), ellipsoid(100.0, 0.9),
-                                ellipsoid(1000.0, 1.0)},
-                               2);
+  const OutputModel model = of(
+      {ellipsoid(0.0, 0.0), ellipsoid(300.0, 0.0), ellipsoid(100.0, 0.9), ellipsoid(1000.0, 1.0)},
+      2);
   EXPECT_EQ(nearestFitted(model, fitted(4, {0}), 0), 1);
 }
 

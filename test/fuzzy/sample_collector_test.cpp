@@ -1,4 +1,5 @@
 #include "fmbpc/fuzzy/sample_collector.hpp"
+#include "fmbpc/config/structure_file.hpp"
 
 #include <gtest/gtest.h>
 

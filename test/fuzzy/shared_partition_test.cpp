@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "control/optimal_fixture.hpp"
+#include "control/optimal/fixture.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/local_model.hpp"
 #include "fuzzy/multivariate_fixture.hpp"

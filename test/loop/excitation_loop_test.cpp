@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/csv.hpp"
+#include "fmbpc/config/disturbance_source.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
@@ -78,9 +79,9 @@ TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {
 }
 
 TEST_F(ExcitationLoop, WithoutSetpointsTheIndicesAreAbsentInEveryReport) {
-  const LoopFile loop = readLoop(
-      write("loop.yaml", experiment("signal: multi_level, lower: 200, upper: 900, "
-                                    "hold_lower_steps: 3, hold_upper_steps: 8")));
+  const LoopFile loop =
+      readLoop(write("loop.yaml", experiment("signal: multi_level, lower: 200, upper: 900, "
+                                             "hold_lower_steps: 3, hold_upper_steps: 8")));
   const RunRecord record = runLoop(loop);
   const Summary summary = summarize(loop, record, 0.0);
   EXPECT_TRUE(summary.complete);

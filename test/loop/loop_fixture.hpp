@@ -10,7 +10,7 @@
 #include <string>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {
 

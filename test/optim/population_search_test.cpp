@@ -125,8 +125,8 @@ TEST_P(EveryMethod, NeverLeavesTheBoxAndAcceptsASideWithoutWidth) {
 
 TEST_P(EveryMethod, BeginsAtTheStartAndKeepsItIfNothingIsBetter) {
   const Vector start = Vector::Constant(2, 0.3);
-  const SearchResult found = runSearch(paramsOf(GetParam(), 40), Vector::Zero(2), Vector::Ones(2),
-                                       judgeOf(sphere), start);
+  const SearchResult found =
+      runSearch(paramsOf(GetParam(), 40), Vector::Zero(2), Vector::Ones(2), judgeOf(sphere), start);
   EXPECT_EQ(found.best, start);
   EXPECT_EQ(found.cost, 0.0);
 }

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
 #include "fmbpc/fuzzy/validation.hpp"
 #include "fmbpc/loop/report.hpp"

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "fmbpc/config/model_file.hpp"
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 
@@ -26,8 +27,7 @@ double median(std::vector<double> values) {
 }
 
 double iseOf(const Summary& summary, const std::string& output) {
-  const auto at =
-      std::find(summary.output_names.begin(), summary.output_names.end(), output);
+  const auto at = std::find(summary.output_names.begin(), summary.output_names.end(), output);
   return summary.outputs[static_cast<std::size_t>(at - summary.output_names.begin())].ise;
 }
 
@@ -118,8 +118,7 @@ TEST(AspOwnModel, TheShippedFilesAreWhatIdentificationGivesFromTheShippedExperim
           expectNear(a[r].coefficients[j], b[r].coefficients[j], where);
         for (std::size_t m = 0; m < a[r].antecedents.size(); ++m)
           for (std::size_t p = 0; p < a[r].antecedents[m].parameters.size(); ++p)
-            expectNear(a[r].antecedents[m].parameters[p], b[r].antecedents[m].parameters[p],
-                       where);
+            expectNear(a[r].antecedents[m].parameters[p], b[r].antecedents[m].parameters[p], where);
       }
     }
   }

@@ -6,7 +6,7 @@
 
 #include "fmbpc/fuzzy/fopdt_identification.hpp"
 #include "fmbpc/fuzzy/linear_model.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "paper/column_run.hpp"
 #include "paper/plain_mpc.hpp"

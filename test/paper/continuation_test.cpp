@@ -46,8 +46,7 @@ TEST(CstrContinuation, FindsBothFoldsAndTheHopfPoint) {
 }
 
 TEST(CstrContinuation, TheSampledCompensatorMovesTheHopfPoint) {
-  const auto hopf =
-      allOf(trace("cstr", {{"compensator_gain", 3.0}}, 6.0), SpecialKind::kHopf);
+  const auto hopf = allOf(trace("cstr", {{"compensator_gain", 3.0}}, 6.0), SpecialKind::kHopf);
   bool found = false;
   for (const auto& point : hopf)
     found = found || (std::abs(point.parameter - 116.45) <= 0.03 &&

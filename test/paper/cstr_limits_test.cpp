@@ -69,9 +69,8 @@ double errorAfterwards(const std::string& name, const std::string& lower) {
   const RunRecord record = runLoop(readLoop(name, bounds(lower, "115")));
   double sum = 0.0;
   for (std::size_t k = 320; k <= 400; ++k)
-    sum += std::pow(record.samples[k].tracking.reference[0] -
-                        record.samples[k].measurement.outputs[0],
-                    2);
+    sum += std::pow(
+        record.samples[k].tracking.reference[0] - record.samples[k].measurement.outputs[0], 2);
   std::printf("%-24s bound %2s: after 32 min %.6f\n", name.c_str(), lower.c_str(), sum);
   return sum;
 }

@@ -111,7 +111,8 @@ TEST(CstrReference, TheGainScheduleIsTheSlopeOfTheStaticCurve) {
     return (restFlow(*plant, y + 1e-4) - restFlow(*plant, y - 1e-4)) / 2e-4;
   };
   EXPECT_NEAR(restFlow(*plant, 0.1), 103.4066, 1e-3);
-  for (const char* name : {"cstr_tracking_gspi", "cstr_disturbance_gspi", "cstr_small_steps_gspi"}) {
+  for (const char* name :
+       {"cstr_tracking_gspi", "cstr_disturbance_gspi", "cstr_small_steps_gspi"}) {
     const auto points = readLoop(name).pi.loops[0].gain_schedule;
     ASSERT_EQ(points.size(), 23U);
     for (const auto& point : points)
@@ -143,13 +144,13 @@ TEST(CstrReference, NoLawIsBetterThanTheDeadTimeAllows) {
       tracking += std::pow(step * (1.0 - std::pow(0.96, static_cast<double>(i))), 2);
   double disturbance = 0.0;
   for (const char* value : {"3", "-3"}) {
-    const RunRecord open = recordOf(
-        "cstr_disturbance_pi", {{"controller.loops.0.kp", "0"},
-                                {"controller.loops.0.ki_per_h", "0"},
-                                {"disturbance.commands.0.time_h", "0"},
-                                {"disturbance.commands.0.value", value},
-                                {"disturbance.commands.1.time_h", "0.5"},
-                                {"disturbance.commands.2.time_h", "0.5"}});
+    const RunRecord open =
+        recordOf("cstr_disturbance_pi", {{"controller.loops.0.kp", "0"},
+                                         {"controller.loops.0.ki_per_h", "0"},
+                                         {"disturbance.commands.0.time_h", "0"},
+                                         {"disturbance.commands.0.value", value},
+                                         {"disturbance.commands.1.time_h", "0.5"},
+                                         {"disturbance.commands.2.time_h", "0.5"}});
     for (std::size_t k = kDeadSamples; k < 2 * kDeadSamples; ++k)  // comes and goes: twice
       disturbance += 2.0 * std::pow(open.samples[k].measurement.outputs[0] - 0.1, 2);
   }

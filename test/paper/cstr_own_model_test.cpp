@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "fmbpc/config/model_file.hpp"
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 
@@ -76,8 +78,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, CstrOwnModel, ::testing::Range(1, 9));
 
 TEST(CstrOwnModelFile, IsTheOneOfTheFirstSeed) {
   const TsModel model = identified(1);
-  const TsModel shipped =
-      readModel(std::string(FMBPC_SOURCE_DIR) + "/config/model/cstr_own.yaml");
+  const TsModel shipped = readModel(std::string(FMBPC_SOURCE_DIR) + "/config/model/cstr_own.yaml");
   ASSERT_EQ(shipped.submodels[0].rules.size(), model.submodels[0].rules.size());
   for (std::size_t i = 0; i < model.submodels[0].rules.size(); ++i) {
     const Rule &a = shipped.submodels[0].rules[i], &b = model.submodels[0].rules[i];

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "control/law_fixture.hpp"
+#include "control/fmbpc/law_fixture.hpp"
 #include "paper/paper_plant.hpp"
 
 namespace fpc {

@@ -10,9 +10,10 @@
 #include <vector>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/choice_model.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"

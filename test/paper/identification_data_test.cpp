@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
 #include "fmbpc/fuzzy/validation.hpp"
 

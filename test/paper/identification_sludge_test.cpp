@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
 #include "fmbpc/fuzzy/validation.hpp"
 #include "fmbpc/plant/simulation.hpp"

@@ -9,13 +9,14 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/config/model_file.hpp"
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/model_file.hpp"
 #include "fmbpc/fuzzy/validation.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
-#include "fmbpc/loop/shortest_step.hpp"
 #include "fmbpc/plant/integrator.hpp"
+#include "fmbpc/study/shortest_step.hpp"
 
 namespace fpc {
 namespace {

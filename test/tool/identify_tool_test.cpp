@@ -4,7 +4,8 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "fmbpc/fuzzy/model_file.hpp"
+#include "fmbpc/config/model_file.hpp"
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/validation.hpp"
 #include "tool/identify_fixture.hpp"
 

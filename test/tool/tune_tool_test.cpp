@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/optim/population_search.hpp"
-#include "loop/tuning_fixture.hpp"
+#include "study/tuning_fixture.hpp"
 #include "tool/tool_run.hpp"
 
 namespace fpc {
@@ -75,10 +75,10 @@ TEST_F(TuneTool, ResumesToTheSameTuning) {
 TEST_F(TuneTool, CtrlCSavesAndSaysHowToGoOn) {
   const std::string out = path("out");
   // The interrupt comes when the first generation stands in the state file.
-  const std::string script =
-      std::string(FMBPC_TOOL) + " tune " + files() + " --no-plot --evaluations 100000 --out " +
-      out + " >/dev/null 2>" + path("errors") + " & P=$!; while ! [ -e " + out +
-      "/state.json ]; do kill -0 $P || exit 9; done; kill -INT $P; wait $P";
+  const std::string script = std::string(FMBPC_TOOL) + " tune " + files() +
+                             " --no-plot --evaluations 100000 --out " + out + " >/dev/null 2>" +
+                             path("errors") + " & P=$!; while ! [ -e " + out +
+                             "/state.json ]; do kill -0 $P || exit 9; done; kill -INT $P; wait $P";
   const std::string command = "bash -c 'set -m; " + script + "' 2>/dev/null";
   const int code = WEXITSTATUS(std::system(command.c_str()));
   EXPECT_EQ(code, 130);

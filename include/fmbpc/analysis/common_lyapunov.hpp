@@ -11,16 +11,16 @@ namespace fpc {
 
 enum class LyapunovStatus {
   kFound,
-  kNone,       ///< the programme has no solution within tolerance: no common P, which proves
-               ///< nothing about stability
-  kNoSolver,   ///< the program csdp is not installed
-  kTrouble,    ///< the solver gave nothing usable
+  kNone,      ///< the programme has no solution within tolerance: no common P, which proves
+              ///< nothing about stability
+  kNoSolver,  ///< the program csdp is not installed
+  kTrouble,   ///< the solver gave nothing usable
 };
 
 struct CommonLyapunov {
   LyapunovStatus status{LyapunovStatus::kNone};
-  Matrix P;            ///< symmetric, largest eigenvalue 1; of kFound only
-  double decay{1.0};   ///< sqrt(x' P x) shrinks at least by this factor a sample, whichever map acts
+  Matrix P;           ///< symmetric, largest eigenvalue 1; of kFound only
+  double decay{1.0};  ///< sqrt(x' P x) shrinks at least by this factor a sample, whichever map acts
   bool ok() const { return status == LyapunovStatus::kFound; }
 };
 

@@ -12,8 +12,7 @@
 namespace fpc {
 
 /// Writes f(x, p); a steady state is f = 0. May throw; a branch ends there.
-using ParametricField =
-    std::function<void(VectorRef x, double parameter, Eigen::Ref<Vector> f)>;
+using ParametricField = std::function<void(VectorRef x, double parameter, Eigen::Ref<Vector> f)>;
 /// The matrix whose eigenvalues decide on the stability of a steady state.
 using Linearisation = std::function<Matrix(VectorRef x, double parameter)>;
 
@@ -24,16 +23,16 @@ struct ContinuationProblem {
 };
 
 struct ContinuationParams {
-  double lower{}, upper{};           ///< of the parameter
-  Vector state_lower, state_upper;   ///< n_x, where starts are scanned
-  Vector state_size;                 ///< n_x, typical sizes > 0: arc length is counted in them
-  double parameter_size{0.0};        ///< 0: a tenth of the range
-  Matrix starts;                     ///< n_x n, besides the scanned ones; may be empty
-  int scanned_starts{40};            ///< per parameter value, low-discrepancy (Halton 1960)
-  int scanned_parameters{5};         ///< values, ends included
-  double step_max{0.05};             ///< arc length per step, in sizes
+  double lower{}, upper{};          ///< of the parameter
+  Vector state_lower, state_upper;  ///< n_x, where starts are scanned
+  Vector state_size;                ///< n_x, typical sizes > 0: arc length is counted in them
+  double parameter_size{0.0};       ///< 0: a tenth of the range
+  Matrix starts;                    ///< n_x n, besides the scanned ones; may be empty
+  int scanned_starts{40};           ///< per parameter value, low-discrepancy (Halton 1960)
+  int scanned_parameters{5};        ///< values, ends included
+  double step_max{0.05};            ///< arc length per step, in sizes
   double step_min{1e-7};
-  int max_points{20000};             ///< per branch
+  int max_points{20000};                  ///< per branch
   void validate(Eigen::Index n_x) const;  ///< @throws InputError naming the field
 };
 
@@ -57,8 +56,8 @@ struct SpecialPoint {
   SpecialKind kind{};
   double parameter{};
   Vector state;
-  Eigen::Index turning_state{-1};    ///< of a turning point
-  std::complex<double> eigenvalue;   ///< of a Hopf point or flip: the one that crosses
+  Eigen::Index turning_state{-1};   ///< of a turning point
+  std::complex<double> eigenvalue;  ///< of a Hopf point or flip: the one that crosses
 };
 
 struct Branch {

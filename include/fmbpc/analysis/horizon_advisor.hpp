@@ -11,7 +11,7 @@ namespace fpc {
 /// Of the linear loop at one horizon, last output, first input.
 struct HorizonFigures {
   int coincidence_steps{};
-  bool stable{false};   ///< applicable and inside the unit circle
+  bool stable{false};  ///< applicable and inside the unit circle
   double radius{};
   double noise_gain{};  ///< std of u per std of white measurement noise [input/output unit]
   int settling{};       ///< samples until a setpoint step stays within 2 %, a_r = 0; -1: never seen
@@ -21,9 +21,9 @@ HorizonFigures horizonFigures(const LinearModel& model, const LoopLaw& law);
 int settlingSamples(const LinearModel& model, const LoopLaw& law, double reference_pole);
 
 struct HorizonLimits {
-  double noise_gain;     ///< largest [input/output unit]
-  int settling;          ///< largest [samples]
-  int longest{200};      ///< horizons tried
+  double noise_gain;  ///< largest [input/output unit]
+  int settling;       ///< largest [samples]
+  int longest{200};   ///< horizons tried
 };
 struct HorizonAdvice {
   bool found{false};

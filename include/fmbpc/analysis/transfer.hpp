@@ -23,9 +23,9 @@ int smallestStableHorizon(const LinearModel& model, LoopLaw law, int limit);
 /// Largest distances found, for one linear model with one input; the last output counts.
 struct Propositions {
   int relative_degree{};
-  double gain_below{};     ///< 1: largest |g0| for H < rho (must be exactly 0)
-  double zeros_distance{}; ///< 2: H = rho: poles against the plant's zeros and rho times 0
-  double poles_distance{}; ///< 3: H = long_horizon: poles against the plant's own
+  double gain_below{};      ///< 1: largest |g0| for H < rho (must be exactly 0)
+  double zeros_distance{};  ///< 2: H = rho: poles against the plant's zeros and rho times 0
+  double poles_distance{};  ///< 3: H = long_horizon: poles against the plant's own
 };
 Propositions checkPropositions(const LinearModel& model, int long_horizon);
 

@@ -23,13 +23,15 @@ struct CommandEffect {
   Command command;
 };
 
-/// Overrides and offsets of named signals, by step. A later command on a name replaces the earlier one.
+/// Overrides and offsets of named signals, by step. A later command on a name replaces the earlier
+/// one.
 class CommandTable {
  public:
   explicit CommandTable(std::vector<std::string> names);
 
   /// Takes a command that acts from `step` on.
-  /// @throws InputError (nothing is taken) on an unknown name, unequal lengths, a non-finite value or an unknown mode.
+  /// @throws InputError (nothing is taken) on an unknown name, unequal lengths, a non-finite value
+  /// or an unknown mode.
   void accept(const Command& command, std::uint32_t step);
   /// Brings all commands due at or before `step` into force; returns those that just took effect.
   /// The reference stays valid until the next call.

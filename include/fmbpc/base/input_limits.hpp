@@ -1,4 +1,5 @@
-// Limits of the inputs, the same for controllers, optimizer and actuator: bounds hold at every step, whatever happens.
+// Limits of the inputs, the same for controllers, optimizer and actuator: bounds hold at every
+// step, whatever happens.
 #pragma once
 
 #include <string>
@@ -8,7 +9,8 @@
 
 namespace fpc {
 
-/// Limits of the inputs, shared by actuator, controllers and optimizer (the section `actuator` of a loop file).
+/// Limits of the inputs, shared by actuator, controllers and optimizer (the section `actuator` of a
+/// loop file).
 struct InputLimits {
   Vector lower, upper;  ///< n_u, absolute
   Vector move;          ///< n_u, largest |u(k) - u(k-1)|, infinite if absent

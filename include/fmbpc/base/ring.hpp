@@ -1,5 +1,6 @@
-// What travels round the loop. Each struct mirrors the message of the same name (msg/), field for field;
-// arrays follow the order of PlantInfo. In one process the same structs are handed over directly.
+// What travels round the loop. Each struct mirrors the message of the same name (msg/), field for
+// field; arrays follow the order of PlantInfo. In one process the same structs are handed over
+// directly.
 #pragma once
 
 #include <cstdint>
@@ -115,11 +116,11 @@ struct Tracking {
 /// What only a simulator knows of sample k.
 struct PlantState {
   StepHeader header;
-  Vector state;                     ///< n_states
-  Vector outputs;                   ///< n_y, free of noise and sensor faults
-  Vector disturbances;              ///< n_d, the true ones
-  std::uint32_t actuator_clips{};   ///< how many inputs of u(k-1) the actuator had to clip
-  bool input_missing{};             ///< no action in time for u(k-1): held or fallback
+  Vector state;                    ///< n_states
+  Vector outputs;                  ///< n_y, free of noise and sensor faults
+  Vector disturbances;             ///< n_d, the true ones
+  std::uint32_t actuator_clips{};  ///< how many inputs of u(k-1) the actuator had to clip
+  bool input_missing{};            ///< no action in time for u(k-1): held or fallback
 };
 
 /// How a value sent by a person acts on a named signal.

@@ -10,7 +10,8 @@ namespace fpc {
 /// Turns steps into times [ns] and back.
 class SampleClock {
  public:
-  /// @throws InputError unless both are > 0 and at most 9e9 s (start 0 is special to rosbag and tf2).
+  /// @throws InputError unless both are > 0 and at most 9e9 s (start 0 is special to rosbag and
+  /// tf2).
   SampleClock(double sample_time_s, double start_time_s);
 
   std::int64_t timeAt(std::uint32_t step) const { return start_ns_ + step * sample_ns_; }

@@ -1,4 +1,5 @@
-// Affine state-space models and the sums of powers that predictive laws need, without ever inverting (A - I).
+// Affine state-space models and the sums of powers that predictive laws need, without ever
+// inverting (A - I).
 #pragma once
 
 #include "fmbpc/base/types.hpp"
@@ -13,10 +14,14 @@ struct AffineModel {
 
   AffineModel() = default;
   AffineModel(Eigen::Index n_x, Eigen::Index n_u, Eigen::Index n_y)
-      : A(Matrix::Zero(n_x, n_x)), B(Matrix::Zero(n_x, n_u)), C(Matrix::Zero(n_y, n_x)), g(Vector::Zero(n_x)) {}
+      : A(Matrix::Zero(n_x, n_x)),
+        B(Matrix::Zero(n_x, n_u)),
+        C(Matrix::Zero(n_y, n_x)),
+        g(Vector::Zero(n_x)) {}
 };
 
-/// A^H and S_H = sum_{i<H} A^i by doubling; exact for singular (A - I). Allocates once, at construction.
+/// A^H and S_H = sum_{i<H} A^i by doubling; exact for singular (A - I). Allocates once, at
+/// construction.
 class PowerSum {
  public:
   explicit PowerSum(Eigen::Index n_x);

@@ -20,14 +20,16 @@ enum class Arrival {
 
 /// Counts of everything that was not simply the next sample.
 struct ArrivalCounts {
-  std::uint64_t accepted{}, repeated{}, gaps{}, new_runs{}, old{}, other_run{}, wrong_size{}, not_finite{};
+  std::uint64_t accepted{}, repeated{}, gaps{}, new_runs{}, old{}, other_run{}, wrong_size{},
+      not_finite{};
 };
 
 /// Remembers the last accepted sample.
 class StepGate {
  public:
   Arrival classify(const StepHeader& header) const;
-  /// Classifies, counts, and remembers the header if it is to be processed (first, next, gap, new run).
+  /// Classifies, counts, and remembers the header if it is to be processed (first, next, gap, new
+  /// run).
   Arrival pass(const StepHeader& header);
   void countWrongSize() { ++counts_.wrong_size; }
   void countNotFinite() { ++counts_.not_finite; }

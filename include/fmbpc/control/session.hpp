@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fmbpc/base/step_gate.hpp"
-#include "fmbpc/control/closed_loop_paradigm.hpp"
+#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 #include "fmbpc/control/controller.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 

@@ -56,7 +56,7 @@ enum class ScarceRule { kBorrow, kDrop, kError, kNeighbour };
 /// How the consequents are fitted, and what happens to rules without enough data.
 struct ConsequentParams {
   ConsequentMethod method{ConsequentMethod::kLocal};
-  double ridge{0.1};  ///< >= 0: weight of the linear model in each coefficient, in samples
+  double ridge{0.1};         ///< >= 0: weight of the linear model in each coefficient, in samples
   double weight_power{1.0};  ///< local: squared errors weigh firing weight ^ power; 2 in Karer 2007
   double weight_threshold{};  ///< local: samples with a lower firing weight are left out (delta)
   double samples_per_coefficient{3.0};  ///< rules with less (sum of firing weights) are scarce
@@ -99,10 +99,6 @@ struct Structure {
   /// @throws InputError naming the part.
   void validate() const;
 };
-
-/// Keys: docs/identification.md. @throws InputError naming file, line and key.
-Structure readStructure(const std::string& file);
-Structure parseStructure(const std::string& text, const std::string& name);
 
 /// Regressors from orders as the field writes them, for output i: N_y, N_u and N_d hold one number
 /// per output, per input and disturbance, per input and disturbance. N_y(j) = n gives

@@ -3,15 +3,12 @@
 
 #include <memory>
 
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
-#include "fmbpc/loop/loop_file.hpp"
 #include "fmbpc/plant/simulation.hpp"
 
 namespace fpc {
 
-/// The disturbances of the loop on its own samples. @throws InputError naming file, column or
-/// field.
-DisturbanceRecord makeDisturbance(const LoopFile& loop);
 Simulation makeSimulation(const LoopFile& loop);  ///< @throws InputError for an external plant
 ControllerSession makeControllerSession(
     const LoopFile& loop);  ///< without a model: send it by setModel()

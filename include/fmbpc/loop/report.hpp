@@ -7,7 +7,7 @@
 
 #include "fmbpc/analysis/performance.hpp"
 #include "fmbpc/base/input_limits.hpp"
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/record.hpp"
 
 namespace fpc {

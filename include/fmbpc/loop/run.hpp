@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/record.hpp"
 
 namespace fpc {

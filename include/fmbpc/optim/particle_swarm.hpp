@@ -22,7 +22,7 @@ struct SwarmParams {
   std::uint64_t seed{1};
   bool adaptive{false};  ///< inertia adaptive_inertia - gbest/pbest instead of the falling one
   double adaptive_inertia{1.4};  ///< w0
-  void validate() const;  ///< @throws InputError naming the field
+  void validate() const;         ///< @throws InputError naming the field
 };
 
 struct SwarmResult {

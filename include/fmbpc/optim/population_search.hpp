@@ -29,14 +29,14 @@ struct SearchParams {
   int population{10};
   int evaluations{300};  ///< of the cost, in all, exactly; the first generation counts
   std::uint64_t seed{1};
-  double cognitive{1.5}, social{2.5};            ///< swarms: C1, C2
-  double speed_upper{0.2};                       ///< swarms: of each range, per generation
-  double inertia{1.4};                           ///< apso: w0
-  double inertia_start{0.9}, inertia_end{0.4};   ///< pso: w, falling linearly
-  double differential_weight{0.8};               ///< de: F
-  double crossover{0.9};                         ///< de: CR
-  int variant{2};                                ///< de: 1 best/1/exp, 2 rand/1/exp, ... of pagmo
-  double step{0.3};                              ///< cmaes: sigma0, of each range
+  double cognitive{1.5}, social{2.5};           ///< swarms: C1, C2
+  double speed_upper{0.2};                      ///< swarms: of each range, per generation
+  double inertia{1.4};                          ///< apso: w0
+  double inertia_start{0.9}, inertia_end{0.4};  ///< pso: w, falling linearly
+  double differential_weight{0.8};              ///< de: F
+  double crossover{0.9};                        ///< de: CR
+  int variant{2};                               ///< de: 1 best/1/exp, 2 rand/1/exp, ... of pagmo
+  double step{0.3};                             ///< cmaes: sigma0, of each range
   /// @throws InputError naming the field, also of a method that this build has not.
   void validate() const;
 };

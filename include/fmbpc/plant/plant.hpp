@@ -41,7 +41,7 @@ struct PlantDescription {
   std::vector<Quantity> parameters;    ///< what a loop file may override under plant.parameters
   std::vector<EquipmentFrame> frames;  ///< the first one is the plant's own frame
   std::map<std::string, std::string> output_frames;  ///< state name -> frame of its analyser
-  std::vector<std::string> hidden_disturbances;  ///< not measured unless a loop file says so
+  std::vector<std::string> hidden_disturbances;      ///< not measured unless a loop file says so
 };
 
 /// Moves a plant that is no differential equation in its state (dead times, difference equations),

@@ -29,7 +29,7 @@ struct ScheduledCommand {
 struct SimulationParams {
   std::string plant;
   PlantParameters parameters;
-  TransferMatrix matrix;  ///< if not empty it is the plant, and `plant` its name
+  TransferMatrix matrix;             ///< if not empty it is the plant, and `plant` its name
   Vector initial_state;              ///< n_states
   std::vector<std::string> outputs;  ///< measured states, in this order; empty: the plant's default
   std::vector<double> output_delay_s;  ///< transport delay of each measured output; empty: none
@@ -114,8 +114,8 @@ class Simulation {
   std::vector<CommandEffect> effects_;
   std::mt19937_64 noise_;
   std::string trouble_;
-  Vector state_before_;   // one sample ago
-  Vector plant_input_;    // the applied input as the plant's local loop passes it on
+  Vector state_before_;  // one sample ago
+  Vector plant_input_;   // the applied input as the plant's local loop passes it on
   std::vector<Eigen::Index> output_state_;          // index of the state behind each output
   std::vector<Eigen::Index> measured_disturbance_;  // index into the plant's disturbances
   std::vector<TransportDelay> delays_;              // of each output

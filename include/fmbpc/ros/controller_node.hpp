@@ -13,8 +13,8 @@
 #include <cstdint>
 #include <string>
 
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
-#include "fmbpc/loop/loop_file.hpp"
 #include "fmbpc/ros/diagnostics.hpp"
 #include "fmbpc/ros/listener_gate.hpp"
 #include "fmbpc/ros/node.hpp"

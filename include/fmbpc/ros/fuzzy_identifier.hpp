@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
 #include "fmbpc/fuzzy/sample_collector.hpp"
-#include "fmbpc/loop/loop_file.hpp"
 #include "fmbpc/ros/diagnostics.hpp"
 #include "fmbpc/ros/identification_worker.hpp"
 #include "fmbpc/ros/node.hpp"

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/record.hpp"
 #include "fmbpc/ros/diagnostics.hpp"
 #include "fmbpc/ros/node.hpp"

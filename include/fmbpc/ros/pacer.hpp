@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "fmbpc/base/step_gate.hpp"
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/plant/simulation.hpp"
 #include "fmbpc/ros/diagnostics.hpp"
 #include "fmbpc/ros/equipment_frames.hpp"

@@ -14,8 +14,8 @@ std::vector<ReproduceRow> table7() {
     const Matrix loop = paperReducedLoop(kA, kB, H);
     const std::string at = ", H = " + std::to_string(H) + ", f = 0.88";
     rows.push_back(compare("eigenvalue 1 of A_CL" + at, 0.0, loop(0, 0), "-"));
-    rows.push_back(compare("eigenvalue 2, formula 59" + at, paperSecondEigenvalue(0.88, H),
-                           loop(1, 1), "-"));
+    rows.push_back(
+        compare("eigenvalue 2, formula 59" + at, paperSecondEigenvalue(0.88, H), loop(1, 1), "-"));
   }
   return rows;
 }

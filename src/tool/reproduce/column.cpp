@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "fmbpc/control/pi_tuning.hpp"
+#include "fmbpc/control/pi/tuning.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "tool/reproduce/experiment.hpp"
 
@@ -64,16 +64,16 @@ std::vector<ReproduceRow> table3() {
   const PiTuning pso_2 = swarmTuning(bottom, TuningCost::kStepTimes);
   const char* rule = "kp = (tau + theta/2) / (K (lambda + theta/2)), lambda 3.9 and 8 min fitted";
   const char* gain = "(lb/min)/mol%";
-  return {compare("IMC-PI 1, Kp", 0.3054, imc_1.kp, gain, kClose, rule),
-          compare("IMC-PI 1, Ti", 17.25, imc_1.integral_time_min, "min", kClose, rule),
-          compare("IMC-PI 2, Kp", -0.0863, imc_2.kp, gain, kClose, rule),
-          compare("IMC-PI 2, Ti", 15.98, imc_2.integral_time_min, "min", kClose, rule),
-          compare("PSO-PI 1, Kp", 0.6116, pso_1.kp, gain, kClose, "J jumps at the 2 % band"),
-          compare("PSO-PI 1, 1/Ti", 0.0475, 1.0 / pso_1.integral_time_min, "1/min", kClose,
-                  "printed as Ti: as a time the loop is unstable"),
-          compare("PSO-PI 2, Kp", -0.1442, pso_2.kp, gain, kClose, kPrinted),
-          compare("PSO-PI 2, 1/Ti", 0.0312, 1.0 / pso_2.integral_time_min, "1/min", kClose,
-                  kPrinted)};
+  return {
+      compare("IMC-PI 1, Kp", 0.3054, imc_1.kp, gain, kClose, rule),
+      compare("IMC-PI 1, Ti", 17.25, imc_1.integral_time_min, "min", kClose, rule),
+      compare("IMC-PI 2, Kp", -0.0863, imc_2.kp, gain, kClose, rule),
+      compare("IMC-PI 2, Ti", 15.98, imc_2.integral_time_min, "min", kClose, rule),
+      compare("PSO-PI 1, Kp", 0.6116, pso_1.kp, gain, kClose, "J jumps at the 2 % band"),
+      compare("PSO-PI 1, 1/Ti", 0.0475, 1.0 / pso_1.integral_time_min, "1/min", kClose,
+              "printed as Ti: as a time the loop is unstable"),
+      compare("PSO-PI 2, Kp", -0.1442, pso_2.kp, gain, kClose, kPrinted),
+      compare("PSO-PI 2, 1/Ti", 0.0312, 1.0 / pso_2.integral_time_min, "1/min", kClose, kPrinted)};
 }
 
 std::vector<ReproduceRow> table4() {

@@ -21,8 +21,7 @@ double score(const std::string& loop, const Overrides& overrides = {}) {
 }
 
 std::vector<SpecialPoint> special(double compensator, SpecialKind kind) {
-  const std::shared_ptr<const Plant> plant =
-      makePlant("cstr", {{"compensator_gain", compensator}});
+  const std::shared_ptr<const Plant> plant = makePlant("cstr", {{"compensator_gain", compensator}});
   const PlantContinuation set = plantContinuation(plant, 0, 6.0, -1.0, -1.0);
   std::vector<SpecialPoint> found;
   for (const auto& branch : continueBranches(set.problem, set.params))
@@ -76,7 +75,10 @@ std::vector<ReproduceRow> propositions() {
     worst.poles_distance = std::max(worst.poles_distance, p.poles_distance);
   }
   const auto row = [](const char* what, double here, double limit) {
-    return ReproduceRow{what, 0.0, here, "-",
+    return ReproduceRow{what,
+                        0.0,
+                        here,
+                        "-",
                         here <= limit ? Verdict::kReproduced : Verdict::kNotReproducible,
                         "largest over the six rules"};
   };
@@ -103,10 +105,10 @@ double unanswered(const RunRecord& run) {
 /// What a step of the disturbance does in an open loop before an answer to it is measured: one
 /// sample and the delay until it is seen, the same again until the answer is.
 double unanswered(double step) {
-  const RunRecord& run = recordOf("cstr_disturbance_pi",
-                                  {{"controller.loops.0.kp", "0"},
-                                   {"controller.loops.0.ki_per_h", "0"},
-                                   {"disturbance.commands.0.value", std::to_string(step)}});
+  const RunRecord& run =
+      recordOf("cstr_disturbance_pi", {{"controller.loops.0.kp", "0"},
+                                       {"controller.loops.0.ki_per_h", "0"},
+                                       {"disturbance.commands.0.value", std::to_string(step)}});
   constexpr int kOn = 50;  // 5 min
   double sum = 0.0;
   for (int k = kOn; k <= kOn + 2 * kDelaySteps + 1; ++k)
@@ -146,9 +148,9 @@ std::vector<ReproduceRow> scores(const std::string& loop, double pi, double fmbp
 std::vector<ReproduceRow> smallSteps() {
   const double pi = score("cstr_small_steps_pi");
   std::vector<ReproduceRow> rows;
-  for (const char* name : {"cstr_small_steps_literal_b", "cstr_small_steps_literal",
-                           "cstr_small_steps", "cstr_small_steps_own", "cstr_small_steps_preview",
-                           "cstr_small_steps_gspi"}) {
+  for (const char* name :
+       {"cstr_small_steps_literal_b", "cstr_small_steps_literal", "cstr_small_steps",
+        "cstr_small_steps_own", "cstr_small_steps_preview", "cstr_small_steps_gspi"}) {
     const double ratio = score(name) / pi;
     rows.push_back(state(std::string(name) + " against the PI", ratio, "-",
                          ratio < 1.0 ? Verdict::kBetter : Verdict::kNotReproducible,

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/report.hpp"
 
 namespace fpc::tool {

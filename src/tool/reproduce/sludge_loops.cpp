@@ -63,8 +63,9 @@ double trackingOf(const std::string& loop) {
 /// Cases A and B of article 1: curves only.
 Rows followed(const std::string& loop) {
   Rows rows;
-  const std::string figures = std::string("figures only; neither model nor influent of cases A "
-                                          "and B was published; ours stand for them");
+  const std::string figures = std::string(
+      "figures only; neither model nor influent of cases A "
+      "and B was published; ours stand for them");
   rows.push_back(state("rms of x about its reference trajectory", trackingOf(loop), "mg/l",
                        Verdict::kNotReproducible, figures));
   rows.push_back(state("rmse of s", indicesOf(summaryOf(loop), "s").rmse, "mg/l",

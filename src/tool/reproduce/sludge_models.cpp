@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
 #include "fmbpc/fuzzy/validation.hpp"
 #include "tool/reproduce/experiment.hpp"
@@ -74,7 +75,7 @@ std::vector<ReproduceRow> validated(const std::string& name, const Printed& pape
     const double here = outputs[i].free_run.vaf, printed = i == 0 ? paper.s : paper.x;
     rows.push_back(vaf("VAF of " + outputs[i].output + " in free run on " + record, printed, here));
     rows.back().note += std::string("; ") + paper.words + "; linear ARX " +
-                std::to_string(std::lround(outputs[i].linear_free_run.vaf)) + " %";
+                        std::to_string(std::lround(outputs[i].linear_free_run.vaf)) + " %";
   }
   return rows;
 }
@@ -136,9 +137,9 @@ ReproduceRow means(const std::string& what, const Values& paper, const Values& h
 }
 
 ReproduceRow signs(const std::string& what, const Values& paper, const Values& here) {
-  return compare("rules in which " + what, negativeShare(paper), negativeShare(here), "%", 0.1,
-                 std::string("of the ") + std::to_string(paper.size()) + " printed rules; " +
-                     kRecord);
+  return compare(
+      "rules in which " + what, negativeShare(paper), negativeShare(here), "%", 0.1,
+      std::string("of the ") + std::to_string(paper.size()) + " printed rules; " + kRecord);
 }
 
 // The third printed column of tables 5 and 6 is q_r(k-2), as algorithm 2 shows for rules 1 and 2.
@@ -180,12 +181,11 @@ const bool kRegistered = [] {
   const struct {
     const char *name, *figure;
     Printed paper;
-  } cases[] = {{"asp_a", "figure 7",
-                {92.0, 92.0, true, "the paper says over 92 %, without the inflow"}},
-               {"asp_b", "figure 8",
-                {62.0, 42.0, false, "the paper says around, without the inflow"}},
-               {"asp_c", "figure 9", {99.0, 87.0, true, "the paper says around"}},
-               {"asp_d", "figure 10", {95.0, 66.0, false, "the paper says around"}}};
+  } cases[] = {
+      {"asp_a", "figure 7", {92.0, 92.0, true, "the paper says over 92 %, without the inflow"}},
+      {"asp_b", "figure 8", {62.0, 42.0, false, "the paper says around, without the inflow"}},
+      {"asp_c", "figure 9", {99.0, 87.0, true, "the paper says around"}},
+      {"asp_d", "figure 10", {95.0, 66.0, false, "the paper says around"}}};
   for (const auto& c : cases)
     registerExperiment({std::string(c.name) + "_identification",
                         std::string(kArticle) + c.figure + ", table 9",

@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "fmbpc/control/quadratic_law.hpp"
+#include "fmbpc/control/optimal/quadratic_law.hpp"
 #include "tool/reproduce/experiment.hpp"
 #include "tool/reproduce/runs.hpp"
 #include "tool/reproduce/taieb_steps.hpp"

@@ -148,8 +148,8 @@ std::vector<ReproduceRow> rivals() {
       rows.push_back(beside(of + "Ts", a.reference_settling[i], here.settling, "min"));
       rows.push_back(beside(of + "Ov", a.reference_overshoot[i], here.overshoot, "%"));
     }
-    rows.push_back(beside(std::string(a.name) + ", 10 Es + Ov + Ts + Tr", a.reference_cost,
-                          meanCost(a), "-"));
+    rows.push_back(
+        beside(std::string(a.name) + ", 10 Es + Ov + Ts + Tr", a.reference_cost, meanCost(a), "-"));
     rows.back().note += "; mean over the 7 steps";
   }
   const double ratio = meanCost(kAlgorithms[2]) / meanCost(kAlgorithms[0]);

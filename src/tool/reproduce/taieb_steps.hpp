@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "fmbpc/analysis/performance.hpp"
-#include "fmbpc/loop/loop_file.hpp"
+#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc::tool {
 

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/loop/shortest_step.hpp"
+#include "fmbpc/study/shortest_step.hpp"
 #include "tool/reproduce/experiment.hpp"
 #include "tool/reproduce/runs.hpp"
 #include "tool/reproduce/taieb_steps.hpp"

@@ -1,0 +1,67 @@
+// Predictive control by search: plans of inputs are simulated over the horizon with a model of any
+// kind, the best one's first input is sent. The search is the derived controller's.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/horizon/plan_cost.hpp"
+#include "fmbpc/control/reference.hpp"
+
+namespace fpc {
+
+/// What a search made of a sample.
+struct PlanFound {
+  bool usable{false};      ///< the plan is finite and inside the limits
+  double cost{};           ///< J
+  int effort{};            ///< iterations or evaluations
+  const char* remark{""};  ///< words, also when usable
+};
+
+/// Each sample: the model moves on with u(k-1), the measured outputs take the place of the
+/// predicted ones, and what lay between them is added to every predicted sample. The search starts
+/// from the plan of the sample before, moved on by one sample and put inside the limits; if it
+/// fails that plan's input is sent, ok is false and the source `clipped`. Hard limits on inputs and
+/// moves. signals(): NAME_correction of each output, plan_cost, plan_effort.
+class HorizonMpc : public Controller {
+ public:
+  void reset(const Measurement& start) override;
+  void step(const Measurement& now, const SetpointSource& setpoint,
+            ControllerOutput& output) override;
+  const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
+  const Vector& plan() const { return plan_; }  ///< n_u M, of the last sample
+
+ protected:
+  /// @throws InputError naming the field.
+  HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo& plant);
+  /// Takes a model: the next step starts from rest at the measurement.
+  void believe(std::unique_ptr<SampleModel> model);
+  /// Improves `plan`, which is inside the limits, for cost(). Its size stays.
+  virtual PlanFound search(const Measurement& now, Vector& plan) = 0;
+
+  PlanCost& cost() { return *cost_; }
+  const InputLimits& limits() const { return limits_; }
+  const HorizonParams& params() const { return params_; }
+  const Vector& range() const { return range_; }  ///< n_u, upper - lower, or 1 where that is 0
+
+ private:
+  bool estimate(const Measurement& now);
+  void refreshSignals(const PlanFound& found);
+
+  HorizonParams params_;
+  InputLimits limits_;
+  Eigen::Index n_y_, n_u_;
+  Vector range_;
+  std::unique_ptr<SampleModel> model_;
+  std::unique_ptr<PlanCost> cost_;
+  ReferenceTrajectory reference_;
+  Matrix future_;  // n_y P
+  Vector state_, correction_, disturbances_, plan_, kept_;
+  bool fresh_{true};
+  std::vector<std::pair<std::string, double>> signals_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,15 @@
+// A model brought into the order of the plant.
+#pragma once
+
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/fuzzy/ts_model.hpp"
+
+namespace fpc {
+
+/// Reorders the model's names to the plant's (readers may then index by PlantInfo order). Signals
+/// the model does not use stay unused; plant outputs the model does not predict are not allowed.
+/// @throws InputError naming the signal that the plant lacks, a missing output, another sample
+/// time, another unit.
+TsModel matchToPlant(const TsModel& model, const PlantInfo& plant);
+
+}  // namespace fpc

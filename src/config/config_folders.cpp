@@ -1,0 +1,88 @@
+// Where loop files are found by name.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/config/tuning_file.hpp"
+
+#ifndef FMBPC_SOURCE_CONFIG
+#define FMBPC_SOURCE_CONFIG ""
+#endif
+#ifndef FMBPC_INSTALL_CONFIG
+#define FMBPC_INSTALL_CONFIG ""
+#endif
+
+namespace fpc {
+namespace fs = std::filesystem;
+
+std::vector<std::string> configFolders() {
+  std::vector<std::string> folders;
+  const char* user = std::getenv("FMBPC_CONFIG_PATH");
+  std::stringstream listed(user ? user : "");
+  for (std::string folder; std::getline(listed, folder, ':');)
+    if (!folder.empty()) folders.push_back(folder);
+  for (const char* folder : {FMBPC_SOURCE_CONFIG, FMBPC_INSTALL_CONFIG}) {
+    std::error_code ignored;
+    if (*folder != '\0' && fs::is_directory(folder, ignored)) folders.emplace_back(folder);
+  }
+  return folders;
+}
+
+namespace {
+
+/// Every file of a kind, by name: config/KIND and the folders below it, in alphabetical order.
+/// The first folder of the search path that has a name wins.
+std::map<std::string, fs::path> filesOf(const std::string& kind) {
+  std::map<std::string, fs::path> files;
+  for (const auto& folder : configFolders()) {
+    std::vector<fs::path> found;
+    std::error_code ignored;
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(folder) / kind, ignored))
+      if (entry.path().extension() == ".yaml") found.push_back(entry.path());
+    std::sort(found.begin(), found.end());
+    for (const auto& path : found) files.emplace(path.stem().string(), path);
+  }
+  return files;
+}
+
+std::vector<std::string> namesIn(const std::string& kind) {
+  std::vector<std::string> names;
+  for (const auto& file : filesOf(kind)) names.push_back(file.first);
+  return names;
+}
+
+/// `kind` is the folder below config, and the word for such a file.
+std::string find(const std::string& kind, const std::string& name_or_path) {
+  const fs::path path(name_or_path);
+  const bool is_path = name_or_path.find('/') != std::string::npos || path.extension() == ".yaml";
+  if (is_path) {
+    require(fs::is_regular_file(path), name_or_path, "an existing " + kind + " file");
+    return fs::absolute(path).lexically_normal().string();
+  }
+  const auto files = filesOf(kind);
+  const auto file = files.find(name_or_path);
+  if (file != files.end()) return fs::absolute(file->second).lexically_normal().string();
+  throw InputError(kind + " '" + name_or_path + "': expected a path or one of " +
+                   join(namesIn(kind)));
+}
+
+}  // namespace
+
+std::vector<std::string> loopNames() { return namesIn("loop"); }
+
+std::string findLoop(const std::string& name_or_path) { return find("loop", name_or_path); }
+
+std::string findStructure(const std::string& name_or_path) {
+  return find("structure", name_or_path);
+}
+
+std::vector<std::string> tuningNames() { return namesIn("tuning"); }
+
+std::string findTuning(const std::string& name_or_path) { return find("tuning", name_or_path); }
+
+}  // namespace fpc

@@ -1,0 +1,38 @@
+#include "fmbpc/config/disturbance_source.hpp"
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+std::vector<std::string> disturbanceNames(const LoopFile& loop) {
+  std::vector<std::string> names;
+  const auto plant = makePlant(loop.simulation);
+  for (const auto& quantity : plant->description().disturbances) names.push_back(quantity.name);
+  return names;
+}
+
+}  // namespace
+
+void requireSimulated(const LoopFile& loop) {
+  require(!loop.external_plant, loop.name + ": plant.type",
+          "a plant that can be simulated; an external one runs over topics only");
+}
+
+DisturbanceRecord makeDisturbance(const LoopFile& loop) {
+  requireSimulated(loop);
+  const SimulationParams& sim = loop.simulation;
+  const DisturbanceParams& params = loop.disturbance;
+  if (params.source == "constant") return {};
+  require(
+      sim.samples > 0, loop.name + ": sampling.duration_h",
+      "a time > 0 with disturbance.source " + params.source + " (an endless run needs constant)");
+  const auto names = disturbanceNames(loop);
+  if (params.source == "pattern")
+    return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,
+                       sim.samples);
+  return readDisturbances(params.csv, names, sim.disturbance_nominal, sim.sample_time_s,
+                          sim.samples);
+}
+
+}  // namespace fpc

@@ -1,0 +1,125 @@
+#include "config/plant_sample_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr int kRestSamples = 10000;
+constexpr double kStill = 1e-12;  // relative change of a state that rests
+
+Index indexOf(const std::vector<Quantity>& quantities, const std::string& name) {
+  return std::find_if(quantities.begin(), quantities.end(),
+                      [&](const Quantity& q) { return q.name == name; }) -
+         quantities.begin();
+}
+
+class PlantSampleModel final : public SampleModel {
+ public:
+  PlantSampleModel(const SimulationParams& given, int integration_steps)
+      : plant_(makePlant(given)), steps_(integration_steps) {
+    const PlantDescription& about = plant_->description();
+    const SimulationParams params = checked(given, *plant_);
+    stepper_ = plant_->makeStepper(params.sample_time_s);
+    const std::string where = "controller.type nmpc with plant " + about.name;
+    require(!stepper_ || !stepper_->remembers(), where,
+            "a plant whose states say everything: this one has dead times or other memory");
+    for (const double delay : params.output_delay_s)
+      require(delay == 0.0, where, "outputs that are measured without delay");
+    step_ = params.sample_time_s / about.time_unit_s / integration_steps;
+    for (const auto& name : params.outputs) outputs_.push_back(indexOf(about.states, name));
+    for (const auto& name : params.measured_disturbances)
+      measured_.push_back(indexOf(about.disturbances, name));
+    for (std::size_t i = 0; i < about.states.size(); ++i)
+      if (std::find(outputs_.begin(), outputs_.end(), static_cast<Index>(i)) == outputs_.end())
+        hidden_.push_back(static_cast<Index>(i));
+    nominal_ = params.initial_state;
+    d_ = params.disturbance_nominal;
+    n_ = nominal_.size();
+    for (Vector* v : {&x_, &start_, &sum_, &rate_, &point_}) *v = Vector::Zero(n_);
+  }
+
+  Index stateSize() const override { return 2 * n_; }
+  Index outputState(Index output) const override {
+    return outputs_[static_cast<std::size_t>(output)];
+  }
+
+  void rest(VectorRef outputs, VectorRef input, VectorRef disturbances,
+            Eigen::Ref<Vector> state) override {
+    state.head(n_) = nominal_;
+    for (int k = 0; k < kRestSamples; ++k) {
+      for (std::size_t i = 0; i < outputs_.size(); ++i)
+        state[outputs_[i]] = outputs[static_cast<Index>(i)];
+      state.tail(n_) = state.head(n_);
+      if (hidden_.empty() || !step(input, disturbances, state)) break;
+      bool still = true;
+      for (const Index i : hidden_)
+        still = still && std::abs(state[i] - state[n_ + i]) <= kStill * std::abs(state[i]);
+      if (still) break;
+    }
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+      state[outputs_[i]] = outputs[static_cast<Index>(i)];
+    state.tail(n_) = state.head(n_);
+  }
+
+  bool step(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> state) override {
+    for (std::size_t i = 0; i < measured_.size(); ++i)
+      d_[measured_[i]] = disturbances[static_cast<Index>(i)];
+    x_ = state.head(n_);
+    passLocalLoop(input, state.tail(n_));
+    state.tail(n_) = x_;
+    if (stepper_)
+      stepper_->advance(x_, u_, d_);
+    else
+      for (int i = 0; i < steps_; ++i) moveByRungeKutta();
+    state.head(n_) = x_;
+    return x_.allFinite();
+  }
+
+ private:
+  void passLocalLoop(VectorRef input, VectorRef before) {
+    u_ = input;
+    plant_->localLoop(x_, before, u_);
+    const auto& ranges = plant_->description().inputs;
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      double& u = u_[static_cast<Index>(i)];
+      u = std::clamp(u, ranges[i].lower, ranges[i].upper);
+    }
+  }
+
+  void moveByRungeKutta() {
+    constexpr double kPlace[] = {0.0, 0.5, 0.5, 1.0}, kWeight[] = {1.0, 2.0, 2.0, 1.0};
+    start_ = x_;
+    sum_.setZero();
+    for (int i = 0; i < 4; ++i) {
+      point_ = start_;
+      if (i > 0) point_ += kPlace[i] * step_ * rate_;
+      plant_->derivatives(point_, u_, d_, rate_);
+      sum_ += kWeight[i] * rate_;
+    }
+    x_ = start_ + step_ / 6.0 * sum_;
+  }
+
+  std::unique_ptr<Plant> plant_;
+  std::unique_ptr<PlantStepper> stepper_;
+  int steps_;
+  double step_{};  // of Runge and Kutta, in the plant's time unit
+  Index n_{};
+  std::vector<Index> outputs_, measured_, hidden_;
+  Vector nominal_, d_, u_, x_, start_, sum_, rate_, point_;
+};
+
+}  // namespace
+
+std::unique_ptr<SampleModel> makePlantSampleModel(const SimulationParams& params,
+                                                  int integration_steps) {
+  return std::make_unique<PlantSampleModel>(params, integration_steps);
+}
+
+}  // namespace fpc

@@ -1,0 +1,165 @@
+// Sections `disturbance`, `actuator`, `noise`: what acts on the plant and how its ends behave.
+#include <algorithm>
+
+#include "config/read.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+namespace {
+
+Eigen::Index count(const std::vector<std::string>& names) {
+  return static_cast<Eigen::Index>(names.size());
+}
+
+/// The plant's usual values and ranges of its inputs; for an external plant the declared ranges.
+void defaultActuator(const LoopFile& loop, const LoopNames& names, ActuatorParams& actuator) {
+  const Eigen::Index n_u = count(names.inputs);
+  actuator.limits = {Vector(n_u), Vector(n_u), Vector::Constant(n_u, kInfinite)};
+  actuator.initial = Vector::Zero(n_u);
+  for (Eigen::Index i = 0; i < n_u; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const bool external = loop.external_plant;
+    actuator.limits.lower[i] =
+        external ? loop.plant_info.inputs[k].lower : names.plant.inputs[k].lower;
+    actuator.limits.upper[i] =
+        external ? loop.plant_info.inputs[k].upper : names.plant.inputs[k].upper;
+    if (!external) actuator.initial[i] = names.plant.inputs[k].nominal;
+  }
+}
+
+void readPattern(YamlSection& section, PatternParams& params,
+                 const std::vector<std::string>& names) {
+  section.seed("seed", params.seed);
+  YamlSection channels = section.section("channels");
+  for (const auto& name : names) {
+    if (!channels.has(name)) continue;
+    YamlSection channel = channels.section(name);
+    PatternChannel value;
+    value.name = name;
+    for (const char* key : {"shape", "lower", "upper", "mean"}) need(channel, key, "a value");
+    channel.oneOf("shape", value.shape, {"flow", "load"});
+    channel.number("lower", value.lower, kFinite);
+    channel.number("upper", value.upper, kFinite);
+    if (!(value.lower < value.upper)) channel.fail("upper", "a number > lower");
+    channel.number("mean", value.mean, {value.lower, value.upper, true});
+    channel.finish();
+    params.channels.push_back(std::move(value));
+  }
+  for (const auto& name : names) channels.markRead(name);
+  channels.finish();
+  section.finish();
+}
+
+void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
+                     const std::vector<std::string>& names) {
+  YamlSection channels = section.section("channels");
+  for (const auto& name : names) {
+    channels.markRead(name);
+    if (!channels.has(name)) continue;
+    YamlSection channel = channels.section(name);
+    CsvChannel value;
+    value.name = name;
+    need(channel, "column", "the name of a column");
+    channel.text("column", value.column);
+    channel.number("scale", value.scale, kFinite);
+    channel.number("offset", value.offset, kFinite);
+    channel.number("mean", value.mean, kFinite);
+    if (channel.has("mean") && (channel.has("scale") || channel.has("offset")))
+      channel.fail("mean", "either mean, or scale and offset");
+    channel.finish();
+    params.channels.push_back(std::move(value));
+  }
+  channels.finish();
+}
+
+void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
+                    const std::vector<std::string>& names) {
+  section.text("file", params.file);
+  section.text("time_column", params.time_column);
+  section.oneOf("time_unit", params.time_unit, {"s", "min", "h", "d"});
+  section.oneOf("missing", params.missing, {"error", "hold", "interpolate"});
+  section.oneOf("interpolation", params.interpolation, {"hold", "linear"});
+  section.oneOf("end", params.end, {"error", "hold", "repeat"});
+  readCsvChannels(section, params, names);
+  section.finish();
+}
+
+/// Names that a disturbance command may use: disturbances, stuck valves, sensor faults.
+std::vector<std::string> commandNames(const LoopNames& names) {
+  std::vector<std::string> all = names.disturbances;
+  for (const auto& name : names.inputs) all.push_back("input/" + name);
+  for (const auto& name : names.outputs) all.push_back("output/" + name);
+  return all;
+}
+
+}  // namespace
+
+ScheduledCommand readCommand(YamlSection& item, const std::vector<std::string>& names) {
+  ScheduledCommand scheduled;
+  std::string mode = "override";
+  double value = 0.0;
+  need(item, "time_h", "a time >= 0");
+  item.number("time_h", scheduled.time_h, {0.0, 1e7});
+  scheduled.command.name = {names[static_cast<std::size_t>(indexByName(item, "name", names))]};
+  item.oneOf("mode", mode, {"override", "offset", "release"});
+  if (mode != "release") need(item, "value", "a number");
+  item.number("value", value, kFinite);
+  scheduled.command.value = {value};
+  scheduled.command.mode = mode == "override" ? CommandMode::kOverride
+                           : mode == "offset" ? CommandMode::kOffset
+                                              : CommandMode::kRelease;
+  item.finish();
+  return scheduled;
+}
+
+void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names) {
+  YamlSection section = root.section("actuator");
+  ActuatorParams& actuator = loop.simulation.actuator;
+  defaultActuator(loop, names, actuator);
+  section.byName("input_lower", actuator.limits.lower, names.inputs);
+  section.byName("input_upper", actuator.limits.upper, names.inputs);
+  section.byName("move_upper", actuator.limits.move, names.inputs, Range{0.0, kInfinite, true});
+  section.byName("initial", actuator.initial, names.inputs, kFinite);
+  actuator.fallback = actuator.initial;
+  section.byName("fallback", actuator.fallback, names.inputs, kFinite);
+  section.integer("hold_samples", actuator.hold_samples, -1);
+  checked(section, [&] { actuator.validate(count(names.inputs)); });
+  section.finish();
+}
+
+void readNoise(YamlSection& root, LoopFile& loop, const LoopNames& names) {
+  YamlSection section = root.section("noise");
+  loop.simulation.noise_std = Vector::Zero(count(names.outputs));
+  section.seed("seed", loop.simulation.noise_seed);
+  section.byName("std", loop.simulation.noise_std, names.outputs, kFiniteNotNegative);
+  section.finish();
+}
+
+void readDisturbance(YamlSection& root, LoopFile& loop, const LoopNames& names) {
+  YamlSection section = root.section("disturbance");
+  DisturbanceParams& params = loop.disturbance;
+  Vector& nominal = loop.simulation.disturbance_nominal;
+  nominal = Vector::Zero(count(names.disturbances));
+  for (std::size_t i = 0; i < names.plant.disturbances.size(); ++i)
+    nominal[static_cast<Eigen::Index>(i)] = names.plant.disturbances[i].nominal;
+  section.byName("nominal", nominal, names.disturbances, kFinite);
+  section.oneOf("source", params.source, {"constant", "pattern", "csv"});
+  YamlSection pattern = section.section("pattern");
+  readPattern(pattern, params.pattern, names.disturbances);
+  if (params.source == "pattern" && params.pattern.channels.empty())
+    pattern.fail("channels", "at least one disturbance out of " + join(names.disturbances));
+  YamlSection csv = section.section("csv");
+  readCsvSection(csv, params.csv, names.disturbances);
+  if (params.source == "csv") {
+    need(csv, "file", "the name of a CSV file");
+    need(csv, "time_column", "the name of a column");
+    if (params.csv.channels.empty())
+      csv.fail("channels", "at least one disturbance out of " + join(names.disturbances));
+  }
+  for (auto& item : section.list("commands"))
+    loop.simulation.disturbance_commands.push_back(readCommand(item, commandNames(names)));
+  section.finish();
+}
+
+}  // namespace fpc

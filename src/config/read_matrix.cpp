@@ -1,0 +1,59 @@
+// Key `plant.matrix`: any matrix of lags with dead times in place of the Wood-Berry column.
+#include "config/read.hpp"
+#include "fmbpc/plant/transfer_matrix.hpp"
+
+namespace fpc {
+namespace {
+
+std::vector<Quantity> readQuantities(YamlSection& section, const std::string& key) {
+  std::vector<Quantity> quantities;
+  for (auto& item : section.list(key)) {
+    Quantity q{"", "-", 0.0, -1e6, 1e6};
+    need(item, "name", "a name");
+    item.text("name", q.name);
+    item.text("unit", q.unit);
+    item.number("nominal", q.nominal, kFinite);
+    item.number("lower", q.lower, kFinite);
+    item.number("upper", q.upper, kFinite);
+    item.finish();
+    quantities.push_back(std::move(q));
+  }
+  return quantities;
+}
+
+TransferElement readElement(YamlSection& item) {
+  TransferElement e;
+  for (const char* key : {"output", "from", "gain", "time_constant_min"})
+    need(item, key, "a value");
+  item.text("output", e.output);
+  item.text("from", e.from);
+  item.number("gain", e.gain, kFinite);
+  item.number("time_constant_min", e.time_constant, kFinitePositive);
+  item.number("dead_time_min", e.dead_time, kFiniteNotNegative);
+  item.number("second_time_constant_min", e.second_time_constant, kFiniteNotNegative);
+  item.finish();
+  return e;
+}
+
+}  // namespace
+
+void readMatrix(YamlSection& plant, SimulationParams& simulation) {
+  YamlSection section = plant.section("matrix");
+  TransferMatrix matrix;
+  matrix.name = simulation.plant;
+  matrix.title = "Matrix of lags with dead times, of the loop file";
+  section.text("title", matrix.title);
+  matrix.outputs = readQuantities(section, "outputs");
+  matrix.inputs = readQuantities(section, "inputs");
+  matrix.disturbances = readQuantities(section, "disturbances");
+  for (auto& item : section.list("elements")) matrix.elements.push_back(readElement(item));
+  section.finish();
+  if (!plant.has("matrix")) return;
+  if (simulation.plant != woodBerry().name)
+    plant.fail("matrix", "plant.type " + woodBerry().name + " with it");
+  if (matrix.empty()) section.fail("elements", "at least one element");
+  checked(section, [&] { matrix.validate(); });
+  simulation.matrix = std::move(matrix);
+}
+
+}  // namespace fpc

@@ -1,0 +1,68 @@
+// Section `model`: what the controller believes at the start, and how it may be told better on the
+// way.
+#include "config/read.hpp"
+#include "fmbpc/config/model_file.hpp"
+#include "fmbpc/config/structure_file.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
+
+namespace fpc {
+namespace {
+
+void readOnline(YamlSection& identify, OnlineParams& params) {
+  YamlSection section = identify.section("online");
+  params.enabled = identify.has("online");
+  section.boolean("enabled", params.enabled);
+  section.integer("every", params.every, 1);
+  section.number("forgetting", params.rls.forgetting, {0.0, 1.0, true});
+  section.number("initial_covariance", params.rls.initial_covariance, kFinitePositive);
+  section.number("covariance_bound", params.rls.covariance_bound, kFinitePositive);
+  checked(section, [&] { params.validate(); });
+  section.finish();
+}
+
+void readIdentify(YamlSection& model, LoopFile& loop) {
+  YamlSection section = model.section("identify");
+  IdentifyParams& params = loop.identify;
+  loop.has_identify = model.has("identify");
+  section.text("structure", params.structure_file);
+  section.integer("window", params.window, 0);
+  section.number("validation_share", params.validation_share, {0.0, 0.9});
+  section.integer("after", params.after, 0);
+  readOnline(section, params.online);
+  if (params.after > 0 && params.structure_file.empty())
+    section.fail("structure", "a structure file for identify.after");
+  section.finish();
+  if (params.structure_file.empty()) return;
+  try {
+    params.structure = readStructure(params.structure_file);
+  } catch (const InputError& e) {
+    throw InputError(section.where("structure") + ": " + e.what());
+  }
+}
+
+}  // namespace
+
+void readModelSection(YamlSection& root, LoopFile& loop) {
+  YamlSection section = root.section("model");
+  section.text("file", loop.model_file);
+  section.number("max_pole", loop.max_pole, {0.0, kInfinite, true});
+  readIdentify(section, loop);
+  section.finish();
+  loop.has_model = !loop.model_file.empty();
+  const bool needs_model = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal" ||
+                           loop.controller == "hybrid_mpc" || loop.controller == "swarm_mpc";
+  if (needs_model && !loop.has_model && !(loop.has_identify && loop.external_plant))
+    section.fail("file", "a model file for controller " + loop.controller +
+                             " (a simulated plant does not start without one)");
+  if (!loop.has_model) return;
+  try {
+    loop.model = matchToPlant(readModel(loop.model_file), loop.plant_info);
+    if (loop.controller == "fuzzy_optimal")
+      FuzzyOptimalLaw(loop.fuzzy_optimal, loop.simulation.actuator.limits, loop.plant_info)
+          .setModel(loop.model);
+  } catch (const InputError& e) {
+    throw InputError(section.where("file") + ": " + e.what());
+  }
+}
+
+}  // namespace fpc

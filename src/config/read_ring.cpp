@@ -1,0 +1,173 @@
+// Sections `loop`, `tf` and `report`: how the ring over topics runs, where equipment stands, what
+// is judged.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "config/read.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+namespace {
+
+Pace paceFrom(const std::string& name) {
+  return name == "paced" ? Pace::kPaced : name == "realtime" ? Pace::kRealtime : Pace::kLockstep;
+}
+
+std::vector<std::string> ringNodes(const LoopFile& loop) {
+  const bool open_loop = loop.controller == "excitation";
+  std::vector<std::string> nodes{
+      "loop_recorder", open_loop ? "excitation_generator" : loop.controller + "_controller"};
+  const bool has_law = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal" ||
+                       loop.controller == "hybrid_mpc" || loop.controller == "swarm_mpc";
+  if (has_law || loop.has_identify) nodes.emplace_back("fuzzy_identifier");
+  if (loop.has_clp) nodes.emplace_back("clp_optimizer");
+  return nodes;
+}
+
+void readFrame(YamlSection& item, EquipmentFrame& frame) {
+  item.text("parent", frame.parent);
+  item.number("x", frame.x, kFinite);
+  item.number("y", frame.y, kFinite);
+  item.number("z", frame.z, kFinite);
+  item.finish();
+}
+
+void readFrames(YamlSection& section, std::vector<EquipmentFrame>& frames) {
+  YamlSection items = section.section("frames");
+  for (const auto& name : items.keys()) {
+    YamlSection item = items.section(name);
+    auto known =
+        std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.name == name; });
+    if (known == frames.end()) {
+      need(item, "parent", "the parent frame of a new frame");
+      frames.push_back({name, "", 0.0, 0.0, 0.0});
+      known = frames.end() - 1;
+    }
+    readFrame(item, *known);
+  }
+}
+
+/// Position in the root of the tree [m]; frames have no rotation.
+Eigen::Vector3d positionOf(const std::string& name, const std::vector<EquipmentFrame>& frames,
+                           const YamlSection& section) {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  std::string at = name;
+  for (std::size_t depth = 0; depth <= frames.size(); ++depth) {
+    const auto frame =
+        std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.name == at; });
+    if (frame == frames.end()) return position;
+    position += Eigen::Vector3d(frame->x, frame->y, frame->z);
+    at = frame->parent;
+  }
+  throw InputError(section.where("frames") + "." + name + ": expected parents without a cycle");
+}
+
+std::vector<std::string> frameNames(const std::vector<EquipmentFrame>& frames) {
+  std::vector<std::string> names;
+  for (const auto& frame : frames) names.push_back(frame.name);
+  return names;
+}
+
+void readLine(YamlSection& item, const YamlSection& tf, LoopFile& loop, const LoopNames& names) {
+  SampleLine line;
+  const auto frames = frameNames(loop.tf.frames);
+  const auto output = static_cast<std::size_t>(indexByName(item, "output", names.outputs));
+  line.output = names.outputs[output];
+  line.from = frames[static_cast<std::size_t>(indexByName(item, "from", frames))];
+  line.to = frames[static_cast<std::size_t>(indexByName(item, "to", frames))];
+  need(item, "velocity_m_s", "a velocity > 0");
+  item.number("velocity_m_s", line.velocity_m_s, kFinitePositive);
+  item.finish();
+  const double length_m =
+      (positionOf(line.to, loop.tf.frames, tf) - positionOf(line.from, loop.tf.frames, tf)).norm();
+  loop.simulation.output_delay_s[output] = length_m / line.velocity_m_s;
+  loop.tf.sample_lines.push_back(std::move(line));
+}
+
+/// Keys of summary.json; what is consumed stands beside them.
+const std::set<std::string> kSummaryKeys{
+    "loop",       "title",          "complete", "steps",   "wall_s",         "outputs", "inputs",
+    "violations", "actuator_clips", "clp",      "sources", "repaired_cells", "limits"};
+
+ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outputs) {
+  ReportWindow window;
+  need(item, "name", "a name");
+  item.text("name", window.name);
+  item.text("output", window.output);
+  if (item.has("output") && std::count(outputs.begin(), outputs.end(), window.output) == 0)
+    item.fail("output", "one of " + join(outputs));
+  window.to_h = -1.0;
+  readHours(item, "from", window.from_h);
+  readHours(item, "to", window.to_h);
+  if (!(window.to_h >= window.from_h)) item.fail("to_h", "a time not before from");
+  item.finish();
+  return window;
+}
+
+void readConsumption(YamlSection& report, const LoopNames& names,
+                     std::vector<Consumption>& consumption) {
+  YamlSection section = report.section("consumption");
+  for (const auto& name : section.keys()) {
+    if (kSummaryKeys.count(name) > 0) section.fail(name, "a name that the summary does not use");
+    Consumption entry{name, Vector::Zero(static_cast<Eigen::Index>(names.inputs.size()))};
+    section.byName(name, entry.rate, names.inputs, kFinite);
+    consumption.push_back(std::move(entry));
+  }
+  section.finish();
+}
+
+std::vector<double> toStd(const Vector& v) { return {v.data(), v.data() + v.size()}; }
+
+}  // namespace
+
+void readRing(YamlSection& root, LoopFile& loop) {
+  YamlSection section = root.section("loop");
+  std::string pace = "lockstep";
+  section.oneOf("pace", pace, {"lockstep", "paced", "realtime"});
+  loop.ring.pace = paceFrom(pace);
+  section.number("speedup", loop.ring.speedup, kFinitePositive);
+  loop.ring.wait_for = ringNodes(loop);
+  section.names("wait_for", loop.ring.wait_for);
+  section.number("ready_timeout_s", loop.ring.ready_timeout_s, {0.0, 1e6, true});
+  section.boolean("publish_clock", loop.ring.publish_clock);
+  section.finish();
+}
+
+void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names) {
+  YamlSection section = root.section("tf");
+  loop.tf.frames = names.plant.frames;
+  if (loop.external_plant) loop.tf.frames = {{loop.plant_info.frame_id, "", 0.0, 0.0, 0.0}};
+  loop.simulation.output_delay_s.assign(names.outputs.size(), 0.0);
+  section.boolean("broadcast", loop.tf.broadcast);
+  readFrames(section, loop.tf.frames);
+  for (const auto& frame : loop.tf.frames) positionOf(frame.name, loop.tf.frames, section);
+  for (auto& item : section.list("sample_lines")) readLine(item, section, loop, names);
+  section.finish();
+}
+
+void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
+  YamlSection section = root.section("report");
+  const auto n_y = static_cast<Eigen::Index>(names.outputs.size());
+  Vector lower = Vector::Constant(n_y, -kInfinite);
+  Vector upper = Vector::Constant(n_y, kInfinite);
+  section.text("title", loop.report.title);
+  section.byName("output_lower", lower, names.outputs);
+  section.byName("output_upper", upper, names.outputs);
+  if ((lower.array() > upper.array()).any()) section.fail("output_upper", "limits >= output_lower");
+  for (auto& item : section.list("windows"))
+    loop.report.windows.push_back(readWindow(item, names.outputs));
+  readConsumption(section, names, loop.report.consumption);
+  std::vector<std::string> free;
+  section.subset("without_setpoint", free, names.outputs);
+  for (const auto& name : free)
+    loop.report.without_setpoint.push_back(
+        std::find(names.outputs.begin(), names.outputs.end(), name) - names.outputs.begin());
+  loop.report.output_lower = toStd(lower);
+  loop.report.output_upper = toStd(upper);
+  section.finish();
+}
+
+}  // namespace fpc

@@ -1,0 +1,110 @@
+// From a loop's name to the one text that tool and nodes read: merged, with absolute file names,
+// checked.
+#include <filesystem>
+
+#include "config/merge.hpp"
+#include "config/read.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/config/disturbance_source.hpp"
+
+namespace fpc {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The scalar at a path of keys; undefined if it is not there.
+YAML::Node scalarAt(const YAML::Node& root, const std::vector<std::string>& keys) {
+  YAML::Node node = root;
+  for (const auto& key : keys) {
+    if (!node.IsMap()) return YAML::Node(YAML::NodeType::Undefined);
+    const YAML::Node parent = node;
+    const YAML::Node child = parent[key];
+    if (!child.IsDefined()) return YAML::Node(YAML::NodeType::Undefined);
+    node.reset(child);
+  }
+  return node;
+}
+
+/// Beside the file that names it, or in the config folders.
+std::string findFile(const std::string& name, const std::string& beside, const std::string& folder,
+                     const std::string& where) {
+  std::vector<fs::path> candidates{fs::path(beside) / name};
+  if (fs::path(name).is_relative())
+    for (const auto& config : configFolders())
+      candidates.push_back(fs::path(config) / folder / name);
+  for (const auto& candidate : candidates)
+    if (fs::is_regular_file(candidate)) return fs::absolute(candidate).lexically_normal().string();
+  std::vector<std::string> looked;
+  for (const auto& candidate : candidates)
+    looked.push_back(candidate.parent_path().lexically_normal().string());
+  throw InputError(where + ": expected an existing file, got '" + name + "' (looked in " +
+                   join(looked) + ")");
+}
+
+/// Replaces a `file` key by an absolute name; `folder` is its usual place below a config folder.
+void makeAbsolute(MergedLoop& loop, const std::vector<std::string>& keys,
+                  const std::string& folder) {
+  YAML::Node file = scalarAt(loop.root, keys);
+  if (!file.IsDefined() || !file.IsScalar() || file.Scalar().empty()) return;
+  const std::string path = join(keys, ".");
+  const std::string where = loop.whereIs(path);
+  const auto origin = loop.origins.find(path);
+  const bool from_file = origin != loop.origins.end() && !origin->second.file.empty();
+  const fs::path beside =
+      from_file ? fs::path(origin->second.file).parent_path() : fs::current_path();
+  file = findFile(expandEnvironment(file.Scalar(), where), beside.string(), folder, where);
+}
+
+void makeFilesAbsolute(MergedLoop& loop) {
+  makeAbsolute(loop, {"model", "file"}, "model");
+  makeAbsolute(loop, {"model", "identify", "structure"}, "structure");
+  const YAML::Node source = scalarAt(loop.root, {"disturbance", "source"});
+  if (source.IsDefined() && source.IsScalar() && source.Scalar() == "csv")
+    makeAbsolute(loop, {"disturbance", "csv", "file"}, "data");
+}
+
+/// Reads everything once, so that errors name the line that a person wrote.
+void validate(const MergedLoop& merged, const std::string& file) {
+  YamlSection root(merged.root, file, "", merged.trace());
+  const LoopFile loop = readSections(root, fs::path(file).stem().string());
+  if (loop.external_plant) return;
+  try {
+    makeDisturbance(loop);
+  } catch (const InputError& e) {
+    throw InputError(root.where("disturbance") + ": " + e.what());
+  }
+}
+
+}  // namespace
+
+std::pair<std::string, std::string> parseOverride(const std::string& text) {
+  const auto equals = text.find('=');
+  require(equals != std::string::npos && equals > 0, "--set " + text, "path=value");
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
+LoopFile parseLoop(const std::string& text, const std::string& name, const Overrides& overrides) {
+  MergedLoop merged;
+  merged.root = YAML::Load(text);
+  applyOverrides(merged, overrides);
+  YamlSection root(merged.root, name, "", merged.trace());
+  LoopFile loop = readSections(root, name);
+  YAML::Emitter emitted;
+  emitted << merged.root;
+  loop.resolved = std::string(emitted.c_str()) + "\n";
+  return loop;
+}
+
+std::string resolveLoop(const std::string& name_or_path, const Overrides& overrides) {
+  const std::string file = findLoop(name_or_path);
+  MergedLoop merged = mergeLoop(file);
+  applyOverrides(merged, overrides);
+  makeFilesAbsolute(merged);
+  validate(merged, file);
+  YAML::Emitter text;
+  text << merged.root;
+  return std::string(text.c_str()) + "\n";
+}
+
+}  // namespace fpc

@@ -1,0 +1,222 @@
+#include "control/clp/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "control/power_of_two.hpp"
+#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool inside(VectorRef value, VectorRef lower, VectorRef upper) {
+  return (value.array() >= lower.array()).all() && (value.array() <= upper.array()).all();
+}
+
+}  // namespace
+
+ClpLimits::ClpLimits(const ClpParams& params, const InputLimits& limits, const ClpSizes& s)
+    : sizes_(s),
+      limits_(limits),
+      output_lower_(params.output_lower),
+      output_upper_(params.output_upper),
+      increment_lower_(params.increment_lower),
+      increment_upper_(params.increment_upper),
+      incremental_(params.bounds == "incremental"),
+      penalty_(params.output_penalty),
+      mode2_steps_(params.mode2_steps),
+      lower_(s.n_u),
+      upper_(s.n_u),
+      first_lower_(s.n_u),
+      first_upper_(s.n_u),
+      law_power_(s.n_u, s.n_x),
+      next_power_(s.n_u, s.n_x),
+      Phi_(s.n_x, s.n_x),
+      state_(s.n_x),
+      next_state_(s.n_x),
+      input_(s.n_u) {
+  for (Eigen::Index a = 0; a < s.n_u && !incremental_; ++a) {
+    if (std::isfinite(limits_.move[a])) limited_moves_.push_back(a);
+  }
+  n_rows_ = static_cast<Eigen::Index>(limited_moves_.size()) * (s.n_c - 1);
+  for (Eigen::Index o = 0; o < s.n_y; ++o) {
+    const int sides = std::isfinite(output_lower_[o]) + std::isfinite(output_upper_[o]);
+    if (sides > 0) limited_outputs_.push_back(o);
+    n_rows_ += sides * s.n_c;
+  }
+  n_rows_ += 2 * s.n_u * mode2_steps_;
+  n_slacks_ = static_cast<Eigen::Index>(limited_outputs_.size()) + (mode2_steps_ > 0 ? s.n_u : 0);
+}
+
+void ClpLimits::prepare(ClpProblem& problem) const {
+  const Eigen::Index n_u = sizes_.n_u;
+  problem.input_scale.resize(n_u);
+  for (Eigen::Index a = 0; a < n_u; ++a) {
+    problem.input_scale[a] = powerOfTwoNear(limits_.upper[a] - limits_.lower[a]);
+  }
+  problem.slack_scale = Vector::Ones(n_slacks_);
+  if (mode2_steps_ > 0) problem.slack_scale.tail(n_u) = problem.input_scale;
+  QpProblem& qp = problem.qp;
+  qp.x_lower.tail(n_slacks_).setZero();
+  qp.H.diagonal().tail(n_slacks_).setConstant(penalty_);
+  Eigen::Index row = 0;
+  for (const Eigen::Index a : limited_moves_) {
+    for (Eigen::Index i = 1; i < sizes_.n_c; ++i, ++row) {
+      qp.A(row, i * n_u + a) = 1.0;
+      qp.A(row, (i - 1) * n_u + a) = -1.0;
+      qp.a_upper[row] = limits_.move[a] / problem.input_scale[a];
+      qp.a_lower[row] = -qp.a_upper[row];
+    }
+  }
+  fillSlackColumns(problem);
+}
+
+void ClpLimits::fillSlackColumns(ClpProblem& problem) const {
+  Matrix& A = problem.qp.A;
+  Eigen::Index row = static_cast<Eigen::Index>(limited_moves_.size()) * (sizes_.n_c - 1);
+  Eigen::Index slack = sizes_.inputs();
+  const auto side = [&](bool limited, double sign, Eigen::Index count) {
+    if (!limited) return;
+    A.col(slack).segment(row, count).setConstant(sign);
+    row += count;
+  };
+  for (const Eigen::Index o : limited_outputs_) {
+    side(std::isfinite(output_upper_[o]), -1.0, sizes_.n_c);
+    side(std::isfinite(output_lower_[o]), 1.0, sizes_.n_c);
+    ++slack;
+  }
+  for (Eigen::Index a = 0; a < sizes_.n_u && mode2_steps_ > 0; ++a, ++slack) {
+    side(true, -1.0, mode2_steps_);
+    side(true, 1.0, mode2_steps_);
+  }
+}
+
+void ClpLimits::set(VectorRef input_previous, VectorRef u_ss) {
+  lower_ = limits_.lower;
+  upper_ = limits_.upper;
+  if (incremental_) {
+    lower_ = u_ss + increment_lower_;
+    upper_ = u_ss + increment_upper_;
+  }
+  first_lower_ = lower_;
+  first_upper_ = upper_;
+  bound_wins_ = false;
+  for (const Eigen::Index a : limited_moves_) {
+    const double reach_lower = input_previous[a] - limits_.move[a];
+    const double reach_upper = input_previous[a] + limits_.move[a];
+    bound_wins_ = bound_wins_ || reach_lower > upper_[a] || reach_upper < lower_[a];
+    first_lower_[a] = std::clamp(reach_lower, lower_[a], upper_[a]);
+    first_upper_[a] = std::clamp(reach_upper, lower_[a], upper_[a]);
+  }
+}
+
+bool ClpLimits::admitsFirst(VectorRef input) const {
+  return inside(input, first_lower_, first_upper_);
+}
+
+bool ClpLimits::admitsNext(VectorRef input, VectorRef previous) const {
+  for (const Eigen::Index a : limited_moves_) {
+    if (!(std::abs(input[a] - previous[a]) <= limits_.move[a])) return false;
+  }
+  return admitsMode2(input);
+}
+
+bool ClpLimits::admitsMode2(VectorRef input) const { return inside(input, lower_, upper_); }
+
+bool ClpLimits::admitsOutput(VectorRef output) const {
+  return inside(output, output_lower_, output_upper_);
+}
+
+void ClpLimits::fill(const PredictiveAction& now, const ClpPrediction& prediction,
+                     ClpProblem& problem) {
+  const Eigen::Index n_u = sizes_.n_u;
+  QpProblem& qp = problem.qp;
+  for (Eigen::Index i = 0; i < sizes_.n_c; ++i) {
+    const Vector& low = i == 0 ? first_lower_ : lower_;
+    const Vector& high = i == 0 ? first_upper_ : upper_;
+    qp.x_lower.segment(i * n_u, n_u) = low.cwiseQuotient(problem.input_scale);
+    qp.x_upper.segment(i * n_u, n_u) = high.cwiseQuotient(problem.input_scale);
+  }
+  Eigen::Index row = static_cast<Eigen::Index>(limited_moves_.size()) * (sizes_.n_c - 1);
+  for (std::size_t s = 0; s < limited_outputs_.size(); ++s) {
+    row = fillOutput(now, prediction, static_cast<Eigen::Index>(s), row, problem);
+  }
+  if (mode2_steps_ > 0) fillMode2(now, prediction, row, problem);
+}
+
+Eigen::Index ClpLimits::fillOutput(const PredictiveAction& now, const ClpPrediction& prediction,
+                                   Eigen::Index slack, Eigen::Index row,
+                                   ClpProblem& problem) const {
+  const Eigen::Index n_u = sizes_.n_u, n_c = sizes_.n_c;
+  const Eigen::Index o = limited_outputs_[static_cast<std::size_t>(slack)];
+  const auto pulse = prediction.output_pulse.row(o);
+  double response =
+      0.0;  // of the output, one unit: its largest answer to one pulse of one input scale
+  for (Eigen::Index p = 0; p < pulse.size(); ++p) {
+    response = std::max(response, std::abs(pulse[p]) * problem.input_scale[p % n_u]);
+  }
+  const double unit = problem.slack_scale[slack] = powerOfTwoNear(response);
+  QpProblem& qp = problem.qp;
+  for (const bool upper : {true, false}) {
+    const double limit = upper ? output_upper_[o] : output_lower_[o];
+    if (!std::isfinite(limit)) continue;
+    for (Eigen::Index p = 0; p < sizes_.inputs(); ++p) {
+      const Eigen::Index first = p / n_u;  // the first sample that input p reaches
+      const double factor = problem.input_scale[p % n_u] / unit;
+      for (Eigen::Index i = first; i < n_c; ++i)
+        qp.A(row + i, p) = factor * pulse[p + (i - 2 * first) * n_u];
+    }
+    bool reached =
+        false;  // before the dead time no input helps: such a row would only hold the slack open
+    for (Eigen::Index i = 0; i < n_c; ++i) {
+      reached = reached || !pulse.segment(i * n_u, n_u).isZero(0.0);
+      const double y_free =
+          now.C.row(o).dot(prediction.state_free.col(i + 1)) + now.offset_output[o];
+      qp.a_upper[row + i] = upper && reached ? (limit - y_free) / unit : kInfinity;
+      qp.a_lower[row + i] = !upper && reached ? (limit - y_free) / unit : -kInfinity;
+    }
+    row += n_c;
+  }
+  return row;
+}
+
+// u(n_c + m) = -K Phi^m x(n_c) + what the law does from x_free(n_c); the last law_offset is held.
+void ClpLimits::fillMode2(const PredictiveAction& now, const ClpPrediction& prediction,
+                          Eigen::Index row, ClpProblem& problem) {
+  const Eigen::Index n = sizes_.inputs(), n_u = sizes_.n_u;
+  const auto held_offset = prediction.law_offset.col(sizes_.n_c - 1);
+  QpProblem& qp = problem.qp;
+  Phi_ = now.A;
+  Phi_ -= now.B.lazyProduct(now.K);
+  law_power_ = now.K;
+  state_ = prediction.state_free.col(sizes_.n_c);
+  for (Eigen::Index m = 0; m < mode2_steps_; ++m) {
+    input_ = held_offset;
+    input_ -= now.K.lazyProduct(state_);
+    for (Eigen::Index a = 0; a < n_u; ++a) {
+      const double unit = problem.input_scale[a];
+      const Eigen::Index high = row + 2 * a * mode2_steps_ + m, low = high + mode2_steps_;
+      for (Eigen::Index p = 0; p < n; ++p) {
+        const Eigen::Index b = p % n_u;
+        const auto reached = prediction.state_pulse.col(n - n_u - p + 2 * b);
+        qp.A(high, p) = -law_power_.row(a).dot(reached) * problem.input_scale[b] / unit;
+        qp.A(low, p) = qp.A(high, p);
+      }
+      qp.a_upper[high] = (upper_[a] - input_[a]) / unit;
+      qp.a_lower[low] = (lower_[a] - input_[a]) / unit;
+      qp.a_lower[high] = -kInfinity;
+      qp.a_upper[low] = kInfinity;
+    }
+    next_state_ = now.offset_state;
+    next_state_ += now.A.lazyProduct(state_);
+    next_state_ += now.B.lazyProduct(input_);
+    state_.swap(next_state_);
+    next_power_.noalias() = law_power_.lazyProduct(Phi_);
+    law_power_.swap(next_power_);
+  }
+}
+
+}  // namespace fpc

@@ -1,0 +1,217 @@
+#include "fmbpc/control/excitation/excitation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+
+#include "base/random.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr std::uint64_t kExcitation = 0x65786369;  // apart from the streams of disturbances
+constexpr std::int64_t kForEver = std::numeric_limits<std::int64_t>::max();
+
+// Exponents of primitive polynomials over {0, 1}, one for each number of bits from 2 on; the
+// constant term 1 is not listed.
+constexpr std::array<std::array<int, 4>, 19> kTaps = {{{2, 1},
+                                                       {3, 2},
+                                                       {4, 3},
+                                                       {5, 3},
+                                                       {6, 5},
+                                                       {7, 6},
+                                                       {8, 6, 5, 4},
+                                                       {9, 5},
+                                                       {10, 7},
+                                                       {11, 9},
+                                                       {12, 6, 4, 1},
+                                                       {13, 4, 3, 1},
+                                                       {14, 5, 3, 1},
+                                                       {15, 14},
+                                                       {16, 15, 13, 4},
+                                                       {17, 14},
+                                                       {18, 11},
+                                                       {19, 6, 2, 1},
+                                                       {20, 17}}};
+
+std::uint32_t tapsOf(int bits) {
+  std::uint32_t taps = 0;
+  for (const int exponent : kTaps[static_cast<std::size_t>(bits - ShiftRegister::kFewestBits)])
+    if (exponent > 0) taps |= 1U << static_cast<unsigned>(bits - exponent);
+  return taps;
+}
+
+bool oddNumberOfOnes(std::uint32_t word) {
+  bool odd = false;
+  for (; word != 0; word &= word - 1) odd = !odd;
+  return odd;
+}
+
+std::string numbersWithin(double lower, double upper) {
+  return "within the input's limits " + std::to_string(lower) + ".." + std::to_string(upper);
+}
+
+void validateLevels(const ExcitationSignal& s, const std::string& key, const InputLimits& limits) {
+  const double lower = limits.lower[s.input], upper = limits.upper[s.input];
+  const auto inside = [&](double value) { return value >= lower && value <= upper; };
+  const std::string expected = "a number " + numbersWithin(lower, upper);
+  for (const double level : s.levels) require(inside(level), key + "levels", expected);
+  if (s.signal == "multi_level" && !s.levels.empty()) return;
+  if (s.signal == "prbs" || s.signal == "multi_level") {
+    require(inside(s.lower), key + "lower", expected);
+    require(inside(s.upper), key + "upper", expected);
+    require(s.lower < s.upper, key + "upper", "a number above lower");
+  }
+  for (const ExcitationStep& entry : s.schedule)
+    require(inside(entry.value), key + "schedule", "values " + numbersWithin(lower, upper));
+}
+
+void validateSignal(const ExcitationSignal& s, const std::string& key, const InputLimits& limits) {
+  require(s.input >= 0 && s.input < limits.lower.size(), key + "input",
+          "one of the plant's inputs");
+  require(
+      s.signal == "prbs" || s.signal == "multi_level" || s.signal == "steps" || s.signal == "none",
+      key + "signal", "one of prbs, multi_level, steps, none");
+  require(s.start_steps >= 0, key + "start_steps", "a number of samples >= 0");
+  require(s.clock_steps >= 1, key + "clock_steps", "a number of samples >= 1");
+  require(s.hold_lower_steps >= 1, key + "hold_lower_steps", "a number of samples >= 1");
+  require(s.hold_upper_steps >= s.hold_lower_steps, key + "hold_upper_steps",
+          "a number of samples not below hold_lower_steps");
+  require(
+      s.register_bits >= ShiftRegister::kFewestBits && s.register_bits <= ShiftRegister::kMostBits,
+      key + "register_bits", "2..20");
+  require(s.signal != "steps" || !s.schedule.empty(), key + "schedule", "at least one entry");
+  std::int64_t before = -1;
+  for (const ExcitationStep& entry : s.schedule) {
+    require(entry.step > before, key + "schedule", "times >= 0 that increase");
+    before = entry.step;
+  }
+  validateLevels(s, key, limits);
+}
+
+}  // namespace
+
+void ExcitationParams::validate(const InputLimits& limits, Eigen::Index n_y) const {
+  require(!signals.empty(), "controller.signals", "at least one signal");
+  std::set<int> moved;
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const std::string key = "controller.signals[" + std::to_string(i) + "].";
+    validateSignal(signals[i], key, limits);
+    require(moved.insert(signals[i].input).second, key + "input",
+            "an input that no other signal moves");
+  }
+  for (std::size_t i = 0; i < feedback.size(); ++i) {
+    const std::string key = "controller.feedback[" + std::to_string(i) + "].";
+    require(feedback[i].input >= 0 && feedback[i].input < limits.lower.size(), key + "input",
+            "one of the plant's inputs");
+    require(feedback[i].output >= 0 && feedback[i].output < n_y, key + "output",
+            "one of the plant's outputs");
+    require(std::isfinite(feedback[i].gain), key + "gain", "a finite number");
+  }
+}
+
+ShiftRegister::ShiftRegister(int bits, std::uint64_t state) : bits_(bits) {
+  require(bits >= kFewestBits && bits <= kMostBits, "register_bits", "2..20");
+  taps_ = tapsOf(bits);
+  mask_ = (1U << static_cast<unsigned>(bits)) - 1U;
+  state_ = static_cast<std::uint32_t>((state + mask_ - 1U) % mask_) + 1U;  // never all zeros
+}
+
+bool ShiftRegister::next() {
+  const bool out = (state_ & 1U) != 0;
+  const std::uint32_t in = oddNumberOfOnes(state_ & taps_) ? 1U : 0U;
+  state_ = (state_ >> 1U) | (in << static_cast<unsigned>(bits_ - 1));
+  return out;
+}
+
+ExcitationStream::ExcitationStream(ExcitationSignal signal, std::uint64_t seed, double start_input)
+    : signal_(std::move(signal)),
+      start_input_(start_input),
+      first_engine_(seededEngine(seed, {static_cast<std::uint64_t>(signal_.input), kExcitation})),
+      engine_(first_engine_),
+      first_register_(signal_.register_bits, engine_() >> 32U),
+      register_(first_register_) {
+  rewind();
+}
+
+void ExcitationStream::rewind() {
+  engine_ = first_engine_;
+  register_ = first_register_;
+  entry_ = 0;
+  begin_ = 0;
+  end_ = signal_.start_steps;
+  value_ = start_input_;
+  if (signal_.signal == "none") end_ = kForEver;
+}
+
+double ExcitationStream::at(std::uint32_t step) {
+  if (step < begin_) rewind();
+  while (step >= end_) next();
+  return value_;
+}
+
+void ExcitationStream::next() {
+  begin_ = end_;
+  if (signal_.signal == "prbs") {
+    value_ = register_.next() ? signal_.upper : signal_.lower;
+    end_ = begin_ + signal_.clock_steps;
+  } else if (signal_.signal == "multi_level") {
+    nextLevel();
+  } else {
+    if (entry_ > 0) value_ = signal_.schedule[entry_ - 1].value;
+    end_ = entry_ < signal_.schedule.size() ? signal_.start_steps + signal_.schedule[entry_].step
+                                            : kForEver;
+    ++entry_;
+  }
+}
+
+void ExcitationStream::nextLevel() {
+  const double share = uniform(engine_);
+  const auto count = static_cast<double>(signal_.levels.size());
+  value_ = signal_.levels.empty() ? signal_.lower + (signal_.upper - signal_.lower) * share
+                                  : signal_.levels[static_cast<std::size_t>(count * share)];
+  const double choices = 1.0 + signal_.hold_upper_steps - signal_.hold_lower_steps;
+  end_ = begin_ + signal_.hold_lower_steps + static_cast<std::int64_t>(choices * uniform(engine_));
+}
+
+ExcitationController::ExcitationController(ExcitationParams params, InputLimits limits,
+                                           Vector start_input, const PlantInfo& plant)
+    : limits_(std::move(limits)),
+      feedback_(params.feedback),
+      signal_(std::move(start_input)),
+      wanted_(signal_),
+      no_reference_(Vector::Constant(static_cast<Eigen::Index>(plant.outputs.size()),
+                                     std::numeric_limits<double>::quiet_NaN())) {
+  const auto n_u = static_cast<Eigen::Index>(plant.inputs.size());
+  limits_.validate(n_u);
+  require(signal_.size() == n_u && signal_.allFinite(), "actuator.initial",
+          std::to_string(n_u) + " finite numbers");
+  params.validate(limits_, no_reference_.size());
+  for (ExcitationSignal& signal : params.signals) {
+    const double start = signal_[signal.input];
+    streams_.emplace_back(std::move(signal), params.seed, start);
+  }
+}
+
+void ExcitationController::reset(const Measurement& /*start*/) {}
+
+void ExcitationController::step(const Measurement& now, const SetpointSource& setpoint,
+                                ControllerOutput& output) {
+  for (ExcitationStream& stream : streams_) signal_[stream.input()] = stream.at(now.header.step);
+  wanted_ = signal_;
+  for (const ExcitationFeedback& f : feedback_)
+    wanted_[f.input] += f.gain * (setpoint.present()[f.output] - now.outputs[f.output]);
+  output.input = wanted_;
+  limits_.clip(output.input, now.input_applied);
+  output.source = output.input == wanted_ ? ActionSource::kBase : ActionSource::kClipped;
+  output.reference = feedback_.empty() ? no_reference_ : setpoint.present();
+  output.predictive = false;
+  output.ok = true;
+  output.remark = "";
+}
+
+}  // namespace fpc

@@ -1,0 +1,51 @@
+#include "fmbpc/control/fmbpc/disturbance_forecast.hpp"
+
+#include <algorithm>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+
+DisturbanceForecast::DisturbanceForecast(Eigen::Index n_d, int horizon_steps, int period_steps,
+                                         double pole)
+    : past_(Matrix::Zero(n_d, std::max(period_steps, 0) + 1)),
+      future_(Matrix::Zero(n_d, std::max(horizon_steps, 1))),
+      period_(period_steps),
+      pole_(pole) {
+  require(period_steps == 0 || period_steps >= horizon_steps, "controller.forecast_period_h",
+          "0, or a time not shorter than controller.horizon_steps");
+  require(pole >= 0.0 && pole <= 1.0, "controller.forecast_pole", "a number from 0 to 1");
+}
+
+void DisturbanceForecast::forget() { known_ = 0; }
+
+Eigen::Index DisturbanceForecast::column(std::uint32_t step) const {
+  return static_cast<Eigen::Index>(step) % past_.cols();
+}
+
+void DisturbanceForecast::add(std::uint32_t step, VectorRef disturbances) {
+  if (known_ > 0 && step < last_step_) forget();
+  const Eigen::Index passed = known_ == 0 ? 1 : static_cast<Eigen::Index>(step - last_step_);
+  const Eigen::Index fresh = std::min(passed, past_.cols());
+  for (Eigen::Index i = 0; i < fresh; ++i)
+    past_.col(column(step - static_cast<std::uint32_t>(i))) = disturbances;
+  known_ = std::min(known_ + passed, past_.cols());
+  last_step_ = step;
+}
+
+const Matrix& DisturbanceForecast::predict() {
+  const auto now = past_.col(column(last_step_));
+  const bool daily = period_ > 0 && known_ == past_.cols();
+  const auto before = past_.col(daily ? column(last_step_ - static_cast<std::uint32_t>(period_))
+                                      : column(last_step_));
+  double fading = 1.0;
+  for (Eigen::Index i = 0; i < future_.cols(); ++i, fading *= pole_) {
+    future_.col(i) = now;
+    if (!daily || i == 0) continue;
+    const auto back = static_cast<std::uint32_t>(period_ - i);
+    future_.col(i) = past_.col(column(last_step_ - back)) + fading * (now - before);
+  }
+  return future_;
+}
+
+}  // namespace fpc

@@ -1,0 +1,270 @@
+#include "fmbpc/control/fmbpc/path_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fpc {
+namespace {
+
+constexpr double kEnough = 1e-4;    // relative gain below which another round is not worth it
+constexpr double kSmallest = 0.05;  // share of a step below which it is given up
+constexpr double kFlat = 1e-12;     // slope that is none, relative
+constexpr double kStep = 1e-4;      // of finite differences, relative
+
+}  // namespace
+
+PathPlanner::PathPlanner(const LocalModel& model, PathParams params, InputLimits limits)
+    : model_(model),
+      params_(std::move(params)),
+      limits_(std::move(limits)),
+      n_x_(model.stateSize()),
+      n_u_(limits_.lower.size()),
+      n_y_(params_.weight_output.size()),
+      N_(params_.horizon_steps),
+      states_(Matrix::Zero(n_x_, N_ + 1)),
+      inputs_(Matrix::Zero(n_u_, N_)),
+      trial_states_(states_),
+      trial_inputs_(inputs_),
+      step_(inputs_),
+      A_(static_cast<std::size_t>(N_), Matrix::Zero(n_x_, n_x_)),
+      B_(static_cast<std::size_t>(N_), Matrix::Zero(n_x_, n_u_)),
+      K_(static_cast<std::size_t>(N_), Matrix::Zero(n_u_, n_x_)),
+      P_(n_x_, n_x_),
+      PA_(n_x_, n_x_),
+      PB_(n_x_, n_u_),
+      Quu_(n_u_, n_u_),
+      Qux_(n_u_, n_x_),
+      Qxx_(n_x_, n_x_),
+      free_Quu_(n_u_, n_u_),
+      p_(n_x_),
+      Qu_(n_u_),
+      Qx_(n_x_),
+      wish_(n_u_),
+      state_(n_x_),
+      next_(n_x_),
+      moved_(n_x_),
+      lower_(n_u_),
+      upper_(n_u_),
+      input_(n_u_),
+      correction_(n_x_),
+      offset_(n_y_),
+      disturbances_(model.model().disturbances.size(), N_),
+      reference_(n_y_, N_),
+      fixed_(static_cast<std::size_t>(n_u_)),
+      factor_(n_u_) {}
+
+void PathPlanner::forget() { warm_ = false; }
+
+/// What sample i+1 and the move of sample i cost.
+double PathPlanner::weigh(Eigen::Index i, const Matrix& states, const Matrix& inputs) const {
+  double cost = 0.0;
+  for (Eigen::Index o = 0; o < n_y_; ++o) {
+    if (params_.weight_output[o] == 0.0) continue;
+    const double error = states(model_.outputState(o), i + 1) + offset_[o] - reference_(o, i);
+    cost += params_.weight_output[o] * error * error;
+  }
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    const double move = inputs(a, i) - states(model_.inputState(a, 1), i);
+    cost += params_.weight_move[a] * move * move;
+  }
+  return cost;
+}
+
+/// The model forwards under u + share * step + K (x - x of the plan), clipped.
+double PathPlanner::simulate(double share, Matrix& states, Matrix& inputs) {
+  double cost = 0.0;
+  states.col(0) = states_.col(0);
+  for (Eigen::Index i = 0; i < N_; ++i) {
+    moved_ = states.col(i) - states_.col(i);
+    input_ = inputs_.col(i) + share * step_.col(i);
+    input_ += K_[static_cast<std::size_t>(i)].lazyProduct(moved_);
+    for (Eigen::Index a = 0; a < n_u_; ++a) wish_[a] = states(model_.inputState(a, 1), i);
+    limits_.clip(input_, wish_);
+    inputs.col(i) = input_;
+    state_ = states.col(i);
+    model_.blend(state_, input_, disturbances_.col(i));
+    next_ = model_.affine().g + correction_;
+    next_ += model_.affine().A.lazyProduct(state_);
+    next_ += model_.affine().B.lazyProduct(input_);
+    states.col(i + 1) = next_;
+    cost += weigh(i, states, inputs);
+  }
+  return cost;
+}
+
+void PathPlanner::linearise() {
+  for (Eigen::Index i = 0; i < N_; ++i) {
+    state_ = states_.col(i);
+    input_ = inputs_.col(i);
+    model_.blend(state_, input_, disturbances_.col(i));
+    A_[static_cast<std::size_t>(i)] = model_.affine().A;
+    B_[static_cast<std::size_t>(i)] = model_.affine().B;
+    slope(i);
+  }
+}
+
+/// The rules' weights change along the path as well: differences where they depend on something.
+void PathPlanner::slope(Eigen::Index i) {
+  auto& A = A_[static_cast<std::size_t>(i)];
+  auto& B = B_[static_cast<std::size_t>(i)];
+  const auto difference = [&](double& variable, Eigen::Ref<Vector> column) {
+    const double h = kStep * std::max(1.0, std::abs(variable)), kept = variable;
+    variable = kept + h;
+    model_.blend(state_, input_, disturbances_.col(i));
+    next_ = model_.affine().g + correction_ - states_.col(i + 1);
+    next_ += model_.affine().A.lazyProduct(state_);
+    next_ += model_.affine().B.lazyProduct(input_);
+    column = next_ / h;
+    variable = kept;
+  };
+  for (Eigen::Index j = 0; j < n_x_; ++j) difference(state_[j], A.col(j));
+  for (Eigen::Index a = 0; a < n_u_; ++a) difference(input_[a], B.col(a));
+}
+
+/// Into wish_ the least of 1/2 x' Quu x + Qu' x with the fixed inputs where wish_ has them.
+bool PathPlanner::solveFree() {
+  free_Quu_ = Quu_;
+  input_ = -Qu_;
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    if (!fixed_[static_cast<std::size_t>(a)]) continue;
+    input_ -= wish_[a] * Quu_.col(a);
+    free_Quu_.row(a).setZero();
+    free_Quu_.col(a).setZero();
+    free_Quu_(a, a) = 1.0;
+  }
+  for (Eigen::Index a = 0; a < n_u_; ++a)
+    if (fixed_[static_cast<std::size_t>(a)]) input_[a] = wish_[a];
+  factor_.compute(free_Quu_);
+  if (factor_.info() != Eigen::Success) return false;
+  factor_.solveInPlace(input_);
+  wish_ = input_;
+  return true;
+}
+
+/// Puts every free input that is out of its limits on them. False if there is none.
+bool PathPlanner::fixMore() {
+  bool more = false;
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    wish_[a] = std::clamp(input_[a], lower_[a], upper_[a]);
+    if (wish_[a] == input_[a] || fixed_[static_cast<std::size_t>(a)]) continue;
+    fixed_[static_cast<std::size_t>(a)] = more = true;
+  }
+  return more;
+}
+
+/// Frees the fixed input that would gain most by moving inwards. False if none would.
+bool PathPlanner::release() {
+  Eigen::Index best = -1;
+  double gain = 0.0;
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    if (!fixed_[static_cast<std::size_t>(a)] || lower_[a] == upper_[a]) continue;
+    const double slope = Quu_.row(a).dot(wish_) + Qu_[a];
+    const double inwards = wish_[a] == lower_[a] ? -slope : slope;
+    if (inwards <= kFlat * (1.0 + std::abs(Qu_[a])) || inwards <= gain) continue;
+    gain = inwards;
+    best = a;
+  }
+  if (best >= 0) fixed_[static_cast<std::size_t>(best)] = false;
+  return best >= 0;
+}
+
+/// The best input of sample i for the cost to go, those at a limit fixed there.
+bool PathPlanner::chooseInput(Eigen::Index i) {
+  for (Eigen::Index a = 0; a < n_u_; ++a) {
+    const double before = states_(model_.inputState(a, 1), i);
+    lower_[a] = std::max(limits_.lower[a], before - limits_.move[a]) - inputs_(a, i);
+    upper_[a] = std::min(limits_.upper[a], before + limits_.move[a]) - inputs_(a, i);
+    lower_[a] = std::min(lower_[a], upper_[a]);
+    fixed_[static_cast<std::size_t>(a)] = false;
+  }
+  for (Eigen::Index round = 0; round < 4 * n_u_ + 1; ++round) {
+    if (!solveFree()) return false;
+    if (!fixMore() && !release()) break;
+  }
+  Matrix& K = K_[static_cast<std::size_t>(i)];
+  K = -Qux_;
+  for (Eigen::Index a = 0; a < n_u_; ++a)
+    if (fixed_[static_cast<std::size_t>(a)]) K.row(a).setZero();
+  for (Eigen::Index j = 0; j < n_x_; ++j) factor_.solveInPlace(K.col(j));
+  step_.col(i) = wish_;
+  return K.allFinite() && wish_.allFinite();
+}
+
+bool PathPlanner::sweep() {
+  P_.setZero();
+  p_.setZero();
+  for (Eigen::Index i = N_ - 1; i >= 0; --i) {
+    const Matrix& A = A_[static_cast<std::size_t>(i)];
+    const Matrix& B = B_[static_cast<std::size_t>(i)];
+    const Matrix& K = K_[static_cast<std::size_t>(i)];
+    for (Eigen::Index o = 0; o < n_y_; ++o) {
+      const Eigen::Index row = model_.outputState(o);
+      P_(row, row) += params_.weight_output[o];
+      p_[row] += params_.weight_output[o] * (states_(row, i + 1) + offset_[o] - reference_(o, i));
+    }
+    PA_.noalias() = P_.lazyProduct(A);
+    PB_.noalias() = P_.lazyProduct(B);
+    Qxx_.noalias() = A.transpose().lazyProduct(PA_);
+    Qux_.noalias() = B.transpose().lazyProduct(PA_);
+    Quu_.noalias() = B.transpose().lazyProduct(PB_);
+    Qx_.noalias() = A.transpose().lazyProduct(p_);
+    Qu_.noalias() = B.transpose().lazyProduct(p_);
+    for (Eigen::Index a = 0; a < n_u_; ++a) {
+      const Eigen::Index before = model_.inputState(a, 1);
+      const double L = params_.weight_move[a], move = inputs_(a, i) - states_(before, i);
+      Quu_(a, a) += L;
+      Qux_(a, before) -= L;
+      Qxx_(before, before) += L;
+      Qu_[a] += L * move;
+      Qx_[before] -= L * move;
+    }
+    if (!chooseInput(i)) return false;
+    // Value of the rest: p = Qx + K' (Quu k + Qu) + Qux' k, P likewise.
+    Qu_ += Quu_.lazyProduct(step_.col(i));
+    p_ = Qx_ + K.transpose().lazyProduct(Qu_);
+    p_ += Qux_.transpose().lazyProduct(step_.col(i));
+    PB_.noalias() = K.transpose().lazyProduct(Quu_);
+    PB_ += Qux_.transpose();
+    P_ = Qxx_;
+    P_ += PB_.lazyProduct(K);
+    P_ += K.transpose().lazyProduct(Qux_);
+    PA_ = P_.transpose();
+    P_ = 0.5 * (P_ + PA_);
+  }
+  return P_.allFinite();
+}
+
+bool PathPlanner::plan(VectorRef state, VectorRef correction, VectorRef offset_output,
+                       const Matrix& disturbances, const Matrix& reference,
+                       VectorRef input_previous) {
+  correction_ = correction;
+  offset_ = offset_output;
+  disturbances_ = disturbances.leftCols(N_);
+  reference_ = reference.leftCols(N_);
+  for (Eigen::Index i = 0; i + 1 < N_ && warm_; ++i) inputs_.col(i) = inputs_.col(i + 1);
+  if (!warm_) inputs_.colwise() = Vector::Map(input_previous.data(), n_u_);
+  states_.col(0) = state;
+  for (auto& K : K_) K.setZero();
+  step_.setZero();
+  cost_ = simulate(0.0, trial_states_, trial_inputs_);
+  states_.swap(trial_states_);
+  inputs_.swap(trial_inputs_);
+  warm_ = std::isfinite(cost_);
+  for (int n = 0; n < params_.iterations && warm_; ++n) {
+    linearise();
+    if (!sweep()) break;
+    double share = 1.0, cost = simulate(share, trial_states_, trial_inputs_);
+    while (!(cost < cost_) && share > kSmallest)
+      cost = simulate(share *= 0.5, trial_states_, trial_inputs_);
+    if (!(cost < cost_)) break;
+    const bool enough = cost_ - cost < kEnough * cost_;
+    cost_ = cost;
+    states_.swap(trial_states_);
+    inputs_.swap(trial_inputs_);
+    if (enough) break;
+  }
+  return warm_;
+}
+
+}  // namespace fpc

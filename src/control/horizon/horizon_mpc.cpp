@@ -1,0 +1,95 @@
+#include "fmbpc/control/horizon/horizon_mpc.hpp"
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+Index countOf(const std::vector<SignalInfo>& signals) { return static_cast<Index>(signals.size()); }
+
+}  // namespace
+
+HorizonMpc::HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo& plant)
+    : params_((params.validate(countOf(plant.outputs), countOf(plant.inputs)), std::move(params))),
+      limits_(std::move(limits)),
+      n_y_(countOf(plant.outputs)),
+      n_u_(countOf(plant.inputs)),
+      reference_(params_.reference_pole, params_.preview),
+      future_(Matrix::Zero(n_y_, params_.horizon_steps)),
+      correction_(Vector::Zero(n_y_)),
+      disturbances_(Vector::Zero(countOf(plant.disturbances))),
+      plan_(Vector::Zero(n_u_ * params_.move_steps)),
+      kept_(plan_) {
+  limits_.validate(n_u_);
+  range_ = limits_.upper - limits_.lower;
+  range_ = (range_.array() > 0.0).select(range_, 1.0);
+  for (const SignalInfo& output : plant.outputs)
+    signals_.emplace_back(output.name + "_correction", 0.0);
+  signals_.emplace_back("plan_cost", 0.0);
+  signals_.emplace_back("plan_effort", 0.0);
+}
+
+void HorizonMpc::believe(std::unique_ptr<SampleModel> model) {
+  cost_ = std::make_unique<PlanCost>(*model, params_);
+  model_ = std::move(model);
+  state_ = Vector::Zero(model_->stateSize());
+  fresh_ = true;
+}
+
+void HorizonMpc::reset(const Measurement& start) {
+  reference_.reset(start.outputs);
+  fresh_ = true;
+}
+
+/// False if the state had to start anew.
+bool HorizonMpc::estimate(const Measurement& now) {
+  const bool follows = !fresh_ && model_->step(now.input_applied, disturbances_, state_);
+  disturbances_ = now.disturbances;
+  fresh_ = false;
+  correction_.setZero();
+  if (!follows) model_->rest(now.outputs, now.input_applied, disturbances_, state_);
+  for (Index i = 0; i < n_y_; ++i) {
+    double& predicted = state_[model_->outputState(i)];
+    if (follows) correction_[i] = now.outputs[i] - predicted;
+    predicted = now.outputs[i];
+  }
+  return follows;
+}
+
+void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
+                      ControllerOutput& output) {
+  output.reference = reference_.present();
+  output.predictive = false;
+  reference_.predict(setpoint, now.header.step, future_);
+  reference_.advance(setpoint, now.header.step);
+  const Index rest = plan_.size() - n_u_;
+  if (estimate(now)) {
+    for (Index j = 0; j < rest; ++j) plan_[j] = plan_[j + n_u_];
+  } else {
+    for (Index j = 0; j < plan_.size(); ++j) plan_[j] = now.input_applied[j % n_u_];
+  }
+  clipPlan(plan_, now.input_applied, limits_);
+  kept_ = plan_;
+  cost_->start(state_, correction_, disturbances_, now.input_applied, future_);
+  PlanFound found = search(now, plan_);
+  found.usable = found.usable && plan_.allFinite();
+  if (!found.usable) plan_ = kept_;
+  clipPlan(plan_, now.input_applied, limits_);  // round-off
+  output.input = plan_.head(n_u_);
+  output.source = found.usable ? ActionSource::kBase : ActionSource::kClipped;
+  output.ok = found.usable;
+  output.remark = found.remark;
+  if (!state_.allFinite()) fresh_ = true;
+  refreshSignals(found);
+}
+
+void HorizonMpc::refreshSignals(const PlanFound& found) {
+  std::size_t place = 0;
+  for (Index i = 0; i < n_y_; ++i) signals_[place++].second = correction_[i];
+  signals_[place++].second = found.cost;
+  signals_[place].second = static_cast<double>(found.effort);
+}
+
+}  // namespace fpc

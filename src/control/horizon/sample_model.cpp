@@ -1,0 +1,23 @@
+#include "fmbpc/control/horizon/sample_model.hpp"
+
+namespace fpc {
+
+FuzzySampleModel::FuzzySampleModel(const TsModel& model)
+    : local_(model), next_(local_.stateSize()) {}
+
+void FuzzySampleModel::rest(VectorRef outputs, VectorRef input, VectorRef disturbances,
+                            Eigen::Ref<Vector> state) {
+  local_.restState(outputs, input, disturbances, state);
+}
+
+bool FuzzySampleModel::step(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> state) {
+  local_.blend(state, input, disturbances);
+  const AffineModel& affine = local_.affine();
+  next_ = affine.g;
+  next_ += affine.A.lazyProduct(state);
+  next_ += affine.B.lazyProduct(input);
+  state = next_;
+  return state.allFinite();
+}
+
+}  // namespace fpc

@@ -1,0 +1,185 @@
+#include "control/hybrid/evolution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kSame = 1e-9;        // values of an input that differ by less are the same
+constexpr double kGridPoints = 4000;  // of all outputs together, where extremes are checked
+constexpr double kSlack = 1e-12;      // of the comparison of two predictions
+
+bool matches(const Vector& pattern, VectorRef input) {
+  for (Index i = 0; i < pattern.size(); ++i)
+    if (!std::isnan(pattern[i]) && std::abs(pattern[i] - input[i]) > kSame) return false;
+  return true;
+}
+
+/// Moves to the next point of a grid of `n` points a side; false after the last one.
+bool nextPoint(std::vector<int>& index, int n) {
+  for (int& i : index) {
+    if (++i < n) return true;
+    i = 0;
+  }
+  return false;
+}
+
+}  // namespace
+
+HybridEvolution::HybridEvolution(HybridMpcParams params, InputLimits limits, const TsModel& model)
+    : params_(std::move(params)),
+      limits_(std::move(limits)),
+      model_(model, params_.choices),
+      first_cost_(Vector::Zero(params_.choices.cols())),
+      disturbances_(Vector::Zero(static_cast<Index>(model.disturbances.size()))),
+      high_(Vector::Zero(model_.stateSize())),
+      low_(high_) {
+  const Index n = params_.choices.cols();
+  block_cost_.resize(n, n);
+  for (Index before = 0; before < n; ++before)
+    for (Index choice = 0; choice < n; ++choice)
+      block_cost_(before, choice) =
+          blockCost(params_.choices.col(before), static_cast<int>(choice));
+  if (params_.bound != "reach" || !model_.isMemoryless()) return;
+  highest_ = extremeChoice(1.0);
+  lowest_ = extremeChoice(-1.0);
+}
+
+double HybridEvolution::blockCost(VectorRef before, int choice) const {
+  const auto now = params_.choices.col(choice);
+  for (const ForbiddenTransition& t : params_.forbidden_transitions)
+    if (matches(t.from, before) && matches(t.to, now)) return kInfinite;
+  for (Index i = 0; i < now.size(); ++i)
+    if (std::abs(now[i] - before[i]) > limits_.move[i] * (1.0 + kSame)) return kInfinite;
+  double cost = params_.hold_samples * params_.weight_consumption.dot(now);
+  for (const SwitchTerm& s : params_.switching)
+    cost += s.weight * std::max(before[s.before], 0.0) * now[s.after];
+  for (const TravelTerm& t : params_.travel)
+    cost += t.weight * std::abs(now[t.input] - before[t.input]) *
+            (t.gate < 0 ? 1.0 : std::max(before[t.gate], 0.0));
+  return cost;
+}
+
+void HybridEvolution::start(VectorRef input_before, VectorRef disturbances,
+                            const Matrix& reference) {
+  for (Index choice = 0; choice < first_cost_.size(); ++choice)
+    first_cost_[choice] = blockCost(input_before, static_cast<int>(choice));
+  disturbances_ = disturbances;
+  reference_ = &reference;
+}
+
+double HybridEvolution::trackingCost(VectorRef state, Index sample) const {
+  double cost = 0.0;
+  for (Index i = 0; i < params_.weight_tracking.size(); ++i) {
+    if (params_.weight_tracking[i] == 0.0) continue;
+    const double error = state[model_.outputState(i)] - (*reference_)(i, sample);
+    cost += params_.weight_tracking[i] * error * error;
+  }
+  return cost;
+}
+
+double HybridEvolution::advance(int level, int before, int choice, Eigen::Ref<Vector> state) {
+  double cost = before < 0 ? first_cost_[choice] : block_cost_(before, choice);
+  if (cost == kInfinite) return cost;
+  const Index first = static_cast<Index>(level) * params_.hold_samples;
+  for (Index k = 0; k < params_.hold_samples; ++k) {
+    model_.step(choice, disturbances_, state);
+    cost += trackingCost(state, first + k);
+  }
+  return cost;
+}
+
+// The least squared errors of outputs that lie between low_ and high_.
+double HybridEvolution::bandCost(Index sample) const {
+  double cost = 0.0;
+  for (Index i = 0; i < params_.weight_tracking.size(); ++i) {
+    if (params_.weight_tracking[i] == 0.0) continue;
+    const double wanted = (*reference_)(i, sample);
+    double error = 0.0;
+    if (highest_ >= 0) error = std::max(error, wanted - high_[model_.outputState(i)]);
+    if (lowest_ >= 0) error = std::max(error, low_[model_.outputState(i)] - wanted);
+    cost += params_.weight_tracking[i] * error * error;
+  }
+  return cost;
+}
+
+bool HybridEvolution::insideRanges(VectorRef state) const {
+  for (Index i = 0; i < state.size(); ++i) {
+    const SignalInfo& range = model_.model().outputs[static_cast<std::size_t>(i)];
+    if (!(state[i] >= range.lower && state[i] <= range.upper)) return false;
+  }
+  return true;
+}
+
+double HybridEvolution::leastCostToGo(int level, Eigen::Ref<Vector> state, double enough) {
+  if (highest_ < 0 && lowest_ < 0) return 0.0;
+  high_ = low_ = state;
+  double cost = 0.0;
+  const Index first = static_cast<Index>(level) * params_.hold_samples;
+  const Index last = static_cast<Index>(params_.horizon_blocks) * params_.hold_samples;
+  for (Index sample = first; sample < last && cost <= enough; ++sample) {
+    if (!insideRanges(high_) || !insideRanges(low_)) break;
+    if (highest_ >= 0) model_.step(highest_, disturbances_, high_);
+    if (lowest_ >= 0) model_.step(lowest_, disturbances_, low_);
+    cost += bandCost(sample);
+  }
+  return cost;
+}
+
+Vector HybridEvolution::mapped(int choice, const Vector& state) {
+  Vector next = state;
+  model_.step(choice, disturbances_, next);
+  return next;
+}
+
+int HybridEvolution::extremeChoice(double sign) {
+  Vector middle(model_.stateSize());
+  for (Index i = 0; i < middle.size(); ++i) {
+    const SignalInfo& range = model_.model().outputs[static_cast<std::size_t>(i)];
+    middle[i] = 0.5 * (range.lower + range.upper);
+  }
+  if (!middle.allFinite()) return -1;  // a range is missing
+  int best = 0;
+  double most = -kInfinite;
+  for (int choice = 0; choice < static_cast<int>(params_.choices.cols()); ++choice) {
+    const double sum = sign * mapped(choice, middle).sum();
+    if (sum > most) {
+      most = sum;
+      best = choice;
+    }
+  }
+  return isExtreme(best, sign) ? best : -1;
+}
+
+// On a grid: no choice leads further, and the map grows with every output.
+bool HybridEvolution::isExtreme(int choice, double sign) {
+  const auto n_y = static_cast<std::size_t>(model_.stateSize());
+  const int n =
+      std::max(3, static_cast<int>(std::pow(kGridPoints, 1.0 / static_cast<double>(n_y))));
+  std::vector<int> index(n_y, 0);
+  Vector step(model_.stateSize()), state(model_.stateSize());
+  const auto& outputs = model_.model().outputs;
+  do {
+    for (std::size_t i = 0; i < n_y; ++i) {
+      step[static_cast<Index>(i)] = (outputs[i].upper - outputs[i].lower) / (n - 1);
+      state[static_cast<Index>(i)] = outputs[i].lower + index[i] * step[static_cast<Index>(i)];
+    }
+    const Vector here = mapped(choice, state);
+    for (int other = 0; other < static_cast<int>(params_.choices.cols()); ++other)
+      if ((sign * (here - mapped(other, state))).minCoeff() < -kSlack) return false;
+    for (Index i = 0; i < state.size(); ++i) {
+      Vector further = state;
+      further[i] += step[i];
+      if ((mapped(choice, further) - here).minCoeff() < -kSlack) return false;
+    }
+  } while (nextPoint(index, n));
+  return true;
+}
+
+}  // namespace fpc

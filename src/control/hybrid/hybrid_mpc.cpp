@@ -1,0 +1,202 @@
+#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "control/hybrid/evolution.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kSame = 1e-9;   // two values of an input that differ by less are the same
+constexpr double kMoved = 1e-6;  // an input is elsewhere than it was sent
+
+void checkWeights(const Vector& weights, Index n, const std::string& key) {
+  require(weights.size() == n, key, std::to_string(n) + " numbers");
+  require(weights.allFinite() && (weights.array() >= 0.0).all(), key, "finite numbers >= 0");
+}
+
+void checkChoices(const Matrix& choices, Index n_u) {
+  require(choices.rows() == n_u && choices.cols() > 0, "controller.inputs",
+          "at least one vector of " + std::to_string(n_u) + " inputs");
+  require(choices.allFinite(), "controller.inputs", "finite numbers");
+  for (Index i = 0; i < choices.cols(); ++i)
+    for (Index j = 0; j < i; ++j)
+      require((choices.col(i) - choices.col(j)).cwiseAbs().maxCoeff() > kSame, "controller.inputs",
+              "every vector only once");
+}
+
+void checkTerm(double weight, int input, Index n_u, const std::string& key) {
+  require(std::isfinite(weight) && weight >= 0.0, key + ".weight", "a number >= 0");
+  require(input >= 0 && input < n_u, key, "inputs of the plant");
+}
+
+}  // namespace
+
+void HybridMpcParams::validate(Index n_y, Index n_u) const {
+  checkChoices(choices, n_u);
+  require(hold_samples >= 1, "controller.hold_samples", "a number >= 1");
+  require(horizon_blocks >= 1, "controller.horizon_blocks", "a number >= 1");
+  checkWeights(weight_tracking, n_y, "controller.cost.tracking");
+  checkWeights(weight_consumption, n_u, "controller.cost.consumption");
+  bool signs = (weight_consumption.transpose() * choices).minCoeff() >= 0.0;
+  for (const SwitchTerm& s : switching) {
+    checkTerm(s.weight, s.before, n_u, "controller.cost.switching");
+    checkTerm(s.weight, s.after, n_u, "controller.cost.switching");
+    signs =
+        signs && choices.row(s.before).minCoeff() >= 0.0 && choices.row(s.after).minCoeff() >= 0.0;
+  }
+  for (const TravelTerm& t : travel) {
+    checkTerm(t.weight, t.input, n_u, "controller.cost.travel");
+    require(t.gate >= -1 && t.gate < n_u, "controller.cost.travel", "inputs of the plant");
+    signs = signs && (t.gate < 0 || choices.row(t.gate).minCoeff() >= 0.0);
+  }
+  require(signs, "controller.cost", "terms that no input vector makes negative");
+  for (const ForbiddenTransition& t : forbidden_transitions)
+    require(t.from.size() == n_u && t.to.size() == n_u, "controller.forbidden_transitions",
+            "from and to of " + std::to_string(n_u) + " inputs");
+  require(bound == "cost" || bound == "reach", "controller.bound", "cost or reach");
+  require(std::isfinite(time_budget_s) && time_budget_s >= 0.0, "controller.time_budget_s",
+          "a time >= 0");
+  TreeSearchParams{horizon_blocks, false, node_budget}.validate(static_cast<int>(choices.cols()));
+}
+
+HybridMpc::HybridMpc(HybridMpcParams params, InputLimits limits, PlantInfo plant)
+    : params_(std::move(params)), limits_(std::move(limits)), plant_(std::move(plant)) {
+  const auto n_y = static_cast<Index>(plant_.outputs.size());
+  const auto n_u = static_cast<Index>(plant_.inputs.size());
+  params_.validate(n_y, n_u);
+  limits_.validate(n_u);
+  for (Index i = 0; i < params_.choices.cols(); ++i)
+    require((params_.choices.col(i).array() >= limits_.lower.array() - kSame).all() &&
+                (params_.choices.col(i).array() <= limits_.upper.array() + kSame).all(),
+            "controller.inputs", "vectors inside the actuator's bounds");
+  reference_ = Matrix::Zero(n_y, static_cast<Index>(params_.hold_samples) * params_.horizon_blocks);
+  past_disturbances_ = Vector::Zero(static_cast<Index>(plant_.disturbances.size()));
+  for (const SignalInfo& input : plant_.inputs)
+    stuck_.push_back(input.name + " is not where it was sent: a stuck valve or another fault");
+  signals_ = {{"choice", 0.0}, {"search_cost", 0.0}, {"search_nodes", 0.0}};
+  if (params_.time_budget_s > 0.0)
+    stop_ = [this] { return std::chrono::steady_clock::now() > deadline_; };
+}
+
+HybridMpc::~HybridMpc() = default;
+
+void HybridMpc::setModel(const TsModel& model) {
+  auto evolution = std::make_unique<HybridEvolution>(params_, limits_, model);
+  require(model.outputs.size() == plant_.outputs.size() &&
+              model.disturbances.size() == plant_.disturbances.size(),
+          "model", "a model matched to the plant");
+  const TreeSearchParams tree{
+      params_.horizon_blocks,
+      params_.bound == "reach" && (evolution->highest() >= 0 || evolution->lowest() >= 0),
+      params_.node_budget};
+  tree_ = std::make_unique<TreeSearch>(evolution->model().stateSize(),
+                                       static_cast<int>(params_.choices.cols()), tree);
+  evolution_ = std::move(evolution);
+  state_ = Vector::Zero(evolution_->model().stateSize());
+  decision_.choices.assign(static_cast<std::size_t>(params_.horizon_blocks), 0);
+  fresh_ = true;
+}
+
+bool HybridMpc::boundsByReach() const {
+  return evolution_ && (evolution_->highest() >= 0 || evolution_->lowest() >= 0);
+}
+
+TreeProblem& HybridMpc::problem() { return *evolution_; }
+
+const TreeResult& HybridMpc::decision() const { return decision_; }
+
+Index HybridMpc::nearestChoice(VectorRef input) const {
+  Index nearest = 0;
+  (params_.choices.colwise() - input).colwise().squaredNorm().minCoeff(&nearest);
+  return nearest;
+}
+
+bool HybridMpc::mayBeSent(VectorRef input) const {
+  const auto nearest = params_.choices.col(nearestChoice(input));
+  return (nearest - input).cwiseAbs().maxCoeff() <= kSame;
+}
+
+void HybridMpc::makeSendable(Eigen::Ref<Vector> input) const {
+  if (input.allFinite()) input = params_.choices.col(nearestChoice(input));
+}
+
+void HybridMpc::reset(const Measurement& /*start*/) {
+  fresh_ = true;
+  sent_before_ = false;
+  samples_left_ = 0;
+}
+
+const TreeResult& HybridMpc::search(VectorRef input_before, VectorRef disturbances) {
+  evolution_->start(input_before, disturbances, reference_);
+  if (stop_)
+    deadline_ = std::chrono::steady_clock::now() +
+                std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                    std::chrono::duration<double>(params_.time_budget_s));
+  decision_ = tree_->search(*evolution_, state_, stop_);
+  return decision_;
+}
+
+const TreeResult& HybridMpc::decide(VectorRef outputs, VectorRef input_before,
+                                    VectorRef disturbances, MatrixRef reference) {
+  evolution_->model().restState(outputs, input_before, disturbances, state_);
+  reference_ = reference;
+  return search(input_before, disturbances);
+}
+
+void HybridMpc::startBlock(const Measurement& now, const SetpointSource& setpoint) {
+  for (Index i = 0; i < reference_.cols(); ++i) {
+    if (params_.preview)
+      setpoint.scheduled(now.header.step + 1 + static_cast<std::uint32_t>(i), reference_.col(i));
+    else
+      reference_.col(i) = setpoint.present();
+  }
+  search(now.input_applied, now.disturbances);
+  choice_ = decision_.usable() ? decision_.choices.front() : nearestChoice(now.input_applied);
+  samples_left_ = params_.hold_samples;
+  signals_[0].second = static_cast<double>(choice_);
+  signals_[1].second = decision_.cost;
+  signals_[2].second = static_cast<double>(decision_.nodes);
+}
+
+const char* HybridMpc::faultOf(const Measurement& now) const {
+  for (Index i = 0; sent_before_ && i < now.input_applied.size(); ++i)
+    if (std::abs(now.input_applied[i] - params_.choices(i, choice_)) > kMoved)
+      return stuck_[static_cast<std::size_t>(i)].c_str();
+  return nullptr;
+}
+
+const char* HybridMpc::remarkOnSearch() const {
+  if (decision_.status == TreeStatus::kBudget)
+    return "the search reached its budget: the best sequence so far was taken";
+  if (decision_.status == TreeStatus::kImpossible)
+    return "no sequence of inputs is allowed: the nearest allowed input was taken";
+  return "";
+}
+
+void HybridMpc::step(const Measurement& now, const SetpointSource& setpoint,
+                     ControllerOutput& output) {
+  const ChoiceModel& model = evolution_->model();
+  if (fresh_)
+    model.restState(now.outputs, now.input_applied, now.disturbances, state_);
+  else
+    model.shiftState(now.outputs, now.input_applied, past_disturbances_, state_);
+  fresh_ = false;
+  past_disturbances_ = now.disturbances;
+  const char* fault = faultOf(now);
+  if (samples_left_ == 0) startBlock(now, setpoint);
+  --samples_left_;
+  output.input = params_.choices.col(choice_);
+  output.source = ActionSource::kBase;
+  output.reference = setpoint.present();
+  output.predictive = false;
+  output.ok = true;
+  output.remark = fault != nullptr ? fault : remarkOnSearch();
+  sent_before_ = true;
+}
+
+}  // namespace fpc

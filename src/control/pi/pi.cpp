@@ -1,0 +1,163 @@
+#include "fmbpc/control/pi/pi.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kTransferDecay = 0.9;  // per sample, of the bias that replaces a missing integral
+
+// The end of the move limit, or the bound before it.
+double insideBounds(const InputLimits& limits, Eigen::Index i, double value) {
+  return std::clamp(value, limits.lower[i], limits.upper[i]);
+}
+
+double scheduledGain(const std::vector<GainPoint>& points, double output) {
+  if (points.empty()) return 1.0;
+  const auto after =
+      std::find_if(points.begin(), points.end(), [&](const auto& p) { return p.output > output; });
+  if (after == points.begin()) return points.front().gain;
+  if (after == points.end()) return points.back().gain;
+  const GainPoint& before = *(after - 1);
+  const double part = (output - before.output) / (after->output - before.output);
+  return before.gain + part * (after->gain - before.gain);
+}
+
+void validateSchedule(const std::vector<GainPoint>& points, const std::string& key) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool increasing = i == 0 || points[i].output > points[i - 1].output;
+    require(std::isfinite(points[i].output) && increasing, key, "finite outputs that increase");
+    require(std::isfinite(points[i].gain) && points[i].gain > 0.0, key, "finite gains > 0");
+  }
+}
+
+void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, Eigen::Index n_u) {
+  require(loop.input >= 0 && loop.input < n_u, key + "input", "one of the plant's inputs");
+  require(loop.output >= 0 && loop.output < n_y, key + "output", "one of the plant's outputs");
+  require(std::isfinite(loop.kp), key + "kp", "a finite number");
+  require(std::isfinite(loop.ki_per_h), key + "ki_per_h", "a finite number");
+  require(std::isfinite(loop.bias), key + "bias", "a finite number");
+  const std::string& windup = loop.anti_windup;
+  require(windup == "none" || windup == "clamp" || windup == "tracking", key + "anti_windup",
+          "none, clamp or tracking");
+  require(loop.start == "bias" || loop.start == "bumpless", key + "start", "bias or bumpless");
+  validateSchedule(loop.gain_schedule, key + "gain_schedule");
+}
+
+}  // namespace
+
+void PiParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
+  require(!loops.empty(), "controller.loops", "at least one loop");
+  std::set<int> moved;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    const std::string key = "controller.loops[" + std::to_string(i) + "].";
+    validateLoop(loops[i], key, n_y, n_u);
+    require(moved.insert(loops[i].input).second, key + "input",
+            "an input that no other loop moves");
+  }
+  if (reference_pole.size() == 0) return;
+  require(reference_pole.size() == n_y, "controller.reference_pole",
+          std::to_string(n_y) + " numbers");
+  require((reference_pole.array() >= 0.0).all() && (reference_pole.array() < 1.0).all(),
+          "controller.reference_pole", "numbers >= 0 and < 1");
+}
+
+PiController::PiController(PiParams params, InputLimits limits, PlantInfo plant)
+    : params_(std::move(params)),
+      limits_(std::move(limits)),
+      sample_time_h_(plant.sample_time_s / 3600.0),
+      states_(params_.loops.size()) {
+  const auto n_u = static_cast<Eigen::Index>(plant.inputs.size());
+  params_.validate(static_cast<Eigen::Index>(plant.outputs.size()), n_u);
+  limits_.validate(n_u);
+  require(std::isfinite(sample_time_h_) && sample_time_h_ > 0.0, "sampling.sample_time_s",
+          "a number > 0");
+  if (params_.reference_pole.size() > 0) path_.emplace(params_.reference_pole, false);
+  for (const PiLoop& loop : params_.loops)
+    signals_.emplace_back(plant.inputs[static_cast<std::size_t>(loop.input)].name + "_integral",
+                          0.0);
+}
+
+void PiController::reset(const Measurement& start) {
+  if (path_) path_->reset(start.outputs);
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    states_[i] = {};
+    const bool from_bias = start.header.step == 0 && params_.loops[i].start == "bias";
+    states_[i].transfer_pending = !from_bias;
+  }
+}
+
+void PiController::refer(const SetpointSource& setpoint, std::uint32_t step, Vector& reference) {
+  reference = path_ ? path_->present() : setpoint.present();
+  if (path_) path_->advance(setpoint, step);
+}
+
+// u = bias + kp g e + ki int g e dt
+void PiController::propose(const PiLoop& loop, const Measurement& now,
+                           const SetpointSource& setpoint, LoopState& state) const {
+  const double difference = setpoint.present()[loop.output] - now.outputs[loop.output];
+  state.error = (loop.reverse ? -difference : difference) *
+                scheduledGain(loop.gain_schedule, now.outputs[loop.output]);
+  const double proportional = loop.bias + loop.kp * state.error;
+  state.wanted = proportional + state.integral;
+  if (!state.transfer_pending || !std::isfinite(proportional)) return;
+  state.wanted = now.input_applied[loop.input];  // not by the sum: free of rounding
+  state.integral = state.wanted - proportional;
+  state.transfer_pending = false;
+}
+
+void PiController::integrate(const PiLoop& loop, const Measurement& now, double sent,
+                             LoopState& state) const {
+  if (loop.ki_per_h == 0.0) {
+    state.integral *= kTransferDecay;
+    return;
+  }
+  const double before = now.input_applied[loop.input];
+  const double move = limits_.move[loop.input];
+  double change = loop.ki_per_h * state.error * sample_time_h_;
+  if (loop.anti_windup == "clamp") {
+    const bool above = state.wanted > insideBounds(limits_, loop.input, before + move);
+    const bool below = state.wanted < insideBounds(limits_, loop.input, before - move);
+    if ((above && change > 0.0) || (below && change < 0.0)) change = 0.0;
+  } else if (loop.anti_windup == "tracking") {
+    // dt / Tt with Tt = kp / ki; without a proportional part the clipped part comes back at once
+    const double rate = std::abs(loop.ki_per_h) * sample_time_h_;
+    change += (sent - state.wanted) * (rate < std::abs(loop.kp) ? rate / std::abs(loop.kp) : 1.0);
+  }
+  const double next = state.integral + change;
+  if (std::isfinite(next)) state.integral = next;
+}
+
+void PiController::step(const Measurement& now, const SetpointSource& setpoint,
+                        ControllerOutput& output) {
+  output.input = now.input_applied;
+  refer(setpoint, now.header.step, output.reference);
+  output.predictive = false;
+  output.ok = true;
+  output.remark = "";
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    propose(params_.loops[i], now, setpoint, states_[i]);
+    if (std::isfinite(states_[i].wanted))
+      output.input[params_.loops[i].input] = states_[i].wanted;
+    else
+      output.ok = false;
+  }
+  limits_.clip(output.input, now.input_applied);
+  output.source = ActionSource::kBase;
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const PiLoop& loop = params_.loops[i];
+    const double sent = output.input[loop.input];
+    if (sent != states_[i].wanted) output.source = ActionSource::kClipped;
+    integrate(loop, now, sent, states_[i]);
+    signals_[i].second = states_[i].integral;
+  }
+  if (output.ok) return;
+  output.source = ActionSource::kHeld;
+  output.remark = "the control law overflowed: input held";
+}
+
+}  // namespace fpc

@@ -1,0 +1,182 @@
+#include "fmbpc/study/fitness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/report.hpp"
+
+namespace fpc {
+namespace {
+
+using OfOutput = double OutputIndices::*;
+using OfStep = std::function<double(const StepIndices&)>;
+using OfInput = std::function<double(const InputIndices&)>;
+using OfRun = std::function<double(const Summary&)>;
+
+const std::map<std::string, OfOutput>& outputTable() {
+  static const std::map<std::string, OfOutput> table{
+      {"ise", &OutputIndices::ise},   {"iae", &OutputIndices::iae},
+      {"itae", &OutputIndices::itae}, {"itse", &OutputIndices::itse},
+      {"rmse", &OutputIndices::rmse}, {"ise_reference", &OutputIndices::ise_reference}};
+  return table;
+}
+
+const std::map<std::string, OfStep>& stepTable() {
+  static const std::map<std::string, OfStep> table{
+      {"rise", [](const StepIndices& s) { return s.rise; }},
+      {"settling", [](const StepIndices& s) { return s.settling; }},
+      {"overshoot", [](const StepIndices& s) { return s.overshoot; }},
+      {"offset", [](const StepIndices& s) { return s.offset; }},
+      {"step_cost", [](const StepIndices& s) { return s.cost(); }}};
+  return table;
+}
+
+const std::map<std::string, OfInput>& inputTable() {
+  static const std::map<std::string, OfInput> table{
+      {"travel", [](const InputIndices& u) { return u.travel; }},
+      {"mean_abs_move", [](const InputIndices& u) { return u.mean_abs_move; }},
+      {"switches", [](const InputIndices& u) { return static_cast<double>(u.switches); }},
+      {"effort", [](const InputIndices& u) { return u.effort; }},
+      {"energy", [](const InputIndices& u) { return u.energy; }}};
+  return table;
+}
+
+double count(std::uint64_t n) { return static_cast<double>(n); }
+
+const std::map<std::string, OfRun>& runTable() {
+  static const std::map<std::string, OfRun> table{
+      {"violations",
+       [](const Summary& s) {
+         return count(s.input_violations + s.move_violations + s.output_violations);
+       }},
+      {"input_violations", [](const Summary& s) { return count(s.input_violations); }},
+      {"move_violations", [](const Summary& s) { return count(s.move_violations); }},
+      {"output_violations", [](const Summary& s) { return count(s.output_violations); }},
+      {"actuator_clips", [](const Summary& s) { return count(s.actuator_clips); }},
+      {"clp_infeasible", [](const Summary& s) { return count(s.clp_infeasible); }}};
+  return table;
+}
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr char kConsumption[] = "consumption";
+
+double unitInSeconds(const std::string& unit) {
+  if (unit == "s") return 1.0;
+  return unit == "min" ? 60.0 : 3600.0;
+}
+
+/// All steps of output i.
+std::vector<StepIndices> stepsOf(const FitnessParams& fitness, const LoopFile& loop,
+                                 const RunRecord& record, Eigen::Index i) {
+  const auto n = static_cast<Eigen::Index>(record.samples.size());
+  Vector y(n), setpoint(n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const SampleRecord& sample = record.samples[static_cast<std::size_t>(k)];
+    y[k] = sample.measurement.outputs[i];
+    setpoint[k] = sample.tracking.setpoint[i];
+  }
+  return stepIndices(y, setpoint, loop.plant_info.sample_time_s / unitInSeconds(fitness.time_unit),
+                     fitness.band);
+}
+
+double sumOf(const FitnessParams& fitness, const FitnessTerm& term, const LoopFile& loop,
+             const RunRecord& record, const Summary& summary) {
+  const auto meant = [&](const std::string& name) {
+    return term.signal.empty() || term.signal == name;
+  };
+  double sum = 0.0;
+  std::size_t steps = 0;
+  switch (kindOf(term.index)) {
+    case IndexOf::kOutput:
+      for (std::size_t i = 0; i < summary.outputs.size(); ++i)
+        if (meant(summary.output_names[i])) sum += summary.outputs[i].*outputTable().at(term.index);
+      return sum;
+    case IndexOf::kStep:
+      for (std::size_t i = 0; i < summary.output_names.size(); ++i) {
+        if (!meant(summary.output_names[i])) continue;
+        for (const auto& step : stepsOf(fitness, loop, record, static_cast<Eigen::Index>(i))) {
+          sum += stepTable().at(term.index)(step);
+          ++steps;
+        }
+      }
+      return sum / static_cast<double>(steps);
+    case IndexOf::kInput:
+      for (std::size_t i = 0; i < summary.inputs.size(); ++i)
+        if (meant(summary.input_names[i])) sum += inputTable().at(term.index)(summary.inputs[i]);
+      return sum;
+    case IndexOf::kConsumption:
+      for (const auto& [name, value] : summary.consumption)
+        if (meant(name)) sum += value;
+      return sum;
+    case IndexOf::kRun:
+      break;
+  }
+  return runTable().at(term.index)(summary);
+}
+
+template <typename Table>
+void addNames(const Table& table, std::vector<std::string>& names) {
+  for (const auto& entry : table) names.push_back(entry.first);
+}
+
+std::vector<std::string> signalsOf(const FitnessTerm& term, const LoopFile& loop) {
+  std::vector<std::string> names;
+  const IndexOf kind = kindOf(term.index);
+  if (kind == IndexOf::kOutput || kind == IndexOf::kStep)
+    for (const auto& output : loop.plant_info.outputs) names.push_back(output.name);
+  if (kind == IndexOf::kInput)
+    for (const auto& input : loop.plant_info.inputs) names.push_back(input.name);
+  if (kind == IndexOf::kConsumption)
+    for (const auto& consumption : loop.report.consumption) names.push_back(consumption.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> fitnessIndices() {
+  std::vector<std::string> names;
+  addNames(outputTable(), names);
+  addNames(stepTable(), names);
+  addNames(inputTable(), names);
+  addNames(runTable(), names);
+  names.emplace_back(kConsumption);
+  return names;
+}
+
+IndexOf kindOf(const std::string& index) {
+  if (outputTable().count(index) > 0) return IndexOf::kOutput;
+  if (stepTable().count(index) > 0) return IndexOf::kStep;
+  if (inputTable().count(index) > 0) return IndexOf::kInput;
+  if (index == kConsumption) return IndexOf::kConsumption;
+  require(runTable().count(index) > 0, "index '" + index + "'", "one of " + join(fitnessIndices()));
+  return IndexOf::kRun;
+}
+
+void checkFitness(const FitnessParams& fitness, const LoopFile& loop) {
+  for (std::size_t t = 0; t < fitness.terms.size(); ++t) {
+    const FitnessTerm& term = fitness.terms[t];
+    const std::string where = "fitness.terms[" + std::to_string(t) + "]";
+    const auto names = signalsOf(term, loop);
+    const bool known = std::find(names.begin(), names.end(), term.signal) != names.end();
+    if (kindOf(term.index) == IndexOf::kRun) continue;
+    require(!names.empty(), where, "a loop that has what " + term.index + " is of: " + loop.name);
+    require(term.signal.empty() || known, where,
+            "one of " + join(names) + " of loop " + loop.name + ", got '" + term.signal + "'");
+  }
+}
+
+double fitness(const FitnessParams& fitness, const LoopFile& loop, const RunRecord& record) {
+  if (!record.complete) return kInfinity;
+  const Summary summary = summarize(loop, record, 0.0);
+  double sum = 0.0;
+  for (const auto& term : fitness.terms)
+    sum += term.weight * sumOf(fitness, term, loop, record, summary);
+  return std::isfinite(sum) ? sum : kInfinity;
+}
+
+}  // namespace fpc

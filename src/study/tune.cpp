@@ -1,0 +1,139 @@
+#include "fmbpc/study/tune.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <limits>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "study/tune_state.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Judges generations: points that the state file knows are looked up, the others are run. The
+/// search itself is replayed from its seed, so no method needs a state of its own on disk.
+class Session {
+ public:
+  Session(const TuningObjective& objective, const SearchParams& search, const TuneOptions& options)
+      : objective_(objective),
+        options_(options),
+        identity_(identityOf(objective, search)),
+        began_(std::chrono::steady_clock::now()) {
+    result_.search = search;
+    if (!options.resume) return;
+    TuneState known = readState(options.state, identity_);
+    known_ = std::move(known.steps);
+    result_.seconds = known.seconds;
+    before_ = known.seconds;
+  }
+
+  bool judge(const Matrix& points, Vector& costs) {
+    const std::size_t first = result_.history.size();
+    const auto n = static_cast<std::size_t>(points.cols());
+    const std::size_t known = std::min(n, known_.size() - std::min(first, known_.size()));
+    std::vector<TuningStep> steps;
+    for (std::size_t i = 0; i < known; ++i) {
+      steps.push_back(known_[first + i]);
+      const auto column = static_cast<Eigen::Index>(i);
+      require(steps.back().shares == points.col(column), options_.state,
+              "the points that this search asks");
+      steps.back().values = objective_.values(points.col(column));
+    }
+    result_.resumed += static_cast<int>(known);
+    if (known < n && !run(points.rightCols(static_cast<Eigen::Index>(n - known)), steps))
+      return false;
+    for (std::size_t i = 0; i < n; ++i) {
+      costs[static_cast<Eigen::Index>(i)] = steps[i].cost;
+      keep(std::move(steps[i]));
+    }
+    if (known < n) save();
+    return true;
+  }
+
+  TuneResult finish(const SearchResult& found) {
+    result_.generations = found.generations;
+    result_.stopped = found.stopped;
+    return std::move(result_);
+  }
+
+ private:
+  bool run(const Matrix& points, std::vector<TuningStep>& steps) {
+    const auto scores = objective_.judge(points, options_.stop);
+    if (!scores) return false;
+    for (Eigen::Index p = 0; p < points.cols(); ++p) {
+      const TuningScore& score = (*scores)[static_cast<std::size_t>(p)];
+      steps.push_back({points.col(p), objective_.values(points.col(p)), score.cost, score.scenarios,
+                       score.failures});
+      if (result_.trouble.empty()) result_.trouble = score.trouble;
+    }
+    return true;
+  }
+
+  void keep(TuningStep step) {
+    const int now = static_cast<int>(result_.history.size());
+    if (step.cost < best_) {
+      best_ = step.cost;
+      result_.best = now;
+    }
+    result_.failures += step.failures;
+    result_.history.push_back(std::move(step));
+    if (options_.progress) options_.progress(now + 1, best_);
+  }
+
+  void save() {
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began_;
+    result_.seconds = before_ + wall.count();
+    if (!options_.state.empty())
+      writeState(options_.state, identity_, {result_.history, result_.seconds});
+  }
+
+  const TuningObjective& objective_;
+  const TuneOptions& options_;
+  std::string identity_;
+  std::chrono::steady_clock::time_point began_;
+  std::vector<TuningStep> known_;
+  TuneResult result_;
+  double best_{kInfinity};
+  double before_{};  // seconds of earlier sessions
+};
+
+}  // namespace
+
+TuneResult tune(const TuningObjective& objective, const SearchParams& search,
+                const TuneOptions& options) {
+  search.validate();
+  require(!options.resume || !options.state.empty(), "resume", "a state file to resume from");
+  Session session(objective, search, options);
+  const auto judge = [&](const Matrix& points, Vector& costs) {
+    return session.judge(points, costs);
+  };
+  const Eigen::Index n = objective.size();
+  return session.finish(
+      runSearch(search, Vector::Zero(n), Vector::Ones(n), judge, objective.start()));
+}
+
+void writeHistory(const TuningFile& tuning, const TuneResult& result, const std::string& file) {
+  std::ofstream stream(file);
+  stream << "evaluation,cost,best";
+  for (const auto& parameter : tuning.parameters) stream << "," << parameter.key;
+  for (const auto& scenario : tuning.scenarios) stream << ",cost of " << scenario.name;
+  stream << "\n";
+  double best = kInfinity;
+  for (std::size_t i = 0; i < result.history.size(); ++i) {
+    const TuningStep& step = result.history[i];
+    best = std::min(best, step.cost);
+    stream << i + 1 << "," << exactText(step.cost) << "," << exactText(best);
+    for (const double value : step.values) stream << "," << exactText(value);
+    for (const double cost : step.scenarios) stream << "," << exactText(cost);
+    stream << "\n";
+  }
+  stream.close();
+  require(!stream.fail(), file, "a writable file");
+}
+
+}  // namespace fpc

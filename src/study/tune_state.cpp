@@ -1,0 +1,88 @@
+#include "study/tune_state.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numbers(const double* values, std::size_t n) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < n; ++i)
+    list.push_back(std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr));
+  return list;
+}
+
+double number(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
+
+TuningStep stepOf(const Json& json) {
+  TuningStep step;
+  const Json& shares = json.at("shares");
+  step.shares.resize(static_cast<Eigen::Index>(shares.size()));
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    step.shares[static_cast<Eigen::Index>(i)] = number(shares[i]);
+  for (const Json& cost : json.at("scenarios")) step.scenarios.push_back(number(cost));
+  step.cost = number(json.at("cost"));
+  step.failures = json.at("failures");
+  return step;
+}
+
+}  // namespace
+
+std::string identityOf(const TuningObjective& objective, const SearchParams& search) {
+  std::string text = objective.fingerprint() + " " + search.method + " " +
+                     std::to_string(search.population) + " " + std::to_string(search.evaluations) +
+                     " " + std::to_string(search.seed);
+  for (const double value : {search.cognitive, search.social, search.speed_upper, search.inertia,
+                             search.inertia_start, search.inertia_end, search.differential_weight,
+                             search.crossover, static_cast<double>(search.variant), search.step})
+    text += " " + exactText(value);
+  return text;
+}
+
+void writeState(const std::string& file, const std::string& identity, const TuneState& state) {
+  Json steps = Json::array();
+  for (const auto& step : state.steps)
+    steps.push_back(
+        {{"shares", numbers(step.shares.data(), static_cast<std::size_t>(step.shares.size()))},
+         {"cost", numbers(&step.cost, 1).front()},
+         {"scenarios", numbers(step.scenarios.data(), step.scenarios.size())},
+         {"failures", step.failures}});
+  const Json json{{"tuning", identity}, {"seconds", state.seconds}, {"evaluations", steps}};
+  const std::string beside = file + ".new";
+  std::ofstream stream(beside);
+  stream << json.dump() << "\n";
+  stream.close();
+  std::error_code error;
+  if (!stream.fail()) std::filesystem::rename(beside, file, error);
+  require(!stream.fail() && !error, file, "a writable file");
+}
+
+TuneState readState(const std::string& file, const std::string& identity) {
+  std::ifstream stream(file);
+  require(stream.good(), file, "a readable file, as a stopped `fmbpc tune --out` leaves it");
+  try {
+    const Json json = Json::parse(stream);
+    require(json.at("tuning") == identity, file,
+            "the state of this tuning: loop, tuning file, method, seed, population and evaluations "
+            "as they were when it stopped");
+    TuneState state;
+    state.seconds = json.at("seconds");
+    for (const Json& step : json.at("evaluations")) state.steps.push_back(stepOf(step));
+    return state;
+  } catch (const Json::exception& e) {
+    throw InputError(file + ": expected the state of a tuning: " + e.what());
+  }
+}
+
+}  // namespace fpc

@@ -1,0 +1,211 @@
+#include "fmbpc/study/tuning_objective.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <filesystem>
+#include <limits>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/parallel.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/config/extending_loop.hpp"
+#include "fmbpc/loop/run.hpp"
+#include "fmbpc/study/fitness.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Where a scenario's seed goes: the disturbance pattern and the noise, if the loop has them.
+Overrides seedOverrides(const std::string& loop, const TuningScenario& scenario,
+                        const Overrides& set) {
+  if (!scenario.has_seed) return {};
+  const LoopFile read = readLoop(loop, set);
+  Overrides seeds;
+  const std::string seed = std::to_string(scenario.seed);
+  if (read.disturbance.source == "pattern") seeds.emplace_back("disturbance.pattern.seed", seed);
+  if (!scalarOf(read.resolved, "noise.seed").empty() || read.simulation.noise_std.any())
+    seeds.emplace_back("noise.seed", seed);
+  require(!seeds.empty(), "scenario " + scenario.name + ": seed",
+          "a loop with a disturbance pattern or noise: " + read.name);
+  return seeds;
+}
+
+/// FNV-1a, in hexadecimal.
+std::string hashOf(const std::string& text) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  char word[17];
+  std::snprintf(word, sizeof word, "%016llx", static_cast<unsigned long long>(hash));
+  return word;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+}  // namespace
+
+TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning, const Overrides& set,
+                                 int threads)
+    : tuning_(std::move(tuning)), set_(tuning_.set), threads_(threads) {
+  set_.insert(set_.end(), set.begin(), set.end());
+  cases_ = casesOf(loop, tuning_.scenarios);
+  held_out_ = casesOf(loop, tuning_.held_out);
+  start_ = startOf();
+  std::string all = tuning_.text;
+  for (const auto* cases : {&cases_, &held_out_})
+    for (const auto& scenario : *cases) {
+      const LoopFile first = parseLoop(scenario.text, scenario.name, valueOverrides(start_));
+      checkFitness(tuning_.fitness, first);
+      all += scenario.text;
+    }
+  fingerprint_ = hashOf(all);
+  judgeUntouched(cases_, untouched_);
+  if (!held_out_.empty()) judgeUntouched(held_out_, untouched_held_out_);
+}
+
+std::vector<TuningObjective::Case> TuningObjective::casesOf(
+    const std::string& loop, const std::vector<TuningScenario>& scenarios) {
+  std::vector<Case> cases;
+  for (const auto& scenario : scenarios) {
+    const std::string name = scenario.loop.empty() ? loop : scenario.loop;
+    Overrides overrides = set_;
+    overrides.insert(overrides.end(), scenario.set.begin(), scenario.set.end());
+    const Overrides seeds = seedOverrides(name, scenario, overrides);
+    overrides.insert(overrides.end(), seeds.begin(), seeds.end());
+    cases.push_back(
+        {std::filesystem::path(findLoop(name)).stem().string(), resolveLoop(name, overrides), 1.0});
+  }
+  return cases;
+}
+
+Vector TuningObjective::startOf() const {
+  Vector start(size());
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    const TuningParameter& parameter = tuning_.parameters[static_cast<std::size_t>(i)];
+    double value = parameter.start;
+    if (std::isnan(value)) {
+      const std::string text = scalarOf(cases_.front().text, parameter.key);
+      char* end = nullptr;
+      const double own = std::strtod(text.c_str(), &end);
+      if (!text.empty() && *end == '\0' && std::isfinite(own)) value = own;
+    }
+    start[i] = std::isnan(value) ? 0.5 : parameter.share(value);
+  }
+  return start;
+}
+
+std::vector<double> TuningObjective::values(const Vector& shares) const {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < tuning_.parameters.size(); ++i)
+    values.push_back(tuning_.parameters[i].value(shares[static_cast<Eigen::Index>(i)]));
+  return values;
+}
+
+Overrides TuningObjective::valueOverrides(const Vector& shares) const {
+  Overrides overrides;
+  const auto numbers = values(shares);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const TuningParameter& parameter = tuning_.parameters[i];
+    overrides.emplace_back(parameter.key, parameter.integer
+                                              ? std::to_string(std::llround(numbers[i]))
+                                              : exactText(numbers[i]));
+  }
+  return overrides;
+}
+
+Overrides TuningObjective::changes(const Vector& shares) const {
+  Overrides all = set_;
+  const Overrides own = valueOverrides(shares);
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
+}
+
+TuningObjective::Run TuningObjective::run(const Case& scenario, const Overrides& changes,
+                                          const Stop& stop) const {
+  Run result;
+  result.cost = kInfinity;
+  RunOptions options;
+  options.stop = [&] { return result.stopped = result.stopped || (stop && stop()); };
+  if (options.stop()) return result;
+  try {
+    const LoopFile loop = parseLoop(scenario.text, scenario.name, changes);
+    const RunRecord record = runLoop(loop, options);
+    result.cost = fitness(tuning_.fitness, loop, record) / scenario.scale;
+    if (!std::isfinite(result.cost)) result.trouble = scenario.name + ": the cost is not finite";
+  } catch (const std::exception& e) {
+    result.trouble = scenario.name + ": " + e.what();
+  }
+  return result;
+}
+
+TuningScore TuningObjective::scoreOf(const std::vector<Run>& runs, std::size_t first,
+                                     std::size_t count) const {
+  TuningScore score;
+  double sum = 0.0;
+  for (std::size_t i = first; i < first + count; ++i) {
+    const double cost = std::min(runs[i].cost, tuning_.fitness.failure);
+    score.scenarios.push_back(cost);
+    sum += cost;
+    score.failures += !runs[i].trouble.empty();
+    if (score.trouble.empty()) score.trouble = runs[i].trouble;
+  }
+  const std::string& across = tuning_.fitness.across;
+  if (across == "worst")
+    score.cost = *std::max_element(score.scenarios.begin(), score.scenarios.end());
+  else if (across == "median")
+    score.cost = median(score.scenarios);
+  else
+    score.cost = sum / static_cast<double>(count);
+  return score;
+}
+
+std::optional<std::vector<TuningScore>> TuningObjective::judge(
+    const std::vector<Case>& cases, const std::vector<Overrides>& changes, const Stop& stop) const {
+  std::vector<Run> runs(changes.size() * cases.size());
+  parallelFor(runs.size(), threads_, [&](std::size_t i) {
+    runs[i] = run(cases[i % cases.size()], changes[i / cases.size()], stop);
+  });
+  if (std::any_of(runs.begin(), runs.end(), [](const Run& r) { return r.stopped; }))
+    return std::nullopt;
+  std::vector<TuningScore> scores;
+  for (std::size_t p = 0; p < changes.size(); ++p)
+    scores.push_back(scoreOf(runs, p * cases.size(), cases.size()));
+  return scores;
+}
+
+std::optional<std::vector<TuningScore>> TuningObjective::judge(const Matrix& points,
+                                                               const Stop& stop) const {
+  std::vector<Overrides> all;
+  for (Eigen::Index p = 0; p < points.cols(); ++p) all.push_back(valueOverrides(points.col(p)));
+  return judge(cases_, all, stop);
+}
+
+std::optional<TuningScore> TuningObjective::judgeHeldOut(const Vector& point,
+                                                         const Stop& stop) const {
+  const auto scores = judge(held_out_, {valueOverrides(point)}, stop);
+  if (!scores) return std::nullopt;
+  return scores->front();
+}
+
+void TuningObjective::judgeUntouched(std::vector<Case>& cases, TuningScore& untouched) const {
+  if (tuning_.fitness.relative) {
+    std::vector<Run> runs(cases.size());
+    parallelFor(runs.size(), threads_, [&](std::size_t i) { runs[i] = run(cases[i], {}, {}); });
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+      const bool usable = std::isfinite(runs[i].cost) && runs[i].cost > 0.0;
+      require(usable, tuning_.file + ": fitness.relative",
+              "an untouched loop with a finite cost > 0 in every scenario" +
+                  (runs[i].trouble.empty() ? "" : " (" + runs[i].trouble + ")"));
+      cases[i].scale = runs[i].cost;
+    }
+  }
+  untouched = judge(cases, {Overrides{}}, {})->front();
+}
+
+}  // namespace fpc

@@ -1,0 +1,274 @@
+// docs/loop_file.md lists every key the reader knows and no other, with the defaults of the
+// structs.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "config/read.hpp"
+#include "fmbpc/base/text.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+struct Row {
+  std::string unit, fallback, meaning;
+};
+
+std::string trimmed(const std::string& cell) {
+  const auto from = cell.find_first_not_of(' ');
+  return from == std::string::npos ? "" : cell.substr(from, cell.find_last_not_of(' ') - from + 1);
+}
+
+/// Rows "| `key` | unit | default | meaning |" of the page.
+std::map<std::string, Row> documented() {
+  std::ifstream stream(std::string(FMBPC_SOURCE_DIR) + "/docs/loop_file.md");
+  std::map<std::string, Row> rows;
+  const std::regex row(R"(\| `([^`]+)` \|([^|]*)\|([^|]*)\|([^|]*)\|)");
+  for (std::string line; std::getline(stream, line);) {
+    std::smatch match;
+    if (!std::regex_match(line, match, row)) continue;
+    EXPECT_EQ(rows.count(match[1]), 0U) << match[1];
+    rows[match[1]] = {trimmed(match[2]), trimmed(match[3]), trimmed(match[4])};
+  }
+  return rows;
+}
+
+/// Names of signals and numbers of items are not keys.
+std::string general(std::string path) {
+  path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
+  const std::regex named(
+      R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|)"
+      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.[\w/]+)");
+  path = std::regex_replace(path, named, "$1.NAME");
+  const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(s|x|T|Tw)$)");
+  return std::regex_replace(path, outputs, "setpoint.$1[].NAME");
+}
+
+std::set<std::string> asked(const std::string& text) {
+  auto trace = std::make_shared<YamlTrace>();
+  YamlSection root(YAML::Load(text), "text", "", trace);
+  readSections(root, "text");
+  return trace->asked;
+}
+
+std::string controlled(const std::string& rest) {
+  return "sampling: {sample_time_s: 720, duration_h: 4}\n" + rest;
+}
+
+/// All paths that any kind of loop makes the reader ask for.
+std::set<std::string> readerKeys() {
+  const std::string lists =
+      "setpoint:\n  schedule: [{time_h: 0, s: 1, x: 1}]\n  commands: [{time_h: 0, name: s, value: "
+      "1}]\n"
+      "disturbance:\n  commands: [{time_h: 0, name: q_i, value: 1}]\n"
+      "  pattern: {channels: {q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}\n"
+      "  csv: {channels: {q_i: {column: a}}}\n"
+      "tf:\n  frames: {reactor: {x: 1}}\n"
+      "  sample_lines: [{output: s, from: plant, to: reactor, velocity_m_s: 1}]\n";
+  const std::string fmbpc =
+      "plant: {type: activated_sludge}\ncontroller: {type: fmbpc}\nmodel: {file: " +
+      std::string(FMBPC_SOURCE_DIR) + "/config/model/fm_1.yaml}\n";
+  const std::string external =
+      "plant:\n  type: external\n  name: p\n  outputs: [{name: y}]\n  inputs: [{name: u, lower: 0, "
+      "upper: 1}]\n"
+      "  disturbances: [{name: d}]\nsetpoint: {initial: {y: 1}}\n"
+      "controller: {type: pi, loops: [{input: u, output: y, kp: 1, gain_schedule: [{output: 0, "
+      "gain: 1}]}]}\n";
+  const std::string excitation =
+      "plant: {type: activated_sludge}\ncontroller:\n  type: excitation\n  signals: [{input: q_r, "
+      "signal: ";
+  const std::string prbs =
+      controlled(excitation + "prbs}]\n  feedback: [{input: q_r, output: s, gain: 1}]\n");
+  const std::string levels =
+      controlled(excitation + "multi_level, hold_lower_steps: 1, hold_upper_steps: 2}]\n");
+  const std::string steps = controlled(excitation + "steps, schedule: [{time_h: 1, value: 2}]}]\n");
+  const std::string batch =
+      "plant: {type: batch_reactor}\nsampling: {sample_time_s: 10, duration_h: 1}\n"
+      "setpoint: {recipe: [{T: 30, hold_h: 1}]}\nmodel: {file: " +
+      std::string(FMBPC_SOURCE_DIR) + "/config/model/batch_fuzzy.yaml}\n" +
+      "actuator: {initial: {kM: 0}}\ncontroller:\n  type: hybrid_mpc\n  horizon_blocks: 1\n  ";
+  const std::string rest =
+      "\n  forbidden: [{kM: 0.5, kC: 1}]\n  forbidden_transitions: [{from: {kM: 0}, to: {kM: 2}}]\n"
+      "  cost: {switching: [{before: kH, after: kC, weight: 1}], travel: [{input: kM, weight: "
+      "1}]}\n"
+      "report: {windows: [{name: w, to_h: 1}], consumption: {water_kg: {kM: 1}}}\n";
+  const std::string signal = "[{name: NAME, unit: g, nominal: 0, lower: -1, upper: 1}]";
+  const auto named = [&](const std::string& name) {
+    return std::regex_replace(signal, std::regex("NAME"), name);
+  };
+  const std::string column = "plant: {type: distillation_column, matrix: {outputs: " + named("a") +
+                             ", inputs: " + named("b") + ", disturbances: " + named("c") +
+                             ", elements: [{output: a, from: b, gain: 1, time_constant_min: 1}]}}\n"
+                             "controller: {type: pi, loops: [{input: b, output: a, kp: 1}]}\n";
+  const std::string optimal =
+      "plant: {type: distillation_column}\nsampling: {sample_time_s: 60, duration_h: 1}\nmodel: "
+      "{file: " +
+      std::string(FMBPC_SOURCE_DIR) +
+      "/config/model/wood_berry.yaml}\ncontroller: {type: fuzzy_optimal, rules: [{}]}\n";
+  const std::string adaptive =
+      "plant: {type: distillation_column}\ncontroller: {type: adaptive_pi, decoupling: false, "
+      "loops: "
+      "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
+      "integral_time_min: 1}], model: [{output: y_D, input: L, gain: 1, time_constant_min: 1}]}\n";
+  const std::string nmpc = "plant: {type: mimo_cstr}\ncontroller: {type: nmpc}\n";
+  const std::string swarm =
+      "plant: {type: mimo_cstr}\nsampling: {sample_time_s: 0.6, duration_h: 1}\ncontroller: {type: "
+      "swarm_mpc}\nmodel: {file: " +
+      std::string(FMBPC_SOURCE_DIR) + "/config/model/mimo_cstr.yaml}\n";
+  std::set<std::string> keys;
+  std::set<std::string> sections;
+  for (const auto& text : {controlled(fmbpc + lists), controlled(external), controlled(column),
+                           controlled(adaptive), optimal, controlled(nmpc), swarm, prbs, levels,
+                           steps, batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
+                           batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest})
+    for (const auto& path : asked(text)) {
+      keys.insert(general(path));
+      for (auto cut = path.find('.'); cut != std::string::npos; cut = path.find('.', cut + 1))
+        sections.insert(general(path.substr(0, cut)));
+    }
+  for (const auto& section :
+       sections) {  // a key with keys below it is not a row, but for lists of mappings or names
+    keys.erase(section);
+    if (section.size() > 2 && section.substr(section.size() - 2) == "[]")
+      keys.erase(section.substr(0, section.size() - 2));
+  }
+  for (const char* both : {"plant.outputs"})
+    keys.insert(both);  // names, or mappings for an external plant
+  for (const char* other : {"clp", "disturbance.pattern.channels", "disturbance.csv.channels"})
+    keys.erase(other);
+  return keys;
+}
+
+TEST(LoopDocs, EveryKeyOfTheReaderIsDocumented) {
+  const auto rows = documented();
+  for (const auto& key : readerKeys()) EXPECT_EQ(rows.count(key), 1U) << key;
+}
+
+TEST(LoopDocs, EveryDocumentedKeyIsKnownToTheReader) {
+  const auto keys = readerKeys();
+  const auto rows = documented();
+  ASSERT_GT(rows.size(), 100U);
+  for (const auto& [key, row] : rows) {
+    EXPECT_EQ(keys.count(key), 1U) << key;
+    EXPECT_FALSE(row.fallback.empty()) << key;
+    EXPECT_FALSE(row.meaning.empty()) << key;
+  }
+}
+
+TEST(LoopDocs, KeysWithAUnitInTheirNameStateIt) {
+  const std::map<std::string, std::string> endings = {
+      {"_s", "s"}, {"_h", "h"}, {"_steps", "s"}, {"_m_s", "m/s"}};
+  for (const auto& [key, row] : documented())
+    for (const auto& [ending, unit] : endings) {
+      const bool ends =
+          key.size() > ending.size() && key.substr(key.size() - ending.size()) == ending;
+      EXPECT_TRUE(!ends || row.unit.find(unit) != std::string::npos) << key;
+    }
+}
+
+std::string word(bool value) { return value ? "true" : "false"; }
+
+/// The defaults as the structs have them.
+std::map<std::string, std::string> structDefaults() {
+  const LoopFile loop;
+  const ClpParams& clp = loop.clp;
+  const FmbpcParams& law = loop.fmbpc;
+  const FuzzyOptimalParams& optimal = loop.fuzzy_optimal;
+  const IntegratorParams& integrator = loop.simulation.integrator;
+  const CsvDisturbanceParams& csv = loop.disturbance.csv;
+  const PiLoop pi;
+  return {{"plant.integrator.relative_tolerance", exactText(integrator.relative_tolerance)},
+          {"plant.integrator.absolute_tolerance", exactText(integrator.absolute_tolerance)},
+          {"plant.integrator.max_steps", std::to_string(integrator.max_steps)},
+          {"plant.integrator.method", integrator.method},
+          {"sampling.start_time_s", exactText(loop.simulation.start_time_s)},
+          {"disturbance.source", loop.disturbance.source},
+          {"disturbance.pattern.seed", std::to_string(loop.disturbance.pattern.seed)},
+          {"disturbance.csv.time_unit", csv.time_unit},
+          {"disturbance.csv.missing", csv.missing},
+          {"disturbance.csv.interpolation", csv.interpolation},
+          {"disturbance.csv.end", csv.end},
+          {"disturbance.csv.channels.NAME.scale", exactText(CsvChannel{}.scale)},
+          {"disturbance.csv.channels.NAME.offset", exactText(CsvChannel{}.offset)},
+          {"controller.law", law.law},
+          {"controller.coincidence_steps", std::to_string(law.coincidence_steps)},
+          {"controller.preview", word(law.preview)},
+          {"controller.max_iterations", std::to_string(loop.nmpc.solver.max_iterations)},
+          {"controller.integration_steps", std::to_string(loop.nmpc.integration_steps)},
+          {"controller.swarm.particles", std::to_string(loop.swarm_mpc.swarm.particles)},
+          {"controller.swarm.iterations", std::to_string(loop.swarm_mpc.swarm.iterations)},
+          {"controller.swarm.inertia_start", exactText(loop.swarm_mpc.swarm.inertia_start)},
+          {"controller.swarm.inertia_end", exactText(loop.swarm_mpc.swarm.inertia_end)},
+          {"controller.swarm.cognitive", exactText(loop.swarm_mpc.swarm.cognitive)},
+          {"controller.swarm.social", exactText(loop.swarm_mpc.swarm.social)},
+          {"controller.swarm.speed_upper", exactText(loop.swarm_mpc.swarm.speed_upper)},
+          {"controller.swarm.seed", std::to_string(loop.swarm_mpc.swarm.seed)},
+          {"controller.horizon_steps", std::to_string(law.horizon_steps)},
+          {"controller.iterations", std::to_string(law.iterations)},
+          {"controller.forecast_pole", exactText(law.forecast_pole)},
+          {"controller.realisation", law.realisation},
+          {"controller.antecedent", law.antecedent},
+          {"controller.delay_steps", std::to_string(law.delay_steps)},
+          {"controller.reference_lead_steps", std::to_string(law.reference_lead_steps)},
+          {"controller.offset_gain", exactText(law.offset_gain)},
+          {"controller.disturbance_feedforward", word(law.disturbance_feedforward)},
+          {"controller.transfer_decay", exactText(law.transfer_decay)},
+          {"controller.move_steps", std::to_string(optimal.tuning.move_steps)},
+          {"controller.solve", optimal.solve},
+          {"controller.disturbance", optimal.disturbance},
+          {"controller.disturbance_gain", exactText(optimal.disturbance_gain)},
+          {"controller.loops[].ki_per_h", exactText(pi.ki_per_h)},
+          {"controller.loops[].reverse", word(pi.reverse)},
+          {"controller.loops[].anti_windup", pi.anti_windup},
+          {"controller.loops[].start", pi.start},
+          {"controller.seed", std::to_string(loop.excitation.seed)},
+          {"controller.signals[].register_bits", std::to_string(ExcitationSignal{}.register_bits)},
+          {"controller.signals[].clock_steps", std::to_string(ExcitationSignal{}.clock_steps)},
+          {"controller.signals[].start_steps", std::to_string(ExcitationSignal{}.start_steps)},
+          {"model.max_pole", exactText(loop.max_pole)},
+          {"model.identify.window", std::to_string(loop.identify.window)},
+          {"model.identify.validation_share", exactText(loop.identify.validation_share)},
+          {"model.identify.after", std::to_string(loop.identify.after)},
+          {"model.identify.online.every", std::to_string(loop.identify.online.every)},
+          {"model.identify.online.forgetting", exactText(loop.identify.online.rls.forgetting)},
+          {"model.identify.online.initial_covariance",
+           exactText(loop.identify.online.rls.initial_covariance)},
+          {"model.identify.online.covariance_bound",
+           exactText(loop.identify.online.rls.covariance_bound)},
+          {"clp.perturbation_steps", std::to_string(clp.perturbation_steps)},
+          {"clp.mode2_steps", std::to_string(clp.mode2_steps)},
+          {"clp.cost", clp.cost},
+          {"clp.bounds", clp.bounds},
+          {"clp.action", clp.action},
+          {"clp.output_penalty", exactText(clp.output_penalty)},
+          {"clp.qp.max_iterations", std::to_string(clp.qp.max_iterations)},
+          {"clp.qp.feasibility_tolerance", exactText(clp.qp.feasibility_tolerance)},
+          {"actuator.hold_samples", std::to_string(loop.simulation.actuator.hold_samples)},
+          {"noise.seed", std::to_string(loop.simulation.noise_seed)},
+          {"loop.speedup", exactText(loop.ring.speedup)},
+          {"loop.ready_timeout_s", exactText(loop.ring.ready_timeout_s)},
+          {"loop.publish_clock", word(loop.ring.publish_clock)},
+          {"tf.broadcast", word(loop.tf.broadcast)}};
+}
+
+double asNumber(const std::string& text) {
+  double value = 0.0;
+  return YAML::convert<double>::decode(YAML::Load(text), value) ? value : std::nan("");
+}
+
+TEST(LoopDocs, DefaultsAreThoseOfTheStructs) {
+  const auto rows = documented();
+  for (const auto& [key, value] : structDefaults()) {
+    ASSERT_EQ(rows.count(key), 1U) << key;
+    const std::string& written = rows.at(key).fallback;
+    const bool same = written == value || asNumber(written) == asNumber(value);
+    EXPECT_TRUE(same) << key << ": documented " << written << ", struct " << value;
+  }
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,91 @@
+// The plant's equations as a controller's model: the same samples as the simulated plant.
+#include "config/plant_sample_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/factory.hpp"
+#include "fmbpc/loop/run.hpp"
+
+namespace fpc {
+namespace {
+
+/// Largest distance of the outputs over a run under inputs that swing, relative to the start.
+double worstError(const LoopFile& loop, std::uint32_t samples, int integration_steps) {
+  Simulation plant(loop.simulation);
+  const auto model = makePlantSampleModel(loop.simulation, integration_steps);
+  Measurement now = plant.measurement();
+  Vector state(model->stateSize());
+  model->rest(now.outputs, now.input_applied, now.disturbances, state);
+  double worst = 0.0;
+  for (std::uint32_t k = 0; k < samples; ++k) {
+    const Vector input =
+        loop.simulation.actuator.initial * (1.0 + 0.1 * std::sin(0.3 * static_cast<double>(k)));
+    EXPECT_TRUE(model->step(input, now.disturbances, state));
+    now = plant.advance(input);
+    for (Eigen::Index i = 0; i < now.outputs.size(); ++i)
+      worst = std::max(worst, std::abs(state[model->outputState(i)] / now.outputs[i] - 1.0));
+  }
+  return worst;
+}
+
+TEST(PlantSampleModel, ADifferenceEquationIsTakenAsItIs) {
+  EXPECT_LE(worstError(readLoop("surge_tank_up"), 200, 1), 1e-12);
+}
+
+// The simulator's own error must not be mistaken for the model's: at its usual tolerance it is
+// 2e-7.
+TEST(PlantSampleModel, FourStepsOfRungeAndKuttaAreTheReactor) {
+  const Overrides precise{{"plant.integrator.relative_tolerance", "1e-13"},
+                          {"plant.integrator.absolute_tolerance", "1e-13"}};
+  EXPECT_LE(worstError(readLoop("mimo_cstr_tracking", precise), 40, 4), 1e-9);
+}
+
+TEST(PlantSampleModel, TheLocalLoopInsideThePlantIsPartOfIt) {
+  LoopFile loop = readLoop("cstr_excite");
+  ASSERT_EQ(loop.simulation.parameters.at("compensator_gain"), 3.0);
+  loop.simulation.outputs = {"CA", "T"};
+  loop.simulation.output_delay_s = {0.0, 0.0};
+  loop.simulation.noise_std = Vector::Zero(2);
+  EXPECT_LE(worstError(loop, 100, 8), 1e-6);
+}
+
+TEST(PlantSampleModel, StatesThatAreNotMeasuredRestUnderTheInputInForce) {
+  const LoopFile loop = readLoop("surge_tank_up");
+  const auto model = makePlantSampleModel(loop.simulation, 1);
+  Vector state(model->stateSize());
+  const double current = 2e-3;
+  model->rest(Vector::Constant(1, 0.2), Vector::Constant(1, current), Vector(0), state);
+  EXPECT_EQ(state[0], 0.2);
+  EXPECT_NEAR(state[1], 0.1 * current, 1e-12);  // k1 I / k0
+}
+
+TEST(PlantSampleModel, PlantsThatRememberMoreThanTheirStatesAreRefused) {
+  for (const auto& [loop, overrides] :
+       std::vector<std::pair<std::string, Overrides>>{{"column_imc", {}}, {"cstr_tracking", {}}}) {
+    const LoopFile file = readLoop(loop, overrides);
+    try {
+      makePlantSampleModel(file.simulation, 4);
+      ADD_FAILURE() << loop;
+    } catch (const InputError& e) {
+      EXPECT_NE(std::string(e.what()).find("nmpc"), std::string::npos) << e.what();
+    }
+  }
+}
+
+TEST(PlantSampleModel, AnExternalPlantHasNoEquationsToPredictWith) {
+  EXPECT_THROW(readLoop("example_external", {{"controller", "{type: nmpc}"}}), InputError);
+}
+
+/// With the true equations and no disturbance nothing is left between prediction and measurement.
+TEST(PlantSampleModel, TheRivalReachesItsSetpointsOnThePlantItKnows) {
+  const LoopFile loop =
+      readLoop("surge_tank_up", {{"controller", "{type: nmpc, horizon_steps: 20}"}});
+  const RunRecord record = runLoop(loop);
+  EXPECT_NEAR(record.samples.back().state.outputs[0], 0.20, 1e-9);
+}
+
+}  // namespace
+}  // namespace fpc

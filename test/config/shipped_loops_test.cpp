@@ -1,0 +1,74 @@
+// Every loop file that ships can be read, and rivals run under the same conditions.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fmbpc/config/disturbance_source.hpp"
+#include "fmbpc/loop/factory.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+class ShippedLoop : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedLoop, IsRead) {
+  if (needsRecords(GetParam()) && !hasRecords()) GTEST_SKIP() << "FMBPC_DATA is not set";
+  const LoopFile loop = readLoop(GetParam());
+  EXPECT_EQ(loop.name, GetParam());
+  EXPECT_NE(loop.report.title, loop.name) << "a title for people";
+  if (loop.external_plant) return;
+  const Simulation simulation = makeSimulation(loop);
+  EXPECT_EQ(simulation.info().outputs.size(), loop.plant_info.outputs.size());
+  EXPECT_GT(loop.simulation.samples, 0U);
+}
+
+TEST_P(ShippedLoop, HasRivalsUnderTheSameDisturbances) {
+  const std::string name = GetParam();
+  const auto cut = std::min(name.find("_pi"), name.find("_gspi"));
+  if (cut == std::string::npos) return;
+  if (needsRecords(name) && !hasRecords()) GTEST_SKIP() << "FMBPC_DATA is not set";
+  const LoopFile rival = readLoop(name), base = readLoop(name.substr(0, cut));
+  EXPECT_EQ(makeDisturbance(rival).values, makeDisturbance(base).values);
+  EXPECT_EQ(rival.setpoint.initial, base.setpoint.initial);
+  ASSERT_EQ(rival.setpoint.schedule.size(), base.setpoint.schedule.size());
+  for (std::size_t i = 0; i < base.setpoint.schedule.size(); ++i) {
+    EXPECT_EQ(rival.setpoint.schedule[i].time_h, base.setpoint.schedule[i].time_h);
+    const Vector &ours = rival.setpoint.schedule[i].value,
+                 &theirs = base.setpoint.schedule[i].value;
+    EXPECT_TRUE((ours.array() == theirs.array() || ours.array().isNaN()).all());
+  }
+  const auto &commands = rival.simulation.disturbance_commands,
+             &of_base = base.simulation.disturbance_commands;
+  ASSERT_EQ(commands.size(), of_base.size());
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    EXPECT_EQ(commands[i].time_h, of_base[i].time_h);
+    EXPECT_EQ(commands[i].command.value, of_base[i].command.value);
+  }
+  EXPECT_EQ(rival.simulation.output_delay_s, base.simulation.output_delay_s);
+  EXPECT_EQ(rival.simulation.parameters, base.simulation.parameters);
+  EXPECT_EQ(rival.simulation.actuator.limits.upper, base.simulation.actuator.limits.upper);
+  EXPECT_EQ(rival.controller, "pi");
+  EXPECT_FALSE(rival.has_clp);
+}
+
+std::string nameOf(const ::testing::TestParamInfo<std::string>& loop) { return loop.param; }
+
+INSTANTIATE_TEST_SUITE_P(Config, ShippedLoop, ::testing::ValuesIn(loopNames()), nameOf);
+
+TEST(ShippedLoops, AreThere) { EXPECT_GE(loopNames().size(), 40U); }
+
+TEST(ShippedLoops, CaseOneIsThatOfThePaper) {
+  const LoopFile loop = readLoop("asp_case1");
+  EXPECT_EQ(loop.model.name, "FM_1");
+  EXPECT_EQ(loop.fmbpc.law, "published");
+  EXPECT_EQ(loop.fmbpc.coincidence_steps, 6);
+  EXPECT_EQ(loop.fmbpc.reference_pole, (Vector(2) << 0.76, 0.96).finished());
+  EXPECT_EQ(loop.simulation.samples, 830U);
+  EXPECT_EQ(loop.simulation.actuator.limits.upper[0], 1600.0);
+  EXPECT_EQ(loop.simulation.actuator.initial[0], 570.0);
+  EXPECT_NEAR(makeDisturbance(loop).values.row(1).mean(), 430.0, 1e-9);
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,81 @@
+// What is expected of disturbances, on numbers one can follow.
+#include "fmbpc/control/fmbpc/disturbance_forecast.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr int kPeriod = 6, kHorizon = 4;
+
+Vector one(double value) { return Vector::Constant(1, value); }
+double daily(int k) { return std::sin(2.0 * M_PI * k / kPeriod); }
+
+TEST(DisturbanceForecast, HoldsUntilAPeriodHasBeenSeen) {
+  DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.5);
+  for (std::uint32_t k = 0; k < kPeriod; ++k) {
+    forecast.add(k, one(k));
+    EXPECT_EQ(forecast.predict(), Matrix::Constant(1, kHorizon, k)) << k;
+  }
+}
+
+TEST(DisturbanceForecast, AfterAPeriodWhatRepeatsItselfIsForeseen) {
+  DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.5);
+  for (int k = 0; k <= 2 * kPeriod; ++k) {
+    forecast.add(static_cast<std::uint32_t>(k), one(daily(k)));
+    if (k < kPeriod) continue;
+    for (int i = 0; i < kHorizon; ++i)
+      EXPECT_NEAR(forecast.predict()(0, i), daily(k + i), 1e-12) << k << " + " << i;
+  }
+}
+
+TEST(DisturbanceForecast, TodaysDifferenceDiesOutWithThePole) {
+  DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.5);
+  for (int k = 0; k <= kPeriod; ++k)
+    forecast.add(static_cast<std::uint32_t>(k), one(daily(k) + (k == kPeriod ? 0.8 : 0.0)));
+  for (int i = 0; i < kHorizon; ++i)
+    EXPECT_NEAR(forecast.predict()(0, i), daily(i) + 0.8 * std::pow(0.5, i), 1e-12);
+}
+
+TEST(DisturbanceForecast, WithoutAPeriodItHolds) {
+  DisturbanceForecast forecast(2, kHorizon, 0, 0.5);
+  for (std::uint32_t k = 0; k < 20; ++k) forecast.add(k, Eigen::Vector2d(k, -3.0));
+  EXPECT_EQ(forecast.predict(), Eigen::Vector2d(19.0, -3.0).replicate(1, kHorizon));
+}
+
+TEST(DisturbanceForecast, SamplesThatWereMissedAreTakenToBeLikeTheNext) {
+  DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.0);
+  forecast.add(0, one(1.0));
+  forecast.add(3, one(5.0));  // 1 and 2 never came
+  for (std::uint32_t k = 4; k <= kPeriod; ++k) forecast.add(k, one(0.0));
+  EXPECT_EQ(forecast.predict(), (Matrix(1, kHorizon) << 0.0, 5.0, 5.0, 5.0).finished());
+}
+
+TEST(DisturbanceForecast, AGapLongerThanThePeriodLeavesTheNewestOnly) {
+  DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.5);
+  for (std::uint32_t k = 0; k <= kPeriod; ++k) forecast.add(k, one(daily(static_cast<int>(k))));
+  forecast.add(1000, one(7.0));
+  EXPECT_EQ(forecast.predict(), Matrix::Constant(1, kHorizon, 7.0));
+}
+
+TEST(DisturbanceForecast, ARunThatStartsAgainForgets) {
+  DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.5);
+  for (std::uint32_t k = 0; k <= kPeriod; ++k) forecast.add(k, one(daily(static_cast<int>(k))));
+  forecast.add(0, one(2.0));
+  EXPECT_EQ(forecast.predict(), Matrix::Constant(1, kHorizon, 2.0));
+}
+
+TEST(DisturbanceForecast, RefusesPeriodsShorterThanTheHorizonAndOddPoles) {
+  EXPECT_THROW(DisturbanceForecast(1, 4, 3, 0.5), InputError);
+  EXPECT_THROW(DisturbanceForecast(1, 4, -1, 0.5), InputError);
+  EXPECT_THROW(DisturbanceForecast(1, 4, 6, 1.01), InputError);
+  EXPECT_THROW(DisturbanceForecast(1, 4, 6, std::nan("")), InputError);
+  EXPECT_NO_THROW(DisturbanceForecast(1, 4, 4, 1.0));
+}
+
+}  // namespace
+}  // namespace fpc

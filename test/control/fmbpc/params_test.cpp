@@ -1,0 +1,41 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "control/fmbpc/law_fixture.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+Vector one(double value) { return Vector::Constant(1, value); }
+
+TEST(FmbpcParams, ValidateNamesTheField) {
+  const auto expect = [](const std::string& key, const std::function<void(FmbpcParams&)>& spoil) {
+    FmbpcParams params = test::generalParams(2, 1, 6, 0.5, 0.0);
+    spoil(params);
+    try {
+      params.validate(2, 1);
+      ADD_FAILURE() << "accepted: " << key;
+    } catch (const InputError& e) {
+      EXPECT_EQ(std::string(e.what()).rfind("controller." + key + ":", 0), 0U) << e.what();
+    }
+  };
+  EXPECT_NO_THROW(test::generalParams(2, 1, 6, 0.5, 0.0).validate(2, 1));
+  expect("law", [](FmbpcParams& p) { p.law = "other"; });
+  expect("realisation", [](FmbpcParams& p) { p.realisation = "serial"; });
+  expect("antecedent", [](FmbpcParams& p) { p.antecedent = "plant"; });
+  expect("coincidence_steps", [](FmbpcParams& p) { p.coincidence_steps = 0; });
+  expect("prediction_steps", [](FmbpcParams& p) { p.prediction_steps = 0; });
+  expect("reference_pole", [](FmbpcParams& p) { p.reference_pole = one(0.5); });
+  expect("reference_pole", [](FmbpcParams& p) { p.reference_pole[1] = 1.0; });
+  expect("offset_gain", [](FmbpcParams& p) { p.offset_gain = std::nan(""); });
+  expect("transfer_decay", [](FmbpcParams& p) { p.transfer_decay = 1.0; });
+  expect("disturbance_nominal", [](FmbpcParams& p) { p.disturbance_nominal = one(HUGE_VAL); });
+  expect("weight_output", [](FmbpcParams& p) { p.weight_output = one(1.0); });
+  expect("weight_output", [](FmbpcParams& p) { p.weight_output.setZero(); });
+  expect("weight_move", [](FmbpcParams& p) { p.weight_move = one(-1.0); });
+}
+
+}  // namespace
+}  // namespace fpc
