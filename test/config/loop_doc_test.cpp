@@ -10,6 +10,7 @@
 #include "config/read.hpp"
 #include "fmbpc/base/text.hpp"
 #include "loop/loop_fixture.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -25,7 +26,7 @@ std::string trimmed(const std::string& cell) {
 
 /// Rows "| `key` | unit | default | meaning |" of the page.
 std::map<std::string, Row> documented() {
-  std::ifstream stream(std::string(FMBPC_SOURCE_DIR) + "/docs/loop_file.md");
+  std::ifstream stream(sourceDir() + "/docs/loop_file.md");
   std::map<std::string, Row> rows;
   const std::regex row(R"(\| `([^`]+)` \|([^|]*)\|([^|]*)\|([^|]*)\|)");
   for (std::string line; std::getline(stream, line);) {
@@ -70,8 +71,8 @@ std::set<std::string> readerKeys() {
       "tf:\n  frames: {reactor: {x: 1}}\n"
       "  sample_lines: [{output: s, from: plant, to: reactor, velocity_m_s: 1}]\n";
   const std::string fmbpc =
-      "plant: {type: activated_sludge}\ncontroller: {type: fmbpc}\nmodel: {file: " +
-      std::string(FMBPC_SOURCE_DIR) + "/config/model/fm_1.yaml}\n";
+      "plant: {type: activated_sludge}\ncontroller: {type: fmbpc}\nmodel: {file: " + sourceDir() +
+      "/config/model/fm_1.yaml}\n";
   const std::string external =
       "plant:\n  type: external\n  name: p\n  outputs: [{name: y}]\n  inputs: [{name: u, lower: 0, "
       "upper: 1}]\n"
@@ -89,7 +90,7 @@ std::set<std::string> readerKeys() {
   const std::string batch =
       "plant: {type: batch_reactor}\nsampling: {sample_time_s: 10, duration_h: 1}\n"
       "setpoint: {recipe: [{T: 30, hold_h: 1}]}\nmodel: {file: " +
-      std::string(FMBPC_SOURCE_DIR) + "/config/model/batch_fuzzy.yaml}\n" +
+      sourceDir() + "/config/model/batch_fuzzy.yaml}\n" +
       "actuator: {initial: {kM: 0}}\ncontroller:\n  type: hybrid_mpc\n  horizon_blocks: 1\n  ";
   const std::string rest =
       "\n  forbidden: [{kM: 0.5, kC: 1}]\n  forbidden_transitions: [{from: {kM: 0}, to: {kM: 2}}]\n"
@@ -107,7 +108,7 @@ std::set<std::string> readerKeys() {
   const std::string optimal =
       "plant: {type: distillation_column}\nsampling: {sample_time_s: 60, duration_h: 1}\nmodel: "
       "{file: " +
-      std::string(FMBPC_SOURCE_DIR) +
+      sourceDir() +
       "/config/model/wood_berry.yaml}\ncontroller: {type: fuzzy_optimal, rules: [{}]}\n";
   const std::string adaptive =
       "plant: {type: distillation_column}\ncontroller: {type: adaptive_pi, decoupling: false, "
@@ -118,7 +119,7 @@ std::set<std::string> readerKeys() {
   const std::string swarm =
       "plant: {type: mimo_cstr}\nsampling: {sample_time_s: 0.6, duration_h: 1}\ncontroller: {type: "
       "swarm_mpc}\nmodel: {file: " +
-      std::string(FMBPC_SOURCE_DIR) + "/config/model/mimo_cstr.yaml}\n";
+      sourceDir() + "/config/model/mimo_cstr.yaml}\n";
   std::set<std::string> keys;
   std::set<std::string> sections;
   for (const auto& text : {controlled(fmbpc + lists), controlled(external), controlled(column),

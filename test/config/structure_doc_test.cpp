@@ -10,6 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/structure_file.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -17,7 +18,7 @@ namespace {
 /// Default by key, from rows "| `key` | default | meaning |"; a cell may name several keys of one
 /// section.
 std::map<std::string, std::string> documented() {
-  std::ifstream stream(std::string(FMBPC_SOURCE_DIR) + "/docs/identification.md");
+  std::ifstream stream(sourceDir() + "/docs/identification.md");
   std::map<std::string, std::string> rows;
   const std::regex row(R"(\| (`[^|]+`) \| ([^|]*) \| ([^|]+) \|)"), key(R"(`([^`]+)`)");
   std::string section;
@@ -110,7 +111,7 @@ std::set<std::string> words(const std::string& text) {
 }
 
 TEST(StructureDocs, EveryMembershipOfTheReaderIsDocumented) {
-  std::ifstream stream(std::string(FMBPC_SOURCE_DIR) + "/docs/identification.md");
+  std::ifstream stream(sourceDir() + "/docs/identification.md");
   std::string row;
   while (std::getline(stream, row) && row.rfind("| `.membership` |", 0) != 0) {
   }

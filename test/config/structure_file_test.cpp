@@ -4,6 +4,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/structure_file.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -104,8 +105,7 @@ TEST(StructureFile, MistakesAreNamedWithFileAndKey) {
 
 TEST(StructureFile, EveryShippedStructureIsReadable) {
   int n_files = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(FMBPC_SOURCE_DIR) + "/config/structure")) {
+  for (const auto& entry : std::filesystem::directory_iterator(sourceDir() + "/config/structure")) {
     SCOPED_TRACE(entry.path().string());
     const Structure s = readStructure(entry.path().string());
     EXPECT_EQ(s.name, entry.path().stem().string());
@@ -115,7 +115,7 @@ TEST(StructureFile, EveryShippedStructureIsReadable) {
 }
 
 TEST(StructureFile, TheCasesOfTheThesisHaveItsRegressors) {
-  const auto s = readStructure(std::string(FMBPC_SOURCE_DIR) + "/config/structure/asp_d.yaml");
+  const auto s = readStructure(sourceDir() + "/config/structure/asp_d.yaml");
   EXPECT_EQ(texts(s, s.submodels[0].regressors),
             (std::vector<std::string>{"s(k)", "x(k)", "q_r(k)", "q_r(k-1)", "q_i(k)", "s_i(k)"}));
   EXPECT_EQ(texts(s, s.submodels[1].regressors),

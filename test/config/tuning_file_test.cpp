@@ -8,6 +8,7 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "fmbpc/study/tuning_objective.hpp"
+#include "paths.hpp"
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {
@@ -92,7 +93,7 @@ TEST(TuningFile, MistakesNameFileKeyAndWhatWasExpected) {
 
 /// Rows "| `key` | default | meaning |" of the page.
 std::map<std::string, std::string> documented() {
-  std::ifstream stream(std::string(FMBPC_SOURCE_DIR) + "/docs/tuning.md");
+  std::ifstream stream(sourceDir() + "/docs/tuning.md");
   std::map<std::string, std::string> rows;
   const std::regex row(R"(\| `([a-z_\[\].]+)` \| ([^|]*) \| ([^|]+) \|)");
   for (std::string line; std::getline(stream, line);) {
@@ -169,7 +170,7 @@ TEST(TuningDocs, TellTheDefaultsOfTheStructs) {
 }
 
 TEST(TuningDocs, TellEveryIndex) {
-  std::ifstream stream(std::string(FMBPC_SOURCE_DIR) + "/docs/tuning.md");
+  std::ifstream stream(sourceDir() + "/docs/tuning.md");
   const std::string page((std::istreambuf_iterator<char>(stream)), {});
   for (const auto& index : fitnessIndices())
     EXPECT_NE(page.find("`" + index + "`"), std::string::npos) << index;

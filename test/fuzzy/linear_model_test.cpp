@@ -7,6 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fuzzy/column_model.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -60,8 +61,7 @@ TEST(LinearModel, PredictsItsElementsExactlyAlsoWithFractionalDeadTimes) {
 TEST(LinearModel, IsWhatTheShippedColumnModelsHold) {
   for (const bool feed : {false, true}) {
     const TsModel model = test::columnModel(60.0, feed);
-    const TsModel shipped =
-        readModel(std::string(FMBPC_SOURCE_DIR) + "/config/model/" + model.name + ".yaml");
+    const TsModel shipped = readModel(sourceDir() + "/config/model/" + model.name + ".yaml");
     EXPECT_EQ(writeModel(shipped), writeModel(model));
   }
 }

@@ -8,11 +8,12 @@
 #include <vector>
 
 #include "fmbpc/config/model_file.hpp"
+#include "paths.hpp"
 
 namespace fpc::test {
 
 inline TsModel shippedModel(const std::string& name) {
-  return readModel(std::string(FMBPC_SOURCE_DIR) + "/config/model/" + name + ".yaml");
+  return readModel(sourceDir() + "/config/model/" + name + ".yaml");
 }
 
 inline SignalInfo signal(const std::string& name, const std::string& unit = "1") {

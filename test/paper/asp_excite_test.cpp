@@ -12,6 +12,7 @@
 #include "fmbpc/fuzzy/validation.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -19,7 +20,7 @@ namespace {
 CsvTable recorded(const std::string& name) {
   const LoopFile loop = readLoop(name);
   const RunRecord record = runLoop(loop);
-  const auto folder = std::filesystem::path(FMBPC_RESULTS_DIR) / name;
+  const auto folder = std::filesystem::path(resultsDir()) / name;
   writeRun(loop, record, summarize(loop, record, 0.0), folder.string());
   return readCsv((folder / "trajectory.csv").string());
 }
@@ -31,8 +32,7 @@ struct Outcome {
 Outcome outcomeOf(const std::string& name) {
   static const CsvTable experiment = recorded("asp_excite"),
                         other = recorded("asp_excite_validation");
-  const Structure structure =
-      readStructure(std::string(FMBPC_SOURCE_DIR) + "/config/structure/" + name + ".yaml");
+  const Structure structure = readStructure(sourceDir() + "/config/structure/" + name + ".yaml");
   const DataSet data = makeDataSet(experiment, structure), held_out = makeDataSet(other, structure);
   EXPECT_TRUE(data.repairs.empty());
   EXPECT_TRUE(held_out.repairs.empty());

@@ -11,6 +11,7 @@
 #include "fmbpc/fuzzy/identify.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -98,10 +99,10 @@ void expectNear(double found, double shipped, const std::string& where) {
 TEST(AspOwnModel, TheShippedFilesAreWhatIdentificationGivesFromTheShippedExperiment) {
   const LoopFile loop = readLoop("asp_excite");
   const RunRecord record = runLoop(loop);
-  const std::string folder = std::string(FMBPC_RESULTS_DIR) + "/asp_excite_own";
+  const std::string folder = resultsDir() + "/asp_excite_own";
   writeRun(loop, record, summarize(loop, record, 0.0), folder);
   const CsvTable table = readCsv(folder + "/trajectory.csv");
-  const std::string config = std::string(FMBPC_SOURCE_DIR) + "/config";
+  const std::string config = sourceDir() + "/config";
   for (const std::string name : {"asp_a", "asp_b", "asp_c", "asp_d", "asp_xr"}) {
     SCOPED_TRACE(name);
     const Structure structure = readStructure(config + "/structure/" + name + ".yaml");

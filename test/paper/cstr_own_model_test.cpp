@@ -13,6 +13,7 @@
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -20,11 +21,9 @@ namespace {
 TsModel identified(int seed) {
   const LoopFile loop = readLoop("cstr_excite", {{"controller.seed", std::to_string(seed)}});
   const RunRecord record = runLoop(loop);
-  const auto folder =
-      std::filesystem::path(FMBPC_RESULTS_DIR) / ("cstr_excite_" + std::to_string(seed));
+  const auto folder = std::filesystem::path(resultsDir()) / ("cstr_excite_" + std::to_string(seed));
   writeRun(loop, record, summarize(loop, record, 0.0), folder.string());
-  const Structure structure =
-      readStructure(std::string(FMBPC_SOURCE_DIR) + "/config/structure/cstr.yaml");
+  const Structure structure = readStructure(sourceDir() + "/config/structure/cstr.yaml");
   const DataSet data = makeDataSet(readCsv((folder / "trajectory.csv").string()), structure);
   EXPECT_TRUE(data.repairs.empty());
   TsModel model = identify(data, structure).model;
@@ -78,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, CstrOwnModel, ::testing::Range(1, 9));
 
 TEST(CstrOwnModelFile, IsTheOneOfTheFirstSeed) {
   const TsModel model = identified(1);
-  const TsModel shipped = readModel(std::string(FMBPC_SOURCE_DIR) + "/config/model/cstr_own.yaml");
+  const TsModel shipped = readModel(sourceDir() + "/config/model/cstr_own.yaml");
   ASSERT_EQ(shipped.submodels[0].rules.size(), model.submodels[0].rules.size());
   for (std::size_t i = 0; i < model.submodels[0].rules.size(); ++i) {
     const Rule &a = shipped.submodels[0].rules[i], &b = model.submodels[0].rules[i];

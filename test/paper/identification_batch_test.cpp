@@ -19,6 +19,7 @@
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/plant/integrator.hpp"
 #include "fmbpc/plant/plant.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -26,7 +27,7 @@ namespace {
 constexpr int kSamples = 5000;
 
 Structure structureOf() {
-  return readStructure(std::string(FMBPC_SOURCE_DIR) + "/config/structure/batch_reactor.yaml");
+  return readStructure(sourceDir() + "/config/structure/batch_reactor.yaml");
 }
 
 struct Excitation {

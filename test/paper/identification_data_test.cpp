@@ -9,6 +9,7 @@
 #include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
 #include "fmbpc/fuzzy/validation.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -20,8 +21,7 @@ class PublicRecord : public ::testing::Test {
     const char* folder = std::getenv("FMBPC_DATA");
     if (folder == nullptr || !std::filesystem::exists(std::string(folder) + "/" + file))
       GTEST_SKIP() << file << " needs ${FMBPC_DATA}";
-    structure_ =
-        readStructure(std::string(FMBPC_SOURCE_DIR) + "/config/structure/" + structure + ".yaml");
+    structure_ = readStructure(sourceDir() + "/config/structure/" + structure + ".yaml");
     table_ = readCsv(std::string(folder) + "/" + file);
   }
   DataSet rows(const std::string& range) const {

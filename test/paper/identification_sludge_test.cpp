@@ -9,6 +9,7 @@
 #include "fmbpc/fuzzy/identify.hpp"
 #include "fmbpc/fuzzy/validation.hpp"
 #include "fmbpc/plant/simulation.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -68,8 +69,7 @@ struct Outcome {
 };
 
 Outcome outcomeOf(const std::string& name, const CsvTable& table) {
-  const Structure structure =
-      readStructure(std::string(FMBPC_SOURCE_DIR) + "/config/structure/" + name + ".yaml");
+  const Structure structure = readStructure(sourceDir() + "/config/structure/" + name + ".yaml");
   const DataSet early = makeDataSet(table, structure, {1, kLastRow}),
                 late = makeDataSet(table, structure, {kLastRow + 1, 0});
   const auto found = identify(early, structure);

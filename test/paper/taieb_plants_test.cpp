@@ -17,19 +17,18 @@
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/plant/integrator.hpp"
 #include "fmbpc/study/shortest_step.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
 
-std::string config(const std::string& file) {
-  return std::string(FMBPC_SOURCE_DIR) + "/config/" + file;
-}
+std::string config(const std::string& file) { return sourceDir() + "/config/" + file; }
 
 DataSet recordOf(const std::string& name, const std::string& structure,
                  const Overrides& overrides = {}) {
   const LoopFile loop = readLoop(name, overrides);
   const RunRecord record = runLoop(loop);
-  std::string folder = std::string(FMBPC_RESULTS_DIR) + "/" + name;
+  std::string folder = resultsDir() + "/" + name;
   for (const auto& [key, value] : overrides) folder += "_" + value;
   writeRun(loop, record, summarize(loop, record, 0.0), folder);
   return makeDataSet(readCsv(folder + "/trajectory.csv"),

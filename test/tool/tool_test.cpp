@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "loop/loop_fixture.hpp"
+#include "paths.hpp"
 #include "tool/tool_run.hpp"
 
 namespace fpc {
@@ -73,7 +74,7 @@ TEST_F(Tool, OutDrawsAPicture) {
 }
 
 TEST_F(Tool, ShippedInfluentIsWhatItsScriptPrints) {
-  const std::string top = FMBPC_SOURCE_DIR;
+  const std::string top = sourceDir();
   const std::string command = "/usr/bin/python3 " + top +
                               "/scripts/make_influent_week.py | cmp - " + top +
                               "/config/data/influent_week.csv";

@@ -9,6 +9,7 @@
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/control/hybrid/hybrid_mpc.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
+#include "paths.hpp"
 
 namespace fpc::test {
 
@@ -47,7 +48,7 @@ inline HybridMpcParams batchReactorParams(int equation, const std::string& bound
 }
 
 inline TsModel batchModel(const std::string& name) {
-  return matchToPlant(readModel(std::string(FMBPC_SOURCE_DIR) + "/config/model/" + name + ".yaml"),
+  return matchToPlant(readModel(sourceDir() + "/config/model/" + name + ".yaml"),
                       batchReactorInfo());
 }
 
