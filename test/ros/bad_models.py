@@ -49,7 +49,7 @@ class BadModels(unittest.TestCase):
     def test_each_is_refused_and_the_loop_goes_on_with_the_old_one(self):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
         recorded, status = ring.Listener("recorded", String), ring.NodeStatus("fmbpc_controller")
-        good = ring.Listener("fuzzy_model", FuzzyModel).wait(lambda m: m.name == "FM_1")
+        good = ring.Listener("fuzzy_model", FuzzyModel, "/fuzzy_identifier").wait(lambda m: m.name == "FM_1")
         publisher = ring.publisher("fuzzy_model", FuzzyModel, listeners=2)  # the controller, and this node
         ring.Listener("measurement", Measurement).wait(lambda m: m.step >= 5)
         for count, (model, words) in enumerate(spoiled(good), 1):

@@ -43,8 +43,7 @@ class ColumnAdapt(unittest.TestCase):
         ready.publish(node=rospy.get_name())
         measurements.wait(lambda m: m.step == 0)
 
-        log = ring.Listener("/rosout", Log)
-        log.wait_for_publisher()
+        log = ring.Listener("/rosout", Log, "/plant_simulator")
 
         def tell(name, mode, value=None):
             disturbance.publish(Disturbance(name=[name], value=[] if value is None else [value], mode=mode))

@@ -40,11 +40,10 @@ def steps(commands):
 
 class Commands(unittest.TestCase):
     def test_commands_by_topic_act_as_those_of_the_loop_file(self):
-        log, recorded = ring.Listener("/rosout", Log), ring.Listener("recorded", String)
+        log, recorded = ring.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator"), ring.Listener("recorded", String)
         effects = {kind: ring.Listener(kind, CommandEffect) for kind in ("setpoint_effect", "disturbance_effect")}
         active = ring.Listener("setpoint_active", Setpoint)
         for listener in (*effects.values(), active, recorded):
-            listener.wait_for_publisher()
         setpoint = ring.publisher("setpoint", Setpoint, listeners=2)
         disturbance = ring.publisher("disturbance", Disturbance)
         for command in SETPOINTS:

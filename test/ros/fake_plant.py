@@ -26,11 +26,9 @@ class FakePlant(unittest.TestCase):
         cls.pub = ring.publisher("measurement", Measurement)
         cls.actions = ring.Listener("control_action", ControlAction)
         cls.tracking = ring.Listener("tracking", Tracking)
-        cls.log = ring.Listener("/rosout", Log)
+        cls.log = ring.Listener("/rosout", Log, "/fmbpc_controller")
         cls.status = ring.NodeStatus("fmbpc_controller")
-        cls.ready = ring.Listener("ready", NodeReady)
-        cls.actions.wait_for_publisher()
-        cls.tracking.wait_for_publisher()
+        cls.ready = ring.Listener("ready", NodeReady, "/fmbpc_controller")
         cls.refuse_a_plant_with_other_units()
 
     @classmethod
@@ -179,7 +177,6 @@ class FakePlant(unittest.TestCase):
 
     def test_a_setpoint_without_a_stamp_acts_at_the_next_sample(self):
         effects = ring.Listener("setpoint_effect", CommandEffect)
-        effects.wait_for_publisher()
         setpoint = ring.publisher("setpoint", Setpoint)
         self.answer(1)
         setpoint.publish(name=["x"], value=[1950.0], mode=Setpoint.OVERRIDE)

@@ -44,7 +44,7 @@ class HotSwap(unittest.TestCase):
         return models.wait()
 
     def test_the_own_model_takes_over_and_tracks_better(self):
-        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log)
+        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log, "/fmbpc_controller")
         measurements = ring.Listener("measurement", Measurement)
         model = self.identified()
         pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)

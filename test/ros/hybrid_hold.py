@@ -35,7 +35,6 @@ def service(name, kind):
 class HybridHold(unittest.TestCase):
     def test_hold_resume_and_manual(self):
         recorded, actions = ring.Listener("recorded", String), ring.Listener("control_action", ControlAction)
-        actions.wait_for_publisher()
         hold, manual, manual_input = service("hold", SetBool), service("manual", SetBool), service("manual_input",
                                                                                                    ManualInput)
         self.assertEqual("recipe held", hold(True).message)

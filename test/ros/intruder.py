@@ -56,7 +56,8 @@ def rubbish(now):
 class Intruder(unittest.TestCase):
     def test_rubbish_on_every_topic_changes_nothing_and_is_counted(self):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
-        recorded, diagnostics = ring.Listener("recorded", String), ring.Listener("/diagnostics", DiagnosticArray)
+        recorded, diagnostics = ring.Listener("recorded", String), ring.Listener("/diagnostics", DiagnosticArray, "/plant_simulator", "/fmbpc_controller",
+                                                                             "/clp_optimizer", "/loop_recorder")
         measurements = ring.Listener("measurement", Measurement)
         publishers = {topic: rospy.Publisher(topic, kind, queue_size=10000) for topic, kind in KINDS.items()}
         for topic, publisher in publishers.items():

@@ -22,9 +22,8 @@ class PlantNode(unittest.TestCase):
         cls.states = ring.Listener("plant_state", PlantState)
         cls.infos = ring.Listener("plant_info", PlantInfo)
         cls.status = ring.NodeStatus("plant_simulator")
-        cls.log = ring.Listener("/rosout", Log)
+        cls.log = ring.Listener("/rosout", Log, "/plant_simulator")
         cls.pub = ring.publisher("control_action", ControlAction)
-        cls.states.wait_for_publisher()
         cls.pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
         cls.step = rospy.ServiceProxy("plant_simulator/step", Trigger)
         cls.reset = rospy.ServiceProxy("plant_simulator/reset", Trigger)
@@ -111,7 +110,6 @@ class PlantNode(unittest.TestCase):
 
     def test_a_disturbance_without_a_stamp_acts_at_the_next_sample(self):
         effects = ring.Listener("disturbance_effect", CommandEffect)
-        effects.wait_for_publisher()
         pub = ring.publisher("disturbance", Disturbance)
         before = self.status.counts().get("refused: disturbance", 0)
         for wrong in (Disturbance(name=["q_i"], value=[1.0], mode=0), Disturbance(name=["nobody"], value=[1.0], mode=1),
@@ -168,8 +166,6 @@ class PlantNode(unittest.TestCase):
         self.assertEqual(rospy.Time(1234, 500000000), ring.Listener("/clock", Clock).wait(
             lambda m: m.clock == rospy.Time(1234, 500000000)).clock)
         signal, held = ring.Listener("signal/x", Signal), ring.Listener("signal/q_r", Signal)
-        signal.wait_for_publisher()
-        held.wait_for_publisher()
         frames = {t.child_frame_id: t for t in ring.Listener("/tf_static", TFMessage).wait().transforms}
         info = self.infos.wait(lambda m: m.run_id == self.now.run_id)
         self.assertTrue(set(info.output_frames) <= set(frames) | {info.frame_id})

@@ -15,9 +15,8 @@ import ring
 class RealtimeGaps(unittest.TestCase):
     def test_missing_actions_mean_hold_then_fallback(self):
         measurements, states = ring.Listener("measurement", Measurement), ring.Listener("plant_state", PlantState)
-        diagnostics = ring.Listener("/diagnostics", DiagnosticArray)
+        diagnostics = ring.Listener("/diagnostics", DiagnosticArray, "/plant_simulator")
         pub = ring.publisher("control_action", ControlAction)
-        states.wait_for_publisher()
         ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
         ready.publish(node=rospy.get_name())
         run_id = measurements.wait(lambda m: m.step == 8).run_id

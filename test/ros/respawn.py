@@ -30,7 +30,6 @@ class Respawn(unittest.TestCase):
     def kill_in_the_middle(self, victim):
         """Asks for x = 1900, kills the victim once that acts; returns the step from which it acts."""
         effects, active = ring.Listener("setpoint_effect", CommandEffect), ring.Listener("setpoint_active", Setpoint)
-        effects.wait_for_publisher()
         ring.Listener("control_action", ControlAction).wait(lambda a: a.step >= 5)
         setpoint = ring.publisher("setpoint", Setpoint, listeners=2)
         setpoint.publish(name=["x"], value=[1900.0], mode=Setpoint.OVERRIDE)
@@ -43,7 +42,7 @@ class Respawn(unittest.TestCase):
 
     def test_a_killed_node_comes_back_and_no_sample_is_lost(self):
         victim = rospy.get_param("~victim")
-        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log)
+        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log, victim)
         measurements = ring.Listener("measurement", Measurement)
         asked = self.kill_in_the_middle(victim)
         if victim == "/fmbpc_controller":

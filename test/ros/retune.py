@@ -48,8 +48,6 @@ class Retune(unittest.TestCase):
 
     def test_settings_change_without_a_bump_and_take_effect(self):
         recorded = ring.Listener("recorded", String)
-        self.measurements.wait_for_publisher()
-        self.actions.wait_for_publisher()
         rospy.wait_for_service("plant_simulator/pause")
         self.pause(True)
         ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)

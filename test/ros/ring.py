@@ -14,12 +14,23 @@ PATIENCE = 60.0  # s of wall time for anything that must come
 
 
 class Listener:
-    """Keeps every message of a topic; wait() returns the first one that fulfils a condition."""
+    """Keeps every message of a topic; wait() returns the first one that fulfils a condition.
 
-    def __init__(self, topic, kind):
+    Connected once it is made: to all nodes in `of` where several publish on a topic, else to whoever publishes. A
+    lockstep loop does thousands of samples while a subscriber is still being connected, so nothing may be stepped
+    before. Only a test that starts the publishers itself says connected=False.
+    """
+
+    def __init__(self, topic, kind, *of, connected=True):
         self.messages, self.arrived = [], threading.Condition()
         self.subscriber = rospy.Subscriber(topic, kind, self.take, tcp_nodelay=True)
         self.topic = topic
+        if connected:
+            wait_until(lambda: self.publishers() >= set(of) and self.publishers(), f"{of or 'a publisher'} on {topic}")
+
+    def publishers(self):
+        """Nodes that are connected to this listener."""
+        return {connection.callerid_pub for connection in list(self.subscriber.impl.connections)}
 
     def take(self, message):
         with self.arrived:
@@ -37,9 +48,6 @@ class Listener:
                 if not self.arrived.wait(max(0.0, end - time.monotonic())):
                     raise AssertionError(f"{self.topic}: what was waited for did not come within {patience} s; "
                                          f"last of {seen}: {self.messages[-1:]}")
-
-    def wait_for_publisher(self, patience=PATIENCE):
-        wait_until(lambda: self.subscriber.get_num_connections() > 0, f"a publisher of {self.topic}", patience)
 
     def clear(self):
         with self.arrived:
@@ -120,7 +128,7 @@ class NodeStatus:
     """What a node says of itself on /diagnostics."""
 
     def __init__(self, name):
-        self.name, self.listener = name, Listener("/diagnostics", DiagnosticArray)
+        self.name, self.listener = name, Listener("/diagnostics", DiagnosticArray, "/" + name)
 
     def wait(self, fits=lambda status: True, patience=PATIENCE):
         """Its next status that fits."""

@@ -27,7 +27,7 @@ class Startup(unittest.TestCase):
         return process
 
     def wait_for_status(self, name, level, words):
-        listener = ring.Listener("/diagnostics", DiagnosticArray)
+        listener = ring.Listener("/diagnostics", DiagnosticArray, "/" + name)
 
         def fits(message):
             status = ring.diagnostics_of(message, name)
@@ -45,8 +45,9 @@ class Startup(unittest.TestCase):
                       "/impatient/loop_recorder\n", text.replace("\x1b[0m", ""))
 
     def test_a_controller_without_a_model_is_not_ready_and_one_that_joins_late_finds_sample_0(self):
-        measurements, recorded = ring.Listener("measurement", Measurement), ring.Listener("recorded", String)
-        ready = ring.Listener("ready", NodeReady)
+        measurements, recorded = (ring.Listener(topic, kind, connected=False)
+                                  for topic, kind in (("measurement", Measurement), ("recorded", String)))
+        ready = ring.Listener("ready", NodeReady, connected=False)
         self.start("plant_simulator")
         self.start("loop_recorder")
         self.wait_for_status("plant_simulator", DiagnosticStatus.WARN,
