@@ -7,8 +7,15 @@
 #include <regex>
 #include <set>
 
+#include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/control/excitation/excitation.hpp"
+#include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/control/horizon/nmpc.hpp"
+#include "fmbpc/control/horizon/swarm_mpc.hpp"
+#include "fmbpc/control/optimal/law.hpp"
+#include "fmbpc/control/pi/pi.hpp"
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
@@ -50,7 +57,7 @@ std::string general(std::string path) {
 
 std::set<std::string> asked(const std::string& text) {
   auto trace = std::make_shared<YamlTrace>();
-  YamlSection root(YAML::Load(text), "text", "", trace);
+  YamlSection root(YamlNode(YAML::Load(text)), "text", "", trace);
   readSections(root, "text");
   return trace->asked;
 }
@@ -176,8 +183,10 @@ std::string word(bool value) { return value ? "true" : "false"; }
 std::map<std::string, std::string> structDefaults() {
   const LoopFile loop;
   const ClpParams& clp = loop.clp;
-  const FmbpcParams& law = loop.fmbpc;
-  const FuzzyOptimalParams& optimal = loop.fuzzy_optimal;
+  const FmbpcParams law;
+  const FuzzyOptimalParams optimal;
+  const NmpcParams nmpc;
+  const SwarmParams swarm = SwarmMpcParams{}.swarm;
   const IntegratorParams& integrator = loop.simulation.integrator;
   const CsvDisturbanceParams& csv = loop.disturbance.csv;
   const PiLoop pi;
@@ -197,16 +206,16 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.law", law.law},
           {"controller.coincidence_steps", std::to_string(law.coincidence_steps)},
           {"controller.preview", word(law.preview)},
-          {"controller.max_iterations", std::to_string(loop.nmpc.solver.max_iterations)},
-          {"controller.integration_steps", std::to_string(loop.nmpc.integration_steps)},
-          {"controller.swarm.particles", std::to_string(loop.swarm_mpc.swarm.particles)},
-          {"controller.swarm.iterations", std::to_string(loop.swarm_mpc.swarm.iterations)},
-          {"controller.swarm.inertia_start", exactText(loop.swarm_mpc.swarm.inertia_start)},
-          {"controller.swarm.inertia_end", exactText(loop.swarm_mpc.swarm.inertia_end)},
-          {"controller.swarm.cognitive", exactText(loop.swarm_mpc.swarm.cognitive)},
-          {"controller.swarm.social", exactText(loop.swarm_mpc.swarm.social)},
-          {"controller.swarm.speed_upper", exactText(loop.swarm_mpc.swarm.speed_upper)},
-          {"controller.swarm.seed", std::to_string(loop.swarm_mpc.swarm.seed)},
+          {"controller.max_iterations", std::to_string(nmpc.solver.max_iterations)},
+          {"controller.integration_steps", std::to_string(nmpc.integration_steps)},
+          {"controller.swarm.particles", std::to_string(swarm.particles)},
+          {"controller.swarm.iterations", std::to_string(swarm.iterations)},
+          {"controller.swarm.inertia_start", exactText(swarm.inertia_start)},
+          {"controller.swarm.inertia_end", exactText(swarm.inertia_end)},
+          {"controller.swarm.cognitive", exactText(swarm.cognitive)},
+          {"controller.swarm.social", exactText(swarm.social)},
+          {"controller.swarm.speed_upper", exactText(swarm.speed_upper)},
+          {"controller.swarm.seed", std::to_string(swarm.seed)},
           {"controller.horizon_steps", std::to_string(law.horizon_steps)},
           {"controller.iterations", std::to_string(law.iterations)},
           {"controller.forecast_pole", exactText(law.forecast_pole)},
@@ -225,7 +234,7 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.loops[].reverse", word(pi.reverse)},
           {"controller.loops[].anti_windup", pi.anti_windup},
           {"controller.loops[].start", pi.start},
-          {"controller.seed", std::to_string(loop.excitation.seed)},
+          {"controller.seed", std::to_string(ExcitationParams{}.seed)},
           {"controller.signals[].register_bits", std::to_string(ExcitationSignal{}.register_bits)},
           {"controller.signals[].clock_steps", std::to_string(ExcitationSignal{}.clock_steps)},
           {"controller.signals[].start_steps", std::to_string(ExcitationSignal{}.start_steps)},

@@ -1,20 +1,20 @@
-// Section `controller` of type adaptive_pi.
-#include <algorithm>
-
-#include "config/read.hpp"
+// Controller type adaptive_pi: its section of a loop file.
+#include "fmbpc/control/pi/adaptive_pi.hpp"
+#include "fmbpc/control/pi/decoupling.hpp"
+#include "fmbpc/control/registry.hpp"
 
 namespace fpc {
 namespace {
 
-void readLoops(YamlSection& section, AdaptivePiParams& params, const LoopNames& names) {
+void readLoops(YamlSection& section, AdaptivePiParams& params, const ControllerContext& context) {
   need(section, "loops", "a list of two loops");
   auto items = section.list("loops");
   if (items.size() != 2) section.fail("loops", "two loops");
   for (std::size_t i = 0; i < 2; ++i) {
     AdaptiveLoop& loop = params.loops[i];
     YamlSection& item = items[i];
-    loop.input = indexByName(item, "input", names.inputs);
-    loop.output = indexByName(item, "output", names.outputs);
+    loop.input = indexByName(item, "input", context.inputs());
+    loop.output = indexByName(item, "output", context.outputs());
     if (params.tuning == "given")
       for (const char* key : {"kp", "integral_time_min"}) need(item, key, "a number");
     item.number("kp", loop.kp, kFinite);
@@ -29,10 +29,11 @@ std::size_t loopOf(const AdaptivePiParams& params, int index, int AdaptiveLoop::
   return params.loops[0].*signal == index ? 0 : 1;
 }
 
-void readElements(YamlSection& section, AdaptivePiParams& params, const LoopNames& names) {
+void readElements(YamlSection& section, AdaptivePiParams& params,
+                  const ControllerContext& context) {
   for (auto& item : section.list("model")) {
-    const int output = indexByName(item, "output", names.outputs);
-    const int input = indexByName(item, "input", names.inputs);
+    const int output = indexByName(item, "output", context.outputs());
+    const int input = indexByName(item, "input", context.inputs());
     Fopdt& element = params.model[loopOf(params, output, &AdaptiveLoop::output)]
                                  [loopOf(params, input, &AdaptiveLoop::input)];
     for (const char* key : {"gain", "time_constant_min"}) need(item, key, "a number");
@@ -60,21 +61,31 @@ void readAdaptation(YamlSection& section, AdaptationParams& params) {
   item.finish();
 }
 
-}  // namespace
-
-void readAdaptivePi(YamlSection& section, LoopFile& loop, const LoopNames& names) {
-  AdaptivePiParams& params = loop.adaptive_pi;
-  if (names.outputs.size() != 2 || names.inputs.size() != 2)
+AdaptivePiParams readAdaptivePi(YamlSection& section, const ControllerContext& context) {
+  AdaptivePiParams params;
+  if (context.outputCount() != 2 || context.inputCount() != 2)
     section.fail("type", "a plant of two inputs and two outputs for adaptive_pi");
   section.oneOf("tuning", params.tuning, {"given", "imc", "pso"});
-  readLoops(section, params, names);
+  readLoops(section, params, context);
   section.boolean("decoupling", params.decoupling);
-  readElements(section, params, names);
+  readElements(section, params, context);
   readAdaptation(section, params.adaptation);
   checked(section, [&] {
     params.validate(2, 2);
-    AdaptivePi(params, loop.simulation.actuator.limits, loop.plant_info);
+    if (params.decoupling) InvertedDecoupling(params.model, context.plant.sample_time_s / 60.0);
   });
+  return params;
 }
 
+std::unique_ptr<Controller> makeAdaptivePi(const AdaptivePiParams& params,
+                                           const ControllerContext& context) {
+  return std::make_unique<AdaptivePi>(params, context.limits, context.plant);
+}
+
+const bool kRegistered = registerController<AdaptivePiParams>(
+    {{"adaptive_pi", "two PI loops behind a decoupling, retuned from gains learned on line"},
+     &readAdaptivePi,
+     &makeAdaptivePi});
+
+}  // namespace
 }  // namespace fpc

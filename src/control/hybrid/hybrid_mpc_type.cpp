@@ -1,10 +1,10 @@
-// Section `controller` of type hybrid_mpc: which inputs there are, which of them may follow each
-// other, what they cost.
+// Controller type hybrid_mpc: its section of a loop file: which inputs there are, which of them may
+// follow each other, what they cost.
 #include <cmath>
 
-#include "config/read.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
+#include "fmbpc/control/registry.hpp"
 
 namespace fpc {
 namespace {
@@ -93,16 +93,16 @@ void readTransitions(YamlSection& section, const std::vector<std::string>& names
   }
 }
 
-void readCost(YamlSection& controller, HybridMpcParams& params, const LoopNames& names) {
+void readCost(YamlSection& controller, HybridMpcParams& params, const ControllerContext& loop) {
   YamlSection cost = controller.section("cost");
-  params.weight_tracking = Vector::Zero(count(names.outputs));
-  params.weight_consumption = Vector::Zero(count(names.inputs));
-  cost.byName("tracking", params.weight_tracking, names.outputs, kFiniteNotNegative);
-  cost.byName("consumption", params.weight_consumption, names.inputs, kFinite);
+  params.weight_tracking = Vector::Zero(loop.outputCount());
+  params.weight_consumption = Vector::Zero(loop.inputCount());
+  cost.byName("tracking", params.weight_tracking, loop.outputs(), kFiniteNotNegative);
+  cost.byName("consumption", params.weight_consumption, loop.inputs(), kFinite);
   for (auto& item : cost.list("switching")) {
     SwitchTerm term;
-    term.before = indexByName(item, "before", names.inputs);
-    term.after = indexByName(item, "after", names.inputs);
+    term.before = indexByName(item, "before", loop.inputs());
+    term.after = indexByName(item, "after", loop.inputs());
     need(item, "weight", "a number >= 0");
     item.number("weight", term.weight, kFiniteNotNegative);
     item.finish();
@@ -110,9 +110,9 @@ void readCost(YamlSection& controller, HybridMpcParams& params, const LoopNames&
   }
   for (auto& item : cost.list("travel")) {
     TravelTerm term;
-    term.input = indexByName(item, "input", names.inputs);
+    term.input = indexByName(item, "input", loop.inputs());
     if (item.has("gate"))
-      term.gate = indexByName(item, "gate", names.inputs);
+      term.gate = indexByName(item, "gate", loop.inputs());
     else
       item.markRead("gate");
     need(item, "weight", "a number >= 0");
@@ -123,59 +123,39 @@ void readCost(YamlSection& controller, HybridMpcParams& params, const LoopNames&
   cost.finish();
 }
 
-void checkFallback(const LoopFile& loop) {
-  const HybridMpc law(loop.hybrid, loop.simulation.actuator.limits, loop.plant_info);
-  require(law.mayBeSent(loop.simulation.actuator.fallback), loop.name + ": actuator.fallback",
-          "one of controller.inputs");
-}
-
-}  // namespace
-
-void readHours(YamlSection& section, const std::string& stem, double& hours) {
-  int given = 0;
-  for (const auto& [unit, seconds] : {std::pair{"_s", 1.0}, {"_min", 60.0}, {"_h", 3600.0}}) {
-    const std::string key = stem + unit;
-    double value = 0.0;
-    section.number(key, value, {0.0, 3.6e10});
-    if (!section.has(key)) continue;
-    hours = value * seconds / 3600.0;
-    if (++given > 1) section.fail(key, "the time in one unit");
-  }
-}
-
-std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
-                                     const std::vector<std::string>& outputs) {
-  std::vector<SetpointStep> entries;
-  double time_h = 0.0;
-  for (auto& item : setpoint.list("recipe")) {
-    SetpointStep entry;
-    double hold_h = 0.0;
-    entry.time_h = time_h;
-    readHours(item, "ramp", entry.ramp_h);
-    readHours(item, "hold", hold_h);
-    entry.value = readPattern(item, outputs);
-    time_h += entry.ramp_h + hold_h;
-    entries.push_back(std::move(entry));
-  }
-  return entries;
-}
-
-void readHybridMpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
-  HybridMpcParams& params = loop.hybrid;
+HybridMpcParams readHybridMpc(YamlSection& section, const ControllerContext& loop) {
+  HybridMpcParams params;
   params.preview = false;
-  params.choices = readChoices(section, names.inputs);
-  readTransitions(section, names.inputs, params.forbidden_transitions);
+  params.choices = readChoices(section, loop.inputs());
+  readTransitions(section, loop.inputs(), params.forbidden_transitions);
   section.integer("hold_samples", params.hold_samples, 1, 100000);
   section.integer("horizon_blocks", params.horizon_blocks, 1, 1000);
   section.boolean("preview", params.preview);
-  readCost(section, params, names);
+  readCost(section, params, loop);
   section.oneOf("bound", params.bound, {"cost", "reach"});
   section.seed("node_budget", params.node_budget);
   section.number("time_budget_s", params.time_budget_s, kFiniteNotNegative);
   checked(section, [&] {
-    params.validate(count(names.outputs), count(names.inputs));
-    checkFallback(loop);
+    params.validate(loop.outputCount(), loop.inputCount());
+    params.validateLimits(loop.limits);
   });
+  require(params.mayBeSent(loop.fallback_input), "actuator.fallback", "one of controller.inputs");
+  return params;
 }
 
+std::unique_ptr<Controller> makeHybridMpc(const HybridMpcParams& params,
+                                          const ControllerContext& loop) {
+  return std::make_unique<HybridMpc>(params, loop.limits, loop.plant);
+}
+
+ControllerType describe() {
+  ControllerType type{"hybrid_mpc", "the best sequence out of a set of input vectors, by search"};
+  type.needs_model = true;
+  return type;
+}
+
+const bool kRegistered =
+    registerController<HybridMpcParams>({describe(), &readHybridMpc, &makeHybridMpc});
+
+}  // namespace
 }  // namespace fpc

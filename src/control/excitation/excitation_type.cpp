@@ -1,11 +1,12 @@
-// Section `controller` of type excitation: experiments for identification. Times are given in
-// samples or in seconds that are a whole number of samples.
+// Controller type excitation: its section of a loop file. Times are given in samples or in seconds
+// that are a whole number of samples.
+#include "fmbpc/control/excitation/excitation.hpp"
+
 #include <cmath>
 #include <set>
 
-#include "config/read.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/control/registry.hpp"
 
 namespace fpc {
 namespace {
@@ -72,13 +73,13 @@ void readStaircase(YamlSection& item, ExcitationSignal& signal, double sample_ti
   }
 }
 
-ExcitationSignal readSignal(YamlSection& item, const LoopFile& loop, const LoopNames& names) {
+ExcitationSignal readSignal(YamlSection& item, const ControllerContext& loop) {
   ExcitationSignal signal;
-  const double sample_time_s = loop.simulation.sample_time_s;
-  signal.input = indexByName(item, "input", names.inputs);
+  const double sample_time_s = loop.plant.sample_time_s;
+  signal.input = indexByName(item, "input", loop.inputs());
   need(item, "signal", "one of prbs, multi_level, steps, none");
   item.oneOf("signal", signal.signal, {"prbs", "multi_level", "steps", "none"});
-  const InputLimits& limits = loop.simulation.actuator.limits;
+  const InputLimits& limits = loop.limits;
   const Range bounds{limits.lower[signal.input], limits.upper[signal.input]};
   if (signal.signal == "prbs" || signal.signal == "multi_level") {
     signal.lower = bounds.lower;
@@ -94,31 +95,45 @@ ExcitationSignal readSignal(YamlSection& item, const LoopFile& loop, const LoopN
   return signal;
 }
 
-ExcitationFeedback readFeedback(YamlSection& item, const LoopNames& names) {
+ExcitationFeedback readFeedback(YamlSection& item, const ControllerContext& loop) {
   ExcitationFeedback feedback;
-  feedback.input = indexByName(item, "input", names.inputs);
-  feedback.output = indexByName(item, "output", names.outputs);
+  feedback.input = indexByName(item, "input", loop.inputs());
+  feedback.output = indexByName(item, "output", loop.outputs());
   need(item, "gain", "a number");
   item.number("gain", feedback.gain, kFinite);
   item.finish();
   return feedback;
 }
 
-}  // namespace
-
-void readExcitation(YamlSection& section, LoopFile& loop, const LoopNames& names) {
-  section.seed("seed", loop.excitation.seed);
+ExcitationParams readExcitation(YamlSection& section, const ControllerContext& loop) {
+  ExcitationParams params;
+  section.seed("seed", params.seed);
   need(section, "signals", "a list of signals, one for each input that moves");
   std::set<int> moved;
   for (auto& item : section.list("signals")) {
-    loop.excitation.signals.push_back(readSignal(item, loop, names));
-    if (!moved.insert(loop.excitation.signals.back().input).second)
+    params.signals.push_back(readSignal(item, loop));
+    if (!moved.insert(params.signals.back().input).second)
       item.fail("input", "an input that no other signal moves");
   }
-  for (auto& item : section.list("feedback"))
-    loop.excitation.feedback.push_back(readFeedback(item, names));
-  const auto n_y = static_cast<Eigen::Index>(names.outputs.size());
-  checked(section, [&] { loop.excitation.validate(loop.simulation.actuator.limits, n_y); });
+  for (auto& item : section.list("feedback")) params.feedback.push_back(readFeedback(item, loop));
+  checked(section, [&] { params.validate(loop.limits, loop.outputCount()); });
+  return params;
 }
 
+std::unique_ptr<Controller> makeExcitation(const ExcitationParams& params,
+                                           const ControllerContext& loop) {
+  return std::make_unique<ExcitationController>(params, loop.limits, loop.initial_input,
+                                                loop.plant);
+}
+
+ControllerType describe() {
+  ControllerType type{"excitation", "an experiment for identification: every input its own signal"};
+  type.open_loop = true;
+  return type;
+}
+
+const bool kRegistered =
+    registerController<ExcitationParams>({describe(), &readExcitation, &makeExcitation});
+
+}  // namespace
 }  // namespace fpc

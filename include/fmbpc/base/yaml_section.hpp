@@ -1,8 +1,6 @@
 // A YAML mapping in which typos cannot hide: every key is read once, over a default, and what is
-// left is an error. Private: yaml-cpp does not appear in public headers.
+// left is an error. What a reader of a section needs, also one of another package.
 #pragma once
-
-#include <yaml-cpp/yaml.h>
 
 #include <limits>
 #include <map>
@@ -11,9 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {
+
+struct YamlNode;  ///< of yaml-cpp, which no public header shows
 
 /// Closed range of a number; open ends by excluding the bound. Infinite numbers pass only when a
 /// bound is infinite.
@@ -28,6 +29,12 @@ struct Range {
     return {0.0, std::numeric_limits<double>::max(), false};
   }  ///< and finite
 };
+
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr Range kFinite{-kLargest, kLargest};
+constexpr Range kFinitePositive{0.0, kLargest, true};
+constexpr Range kFiniteNotNegative{0.0, kLargest};
 
 /// For a text merged from several files: where each path ("controller.loops[0].kp") was written,
 /// and which paths a reader asked for. Shared by all sections of the text.
@@ -45,7 +52,7 @@ class YamlSection {
   static YamlSection load(const std::string& file);
   static YamlSection parse(const std::string& text, const std::string& name);
   /// @throws InputError unless the node is a mapping (a null node is an empty one).
-  YamlSection(const YAML::Node& node, std::string file, std::string path,
+  YamlSection(const YamlNode& node, std::string file, std::string path,
               std::shared_ptr<YamlTrace> trace = nullptr);
 
   bool has(const std::string& key) const;
@@ -78,20 +85,37 @@ class YamlSection {
   /// "file:line: path.key"
   std::string where(const std::string& key) const;
   [[noreturn]] void fail(const std::string& key, const std::string& expected) const;
-  YAML::Node raw(const std::string& key) const;  ///< marks the key as read
+  YamlNode raw(const std::string& key) const;  ///< marks the key as read; src/base/yaml_node.hpp
   const std::string& file() const { return file_; }
 
  private:
-  const YAML::Node& node() const { return node_; }
   std::string pathOf(const std::string& key) const {
     return path_.empty() ? key : path_ + "." + key;
   }
-  double toNumber(const YAML::Node& node, const std::string& key, const Range& range) const;
+  double toNumber(const YamlNode& node, const std::string& key, const Range& range) const;
 
-  YAML::Node node_;
+  std::shared_ptr<const YamlNode> node_;
   std::string file_, path_;
   std::shared_ptr<std::set<std::string>> read_;
   std::shared_ptr<YamlTrace> trace_;  // may be null
 };
+
+/// A required key: fails unless it is there.
+void need(const YamlSection& section, const std::string& key, const std::string& expected);
+/// Index of the name that stands at `key`. @throws InputError listing the names.
+int indexByName(YamlSection& section, const std::string& key,
+                const std::vector<std::string>& names);
+/// Throws `message` ("field: expected ...") again with the place of the field in the file.
+[[noreturn]] void failAt(const YamlSection& section, const std::string& message);
+
+/// Runs a check whose InputError knows the field but not the file.
+template <typename Check>
+void checked(const YamlSection& section, Check check) {
+  try {
+    check();
+  } catch (const InputError& e) {
+    failAt(section, e.what());
+  }
+}
 
 }  // namespace fpc
