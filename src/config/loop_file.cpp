@@ -6,6 +6,7 @@
 #include "config/plant_sample_model.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/config/plugins.hpp"
 
 namespace fpc {
 namespace {
@@ -18,6 +19,13 @@ void describePlant(YamlSection& root, LoopFile& loop) {
   PlantInfo& info = loop.plant_info;
   info.sample_time_s = loop.simulation.sample_time_s;
   info.header = SampleClock(info.sample_time_s, loop.simulation.start_time_s).header(0, 0);
+}
+
+/// Before anything else: what follows may name plants and controllers of theirs.
+void readPlugins(YamlSection& root) {
+  std::vector<std::string> plugins;
+  root.names("plugins", plugins);
+  for (const auto& plugin : plugins) loadPlugin(plugin, root.where("plugins"));
 }
 
 /// Nominal values of the measured disturbances.
@@ -61,6 +69,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   loop.name = name;
   loop.report.title = name;
   root.text("title", loop.report.title);
+  readPlugins(root);
   readPlant(root, loop, names);
   readSampling(root, loop);
   readActuator(root, loop, names);

@@ -18,6 +18,11 @@ std::map<std::string, Entry>& registry() {
   return types;
 }
 
+std::vector<std::string>& refused() {
+  static std::vector<std::string> names;
+  return names;
+}
+
 const Entry& entryOf(const std::string& name) {
   const auto found = registry().find(name);
   require(found != registry().end(), "controller.type '" + name + "'",
@@ -47,8 +52,12 @@ Eigen::Index ControllerContext::inputCount() const {
 
 bool registerControllerReader(ControllerType type, ControllerReader read) {
   const std::string name = type.name;
-  return registry().emplace(name, Entry{std::move(type), std::move(read)}).second;
+  const bool is_new = registry().emplace(name, Entry{std::move(type), std::move(read)}).second;
+  if (!is_new) refused().push_back(name);
+  return is_new;
 }
+
+std::vector<std::string> refusedControllers() { return refused(); }
 
 std::vector<std::string> controllerNames() {
   std::vector<std::string> names;

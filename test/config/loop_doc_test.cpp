@@ -16,7 +16,7 @@
 #include "fmbpc/control/horizon/swarm_mpc.hpp"
 #include "fmbpc/control/optimal/law.hpp"
 #include "fmbpc/control/pi/pi.hpp"
-#include "loop/loop_fixture.hpp"
+#include "loop/loops_of_type.hpp"
 
 namespace fpc {
 namespace {
@@ -121,17 +121,15 @@ std::set<std::string> readerKeys() {
       "loops: "
       "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
       "integral_time_min: 1}], model: [{output: y_D, input: L, gain: 1, time_constant_min: 1}]}\n";
-  const std::string nmpc = "plant: {type: mimo_cstr}\ncontroller: {type: nmpc}\n";
-  const std::string swarm =
-      "plant: {type: mimo_cstr}\nsampling: {sample_time_s: 0.6, duration_h: 1}\ncontroller: {type: "
-      "swarm_mpc}\nmodel: {file: " +
-      std::string(FMBPC_SOURCE_DIR) + "/config/model/mimo_cstr.yaml}\n";
+  std::vector<std::string> texts{controlled(fmbpc + lists), controlled(external), controlled(column),
+                                 controlled(adaptive), optimal, prbs, levels, steps,
+                                 batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
+                                 batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest};
+  for (const auto& type : controllerNames())
+    for (const auto& loop : loopsOfType(type)) texts.push_back(resolveLoop(loop));
   std::set<std::string> keys;
   std::set<std::string> sections;
-  for (const auto& text : {controlled(fmbpc + lists), controlled(external), controlled(column),
-                           controlled(adaptive), optimal, controlled(nmpc), swarm, prbs, levels,
-                           steps, batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
-                           batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest})
+  for (const auto& text : texts)
     for (const auto& path : asked(text)) {
       keys.insert(general(path));
       for (auto cut = path.find('.'); cut != std::string::npos; cut = path.find('.', cut + 1))

@@ -111,6 +111,8 @@ bool registerController(const ControllerRegistration<Params>& given) {
 }
 
 std::vector<std::string> controllerNames();  ///< in alphabetical order
+/// Names that were registered although they were taken, in the order in which that happened.
+std::vector<std::string> refusedControllers();
 /// @throws InputError with the known names.
 const ControllerType& controllerType(const std::string& name);
 /// Reads the whole section, key `type` included. @throws InputError naming file, key and what was
