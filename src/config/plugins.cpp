@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <mutex>
 #include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
@@ -62,16 +64,25 @@ struct Registered {
   std::vector<std::string> plants{refusedPlants()}, controllers{refusedControllers()};
 };
 
-void checkRegistered(const Registered& before, const std::string& path, const std::string& where) {
+std::string whatIsWrong(const Registered& before, const std::string& path) {
   const Registered after;
+  const std::string taken = ", which is there already, from " + path;
   if (after.plants.size() > before.plants.size())
-    throw InputError(where + ": expected names of its own, got the plant '" + after.plants.back() +
-                     "', which is there already, from " + path);
+    return "names of its own, got the plant " + after.plants.back() + taken;
   if (after.controllers.size() > before.controllers.size())
-    throw InputError(where + ": expected names of its own, got the controller '" +
-                     after.controllers.back() + "', which is there already, from " + path);
-  require(after.types > before.types, where,
-          "a library that registers plants or controllers, got " + path);
+    return "names of its own, got the controller " + after.controllers.back() + taken;
+  if (after.types == before.types)
+    return "a library that registers plants or controllers, got " + path;
+  return "";
+}
+
+/// Loads it for good (what it registered lives in it). Returns what is wrong with it, or nothing.
+std::string load(const std::string& path) {
+  if (dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD) != nullptr) return "";  // linked
+  const Registered before;
+  if (dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL) != nullptr) return whatIsWrong(before, path);
+  const char* reason = dlerror();
+  return "a library that this fmbpc can load: " + oneLine(reason ? reason : path);
 }
 
 }  // namespace
@@ -89,15 +100,14 @@ std::vector<std::string> pluginFolders() {
 bool isPluginPath(const std::string& name) { return name.find('/') != std::string::npos; }
 
 void loadPlugin(const std::string& name, const std::string& where) {
+  static std::mutex mutex;
+  static std::map<std::string, std::string> outcomes;  // by path: what was wrong with it
+  const std::lock_guard<std::mutex> lock(mutex);
   const std::string path = pathOf(name, where);
-  if (dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD) != nullptr) return;
-  const Registered before;
-  if (dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL) == nullptr) {
-    const char* reason = dlerror();
-    throw InputError(where + ": expected a library that this fmbpc can load: " +
-                     oneLine(reason ? reason : path));
-  }
-  checkRegistered(before, path, where);
+  const auto known = outcomes.find(path);
+  const std::string problem = known != outcomes.end() ? known->second : load(path);
+  outcomes[path] = problem;
+  if (!problem.empty()) throw InputError(where + ": expected " + problem);
 }
 
 }  // namespace fpc

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "allocation_counter.hpp"
+#include "fmbpc/config/plugins.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "loop/loops_of_type.hpp"
 
@@ -213,12 +214,20 @@ TEST_P(ControllerContract, SettingsThatMakeNoSenseAreRefusedAndChangeNothing) {
 
 std::string nameOf(const ::testing::TestParamInfo<std::string>& type) { return type.param; }
 
-INSTANTIATE_TEST_SUITE_P(Types, ControllerContract, ::testing::ValuesIn(controllerNames()), nameOf);
+/// Ours, and those of the example of a user's package.
+std::vector<std::string> everyType() {
+  setenv("FMBPC_CONFIG_PATH", FMBPC_SOURCE_DIR "/examples/two_tanks/config", 1);
+  setenv("FMBPC_PLUGIN_PATH", FMBPC_TEST_PLUGINS, 1);
+  loadPlugin("two_tanks", "test");
+  return controllerNames();
+}
+
+INSTANTIATE_TEST_SUITE_P(Types, ControllerContract, ::testing::ValuesIn(everyType()), nameOf);
 
 TEST(ControllerRegistry, HoldsTheTypesThatShip) {
   for (const char* type : {"fmbpc", "fuzzy_optimal", "pi", "excitation"})
     EXPECT_EQ(controllerType(type).name, type);
-  EXPECT_GE(controllerNames().size(), 8U);
+  EXPECT_GE(controllerNames().size(), 9U);
   expectWords(errorOf([] { controllerType("magic"); }), {"controller.type 'magic'", "fmbpc"});
 }
 
