@@ -21,7 +21,7 @@ def level(h, q):
 class Tank:
     def __init__(self):
         self.measurement = Measurement(run_id=time.time_ns(), outputs=[0.5], input_applied=[2.0])
-        self.waiting_for = {rospy.resolve_name(n) for n in ("pi_controller", "loop_recorder")}
+        self.waiting_for = {rospy.resolve_name(n) for n in ("fmbpc_controller", "loop_recorder")}
         self.info_pub = rospy.Publisher("plant_info", PlantInfo, queue_size=1, latch=True)
         self.pub = rospy.Publisher("measurement", Measurement, queue_size=10, latch=True, tcp_nodelay=True)
         rospy.Subscriber("control_action", ControlAction, self.on_action, tcp_nodelay=True)

@@ -1,18 +1,17 @@
-#include "base/yaml_section.hpp"
+#include "fmbpc/base/yaml_section.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
-#include "fmbpc/base/input_error.hpp"
+#include "base/yaml_node.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
 
 std::string describe(const Range& range) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
   const bool has_lower = range.lower > -kLargest;
   const bool has_upper = range.upper < kLargest;
   std::string words =
@@ -32,6 +31,11 @@ bool inside(double value, const Range& range) {
 std::string scalarText(const YAML::Node& node) {
   return node.IsScalar() ? "'" + node.Scalar() + "'"
                          : (node.IsNull() ? "nothing" : "a list or mapping");
+}
+
+/// A key without a value is an empty mapping.
+YAML::Node mappingOf(const YAML::Node& node) {
+  return node.IsDefined() && !node.IsNull() ? node : YAML::Node(YAML::NodeType::Map);
 }
 
 }  // namespace
@@ -57,28 +61,26 @@ YamlSection YamlSection::load(const std::string& file) {
 
 YamlSection YamlSection::parse(const std::string& text, const std::string& name) {
   try {
-    return {YAML::Load(text), name, ""};
+    return {YamlNode(YAML::Load(text)), name, ""};
   } catch (const YAML::Exception& e) {
     throw InputError(name + ":" + std::to_string(e.mark.line + 1) +
                      ": expected valid YAML: " + e.msg);
   }
 }
 
-YamlSection::YamlSection(const YAML::Node& node, std::string file, std::string path,
+YamlSection::YamlSection(const YamlNode& node, std::string file, std::string path,
                          std::shared_ptr<YamlTrace> trace)
-    : node_(node),
+    : node_(std::make_shared<const YamlNode>(mappingOf(node))),
       file_(std::move(file)),
       path_(std::move(path)),
       read_(std::make_shared<std::set<std::string>>()),
       trace_(std::move(trace)) {
-  if (!node_.IsDefined() || node_.IsNull())
-    node_.reset(YAML::Node(YAML::NodeType::Map));  // = would change the tree
-  require(node_.IsMap(),
+  require(node_->IsMap(),
           (trace_ ? trace_->originOf(path_, file_) : file_ + ": ") +
               (path_.empty() ? "top level" : path_),
           "a mapping of keys to values");
   std::set<std::string> seen;
-  for (const auto& entry : node_)
+  for (const auto& entry : *node_)
     require(seen.insert(entry.first.Scalar()).second, where(entry.first.Scalar()),
             "the key only once");
 }
@@ -86,14 +88,14 @@ YamlSection::YamlSection(const YAML::Node& node, std::string file, std::string p
 std::string YamlSection::where(const std::string& key) const {
   const std::string path = pathOf(key);
   if (trace_) return trace_->originOf(path, file_) + path;
-  const YAML::Node& map = node_;
+  const YAML::Node& map = *node_;
   const YAML::Node child = map[key.substr(0, key.find('.'))];
   const int line = child.IsDefined() ? child.Mark().line : map.Mark().line;
   return file_ + (line >= 0 ? ":" + std::to_string(line + 1) : "") + ": " + path;
 }
 
 void YamlSection::fail(const std::string& key, const std::string& expected) const {
-  const YAML::Node& map = node_;
+  const YAML::Node& map = *node_;
   const YAML::Node child = map[key];
   throw InputError(where(key) + ": expected " + expected +
                    (child.IsDefined() ? ", got " + scalarText(child) : ""));
@@ -105,17 +107,17 @@ void YamlSection::markRead(const std::string& key) const {
 }
 
 bool YamlSection::has(const std::string& key) const {
-  const YAML::Node& map = node_;
+  const YAML::Node& map = *node_;
   return map[key].IsDefined();
 }
 
-YAML::Node YamlSection::raw(const std::string& key) const {
+YamlNode YamlSection::raw(const std::string& key) const {
   markRead(key);
-  const YAML::Node& map = node_;
+  const YAML::Node& map = *node_;
   return map[key];
 }
 
-double YamlSection::toNumber(const YAML::Node& node, const std::string& key,
+double YamlSection::toNumber(const YamlNode& node, const std::string& key,
                              const Range& range) const {
   double value = std::numeric_limits<double>::quiet_NaN();
   const bool parsed = node.IsScalar() && YAML::convert<double>::decode(node, value);
@@ -237,7 +239,7 @@ void YamlSection::byName(const std::string& key, Vector& value,
 
 YamlSection YamlSection::section(const std::string& key) {
   const YAML::Node node = raw(key);
-  return {node.IsDefined() ? node : YAML::Node(YAML::NodeType::Map), file_, pathOf(key), trace_};
+  return {mappingOf(node), file_, pathOf(key), trace_};
 }
 
 std::vector<YamlSection> YamlSection::list(const std::string& key) {
@@ -252,7 +254,7 @@ std::vector<YamlSection> YamlSection::list(const std::string& key) {
 
 std::vector<std::string> YamlSection::keys() const {
   std::vector<std::string> all;
-  for (const auto& entry : node_) all.push_back(entry.first.Scalar());
+  for (const auto& entry : *node_) all.push_back(entry.first.Scalar());
   return all;
 }
 
@@ -268,6 +270,32 @@ void YamlSection::finish() const {
   if (unread.empty()) return;
   const std::vector<std::string> known(read_->begin(), read_->end());
   throw InputError(where(unread.front()) + ": unknown key; expected one of " + join(known));
+}
+
+void need(const YamlSection& section, const std::string& key, const std::string& expected) {
+  if (!section.has(key)) section.fail(key, expected);
+}
+
+int indexByName(YamlSection& section, const std::string& key,
+                const std::vector<std::string>& names) {
+  std::string name;
+  need(section, key, "one of " + join(names));
+  section.oneOf(key, name, names);
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (names[i] == name) return static_cast<int>(i);
+  section.fail(key, "one of " + join(names));
+}
+
+void failAt(const YamlSection& section, const std::string& message) {
+  const auto colon = message.find(':');
+  std::string field = message.substr(0, colon);
+  field = field.substr(field.find_last_of('.') + 1);
+  const bool is_field =
+      colon != std::string::npos && field.find_first_of(" /[]") == std::string::npos;
+  if (is_field) throw InputError(section.where(field) + message.substr(colon));
+  std::string place = section.where("");
+  if (place.back() == '.') place.pop_back();
+  throw InputError(place + ": " + message);
 }
 
 }  // namespace fpc

@@ -1,9 +1,12 @@
 #include "fmbpc/config/loop_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 
+#include "config/plant_sample_model.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/config/plugins.hpp"
 
 namespace fpc {
 namespace {
@@ -18,32 +21,46 @@ void describePlant(YamlSection& root, LoopFile& loop) {
   info.header = SampleClock(info.sample_time_s, loop.simulation.start_time_s).header(0, 0);
 }
 
+/// Before anything else: what follows may name plants and controllers of theirs.
+void readPlugins(YamlSection& root) {
+  std::vector<std::string> plugins;
+  root.names("plugins", plugins);
+  for (const auto& plugin : plugins) loadPlugin(plugin, root.where("plugins"));
+}
+
+/// Nominal values of the measured disturbances.
+Vector nominalDisturbances(const LoopFile& loop, const LoopNames& names) {
+  Vector nominal(static_cast<Eigen::Index>(names.seen_disturbances.size()));
+  for (Eigen::Index i = 0; i < nominal.size(); ++i) {
+    const auto& all = names.disturbances;
+    const auto at =
+        std::find(all.begin(), all.end(), names.seen_disturbances[static_cast<std::size_t>(i)]);
+    nominal[i] = loop.simulation.disturbance_nominal[at - all.begin()];
+  }
+  return nominal;
+}
+
 }  // namespace
 
-void need(const YamlSection& section, const std::string& key, const std::string& expected) {
-  if (!section.has(key)) section.fail(key, expected);
+const ControllerType& LoopFile::controllerType() const {
+  require(controller != nullptr, name + ": controller", "a section controller that was read");
+  return controller->type();
 }
 
-int indexByName(YamlSection& section, const std::string& key,
-                const std::vector<std::string>& names) {
-  std::string name;
-  need(section, key, "one of " + join(names));
-  section.oneOf(key, name, names);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return static_cast<int>(i);
-  section.fail(key, "one of " + join(names));
-}
-
-void failAt(const YamlSection& section, const std::string& message) {
-  const auto colon = message.find(':');
-  std::string field = message.substr(0, colon);
-  field = field.substr(field.find_last_of('.') + 1);
-  const bool is_field =
-      colon != std::string::npos && field.find_first_of(" /[]") == std::string::npos;
-  if (is_field) throw InputError(section.where(field) + message.substr(colon));
-  std::string place = section.where("");
-  if (place.back() == '.') place.pop_back();
-  throw InputError(place + ": " + message);
+ControllerContext controllerContext(const LoopFile& loop) {
+  const ActuatorParams& actuator = loop.simulation.actuator;
+  ControllerContext context{loop.plant_info,
+                            actuator.limits,
+                            actuator.initial,
+                            actuator.fallback,
+                            loop.disturbance_nominal,
+                            loop.has_clp ? loop.clp.perturbation_steps : 0,
+                            nullptr};
+  if (!loop.external_plant)
+    context.plant_model = [simulation = loop.simulation](int integration_steps) {
+      return makePlantSampleModel(simulation, integration_steps);
+    };
+  return context;
 }
 
 LoopFile readSections(YamlSection& root, const std::string& name) {
@@ -52,6 +69,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   loop.name = name;
   loop.report.title = name;
   root.text("title", loop.report.title);
+  readPlugins(root);
   readPlant(root, loop, names);
   readSampling(root, loop);
   readActuator(root, loop, names);
@@ -59,9 +77,10 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readDisturbance(root, loop, names);
   readTf(root, loop, names);
   describePlant(root, loop);
+  loop.disturbance_nominal = nominalDisturbances(loop, names);
   readSetpoint(root, loop, names);
   readClp(root, loop, names);
-  readController(root, loop, names);
+  readController(root, loop);
   readModelSection(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);

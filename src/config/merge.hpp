@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "base/yaml_section.hpp"
+#include "base/yaml_node.hpp"
 #include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {

@@ -13,7 +13,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 std::vector<SignalInfo> readSignals(YamlSection& top, const std::string& key, bool required) {
   std::vector<SignalInfo> signals;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -35,77 +36,6 @@ SetpointStep readSetpointStep(YamlSection& item, const std::vector<std::string>&
     item.number(outputs[static_cast<std::size_t>(i)], step.value[i], kFinite);
   item.finish();
   return step;
-}
-
-void readFmbpc(YamlSection& section, LoopFile& loop, const LoopNames& names) {
-  FmbpcParams& params = loop.fmbpc;
-  const Eigen::Index n_y = count(names.outputs), n_u = count(names.inputs);
-  params.reference_pole = Vector::Constant(n_y, 0.9);
-  params.weight_output = Vector::Ones(n_y);
-  params.weight_move = Vector::Zero(n_u);
-  params.disturbance_nominal = nominalDisturbances(loop, names);
-  section.oneOf("law", params.law, {"published", "general", "iterated"});
-  section.integer("coincidence_steps", params.coincidence_steps, 1, 100000);
-  section.byName("reference_pole", params.reference_pole, names.outputs, {0.0, 1.0});
-  section.boolean("preview", params.preview);
-  section.byName("weight_output", params.weight_output, names.outputs, kFiniteNotNegative);
-  section.byName("weight_move", params.weight_move, names.inputs, kFiniteNotNegative);
-  section.integer("horizon_steps", params.horizon_steps, 1, 10000);
-  section.integer("iterations", params.iterations, 1, 1000);
-  double period_h = 0.0;
-  section.number("forecast_period_h", period_h, {0.0, 1e4});
-  params.forecast_period_steps =
-      static_cast<int>(std::lround(period_h * 3600.0 / loop.simulation.sample_time_s));
-  section.number("forecast_pole", params.forecast_pole, {0.0, 1.0});
-  section.oneOf("realisation", params.realisation, {"parallel", "realigned", "literal"});
-  section.integer("delay_steps", params.delay_steps, 0, 1000);
-  section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
-  section.oneOf("antecedent", params.antecedent, {"model", "measured"});
-  section.number("offset_gain", params.offset_gain, {0.0, 1.0});
-  section.boolean("disturbance_feedforward", params.disturbance_feedforward);
-  section.byName("disturbance_nominal", params.disturbance_nominal, names.seen_disturbances,
-                 kFinite);
-  section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
-  readPredictionSteps(section, loop, params.prediction_steps);
-  checked(section, [&] { params.validate(n_y, n_u); });
-}
-
-std::vector<GainPoint> readSchedule(YamlSection& section) {
-  std::vector<GainPoint> points;
-  for (auto& item : section.list("gain_schedule")) {
-    for (const char* key : {"output", "gain"}) need(item, key, "a number");
-    GainPoint point;
-    item.number("output", point.output, kFinite);
-    item.number("gain", point.gain, kFinitePositive);
-    item.finish();
-    points.push_back(point);
-  }
-  return points;
-}
-
-void readPi(YamlSection& section, LoopFile& loop, const LoopNames& names) {
-  if (section.has("reference_pole")) {
-    loop.pi.reference_pole = Vector::Constant(count(names.outputs), 0.9);
-    section.byName("reference_pole", loop.pi.reference_pole, names.outputs, {0.0, 1.0});
-  }
-  need(section, "loops", "a list of loops");
-  for (auto& item : section.list("loops")) {
-    PiLoop pi;
-    pi.input = indexByName(item, "input", names.inputs);
-    pi.output = indexByName(item, "output", names.outputs);
-    need(item, "kp", "a number");
-    item.number("kp", pi.kp, kFinite);
-    item.number("ki_per_h", pi.ki_per_h, kFinite);
-    pi.bias = loop.simulation.actuator.initial[pi.input];
-    item.number("bias", pi.bias, kFinite);
-    item.boolean("reverse", pi.reverse);
-    item.oneOf("anti_windup", pi.anti_windup, {"none", "clamp", "tracking"});
-    item.oneOf("start", pi.start, {"bias", "bumpless"});
-    pi.gain_schedule = readSchedule(item);
-    item.finish();
-    loop.pi.loops.push_back(std::move(pi));
-  }
-  checked(section, [&] { loop.pi.validate(count(names.outputs), count(names.inputs)); });
 }
 
 void defaultClp(ClpParams& clp, Eigen::Index n_y, Eigen::Index n_u) {
@@ -156,25 +86,6 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
 
 }  // namespace
 
-Vector nominalDisturbances(const LoopFile& loop, const LoopNames& names) {
-  Vector nominal(count(names.seen_disturbances));
-  for (Eigen::Index i = 0; i < nominal.size(); ++i) {
-    const auto& all = names.disturbances;
-    const auto at =
-        std::find(all.begin(), all.end(), names.seen_disturbances[static_cast<std::size_t>(i)]);
-    nominal[i] = loop.simulation.disturbance_nominal[at - all.begin()];
-  }
-  return nominal;
-}
-
-void readPredictionSteps(YamlSection& section, const LoopFile& loop, int& steps) {
-  if (loop.has_clp) steps = loop.clp.perturbation_steps;
-  section.integer("prediction_steps", steps, 1, 10000);
-  if (loop.has_clp && steps != loop.clp.perturbation_steps)
-    section.fail("prediction_steps",
-                 "clp.perturbation_steps (" + std::to_string(loop.clp.perturbation_steps) + ")");
-}
-
 void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("setpoint");
   SetpointParams& params = loop.setpoint;
@@ -222,34 +133,15 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.finish();
 }
 
-void readController(YamlSection& root, LoopFile& loop, const LoopNames& names) {
+void readController(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("controller");
-  const std::vector<std::string> types{"fmbpc", "fuzzy_optimal", "hybrid_mpc", "nmpc", "swarm_mpc",
-                                       "pi",    "adaptive_pi",   "excitation"};
-  need(section, "type", "one of " + join(types));
-  loop.controller = "fmbpc";
-  section.oneOf("type", loop.controller, types);
-  if (loop.controller == "fmbpc") {
-    readFmbpc(section, loop, names);
-  } else if (loop.controller == "fuzzy_optimal") {
-    readFuzzyOptimal(section, loop, names);
-  } else if (loop.controller == "hybrid_mpc") {
-    readHybridMpc(section, loop, names);
-  } else if (loop.controller == "nmpc" || loop.controller == "swarm_mpc") {
-    readHorizonMpc(section, loop, names);
-  } else if (loop.controller == "adaptive_pi") {
-    readAdaptivePi(section, loop, names);
-  } else if (loop.controller == "excitation") {
-    readExcitation(section, loop, names);
-  } else {
-    readPi(section, loop, names);
-  }
-  section.finish();
-  if (loop.has_clp && loop.controller != "fmbpc" && loop.controller != "fuzzy_optimal")
-    section.fail("type",
-                 "a controller that predicts (fmbpc, fuzzy_optimal) for clp; clp.enabled: false "
-                 "switches the "
-                 "optimizer off");
+  loop.controller = readController(section, controllerContext(loop));
+  if (!loop.has_clp || loop.controllerType().predicts) return;
+  std::vector<std::string> predicting;
+  for (const auto& name : controllerNames())
+    if (controllerType(name).predicts) predicting.push_back(name);
+  section.fail("type", "a controller that predicts (" + join(predicting) +
+                           ") for clp; clp.enabled: false switches the optimizer off");
 }
 
 }  // namespace fpc

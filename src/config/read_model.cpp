@@ -49,17 +49,14 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
   readIdentify(section, loop);
   section.finish();
   loop.has_model = !loop.model_file.empty();
-  const bool needs_model = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal" ||
-                           loop.controller == "hybrid_mpc" || loop.controller == "swarm_mpc";
-  if (needs_model && !loop.has_model && !(loop.has_identify && loop.external_plant))
-    section.fail("file", "a model file for controller " + loop.controller +
+  const ControllerType& controller = loop.controllerType();
+  if (controller.needs_model && !loop.has_model && !(loop.has_identify && loop.external_plant))
+    section.fail("file", "a model file for controller " + controller.name +
                              " (a simulated plant does not start without one)");
   if (!loop.has_model) return;
   try {
     loop.model = matchToPlant(readModel(loop.model_file), loop.plant_info);
-    if (loop.controller == "fuzzy_optimal")
-      FuzzyOptimalLaw(loop.fuzzy_optimal, loop.simulation.actuator.limits, loop.plant_info)
-          .setModel(loop.model);
+    loop.controller->checkModel(loop.model, controllerContext(loop));
   } catch (const InputError& e) {
     throw InputError(section.where("file") + ": " + e.what());
   }

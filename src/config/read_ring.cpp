@@ -17,12 +17,9 @@ Pace paceFrom(const std::string& name) {
 }
 
 std::vector<std::string> ringNodes(const LoopFile& loop) {
-  const bool open_loop = loop.controller == "excitation";
-  std::vector<std::string> nodes{
-      "loop_recorder", open_loop ? "excitation_generator" : loop.controller + "_controller"};
-  const bool has_law = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal" ||
-                       loop.controller == "hybrid_mpc" || loop.controller == "swarm_mpc";
-  if (has_law || loop.has_identify) nodes.emplace_back("fuzzy_identifier");
+  std::vector<std::string> nodes{"loop_recorder", "fmbpc_controller"};
+  if (loop.controllerType().needs_model || loop.has_identify)
+    nodes.emplace_back("fuzzy_identifier");
   if (loop.has_clp) nodes.emplace_back("clp_optimizer");
   return nodes;
 }

@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "base/yaml_section.hpp"
+#include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"

@@ -7,6 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
+#include "fmbpc/config/plugins.hpp"
 
 namespace fpc {
 namespace {
@@ -56,7 +57,24 @@ void makeAbsolute(MergedLoop& loop, const std::vector<std::string>& keys,
   file = findFile(expandEnvironment(file.Scalar(), where), beside.string(), folder, where);
 }
 
+/// Plugins that are paths; those that are names are looked up where they are loaded.
+void makePluginsAbsolute(MergedLoop& loop) {
+  YAML::Node plugins = scalarAt(loop.root, {"plugins"});
+  if (!plugins.IsDefined() || !plugins.IsSequence()) return;
+  const std::string where = loop.whereIs("plugins");
+  const auto origin = loop.origins.find("plugins");
+  const bool from_file = origin != loop.origins.end() && !origin->second.file.empty();
+  const fs::path beside =
+      from_file ? fs::path(origin->second.file).parent_path() : fs::current_path();
+  for (std::size_t i = 0; i < plugins.size(); ++i) {
+    if (!plugins[i].IsScalar()) continue;
+    const std::string name = expandEnvironment(plugins[i].Scalar(), where);
+    if (isPluginPath(name)) plugins[i] = fs::absolute(beside / name).lexically_normal().string();
+  }
+}
+
 void makeFilesAbsolute(MergedLoop& loop) {
+  makePluginsAbsolute(loop);
   makeAbsolute(loop, {"model", "file"}, "model");
   makeAbsolute(loop, {"model", "identify", "structure"}, "structure");
   const YAML::Node source = scalarAt(loop.root, {"disturbance", "source"});

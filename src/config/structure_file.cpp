@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/yaml_section.hpp"
+#include "base/yaml_node.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/structure_file.hpp"
@@ -13,7 +13,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kLongestOrder = 1000;
 const std::string kMultivariate = "multivariate";
 

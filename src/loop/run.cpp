@@ -70,9 +70,9 @@ RunRecord runLoop(const LoopFile& loop, const RunOptions& options) {
   const std::uint32_t samples = loop.simulation.samples;
   require(samples > 0, loop.name + ": sampling.duration_h",
           "a time > 0: a run in one process must end");
-  const bool needs_model = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal";
-  require(loop.has_model || !needs_model, loop.name + ": model.file",
-          "a model for controller " + loop.controller);
+  const ControllerType& controller = loop.controllerType();
+  require(loop.has_model || !controller.needs_model, loop.name + ": model.file",
+          "a model for controller " + controller.name);
   Ring ring(loop);
   for (std::uint32_t step = 0; ring.step(); ++step) {
     if (options.progress) options.progress(step + 1, samples);

@@ -15,6 +15,11 @@ std::map<std::string, PlantFactory>& registry() {
   return plants;
 }
 
+std::vector<std::string>& refused() {
+  static std::vector<std::string> names;
+  return names;
+}
+
 template <typename Named>
 std::string namesOf(const std::vector<Named>& things) {
   std::vector<std::string> names;
@@ -27,8 +32,12 @@ std::string namesOf(const std::vector<Named>& things) {
 std::unique_ptr<PlantStepper> Plant::makeStepper(double) const { return nullptr; }
 
 bool registerPlant(const std::string& name, PlantFactory factory) {
-  return registry().emplace(name, std::move(factory)).second;
+  const bool is_new = registry().emplace(name, std::move(factory)).second;
+  if (!is_new) refused().push_back(name);
+  return is_new;
 }
+
+std::vector<std::string> refusedPlants() { return refused(); }
 
 std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters) {
   const auto found = registry().find(name);

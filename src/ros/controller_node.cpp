@@ -11,34 +11,12 @@ namespace {
 
 constexpr double kRestorePatience = 1.0;  // [s] of wall time
 
-std::string wrongType(const LoopFile& loop, const std::string& type) {
-  return loop.controller == type ? "" : loop.name + " has controller.type " + loop.controller;
-}
-
 const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_node) {
   const bool answers_plant = private_node.param("final_action", !loop.has_clp);
   return answers_plant ? topics::kControlAction : topics::kBaseAction;
 }
 
 }  // namespace
-
-std::string FmbpcControllerNode::idleReason(const LoopFile& loop) {
-  return wrongType(loop, "fmbpc");
-}
-std::string AdaptivePiControllerNode::idleReason(const LoopFile& loop) {
-  return wrongType(loop, "adaptive_pi");
-}
-std::string ExcitationGeneratorNode::idleReason(const LoopFile& loop) {
-  return wrongType(loop, "excitation");
-}
-std::string HybridMpcControllerNode::idleReason(const LoopFile& loop) {
-  return wrongType(loop, "hybrid_mpc");
-}
-std::string NmpcControllerNode::idleReason(const LoopFile& loop) { return wrongType(loop, "nmpc"); }
-std::string SwarmMpcControllerNode::idleReason(const LoopFile& loop) {
-  return wrongType(loop, "swarm_mpc");
-}
-std::string PiControllerNode::idleReason(const LoopFile& loop) { return wrongType(loop, "pi"); }
 
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node,
                                const LoopFile& loop)
@@ -67,6 +45,10 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                                                   &ControllerNode::onManualInput, this)),
       hold_(private_node.advertiseService(topics::kHold, &ControllerNode::onHold, this)),
       adapt_(private_node.advertiseService(topics::kAdapt, &ControllerNode::onAdapt, this)),
+      settings_(
+          private_node, loop.controllerType().settings,
+          [this] { return session_.controller().settings(); },
+          [this](const Settings& settings) { session_.retune(settings); }),
       diagnostics_(node, private_node, "controller", loop.name,
                    [this](Diagnostics::Status& status) { report(status); }) {
   if (!session_.controller().followsSetpoint()) return;

@@ -6,9 +6,10 @@
 
 namespace fpc::tool {
 
-int resolve(const std::string& loop, const std::vector<std::string>& set) {
+int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets) {
   Overrides overrides;
   for (const auto& text : set) overrides.push_back(parseOverride(text));
+  for (const auto& override : parseOverrides(sets)) overrides.push_back(override);
   std::cout << resolveLoop(loop, overrides);
   return 0;
 }

@@ -11,6 +11,7 @@ namespace fpc::tool {
 struct RunArguments {
   std::vector<std::string> loops;
   std::vector<std::string> set;  ///< "path=value"
+  std::string sets;              ///< several of them in one text
   std::string out;               ///< folder, empty: nothing is written
   bool json{false};
   bool no_plot{false};
@@ -63,8 +64,10 @@ struct TuneArguments {
 
 int identify(const IdentifyArguments& arguments);
 int run(const RunArguments& arguments);
-int resolve(const std::string& loop, const std::vector<std::string>& set);
+/// `sets`: more of them in one text, see parseOverrides().
+int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets);
 int plants(bool json);
+int controllers(bool json);
 int model(const std::string& file, bool json);
 /// A path, or a name below config/model; what it was given if there is neither.
 std::string findModel(const std::string& name);

@@ -30,7 +30,9 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
       "resolve", "Merges and checks a loop file and prints what nodes would read");
   resolve->add_option("LOOP", a.loops, "name or path")->required()->expected(1);
   resolve->add_option("--set", a.set, "KEY.PATH=VALUE, may be repeated")->allow_extra_args(false);
-  resolve->callback([&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set); }; });
+  resolve->add_option("--sets", a.sets, "several of them in one text, separated by spaces");
+  resolve->callback(
+      [&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets); }; });
 }
 
 void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
@@ -52,6 +54,10 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
       app.add_subcommand("plants", "Lists the plants with their signals, units and ranges");
   plants->add_flag("--json", a.json, "print one JSON object and nothing else");
   plants->callback([&a] { chosen = [&a] { return fpc::tool::plants(a.json); }; });
+  CLI::App* controllers = app.add_subcommand(
+      "controllers", "Lists the types of controller: what they are, need and let change in a run");
+  controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
+  controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
   CLI::App* model =
       app.add_subcommand("model", "Reports what to know of a model file before trusting it");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);

@@ -10,6 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/model_file.hpp"
+#include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/fuzzy/undelayed.hpp"
 #include "tool/commands.hpp"
 
@@ -78,27 +79,30 @@ void settleOn(StabilitySubject& subject) {
   }
 }
 
+void takeLaw(StabilitySubject& subject, const LoopFile& loop, const FmbpcParams& law) {
+  if (loop.has_model) subject.model = withoutDelay(loop.model, law.delay_steps);
+  require(law.law == "published" || law.law == "general", loop.name + ": controller.law",
+          "published or general: no other law is linear around its model");
+  subject.law.coincidence_steps = law.coincidence_steps;
+  subject.law.published = law.law != "general";
+  subject.law.weight_output = law.weight_output;
+  subject.law.weight_move = law.weight_move;
+  if (loop.has_model && law.realisation == "literal")
+    subject.note =
+        "controller.realisation is literal; what follows is of the input-output states (past "
+        "outputs and inputs), not of the printed state space, which adds one sample of delay";
+}
+
 void readLoopInto(StabilitySubject& subject, const std::string& name) {
   const LoopFile loop = readLoop(name);
   subject.name = loop.name;
-  subject.has_model = loop.has_model && loop.controller != "fuzzy_optimal";
   subject.sample_time_s = loop.plant_info.sample_time_s;
-  if (loop.has_model && !subject.has_model)
-    subject.note =
-        "the law of controller.type fuzzy_optimal is not analysed; name the model file instead of "
-        "the loop for that of fmbpc";
-  if (subject.has_model) subject.model = withoutDelay(loop.model, loop.fmbpc.delay_steps);
-  require(loop.fmbpc.law == "published" || loop.fmbpc.law == "general", name + ": controller.law",
-          "published or general: no other law is linear around its model");
-  subject.law.coincidence_steps = loop.fmbpc.coincidence_steps;
-  subject.law.published = loop.fmbpc.law != "general";
-  subject.law.weight_output = loop.fmbpc.weight_output;
-  subject.law.weight_move = loop.fmbpc.weight_move;
-  if (subject.has_model && loop.fmbpc.realisation == "literal")
-    subject.note =
-        "controller.realisation is literal; what follows is of the input-output states (past "
-        "outputs "
-        "and inputs), not of the printed state space, which adds one sample of delay";
+  const FmbpcParams* law = findParams<FmbpcParams>(*loop.controller);
+  subject.has_model = loop.has_model && law;
+  if (law) takeLaw(subject, loop, *law);
+  if (loop.has_model && !law)
+    subject.note = "the law of controller.type " + loop.controllerType().name +
+                   " is not analysed; name the model file instead of the loop for that of fmbpc";
   if (!loop.external_plant)
     subject.plant = makePlant(loop.simulation.plant, loop.simulation.parameters);
 }

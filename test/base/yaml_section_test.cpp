@@ -1,4 +1,4 @@
-#include "base/yaml_section.hpp"
+#include "base/yaml_node.hpp"
 
 #include <gtest/gtest.h>
 
@@ -225,7 +225,7 @@ TEST(YamlSection, MergedTextsReportWhereAPathWasWritten) {
   const auto trace = std::make_shared<YamlTrace>();
   trace->origins["controller"] = "base.yaml:7: ";
   trace->origins["controller.kp"] = "--set ";
-  YamlSection section(YAML::Load("controller: {kp: much, ki: 1}"), "merged", "", trace);
+  YamlSection section(YamlNode(YAML::Load("controller: {kp: much, ki: 1}")), "merged", "", trace);
   YamlSection controller = section.section("controller");
   EXPECT_EQ(controller.where("kp"), "--set controller.kp");
   EXPECT_EQ(controller.where("ki"), "base.yaml:7: controller.ki");

@@ -1,6 +1,8 @@
 // Loop files that extend others, overrides, and the one text that comes of them.
 #include <gtest/gtest.h>
 
+#include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/control/pi/pi.hpp"
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
@@ -29,9 +31,9 @@ TEST_F(Extends, ASectionWhoseTypeChangesIsReplacedAsAWhole) {
                                   "extends: parent\nmodel: {file: fm_1.yaml}\n"
                                   "controller: {type: fmbpc, coincidence_steps: 4}\n");
   const LoopFile loop = readLoop(child);
-  EXPECT_EQ(loop.controller, "fmbpc");
-  EXPECT_EQ(loop.fmbpc.coincidence_steps, 4);
-  EXPECT_TRUE(loop.pi.loops.empty());
+  EXPECT_EQ(loop.controllerType().name, "fmbpc");
+  EXPECT_EQ(loop.controllerParams<FmbpcParams>().coincidence_steps, 4);
+  EXPECT_THROW(loop.controllerParams<PiParams>(), InputError);
 }
 
 TEST_F(Extends, GoesThroughSeveralFilesAndTheConfigFolders) {
@@ -40,7 +42,7 @@ TEST_F(Extends, GoesThroughSeveralFilesAndTheConfigFolders) {
   const LoopFile loop = readLoop(path("b.yaml"));
   EXPECT_EQ(loop.report.title, "b");
   EXPECT_EQ(loop.simulation.samples, 20U);
-  EXPECT_EQ(loop.fmbpc.coincidence_steps, 6);
+  EXPECT_EQ(loop.controllerParams<FmbpcParams>().coincidence_steps, 6);
 }
 
 TEST_F(Extends, CirclesAreErrors) {
@@ -72,7 +74,7 @@ TEST_F(Resolve, OverridesReachScalarsItemsAndNewKeys) {
                                         {"noise.std.x", "1.5"},
                                         {"actuator", "{move_upper: {q_r: 20}}"},
                                         {"loop.wait_for", "[]"}});
-  EXPECT_EQ(loop.pi.loops.at(0).kp, 2.5);
+  EXPECT_EQ(loop.controllerParams<PiParams>().loops.at(0).kp, 2.5);
   EXPECT_EQ(loop.simulation.noise_std[1], 1.5);
   EXPECT_EQ(loop.simulation.actuator.limits.move[0], 20.0);
   EXPECT_TRUE(loop.ring.wait_for.empty());
@@ -81,10 +83,10 @@ TEST_F(Resolve, OverridesReachScalarsItemsAndNewKeys) {
 TEST_F(Resolve, ALaterOverrideWinsAndATypeTakesTheOldKeysAway) {
   const Overrides twice = {{"controller.coincidence_steps", "3"},
                            {"controller.coincidence_steps", "4"}};
-  EXPECT_EQ(readLoop("asp_case1", twice).fmbpc.coincidence_steps, 4);
+  EXPECT_EQ(readLoop("asp_case1", twice).controllerParams<FmbpcParams>().coincidence_steps, 4);
   const Overrides pi = {{"controller.type", "pi"},
                         {"controller.loops", "[{input: q_r, output: s, kp: 1}]"}};
-  EXPECT_EQ(readLoop("asp_case1", pi).controller, "pi");
+  EXPECT_EQ(readLoop("asp_case1", pi).controllerType().name, "pi");
 }
 
 TEST_F(Resolve, NumbersStayAsTheyWereWritten) {
@@ -165,7 +167,7 @@ TEST_F(Resolve, TheRingWaitsForTheNodesTheLoopNeeds) {
   using Names = std::vector<std::string>;
   EXPECT_EQ(readLoop("asp_case1_clp").ring.wait_for,
             (Names{"loop_recorder", "fmbpc_controller", "fuzzy_identifier", "clp_optimizer"}));
-  EXPECT_EQ(readLoop("asp_case1_pi_x").ring.wait_for, (Names{"loop_recorder", "pi_controller"}));
+  EXPECT_EQ(readLoop("asp_case1_pi_x").ring.wait_for, (Names{"loop_recorder", "fmbpc_controller"}));
 }
 
 }  // namespace

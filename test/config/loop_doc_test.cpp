@@ -7,9 +7,16 @@
 #include <regex>
 #include <set>
 
+#include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/text.hpp"
-#include "loop/loop_fixture.hpp"
+#include "fmbpc/control/excitation/excitation.hpp"
+#include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/control/horizon/nmpc.hpp"
+#include "fmbpc/control/horizon/swarm_mpc.hpp"
+#include "fmbpc/control/optimal/law.hpp"
+#include "fmbpc/control/pi/pi.hpp"
+#include "loop/loops_of_type.hpp"
 #include "paths.hpp"
 
 namespace fpc {
@@ -51,7 +58,7 @@ std::string general(std::string path) {
 
 std::set<std::string> asked(const std::string& text) {
   auto trace = std::make_shared<YamlTrace>();
-  YamlSection root(YAML::Load(text), "text", "", trace);
+  YamlSection root(YamlNode(YAML::Load(text)), "text", "", trace);
   readSections(root, "text");
   return trace->asked;
 }
@@ -115,17 +122,15 @@ std::set<std::string> readerKeys() {
       "loops: "
       "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
       "integral_time_min: 1}], model: [{output: y_D, input: L, gain: 1, time_constant_min: 1}]}\n";
-  const std::string nmpc = "plant: {type: mimo_cstr}\ncontroller: {type: nmpc}\n";
-  const std::string swarm =
-      "plant: {type: mimo_cstr}\nsampling: {sample_time_s: 0.6, duration_h: 1}\ncontroller: {type: "
-      "swarm_mpc}\nmodel: {file: " +
-      sourceDir() + "/config/model/mimo_cstr.yaml}\n";
+  std::vector<std::string> texts{controlled(fmbpc + lists), controlled(external), controlled(column),
+                                 controlled(adaptive), optimal, prbs, levels, steps,
+                                 batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
+                                 batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest};
+  for (const auto& type : controllerNames())
+    for (const auto& loop : loopsOfType(type)) texts.push_back(resolveLoop(loop));
   std::set<std::string> keys;
   std::set<std::string> sections;
-  for (const auto& text : {controlled(fmbpc + lists), controlled(external), controlled(column),
-                           controlled(adaptive), optimal, controlled(nmpc), swarm, prbs, levels,
-                           steps, batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
-                           batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest})
+  for (const auto& text : texts)
     for (const auto& path : asked(text)) {
       keys.insert(general(path));
       for (auto cut = path.find('.'); cut != std::string::npos; cut = path.find('.', cut + 1))
@@ -177,8 +182,10 @@ std::string word(bool value) { return value ? "true" : "false"; }
 std::map<std::string, std::string> structDefaults() {
   const LoopFile loop;
   const ClpParams& clp = loop.clp;
-  const FmbpcParams& law = loop.fmbpc;
-  const FuzzyOptimalParams& optimal = loop.fuzzy_optimal;
+  const FmbpcParams law;
+  const FuzzyOptimalParams optimal;
+  const NmpcParams nmpc;
+  const SwarmParams swarm = SwarmMpcParams{}.swarm;
   const IntegratorParams& integrator = loop.simulation.integrator;
   const CsvDisturbanceParams& csv = loop.disturbance.csv;
   const PiLoop pi;
@@ -198,16 +205,16 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.law", law.law},
           {"controller.coincidence_steps", std::to_string(law.coincidence_steps)},
           {"controller.preview", word(law.preview)},
-          {"controller.max_iterations", std::to_string(loop.nmpc.solver.max_iterations)},
-          {"controller.integration_steps", std::to_string(loop.nmpc.integration_steps)},
-          {"controller.swarm.particles", std::to_string(loop.swarm_mpc.swarm.particles)},
-          {"controller.swarm.iterations", std::to_string(loop.swarm_mpc.swarm.iterations)},
-          {"controller.swarm.inertia_start", exactText(loop.swarm_mpc.swarm.inertia_start)},
-          {"controller.swarm.inertia_end", exactText(loop.swarm_mpc.swarm.inertia_end)},
-          {"controller.swarm.cognitive", exactText(loop.swarm_mpc.swarm.cognitive)},
-          {"controller.swarm.social", exactText(loop.swarm_mpc.swarm.social)},
-          {"controller.swarm.speed_upper", exactText(loop.swarm_mpc.swarm.speed_upper)},
-          {"controller.swarm.seed", std::to_string(loop.swarm_mpc.swarm.seed)},
+          {"controller.max_iterations", std::to_string(nmpc.solver.max_iterations)},
+          {"controller.integration_steps", std::to_string(nmpc.integration_steps)},
+          {"controller.swarm.particles", std::to_string(swarm.particles)},
+          {"controller.swarm.iterations", std::to_string(swarm.iterations)},
+          {"controller.swarm.inertia_start", exactText(swarm.inertia_start)},
+          {"controller.swarm.inertia_end", exactText(swarm.inertia_end)},
+          {"controller.swarm.cognitive", exactText(swarm.cognitive)},
+          {"controller.swarm.social", exactText(swarm.social)},
+          {"controller.swarm.speed_upper", exactText(swarm.speed_upper)},
+          {"controller.swarm.seed", std::to_string(swarm.seed)},
           {"controller.horizon_steps", std::to_string(law.horizon_steps)},
           {"controller.iterations", std::to_string(law.iterations)},
           {"controller.forecast_pole", exactText(law.forecast_pole)},
@@ -226,7 +233,7 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.loops[].reverse", word(pi.reverse)},
           {"controller.loops[].anti_windup", pi.anti_windup},
           {"controller.loops[].start", pi.start},
-          {"controller.seed", std::to_string(loop.excitation.seed)},
+          {"controller.seed", std::to_string(ExcitationParams{}.seed)},
           {"controller.signals[].register_bits", std::to_string(ExcitationSignal{}.register_bits)},
           {"controller.signals[].clock_steps", std::to_string(ExcitationSignal{}.clock_steps)},
           {"controller.signals[].start_steps", std::to_string(ExcitationSignal{}.start_steps)},

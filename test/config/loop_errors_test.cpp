@@ -12,7 +12,7 @@ using LoopErrors = LoopFolder;
 TEST_F(LoopErrors, TheSmallLoopHasNone) {
   const LoopFile loop = readLoop(write("small.yaml", smallLoop()));
   EXPECT_EQ(loop.name, "small");
-  EXPECT_EQ(loop.controller, "pi");
+  EXPECT_EQ(loop.controllerType().name, "pi");
   EXPECT_EQ(loop.simulation.samples, 20U);
   EXPECT_FALSE(loop.has_clp);
   EXPECT_FALSE(loop.has_model);

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fmbpc/config/disturbance_source.hpp"
+#include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "loop/loop_fixture.hpp"
 
@@ -48,7 +49,7 @@ TEST_P(ShippedLoop, HasRivalsUnderTheSameDisturbances) {
   EXPECT_EQ(rival.simulation.output_delay_s, base.simulation.output_delay_s);
   EXPECT_EQ(rival.simulation.parameters, base.simulation.parameters);
   EXPECT_EQ(rival.simulation.actuator.limits.upper, base.simulation.actuator.limits.upper);
-  EXPECT_EQ(rival.controller, "pi");
+  EXPECT_EQ(rival.controllerType().name, "pi");
   EXPECT_FALSE(rival.has_clp);
 }
 
@@ -61,9 +62,10 @@ TEST(ShippedLoops, AreThere) { EXPECT_GE(loopNames().size(), 40U); }
 TEST(ShippedLoops, CaseOneIsThatOfThePaper) {
   const LoopFile loop = readLoop("asp_case1");
   EXPECT_EQ(loop.model.name, "FM_1");
-  EXPECT_EQ(loop.fmbpc.law, "published");
-  EXPECT_EQ(loop.fmbpc.coincidence_steps, 6);
-  EXPECT_EQ(loop.fmbpc.reference_pole, (Vector(2) << 0.76, 0.96).finished());
+  const auto& law = loop.controllerParams<FmbpcParams>();
+  EXPECT_EQ(law.law, "published");
+  EXPECT_EQ(law.coincidence_steps, 6);
+  EXPECT_EQ(law.reference_pole, (Vector(2) << 0.76, 0.96).finished());
   EXPECT_EQ(loop.simulation.samples, 830U);
   EXPECT_EQ(loop.simulation.actuator.limits.upper[0], 1600.0);
   EXPECT_EQ(loop.simulation.actuator.initial[0], 570.0);

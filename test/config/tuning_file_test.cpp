@@ -4,7 +4,7 @@
 #include <regex>
 #include <set>
 
-#include "base/yaml_section.hpp"
+#include "base/yaml_node.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "fmbpc/study/tuning_objective.hpp"

@@ -5,6 +5,7 @@
 
 #include "fmbpc/base/csv.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
+#include "fmbpc/control/excitation/excitation.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
@@ -32,19 +33,19 @@ TEST_F(ExcitationLoop, TimesInSecondsAreThoseInSamples) {
     return readLoop(write("loop.yaml", experiment(signal)));
   };
   const LoopFile loop = read("signal: multi_level, hold_lower_s: 7200, hold_upper_steps: 60");
-  const ExcitationSignal& levels = loop.excitation.signals.at(0);
-  EXPECT_EQ(loop.excitation.seed, 3U);
+  const ExcitationSignal& levels = loop.controllerParams<ExcitationParams>().signals.at(0);
+  EXPECT_EQ(loop.controllerParams<ExcitationParams>().seed, 3U);
   EXPECT_EQ(levels.hold_lower_steps, 10);
   EXPECT_EQ(levels.hold_upper_steps, 60);
   EXPECT_EQ(levels.lower, loop.simulation.actuator.limits.lower[0]);
   EXPECT_EQ(levels.upper, loop.simulation.actuator.limits.upper[0]);
   const LoopFile prbs = read("signal: prbs, clock_s: 1440, start_s: 3600");
-  EXPECT_EQ(prbs.excitation.signals.at(0).clock_steps, 2);
-  EXPECT_EQ(prbs.excitation.signals.at(0).start_steps, 5);
+  EXPECT_EQ(prbs.controllerParams<ExcitationParams>().signals.at(0).clock_steps, 2);
+  EXPECT_EQ(prbs.controllerParams<ExcitationParams>().signals.at(0).start_steps, 5);
   const LoopFile steps = read("signal: steps, schedule: [{time_h: 0.2, value: 5}]");
-  EXPECT_EQ(steps.excitation.signals.at(0).schedule.at(0).step, 1);
+  EXPECT_EQ(steps.controllerParams<ExcitationParams>().signals.at(0).schedule.at(0).step, 1);
   EXPECT_EQ(steps.ring.wait_for,
-            (std::vector<std::string>{"loop_recorder", "excitation_generator"}));
+            (std::vector<std::string>{"loop_recorder", "fmbpc_controller"}));
 }
 
 TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {
@@ -102,7 +103,7 @@ TEST_F(ExcitationLoop, TheValidationRecordHasOtherLoadsAndOtherLevels) {
   const LoopFile first = readLoop("asp_excite"), second = readLoop("asp_excite_validation");
   EXPECT_EQ(first.simulation.samples, 3320U);
   EXPECT_EQ(second.simulation.samples, 1660U);
-  EXPECT_NE(first.excitation.seed, second.excitation.seed);
+  EXPECT_NE(first.controllerParams<ExcitationParams>().seed, second.controllerParams<ExcitationParams>().seed);
   EXPECT_NE(first.disturbance.pattern.seed, second.disturbance.pattern.seed);
   EXPECT_NEAR(makeDisturbance(first).values.row(1).mean(), 366.67, 1e-9);
 }

@@ -1,6 +1,7 @@
 // Loops of controller type fuzzy_optimal: what is read, and what is refused before anything runs.
 #include <gtest/gtest.h>
 
+#include "fmbpc/control/optimal/law.hpp"
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
@@ -8,11 +9,15 @@ namespace {
 
 LoopFile read(const Overrides& overrides) { return readLoop("mimo_cstr_steps", overrides); }
 
+int predictionSteps(const LoopFile& loop) {
+  return loop.controllerParams<FuzzyOptimalParams>().prediction_steps;
+}
+
 TEST(FuzzyOptimalLoop, RulesStartFromTheWeightsOfAll) {
   const LoopFile loop =
       read({{"controller.rules", "[{weight_move: {q: 1e-6}}, {}, {weight_output: {T: 2}}, {}]"},
             {"controller.weight_move", "{q: 3, qc: 4}"}});
-  const FuzzyOptimalTuning& tuning = loop.fuzzy_optimal.tuning;
+  const FuzzyOptimalTuning& tuning = loop.controllerParams<FuzzyOptimalParams>().tuning;
   ASSERT_EQ(tuning.rules.size(), 4U);
   EXPECT_EQ(tuning.rules[0].move, (Vector(2) << 1e-6, 4.0).finished());
   EXPECT_EQ(tuning.rules[1].move, (Vector(2) << 3.0, 4.0).finished());
@@ -23,12 +28,12 @@ TEST(FuzzyOptimalLoop, RulesStartFromTheWeightsOfAll) {
 TEST(FuzzyOptimalLoop, OneWeightOfOneRuleIsAKeyForTuning) {
   const LoopFile loop = read({{"controller.rules", "[{}, {}, {}, {weight_move: {qc: 5}}]"},
                               {"controller.rules.3.weight_move.qc", "0.25"}});
-  EXPECT_EQ(loop.fuzzy_optimal.tuning.rules[3].move[1], 0.25);
+  EXPECT_EQ(loop.controllerParams<FuzzyOptimalParams>().tuning.rules[3].move[1], 0.25);
 }
 
 TEST(FuzzyOptimalLoop, TheOptimizerFixesTheLengthOfThePrediction) {
-  EXPECT_EQ(readLoop("mimo_cstr_steps_clp").fuzzy_optimal.prediction_steps, 20);
-  EXPECT_EQ(read({}).fuzzy_optimal.prediction_steps, 1);
+  EXPECT_EQ(predictionSteps(readLoop("mimo_cstr_steps_clp")), 20);
+  EXPECT_EQ(predictionSteps(read({})), 1);
 }
 
 TEST(FuzzyOptimalLoop, MistakesAreNamed) {

@@ -2,6 +2,7 @@
 // and what is refused.
 #include <cmath>
 
+#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
@@ -20,8 +21,9 @@ TEST(HybridLoop, LevelsWithoutTheForbiddenAreTheListOfInputs) {
        {"controller.forbidden",
         "[{kC: 1, kH: 1}, {kC: 0, kH: 0}, {kM: 0, kC: 1}, {kM: 0.01, kC: 1}, {kM: 0.02, kC: 1},"
         " {kM: 0.05, kC: 1}, {kM: 0.1, kC: 1}]"}});
-  EXPECT_EQ(combined.hybrid.choices, listed.hybrid.choices);
-  EXPECT_EQ(listed.hybrid.choices.cols(), 7);
+  const Matrix& choices = listed.controllerParams<HybridMpcParams>().choices;
+  EXPECT_EQ(combined.controllerParams<HybridMpcParams>().choices, choices);
+  EXPECT_EQ(choices.cols(), 7);
 }
 
 TEST(HybridLoop, ARecipeIsASchedule) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fmbpc/control/pi/pi.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 
@@ -113,7 +114,7 @@ TEST(CstrReference, TheGainScheduleIsTheSlopeOfTheStaticCurve) {
   EXPECT_NEAR(restFlow(*plant, 0.1), 103.4066, 1e-3);
   for (const char* name :
        {"cstr_tracking_gspi", "cstr_disturbance_gspi", "cstr_small_steps_gspi"}) {
-    const auto points = readLoop(name).pi.loops[0].gain_schedule;
+    const auto points = readLoop(name).controllerParams<PiParams>().loops[0].gain_schedule;
     ASSERT_EQ(points.size(), 23U);
     for (const auto& point : points)
       EXPECT_NEAR(point.gain, slope(point.output) / slope(0.1), 2e-4 * (1.0 + point.gain));

@@ -33,7 +33,7 @@ class ColumnAdapt(unittest.TestCase):
         actions, measurements = ring.Listener("control_action", ControlAction), ring.Listener("measurement", Measurement)
         pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
         self.step = rospy.ServiceProxy("plant_simulator/step", Trigger, persistent=True)
-        adapt = rospy.ServiceProxy("adaptive_pi_controller/adapt", SetBool)
+        adapt = rospy.ServiceProxy("fmbpc_controller/adapt", SetBool)
         for service in (pause, adapt):
             service.wait_for_service(ring.PATIENCE)
         disturbance = ring.publisher("disturbance", Disturbance)

@@ -28,8 +28,8 @@ def column(folder, name):
 
 
 def service(name, kind):
-    rospy.wait_for_service("/hybrid_mpc_controller/" + name, ring.PATIENCE)
-    return rospy.ServiceProxy("/hybrid_mpc_controller/" + name, kind)
+    rospy.wait_for_service("/fmbpc_controller/" + name, ring.PATIENCE)
+    return rospy.ServiceProxy("/fmbpc_controller/" + name, kind)
 
 
 class HybridHold(unittest.TestCase):

@@ -32,7 +32,7 @@ class HybridStuck(unittest.TestCase):
         ring.wait_until(lambda: sum("disturbance of" in m.msg for m in list(log.messages)) == 2, "the plant to take both")
         ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
         ready.publish(node=rospy.get_name())
-        log.wait(lambda m: m.name == "/hybrid_mpc_controller" and m.level == Log.WARN and
+        log.wait(lambda m: m.name == "/fmbpc_controller" and m.level == Log.WARN and
                  "kM is not where it was sent" in m.msg)
         folder = recorded.wait().data
         commands = (f"[{{time_h: {STUCK_H}, name: input/kM, value: 0}}, "

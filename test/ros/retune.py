@@ -52,7 +52,7 @@ class Retune(unittest.TestCase):
         self.pause(True)
         ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
         ready.publish(node=rospy.get_name())  # now the loop may begin
-        client = dynamic_reconfigure.client.Client("fuzzy_optimal_controller", timeout=ring.PATIENCE)
+        client = dynamic_reconfigure.client.Client("fmbpc_controller", timeout=ring.PATIENCE)
         shown = client.get_configuration(timeout=ring.PATIENCE)
         self.assertEqual((20, 1, "H=1", "I=1"), tuple(shown[key] for key in (
             "horizon_steps", "move_steps", "weight_output", "weight_move")))

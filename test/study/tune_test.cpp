@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "fmbpc/config/extending_loop.hpp"
+#include "fmbpc/control/pi/pi.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "study/tuning_fixture.hpp"
@@ -109,7 +110,7 @@ TEST_F(Tune, TheTunedFileRunsWithTheCostThatWasFound) {
   const std::string file = write("lag_tuned.yaml", text);
   for (const char* seed : {"1", "2"}) {
     const LoopFile loop = readLoop(file, {{"noise.seed", seed}});
-    EXPECT_EQ(loop.pi.loops.front().kp, best.values[0]);
+    EXPECT_EQ(loop.controllerParams<PiParams>().loops.front().kp, best.values[0]);
     const double cost = fitness(judge.tuning().fitness, loop, runLoop(loop));
     EXPECT_EQ(cost, best.scenarios[static_cast<std::size_t>(seed[0] - '1')]);
   }

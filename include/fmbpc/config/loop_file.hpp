@@ -2,18 +2,12 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
-#include "fmbpc/control/excitation/excitation.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/control/horizon/nmpc.hpp"
-#include "fmbpc/control/horizon/swarm_mpc.hpp"
-#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
-#include "fmbpc/control/optimal/law.hpp"
-#include "fmbpc/control/pi/adaptive_pi.hpp"
-#include "fmbpc/control/pi/pi.hpp"
+#include "fmbpc/control/registry.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
 #include "fmbpc/fuzzy/structure.hpp"
@@ -104,15 +98,8 @@ struct LoopFile {
   double max_pole{1.0};    ///< a model that replaces another in a run is refused beyond
   bool has_identify{false};
   IdentifyParams identify;
-  std::string controller;  ///< controller.type: fmbpc, fuzzy_optimal, nmpc, ...
-  FmbpcParams fmbpc;
-  FuzzyOptimalParams fuzzy_optimal;
-  PiParams pi;
-  AdaptivePiParams adaptive_pi;
-  ExcitationParams excitation;
-  HybridMpcParams hybrid;
-  NmpcParams nmpc;
-  SwarmMpcParams swarm_mpc;
+  std::shared_ptr<const ControllerConfig> controller;  ///< never null in a loop that was read
+  Vector disturbance_nominal;                          ///< n_d, of the measured disturbances
   bool has_clp{false};
   ClpParams clp;
   RingParams ring;
@@ -120,12 +107,29 @@ struct LoopFile {
   ReportParams report;
   std::string
       resolved;  ///< the merged text all this was read from; self-contained but for data files
+
+  /// @throws InputError without a controller.
+  const ControllerType& controllerType() const;
+  /// The parameters of the controller. @throws InputError naming its type if they are others.
+  template <typename Params>
+  const Params& controllerParams() const {
+    const Params* params = controller ? findParams<Params>(*controller) : nullptr;
+    require(params, name + ": controller.type",
+            "another controller than " + controllerType().name);
+    return *params;
+  }
 };
+
+/// What the loop tells its controller.
+ControllerContext controllerContext(const LoopFile& loop);
 
 /// "--set controller.coincidence_steps=3": dotted path (list items by number) -> YAML text.
 using Overrides = std::vector<std::pair<std::string, std::string>>;
 /// @throws InputError unless the text is "path=value".
 std::pair<std::string, std::string> parseOverride(const std::string& text);
+/// Several in one text, separated by spaces outside brackets and quotes; a word without "=" belongs
+/// to the value before it. @throws InputError as parseOverride().
+Overrides parseOverrides(const std::string& text);
 
 /// Folders that hold loop/, model/, structure/ and data/: ${FMBPC_CONFIG_PATH} (colon separated),
 /// then those of the build.

@@ -10,6 +10,7 @@
 #include "fmbpc/base/input_limits.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
+#include "fmbpc/control/settings.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
 
 namespace fpc {
@@ -25,9 +26,6 @@ struct ControllerOutput {
   bool ok{true};           ///< false: no rule fired, nothing finite came out, ... (see remark)
   const char* remark{""};  ///< words for diagnostics, also when ok; lives as long as the controller
 };
-
-/// Keys and values, as a person writes them.
-using Settings = std::vector<std::pair<std::string, std::string>>;
 
 class Controller {
  public:

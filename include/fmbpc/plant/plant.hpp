@@ -83,6 +83,8 @@ bool registerPlant(const std::string& name, PlantFactory factory);
 /// @throws InputError with the known names, or naming an unknown parameter.
 std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters = {});
 std::vector<std::string> plantNames();
+/// Names that were registered although they were taken, in the order in which that happened.
+std::vector<std::string> refusedPlants();
 
 /// The description's parameters with `parameters` written over them, in the description's order.
 /// @throws InputError on an unknown name, a non-finite value or one outside [lower, upper].

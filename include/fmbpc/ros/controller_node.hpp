@@ -1,5 +1,5 @@
-// A controller over topics: each measurement is answered with a base action and, if the law
-// predicts, its prediction.
+// The node fmbpc_controller: whatever controller the loop file names, over topics. Each measurement
+// is answered with a base action and, if the law predicts, its prediction.
 #pragma once
 
 #include <fmbpc/FuzzyModel.h>
@@ -20,6 +20,7 @@
 #include "fmbpc/ros/node.hpp"
 #include "fmbpc/ros/plant_gate.hpp"
 #include "fmbpc/ros/ready.hpp"
+#include "fmbpc/ros/settings_server.hpp"
 #include "fmbpc/ros/signal_publishers.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
@@ -29,14 +30,13 @@ namespace fpc {
 /// has come. Base actions go out on base_action, or straight on control_action if the loop has no
 /// optimizer (or ~final_action is true). Services: ~manual (SetBool: true is manual),
 /// ~manual_input, ~hold (SetBool: true stops the setpoint schedule, false lets it go on), ~adapt
-/// (SetBool: false freezes a controller that retunes itself).
+/// (SetBool: false freezes a controller that retunes itself). Settings that may change in a run are
+/// served to dynamic_reconfigure under the node's name.
 class ControllerNode : public Node {
  public:
+  static std::string idleReason(const LoopFile&) { return ""; }  ///< every loop has a controller
   /// @throws InputError
   ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop);
-
- protected:
-  ControllerSession& session() { return session_; }
 
  private:
   void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg);
@@ -70,38 +70,8 @@ class ControllerNode : public Node {
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       setpoint_subscriber_, setpoint_active_subscriber_;
   ros::ServiceServer manual_, manual_input_, hold_, adapt_;
+  SettingsServer settings_;
   Diagnostics diagnostics_;
-};
-
-/// The nodes fmbpc_controller, hybrid_mpc_controller, nmpc_controller, swarm_mpc_controller,
-/// adaptive_pi_controller, excitation_generator and pi_controller.
-struct FmbpcControllerNode : ControllerNode {
-  using ControllerNode::ControllerNode;
-  static std::string idleReason(const LoopFile& loop);
-};
-struct AdaptivePiControllerNode : ControllerNode {
-  using ControllerNode::ControllerNode;
-  static std::string idleReason(const LoopFile& loop);
-};
-struct ExcitationGeneratorNode : ControllerNode {
-  using ControllerNode::ControllerNode;
-  static std::string idleReason(const LoopFile& loop);
-};
-struct HybridMpcControllerNode : ControllerNode {
-  using ControllerNode::ControllerNode;
-  static std::string idleReason(const LoopFile& loop);
-};
-struct NmpcControllerNode : ControllerNode {
-  using ControllerNode::ControllerNode;
-  static std::string idleReason(const LoopFile& loop);
-};
-struct SwarmMpcControllerNode : ControllerNode {
-  using ControllerNode::ControllerNode;
-  static std::string idleReason(const LoopFile& loop);
-};
-struct PiControllerNode : ControllerNode {
-  using ControllerNode::ControllerNode;
-  static std::string idleReason(const LoopFile& loop);
 };
 
 }  // namespace fpc

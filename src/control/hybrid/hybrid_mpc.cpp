@@ -64,16 +64,30 @@ void HybridMpcParams::validate(Index n_y, Index n_u) const {
   TreeSearchParams{horizon_blocks, false, node_budget}.validate(static_cast<int>(choices.cols()));
 }
 
+void HybridMpcParams::validateLimits(const InputLimits& limits) const {
+  for (Index i = 0; i < choices.cols(); ++i)
+    require((choices.col(i).array() >= limits.lower.array() - kSame).all() &&
+                (choices.col(i).array() <= limits.upper.array() + kSame).all(),
+            "controller.inputs", "vectors inside the actuator's bounds");
+}
+
+Index HybridMpcParams::nearestChoice(VectorRef input) const {
+  Index nearest = 0;
+  (choices.colwise() - input).colwise().squaredNorm().minCoeff(&nearest);
+  return nearest;
+}
+
+bool HybridMpcParams::mayBeSent(VectorRef input) const {
+  return (choices.col(nearestChoice(input)) - input).cwiseAbs().maxCoeff() <= kSame;
+}
+
 HybridMpc::HybridMpc(HybridMpcParams params, InputLimits limits, PlantInfo plant)
     : params_(std::move(params)), limits_(std::move(limits)), plant_(std::move(plant)) {
   const auto n_y = static_cast<Index>(plant_.outputs.size());
   const auto n_u = static_cast<Index>(plant_.inputs.size());
   params_.validate(n_y, n_u);
   limits_.validate(n_u);
-  for (Index i = 0; i < params_.choices.cols(); ++i)
-    require((params_.choices.col(i).array() >= limits_.lower.array() - kSame).all() &&
-                (params_.choices.col(i).array() <= limits_.upper.array() + kSame).all(),
-            "controller.inputs", "vectors inside the actuator's bounds");
+  params_.validateLimits(limits_);
   reference_ = Matrix::Zero(n_y, static_cast<Index>(params_.hold_samples) * params_.horizon_blocks);
   past_disturbances_ = Vector::Zero(static_cast<Index>(plant_.disturbances.size()));
   for (const SignalInfo& input : plant_.inputs)
@@ -110,19 +124,10 @@ TreeProblem& HybridMpc::problem() { return *evolution_; }
 
 const TreeResult& HybridMpc::decision() const { return decision_; }
 
-Index HybridMpc::nearestChoice(VectorRef input) const {
-  Index nearest = 0;
-  (params_.choices.colwise() - input).colwise().squaredNorm().minCoeff(&nearest);
-  return nearest;
-}
-
-bool HybridMpc::mayBeSent(VectorRef input) const {
-  const auto nearest = params_.choices.col(nearestChoice(input));
-  return (nearest - input).cwiseAbs().maxCoeff() <= kSame;
-}
+bool HybridMpc::mayBeSent(VectorRef input) const { return params_.mayBeSent(input); }
 
 void HybridMpc::makeSendable(Eigen::Ref<Vector> input) const {
-  if (input.allFinite()) input = params_.choices.col(nearestChoice(input));
+  if (input.allFinite()) input = params_.choices.col(params_.nearestChoice(input));
 }
 
 void HybridMpc::reset(const Measurement& /*start*/) {
@@ -156,7 +161,7 @@ void HybridMpc::startBlock(const Measurement& now, const SetpointSource& setpoin
       reference_.col(i) = setpoint.present();
   }
   search(now.input_applied, now.disturbances);
-  choice_ = decision_.usable() ? decision_.choices.front() : nearestChoice(now.input_applied);
+  choice_ = decision_.usable() ? decision_.choices.front() : params_.nearestChoice(now.input_applied);
   samples_left_ = params_.hold_samples;
   signals_[0].second = static_cast<double>(choice_);
   signals_[1].second = decision_.cost;

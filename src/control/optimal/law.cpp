@@ -37,6 +37,10 @@ void FuzzyOptimalLaw::setModel(const TsModel& model) {
   takeOver(std::move(bank));
 }
 
+void FuzzyOptimalLaw::check(const FuzzyOptimalParams& params, const TsModel& model) {
+  Bank(model, params);
+}
+
 void FuzzyOptimalLaw::retune(FuzzyOptimalTuning tuning) {
   Memory& m = *memory_;
   tuning.validate(signalCount(m.plant.outputs), signalCount(m.plant.inputs));

@@ -78,6 +78,8 @@ PiController::PiController(PiParams params, InputLimits limits, PlantInfo plant)
           "a number > 0");
   if (params_.reference_pole.size() > 0) path_.emplace(params_.reference_pole, false);
   for (const PiLoop& loop : params_.loops)
+    inputs_.push_back(plant.inputs[static_cast<std::size_t>(loop.input)]);
+  for (const PiLoop& loop : params_.loops)
     signals_.emplace_back(plant.inputs[static_cast<std::size_t>(loop.input)].name + "_integral",
                           0.0);
 }
@@ -85,10 +87,13 @@ PiController::PiController(PiParams params, InputLimits limits, PlantInfo plant)
 void PiController::reset(const Measurement& start) {
   if (path_) path_->reset(start.outputs);
   for (std::size_t i = 0; i < states_.size(); ++i) {
+    if (retuned_) params_.loops[i].kp = states_[i].next_kp;
+    if (retuned_) params_.loops[i].ki_per_h = states_[i].next_ki_per_h;
     states_[i] = {};
     const bool from_bias = start.header.step == 0 && params_.loops[i].start == "bias";
     states_[i].transfer_pending = !from_bias;
   }
+  retuned_ = running_ = false;
 }
 
 void PiController::refer(const SetpointSource& setpoint, std::uint32_t step, Vector& reference) {
@@ -96,12 +101,17 @@ void PiController::refer(const SetpointSource& setpoint, std::uint32_t step, Vec
   if (path_) path_->advance(setpoint, step);
 }
 
+double PiController::errorOf(const PiLoop& loop, const Measurement& now,
+                             const SetpointSource& setpoint) const {
+  const double difference = setpoint.present()[loop.output] - now.outputs[loop.output];
+  return (loop.reverse ? -difference : difference) *
+         scheduledGain(loop.gain_schedule, now.outputs[loop.output]);
+}
+
 // u = bias + kp g e + ki int g e dt
 void PiController::propose(const PiLoop& loop, const Measurement& now,
                            const SetpointSource& setpoint, LoopState& state) const {
-  const double difference = setpoint.present()[loop.output] - now.outputs[loop.output];
-  state.error = (loop.reverse ? -difference : difference) *
-                scheduledGain(loop.gain_schedule, now.outputs[loop.output]);
+  state.error = errorOf(loop, now, setpoint);
   const double proportional = loop.bias + loop.kp * state.error;
   state.wanted = proportional + state.integral;
   if (!state.transfer_pending || !std::isfinite(proportional)) return;
@@ -139,6 +149,11 @@ void PiController::step(const Measurement& now, const SetpointSource& setpoint,
   output.predictive = false;
   output.ok = true;
   output.remark = "";
+  if (retuned_)
+    for (std::size_t i = 0; i < states_.size(); ++i)
+      takeSettings(params_.loops[i], now, setpoint, states_[i]);
+  retuned_ = false;
+  running_ = true;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     propose(params_.loops[i], now, setpoint, states_[i]);
     if (std::isfinite(states_[i].wanted))

@@ -50,6 +50,9 @@ struct HybridMpcParams {
   double time_budget_s{};       ///< 0: none; not reproducible
   /// @throws InputError naming the field: sizes, repeated choices, negative costs, indices.
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
+  void validateLimits(const InputLimits& limits) const;  ///< @throws InputError: choices inside
+  bool mayBeSent(VectorRef input) const;                 ///< it is one of the choices
+  Eigen::Index nearestChoice(VectorRef input) const;
 };
 
 /// At the first sample of each block of Z the tree of evolution is searched over H_Z blocks, from
@@ -91,7 +94,6 @@ class HybridMpc final : public Controller {
   bool boundsByReach() const;  ///< bound `reach` holds for the model
 
  private:
-  Eigen::Index nearestChoice(VectorRef input) const;
   void startBlock(const Measurement& now, const SetpointSource& setpoint);
   const TreeResult& search(VectorRef input_before, VectorRef disturbances);
   const char* faultOf(const Measurement& now) const;  // null if there is none

@@ -63,6 +63,8 @@ class FuzzyOptimalLaw final : public Controller {
   /// @throws InputError also for outputs with different partitions, another number of rules than
   /// there are weights, or an input without effect within the horizon and without weight.
   void setModel(const TsModel& model) override;
+  /// Whether setModel() would take it, already matched to the plant. @throws InputError as it does.
+  static void check(const FuzzyOptimalParams& params, const TsModel& model);
   /// From the next sample on, without a bump. @throws InputError, then nothing changes.
   void retune(FuzzyOptimalTuning tuning);
   const FuzzyOptimalTuning& tuning() const;  ///< the latest

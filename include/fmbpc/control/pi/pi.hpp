@@ -55,6 +55,11 @@ class PiController final : public Controller {
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
+  /// Keys kp and ki_per_h, each with a value for the input of every loop.
+  Settings settings() const override;
+  /// New gains in the next step, without a bump: the integral takes up what the proportional part
+  /// gains or loses.
+  bool retune(const Settings& settings) override;
   /// "INPUT_integral" of each loop: the integral's share of u, in units of the input.
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
 
@@ -64,7 +69,12 @@ class PiController final : public Controller {
     double error{};     // of this sample, times the scheduled gain
     double wanted{};    // u before the limits
     bool transfer_pending{false};
+    double next_kp{}, next_ki_per_h{};  // of the latest retuning
   };
+  void takeSettings(PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
+                    LoopState& state) const;
+  double errorOf(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint) const;
+  Vector gains(double PiLoop::*gain, double LoopState::*next) const;
   void propose(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
                LoopState& state) const;
   void refer(const SetpointSource& setpoint, std::uint32_t step, Vector& reference);
@@ -74,6 +84,9 @@ class PiController final : public Controller {
   InputLimits limits_;
   double sample_time_h_;
   std::vector<LoopState> states_;  // one per loop
+  std::vector<SignalInfo> inputs_;  // of each loop
+  bool retuned_{false};             // gains of the states wait for the next step
+  bool running_{false};             // an input has been computed since the reset
   std::optional<ReferenceTrajectory> path_;
   std::vector<std::pair<std::string, double>> signals_;
 };

@@ -1,0 +1,48 @@
+// dynamic_reconfigure for whatever controller a loop has: what may change comes from the table of
+// its type, not from a file of generated code.
+#pragma once
+
+#include <dynamic_reconfigure/Reconfigure.h>
+#include <ros/ros.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fmbpc/control/settings.hpp"
+
+namespace fpc {
+
+/// Serves ~set_parameters and latches ~parameter_descriptions and ~parameter_updates, as
+/// dynamic_reconfigure::Server does. It starts with what the controller has, whatever the parameter
+/// server holds; a change acts from the next sample on, and one that the controller refuses is
+/// logged and taken back: the answer shows what is in force.
+class SettingsServer {
+ public:
+  using Current = std::function<Settings()>;
+  using Change = std::function<void(const Settings&)>;  ///< @throws InputError: refused
+  /// Nothing is advertised for an empty table.
+  SettingsServer(ros::NodeHandle private_node, std::vector<SettingInfo> table, Current current,
+                 Change change);
+  void publish();  ///< what is in force now
+
+ private:
+  bool onSet(dynamic_reconfigure::Reconfigure::Request& request,
+             dynamic_reconfigure::Reconfigure::Response& response);
+
+  std::vector<SettingInfo> table_;
+  Current current_;
+  Change change_;
+  ros::Publisher descriptions_, updates_;
+  ros::ServiceServer set_;
+};
+
+/// The table and values as messages; free of a master, for tests.
+dynamic_reconfigure::Config settingsMessage(const std::vector<SettingInfo>& table,
+                                            const Settings& settings);
+/// Settings out of a request, in the order of the table; keys that the table does not have are
+/// left out. @throws InputError for a number outside its range.
+Settings settingsOf(const std::vector<SettingInfo>& table,
+                    const dynamic_reconfigure::Config& config);
+
+}  // namespace fpc

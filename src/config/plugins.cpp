@@ -1,0 +1,113 @@
+#include "fmbpc/config/plugins.hpp"
+
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <sstream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/control/registry.hpp"
+#include "fmbpc/plant/plant.hpp"
+
+namespace fpc {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> listedIn(const char* variable) {
+  const char* value = std::getenv(variable);
+  std::stringstream stream(value ? value : "");
+  std::vector<std::string> parts;
+  for (std::string part; std::getline(stream, part, ':');)
+    if (!part.empty()) parts.push_back(part);
+  return parts;
+}
+
+/// The folder of the library that this code is in.
+fs::path ownFolder() {
+  Dl_info info{};
+  return dladdr(reinterpret_cast<void*>(&loadPlugin), &info) != 0 && info.dli_fname
+             ? fs::absolute(info.dli_fname).parent_path()
+             : fs::path();
+}
+
+std::string findLibrary(const std::string& name, const std::string& where) {
+  const std::string file = "lib" + name + ".so";
+  const std::vector<std::string> folders = pluginFolders();
+  std::error_code ignored;
+  for (const std::string& folder : folders)
+    if (fs::is_regular_file(fs::path(folder) / file, ignored))
+      return (fs::path(folder) / file).string();
+  throw InputError(where + ": expected a plugin, got '" + name + "' (no " + file + " in " +
+                   join(folders) + "; FMBPC_PLUGIN_PATH names more folders)");
+}
+
+std::string pathOf(const std::string& name, const std::string& where) {
+  if (!isPluginPath(name)) return findLibrary(name, where);
+  require(fs::is_regular_file(name), where, "an existing library, got '" + name + "'");
+  return name;
+}
+
+std::string oneLine(std::string text) {
+  for (char& c : text)
+    if (c == '\n') c = ' ';
+  return text;
+}
+
+/// What the registries hold, and what they had to refuse.
+struct Registered {
+  std::size_t types{plantNames().size() + controllerNames().size()};
+  std::vector<std::string> plants{refusedPlants()}, controllers{refusedControllers()};
+};
+
+std::string whatIsWrong(const Registered& before, const std::string& path) {
+  const Registered after;
+  const std::string taken = ", which is there already, from " + path;
+  if (after.plants.size() > before.plants.size())
+    return "names of its own, got the plant " + after.plants.back() + taken;
+  if (after.controllers.size() > before.controllers.size())
+    return "names of its own, got the controller " + after.controllers.back() + taken;
+  if (after.types == before.types)
+    return "a library that registers plants or controllers, got " + path;
+  return "";
+}
+
+/// Loads it for good (what it registered lives in it). Returns what is wrong with it, or nothing.
+std::string load(const std::string& path) {
+  if (dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD) != nullptr) return "";  // linked
+  const Registered before;
+  if (dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL) != nullptr) return whatIsWrong(before, path);
+  const char* reason = dlerror();
+  return "a library that this fmbpc can load: " + oneLine(reason ? reason : path);
+}
+
+}  // namespace
+
+std::vector<std::string> pluginFolders() {
+  std::vector<std::string> folders = listedIn("FMBPC_PLUGIN_PATH");
+  for (const auto& prefix : listedIn("CMAKE_PREFIX_PATH")) folders.push_back(prefix + "/lib");
+  for (const auto& share : listedIn("ROS_PACKAGE_PATH"))
+    if (fs::path(share).filename() == "share")
+      folders.push_back((fs::path(share).parent_path() / "lib").string());
+  if (const fs::path own = ownFolder(); !own.empty()) folders.push_back(own.string());
+  return folders;
+}
+
+bool isPluginPath(const std::string& name) { return name.find('/') != std::string::npos; }
+
+void loadPlugin(const std::string& name, const std::string& where) {
+  static std::mutex mutex;
+  static std::map<std::string, std::string> outcomes;  // by path: what was wrong with it
+  const std::lock_guard<std::mutex> lock(mutex);
+  const std::string path = pathOf(name, where);
+  const auto known = outcomes.find(path);
+  const std::string problem = known != outcomes.end() ? known->second : load(path);
+  outcomes[path] = problem;
+  if (!problem.empty()) throw InputError(where + ": expected " + problem);
+}
+
+}  // namespace fpc

@@ -1,0 +1,139 @@
+// Controller type excitation: its section of a loop file. Times are given in samples or in seconds
+// that are a whole number of samples.
+#include "fmbpc/control/excitation/excitation.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/control/registry.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kMostSamples = 2e9;       // of one duration
+constexpr double kSampleTolerance = 1e-6;  // of a sample: decimal times are rounded
+
+/// Samples in a time. @throws InputError unless they are whole.
+std::int64_t wholeSamples(const YamlSection& section, const std::string& key, double time_s,
+                          double sample_time_s) {
+  const double samples = time_s / sample_time_s, whole = std::round(samples);
+  if (std::abs(samples - whole) > kSampleTolerance || whole > kMostSamples)
+    section.fail(key, "a whole number of samples of " + exactText(sample_time_s) + " s");
+  return static_cast<std::int64_t>(whole);
+}
+
+/// `STEM_steps` or, instead, `STEM_s`; true if one of them is there.
+bool readSteps(YamlSection& section, const std::string& stem, int& steps, int lower,
+               double sample_time_s) {
+  const std::string in_steps = stem + "_steps", in_seconds = stem + "_s";
+  const bool has_steps = section.has(in_steps), has_seconds = section.has(in_seconds);
+  if (has_steps && has_seconds)
+    section.fail(in_seconds, "either " + in_steps + " or " + in_seconds);
+  section.integer(in_steps, steps, lower);
+  double time_s = 0.0;
+  section.number(in_seconds, time_s, kFiniteNotNegative);
+  if (has_seconds)
+    steps = static_cast<int>(wholeSamples(section, in_seconds, time_s, sample_time_s));
+  if (steps < lower) section.fail(in_seconds, "at least " + std::to_string(lower) + " samples");
+  return has_steps || has_seconds;
+}
+
+void readRegister(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
+  item.integer("register_bits", signal.register_bits, ShiftRegister::kFewestBits,
+               ShiftRegister::kMostBits);
+  readSteps(item, "clock", signal.clock_steps, 1, sample_time_s);
+}
+
+void readHolds(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
+  item.numbers("levels", signal.levels, kFinite);
+  if (item.has("levels") && (item.has("lower") || item.has("upper")))
+    item.fail("levels", "either levels or lower and upper");
+  if (item.has("levels") && signal.levels.empty()) item.fail("levels", "at least one number");
+  if (!readSteps(item, "hold_lower", signal.hold_lower_steps, 1, sample_time_s))
+    item.fail("hold_lower_steps", "the shortest time of a level (or hold_lower_s)");
+  if (!readSteps(item, "hold_upper", signal.hold_upper_steps, 1, sample_time_s))
+    item.fail("hold_upper_steps", "the longest time of a level (or hold_upper_s)");
+}
+
+void readStaircase(YamlSection& item, ExcitationSignal& signal, double sample_time_s) {
+  need(item, "schedule", "a list of times and values");
+  for (auto& entry : item.list("schedule")) {
+    double time_h = 0.0;
+    ExcitationStep step;
+    need(entry, "time_h", "a time >= 0");
+    entry.number("time_h", time_h, {0.0, 1e7});
+    step.step = wholeSamples(entry, "time_h", 3600.0 * time_h, sample_time_s);
+    if (!signal.schedule.empty() && step.step <= signal.schedule.back().step)
+      entry.fail("time_h", "times that increase");
+    need(entry, "value", "a number");
+    entry.number("value", step.value, kFinite);
+    entry.finish();
+    signal.schedule.push_back(step);
+  }
+}
+
+ExcitationSignal readSignal(YamlSection& item, const ControllerContext& loop) {
+  ExcitationSignal signal;
+  const double sample_time_s = loop.plant.sample_time_s;
+  signal.input = indexByName(item, "input", loop.inputs());
+  need(item, "signal", "one of prbs, multi_level, steps, none");
+  item.oneOf("signal", signal.signal, {"prbs", "multi_level", "steps", "none"});
+  const InputLimits& limits = loop.limits;
+  const Range bounds{limits.lower[signal.input], limits.upper[signal.input]};
+  if (signal.signal == "prbs" || signal.signal == "multi_level") {
+    signal.lower = bounds.lower;
+    signal.upper = bounds.upper;
+    item.number("lower", signal.lower, bounds);
+    item.number("upper", signal.upper, bounds);
+  }
+  if (signal.signal == "prbs") readRegister(item, signal, sample_time_s);
+  if (signal.signal == "multi_level") readHolds(item, signal, sample_time_s);
+  if (signal.signal == "steps") readStaircase(item, signal, sample_time_s);
+  if (signal.signal != "none") readSteps(item, "start", signal.start_steps, 0, sample_time_s);
+  item.finish();
+  return signal;
+}
+
+ExcitationFeedback readFeedback(YamlSection& item, const ControllerContext& loop) {
+  ExcitationFeedback feedback;
+  feedback.input = indexByName(item, "input", loop.inputs());
+  feedback.output = indexByName(item, "output", loop.outputs());
+  need(item, "gain", "a number");
+  item.number("gain", feedback.gain, kFinite);
+  item.finish();
+  return feedback;
+}
+
+ExcitationParams readExcitation(YamlSection& section, const ControllerContext& loop) {
+  ExcitationParams params;
+  section.seed("seed", params.seed);
+  need(section, "signals", "a list of signals, one for each input that moves");
+  std::set<int> moved;
+  for (auto& item : section.list("signals")) {
+    params.signals.push_back(readSignal(item, loop));
+    if (!moved.insert(params.signals.back().input).second)
+      item.fail("input", "an input that no other signal moves");
+  }
+  for (auto& item : section.list("feedback")) params.feedback.push_back(readFeedback(item, loop));
+  checked(section, [&] { params.validate(loop.limits, loop.outputCount()); });
+  return params;
+}
+
+std::unique_ptr<Controller> makeExcitation(const ExcitationParams& params,
+                                           const ControllerContext& loop) {
+  return std::make_unique<ExcitationController>(params, loop.limits, loop.initial_input,
+                                                loop.plant);
+}
+
+ControllerType describe() {
+  ControllerType type{"excitation", "an experiment for identification: every input its own signal"};
+  type.open_loop = true;
+  return type;
+}
+
+const bool kRegistered =
+    registerController<ExcitationParams>({describe(), &readExcitation, &makeExcitation});
+
+}  // namespace
+}  // namespace fpc

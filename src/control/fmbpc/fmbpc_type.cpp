@@ -1,0 +1,65 @@
+// Controller type fmbpc: its section of a loop file.
+#include <cmath>
+
+#include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/control/registry.hpp"
+
+namespace fpc {
+namespace {
+
+void readWeights(YamlSection& section, const ControllerContext& loop, FmbpcParams& params) {
+  params.weight_output = Vector::Ones(loop.outputCount());
+  params.weight_move = Vector::Zero(loop.inputCount());
+  section.byName("weight_output", params.weight_output, loop.outputs(), kFiniteNotNegative);
+  section.byName("weight_move", params.weight_move, loop.inputs(), kFiniteNotNegative);
+}
+
+void readForecast(YamlSection& section, const ControllerContext& loop, FmbpcParams& params) {
+  double period_h = 0.0;
+  section.number("forecast_period_h", period_h, {0.0, 1e4});
+  params.forecast_period_steps =
+      static_cast<int>(std::lround(period_h * 3600.0 / loop.plant.sample_time_s));
+  section.number("forecast_pole", params.forecast_pole, {0.0, 1.0});
+}
+
+FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
+  FmbpcParams params;
+  params.reference_pole = Vector::Constant(loop.outputCount(), 0.9);
+  params.disturbance_nominal = loop.disturbance_nominal;
+  section.oneOf("law", params.law, {"published", "general", "iterated"});
+  section.integer("coincidence_steps", params.coincidence_steps, 1, 100000);
+  section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
+  section.boolean("preview", params.preview);
+  readWeights(section, loop, params);
+  section.integer("horizon_steps", params.horizon_steps, 1, 10000);
+  section.integer("iterations", params.iterations, 1, 1000);
+  readForecast(section, loop, params);
+  section.oneOf("realisation", params.realisation, {"parallel", "realigned", "literal"});
+  section.integer("delay_steps", params.delay_steps, 0, 1000);
+  section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
+  section.oneOf("antecedent", params.antecedent, {"model", "measured"});
+  section.number("offset_gain", params.offset_gain, {0.0, 1.0});
+  section.boolean("disturbance_feedforward", params.disturbance_feedforward);
+  section.byName("disturbance_nominal", params.disturbance_nominal, loop.disturbances(), kFinite);
+  section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
+  readPredictionSteps(section, loop, params.prediction_steps);
+  checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
+  return params;
+}
+
+std::unique_ptr<Controller> makeFmbpc(const FmbpcParams& params, const ControllerContext& loop) {
+  return std::make_unique<FmbpcLaw>(params, loop.limits, loop.plant);
+}
+
+ControllerType describe() {
+  ControllerType type{"fmbpc", "fuzzy model-based predictive control: an explicit law"};
+  type.needs_model = true;
+  type.predicts = true;
+  return type;
+}
+
+const bool kRegistered =
+    registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc});
+
+}  // namespace
+}  // namespace fpc

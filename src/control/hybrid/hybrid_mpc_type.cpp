@@ -1,0 +1,161 @@
+// Controller type hybrid_mpc: its section of a loop file: which inputs there are, which of them may
+// follow each other, what they cost.
+#include <cmath>
+
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
+#include "fmbpc/control/registry.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kSame = 1e-9;
+constexpr std::size_t kMostInputs = 10000;
+
+Index count(const std::vector<std::string>& names) { return static_cast<Index>(names.size()); }
+
+/// Values by name; NaN where a name is absent: any value.
+Vector readPattern(YamlSection& item, const std::vector<std::string>& names) {
+  Vector values = Vector::Constant(count(names), std::nan(""));
+  for (Index i = 0; i < values.size(); ++i)
+    item.number(names[static_cast<std::size_t>(i)], values[i], kFinite);
+  item.finish();
+  return values;
+}
+
+bool matches(const Vector& pattern, const Vector& input) {
+  for (Index i = 0; i < pattern.size(); ++i)
+    if (!std::isnan(pattern[i]) && std::abs(pattern[i] - input[i]) > kSame) return false;
+  return true;
+}
+
+std::vector<Vector> readList(YamlSection& section, const std::vector<std::string>& names) {
+  std::vector<Vector> inputs;
+  for (auto& item : section.list("inputs")) {
+    inputs.push_back(readPattern(item, names));
+    if (!inputs.back().allFinite()) item.fail("", "a value for each of " + join(names));
+  }
+  return inputs;
+}
+
+/// Every combination of the levels of each input, the last one changing fastest.
+std::vector<Vector> readLevels(YamlSection& section, const std::vector<std::string>& names) {
+  YamlSection levels = section.section("levels");
+  std::vector<Vector> inputs(1, Vector::Zero(count(names)));
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::vector<double> values;
+    levels.numbers(names[i], values, kFinite);
+    if (values.empty() && section.has("levels"))
+      levels.fail(names[i], "a list of the values that it takes");
+    std::vector<Vector> next;
+    for (const Vector& input : inputs)
+      for (const double value : values) {
+        next.push_back(input);
+        next.back()[static_cast<Index>(i)] = value;
+      }
+    inputs = std::move(next);
+    if (inputs.size() > kMostInputs) section.fail("levels", "fewer combinations");
+  }
+  levels.finish();
+  return inputs;
+}
+
+Matrix readChoices(YamlSection& section, const std::vector<std::string>& names) {
+  std::vector<Vector> inputs = readList(section, names);
+  const std::vector<Vector> combined = readLevels(section, names);
+  if (inputs.empty() == combined.empty())
+    section.fail("inputs", "either a list of input vectors, or levels of each input");
+  if (inputs.empty()) inputs = combined;
+  std::vector<Vector> forbidden;
+  for (auto& item : section.list("forbidden")) forbidden.push_back(readPattern(item, names));
+  Matrix choices(count(names), static_cast<Index>(inputs.size()));
+  Index kept = 0;
+  for (const Vector& input : inputs) {
+    bool allowed = true;
+    for (const Vector& pattern : forbidden) allowed = allowed && !matches(pattern, input);
+    if (allowed) choices.col(kept++) = input;
+  }
+  if (kept == 0) section.fail("forbidden", "patterns that leave an input");
+  return choices.leftCols(kept);
+}
+
+void readTransitions(YamlSection& section, const std::vector<std::string>& names,
+                     std::vector<ForbiddenTransition>& transitions) {
+  for (auto& item : section.list("forbidden_transitions")) {
+    ForbiddenTransition t;
+    t.from = t.to = Vector::Constant(count(names), std::nan(""));
+    item.byName("from", t.from, names, kFinite);
+    item.byName("to", t.to, names, kFinite);
+    item.finish();
+    transitions.push_back(std::move(t));
+  }
+}
+
+void readCost(YamlSection& controller, HybridMpcParams& params, const ControllerContext& loop) {
+  YamlSection cost = controller.section("cost");
+  params.weight_tracking = Vector::Zero(loop.outputCount());
+  params.weight_consumption = Vector::Zero(loop.inputCount());
+  cost.byName("tracking", params.weight_tracking, loop.outputs(), kFiniteNotNegative);
+  cost.byName("consumption", params.weight_consumption, loop.inputs(), kFinite);
+  for (auto& item : cost.list("switching")) {
+    SwitchTerm term;
+    term.before = indexByName(item, "before", loop.inputs());
+    term.after = indexByName(item, "after", loop.inputs());
+    need(item, "weight", "a number >= 0");
+    item.number("weight", term.weight, kFiniteNotNegative);
+    item.finish();
+    params.switching.push_back(term);
+  }
+  for (auto& item : cost.list("travel")) {
+    TravelTerm term;
+    term.input = indexByName(item, "input", loop.inputs());
+    if (item.has("gate"))
+      term.gate = indexByName(item, "gate", loop.inputs());
+    else
+      item.markRead("gate");
+    need(item, "weight", "a number >= 0");
+    item.number("weight", term.weight, kFiniteNotNegative);
+    item.finish();
+    params.travel.push_back(term);
+  }
+  cost.finish();
+}
+
+HybridMpcParams readHybridMpc(YamlSection& section, const ControllerContext& loop) {
+  HybridMpcParams params;
+  params.preview = false;
+  params.choices = readChoices(section, loop.inputs());
+  readTransitions(section, loop.inputs(), params.forbidden_transitions);
+  section.integer("hold_samples", params.hold_samples, 1, 100000);
+  section.integer("horizon_blocks", params.horizon_blocks, 1, 1000);
+  section.boolean("preview", params.preview);
+  readCost(section, params, loop);
+  section.oneOf("bound", params.bound, {"cost", "reach"});
+  section.seed("node_budget", params.node_budget);
+  section.number("time_budget_s", params.time_budget_s, kFiniteNotNegative);
+  checked(section, [&] {
+    params.validate(loop.outputCount(), loop.inputCount());
+    params.validateLimits(loop.limits);
+  });
+  require(params.mayBeSent(loop.fallback_input), "actuator.fallback", "one of controller.inputs");
+  return params;
+}
+
+std::unique_ptr<Controller> makeHybridMpc(const HybridMpcParams& params,
+                                          const ControllerContext& loop) {
+  return std::make_unique<HybridMpc>(params, loop.limits, loop.plant);
+}
+
+ControllerType describe() {
+  ControllerType type{"hybrid_mpc", "the best sequence out of a set of input vectors, by search"};
+  type.needs_model = true;
+  return type;
+}
+
+const bool kRegistered =
+    registerController<HybridMpcParams>({describe(), &readHybridMpc, &makeHybridMpc});
+
+}  // namespace
+}  // namespace fpc

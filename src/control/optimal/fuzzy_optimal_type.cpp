@@ -1,0 +1,78 @@
+// Controller type fuzzy_optimal: its section of a loop file, with horizons, weights of all rules or
+// of each, and what becomes of the disturbance estimate; its settings that may change in a run.
+#include "fmbpc/control/optimal/law.hpp"
+#include "fmbpc/control/registry.hpp"
+
+namespace fpc {
+namespace {
+
+void readWeights(YamlSection& section, QuadraticWeights& weights, const ControllerContext& loop) {
+  section.byName("weight_output", weights.output, loop.outputs(), kFiniteNotNegative);
+  section.byName("weight_move", weights.move, loop.inputs(), kFiniteNotNegative);
+  section.byName("weight_input", weights.input, loop.inputs(), kFiniteNotNegative);
+}
+
+void readTuning(YamlSection& section, const ControllerContext& loop, FuzzyOptimalTuning& tuning) {
+  const Eigen::Index n_y = loop.outputCount(), n_u = loop.inputCount();
+  tuning.weight = {Vector::Ones(n_y), Vector::Zero(n_u), Vector::Zero(n_u)};
+  tuning.input_target = loop.initial_input;
+  section.integer("horizon_steps", tuning.horizon_steps, 1, 1000);
+  section.integer("move_steps", tuning.move_steps, 1, 1000);
+  readWeights(section, tuning.weight, loop);
+  for (auto& item : section.list("rules")) {
+    tuning.rules.push_back(tuning.weight);
+    readWeights(item, tuning.rules.back(), loop);
+    item.finish();
+  }
+  section.byName("input_target", tuning.input_target, loop.inputs(), kFinite);
+}
+
+FuzzyOptimalParams readFuzzyOptimal(YamlSection& section, const ControllerContext& loop) {
+  FuzzyOptimalParams params;
+  readTuning(section, loop, params.tuning);
+  params.reference_pole = Vector::Constant(loop.outputCount(), 0.9);
+  params.disturbance_nominal = loop.disturbance_nominal;
+  section.oneOf("solve", params.solve, {"together", "each"});
+  section.oneOf("disturbance", params.disturbance, {"inside", "outside", "none"});
+  section.number("disturbance_gain", params.disturbance_gain, {0.0, 1.0, true});
+  section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
+  section.boolean("preview", params.preview);
+  section.boolean("disturbance_feedforward", params.disturbance_feedforward);
+  section.byName("disturbance_nominal", params.disturbance_nominal, loop.disturbances(), kFinite);
+  section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
+  readPredictionSteps(section, loop, params.prediction_steps);
+  checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
+  return params;
+}
+
+std::unique_ptr<Controller> makeFuzzyOptimal(const FuzzyOptimalParams& params,
+                                             const ControllerContext& loop) {
+  return std::make_unique<FuzzyOptimalLaw>(params, loop.limits, loop.plant);
+}
+
+void checkModel(const FuzzyOptimalParams& params, const TsModel& model, const ControllerContext&) {
+  FuzzyOptimalLaw::check(params, model);
+}
+
+ControllerType describe() {
+  ControllerType type{"fuzzy_optimal", "a quadratic predictive law for every rule, blended"};
+  type.needs_model = true;
+  type.predicts = true;
+  type.settings = {
+      {"horizon_steps", SettingKind::kInteger, "prediction horizon P [samples]", 1, 1000},
+      {"move_steps", SettingKind::kInteger, "free moves M [samples], at most P", 1, 1000},
+      {"weight_output", SettingKind::kText,
+       "of squared errors: 'Ca=1 T=2', or '1 2', or one number; rules by ';'"},
+      {"weight_move", SettingKind::kText,
+       "of squared moves: 'q=0.1 qc=2', or '0.1 2', or one number; rules by ';'"},
+      {"weight_input", SettingKind::kText,
+       "of squared distances to input_target; leaves an offset"},
+      {"input_target", SettingKind::kText, "'q=100 qc=103', or '100 103', or one number"}};
+  return type;
+}
+
+const bool kRegistered = registerController<FuzzyOptimalParams>(
+    {describe(), &readFuzzyOptimal, &makeFuzzyOptimal, &checkModel});
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,91 @@
+// Controller type adaptive_pi: its section of a loop file.
+#include "fmbpc/control/pi/adaptive_pi.hpp"
+#include "fmbpc/control/pi/decoupling.hpp"
+#include "fmbpc/control/registry.hpp"
+
+namespace fpc {
+namespace {
+
+void readLoops(YamlSection& section, AdaptivePiParams& params, const ControllerContext& context) {
+  need(section, "loops", "a list of two loops");
+  auto items = section.list("loops");
+  if (items.size() != 2) section.fail("loops", "two loops");
+  for (std::size_t i = 0; i < 2; ++i) {
+    AdaptiveLoop& loop = params.loops[i];
+    YamlSection& item = items[i];
+    loop.input = indexByName(item, "input", context.inputs());
+    loop.output = indexByName(item, "output", context.outputs());
+    if (params.tuning == "given")
+      for (const char* key : {"kp", "integral_time_min"}) need(item, key, "a number");
+    item.number("kp", loop.kp, kFinite);
+    item.number("integral_time_min", loop.integral_time_min, kFinitePositive);
+    item.number("imc_time_constant_min", loop.imc_time_constant_min, kFinitePositive);
+    item.finish();
+  }
+}
+
+/// Index of the loop whose output (or input) it is.
+std::size_t loopOf(const AdaptivePiParams& params, int index, int AdaptiveLoop::*signal) {
+  return params.loops[0].*signal == index ? 0 : 1;
+}
+
+void readElements(YamlSection& section, AdaptivePiParams& params,
+                  const ControllerContext& context) {
+  for (auto& item : section.list("model")) {
+    const int output = indexByName(item, "output", context.outputs());
+    const int input = indexByName(item, "input", context.inputs());
+    Fopdt& element = params.model[loopOf(params, output, &AdaptiveLoop::output)]
+                                 [loopOf(params, input, &AdaptiveLoop::input)];
+    for (const char* key : {"gain", "time_constant_min"}) need(item, key, "a number");
+    item.number("gain", element.gain, kFinite);
+    item.number("time_constant_min", element.time_constant, kFinitePositive);
+    item.number("dead_time_min", element.dead_time, kFiniteNotNegative);
+    item.finish();
+  }
+}
+
+void readAdaptation(YamlSection& section, AdaptationParams& params) {
+  YamlSection item = section.section("adaptation");
+  item.boolean("enabled", params.enabled);
+  item.number("forgetting", params.estimator.forgetting, {0.0, 1.0, true});
+  item.number("initial_covariance", params.estimator.initial_covariance, kFinitePositive);
+  item.number("covariance_bound", params.estimator.covariance_bound, kFinitePositive);
+  item.boolean("bias", params.estimator.bias);
+  item.number("excitation_lower", params.estimator.excitation_lower, kFiniteNotNegative);
+  item.integer("start_steps", params.start_steps, 0);
+  item.number("change_upper", params.change_upper, {0.0, 1.0, true});
+  item.number("ratio_upper", params.ratio_upper, {1.0, kLargest, true});
+  item.number("deviation_upper", params.deviation_upper, kFinitePositive);
+  item.integer("refused_steps", params.refused_steps, 1);
+  checked(item, [&] { params.validate(); });
+  item.finish();
+}
+
+AdaptivePiParams readAdaptivePi(YamlSection& section, const ControllerContext& context) {
+  AdaptivePiParams params;
+  if (context.outputCount() != 2 || context.inputCount() != 2)
+    section.fail("type", "a plant of two inputs and two outputs for adaptive_pi");
+  section.oneOf("tuning", params.tuning, {"given", "imc", "pso"});
+  readLoops(section, params, context);
+  section.boolean("decoupling", params.decoupling);
+  readElements(section, params, context);
+  readAdaptation(section, params.adaptation);
+  checked(section, [&] {
+    params.validate(2, 2);
+    if (params.decoupling) InvertedDecoupling(params.model, context.plant.sample_time_s / 60.0);
+  });
+  return params;
+}
+
+std::unique_ptr<Controller> makeAdaptivePi(const AdaptivePiParams& params,
+                                           const ControllerContext& context) {
+  return std::make_unique<AdaptivePi>(params, context.limits, context.plant);
+}
+
+const bool kRegistered = registerController<AdaptivePiParams>(
+    {{"adaptive_pi", "two PI loops behind a decoupling, retuned from gains learned on line"},
+     &readAdaptivePi,
+     &makeAdaptivePi});
+
+}  // namespace
+}  // namespace fpc

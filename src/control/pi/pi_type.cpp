@@ -1,0 +1,65 @@
+// Controller type pi: its section of a loop file.
+#include "fmbpc/control/pi/pi.hpp"
+#include "fmbpc/control/registry.hpp"
+
+namespace fpc {
+namespace {
+
+std::vector<GainPoint> readSchedule(YamlSection& section) {
+  std::vector<GainPoint> points;
+  for (auto& item : section.list("gain_schedule")) {
+    for (const char* key : {"output", "gain"}) need(item, key, "a number");
+    GainPoint point;
+    item.number("output", point.output, kFinite);
+    item.number("gain", point.gain, kFinitePositive);
+    item.finish();
+    points.push_back(point);
+  }
+  return points;
+}
+
+PiLoop readLoop(YamlSection& item, const ControllerContext& loop) {
+  PiLoop pi;
+  pi.input = indexByName(item, "input", loop.inputs());
+  pi.output = indexByName(item, "output", loop.outputs());
+  need(item, "kp", "a number");
+  item.number("kp", pi.kp, kFinite);
+  item.number("ki_per_h", pi.ki_per_h, kFinite);
+  pi.bias = loop.initial_input[pi.input];
+  item.number("bias", pi.bias, kFinite);
+  item.boolean("reverse", pi.reverse);
+  item.oneOf("anti_windup", pi.anti_windup, {"none", "clamp", "tracking"});
+  item.oneOf("start", pi.start, {"bias", "bumpless"});
+  pi.gain_schedule = readSchedule(item);
+  item.finish();
+  return pi;
+}
+
+PiParams readPi(YamlSection& section, const ControllerContext& loop) {
+  PiParams params;
+  if (section.has("reference_pole")) {
+    params.reference_pole = Vector::Constant(loop.outputCount(), 0.9);
+    section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
+  }
+  need(section, "loops", "a list of loops");
+  for (auto& item : section.list("loops")) params.loops.push_back(readLoop(item, loop));
+  checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
+  return params;
+}
+
+std::unique_ptr<Controller> makePi(const PiParams& params, const ControllerContext& loop) {
+  return std::make_unique<PiController>(params, loop.limits, loop.plant);
+}
+
+ControllerType describe() {
+  ControllerType type{"pi", "PI control, one loop per input, gains scheduled if asked"};
+  type.settings = {
+      {"kp", SettingKind::kText, "input unit per output unit: 'q_r=2 q_w=1', or '2 1', or one"},
+      {"ki_per_h", SettingKind::kText, "input unit per output unit and hour, in the same way"}};
+  return type;
+}
+
+const bool kRegistered = registerController<PiParams>({describe(), &readPi, &makePi});
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,89 @@
+#include "fmbpc/control/registry.hpp"
+
+#include <map>
+
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+namespace {
+
+struct Entry {
+  ControllerType type;
+  ControllerReader read;
+};
+
+/// Made at first use: types of other files register while static objects are still being built.
+std::map<std::string, Entry>& registry() {
+  static std::map<std::string, Entry> types;
+  return types;
+}
+
+std::vector<std::string>& refused() {
+  static std::vector<std::string> names;
+  return names;
+}
+
+const Entry& entryOf(const std::string& name) {
+  const auto found = registry().find(name);
+  require(found != registry().end(), "controller.type '" + name + "'",
+          "one of " + join(controllerNames()));
+  return found->second;
+}
+
+std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
+  std::vector<std::string> names;
+  for (const SignalInfo& signal : signals) names.push_back(signal.name);
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> ControllerContext::outputs() const { return namesOf(plant.outputs); }
+std::vector<std::string> ControllerContext::inputs() const { return namesOf(plant.inputs); }
+std::vector<std::string> ControllerContext::disturbances() const {
+  return namesOf(plant.disturbances);
+}
+Eigen::Index ControllerContext::outputCount() const {
+  return static_cast<Eigen::Index>(plant.outputs.size());
+}
+Eigen::Index ControllerContext::inputCount() const {
+  return static_cast<Eigen::Index>(plant.inputs.size());
+}
+
+bool registerControllerReader(ControllerType type, ControllerReader read) {
+  const std::string name = type.name;
+  const bool is_new = registry().emplace(name, Entry{std::move(type), std::move(read)}).second;
+  if (!is_new) refused().push_back(name);
+  return is_new;
+}
+
+std::vector<std::string> refusedControllers() { return refused(); }
+
+std::vector<std::string> controllerNames() {
+  std::vector<std::string> names;
+  for (const auto& entry : registry()) names.push_back(entry.first);
+  return names;
+}
+
+const ControllerType& controllerType(const std::string& name) { return entryOf(name).type; }
+
+std::unique_ptr<ControllerConfig> readController(YamlSection& section,
+                                                 const ControllerContext& loop) {
+  std::string name;
+  need(section, "type", "one of " + join(controllerNames()));
+  section.oneOf("type", name, controllerNames());
+  const Entry& entry = entryOf(name);
+  auto config = entry.read(entry.type, section, loop);
+  section.finish();
+  return config;
+}
+
+void readPredictionSteps(YamlSection& section, const ControllerContext& loop, int& steps) {
+  const int fixed = loop.perturbation_steps;
+  if (fixed > 0) steps = fixed;
+  section.integer("prediction_steps", steps, 1, 10000);
+  if (fixed > 0 && steps != fixed)
+    section.fail("prediction_steps", "clp.perturbation_steps (" + std::to_string(fixed) + ")");
+}
+
+}  // namespace fpc

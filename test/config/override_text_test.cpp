@@ -1,0 +1,35 @@
+// Several overrides in one text, as roslaunch hands them over.
+#include <gtest/gtest.h>
+
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+TEST(OverrideText, SpacesSeparateUnlessBracketsOrQuotesHoldThem) {
+  EXPECT_EQ(parseOverrides("setpoint.initial={s: 55, x: 1900}  noise.seed=3"),
+            (Overrides{{"setpoint.initial", "{s: 55, x: 1900}"}, {"noise.seed", "3"}}));
+  EXPECT_EQ(parseOverrides("controller.loops.0.kp=2 a.b=[{x: 'one two=2'}, 3]"),
+            (Overrides{{"controller.loops.0.kp", "2"}, {"a.b", "[{x: 'one two=2'}, 3]"}}));
+  EXPECT_EQ(parseOverrides("title=\"a run=1\" noise.std.x=1"),
+            (Overrides{{"title", "\"a run=1\""}, {"noise.std.x", "1"}}));
+}
+
+TEST(OverrideText, WordsWithoutAKeyBelongToTheValueBefore) {
+  EXPECT_EQ(parseOverrides("title=A long day noise.seed=3"),
+            (Overrides{{"title", "A long day"}, {"noise.seed", "3"}}));
+  EXPECT_EQ(parseOverrides("title=The operator's day noise.seed=3"),
+            (Overrides{{"title", "The operator's day"}, {"noise.seed", "3"}}));
+}
+
+TEST(OverrideText, NothingIsNoOverride) {
+  EXPECT_TRUE(parseOverrides("").empty());
+  EXPECT_TRUE(parseOverrides("  ").empty());
+}
+
+TEST(OverrideText, AValueWithoutAKeyIsNamed) {
+  expectWords(errorOf([] { parseOverrides("fast loop.pace=paced"); }), {"--set fast", "path=value"});
+}
+
+}  // namespace
+}  // namespace fpc

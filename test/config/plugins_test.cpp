@@ -1,0 +1,71 @@
+// Libraries with plants and controllers of others: found, loaded, or one clear error.
+#include "fmbpc/config/plugins.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fmbpc/loop/run.hpp"
+#include "fmbpc/plant/plant.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+/// Finds the libraries of the build, and the loops of the example.
+class Plugins : public LoopFolder {
+ protected:
+  Plugins() {
+    setenv("FMBPC_PLUGIN_PATH", FMBPC_TEST_PLUGINS, 1);
+    setenv("FMBPC_CONFIG_PATH", FMBPC_SOURCE_DIR "/examples/two_tanks/config", 1);
+  }
+  std::string errorWith(const std::string& plugin) const {
+    return errorOf([&] { readLoop(write("p.yaml", smallLoop() + "plugins: [" + plugin + "]\n")); });
+  }
+};
+
+TEST_F(Plugins, ALoopBringsThePlantAndTheControllerOfItsPackage) {
+  const LoopFile loop = readLoop("two_tanks_outflow");
+  EXPECT_EQ(loop.controllerType().name, "outflow");
+  const auto plants = plantNames();
+  EXPECT_EQ(std::count(plants.begin(), plants.end(), "two_tanks"), 1);
+  const RunRecord record = runLoop(loop);
+  EXPECT_TRUE(record.complete);
+  const Measurement& last = record.samples.back().measurement;
+  EXPECT_NEAR(last.outputs[1], 1.2, 0.01);
+}
+
+TEST_F(Plugins, ThePathOfALibraryIsTakenBesideTheLoopFile) {
+  std::filesystem::create_symlink(FMBPC_TEST_PLUGINS "/libtwo_tanks.so", folder_ / "link.so");
+  write("by_path.yaml", "extends: two_tanks_outflow.yaml\nplugins: [./link.so]\n");
+  std::filesystem::copy(FMBPC_SOURCE_DIR "/examples/two_tanks/config/loop/two_tanks_outflow.yaml",
+                        folder_ / "two_tanks_outflow.yaml");
+  const std::string resolved = resolveLoop(path("by_path.yaml"));
+  EXPECT_NE(resolved.find((folder_ / "link.so").string()), std::string::npos) << resolved;
+}
+
+TEST_F(Plugins, AMissingOneNamesTheFoldersThatWereSearched) {
+  setenv("CMAKE_PREFIX_PATH", "/some/workspace", 1);
+  expectWords(errorWith("nowhere"), {"p.yaml:12: plugins", "'nowhere'", "libnowhere.so",
+                                     FMBPC_TEST_PLUGINS, "/some/workspace/lib", "FMBPC_PLUGIN_PATH"});
+  expectWords(errorWith("./nowhere.so"), {"p.yaml:12: plugins", "existing library", "nowhere.so"});
+  unsetenv("CMAKE_PREFIX_PATH");
+}
+
+TEST_F(Plugins, WhatIsNoPluginIsSaidSo) {
+  write("text.so", "not a library\n");
+  expectWords(errorWith("./text.so"), {"p.yaml:12: plugins", "this fmbpc can load", "text.so"});
+  for (int again = 0; again < 2; ++again)
+    expectWords(errorWith("registers_nothing"),
+                {"p.yaml:12: plugins", "registers plants or controllers", "registers_nothing"});
+}
+
+TEST_F(Plugins, ANameThatIsTakenIsRefusedEveryTime) {
+  for (int again = 0; again < 2; ++again)
+    expectWords(errorWith("taken_name"),
+                {"p.yaml:12: plugins", "controller pi", "there already", "libtaken_name.so"});
+  EXPECT_NE(controllerType("pi").summary, "not ours");
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+"""A run over topics writes the files of the same run in one process, bit for bit: every type of controller, every pace,
+noise, limits, sample lines, a user's own plant and controller. Each launch has a master of its own."""
+import json
+import os
+import pathlib
+import socket
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOP / "test" / "ros"))
+import ring  # noqa: E402
+
+EXAMPLE = TOP / "examples" / "two_tanks" / "config"
+LINE = '[{"output": x, "from": reactor, "to": sludge_analyzer, "velocity_m_s": 0.05}]'
+
+# name: loop, samples, keys over it, pace, speedup
+CASES = {
+    "fmbpc": ("asp_case1", 830, [], "lockstep", 3600),
+    "pi": ("asp_case1_pi_x", 830, [], "lockstep", 3600),
+    "clp": ("asp_case1_clp", 830, [], "lockstep", 3600),
+    "noise_limits": ("asp_case1_clp", 100, ["sampling.duration_h=20", "noise.std.s=5", "noise.std.x=20", "noise.seed=3",
+                                            "actuator.move_upper.q_r=30"], "lockstep", 3600),
+    "paced": ("asp_case1_clp", 25, ["sampling.duration_h=5"], "paced", 7200),
+    "realtime": ("asp_case1_clp", 25, ["sampling.duration_h=5"], "realtime", 3600),
+    "start_time": ("asp_case1", 50, ["sampling.duration_h=10", "sampling.start_time_s=1234.5"], "lockstep", 3600),
+    "sample_line": ("asp_case1", 50, ["sampling.duration_h=10", "tf.sample_lines=" + LINE], "lockstep", 3600),
+    "csv": ("asp_influent_csv", 840, [], "lockstep", 3600),
+    "excitation": ("asp_excite", 100, ["sampling.duration_h=20", "actuator.move_upper.q_r=400", "noise.std.x=5"],
+                   "lockstep", 3600),
+    "adaptive_pi": ("column_adaptive", 900, [], "lockstep", 3600),
+    "column_clp": ("column_clp_tracking", 150, [], "lockstep", 3600),
+    "fuzzy_optimal": ("surge_tank_steps", 1200, [], "lockstep", 3600),
+    "fuzzy_optimal_two_inputs": ("mimo_cstr_steps", 5400, ["sampling.duration_h=0.9"], "lockstep", 3600),
+    "fuzzy_optimal_clp": ("surge_tank_steps_clp", 1200, [], "lockstep", 3600),
+    "hybrid_mpc": ("batch_fuzzy_eq45", 3000, [], "lockstep", 3600),
+    "nmpc": ("mimo_cstr_steps_nmpc", 600, ["sampling.duration_h=0.1"], "lockstep", 3600),
+    "swarm_mpc": ("mimo_cstr_steps_swarm", 600, ["sampling.duration_h=0.1"], "lockstep", 3600),
+    "plugin": ("two_tanks_outflow", 360, [], "lockstep", 3600),
+}
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("", 0))
+        return str(probe.getsockname()[1])
+
+
+def environment():
+    """With the example of a user's package where a user would have it: in a folder of its own."""
+    return {**os.environ, "FMBPC_CONFIG_PATH": str(EXAMPLE),
+            "FMBPC_PLUGIN_PATH": os.environ.get("FMBPC_TEST_PLUGINS", str(TOP / "build" / "test" / "plugins"))}
+
+
+def launch(folder, loop, sets, pace, speedup):
+    port = free_port()
+    done = subprocess.run(
+        ["roslaunch", "-p", port, "fmbpc", "loop.launch", f"loop:={loop}", "set:=" + " ".join(sets), f"pace:={pace}",
+         f"speedup:={speedup}", f"out:={folder}", "draw:=false"],
+        env={**environment(), "ROS_MASTER_URI": f"http://localhost:{port}"}, stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT, text=True, timeout=240, check=False)
+    return done.stdout
+
+
+def tool(*arguments):
+    done = subprocess.run([ring.program("fmbpc_tool"), *arguments], env=environment(), capture_output=True, text=True,
+                          timeout=240, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+class Equal(unittest.TestCase):
+    """One test for each of CASES, made below."""
+
+    def compare(self, name):
+        loop, steps, sets, pace, speedup = CASES[name]
+        with tempfile.TemporaryDirectory() as folder:
+            topics, process = os.path.join(folder, "over topics"), os.path.join(folder, "process")
+            text = launch(topics, loop, sets, pace, speedup)
+            self.assertTrue(os.path.exists(os.path.join(topics, "summary.json")), text[-3000:])
+            tool("run", loop, "--no-plot", "--out", process, *[word for s in sets for word in ("--set", s)])
+            ring.assert_same_run(self, topics, process)
+            self.assertEqual(steps, ring.summary(topics)["steps"])
+
+    def test_every_type_of_controller_is_among_the_cases(self):
+        types = {entry["type"] for entry in json.loads(tool("controllers", "--json"))["controllers"]}
+        self.assertGreaterEqual(len(types), 8)
+        self.assertLessEqual(types, set(CASES))
+
+
+def add(name):
+    setattr(Equal, "test_" + name, lambda self: self.compare(name))
+
+
+for case in CASES:
+    add(case)
+
+if __name__ == "__main__":
+    unittest.main()
