@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
-LOOPS = sorted(path.stem for path in (TOP / "config" / "loop").glob("*.yaml"))
+LOOPS = sorted((TOP / "config" / "loop").rglob("*.yaml"))
 ENVIRONMENT = f". {TOP}/scripts/env.sh; exec "
 
 
@@ -27,8 +27,9 @@ def free_port():
 @unittest.skipUnless(os.environ.get("FMBPC_LONG_TESTS"), "long run: scripts/test --long")
 class EveryLoop(unittest.TestCase):
     def test_over_topics_equals_in_process(self):
-        for loop in LOOPS:
-            text = (TOP / "config" / "loop" / f"{loop}.yaml").read_text()
+        self.assertGreater(len(LOOPS), 100)
+        for file in LOOPS:
+            loop, text = file.stem, file.read_text()
             external = "type: external" in text
             no_data = loop.startswith(("asp_bsm1", "asp_uci")) and not os.environ.get("FMBPC_DATA")
             if external or no_data:
@@ -37,7 +38,8 @@ class EveryLoop(unittest.TestCase):
                 self.compare(loop, folder)
 
     def compare(self, loop, folder):
-        sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6, "linear_2x2": 1, "column": 60}
+        sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6, "linear_2x2": 1, "column": 60,
+                        "heated_tank": 30}
         seconds = next((s for name, s in sample_times.items() if loop.startswith(name)), 720)
         duration = f"sampling.duration_h={480 * seconds / 3600}"
         port = free_port()

@@ -57,6 +57,11 @@ std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
 void readHours(YamlSection& section, const std::string& stem, double& hours);
 /// Keys of `controller` with type adaptive_pi.
 void readAdaptivePi(YamlSection& section, LoopFile& loop, const LoopNames& names);
+/// Keys separator, decimal, missing_values.
+void readCsvFormat(YamlSection& section, CsvFormat& format);
+/// Key `disturbance.csv`.
+void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
+                    const std::vector<std::string>& names);
 void readModelSection(YamlSection& root, LoopFile& loop);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);

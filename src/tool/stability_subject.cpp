@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/fuzzy/undelayed.hpp"
@@ -22,11 +23,9 @@ std::map<std::string, double> parsePoint(const std::string& at) {
   for (std::string part; std::getline(parts, part, ',');) {
     const auto equal = part.find('=');
     require(equal != std::string::npos, "--at", "NAME=VALUE,..., not \"" + part + "\"");
-    try {
-      values[part.substr(0, equal)] = std::stod(part.substr(equal + 1));
-    } catch (const std::exception&) {
-      throw InputError("--at: expected a number after " + part.substr(0, equal + 1));
-    }
+    const auto value = numberOf(part.substr(equal + 1));
+    require(value.has_value(), "--at", "a finite number after " + part.substr(0, equal + 1));
+    values[part.substr(0, equal)] = *value;
   }
   return values;
 }
@@ -100,7 +99,7 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
         "outputs "
         "and inputs), not of the printed state space, which adds one sample of delay";
   if (!loop.external_plant)
-    subject.plant = makePlant(loop.simulation.plant, loop.simulation.parameters);
+    subject.plant = makePlant(loop.simulation);
 }
 
 }  // namespace
