@@ -32,6 +32,7 @@ CASES = {
     "excitation": ("asp_excite", 100, ["sampling.duration_h=20", "actuator.move_upper.q_r=400", "noise.std.x=5"],
                    "lockstep", 3600),
     "adaptive_pi": ("column_adaptive", 900, [], "lockstep", 3600),
+    "matrix": ("heated_tank", 360, [], "lockstep", 3600),
     "column_clp": ("column_clp_tracking", 150, [], "lockstep", 3600),
     "fuzzy_optimal": ("surge_tank_steps", 1200, [], "lockstep", 3600),
     "fuzzy_optimal_two_inputs": ("mimo_cstr_steps", 5400, ["sampling.duration_h=0.9"], "lockstep", 3600),

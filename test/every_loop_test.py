@@ -27,9 +27,10 @@ def free_port():
 @unittest.skipUnless(os.environ.get("FMBPC_LONG_TESTS"), "long run: scripts/test --long")
 class EveryLoop(unittest.TestCase):
     def test_over_topics_equals_in_process(self):
-        self.assertGreater(len(LOOPS), 50)
+        self.assertGreater(len(LOOPS), 100)
         for loop, path in LOOPS.items():
-            external = "type: external" in path.read_text()
+            text = path.read_text()
+            external = "type: external" in text
             no_data = loop.startswith(("asp_bsm1", "asp_uci")) and not os.environ.get("FMBPC_DATA")
             if external or no_data:
                 continue
@@ -37,7 +38,8 @@ class EveryLoop(unittest.TestCase):
                 self.compare(loop, folder)
 
     def compare(self, loop, folder):
-        sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6, "linear_2x2": 1, "column": 60}
+        sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6, "linear_2x2": 1, "column": 60,
+                        "heated_tank": 30}
         seconds = next((s for name, s in sample_times.items() if loop.startswith(name)), 720)
         duration = f"sampling.duration_h={480 * seconds / 3600}"
         port = free_port()

@@ -1,4 +1,5 @@
 // Where something changes along a branch: folds, Hopf points, flips, extremes of a state.
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -9,6 +10,7 @@ namespace fpc {
 namespace {
 
 constexpr int kBisections = 60;
+constexpr double kNoSlope = 1e-7;     // of a unit tangent: what differences of the field cannot tell
 constexpr double kNarrowest = 1e-11;  // of the arc length, in sizes
 
 struct Bracket {
@@ -33,10 +35,12 @@ bool bisect(const Curve& curve, const CurvePoint& from, Bracket& bracket,
   return true;
 }
 
-/// Index of the tangent's component -> where it changes sign.
+/// Index of the tangent's component -> where it changes sign. A component that is nothing but
+/// rounding (a state that does not depend on the parameter) has no sign.
 bool findZero(const Curve& curve, const CurvePoint& from, double step, const CurvePoint& to,
               Eigen::Index i, SpecialPoint& found) {
   const bool positive = from.tangent[i] > 0.0;
+  if (std::max(std::abs(from.tangent[i]), std::abs(to.tangent[i])) < kNoSlope) return false;
   if (from.tangent[i] == 0.0 || positive == (to.tangent[i] > 0.0)) return false;
   Bracket bracket{0.0, step, to};
   if (!bisect(curve, from, bracket,

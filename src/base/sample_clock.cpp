@@ -32,6 +32,16 @@ std::uint32_t SampleClock::firstStepAt(std::int64_t time_ns) const {
   return static_cast<std::uint32_t>(std::min(step, kLast));
 }
 
+// The sample time in nanoseconds may itself be rounded (Ts = 1/3 s): only the ratio of what was
+// written is free of drift.
+std::uint32_t SampleClock::firstStepAtHours(double time_h) const {
+  constexpr double kLast = std::numeric_limits<std::uint32_t>::max();
+  const double samples = time_h * 3600.0 / sample_time_s_;
+  const double rounding = std::min(0.5, 1e-6 / sample_time_s_ + 1e-12 * samples);
+  if (!(samples > rounding)) return 0;
+  return static_cast<std::uint32_t>(std::min(std::ceil(samples - rounding), kLast));
+}
+
 double SampleClock::hoursAt(std::uint32_t step) const {
   return static_cast<double>(step * sample_ns_) * 1e-9 / 3600.0;
 }

@@ -24,6 +24,15 @@ std::string exactText(double value) {
   return {buffer.data(), end};
 }
 
+std::optional<double> numberOf(const std::string& text) {
+  const std::size_t plus = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
+  double value = 0.0;
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(text.data() + plus, last, value);
+  if (error != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
 std::string shortText(double value) {
   if (std::isnan(value)) return "-";
   std::array<char, 32> buffer{};

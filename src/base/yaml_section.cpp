@@ -1,11 +1,15 @@
 #include "fmbpc/base/yaml_section.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
+#include "base/yaml_load.hpp"
 #include "base/yaml_node.hpp"
+#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -26,6 +30,19 @@ bool inside(double value, const Range& range) {
   if (std::isinf(value))
     return value > 0 ? range.upper == value : range.lower == value && !range.lower_open;
   return (range.lower_open ? value > range.lower : value >= range.lower) && value <= range.upper;
+}
+
+/// Digits only: 010 is eight to one reader of YAML and ten to the next, so it is no number here.
+template <typename Integer>
+std::optional<Integer> decimal(const std::string& text) {
+  const std::size_t sign = text.find_first_of("+-") == 0 ? 1 : 0;
+  if (text.size() > sign + 1 && text[sign] == '0') return std::nullopt;
+  Integer value{};
+  const char* first = text.data() + (text[0] == '+' ? 1 : 0);
+  const char* last = text.data() + text.size();
+  const auto [end, error] = std::from_chars(first, last, value);
+  if (error != std::errc() || end != last || text.compare(0, 2, "+-") == 0) return std::nullopt;
+  return value;
 }
 
 std::string scalarText(const YAML::Node& node) {
@@ -60,12 +77,7 @@ YamlSection YamlSection::load(const std::string& file) {
 }
 
 YamlSection YamlSection::parse(const std::string& text, const std::string& name) {
-  try {
-    return {YamlNode(YAML::Load(text)), name, ""};
-  } catch (const YAML::Exception& e) {
-    throw InputError(name + ":" + std::to_string(e.mark.line + 1) +
-                     ": expected valid YAML: " + e.msg);
-  }
+  return {YamlNode(loadYaml(text, name)), name, ""};
 }
 
 YamlSection::YamlSection(const YamlNode& node, std::string file, std::string path,
@@ -134,20 +146,20 @@ void YamlSection::number(const std::string& key, double& value, Range range) {
 void YamlSection::integer(const std::string& key, int& value, int lower, int upper) {
   const YAML::Node node = raw(key);
   if (!node.IsDefined()) return;
-  int read = 0;
-  if (!node.IsScalar() || !YAML::convert<int>::decode(node, read) || read < lower || read > upper)
+  const auto read = node.IsScalar() ? decimal<int>(node.Scalar()) : std::nullopt;
+  if (!read || *read < lower || *read > upper)
     fail(key,
          "an integer >= " + std::to_string(lower) +
              (upper < std::numeric_limits<int>::max() ? " and <= " + std::to_string(upper) : ""));
-  value = read;
+  value = *read;
 }
 
 void YamlSection::seed(const std::string& key, std::uint64_t& value) {
   const YAML::Node node = raw(key);
   if (!node.IsDefined()) return;
-  if (!node.IsScalar() || node.Scalar().find('-') != std::string::npos ||
-      !YAML::convert<std::uint64_t>::decode(node, value))
-    fail(key, "an integer >= 0");
+  const auto read = node.IsScalar() ? decimal<std::uint64_t>(node.Scalar()) : std::nullopt;
+  if (!read) fail(key, "an integer >= 0");
+  value = *read;
 }
 
 void YamlSection::boolean(const std::string& key, bool& value) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "base/yaml_load.hpp"
 #include "config/merge.hpp"
 #include "fmbpc/base/input_error.hpp"
 
@@ -62,7 +63,7 @@ std::string extendingLoop(const std::string& name_or_path, const Overrides& over
 }
 
 std::string scalarOf(const std::string& resolved, const std::string& path) {
-  YAML::Node node = YAML::Load(resolved);
+  YAML::Node node = loadYaml(resolved, "loop");
   for (const auto& part : partsOf(path)) {
     const YAML::Node child = childOf(node, part);
     if (!child.IsDefined()) return "";

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "base/yaml_load.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -90,13 +91,9 @@ YAML::Node parseFile(const std::string& file) {
   require(stream.good(), file, "a readable file");
   std::stringstream text;
   text << stream.rdbuf();
-  try {
-    YAML::Node root = YAML::Load(text.str());
-    require(root.IsMap(), file + ":1", "a mapping of sections");
-    return root;
-  } catch (const YAML::Exception& e) {
-    throw InputError(at(file, e.mark) + "expected valid YAML: " + e.msg);
-  }
+  YAML::Node root = loadYaml(text.str(), file);
+  require(root.IsMap(), file + ":1", "a mapping of sections");
+  return root;
 }
 
 /// The extended file: beside the extending one, or in the config folders.
@@ -118,6 +115,7 @@ MergedLoop mergeChain(const std::string& file, std::vector<std::string> chain) {
   MergedLoop loop;
   loop.root = parseFile(file);
   noteOrigins(loop.root, "", file, loop.origins);
+  loop.root = detached(loop.root);  // an alias is a copy: --set changes the place that it names
   const YAML::Node extends = loop.root["extends"];
   if (!extends.IsDefined()) return loop;
   const std::string where = loop.whereIs("extends");
@@ -205,12 +203,7 @@ void applyOverrides(MergedLoop& loop, const Overrides& overrides) {
     require(!parts.empty() && std::count(parts.begin(), parts.end(), "") == 0, "--set " + path,
             "path=value");
     require(parts.front() != "extends", "--set extends", "a key of a section");
-    YAML::Node value;
-    try {
-      value = YAML::Load(text);
-    } catch (const YAML::Exception& e) {
-      throw InputError("--set " + path + ": expected valid YAML: " + e.msg);
-    }
+    const YAML::Node value = detached(loadYaml(text, "--set " + path));
     setAt(loop.root, parts, 0, "", value, loop.origins);
   }
 }

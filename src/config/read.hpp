@@ -37,6 +37,11 @@ std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
                                      const std::vector<std::string>& outputs);
 /// A time under the key `stem`_s, `stem`_min or `stem`_h, in hours; unchanged if there is none.
 void readHours(YamlSection& section, const std::string& stem, double& hours);
+/// Keys separator, decimal, missing_values.
+void readCsvFormat(YamlSection& section, CsvFormat& format);
+/// Key `disturbance.csv`.
+void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
+                    const std::vector<std::string>& names);
 void readModelSection(YamlSection& root, LoopFile& loop);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);

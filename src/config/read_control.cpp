@@ -26,6 +26,21 @@ Vector defaultSetpoint(const LoopFile& loop, const LoopNames& names) {
   return value;
 }
 
+/// A setpoint that the plant can never reach is a mistake of unit or digits.
+void requireInRange(const YamlSection& section, const std::string& key, double value,
+                    const SignalInfo& output) {
+  if (std::isnan(value) || (value >= output.lower && value <= output.upper)) return;
+  throw InputError(section.where(key) + ": expected a setpoint of " + output.name + " >= " +
+                   exactText(output.lower) + " and <= " + exactText(output.upper) + " [" +
+                   output.unit + "], the range of the plant, got " + exactText(value));
+}
+
+void requireInRange(const YamlSection& section, const std::string& key, const Vector& values,
+                    const PlantInfo& plant) {
+  for (std::size_t i = 0; i < plant.outputs.size(); ++i)
+    requireInRange(section, key, values[static_cast<Eigen::Index>(i)], plant.outputs[i]);
+}
+
 SetpointStep readSetpointStep(YamlSection& item, const std::vector<std::string>& outputs) {
   SetpointStep step;
   need(item, "time_h", "a time >= 0");
@@ -97,8 +112,13 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.byName("initial", params.initial, names.outputs, kFinite);
   if (!params.initial.allFinite())
     section.fail("initial", "a value for each of " + join(names.outputs));
+  if (section.has("initial")) requireInRange(section, "initial", params.initial, loop.plant_info);
   for (auto& item : section.list("schedule")) {
     params.schedule.push_back(readSetpointStep(item, names.outputs));
+    for (std::size_t i = 0; i < names.outputs.size(); ++i)
+      requireInRange(item, names.outputs[i],
+                     params.schedule.back().value[static_cast<Eigen::Index>(i)],
+                     loop.plant_info.outputs[i]);
     if (params.schedule.size() > 1 &&
         params.schedule.end()[-2].time_h > params.schedule.back().time_h)
       item.fail("time_h", "times that do not decrease");
@@ -106,14 +126,27 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   const std::vector<SetpointStep> recipe = readRecipe(section, names.outputs);
   if (!recipe.empty() && !params.schedule.empty())
     section.fail("recipe", "either schedule or recipe");
+  for (const SetpointStep& entry : recipe)
+    requireInRange(section, "recipe", entry.value, loop.plant_info);
   if (!recipe.empty()) params.schedule = recipe;
   section.byName("lower", params.lower, names.outputs);
   section.byName("upper", params.upper, names.outputs);
   section.byName("rate_per_h", params.rate_per_h, names.outputs, Range{0.0, kInfinite, true});
+  for (Eigen::Index i = 0; i < n_y; ++i) {  // what a person asks is clamped likewise
+    const SignalInfo& range = loop.plant_info.outputs[static_cast<std::size_t>(i)];
+    params.lower[i] = std::max(params.lower[i], range.lower);
+    params.upper[i] = std::min(params.upper[i], range.upper);
+  }
   const SampleClock clock(loop.simulation.sample_time_s, loop.simulation.start_time_s);
   for (auto& item : section.list("commands")) {
     ScheduledCommand scheduled = readCommand(item, names.outputs);
-    scheduled.command.time_ns = clock.startNanoseconds() + std::llround(scheduled.time_h * 3600e9);
+    const auto output = static_cast<std::size_t>(
+        std::find(names.outputs.begin(), names.outputs.end(), scheduled.command.name.front()) -
+        names.outputs.begin());
+    if (scheduled.command.mode == CommandMode::kOverride)
+      requireInRange(item, "value", scheduled.command.value.front(),
+                     loop.plant_info.outputs[output]);
+    scheduled.command.time_ns = clock.timeAt(clock.firstStepAtHours(scheduled.time_h));
     params.commands.push_back(std::move(scheduled.command));
   }
   checked(section, [&] { params.validate(n_y); });

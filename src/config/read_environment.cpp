@@ -51,40 +51,6 @@ void readPattern(YamlSection& section, PatternParams& params,
   section.finish();
 }
 
-void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
-                     const std::vector<std::string>& names) {
-  YamlSection channels = section.section("channels");
-  for (const auto& name : names) {
-    channels.markRead(name);
-    if (!channels.has(name)) continue;
-    YamlSection channel = channels.section(name);
-    CsvChannel value;
-    value.name = name;
-    need(channel, "column", "the name of a column");
-    channel.text("column", value.column);
-    channel.number("scale", value.scale, kFinite);
-    channel.number("offset", value.offset, kFinite);
-    channel.number("mean", value.mean, kFinite);
-    if (channel.has("mean") && (channel.has("scale") || channel.has("offset")))
-      channel.fail("mean", "either mean, or scale and offset");
-    channel.finish();
-    params.channels.push_back(std::move(value));
-  }
-  channels.finish();
-}
-
-void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
-                    const std::vector<std::string>& names) {
-  section.text("file", params.file);
-  section.text("time_column", params.time_column);
-  section.oneOf("time_unit", params.time_unit, {"s", "min", "h", "d"});
-  section.oneOf("missing", params.missing, {"error", "hold", "interpolate"});
-  section.oneOf("interpolation", params.interpolation, {"hold", "linear"});
-  section.oneOf("end", params.end, {"error", "hold", "repeat"});
-  readCsvChannels(section, params, names);
-  section.finish();
-}
-
 /// Names that a disturbance command may use: disturbances, stuck valves, sensor faults.
 std::vector<std::string> commandNames(const LoopNames& names) {
   std::vector<std::string> all = names.disturbances;
@@ -100,7 +66,7 @@ ScheduledCommand readCommand(YamlSection& item, const std::vector<std::string>& 
   std::string mode = "override";
   double value = 0.0;
   need(item, "time_h", "a time >= 0");
-  item.number("time_h", scheduled.time_h, {0.0, 1e7});
+  item.number("time_h", scheduled.time_h, {0.0, kLatestCommandH});
   scheduled.command.name = {names[static_cast<std::size_t>(indexByName(item, "name", names))]};
   item.oneOf("mode", mode, {"override", "offset", "release"});
   if (mode != "release") need(item, "value", "a number");

@@ -40,6 +40,15 @@ void readIdentify(YamlSection& model, LoopFile& loop) {
   }
 }
 
+bool suits(const TsModel& model, const PlantInfo& plant) {
+  try {
+    matchToPlant(model, plant);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 void readModelSection(YamlSection& root, LoopFile& loop) {
@@ -55,7 +64,12 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
                              " (a simulated plant does not start without one)");
   if (!loop.has_model) return;
   try {
-    loop.model = matchToPlant(readModel(loop.model_file), loop.plant_info);
+    loop.model = readModel(loop.model_file);
+    if (!controller.needs_model && !loop.has_identify && !suits(loop.model, loop.plant_info)) {
+      loop.has_model = false;  // inherited, and of no use to this controller
+      return;
+    }
+    loop.model = matchToPlant(loop.model, loop.plant_info);
     loop.controller->checkModel(loop.model, controllerContext(loop));
   } catch (const InputError& e) {
     throw InputError(section.where("file") + ": " + e.what());

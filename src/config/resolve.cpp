@@ -2,6 +2,7 @@
 // checked.
 #include <filesystem>
 
+#include "base/yaml_load.hpp"
 #include "config/merge.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -104,7 +105,7 @@ std::pair<std::string, std::string> parseOverride(const std::string& text) {
 
 LoopFile parseLoop(const std::string& text, const std::string& name, const Overrides& overrides) {
   MergedLoop merged;
-  merged.root = YAML::Load(text);
+  merged.root = detached(loadYaml(text, name));
   applyOverrides(merged, overrides);
   YamlSection root(merged.root, name, "", merged.trace());
   LoopFile loop = readSections(root, name);

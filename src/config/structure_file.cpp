@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "base/yaml_node.hpp"
+#include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/structure_file.hpp"
@@ -40,7 +41,11 @@ std::vector<StructureSignal> readSignals(YamlSection& top, const std::string& ke
         body.fail("plausible", "[lower, upper] with lower < upper");
       signal.info.lower = range[0];
       signal.info.upper = range[1];
+    } else if (body.has("implausible")) {
+      body.fail("implausible", "the key plausible with it");
     }
+    choice(body, "implausible", signal.implausible,
+           {"error", "clip", "hold", "interpolate", "drop"});
     body.finish();
     signals.push_back(signal);
   }
@@ -184,7 +189,7 @@ void readConsequents(YamlSection section, ConsequentParams& c) {
 }
 
 void readRepair(YamlSection section, RepairParams& r) {
-  choice(section, "missing", r.missing, {"error", "drop", "interpolate"});
+  choice(section, "missing", r.missing, {"error", "drop", "interpolate", "hold"});
   section.boolean("sort_time", r.sort_time);
   section.boolean("drop_constant", r.drop_constant);
   section.finish();
@@ -208,6 +213,9 @@ Structure readSections(YamlSection& top) {
   if (!top.has("sample_time_s")) top.fail("sample_time_s", "a number > 0 (the key is missing)");
   top.number("sample_time_s", structure.sample_time_s, Range::positive());
   readTime(top.section("time"), structure);
+  YamlSection csv = top.section("csv");
+  readCsvFormat(csv, structure.csv);
+  csv.finish();
   structure.outputs = readSignals(top, "outputs");
   structure.inputs = readSignals(top, "inputs");
   structure.disturbances = readSignals(top, "disturbances");

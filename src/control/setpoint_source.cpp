@@ -12,7 +12,6 @@ namespace {
 
 // Finite stand-in for "no clamp", so that the sum of two huge wishes is not passed on as infinite.
 constexpr double kHuge = std::numeric_limits<double>::max();
-constexpr double kLatest = 4e18;  // [ns], so that t0 can be added to it
 
 Vector filled(const Vector& given, Eigen::Index n_y, double absent) {
   return given.size() == 0 ? Vector(Vector::Constant(n_y, absent)) : given;
@@ -70,23 +69,17 @@ SetpointSource::SetpointSource(SetpointParams params, std::vector<std::string> o
   params_.rate_per_h = filled(params_.rate_per_h, n_y, std::numeric_limits<double>::infinity());
   fillSchedule(params_);
   for (const SetpointStep& entry : params_.schedule)
-    schedule_steps_.push_back(scheduleStep(entry.time_h));
+    schedule_steps_.push_back(clock_.firstStepAtHours(entry.time_h));
   asked_ = params_.initial.cwiseMax(params_.lower).cwiseMin(params_.upper);
   present_ = asked_;
   playParams();
 }
 
-// A time of the loop file is decimal, a sample time is a whole number of nanoseconds: what is meant
-// to be the same time may differ by rounding, and must not cost a sample.
+// A stamp of the params may be written by hand: what is meant to be the time of a sample may differ
+// by rounding, and must not cost a sample.
 std::uint32_t SetpointSource::fileStep(std::int64_t time_ns) const {
   const std::int64_t sample_ns = clock_.timeAt(1) - clock_.startNanoseconds();
   return clock_.firstStepAt(time_ns - std::min<std::int64_t>(1000, sample_ns / 2));
-}
-
-std::uint32_t SetpointSource::scheduleStep(double time_h) const {
-  const double after_start_ns = time_h * 3600e9;
-  if (after_start_ns >= kLatest) return std::numeric_limits<std::uint32_t>::max();
-  return fileStep(clock_.startNanoseconds() + std::llround(after_start_ns));
 }
 
 std::uint32_t SetpointSource::stampStep(std::int64_t time_ns) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -24,19 +25,18 @@ double secondsPer(const std::string& unit) {
   return seconds.at(unit);
 }
 
-std::string rowText(Index first, Index row) { return "row " + std::to_string(first + row + 1); }
+using RowName = std::function<std::string(Index row)>;
 
 /// Order of the rows by time. @throws InputError if they are not sorted and may not be.
-std::vector<Index> timeOrder(const Vector& time, const std::string& where, Index first,
-                             bool may_sort, Index& moved) {
+std::vector<Index> timeOrder(const Vector& time, const RowName& where, bool may_sort,
+                             Index& moved) {
   std::vector<Index> order(static_cast<std::size_t>(time.size()));
   std::iota(order.begin(), order.end(), Index{0});
   moved = 0;
   for (Index k = 0; k < time.size(); ++k) {
-    require(std::isfinite(time[k]), where, "a time in " + rowText(first, k));
-    require(
-        k == 0 || may_sort || time[k] > time[k - 1], where,
-        "times that increase; " + rowText(first, k) + " does not (repair.sort_time: true sorts)");
+    require(std::isfinite(time[k]), where(k), "a time");
+    require(k == 0 || may_sort || time[k] > time[k - 1], where(k),
+            "times that increase (repair.sort_time: true sorts)");
   }
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return time[a] < time[b]; });
   for (Index k = 0; k < time.size(); ++k) moved += order[static_cast<std::size_t>(k)] != k ? 1 : 0;
@@ -46,70 +46,57 @@ std::vector<Index> timeOrder(const Vector& time, const std::string& where, Index
 /// Sample number of each row after the first. @throws InputError unless all are whole numbers of
 /// samples apart.
 std::vector<Index> sampleNumbers(const Vector& time, const std::vector<Index>& order, double sample,
-                                 const std::string& where, Index first) {
+                                 const RowName& where) {
   std::vector<Index> numbers{0};
   for (std::size_t k = 1; k < order.size(); ++k) {
     const double step = (time[order[k]] - time[order[k - 1]]) / sample;
     const double whole = std::round(step);
     if (whole < 1.0 || whole > kLongestGap || std::abs(step - whole) > kSpacingTolerance)
-      throw InputError(where + ": expected times " + exactText(sample) +
+      throw InputError(where(order[k]) + ": expected times " + exactText(sample) +
                        " apart (sample_time_s; or another unit?), got " +
-                       exactText(time[order[k]] - time[order[k - 1]]) + " before " +
-                       rowText(first, order[k]));
+                       exactText(time[order[k]] - time[order[k - 1]]));
     numbers.push_back(numbers.back() + static_cast<Index>(whole));
   }
   const Index holes = numbers.back() + 1 - static_cast<Index>(order.size());
-  require(holes <= static_cast<Index>(order.size()), where,
+  require(holes <= static_cast<Index>(order.size()), where(order.back()),
           "times " + exactText(sample) +
               " apart (sample_time_s; or another unit?), got more holes than rows");
   return numbers;
 }
 
-std::vector<Index> missingRows(const Matrix& values, Index column) {
-  std::vector<Index> rows;
-  for (Index k = 0; k < values.rows(); ++k)
-    if (std::isnan(values(k, column))) rows.push_back(k);
-  return rows;
-}
-
-/// Straight lines over the holes; the nearest value at the ends.
-void interpolate(Eigen::Ref<Vector> values) {
-  Index before = -1;
-  for (Index k = 0; k < values.size(); ++k) {
-    if (std::isnan(values[k])) continue;
-    for (Index i = before + 1; i < k; ++i) {
-      const double share =
-          before < 0 ? 1.0 : static_cast<double>(i - before) / static_cast<double>(k - before);
-      values[i] = before < 0 ? values[k] : values[before] + share * (values[k] - values[before]);
-    }
-    before = k;
-  }
-  for (Index i = before + 1; i < values.size(); ++i) values[i] = values[before];
-}
-
 }  // namespace
 
-void repairTime(DataSet& data, const CsvTable& table, const Structure& structure, Index first,
-                Index count) {
+TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& structure, Index first,
+                     Index count) {
   const Index column = table.column(structure.time_column);
-  const std::string where = table.file + ": column '" + structure.time_column + "'";
-  const std::string& unit = table.units[static_cast<std::size_t>(column)];
-  require(unit.empty() || unit == structure.time_unit, where,
-          "the unit [" + structure.time_unit + "] of the structure, got [" + unit + "]");
+  const auto index = static_cast<std::size_t>(column);
+  const bool dates = index < table.is_date.size() && table.is_date[index];
+  const std::string unit_wanted = dates ? "d" : structure.time_unit;
+  const std::string& unit = table.units[index];
+  const auto where = [&](Index row) { return table.at(first + row, column); };
+  require(unit.empty() || unit == unit_wanted, table.file + ": column '" + structure.time_column + "'",
+          "the unit [" + unit_wanted + "] of the structure, got [" + unit + "]");
+  const std::string text = index < table.texts.size() ? table.texts[index] : "";
+  require(text.empty(), where(0),
+          "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
   const Vector time = table.values.col(column).segment(first, count);
   Index moved = 0;
-  const auto order = timeOrder(time, where, first, structure.repair.sort_time, moved);
-  const auto numbers = sampleNumbers(
-      time, order, structure.sample_time_s / secondsPer(structure.time_unit), where, first);
+  const auto order = timeOrder(time, where, structure.repair.sort_time, moved);
+  const auto numbers =
+      sampleNumbers(time, order, structure.sample_time_s / secondsPer(unit_wanted), where);
   const Index holes = numbers.back() + 1 - count;
-  if (moved == 0 && holes == 0) return;
+  TableRows rows(static_cast<std::size_t>(numbers.back()) + 1, -1);
   Matrix placed = Matrix::Constant(numbers.back() + 1, data.values.cols(), kMissing);
-  for (std::size_t k = 0; k < order.size(); ++k) placed.row(numbers[k]) = data.values.row(order[k]);
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    placed.row(numbers[k]) = data.values.row(order[k]);
+    rows[static_cast<std::size_t>(numbers[k])] = first + order[k];
+  }
   data.values = placed;
   if (moved > 0) data.repairs.push_back(std::to_string(moved) + " rows moved to sort the times");
   if (holes > 0)
     data.repairs.push_back(std::to_string(holes) +
                            " rows absent from the times: treated as missing cells");
+  return rows;
 }
 
 void holdLastInputs(DataSet& data) {
@@ -119,22 +106,44 @@ void holdLastInputs(DataSet& data) {
     if (std::isnan(data.values(last, c))) data.values(last, c) = data.values(last - 1, c);
 }
 
-void repairMissing(DataSet& data, MissingCells how, const std::vector<std::string>& columns) {
+namespace {
+
+std::string wordsFor(MissingCells how) {
+  if (how == MissingCells::kDrop) return "left out";
+  return how == MissingCells::kHold ? "held" : "interpolated";
+}
+
+std::string wordsFor(Implausible how) {
+  if (how == Implausible::kDrop) return "left out";
+  if (how == Implausible::kClip) return "clipped";
+  return how == Implausible::kHold ? "held" : "interpolated";
+}
+
+ColumnRules rulesOf(const Structure& structure, const StructureSignal& signal) {
+  return {structure.repair.missing, signal.info.lower, signal.info.upper, signal.implausible,
+          signal.info.unit,         "repair.missing",  "implausible"};
+}
+
+}  // namespace
+
+void repairCells(DataSet& data, const Structure& structure,
+                 const std::vector<StructureSignal>& signals, const CellName& where) {
+  std::vector<double> times(static_cast<std::size_t>(data.values.rows()));
+  std::iota(times.begin(), times.end(), 0.0);
   for (Index c = 0; c < data.values.cols(); ++c) {
-    const std::string& column = columns[static_cast<std::size_t>(c)];
-    const std::string where = data.source + ": column '" + column + "'";
+    const StructureSignal& signal = signals[static_cast<std::size_t>(c)];
+    const auto at = [&](Index row) { return where(c, row); };
     for (Index k = 0; k < data.values.rows(); ++k)
-      require(!std::isinf(data.values(k, c)), where, "finite values");
-    const auto rows = missingRows(data.values, c);
-    if (rows.empty()) continue;
-    require(static_cast<Index>(rows.size()) < data.values.rows(), where, "at least one number");
-    require(how != MissingCells::kError, where,
-            "no missing cells; " + std::to_string(rows.size()) + " are, the first in data row " +
-                std::to_string(rows.front() + 1) + " (repair.missing: drop or interpolate)");
-    const bool fill = how == MissingCells::kInterpolate;
-    if (fill) interpolate(data.values.col(c));
-    data.repairs.push_back(std::to_string(rows.size()) + " missing cells of '" + column +
-                           (fill ? "' interpolated" : "' left out"));
+      require(!std::isinf(data.values(k, c)), at(k), "finite values");
+    const ColumnRepairs done =
+        repairColumn(data.values.col(c), times, rulesOf(structure, signal), at);
+    const std::string of = " cells of '" + signal.column + "' ";
+    if (done.missing > 0)
+      data.repairs.push_back(std::to_string(done.missing) + " missing" + of +
+                             wordsFor(structure.repair.missing));
+    if (done.implausible > 0)
+      data.repairs.push_back(std::to_string(done.implausible) + " implausible" + of +
+                             wordsFor(signal.implausible));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -22,18 +23,6 @@ std::vector<StructureSignal> allSignals(const Structure& structure) {
   all.insert(all.end(), structure.inputs.begin(), structure.inputs.end());
   all.insert(all.end(), structure.disturbances.begin(), structure.disturbances.end());
   return all;
-}
-
-void checkPlausible(const std::string& where, const StructureSignal& signal,
-                    const Eigen::Ref<const Vector>& values) {
-  for (Index k = 0; k < values.size(); ++k) {
-    const double value = values[k];
-    if (std::isnan(value) || (value >= signal.info.lower && value <= signal.info.upper)) continue;
-    throw InputError(where + ": expected values from " + exactText(signal.info.lower) + " to " +
-                     exactText(signal.info.upper) + " " + signal.info.unit +
-                     " (another unit?), got " + exactText(value) + " in data row " +
-                     std::to_string(k + 1));
-  }
 }
 
 /// @return true if the column holds one value only.
@@ -59,7 +48,6 @@ void checkColumns(DataSet& data, const Structure& structure) {
   for (std::size_t i = 0; i < signals.size(); ++i) {
     const std::string where = data.source + ": column '" + signals[i].column + "'";
     const auto column = data.values.col(static_cast<Index>(i));
-    checkPlausible(where, signals[i], column);
     if (isConstant(column)) {
       const bool droppable = i >= structure.outputs.size() && structure.repair.drop_constant;
       require(droppable, where, "values that move; they are all the same");
@@ -103,14 +91,12 @@ DataSet emptySet(const Structure& structure) {
   return data;
 }
 
-void checkAndRepair(DataSet& data, const Structure& structure) {
+void checkAndRepair(DataSet& data, const Structure& structure, const CellName& where) {
   require(data.values.rows() >= kFewestRows, data.source,
           "at least " + std::to_string(kFewestRows) + " rows, got " +
               std::to_string(data.values.rows()));
-  std::vector<std::string> columns;
-  for (const auto& signal : allSignals(structure)) columns.push_back(signal.column);
   holdLastInputs(data);
-  repairMissing(data, structure.repair.missing, columns);
+  repairCells(data, structure, allSignals(structure), where);
   checkColumns(data, structure);
   setRanges(data);
 }
@@ -162,8 +148,17 @@ DataSet makeDataSet(const CsvTable& table, const Structure& structure, RowRange 
     data.values.col(static_cast<Index>(i)) =
         table.values.col(column).segment(range.first - 1, count);
   }
-  if (!structure.time_column.empty()) repairTime(data, table, structure, range.first - 1, count);
-  checkAndRepair(data, structure);
+  TableRows rows(static_cast<std::size_t>(count));
+  std::iota(rows.begin(), rows.end(), range.first - 1);
+  if (!structure.time_column.empty())
+    rows = repairTime(data, table, structure, range.first - 1, count);
+  checkAndRepair(data, structure, [&](Index column, Index row) {
+    const std::string& name = signals[static_cast<std::size_t>(column)].column;
+    const Index of_table = rows[static_cast<std::size_t>(row)];
+    return of_table < 0 ? table.file + ": column '" + name + "': the times lack data row " +
+                              std::to_string(row + 1)
+                        : table.at(of_table, table.column(name));
+  });
   return data;
 }
 
@@ -173,7 +168,11 @@ DataSet makeDataSet(const Matrix& values, const Structure& structure, const std:
   const auto columns = static_cast<Index>(allSignals(structure).size());
   require(values.cols() == columns, source, std::to_string(columns) + " columns");
   data.values = values;
-  checkAndRepair(data, structure);
+  const auto signals = allSignals(structure);
+  checkAndRepair(data, structure, [&](Index column, Index row) {
+    return source + ": column '" + signals[static_cast<std::size_t>(column)].column +
+           "', data row " + std::to_string(row + 1);
+  });
   return data;
 }
 

@@ -84,18 +84,28 @@ bool MisoEstimator::moved(VectorRef input) {
   return params_.quiet_steps == 0 || still_ < params_.quiet_steps;
 }
 
-bool MisoEstimator::update(VectorRef input, double y) {
-  require(input.size() == n_u_, "input", "one value for each input");
+// A value that is not finite is taken as the one before it; nothing is learned while it is
+// remembered.
+void MisoEstimator::remember(VectorRef input) {
   const int m = params_.numerator_terms;
   for (int j = 0; j < n_u_; ++j) {
     auto past = regressor_.segment(n_u_ + j * m, m);
     for (int r = m - 1; r > 0; --r) past[r] = past[r - 1];
-    past[0] = input[j];
+    if (std::isfinite(input[j]))
+      past[0] = input[j];
+    else
+      unknown_ = m;
   }
+}
+
+bool MisoEstimator::update(VectorRef input, double y) {
+  require(input.size() == n_u_, "input", "one value for each input");
+  remember(input);
   const bool lively = moved(input);
   bool learned = false;
+  const bool known = std::isfinite(y);
   const bool own = params_.method == "output_error" && samples_ >= params_.warm_up_steps;
-  if (samples_ >= n_u_ && lively) {
+  if (samples_ >= n_u_ && lively && known && unknown_ == 0) {
     const double error = y - regressor_.dot(rls_.theta());
     learned = rls_.update(regressor_, y);
     if (learned) {
@@ -104,7 +114,9 @@ bool MisoEstimator::update(VectorRef input, double y) {
       residual_variance_ += (error * left - residual_variance_) / weight_;
     }
   }
-  model_output_ = own ? regressor_.dot(rls_.theta()) : y;  // after learning: a posteriori
+  unknown_ = std::max(unknown_ - 1, known || own ? 0 : n_u_);
+  model_output_ =
+      own || !known ? regressor_.dot(rls_.theta()) : y;  // after learning: a posteriori
   for (int i = n_u_ - 1; i > 0; --i) regressor_[i] = regressor_[i - 1];
   regressor_[0] = model_output_;
   ++samples_;

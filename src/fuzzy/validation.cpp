@@ -12,10 +12,11 @@ using Eigen::Index;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-/// Two-sided quantile of the normal distribution, by Newton steps on erfc.
+/// Two-sided quantile of the normal distribution, by Newton steps on erfc; from 0 they come from
+/// the left for any confidence, because erfc is convex.
 double normalQuantile(double confidence) {
-  double z = 2.0;
-  for (int i = 0; i < 50; ++i) {
+  double z = 0.0;
+  for (int i = 0; i < 100; ++i) {
     const double excess = std::erfc(z / std::sqrt(2.0)) - (1.0 - confidence);
     z += excess / (std::sqrt(2.0 / 3.141592653589793) * std::exp(-0.5 * z * z));
   }

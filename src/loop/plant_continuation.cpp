@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "fmbpc/analysis/linearise.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -10,6 +12,20 @@ namespace fpc {
 namespace {
 
 constexpr double kFarthest = 3.0;  // starts and inputs, in nominal values
+
+/// A signal that rests at 0 says nothing of its size: a tenth of its range, at most 1.
+double sizeOf(const Quantity& q) {
+  if (q.nominal != 0.0) return std::max(std::abs(q.nominal), 1e-3);
+  return std::clamp(0.1 * (q.upper - q.lower), 1e-3, 1.0);
+}
+
+/// The part of an input's range that is looked at unless said.
+std::pair<double, double> usualRange(const Quantity& q) {
+  const double far = q.nominal != 0.0 ? kFarthest * std::abs(q.nominal) : 10.0 * sizeOf(q);
+  const double upper = std::min(q.upper, std::max(far, q.nominal));
+  const double lower = std::max(q.lower, -far);
+  return {q.lower >= 0.0 ? std::max(lower, 0.01 * upper) : lower, upper};
+}
 
 Vector nominal(const std::vector<Quantity>& quantities) {
   Vector values(static_cast<Eigen::Index>(quantities.size()));
@@ -60,8 +76,7 @@ PlantContinuation plantContinuation(std::shared_ptr<const Plant> plant, Eigen::I
   PlantContinuation set;
   ContinuationParams& p = set.params;
   const bool whole = lower > upper || (lower < 0.0 && upper < 0.0);
-  p.upper = whole ? std::min(varied.upper, std::max(kFarthest * varied.nominal, 1.0)) : upper;
-  p.lower = whole ? std::max(varied.lower, 0.01 * p.upper) : lower;
+  std::tie(p.lower, p.upper) = whole ? usualRange(varied) : std::pair{lower, upper};
   Held held{plant,
             nominal(about.inputs),
             nominal(about.disturbances),
@@ -76,15 +91,14 @@ PlantContinuation plantContinuation(std::shared_ptr<const Plant> plant, Eigen::I
   p.state_size.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const Quantity& q = about.states[static_cast<std::size_t>(i)];
-    const double size = std::max(std::abs(q.nominal), 1e-3);
-    p.state_size[i] = size;
+    p.state_size[i] = sizeOf(q);
     p.state_lower[i] = q.lower;
-    p.state_upper[i] = std::min(q.upper, 10.0 * size);
+    p.state_upper[i] = q.nominal != 0.0 ? std::min(q.upper, 10.0 * p.state_size[i]) : q.upper;
   }
   held.state_size = p.state_size;
   held.input_size = held.u.cwiseAbs().cwiseMax(1e-3);
   p.step_max = 0.1;
-  p.parameter_size = std::max(std::abs(varied.nominal), 1e-3);
+  p.parameter_size = sizeOf(varied);
   set.problem.field = [held](VectorRef x, double parameter, Eigen::Ref<Vector> f) {
     held.plant->derivatives(x, held.inputs(parameter), held.d, f);
   };

@@ -54,6 +54,8 @@ Summary summaryOf(const Json& json) {
   Summary summary;
   summary.loop = json.at("loop");
   summary.complete = json.at("complete");
+  summary.failed_samples = json.value("failed_samples", 0U);
+  summary.trouble = json.value("trouble", "");
   summary.steps = json.at("steps");
   summary.wall_s = json.at("wall_s");
   readOutputs(json.at("outputs"), summary);
@@ -64,6 +66,13 @@ Summary summaryOf(const Json& json) {
   summary.output_violations = violations.at("output");
   summary.actuator_clips = json.at("actuator_clips");
   summary.repaired_cells = json.at("repaired_cells");
+  summary.implausible_cells = json.value("implausible_cells", std::uint64_t{0});
+  summary.sources.assign(1, 0);
+  if (json.contains("sources"))
+    for (const auto& [name, count] : json.at("sources").items()) summary.sources.push_back(count);
+  if (json.contains("locked"))
+    for (const Json& lock : json.at("locked"))
+      summary.locked.push_back({lock.at("input"), lock.at("limit") == "upper", lock.at("samples")});
   if (json.contains("clp")) readClp(json.at("clp"), summary);
   return summary;
 }

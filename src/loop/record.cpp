@@ -109,9 +109,13 @@ std::vector<std::string> Recorder::gaps(std::size_t limit) const {
 }
 
 RunRecord Recorder::take() {
-  record_.complete = complete();
+  for (const SampleRecord& sample : record_.samples) {
+    if (sample.state.trouble.empty()) continue;
+    if (record_.failed_samples++ == 0) record_.trouble = sample.state.trouble;
+  }
+  record_.complete = complete() && record_.failed_samples == 0;
   RunRecord taken = std::move(record_);
-  record_ = {taken.loop, taken.info, taken.states, taken.state_units, {}, false};
+  record_ = {taken.loop, taken.info, taken.states, taken.state_units, {}, false, 0, {}};
   run_id_ = 0;
   return taken;
 }

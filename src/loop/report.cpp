@@ -118,7 +118,7 @@ void addInputs(const RunRecord& record, Columns& columns) {
 void addDisturbances(const LoopFile& loop, const RunRecord& record, Columns& columns) {
   const auto& samples = record.samples;
   if (!record.states.empty()) {
-    const auto all = makePlant(loop.simulation.plant)->description().disturbances;
+    const auto all = makePlant(loop.simulation)->description().disturbances;
     for (std::size_t i = 0; i < all.size(); ++i)
       columns.add(all[i].name, all[i].unit,
                   [&samples, k = static_cast<Eigen::Index>(i)](std::size_t r) {
@@ -192,6 +192,8 @@ std::string toJson(const Summary& summary) {
   json["loop"] = summary.loop;
   json["title"] = summary.title;
   json["complete"] = summary.complete;
+  json["failed_samples"] = summary.failed_samples;
+  if (!summary.trouble.empty()) json["trouble"] = summary.trouble;
   json["steps"] = summary.steps;
   json["wall_s"] = summary.wall_s;
   json["outputs"] = outputsOf(summary);
@@ -209,8 +211,14 @@ std::string toJson(const Summary& summary) {
   json["sources"] = Json::object();
   for (std::size_t i = 1; i < summary.sources.size(); ++i)
     json["sources"][kSourceNames[i]] = summary.sources[i];
+  json["locked"] = Json::array();
+  for (const LockUp& lock : summary.locked)
+    json["locked"].push_back({{"input", lock.input},
+                              {"limit", lock.upper ? "upper" : "lower"},
+                              {"samples", lock.samples}});
   for (const auto& [name, value] : summary.consumption) json[name] = value;
   json["repaired_cells"] = summary.repaired_cells;
+  json["implausible_cells"] = summary.implausible_cells;
   json["limits"] = limitsOf(summary);
   return json.dump(2);
 }

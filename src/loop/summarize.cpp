@@ -106,6 +106,30 @@ double quantile(const std::vector<double>& sorted, double p) {
   return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
 }
 
+/// How many samples at the end of the run have the input at this limit.
+std::uint32_t lastAt(const RunRecord& record, Eigen::Index i, double limit, double tolerance) {
+  std::uint32_t samples = 0;
+  for (auto sample = record.samples.rbegin(); sample != record.samples.rend(); ++sample) {
+    if (!sample->has_action) continue;
+    if (!(std::abs(sample->action.input[i] - limit) <= tolerance)) break;
+    ++samples;
+  }
+  return samples;
+}
+
+void findLockUps(const RunRecord& record, Summary& summary) {
+  const std::uint32_t least = std::max<std::uint32_t>(10, summary.steps / 10);
+  const InputLimits& limits = summary.limits;
+  for (Eigen::Index i = 0; i < limits.lower.size(); ++i)
+    for (const bool upper : {false, true}) {
+      const double limit = upper ? limits.upper[i] : limits.lower[i];
+      const std::uint32_t samples = lastAt(record, i, limit, toleranceOf(limits, i));
+      if (samples >= least)
+        summary.locked.push_back(
+            {summary.input_names[static_cast<std::size_t>(i)], upper, samples});
+    }
+}
+
 void summarizeSolves(const RunRecord& record, Summary& summary) {
   std::vector<double> microseconds;
   for (const auto& sample : record.samples) {
@@ -139,12 +163,13 @@ void countSamples(const RunRecord& record, Summary& summary) {
 
 /// Counted again from the record; 0 where the record is not at hand (it is the plant's, maybe of
 /// another machine).
-std::uint64_t repairedCells(const LoopFile& loop) {
-  if (loop.external_plant || loop.disturbance.source != "csv") return 0;
+void countCells(const LoopFile& loop, Summary& summary) {
+  if (loop.external_plant || loop.disturbance.source != "csv") return;
   try {
-    return makeDisturbance(loop).repaired;
-  } catch (const InputError&) {
-    return 0;
+    const DisturbanceRecord record = makeDisturbance(loop);
+    summary.repaired_cells = record.repaired;
+    summary.implausible_cells = record.implausible;
+  } catch (const InputError&) {  // not on this machine
   }
 }
 
@@ -155,6 +180,8 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
   summary.loop = loop.name;
   summary.title = loop.report.title;
   summary.complete = record.complete;
+  summary.failed_samples = record.failed_samples;
+  summary.trouble = record.trouble;
   summary.wall_s = wall_s;
   summary.limits = loop.simulation.actuator.limits;
   summary.output_lower = loop.report.output_lower;
@@ -176,9 +203,10 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
   for (const auto& [name, rate] : loop.report.consumption)
     summary.consumption.emplace_back(name, consumed(record, rate, loop.plant_info.sample_time_s));
   countSamples(record, summary);
+  findLockUps(record, summary);
   summary.has_clp = loop.has_clp;
   if (loop.has_clp) summarizeSolves(record, summary);
-  summary.repaired_cells = repairedCells(loop);
+  countCells(loop, summary);
   return summary;
 }
 

@@ -60,11 +60,10 @@ std::string toTable(const std::vector<Summary>& summaries) {
   for (const auto& summary : summaries)
     for (const auto& [name, value] : summary.consumption)
       text += summary.loop + ": " + name + " " + shortText(value) + "\n";
+  std::string remarks;
   for (const auto& summary : summaries)
-    if (summary.repaired_cells > 0)
-      text += "\n" + summary.loop + ": " + std::to_string(summary.repaired_cells) +
-              " missing cells of the influent record filled\n";
-  return text;
+    for (const auto& remark : remarksOf(summary)) remarks += remark + "\n";
+  return text + (remarks.empty() ? "" : "\n" + remarks);
 }
 
 }  // namespace fpc

@@ -2,12 +2,12 @@
 // asked.
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "fmbpc/base/csv.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/plant/disturbance.hpp"
+#include "plant/csv_rows.hpp"
 
 namespace fpc {
 namespace {
@@ -22,93 +22,58 @@ void requireOneOf(const std::string& value, const std::vector<std::string>& choi
           "one of " + join(choices) + ", got '" + value + "'");
 }
 
-double secondsOf(const std::string& unit) {
-  static const std::map<std::string, double> units = {
-      {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}};
-  const auto found = units.find(unit);
-  require(found != units.end(), "disturbance.time_unit", "one of s, min, h, d, got '" + unit + "'");
-  return found->second;
-}
-
-std::string at(const CsvTable& table, const std::string& column) {
-  return table.file + ": column '" + column + "'";
-}
-
-/// Seconds since the first row.
-std::vector<double> timesOf(const CsvTable& table, const CsvDisturbanceParams& params) {
-  const Eigen::Index column = table.column(params.time_column);
-  const std::string where = at(table, params.time_column);
-  require(!table.is_date[static_cast<std::size_t>(column)] || params.time_unit == "d", where,
-          "disturbance.time_unit d, since it holds dates");
-  const double unit_s = secondsOf(params.time_unit);
-  const auto& cells = table.values.col(column);
-  std::vector<double> times;
-  for (Eigen::Index r = 0; r < table.rows(); ++r) {
-    const std::string row = where + ", row " + std::to_string(r + 1);
-    require(!std::isnan(cells[r]), row, "a time, the cell is missing");
-    const double time = (cells[r] - cells[0]) * unit_s;
-    require(times.empty() || time > times.back(), row,
-            "increasing times, got " + exactText(cells[r]) + " after " +
-                exactText(cells[std::max<Eigen::Index>(r - 1, 0)]));
-    times.push_back(time);
-  }
-  require(times.size() >= 2, where, "at least two rows");
-  return times;
-}
-
-Eigen::Index nextMeasured(const Vector& cells, Eigen::Index from) {
-  while (from < cells.size() && std::isnan(cells[from])) ++from;
-  return from;
-}
-
-/// Fills missing cells; at the ends the nearest measured cell stands for them. Returns how many
-/// there were.
-std::uint64_t repair(Vector& cells, const std::vector<double>& times, bool interpolate) {
-  std::uint64_t count = 0;
+/// Of the cells that the file measured, after their repair.
+double meanMeasured(const CsvTable& table, const CsvRows& rows, Eigen::Index column,
+                    const Vector& cells) {
+  double sum = 0.0, count = 0.0;
   for (Eigen::Index r = 0; r < cells.size(); ++r) {
-    if (!std::isnan(cells[r])) continue;
+    const Eigen::Index row = rows.of_table[static_cast<std::size_t>(r)];
+    if (row < 0 || std::isnan(table.values(row, column))) continue;
+    sum += cells[r];
     ++count;
-    const Eigen::Index next = nextMeasured(cells, r);
-    const bool has_next = next < cells.size();
-    if (r == 0 || (interpolate && !has_next)) {
-      cells[r] = cells[r == 0 ? next : r - 1];
-    } else if (!interpolate) {
-      cells[r] = cells[r - 1];
-    } else {
-      const auto t = [&](Eigen::Index i) { return times[static_cast<std::size_t>(i)]; };
-      const double part = (t(r) - t(r - 1)) / (t(next) - t(r - 1));
-      cells[r] = cells[r - 1] + part * (cells[next] - cells[r - 1]);
-    }
   }
-  return count;
+  return sum / count;
 }
 
-/// One channel on the rows of the file.
-Vector channelValues(const CsvTable& table, const CsvChannel& channel, const std::string& missing,
-                     const std::vector<double>& times, std::uint64_t& repaired) {
+ColumnRules rulesOf(const CsvChannel& channel, const std::string& missing) {
+  ColumnRules rules;
+  rules.missing = missing == "hold"          ? MissingCells::kHold
+                  : missing == "interpolate" ? MissingCells::kInterpolate
+                                             : MissingCells::kError;
+  rules.lower = channel.lower;
+  rules.upper = channel.upper;
+  rules.implausible = channel.implausible;
+  rules.missing_key = "disturbance.csv.missing";
+  rules.implausible_key = "disturbance.csv.channels." + channel.name + ".implausible";
+  return rules;
+}
+
+/// One channel on the completed rows.
+Vector channelValues(const CsvTable& table, const CsvRows& rows, const CsvChannel& channel,
+                     const std::string& missing, DisturbanceRecord& result) {
   const Eigen::Index column = table.column(channel.column);
-  const std::string where = at(table, channel.column);
-  Vector cells = table.values.col(column);
-  require(!table.is_date[static_cast<std::size_t>(column)], where, "numbers, not dates");
-  const Eigen::Index first_missing = (cells.array().isNaN()).count() == 0 ? -1 : [&] {
-    Eigen::Index r = 0;
-    while (!std::isnan(cells[r])) ++r;
-    return r;
-  }();
-  require(nextMeasured(cells, 0) < cells.size(), where, "at least one number");
-  require(first_missing < 0 || missing != "error",
-          where + ", row " + std::to_string(first_missing + 1),
-          "no missing cells, or disturbance.missing hold or interpolate");
-  double scale = channel.scale, offset = channel.offset;
-  if (channel.mean != 0.0) {
-    const double mean = cells.array().isNaN().select(0.0, cells.array()).sum() /
-                        static_cast<double>(cells.size() - table.missing(column));
-    require(mean != 0.0, where, "a mean other than 0 to be scaled to " + exactText(channel.mean));
-    scale = channel.mean / mean;
-    offset = 0.0;
+  const std::string whole = table.file + ": column '" + channel.column + "'";
+  require(!table.is_date[static_cast<std::size_t>(column)], whole, "numbers, not dates");
+  Vector cells(static_cast<Eigen::Index>(rows.times.size()));
+  for (Eigen::Index r = 0; r < cells.size(); ++r) {
+    const Eigen::Index row = rows.of_table[static_cast<std::size_t>(r)];
+    cells[r] = row < 0 ? std::numeric_limits<double>::quiet_NaN() : table.values(row, column);
   }
-  repaired += repair(cells, times, missing == "interpolate");
-  return (scale * cells.array() + offset).matrix();
+  const auto where = [&](Eigen::Index r) {
+    const auto i = static_cast<std::size_t>(r);
+    return table.at(rows.before[i], column) +
+           (rows.of_table[i] < 0 ? ": the time jumps after this row" : "");
+  };
+  const std::string& text = table.texts[static_cast<std::size_t>(column)];
+  require(!cells.array().isNaN().all(), whole,
+          "at least one number" + (text.empty() ? "" : ", got '" + text + "'"));
+  const ColumnRepairs repairs = repairColumn(cells, rows.times, rulesOf(channel, missing), where);
+  result.repaired += repairs.missing;
+  result.implausible += repairs.implausible;
+  if (channel.mean == 0.0) return (channel.scale * cells.array() + channel.offset).matrix();
+  const double mean = meanMeasured(table, rows, column, cells);
+  require(mean != 0.0, whole, "a mean other than 0 to be scaled to " + exactText(channel.mean));
+  return channel.mean / mean * cells;
 }
 
 /// The channels on the file's rows, and where a time falls among them.
@@ -161,9 +126,10 @@ Matrix resampled(const Record& record, const CsvDisturbanceParams& params, doubl
 }
 
 void validate(const CsvDisturbanceParams& params, std::uint32_t samples, double sample_time_s) {
-  requireOneOf(params.missing, {"error", "hold", "interpolate"}, "disturbance.missing");
-  requireOneOf(params.interpolation, {"hold", "linear"}, "disturbance.interpolation");
-  requireOneOf(params.end, {"error", "hold", "repeat"}, "disturbance.end");
+  requireOneOf(params.missing, {"error", "hold", "interpolate"}, "disturbance.csv.missing");
+  requireOneOf(params.interpolation, {"hold", "linear"}, "disturbance.csv.interpolation");
+  requireOneOf(params.end, {"error", "hold", "repeat"}, "disturbance.csv.end");
+  params.format.validate();
   require(samples > 0, "disturbance: csv", "a run with a duration");
   require(sample_time_s > 0.0 && std::isfinite(sample_time_s), "sampling.sample_time_s",
           "a finite number > 0");
@@ -171,6 +137,10 @@ void validate(const CsvDisturbanceParams& params, std::uint32_t samples, double 
     require(std::isfinite(channel.scale) && std::isfinite(channel.offset) &&
                 std::isfinite(channel.mean),
             "disturbance: channel '" + channel.name + "'", "finite scale, offset and mean");
+  for (const auto& channel : params.channels)
+    require(channel.lower <= channel.upper && channel.implausible != Implausible::kDrop,
+            "disturbance: channel '" + channel.name + "'",
+            "plausible cells from lower to upper, others an error, clipped, held or interpolated");
 }
 
 }  // namespace
@@ -181,9 +151,10 @@ DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
   validate(params, samples, sample_time_s);
   require(nominal.size() == static_cast<Eigen::Index>(names.size()), "disturbance.nominal",
           std::to_string(names.size()) + " numbers");
-  const CsvTable table = readCsv(params.file);
+  const CsvTable table = readCsv(params.file, params.format);
+  const CsvRows rows = csvRows(table, params.time_column, params.time_unit);
   DisturbanceRecord result;
-  Record record{timesOf(table, params), nominal.replicate(1, table.rows())};
+  Record record{rows.times, nominal.replicate(1, static_cast<Eigen::Index>(rows.times.size()))};
   std::vector<bool> taken(names.size(), false);
   for (const auto& channel : params.channels) {
     const std::string where = "disturbance: channel '" + channel.name + "'";
@@ -193,12 +164,12 @@ DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
     require(!taken[static_cast<std::size_t>(row)], where, "every channel only once");
     taken[static_cast<std::size_t>(row)] = true;
     record.values.row(row) =
-        channelValues(table, channel, params.missing, record.times, result.repaired).transpose();
+        channelValues(table, rows, channel, params.missing, result).transpose();
   }
   close(record, params.end == "repeat");
   const double needed = samples * sample_time_s;
   require(params.end != "error" || needed <= record.length() * (1.0 + kEarly), table.file,
-          "a record of at least " + exactText(needed / 3600.0) + " h, or disturbance.end hold or " +
+          "a record of at least " + exactText(needed / 3600.0) + " h, or disturbance.csv.end hold or " +
               "repeat; it has " + exactText(record.length() / 3600.0) + " h");
   result.values = resampled(record, params, sample_time_s, static_cast<Eigen::Index>(samples) + 1);
   return result;

@@ -60,6 +60,7 @@ const Measurement& Simulation::reset(std::uint64_t run_id) {
   state_before_ = params_.initial_state;
   state_.actuator_clips = 0;
   state_.input_missing = false;
+  state_.trouble.clear();
   actuator_.reset();
   if (stepper_) stepper_->reset(params_.actuator.initial, params_.disturbance_nominal);
   noise_.seed(params_.noise_seed);
@@ -74,8 +75,7 @@ void Simulation::schedule() {
   commands_.clear();
   for (const auto& [time_h, command] : params_.disturbance_commands) {
     checkRanges(command);
-    const std::int64_t after_start = std::llround(time_h * 3600e9);
-    commands_.accept(command, clock_.firstStepAt(clock_.startNanoseconds() + after_start));
+    commands_.accept(command, clock_.firstStepAtHours(time_h));
   }
 }
 
@@ -126,12 +126,21 @@ void Simulation::passLocalLoop() {
   }
 }
 
+// A plant that cannot be moved is held, and the sample says why.
 void Simulation::movePlant() {
   const Vector &u = plant_input_, &d = state_.disturbances;
-  if (stepper_) return stepper_->advance(state_.state, u, d);
-  const IntegrationResult result = integrator_.advance(state_.state, u, d, params_.sample_time_s);
-  if (!result.ok())
-    trouble_ = "sample " + std::to_string(measurement_.header.step) + ": " + result.reason;
+  state_.trouble.clear();
+  std::string reason;
+  if (stepper_) {
+    stepper_->advance(state_.state, u, d);
+    if (!state_.state.allFinite()) reason = "the state is not finite";
+  } else {
+    reason = integrator_.advance(state_.state, u, d, params_.sample_time_s).reason;
+  }
+  if (reason.empty()) return;
+  state_.state = state_before_;
+  state_.trouble = "sample " + std::to_string(measurement_.header.step) + ": " + reason;
+  trouble_ = state_.trouble;
 }
 
 void Simulation::updateDisturbances() {

@@ -98,7 +98,7 @@ SimulationParams checked(SimulationParams params, const Plant& plant) {
   checkSensors(params);
   params.integrator.validate();
   for (const auto& scheduled : params.disturbance_commands)
-    require(std::isfinite(scheduled.time_h) && scheduled.time_h >= 0.0 && scheduled.time_h <= 1e6,
+    require(scheduled.time_h >= 0.0 && scheduled.time_h <= kLatestCommandH,
             "disturbance.commands: time_h", "a number >= 0 and <= 1e6");
   return params;
 }

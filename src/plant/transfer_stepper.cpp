@@ -12,8 +12,12 @@ constexpr double kMostSamples = 1e6;
 constexpr double kSnap =
     1e-9;  // samples: a dead time this near to whole samples is meant to be whole
 
-/// (1 - exp(-z)) / z, and its limit.
-double meanDecay(double z) { return std::abs(z) < 1e-12 ? 1.0 : -std::expm1(-z) / z; }
+/// (exp(-p) - exp(-q)) / (q - p), and its limit; only the slower decay is taken out, so that time
+/// constants of any ratio stay finite.
+double meanDecay(double p, double q) {
+  const double gap = std::abs(q - p);
+  return std::exp(-std::min(p, q)) * (gap < 1e-12 ? 1.0 : -std::expm1(-gap) / gap);
+}
 
 }  // namespace
 
@@ -51,9 +55,9 @@ void TransferStepper::move(std::size_t i, double drive, double time, double& inn
   const double decay = std::exp(-time / e.time_constant);
   double push = 0.0;
   if (e.second_time_constant > 0.0) {
-    const double z = time / e.second_time_constant - time / e.time_constant;
-    push = (inner - drive) * time / e.time_constant * decay * meanDecay(z);
-    inner = drive + (inner - drive) * std::exp(-time / e.second_time_constant);
+    const double p = time / e.time_constant, q = time / e.second_time_constant;
+    push = (inner - drive) * p * meanDecay(p, q);
+    inner = drive + (inner - drive) * std::exp(-q);
   }
   share = drive + (share - drive) * decay + push;
 }

@@ -86,6 +86,7 @@ CsvTable emptyTable(const PlantInfo& info, const std::string& file, Index rows) 
       table.units.push_back(signal.unit);
     }
   table.is_date.assign(table.names.size(), false);
+  table.texts.resize(table.names.size());
   table.values = Matrix::Constant(rows, static_cast<Index>(table.names.size()),
                                   std::numeric_limits<double>::quiet_NaN());
   return table;

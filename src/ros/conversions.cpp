@@ -208,12 +208,14 @@ fmbpc::PlantState toMsg(const PlantState& state) {
   msg.disturbances = numbers(state.disturbances);
   msg.actuator_clips = state.actuator_clips;
   msg.input_missing = state.input_missing;
+  msg.trouble = state.trouble;
   return msg;
 }
 
 PlantState fromMsg(const fmbpc::PlantState& msg) {
   return {stepHeader(msg),          vector(msg.state),  vector(msg.outputs),
-          vector(msg.disturbances), msg.actuator_clips, msg.input_missing != 0};
+          vector(msg.disturbances), msg.actuator_clips, msg.input_missing != 0,
+          msg.trouble};
 }
 
 }  // namespace fpc

@@ -32,7 +32,7 @@ std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
 Recorder makeRecorder(const LoopFile& loop) {
   std::vector<std::string> names, units;
   if (!loop.external_plant) {
-    const auto plant = makePlant(loop.simulation.plant);
+    const auto plant = makePlant(loop.simulation);
     for (const Quantity& state : plant->description().states) {
       names.push_back(state.name);
       units.push_back(state.unit);
@@ -252,6 +252,10 @@ void LoopRecorder::write() {
   std_msgs::String folder;
   folder.data = out_;
   if (ros::ok()) recorded_.publish(folder);
+  if (record.failed_samples == 0) return;
+  const std::string words = troubleOf(summary);
+  if (!keep_) return fail(words);
+  ROS_ERROR("loop_recorder: %s", words.c_str());
 }
 
 int LoopRecorder::finish() {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
@@ -31,6 +33,20 @@ Overrides seedOverrides(const std::string& loop, const TuningScenario& scenario,
   require(!seeds.empty(), "scenario " + scenario.name + ": seed",
           "a loop with a disturbance pattern or noise: " + read.name);
   return seeds;
+}
+
+std::string contentOf(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// What the files that a loop names hold: a changed model or record is another tuning.
+std::string contentsOf(const LoopFile& loop) {
+  std::string all;
+  if (!loop.model_file.empty()) all += contentOf(loop.model_file);
+  if (!loop.identify.structure_file.empty()) all += contentOf(loop.identify.structure_file);
+  if (loop.disturbance.source == "csv") all += contentOf(loop.disturbance.csv.file);
+  return all;
 }
 
 /// FNV-1a, in hexadecimal.
@@ -62,7 +78,7 @@ TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning, con
     for (const auto& scenario : *cases) {
       const LoopFile first = parseLoop(scenario.text, scenario.name, valueOverrides(start_));
       checkFitness(tuning_.fitness, first);
-      all += scenario.text;
+      all += scenario.text + contentsOf(first);
     }
   fingerprint_ = hashOf(all);
   judgeUntouched(cases_, untouched_);
@@ -137,7 +153,9 @@ TuningObjective::Run TuningObjective::run(const Case& scenario, const Overrides&
     const LoopFile loop = parseLoop(scenario.text, scenario.name, changes);
     const RunRecord record = runLoop(loop, options);
     result.cost = fitness(tuning_.fitness, loop, record) / scenario.scale;
-    if (!std::isfinite(result.cost)) result.trouble = scenario.name + ": the cost is not finite";
+    if (!std::isfinite(result.cost))
+      result.trouble = scenario.name + ": " +
+                       (record.trouble.empty() ? "the cost is not finite" : record.trouble);
   } catch (const std::exception& e) {
     result.trouble = scenario.name + ": " + e.what();
   }

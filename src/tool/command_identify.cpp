@@ -63,14 +63,14 @@ bool overlap(RowRange a, RowRange b) {
 }
 
 Records readRecords(const IdentifyArguments& a, const Structure& structure) {
-  const CsvTable table = readRecord(a.data);
+  const CsvTable table = readRecord(a.data, structure.csv);
   Records records{makeData(table, structure, a.rows), {}, false};
   if (a.validate.empty() && a.validate_rows.empty()) return records;
   Structure judging = structure;
   judging.repair.drop_constant = true;  // an input may rest while a model is judged
   std::error_code ignored;              // a file that is not there is told by its reader
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data, ignored);
-  records.validation = makeData(same ? table : readRecord(a.validate), judging, a.validate_rows);
+  records.validation = makeData(same ? table : readRecord(a.validate, structure.csv), judging, a.validate_rows);
   records.overlap =
       same && overlap(parseRows(rowsText(a.rows)), parseRows(rowsText(a.validate_rows)));
   return records;

@@ -57,6 +57,19 @@ std::string jsonOf(const std::vector<Summary>& summaries) {
   return text + "\n]}";
 }
 
+/// True if a plant could not be moved or a controller never acted; says which.
+bool reportTrouble(const std::vector<Summary>& summaries) {
+  bool any = false;
+  for (const auto& summary : summaries) {
+    std::string words = troubleOf(summary);
+    if (words.empty() && neverControlled(summary))
+      words = summary.loop + ": the controller never acted: every sample was held";
+    if (!words.empty()) std::fprintf(stderr, "fmbpc: %s\n", words.c_str());
+    any = any || !words.empty();
+  }
+  return any;
+}
+
 }  // namespace
 
 int run(const RunArguments& arguments) {
@@ -75,7 +88,7 @@ int run(const RunArguments& arguments) {
   std::cout << (arguments.json ? jsonOf(summaries) + "\n" : toTable(summaries));
   if (!arguments.json)
     for (const auto& folder : written) std::cout << "written: " << folder << "\n";
-  if (!interruption()) return 0;
+  if (!interruption()) return reportTrouble(summaries) ? 1 : 0;
   std::fprintf(stderr, "fmbpc: interrupted after %u steps\n", summaries.back().steps);
   return kInterrupted;
 }

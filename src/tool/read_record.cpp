@@ -23,9 +23,9 @@ bool isBag(const std::string& file) {
 
 }  // namespace
 
-CsvTable readRecord(const std::string& file) {
+CsvTable readRecord(const std::string& file, const CsvFormat& format) {
   require(std::filesystem::is_regular_file(file), file, "an existing CSV or bag");
-  if (!isBag(file)) return readCsv(file);
+  if (!isBag(file)) return readCsv(file, format);
 #ifdef FMBPC_WITH_BAGS
   return readBag(file);
 #else

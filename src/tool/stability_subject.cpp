@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
@@ -23,11 +24,9 @@ std::map<std::string, double> parsePoint(const std::string& at) {
   for (std::string part; std::getline(parts, part, ',');) {
     const auto equal = part.find('=');
     require(equal != std::string::npos, "--at", "NAME=VALUE,..., not \"" + part + "\"");
-    try {
-      values[part.substr(0, equal)] = std::stod(part.substr(equal + 1));
-    } catch (const std::exception&) {
-      throw InputError("--at: expected a number after " + part.substr(0, equal + 1));
-    }
+    const auto value = numberOf(part.substr(equal + 1));
+    require(value.has_value(), "--at", "a finite number after " + part.substr(0, equal + 1));
+    values[part.substr(0, equal)] = *value;
   }
   return values;
 }
@@ -104,7 +103,7 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
     subject.note = "the law of controller.type " + loop.controllerType().name +
                    " is not analysed; name the model file instead of the loop for that of fmbpc";
   if (!loop.external_plant)
-    subject.plant = makePlant(loop.simulation.plant, loop.simulation.parameters);
+    subject.plant = makePlant(loop.simulation);
 }
 
 }  // namespace

@@ -43,7 +43,11 @@ Json parametersJson(const TuningObjective& objective, const TunedLoop& tuned) {
                    {"upper", p.upper},
                    {"scale", p.logarithmic ? "log" : "linear"},
                    {"start", before[i]}};
-    if (tuned.result.best >= 0) parameter["value"] = valuesAfter(tuned)[i];
+    if (tuned.result.best >= 0) {
+      parameter["value"] = valuesAfter(tuned)[i];
+      const std::string bound = boundOf(p, valuesAfter(tuned)[i]);
+      if (!bound.empty()) parameter["at_bound"] = bound;
+    }
     list.push_back(parameter);
   }
   return list;
@@ -83,7 +87,8 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned, int thread
             {"evaluations_per_s", numberOrNull(fresh / result.seconds)},
             {"failures", result.failures},
             {"trouble", result.trouble},
-            {"parameters", parametersJson(objective, tuned)}};
+            {"parameters", parametersJson(objective, tuned)},
+            {"remarks", remarksOf(objective, tuned)}};
   const TuningScore& before = objective.untouched();
   json["before"] = scoresJson(tuning.scenarios, before.cost, before.scenarios);
   if (result.best >= 0)
@@ -126,7 +131,9 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   if (tuned.held_out)
     addScores(scores, "held out: " + tuning.fitness.across, tuning.held_out,
               objective.untouchedHeldOut(), *tuned.held_out);
-  return text.str() + alignedTable(scores);
+  text << alignedTable(scores);
+  for (const auto& remark : remarksOf(objective, tuned)) text << "\n" << remark;
+  return text.str() + (remarksOf(objective, tuned).empty() ? "" : "\n");
 }
 
 std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tuned,
@@ -142,6 +149,7 @@ std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tu
   if (tuned.held_out)
     comment += ", held out " + shortText(objective.untouchedHeldOut().cost) + " -> " +
                shortText(tuned.held_out->cost);
+  for (const auto& remark : remarksOf(objective, tuned)) comment += ".\n" + remark;
   const std::string title = readLoop(tuned.loop).report.title + ", tuned";
   const std::string file = (fs::path(folder) / (stem + "_tuned.yaml")).string();
   std::ofstream stream(file);

@@ -17,6 +17,11 @@ struct TunedLoop {
   std::optional<TuningScore> held_out;
 };
 
+/// "lower" or "upper" if the value stands at that bound of its range (to a thousandth of it).
+std::string boundOf(const TuningParameter& parameter, double value);
+/// Parameters that stand at a bound, a held-out cost that got worse; a line each.
+std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned);
+
 /// Infinite numbers are null.
 nlohmann::ordered_json numberOrNull(double value);
 nlohmann::ordered_json toJson(const TuningObjective& objective, const TunedLoop& tuned,

@@ -91,6 +91,53 @@ TEST(Csv, DatesBecomeDaysSince1970) {
   EXPECT_EQ(table.is_date, (std::vector<bool>{true, false}));
 }
 
+TEST(Csv, TimesOfIso8601BecomeDays) {
+  const CsvTable table = tableOf(
+      "t\n1970-01-02T12:00\n1970-01-02 12:00:30\n1970-01-02T12:00:30.25\n1970-01-02\n");
+  EXPECT_EQ(table.values(0, 0), 1.5);
+  EXPECT_NEAR(table.values(1, 0), 1.5 + 30.0 / 86400.0, 1e-15);
+  EXPECT_NEAR(table.values(2, 0), 1.5 + 30.25 / 86400.0, 1e-15);
+  EXPECT_EQ(table.values(3, 0), 1.0);
+  const CsvTable zoned = tableOf(
+      "t\n1970-01-01T00:00Z\n1970-01-01T02:00+02:00\n1970-01-01T02:00+0200\n"
+      "1969-12-31T22:00-02\n");
+  EXPECT_TRUE(zoned.values.isZero(0.0)) << zoned.values;
+  EXPECT_NE(errorOf("t\n1970-01-01T00:00Z\n1970-01-01T01:00\n").find(":3: column 't'"),
+            std::string::npos);
+  for (const char* bad : {"1970-01-01T24:00", "1970-01-01T00:60", "1970-01-01T00:00:60",
+                          "1970-1-1", "1970-01-01T", "1970-01-01T00:00+", "1970-01-01 00:00 UTC",
+                          "1970-01-01T00:00:00.", "1970-02-30T00:00"})
+    EXPECT_NE(errorOf("t\n1970-01-01\n" + std::string(bad) + "\n").find(":3: column 't'"),
+              std::string::npos)
+        << bad;
+}
+
+TEST(Csv, QuotedCellsMayHoldSeparatorsAndQuotes) {
+  const CsvTable table = tableOf("\"a, b\",\"say \"\"x\"\"\"\n\"1\",2\n");
+  EXPECT_EQ(table.names, (std::vector<std::string>{"a, b", "say \"x\""}));
+  EXPECT_EQ(table.values(0, 0), 1.0);
+}
+
+TEST(Csv, AForeignFormatIsReadWhenSaidAndSuspectedWhenNot) {
+  const std::string german = "t;x\n0;1,5\n1;2,5\n";
+  EXPECT_NE(errorOf(german).find("is it semicolon?"), std::string::npos) << errorOf(german);
+  CsvFormat format{';', ',', {"k.A."}};
+  const CsvTable table = readCsv(fileWith(german + "2;k.A.\n"), format);
+  EXPECT_EQ(table.values(1, 1), 2.5);
+  EXPECT_EQ(table.missing(1), 1);
+  EXPECT_EQ(table.at(2, 1), table.file + ":4: column 'x'");
+  format.decimal = '.';
+  try {
+    readCsv(fileWith("x;y\n1;1\n1,5;2\n"), format);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("is it comma?"), std::string::npos) << e.what();
+  }
+  EXPECT_EQ(separatorOf("tab"), '\t');
+  EXPECT_THROW(separatorOf("x"), InputError);
+  EXPECT_THROW((CsvFormat{',', ',', {}}.validate()), InputError);
+}
+
 TEST(Csv, ImpossibleDatesAndMixedColumnsAreErrors) {
   EXPECT_NE(errorOf("date\n1999-01-01\n1999-02-29\n").find(":3: column 'date'"), std::string::npos);
   EXPECT_NE(errorOf("date\n1999-01-01\n7\n").find("either dates or numbers"), std::string::npos);

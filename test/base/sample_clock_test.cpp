@@ -30,6 +30,23 @@ TEST(SampleClock, FirstStepAtIsTheFirstSampleNotBeforeTheTime) {
   EXPECT_EQ(clock.firstStepAt(12'000'000'001), 2U);
 }
 
+// What a person writes for sample k: k Ts in hours, in double precision or rounded to nine digits.
+TEST(SampleClock, AWrittenTimeOfASampleIsThatSample) {
+  for (const double sample_time_s : {360.0, 720.0, 1.0 / 3.0, 0.1, 0.7, 1e-3, 86400.0}) {
+    const SampleClock clock(sample_time_s, 1.0);
+    for (std::uint32_t k = 0; k < 200000; k = 1 + k + k / 50) {
+      const double time_h = k * sample_time_s / 3600.0;
+      EXPECT_EQ(clock.firstStepAtHours(time_h), k) << sample_time_s;
+      EXPECT_EQ(clock.firstStepAtHours(time_h + 0.4 * sample_time_s / 3600.0), k + 1);
+    }
+  }
+  const SampleClock clock(360.0, 1.0);
+  EXPECT_EQ(clock.firstStepAtHours(0.1000000002), 1U) << "within a microsecond";
+  EXPECT_EQ(clock.firstStepAtHours(0.10000001), 2U);
+  EXPECT_EQ(clock.firstStepAtHours(1e300), std::numeric_limits<std::uint32_t>::max());
+  EXPECT_EQ(clock.firstStepAtHours(-1.0), 0U);
+}
+
 TEST(SampleClock, TimesBeyondTheLastStepDoNotWrapRound) {
   const SampleClock clock(1e-9, 1.0);
   EXPECT_EQ(clock.firstStepAt(std::numeric_limits<std::int64_t>::max()),

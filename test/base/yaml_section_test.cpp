@@ -46,6 +46,35 @@ TEST(YamlSection, ReadsOverDefaults) {
   EXPECT_EQ(d, "word");
 }
 
+// One reader of YAML takes 010 for eight, another for ten; 0x10 is sixteen to few people.
+TEST(YamlSection, IntegersAreDecimal) {
+  for (const char* text : {"010", "0x10", "-07", "1_000", "1e3", "+-4", "", "0b11", "12 ", "--1"})
+    expectWords(errorOf("b: '" + std::string(text) + "'\n",
+                        [](YamlSection& s) {
+                          int value = 0;
+                          s.integer("b", value, -100);
+                        }),
+                "expected an integer");
+  for (const char* text : {"010", "0x10", "-1", "18446744073709551616"})
+    expectWords(errorOf("b: " + std::string(text) + "\n",
+                        [](YamlSection& s) {
+                          std::uint64_t value = 0;
+                          s.seed("b", value);
+                        }),
+                "an integer >= 0");
+  YamlSection section = parsed("a: +7\nb: 0\nc: -12\nd: 18446744073709551615\n");
+  int a = 0, b = 1, c = 0;
+  std::uint64_t d = 0;
+  section.integer("a", a, 0);
+  section.integer("b", b, 0);
+  section.integer("c", c, -100);
+  section.seed("d", d);
+  EXPECT_EQ(a, 7);
+  EXPECT_EQ(b, 0);
+  EXPECT_EQ(c, -12);
+  EXPECT_EQ(d, 18446744073709551615ULL);
+}
+
 TEST(YamlSection, UnknownKeysAreErrorsWithLineAndKnownKeys) {
   const std::string error = errorOf("horizon: 3\nhorizont: 4\n", [](YamlSection& s) {
     int n = 0;

@@ -45,6 +45,48 @@ TEST_F(Extends, GoesThroughSeveralFilesAndTheConfigFolders) {
   EXPECT_EQ(loop.controllerParams<FmbpcParams>().coincidence_steps, 6);
 }
 
+TEST_F(Extends, AnOverrideChangesThePlaceThatItNamesAndNoAliasOfIt) {
+  const std::string file =
+      write("alias.yaml", smallLoop() +
+                              "noise: {std: &both {s: 1, x: 2}}
+"
+                              "report: {output_lower: *both}
+");
+  const LoopFile plain = readLoop(file);
+  EXPECT_EQ(plain.report.output_lower, (std::vector<double>{1, 2}));
+  const LoopFile changed = readLoop(file, {{"noise.std.s", "7"}});
+  EXPECT_EQ(changed.simulation.noise_std, (Vector(2) << 7, 2).finished());
+  EXPECT_EQ(changed.report.output_lower, (std::vector<double>{1, 2}));
+  EXPECT_EQ(changed.resolved.find('*'), std::string::npos) << changed.resolved;
+  const LoopFile again = parseLoop(smallLoop() +
+                                       "noise: {std: &both {s: 1, x: 2}}
+"
+                                       "report: {output_lower: *both}
+",
+                                   "text", {{"noise.std.x", "5"}});
+  EXPECT_EQ(again.report.output_lower, (std::vector<double>{1, 2}));
+}
+
+TEST_F(Extends, ASecondDocumentIsAnError) {
+  const std::string file = write("two.yaml", smallLoop() + "---\nnoise: {std: {s: 1}}\n");
+  expectWords(errorOf([&] { readLoop(file); }), {"two.yaml:1", "one YAML document"});
+  EXPECT_EQ(readLoop(write("end.yaml", smallLoop() + "...\n")).name, "end");
+}
+
+TEST_F(Extends, AliasesWithoutEndAreErrors) {
+  const std::string own = write("own.yaml", smallLoop() + "noise: &n {std: *n}\n");
+  expectWords(errorOf([&] { readLoop(own); }), {"own.yaml", "alias"});
+  std::string bomb = smallLoop() + "noise:\n  a: &a [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n";
+  for (char c = 'b'; c < 'k'; ++c) {
+    const std::string before(1, static_cast<char>(c - 1));
+    bomb += std::string("  ") + c + ": &" + c + " [";
+    for (int i = 0; i < 10; ++i) bomb += (i > 0 ? ", *" : "*") + before;
+    bomb += "]\n";
+  }
+  const std::string file = write("bomb.yaml", bomb);
+  expectWords(errorOf([&] { readLoop(file); }), {"bomb.yaml", "1000000 values"});
+}
+
 TEST_F(Extends, CirclesAreErrors) {
   const std::string a = write("a.yaml", "extends: b\n");
   write("b.yaml", "extends: a\n");

@@ -88,7 +88,7 @@ TEST(DataSet, MissingCellsAreAnErrorThatTellsWhere) {
   const auto spoil = [](CsvTable& t) { t.values(4, 1) = t.values(6, 1) = kNaN; };
   const std::string error = errorOf(spoil);
   contains(error, "column 'y'");
-  contains(error, "2 are, the first in data row 5");
+  contains(error, ", row 5: column 'y': expected no missing cells; 2 are");
 }
 
 TEST(DataSet, MissingCellsAreSteppedOverOrInterpolatedWhenAllowedAndCounted) {
@@ -105,13 +105,33 @@ TEST(DataSet, MissingCellsAreSteppedOverOrInterpolatedWhenAllowedAndCounted) {
   contains(filled.repairs[0], "interpolated");
 }
 
+TEST(DataSet, ImplausibleCellsAreErrorsOrMendedAsSaidAndCounted) {
+  CsvTable t = table();
+  t.values(4, 1) = 999.0;
+  const auto with = [&](const std::string& how) {
+    Structure structure = structureWith();
+    structure.outputs[0].implausible = how == "clip"          ? Implausible::kClip
+                                       : how == "hold"        ? Implausible::kHold
+                                       : how == "interpolate" ? Implausible::kInterpolate
+                                                              : Implausible::kDrop;
+    return makeDataSet(t, structure);
+  };
+  EXPECT_EQ(with("clip").values(4, 0), 100.0);
+  EXPECT_EQ(with("hold").values(4, 0), 3.0);
+  EXPECT_EQ(with("interpolate").values(4, 0), 4.0);
+  EXPECT_TRUE(std::isnan(with("drop").values(4, 0)));
+  contains(with("hold").repairs[0], "1 implausible cells of 'y' held");
+  contains(errorOf([](CsvTable& spoiled) { spoiled.values(4, 1) = 999.0; }),
+           ", row 5: column 'y': expected a value from -100 to 100 m");
+}
+
 TEST(DataSet, TheInputOfTheLastRowActsAfterTheDataAndMayBeMissing) {
   CsvTable t = table();
   t.values(19, 2) = kNaN;
   const DataSet data = makeDataSet(t, structureWith());
   EXPECT_TRUE(data.repairs.empty());
   EXPECT_EQ(makeRegression(data, {{SignalKind::kInput, 0, 0}}, {}, 0).rows(), 19);
-  contains(errorOf([](CsvTable& spoiled) { spoiled.values(18, 2) = kNaN; }), "data row 19");
+  contains(errorOf([](CsvTable& spoiled) { spoiled.values(18, 2) = kNaN; }), ", row 19");
 }
 
 TEST(DataSet, ConstantColumnsAreRefusedOrDropped) {

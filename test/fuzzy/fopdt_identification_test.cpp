@@ -242,6 +242,27 @@ TEST(MisoEstimator, SkipsWhatIsNotFinite) {
   EXPECT_TRUE(estimator.theta().allFinite());
 }
 
+TEST(MisoEstimator, GoesOnAfterWhatIsNotFinite) {
+  for (const char* method : {"arx", "output_error"})
+    for (const bool of_input : {true, false}) {
+      MisoParams params;
+      params.method = method;
+      const Record record = excite({{2.0, 8.0, 3.0}}, 600, 3);
+      MisoEstimator estimator(1, 1.0, params);
+      int learned = 0;
+      for (Eigen::Index k = 1; k < record.y.size(); ++k) {
+        const bool spoiled = k == 5 || k == 300;  // in the warm-up and after it
+        Vector u = record.inputs.col(k - 1);
+        if (spoiled && of_input) u[0] = NAN;
+        learned += estimator.update(u, spoiled && !of_input ? NAN : record.y[k]);
+      }
+      EXPECT_GT(learned, 500) << method << of_input;
+      ASSERT_TRUE(estimator.element(0).has_value()) << method << of_input;
+      EXPECT_NEAR(estimator.element(0)->gain, 2.0, 0.1) << method << of_input;
+      EXPECT_NEAR(estimator.element(0)->time_constant, 8.0, 0.5) << method << of_input;
+    }
+}
+
 TEST(MisoEstimator, RefusesWhatItCannotDo) {
   MisoParams params;
   params.method = "output_error";

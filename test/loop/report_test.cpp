@@ -120,6 +120,54 @@ TEST_F(Report, MissingCellsOfTheInfluentAreCounted) {
   EXPECT_NE(toTable({summary}).find("3 missing cells"), std::string::npos);
 }
 
+TEST_F(Report, APlantThatCannotBeMovedIsTold) {
+  const LoopFile loop = shortLoop("asp_case1_pi_x", {{"plant.integrator.max_steps", "1"}});
+  const RunRecord record = runLoop(loop);
+  const Summary summary = summarize(loop, record, 0.0);
+  const auto json = nlohmann::json::parse(toJson(summary));
+  EXPECT_EQ(json["complete"], false);
+  EXPECT_EQ(json["failed_samples"], 200);
+  const std::string words = "200 of 200 samples and was held; first sample 0: more integration";
+  EXPECT_NE(toTable({summary}).find(words), std::string::npos) << toTable({summary});
+  writeRun(loop, record, summary, path("failed"));
+  EXPECT_NE(toTable({readSummary(path("failed/summary.json"))}).find(words), std::string::npos);
+}
+
+TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
+  const LoopFile loop = shortLoop("asp_case1_pi_s", {{"actuator.input_upper", "{q_r: 800}"}});
+  RunRecord record = runLoop(loop);
+  for (std::size_t k = 0; k < 200; ++k) {
+    record.samples[k].action.input << (k < 170 ? 700.0 : 800.0);
+    record.samples[k].action.source = ActionSource::kBase;
+  }
+  EXPECT_EQ(remarksOf(summarize(loop, record, 0.0)),
+            std::vector<std::string>{
+                "asp_case1_pi_s: q_r locked at its upper limit over the last 30 of 200 samples"});
+  record.samples[199].action.input << 799.0;  // it came back
+  record.samples[3].action.source = record.samples[4].action.source = ActionSource::kHeld;
+  record.samples[5].action.source = ActionSource::kFallback;
+  record.samples[6].action.source = ActionSource::kClipped;
+  const Summary summary = summarize(loop, record, 0.0);
+  const std::string table = toTable({summary});
+  for (const char* words : {"2 of 200 samples held", "1 of 200 samples on the fallback",
+                            "1 of 200 samples clipped"})
+    EXPECT_NE(table.find(words), std::string::npos) << words << table;
+  EXPECT_EQ(table.find("locked"), std::string::npos) << table;
+  writeRun(loop, record, summary, path("told"));
+  EXPECT_EQ(remarksOf(readSummary(path("told/summary.json"))), remarksOf(summary));
+  EXPECT_FALSE(neverControlled(summary));
+}
+
+TEST_F(Report, TrajectoryHasTheColumnsOfAMatrixOfTheLoopFile) {
+  const LoopFile loop = readLoop("heated_tank");
+  const RunRecord record = runLoop(loop);
+  writeRun(loop, record, summarize(loop, record, 0.0), path("matrix"));
+  const CsvTable table = readCsv(path("matrix/trajectory.csv"));
+  EXPECT_EQ(table.values(359, table.column("T_in")), 8.0);
+  EXPECT_EQ(table.values(0, table.column("T_in")), 15.0);
+  for (const auto& name : table.names) EXPECT_NE(name, "F") << "of the Wood-Berry column";
+}
+
 TEST_F(Report, SourcesAddUpToTheSteps) {
   const LoopFile loop = shortLoop("asp_case1_clp");
   const Summary summary = summarize(loop, runLoop(loop), 0.0);

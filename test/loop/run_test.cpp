@@ -94,6 +94,29 @@ TEST(Run, AStopEndsItEarlyAndSaysSo) {
   EXPECT_FALSE(record.complete);
 }
 
+TEST(Run, APlantThatCannotBeMovedIsNotComplete) {
+  const LoopFile loop = shortLoop("asp_case1_pi_x", {{"plant.integrator.max_steps", "1"}});
+  const RunRecord record = runLoop(loop);
+  EXPECT_EQ(record.samples.size(), 201U);
+  EXPECT_FALSE(record.complete);
+  EXPECT_EQ(record.failed_samples, 200U);
+  EXPECT_NE(record.trouble.find("sample 0: more integration steps"), std::string::npos);
+  for (std::size_t k = 1; k <= 200; ++k)
+    EXPECT_EQ(record.samples[k].state.state, record.samples[0].state.state) << k;
+  EXPECT_TRUE(record.samples[0].state.trouble.empty());
+  EXPECT_EQ(record.samples[200].state.trouble.rfind("sample 199: ", 0), 0U);
+}
+
+// Columns of a matrix of one's own must not be taken for those of the plant it replaces.
+TEST(Run, AMatrixOfTheLoopFileIsThePlantEverywhere) {
+  const LoopFile loop = readLoop("heated_tank");
+  const RunRecord record = runLoop(loop);
+  ASSERT_TRUE(record.complete);
+  EXPECT_NEAR(record.samples.back().measurement.outputs[0], 50.0, 0.05);
+  EXPECT_EQ(record.samples.back().state.disturbances,
+            (Vector(3) << 8.0, 1.0, 1.0).finished());  // T_in and the two gains
+}
+
 TEST(Run, EndlessAndExternalLoopsAreRefused) {
   const LoopFile endless =
       readLoop("asp_offset", {{"sampling.duration_h", "0"}, {"disturbance.commands", "[]"}});

@@ -91,7 +91,70 @@ TEST(DisturbanceCsv, DatesAreDays) {
   params.time_unit = "d";
   EXPECT_EQ(flows(params, 5, 43200.0), (Values{1, 1, 2, 2, 3, 3}));
   params.time_unit = "h";
-  expectWords(errorOf(params), "time_unit d");
+  EXPECT_EQ(flows(params, 5, 43200.0), (Values{1, 1, 2, 2, 3, 3})) << "dates carry their unit";
+}
+
+TEST(DisturbanceCsv, TimesOfIso8601AreRead) {
+  for (const char* text : {"t,q\n2026-03-28 22:00,1\n2026-03-28 23:00,2\n2026-03-29 00:00,3\n",
+                           "t,q\n2026-03-29T00:30:00+01:00,1\n2026-03-29T00:30:00Z,2\n"
+                           "2026-03-28T21:30:00-04:00,3\n"})
+    EXPECT_EQ(flows(flowFrom(text), 5), (Values{1, 1, 2, 2, 3, 3})) << text;
+  expectWords(errorOf(flowFrom("t,q\n29.03.2026 01:00,1\n29.03.2026 02:00,2\n")),
+              ":2: column 't': expected a number, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '29.03.");
+}
+
+// Clocks go forward at two in the morning: local times lack an hour, a logger that was off two days.
+TEST(DisturbanceCsv, AHoleInTimeIsMissingRows) {
+  std::string text = "t,q\n";
+  for (int hour = 0; hour < 24; ++hour)
+    if (hour != 2)
+      text += "2026-03-29 " + std::to_string(hour / 10) + std::to_string(hour % 10) + ":00," +
+              std::to_string(100 + 10 * hour) + "\n";
+  CsvDisturbanceParams params = flowFrom(text);
+  expectWords(errorOf(params, 4), ":3: column 'q': the time jumps after this row: expected no missing");
+  params.missing = "hold";
+  EXPECT_EQ(flows(params, 3, 3600.0), (Values{100, 110, 110, 130}));
+  params.missing = "interpolate";
+  EXPECT_EQ(flows(params, 3, 3600.0), (Values{100, 110, 120, 130}));
+  EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 3).repaired, 1U);
+  params = flowFrom("t,q\n0,1\n1,2\n2,3\n50,4\n51,5\n");
+  params.missing = "hold";
+  EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 51).repaired, 47U);
+  expectWords(errorOf(flowFrom("t,q\n0,1\n1,2\n2,3\n1e9,4\n")), "rows (another unit?)");
+}
+
+TEST(DisturbanceCsv, OtherSeparatorsDecimalsAndMissingValues) {
+  CsvDisturbanceParams params =
+      flowFrom("t[h];q;w\r\n0,0;1,5;Bad\r\n1,0;-999;null\r\n2,0;3,5;#N/A\r\n");
+  expectWords(errorOf(params), "is it semicolon?");
+  params.format.separator = ';';
+  expectWords(errorOf(params), "is it comma?");
+  params.format.decimal = ',';
+  params.missing = "hold";
+  EXPECT_EQ(flows(params, 2, 3600.0), (Values{1.5, -999, 3.5}));
+  params.format.missing_values = {"-999", "Bad", "null", "#N/A"};
+  EXPECT_EQ(flows(params, 2, 3600.0), (Values{1.5, 1.5, 3.5}));
+  CsvDisturbanceParams tabs = flowFrom("t\tq\n0\t1\n1\t2\n");
+  tabs.format.separator = '\t';
+  EXPECT_EQ(flows(tabs, 1, 3600.0), (Values{1, 2}));
+}
+
+TEST(DisturbanceCsv, ImplausibleCellsAreErrorsClippedHeldOrInterpolatedAndCounted) {
+  CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,9999\n2,300\n3,-5\n4,\n5,500\n");
+  params.missing = "hold";
+  params.channels[0].lower = 0.0;
+  params.channels[0].upper = 1000.0;
+  expectWords(errorOf(params, 4), ":3: column 'q': expected a value from 0 to 1000");
+  expectWords(errorOf(params, 4), "disturbance.csv.channels.q_i.implausible");
+  params.channels[0].implausible = Implausible::kClip;
+  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 1000, 300, 0, 0, 500}));
+  params.channels[0].implausible = Implausible::kHold;
+  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 100, 300, 300, 300, 500}));
+  params.channels[0].implausible = Implausible::kInterpolate;
+  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 200, 300, 300 + 200.0 / 3.0, 300, 500}));
+  const DisturbanceRecord record = readDisturbances(params, kNames, kNominal, 3600.0, 5);
+  EXPECT_EQ(record.implausible, 2U);
+  EXPECT_EQ(record.repaired, 1U);
 }
 
 // 15 minutes are 0.010416667 d in the file: 29 microseconds late for the sample, which must not see
@@ -109,12 +172,13 @@ TEST(DisturbanceCsv, MissingCellsAreHeldInterpolatedAndCounted) {
   params.missing = "hold";
   EXPECT_EQ(flows(params, 6, 3600.0), (Values{100, 100, 100, 100, 100, 500, 500}));
   params.missing = "interpolate";
-  EXPECT_EQ(flows(params, 6, 3600.0), (Values{100, 100, 200, 300, 300, 500, 500}));
-  EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 6).repaired, 4U);
+  EXPECT_EQ(flows(params, 6, 3600.0), (Values{100, 100, 200, 300, 400, 500, 500}))
+      << "the row at 4 h is missing as well";
+  EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 6).repaired, 5U);
 }
 
 TEST(DisturbanceCsv, MissingCellsAreErrorsUnlessAllowed) {
-  expectWords(errorOf(flowFrom("t,q\n0,1\n1,\n2,3\n")), "column 'q', row 2");
+  expectWords(errorOf(flowFrom("t,q\n0,1\n1,\n2,3\n")), ":3: column 'q': expected no missing cells");
   CsvDisturbanceParams nothing = flowFrom("t,q\n0,\n1,\n");
   nothing.missing = "hold";
   expectWords(errorOf(nothing), "at least one number");
@@ -140,10 +204,10 @@ TEST(DisturbanceCsv, ALastRowEqualToTheFirstClosesThePeriod) {
 
 TEST(DisturbanceCsv, TimesMustBeThereAndIncrease) {
   expectWords(errorOf(flowFrom("t,q\n0,1\n1,2\n1,3\n")),
-              "row 3: expected increasing times, got 1 after 1");
+              ":4: column 't': expected increasing times, got 1 after 1");
   expectWords(errorOf(flowFrom("t,q\n0,1\n2,2\n1,3\n")),
-              "row 3: expected increasing times, got 1 after 2");
-  expectWords(errorOf(flowFrom("t,q\n0,1\n,2\n")), "row 2: expected a time");
+              ":4: column 't': expected increasing times, got 1 after 2");
+  expectWords(errorOf(flowFrom("t,q\n0,1\n,2\n")), ":3: column 't': expected a time");
   expectWords(errorOf(flowFrom("t,q\n0,1\n")), "at least two rows");
 }
 
@@ -160,10 +224,10 @@ TEST(DisturbanceCsv, BadNamesAndChoicesAreErrors) {
               "column 'Q': expected one of t, q");
   expectWords(spoiled([](P& p) { p.channels[0].name = "x"; }), "'x': expected one of q_i, s_i");
   expectWords(spoiled([](P& p) { p.channels.push_back(p.channels[0]); }), "only once");
-  expectWords(spoiled([](P& p) { p.time_unit = "hours"; }), "disturbance.time_unit");
-  expectWords(spoiled([](P& p) { p.missing = "skip"; }), "disturbance.missing");
-  expectWords(spoiled([](P& p) { p.interpolation = "cubic"; }), "disturbance.interpolation");
-  expectWords(spoiled([](P& p) { p.end = "stop"; }), "disturbance.end");
+  expectWords(spoiled([](P& p) { p.time_unit = "hours"; }), "disturbance.csv.time_unit");
+  expectWords(spoiled([](P& p) { p.missing = "skip"; }), "disturbance.csv.missing");
+  expectWords(spoiled([](P& p) { p.interpolation = "cubic"; }), "disturbance.csv.interpolation");
+  expectWords(spoiled([](P& p) { p.end = "stop"; }), "disturbance.csv.end");
   expectWords(spoiled([](P& p) { p.channels[0].scale = NAN; }), "finite scale");
   expectWords(errorOf(flowFrom(kThreeHours), 0), "duration");
 }

@@ -46,6 +46,21 @@ TEST(SimulationCommands, AStampMeansTheFirstSampleNotBeforeIt) {
   }
 }
 
+// k Ts in hours is no binary number for most k: no sample may be lost by that.
+TEST(SimulationCommands, AScheduledTimeOfASampleIsThatSample) {
+  for (const double sample_time_s : {360.0, 1.0 / 3.0}) {
+    SimulationParams p = sludgeParams(3000);
+    p.sample_time_s = sample_time_s;
+    for (std::uint32_t k = 1; k <= 3000; k += 7)
+      p.disturbance_commands.push_back({k * sample_time_s / 3600.0, command("q_i", 1000.0 + k)});
+    Simulation simulation(p);
+    for (std::uint32_t k = 1; k <= 100; ++k) {
+      const double last = 1000.0 + (k - (k - 1) % 7);
+      EXPECT_EQ(simulation.advance(kU).disturbances[0], last) << sample_time_s << " " << k;
+    }
+  }
+}
+
 TEST(SimulationCommands, ADisturbanceActsOnThePlantFromItsSampleOn) {
   Simulation told(sludgeParams());
   told.command(command("q_i", 1900.0));

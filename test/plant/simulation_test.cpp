@@ -216,9 +216,11 @@ TEST(Simulation, IntegratorTroubleHoldsTheStateAndSaysWhy) {
   EXPECT_EQ(m.header.step, 1U);
   EXPECT_EQ(m.outputs, p.initial_state.head(2));
   EXPECT_NE(simulation.trouble().find("sample 0"), std::string::npos) << simulation.trouble();
+  EXPECT_EQ(simulation.state().trouble, simulation.trouble());
   EXPECT_NE(simulation.trouble().find("max_steps"), std::string::npos) << simulation.trouble();
   simulation.reset(2);
   EXPECT_EQ(simulation.trouble(), "");
+  EXPECT_EQ(simulation.state().trouble, "");
 }
 
 TEST(Simulation, BadParamsAreErrorsThatNameTheField) {

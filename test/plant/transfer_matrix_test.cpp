@@ -51,6 +51,18 @@ TEST(TransferMatrix, FollowsTheStepResponseOnPaperForAnyDeadTime) {
   }
 }
 
+// The slower lag alone is left when the other one is ten thousand times as fast.
+TEST(TransferMatrix, StaysFiniteForLagsOfAnyRatio) {
+  for (const auto& [tau, tau_2] : {std::pair{0.001, 10.0}, std::pair{10.0, 0.001}}) {
+    const auto y = answer(single(2.0, tau, 0.0, tau_2), std::vector<double>(40, 1.0), 1.0);
+    for (std::size_t k = 0; k < y.size(); ++k) {
+      const double t = static_cast<double>(k + 1);
+      const double paper = 2.0 * (1.0 - (10.0 * std::exp(-t / 10.0)) / (10.0 - 0.001));
+      EXPECT_NEAR(y[k], paper, 1e-12) << tau << " " << k;
+    }
+  }
+}
+
 TEST(TransferMatrix, FollowsTheSecondOrderStepResponseAlsoWithEqualLags) {
   const double theta = 0.7;
   for (const double tau_2 : {1.0, 4.0, 4.0 + 1e-9, 9.0}) {

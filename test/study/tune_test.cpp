@@ -53,6 +53,22 @@ TEST_F(Tune, ImprovesTheScoreOnScenariosItHasNotSeen) {
   }
 }
 
+TEST_F(Tune, APlantThatCannotBeMovedIsAFailureWithItsSample) {
+  const std::string stuck = write("stuck.yaml",
+                                  "extends: asp_case1_pi_x\nsampling: {duration_h: 4}\n"
+                                  "plant: {integrator: {max_steps: 1}}\n");
+  const TuningObjective judge(stuck,
+                              parseTuning("parameters:\n"
+                                          "  - {key: controller.loops.0.kp, lower: 0.1, upper: 5}\n"
+                                          "fitness: {terms: [{index: ise}]}\n"
+                                          "scenarios: {seeds: [1]}\n",
+                                          "t.yaml"),
+                              {}, 1);
+  EXPECT_EQ(judge.untouched().failures, 1);
+  EXPECT_NE(judge.untouched().trouble.find("sample 0: more integration"), std::string::npos)
+      << judge.untouched().trouble;
+}
+
 TEST_F(Tune, GivesTheSameBitsOnOneTwoAndFourThreads) {
   for (const auto& method : searchMethods()) {
     const TuneResult one = tune(objective(lagTuning(), 1), search(method));
@@ -98,6 +114,29 @@ TEST_F(Tune, AStateOfAnotherTuningIsRefused) {
   expectWords(errorOf([&] { tune(changed, search(), options); }), {"this tuning"});
   write("state.json", "{]");
   expectWords(errorOf([&] { tune(judge, search(), options); }), {"state of a tuning"});
+}
+
+// A model or record that was changed in the meantime must not be mixed with what was judged before.
+TEST_F(Tune, TheFingerprintCoversWhatTheNamedFilesHold) {
+  const auto fingerprint = [&](double flow, double gain) {
+    write("load.csv", "t[h],q\n0,1300\n1," + std::to_string(flow) + "\n2,1300\n");
+    std::ifstream shipped(std::string(FMBPC_SOURCE_DIR) + "/config/model/fm_1.yaml");
+    write("own.yaml", std::string((std::istreambuf_iterator<char>(shipped)), {}) + "# " +
+                          std::to_string(gain) + "\n");
+    const std::string loop = write(
+        "load.yaml",
+        "extends: asp_case1\nsampling: {duration_h: 2}\nmodel: {file: own.yaml}\n"
+        "disturbance:\n  source: csv\n  csv: {file: load.csv, time_column: t, end: hold,\n"
+        "        channels: {q_i: {column: q}}}\n");
+    const std::string tuning =
+        "parameters: [{key: controller.reference_pole.x, lower: 0.5, upper: 0.9}]\n"
+        "fitness: {terms: [{index: ise}]}\n";
+    return TuningObjective(loop, parseTuning(tuning, "t.yaml"), {}, 1).fingerprint();
+  };
+  const std::string first = fingerprint(1400.0, 1.0);
+  EXPECT_EQ(fingerprint(1400.0, 1.0), first);
+  EXPECT_NE(fingerprint(1401.0, 1.0), first);
+  EXPECT_NE(fingerprint(1400.0, 2.0), first);
 }
 
 TEST_F(Tune, TheTunedFileRunsWithTheCostThatWasFound) {

@@ -46,6 +46,42 @@ TEST_F(Tool, MistakesAreOneLineOnStandardError) {
   }
 }
 
+TEST_F(Tool, ARunWhosePlantCannotBeMovedFails) {
+  const std::string stuck = "run asp_case1_pi_x --set plant.integrator.max_steps=1" + kShort;
+  const Outcome outcome = tool(stuck, true);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.printed.find("first sample 0: more integration steps"), std::string::npos)
+      << outcome.printed;
+  EXPECT_EQ(nlohmann::json::parse(tool(stuck + " --json").printed)["complete"], false);
+}
+
+TEST_F(Tool, ARunThatIsHeldThroughoutFails) {
+  const std::string held =
+      "run column_clip --set controller.coincidence_steps=1 --set sampling.duration_h=1";
+  const Outcome outcome = tool(held);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.printed.find("60 of 60 samples held"), std::string::npos) << outcome.printed;
+}
+
+TEST_F(Tool, StabilityOfAMatrixOfTheLoopFileIsOfThatPlant) {
+  const Outcome outcome = tool("stability heated_tank --json");
+  ASSERT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.printed.find("heat"), std::string::npos);
+  EXPECT_EQ(outcome.printed.find("y_D"), std::string::npos) << outcome.printed;
+}
+
+// Steady states of a linear plant lie on a straight line: no fold, no turning point.
+TEST_F(Tool, StabilityOfALinearPlantHasNoTurningPoints) {
+  for (const char* loop : {"column_imc", "heated_tank"}) {
+    const Outcome outcome = tool(std::string("stability --json ") + loop);
+    ASSERT_EQ(outcome.code, 0) << loop;
+    const auto states = nlohmann::json::parse(outcome.printed)["steady_states"];
+    ASSERT_EQ(states["branches"].size(), 1U) << loop;
+    EXPECT_EQ(states["branches"][0]["special"].size(), 0U) << loop;
+    EXPECT_GE(states["branches"][0]["points"].size(), 2U) << loop;
+  }
+}
+
 TEST_F(Tool, ResolvePrintsTheTextThatNodesRead) {
   const Outcome outcome = tool("resolve asp_case1_pi_x");
   EXPECT_EQ(outcome.code, 0);

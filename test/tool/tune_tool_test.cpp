@@ -72,6 +72,39 @@ TEST_F(TuneTool, ResumesToTheSameTuning) {
   EXPECT_EQ(read(path("part") + "/history.csv"), read(path("whole") + "/history.csv"));
 }
 
+// The error grows with both gains and the plant is tuned where small gains are best: kp ends at its
+// upper bound; on the held-out step the other way round it is worse.
+TEST_F(TuneTool, SaysWhichParametersStandAtABoundAndThatHeldOutCostGotWorse) {
+  write("t.yaml",
+        "parameters:\n  - {key: controller.loops.0.kp, lower: 0.1, upper: 0.3}\n"
+        "fitness: {terms: [{index: ise, output: y}]}\n"
+        "scenarios: {seeds: [1]}\n"
+        "held_out: [{name: fast, set: {controller.loops.0.ki_per_h: 60}}]\n"
+        "search: {population: 8, evaluations: 40}\n");
+  const auto tuned = json("--out " + path("out"));
+  ASSERT_EQ(tuned["parameters"][0]["at_bound"], "upper");
+  const std::string told = tool("tune " + files() + " --no-plot").printed;
+  EXPECT_NE(told.find("controller.loops.0.kp ends at the upper bound of its range, 0.3"),
+            std::string::npos)
+      << told;
+  const bool worse = tuned["held_out"]["after"]["cost"] > tuned["held_out"]["before"]["cost"];
+  EXPECT_EQ(worse, told.find("held-out scenarios got worse") != std::string::npos) << told;
+  std::ifstream written(path("out") + "/lag_tuned.yaml");
+  const std::string text((std::istreambuf_iterator<char>(written)), {});
+  EXPECT_NE(text.find("# controller.loops.0.kp ends at the upper bound"), std::string::npos) << text;
+}
+
+TEST_F(TuneTool, SaysThatHeldOutCostGotWorse) {
+  write("t.yaml",
+        "parameters:\n  - {key: controller.loops.0.kp, lower: 0.1, upper: 5}\n"
+        "fitness: {terms: [{index: effort, input: u}]}\n"
+        "held_out: [{name: down, set: {setpoint.initial.y: 0.01, setpoint.schedule: [], noise.std.y: 0.5}}]\n"
+        "search: {population: 8, evaluations: 24}\n");
+  const auto tuned = json("");
+  const double before = tuned["held_out"]["before"]["cost"], after = tuned["held_out"]["after"]["cost"];
+  EXPECT_EQ(tuned["remarks"].dump().find("got worse") != std::string::npos, after > before);
+}
+
 TEST_F(TuneTool, CtrlCSavesAndSaysHowToGoOn) {
   const std::string out = path("out");
   // The interrupt comes when the first generation stands in the state file.

@@ -121,6 +121,7 @@ struct PlantState {
   Vector disturbances;             ///< n_d, the true ones
   std::uint32_t actuator_clips{};  ///< how many inputs of u(k-1) the actuator had to clip
   bool input_missing{};            ///< no action in time for u(k-1): held or fallback
+  std::string trouble;             ///< why the plant did not move with u(k-1), empty if it did
 };
 
 /// How a value sent by a person acts on a named signal.

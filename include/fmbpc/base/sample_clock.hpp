@@ -17,6 +17,9 @@ class SampleClock {
   std::int64_t timeAt(std::uint32_t step) const { return start_ns_ + step * sample_ns_; }
   /// First step whose time is not before `time_ns` (0 before the start, 2^32 - 1 at most).
   std::uint32_t firstStepAt(std::int64_t time_ns) const;
+  /// The same for a time [h] that a person wrote after the start: counted in samples, so that k Ts,
+  /// rounded to a decimal, is sample k. A time within a microsecond of a sample is meant to be it.
+  std::uint32_t firstStepAtHours(double time_h) const;
   double hoursAt(std::uint32_t step) const;  ///< time since sample 0 [h]
   double sampleTime() const { return sample_time_s_; }
   std::int64_t startNanoseconds() const { return start_ns_; }

@@ -1,6 +1,7 @@
 // Small helpers for messages and files: lists of names, numbers that survive a round trip.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,8 @@ namespace fpc {
 std::string join(const std::vector<std::string>& words, const std::string& separator = ", ");
 /// Shortest decimal text that reads back to the same double.
 std::string exactText(double value);
+/// The finite decimal number that the whole text is, "+1.5e3"; empty if it is none.
+std::optional<double> numberOf(const std::string& text);
 /// Four significant digits, for people; "-" for NaN.
 std::string shortText(double value);
 /// Rows of equally many cells, in lines: first column left, the others right aligned.

@@ -76,7 +76,6 @@ class SetpointSource {
   std::uint32_t recipeStep(std::uint32_t step) const;
   void scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const;
   std::uint32_t fileStep(std::int64_t time_ns) const;
-  std::uint32_t scheduleStep(double time_h) const;
   std::uint32_t stampStep(std::int64_t time_ns) const;
   void acceptWaiting(std::uint32_t step);
   void playParams();

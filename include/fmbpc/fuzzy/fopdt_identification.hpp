@@ -58,6 +58,7 @@ class MisoEstimator {
  private:
   Vector numerator(int input) const;
   bool moved(VectorRef input);
+  void remember(VectorRef input);
 
   int n_u_;
   double sample_time_min_;
@@ -66,6 +67,7 @@ class MisoEstimator {
   Vector regressor_, previous_;
   double model_output_{}, residual_variance_{}, weight_{};
   int samples_{}, still_{};
+  int unknown_{};  // samples over which a value that was not finite is still remembered
 };
 
 }  // namespace fpc

@@ -6,15 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/column_repair.hpp"
+#include "fmbpc/base/csv.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
 
 namespace fpc {
 
 /// A signal of the process and where its values are.
 struct StructureSignal {
-  SignalInfo
-      info;  ///< lower, upper: what is plausible; values outside mean a wrong unit and are an error
+  SignalInfo info;     ///< lower, upper: what is plausible; values outside may mean a wrong unit
   std::string column;  ///< of the data file
+  Implausible implausible{Implausible::kError};  ///< what becomes of values outside
 };
 
 /// How one output depends on the past. Lags are seen from the prediction of k + 1 (see Regressor).
@@ -67,8 +69,6 @@ struct ConsequentParams {
   double one_step_weight{1.0};  ///< of one-step errors beside free-run errors in that fit
 };
 
-enum class MissingCells { kError, kDrop, kInterpolate };
-
 /// What may be done to bad data; everything done is counted and told.
 struct RepairParams {
   MissingCells missing{MissingCells::kError};
@@ -87,6 +87,7 @@ struct Structure {
   double sample_time_s{};
   std::string time_column;     ///< empty: rows are taken to be equally spaced
   std::string time_unit{"s"};  ///< s, min, h or d
+  CsvFormat csv;               ///< how data files are written
   std::vector<StructureSignal> outputs, inputs, disturbances;
   std::vector<OutputStructure> submodels;  ///< one per output
   PartitionParams partition;

@@ -29,7 +29,9 @@ struct RunRecord {
   std::vector<std::string> states,
       state_units;                    ///< names of PlantState::state, empty for an external plant
   std::vector<SampleRecord> samples;  ///< index = step
-  bool complete{false};               ///< the final sample came and nothing is missing
+  bool complete{false};  ///< the final sample came, nothing is missing, and the plant moved as asked
+  std::uint32_t failed_samples{};  ///< samples over which the plant could not be moved and was held
+  std::string trouble;             ///< of the first of them: "sample 17: REASON"
 };
 
 /// Collects by step; order of arrival does not matter. A new run_id starts over.
@@ -46,7 +48,7 @@ class Recorder {
   void addBase(const ControlAction& a);
   void addAction(const ControlAction& a);
   void add(const SolverReport& r);
-  bool complete() const;  ///< final measurement there and no gaps
+  bool complete() const;  ///< final measurement there and no gaps; the plant may have failed
   bool finalSeen() const;
   /// "sample 17: no control_action" for every hole, at most `limit` lines.
   std::vector<std::string> gaps(std::size_t limit = 10) const;

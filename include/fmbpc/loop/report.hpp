@@ -20,10 +20,17 @@ struct WindowIndices {
   std::uint64_t samples{};
 };
 
+/// An input that stood at one of its limits from some sample to the end of the run.
+struct LockUp {
+  std::string input;
+  bool upper{};
+  std::uint32_t samples{};
+};
+
 struct Summary {
   std::string loop;
   std::string title;
-  bool complete{};        ///< the final sample came and nothing is missing
+  bool complete{};        ///< the final sample came, nothing is missing, the plant moved as asked
   std::uint32_t steps{};  ///< number of actions
   double wall_s{};
   std::vector<std::string> output_names, input_names;
@@ -39,7 +46,11 @@ struct Summary {
   std::vector<std::uint64_t> sources;  ///< count of actions per ActionSource (index = value)
   std::uint64_t
       repaired_cells{};  ///< missing cells of the influent record that were held or interpolated
-  InputLimits limits;    ///< of the inputs
+  std::uint64_t implausible_cells{};  ///< of that record, clipped or filled
+  std::uint32_t failed_samples{};     ///< samples over which the plant could not be moved
+  std::string trouble;             ///< of the first of them, with its number
+  std::vector<LockUp> locked;      ///< of at least a tenth of the run and ten samples
+  InputLimits limits;              ///< of the inputs
   std::vector<double> output_lower, output_upper;  ///< limits behind output_violations
 };
 
@@ -47,6 +58,13 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s);
 std::string toJson(const Summary& summary);  ///< keys of README, one object
 /// What toTable() needs of a summary.json. @throws InputError naming the file.
 Summary readSummary(const std::string& file);
+/// One line about a plant that could not be moved, empty if it could at every sample.
+std::string troubleOf(const Summary& summary);
+/// True if every action was held or the fallback.
+bool neverControlled(const Summary& summary);
+/// Everything that did not go as asked, a line each, beginning with the loop's name: samples failed,
+/// held, on the fallback, clipped, locked, cells filled.
+std::vector<std::string> remarksOf(const Summary& summary);
 std::string toTable(const std::vector<Summary>& summaries);
 /// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot
 /// be written.

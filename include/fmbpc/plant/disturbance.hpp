@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/column_repair.hpp"
+#include "fmbpc/base/csv.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {
@@ -12,7 +15,8 @@ namespace fpc {
 /// A disturbance record on the loop's own samples: column k of `values` acts on [t_k, t_k + Ts).
 struct DisturbanceRecord {
   Matrix values;             ///< n_d (samples + 1)
-  std::uint64_t repaired{};  ///< missing cells that were held or interpolated
+  std::uint64_t repaired{};     ///< missing cells that were held or interpolated
+  std::uint64_t implausible{};  ///< cells outside `plausible` that were clipped, held, interpolated
 };
 
 /// One channel of the pattern: [0,1]-scaled shape raised to the power that gives `mean`, mapped to
@@ -46,12 +50,16 @@ struct CsvChannel {
   double scale{1.0};
   double offset{0.0};
   double mean{};  ///< used if not 0
+  double lower{-std::numeric_limits<double>::infinity()},
+      upper{std::numeric_limits<double>::infinity()};  ///< plausible cells, in the file's unit
+  Implausible implausible{Implausible::kError};        ///< what becomes of others; not kDrop
 };
 
 struct CsvDisturbanceParams {
   std::string file;
   std::string time_column;
-  std::string time_unit{"h"};  ///< s, min, h, d; a column of dates needs d
+  std::string time_unit{"h"};  ///< s, min, h, d; dates and times of ISO 8601 carry their own
+  CsvFormat format;
   std::string missing{
       "error"};  ///< error, hold, interpolate (at the ends: the nearest measured cell)
   std::string interpolation{"hold"};  ///< hold (zero order) or linear
@@ -62,9 +70,10 @@ struct CsvDisturbanceParams {
 /// Reads and resamples a record; its first time is the loop's start. A row acts from its time on
 /// (early by at most 1e-4 of an interval, since files round their times); the last one as long as
 /// the row before it. With `end: repeat` a last row that equals the first one in all channels only
-/// closes the period. `repaired` counts the missing cells of the channels' columns in the whole
-/// file.
-/// @throws InputError naming file and column: unknown column, times not increasing, missing cells
+/// closes the period. Where the times jump by more than one and a half of their median interval,
+/// rows are missing: cells of their own, treated as `missing` says. `repaired` counts the missing
+/// cells of the channels' columns in the whole file, `implausible` those outside a channel's range.
+/// @throws InputError naming file, line and column: unknown column, times not increasing, missing cells
 /// where not allowed, nothing but missing cells, record too short, samples = 0.
 DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
                                    const std::vector<std::string>& names, const Vector& nominal,

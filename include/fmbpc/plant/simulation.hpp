@@ -20,7 +20,9 @@
 
 namespace fpc {
 
-/// A command of the loop file, at a time after the start.
+inline constexpr double kLatestCommandH = 1e6;
+
+/// A command of the loop file, at a time after the start, at most kLatestCommandH.
 struct ScheduledCommand {
   double time_h{};
   Command command;
@@ -85,8 +87,8 @@ class Simulation {
   /// Commands that took effect with the present sample.
   const std::vector<CommandEffect>& effects() const { return effects_; }
 
-  /// Last integration problem since the reset in words, empty if none; the state was held over that
-  /// sample.
+  /// Last sample since the reset at which the plant could not be moved, with the reason; empty if
+  /// none. The state was held over it, and state().trouble says so at the sample after it.
   const std::string& trouble() const { return trouble_; }
   /// Replaces the transport delay of one output (from the tf tree), before the first advance().
   /// @throws InputError later, and for an unusable delay.

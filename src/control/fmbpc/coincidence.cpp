@@ -37,6 +37,8 @@ void CoincidenceGains::predict(const AffineModel& model, int horizon, VectorRef 
     free_.swap(next_);
   }
   effect_.noalias() = sum_ * model.B;
+  // An effect that is nothing but the rounding of what cancelled is none.
+  effect_ = (effect_.array().abs() > kSingular * effect_size_.array()).select(effect_, 0.0);
 }
 
 bool CoincidenceGains::computePublished(const AffineModel& model, int horizon) {
@@ -45,7 +47,7 @@ bool CoincidenceGains::computePublished(const AffineModel& model, int horizon) {
   const double m2 = effect_(last, 0);
   gain_.setZero();
   move_gain_.setZero();
-  if (!std::isfinite(m2) || std::abs(m2) <= kSingular * effect_size_(last, 0)) return false;
+  if (!std::isfinite(m2) || m2 == 0.0) return false;
   gain_(0, last) = 1.0 / m2;
   return free_.allFinite() && sum_.allFinite();
 }

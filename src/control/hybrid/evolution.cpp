@@ -157,9 +157,11 @@ int HybridEvolution::extremeChoice(double sign) {
   return isExtreme(best, sign) ? best : -1;
 }
 
-// On a grid: no choice leads further, and the map grows with every output.
+// On a grid: no choice leads further, and the map grows with every output. Three points along each
+// of many outputs are more than can be tried: then nothing is claimed.
 bool HybridEvolution::isExtreme(int choice, double sign) {
   const auto n_y = static_cast<std::size_t>(model_.stateSize());
+  if (std::pow(3.0, static_cast<double>(n_y)) > kGridPoints) return false;
   const int n =
       std::max(3, static_cast<int>(std::pow(kGridPoints, 1.0 / static_cast<double>(n_y))));
   std::vector<int> index(n_y, 0);

@@ -14,14 +14,16 @@ struct Done {
   Summary summary;
 };
 
+/// A run that throws or does not end well leaves nothing behind.
 const Done& done(const std::string& loop, const Overrides& overrides) {
   static std::map<std::pair<std::string, Overrides>, Done> all;
-  const auto [entry, fresh] = all.try_emplace({loop, overrides});
-  if (!fresh) return entry->second;
+  const auto found = all.find({loop, overrides});
+  if (found != all.end()) return found->second;
   const LoopFile file = readLoop(loop, overrides);
-  entry->second.record = runLoop(file);
-  entry->second.summary = summarize(file, entry->second.record, 0.0);
-  return entry->second;
+  Done run{runLoop(file), {}};
+  run.summary = summarize(file, run.record, 0.0);
+  require(run.record.complete, loop, "a run to the end (" + troubleOf(run.summary) + ")");
+  return all[{loop, overrides}] = std::move(run);
 }
 
 }  // namespace

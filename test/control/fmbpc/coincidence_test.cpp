@@ -86,6 +86,22 @@ TEST(CoincidenceGains, EffectsThatCancelCountAsNone) {
   EXPECT_FALSE(gains.computePublished(model, 6));  // 6 * 0.1 - 15 * 0.1 * 0.4 = 0
 }
 
+// y(k+1) = 0.1 u(k) + 0.2 u(k-1) - 0.3 u(k-2) has no effect after 3 samples; a gain of 1e16 is rounding.
+TEST(CoincidenceGains, BothLawsRefuseWhatCancels) {
+  AffineModel model(3, 1, 1);
+  model.A << 0.0, 0.2, -0.3, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0;  // y, u(k-1), u(k-2)
+  model.B << 0.1, 1.0, 0.0;
+  model.C << 1.0, 0.0, 0.0;
+  CoincidenceGains gains(3, 1, 1);
+  for (const int horizon : {3, 4, 7}) {
+    EXPECT_FALSE(gains.computePublished(model, horizon)) << horizon;
+    EXPECT_FALSE(gains.computeWeighted(model, horizon, Vector::Ones(1), Vector::Zero(1)));
+    ASSERT_TRUE(gains.computeWeighted(model, horizon, Vector::Ones(1), Vector::Ones(1)));
+    EXPECT_EQ(gains.gain()(0, 0), 0.0) << "no effect, then the input rests";
+  }
+  EXPECT_TRUE(gains.computeWeighted(model, 2, Vector::Ones(1), Vector::Zero(1)));
+}
+
 TEST(CoincidenceGains, TwoInputsThatDoTheSameAreSingularWithoutMoveWeight) {
   AffineModel model(1, 2, 1);
   model.A << 0.9;

@@ -1,0 +1,79 @@
+// Key `disturbance.csv`: a user's record, how it is written, and what becomes of bad cells.
+#include <algorithm>
+
+#include "config/read.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+void readPlausible(YamlSection& section, CsvChannel& channel) {
+  std::vector<double> range;
+  std::string how = "error";
+  section.numbers("plausible", range, kFinite);
+  section.oneOf("implausible", how, {"error", "clip", "hold", "interpolate"});
+  channel.implausible = how == "clip"          ? Implausible::kClip
+                        : how == "hold"        ? Implausible::kHold
+                        : how == "interpolate" ? Implausible::kInterpolate
+                                               : Implausible::kError;
+  if (!section.has("plausible")) {
+    if (section.has("implausible")) section.fail("implausible", "the key plausible with it");
+    return;
+  }
+  if (range.size() != 2 || !(range[0] < range[1]))
+    section.fail("plausible", "[lower, upper] with lower < upper");
+  channel.lower = range[0];
+  channel.upper = range[1];
+}
+
+void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
+                     const std::vector<std::string>& names) {
+  YamlSection channels = section.section("channels");
+  for (const auto& name : names) {
+    channels.markRead(name);
+    if (!channels.has(name)) continue;
+    YamlSection channel = channels.section(name);
+    CsvChannel value;
+    value.name = name;
+    need(channel, "column", "the name of a column");
+    channel.text("column", value.column);
+    channel.number("scale", value.scale, kFinite);
+    channel.number("offset", value.offset, kFinite);
+    channel.number("mean", value.mean, kFinite);
+    readPlausible(channel, value);
+    if (channel.has("mean") && (channel.has("scale") || channel.has("offset")))
+      channel.fail("mean", "either mean, or scale and offset");
+    channel.finish();
+    params.channels.push_back(std::move(value));
+  }
+  channels.finish();
+}
+
+}  // namespace
+
+void readCsvFormat(YamlSection& section, CsvFormat& format) {
+  std::string separator(1, format.separator), decimal(1, format.decimal);
+  section.text("separator", separator);
+  section.text("decimal", decimal);
+  section.names("missing_values", format.missing_values);
+  checked(section, [&] {
+    format.separator = separatorOf(separator);
+    format.decimal = decimalOf(decimal);
+    format.validate();
+  });
+}
+
+void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
+                    const std::vector<std::string>& names) {
+  section.text("file", params.file);
+  section.text("time_column", params.time_column);
+  readCsvFormat(section, params.format);
+  section.oneOf("time_unit", params.time_unit, {"s", "min", "h", "d"});
+  section.oneOf("missing", params.missing, {"error", "hold", "interpolate"});
+  section.oneOf("interpolation", params.interpolation, {"hold", "linear"});
+  section.oneOf("end", params.end, {"error", "hold", "repeat"});
+  readCsvChannels(section, params, names);
+  section.finish();
+}
+
+}  // namespace fpc

@@ -1,0 +1,83 @@
+#include "plant/csv_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+namespace {
+
+double secondsOf(const std::string& unit) {
+  static const std::map<std::string, double> units = {
+      {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}};
+  const auto found = units.find(unit);
+  require(found != units.end(), "disturbance.csv.time_unit", "one of s, min, h, d, got '" + unit + "'");
+  return found->second;
+}
+
+constexpr double kHole = 1.5;      // intervals: longer ones have rows missing
+constexpr double kMostRows = 1e7;  // with those that are missing
+
+/// Seconds since the first row.
+std::vector<double> timesOf(const CsvTable& table, const std::string& time_column,
+                            const std::string& time_unit) {
+  const Eigen::Index column = table.column(time_column);
+  const auto index = static_cast<std::size_t>(column);
+  const double unit_s = secondsOf(table.is_date[index] ? "d" : time_unit);
+  const auto& cells = table.values.col(column);
+  const std::string& text = table.texts[index];
+  std::vector<double> times;
+  for (Eigen::Index r = 0; r < table.rows(); ++r) {
+    const std::string row = table.at(r, column);
+    require(!std::isnan(cells[r]), row,
+            text.empty() ? "a time, the cell is missing"
+                         : "a number, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
+    const double time = (cells[r] - cells[0]) * unit_s;
+    require(times.empty() || time > times.back(), row,
+            "increasing times, got " + exactText(cells[r]) + " after " +
+                exactText(cells[std::max<Eigen::Index>(r - 1, 0)]));
+    times.push_back(time);
+  }
+  require(times.size() >= 2, table.file + ": column '" + time_column + "'",
+          "at least two rows");
+  return times;
+}
+
+double medianInterval(const std::vector<double>& times) {
+  std::vector<double> intervals;
+  for (std::size_t r = 1; r < times.size(); ++r) intervals.push_back(times[r] - times[r - 1]);
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
+}  // namespace
+
+CsvRows csvRows(const CsvTable& table, const std::string& time_column,
+                            const std::string& time_unit) {
+  const std::vector<double> times = timesOf(table, time_column, time_unit);
+  const double interval = medianInterval(times);
+  CsvRows rows;
+  for (std::size_t r = 0; r < times.size(); ++r) {
+    const double hole = r == 0 ? 0.0 : times[r] - times[r - 1];
+    const double lacking = hole > kHole * interval ? std::round(hole / interval) - 1.0 : 0.0;
+    const auto row = static_cast<Eigen::Index>(r);
+    require(static_cast<double>(rows.times.size()) + lacking < kMostRows,
+            table.at(row, table.column(time_column)),
+            "times without a hole of " + exactText(lacking) + " rows (another unit?)");
+    for (double i = 1.0; i <= lacking; ++i, ++rows.absent) {
+      rows.times.push_back(times[r - 1] + i * hole / (lacking + 1.0));
+      rows.of_table.push_back(-1);
+      rows.before.push_back(row - 1);
+    }
+    rows.times.push_back(times[r]);
+    rows.of_table.push_back(row);
+    rows.before.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace fpc

@@ -1,0 +1,41 @@
+// What a tuning does not say by its numbers alone: bounds that held it back, runs it made worse.
+#include "fmbpc/base/text.hpp"
+#include "tool/tune_report.hpp"
+
+namespace fpc::tool {
+namespace {
+
+constexpr double kAtBound = 1e-3;  // of the range, in its scale
+
+const TuningStep& bestOf(const TunedLoop& tuned) {
+  return tuned.result.history[static_cast<std::size_t>(tuned.result.best)];
+}
+
+}  // namespace
+
+std::string boundOf(const TuningParameter& parameter, double value) {
+  const double share = parameter.share(value);
+  if (share <= kAtBound) return "lower";
+  return share >= 1.0 - kAtBound ? "upper" : "";
+}
+
+std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned) {
+  std::vector<std::string> remarks;
+  if (tuned.result.best < 0) return remarks;
+  const auto& parameters = objective.tuning().parameters;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double value = bestOf(tuned).values[i];
+    const std::string bound = boundOf(parameters[i], value);
+    if (!bound.empty())
+      remarks.push_back(parameters[i].key + " ends at the " + bound + " bound of its range, " +
+                        shortText(value) + ": the best may lie beyond");
+  }
+  if (!tuned.held_out) return remarks;
+  const double before = objective.untouchedHeldOut().cost, after = tuned.held_out->cost;
+  if (after > before)
+    remarks.push_back("the cost on held-out scenarios got worse, " + shortText(before) + " -> " +
+                      shortText(after) + ": what was found does not carry over");
+  return remarks;
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,228 @@
+// Properties of every loop that a user could write, on seeded random loops (random_loop.hpp). A few
+// hundred run in every test; FMBPC_LONG_TESTS runs thousands, FMBPC_RANDOM_SEED=N one alone, and
+// FMBPC_RANDOM_DIR=folder leaves them all there as files.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/report.hpp"
+#include "fmbpc/loop/run.hpp"
+#include "loop/loop_fixture.hpp"
+#include "random/random_loop.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr std::uint64_t kQuick = 300;
+constexpr std::uint64_t kLong = 6000;
+constexpr double kTolerance = 1e-9;  // of an input's range
+
+std::vector<std::uint64_t> seeds(std::uint64_t quick = kQuick) {
+  if (const char* one = std::getenv("FMBPC_RANDOM_SEED")) return {std::stoull(one)};
+  std::vector<std::uint64_t> all(std::getenv("FMBPC_LONG_TESTS") != nullptr ? kLong * quick / kQuick
+                                                                            : quick);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  return all;
+}
+
+class RandomLoops : public LoopFolder {
+ protected:
+  LoopFile read(const RandomLoop& random, const Overrides& overrides = {}) const {
+    for (const auto& [name, content] : random.files) write(name, content);
+    return readLoop(write("random_" + std::to_string(random.seed) + ".yaml", random.text),
+                    overrides);
+  }
+
+  /// Calls `check` with every loop that is read, and its run. What is thrown beyond reading is a
+  /// failure: a file that was accepted runs.
+  template <typename Check>
+  void each(const std::vector<std::uint64_t>& all, Check check) {
+    for (const std::uint64_t seed : all) {
+      const RandomLoop random = randomLoop(seed);
+      std::string stage = "reading";
+      try {
+        const LoopFile loop = read(random);
+        stage = "running";
+        check(random, loop, runLoop(loop));
+      } catch (const InputError& e) {
+        if (stage == "reading")
+          refused_[random.plant + " under " + random.controller].push_back(e.what());
+        else
+          ADD_FAILURE() << stage << ": " << e.what() << "\n" << random.told();
+      } catch (const std::exception& e) {
+        ADD_FAILURE() << stage << ": " << e.what() << "\n" << random.told();
+      }
+      if (HasFailure()) return;  // one loop is enough to look at
+    }
+  }
+
+  std::map<std::string, std::vector<std::string>> refused_;
+};
+
+/// Empty if all is finite.
+std::string notFinite(const RunRecord& record) {
+  for (std::size_t k = 0; k < record.samples.size(); ++k) {
+    const SampleRecord& s = record.samples[k];
+    const std::string at = " of sample " + std::to_string(k);
+    if (!s.measurement.outputs.allFinite()) return "outputs" + at;
+    if (!s.measurement.input_applied.allFinite()) return "applied input" + at;
+    if (!s.state.state.allFinite()) return "state" + at;
+    if (s.has_action && !s.action.input.allFinite()) return "action" + at;
+  }
+  return "";
+}
+
+/// Empty if every action and every applied input is inside its limits.
+std::string beyondLimits(const LoopFile& loop, const RunRecord& record) {
+  const InputLimits& limits = loop.simulation.actuator.limits;
+  const Vector slack = kTolerance * (limits.upper - limits.lower);
+  const auto inside = [&](const Vector& u) {
+    return ((u - limits.lower + slack).array() >= 0.0).all() &&
+           ((limits.upper - u + slack).array() >= 0.0).all();
+  };
+  for (std::size_t k = 0; k < record.samples.size(); ++k) {
+    const SampleRecord& s = record.samples[k];
+    const std::string at = " of sample " + std::to_string(k);
+    if (!inside(s.measurement.input_applied)) return "applied input" + at;
+    if (!s.has_action) continue;
+    if (!inside(s.action.input)) return "action" + at;
+    const Vector move = (s.action.input - s.measurement.input_applied).cwiseAbs();
+    if (!((limits.move + slack - move).array() >= 0.0).all()) return "move" + at;
+  }
+  return "";
+}
+
+/// The first sample that differs in what a plant and a controller say; -1 if none does.
+int firstDifference(const RunRecord& a, const RunRecord& b) {
+  if (a.samples.size() != b.samples.size()) return 0;
+  for (std::size_t k = 0; k < a.samples.size(); ++k) {
+    const SampleRecord &x = a.samples[k], &y = b.samples[k];
+    const bool same = x.measurement.outputs == y.measurement.outputs &&
+                      x.measurement.input_applied == y.measurement.input_applied &&
+                      x.state.state == y.state.state &&
+                      x.state.disturbances == y.state.disturbances &&
+                      x.tracking.setpoint == y.tracking.setpoint &&
+                      x.tracking.reference == y.tracking.reference &&
+                      x.action.input == y.action.input;
+    if (!same) return static_cast<int>(k);
+  }
+  return -1;
+}
+
+TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
+  std::map<std::string, int> ran;
+  each(seeds(), [&](const RandomLoop& random, const LoopFile& loop, const RunRecord& record) {
+    ++ran[random.controller];
+    const Summary summary = summarize(loop, record, 0.0);
+    EXPECT_EQ(record.samples.size(), loop.simulation.samples + std::size_t{1}) << random.told();
+    EXPECT_TRUE(record.complete || !troubleOf(summary).empty()) << random.told();
+    EXPECT_EQ(notFinite(record), "") << random.told();
+    EXPECT_EQ(beyondLimits(loop, record), "") << random.told();
+    EXPECT_EQ(summary.input_violations + summary.move_violations, 0U) << random.told();
+    for (const auto& u : summary.inputs) EXPECT_TRUE(std::isfinite(u.travel)) << random.told();
+    for (const auto& y : summary.outputs)
+      EXPECT_TRUE(std::isfinite(y.rmse) || random.controller == "excitation") << random.told();
+  });
+  std::size_t refused = 0;
+  for (const auto& [kind, errors] : refused_) {
+    refused += errors.size();
+    std::cout << errors.size() << " refused, " << kind << ": " << errors.front() << "\n";
+  }
+  for (const auto& [controller, count] : ran) std::cout << controller << ": " << count << " runs\n";
+  if (seeds().size() < kQuick) return;
+  EXPECT_LT(refused, seeds().size() / 20) << "the generator writes files that a user would not";
+  for (const char* type : {"pi", "excitation", "nmpc", "fmbpc", "fuzzy_optimal", "swarm_mpc",
+                           "hybrid_mpc", "adaptive_pi"})
+    EXPECT_GT(ran[type], 0) << type;
+}
+
+TEST_F(RandomLoops, GiveTheSameBitsAgainFromTheirPrintedTextAndAtAnotherTime) {
+  each(seeds(100), [&](const RandomLoop& random, const LoopFile& loop, const RunRecord& record) {
+    EXPECT_EQ(firstDifference(record, runLoop(loop)), -1) << "again\n" << random.told();
+    EXPECT_EQ(firstDifference(record, runLoop(parseLoop(loop.resolved, loop.name))), -1)
+        << "printed\n"
+        << random.told();
+    const LoopFile later = read(random, {{"sampling.start_time_s", "86400.25"}});
+    EXPECT_EQ(firstDifference(record, runLoop(later)), -1) << "later\n" << random.told();
+  });
+}
+
+/// Values of `from` put in the order of `to`.
+Vector reordered(const Vector& values, const std::vector<std::string>& from,
+                 const std::vector<std::string>& to) {
+  Vector result(values.size());
+  for (std::size_t i = 0; i < to.size(); ++i)
+    result[static_cast<Eigen::Index>(i)] =
+        values[std::find(from.begin(), from.end(), to[i]) - from.begin()];
+  return result;
+}
+
+// Noise is drawn in the order of the outputs, and a particle swarm or a search over sequences may take
+// another of two equal answers: those are left out.
+TEST_F(RandomLoops, DoNotDependOnTheOrderOfTheOutputs) {
+  int compared = 0;
+  for (const std::uint64_t seed : seeds(100)) {
+    const RandomLoop random = randomLoop(seed);
+    const std::set<std::string> unordered{"swarm_mpc", "hybrid_mpc"};
+    if (random.outputs.size() < 2 || unordered.count(random.controller) > 0) continue;
+    const std::vector<std::string> turned(random.outputs.rbegin(), random.outputs.rend());
+    const Overrides calm{{"noise", "{seed: 1}"}};
+    const Overrides other{{"noise", "{seed: 1}"}, {"plant.outputs", "[" + join(turned) + "]"}};
+    std::string error;
+    try {
+      const RunRecord a = runLoop(read(random, calm));
+      const RunRecord b = runLoop(read(random, other));
+      for (std::size_t k = 0; k < a.samples.size(); ++k) {
+        const Vector &u = a.samples[k].measurement.input_applied,
+                     &v = b.samples[k].measurement.input_applied;
+        const Vector y = a.samples[k].measurement.outputs;
+        const Vector z = reordered(b.samples[k].measurement.outputs, turned, random.outputs);
+        ASSERT_LE((u - v).norm(), 1e-6 * (1e-3 + u.norm())) << k << "\n" << random.told();
+        ASSERT_LE((y - z).norm(), 1e-6 * (1e-3 + y.norm())) << k << "\n" << random.told();
+      }
+      ++compared;
+    } catch (const InputError& e) {
+      error = e.what();  // the first property tells what is refused
+    }
+  }
+  if (seeds(100).size() >= 100) EXPECT_GT(compared, 20);
+}
+
+// Powers of two, so that not a single bit may differ.
+TEST_F(RandomLoops, DoNotDependOnTheUnitsOfAnOutputOrAnInput) {
+  for (const std::uint64_t seed : seeds(100)) {
+    const RandomLoop random = randomMatrixLoop(seed);
+    const RunRecord plain = runLoop(read(random));
+    for (const auto& [output, input] :
+         {std::pair{1024.0, 1.0}, {0.125, 1.0}, {1.0, 64.0}, {0.25, 0.5}}) {
+      const RandomLoop other = randomMatrixLoop(seed, output, input);
+      const RunRecord scaled = runLoop(read(other));
+      for (std::size_t k = 0; k < plain.samples.size(); ++k) {
+        const Measurement &a = plain.samples[k].measurement, &b = scaled.samples[k].measurement;
+        Vector y = b.outputs, u = b.input_applied;
+        y[0] *= output;
+        u[0] *= input;
+        ASSERT_EQ(a.outputs, y) << k << ", unit " << output << "\n" << other.told();
+        ASSERT_EQ(a.input_applied, u) << k << ", unit " << input << "\n" << other.told();
+      }
+    }
+  }
+}
+
+TEST_F(RandomLoops, CanBeWrittenToAFolder) {
+  const char* folder = std::getenv("FMBPC_RANDOM_DIR");
+  const std::filesystem::path target = folder != nullptr ? folder : path("all");
+  for (const std::uint64_t seed : seeds(20)) {
+    const RandomLoop random = randomLoop(seed);
+    const auto place = target / ("random_" + std::to_string(seed));
+    std::filesystem::create_directories(place);
+    std::ofstream(place / "loop.yaml") << random.text;
+    for (const auto& [name, content] : random.files) std::ofstream(place / name) << content;
+    EXPECT_EQ(randomLoop(seed).told(), random.told()) << "the same seed, the same text";
+  }
+}
+
+}  // namespace
+}  // namespace fpc
