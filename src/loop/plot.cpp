@@ -70,4 +70,8 @@ PlotResult drawTuning(const std::string& folder) {
   return {(fs::path(folder) / "convergence.png").string(), ""};
 }
 
+PlotResult drawReproduction(const std::string& folder) {
+  return {"", drawWith("plot_reproduce.py", folder)};
+}
+
 }  // namespace fpc

@@ -1,64 +1,130 @@
-// fmbpc reproduce [NAME...]: the papers' experiments, paper | here | ratio | verdict.
+// fmbpc reproduce [NAME...]: the papers' tables and figures, paper | here | verdict.
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cctype>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/plot.hpp"
 #include "tool/commands.hpp"
-#include "tool/reproduce/experiment.hpp"
+#include "tool/reproduce/picture.hpp"
+#include "tool/reproduce/report.hpp"
+#include "tool/reproduce/runs.hpp"
 
 namespace fpc::tool {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+/// `word` in `text` with neither letter, digit nor underscore beside it.
+bool containsWord(const std::string& text, const std::string& word) {
+  const auto part = [&](std::size_t i) {
+    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_');
+  };
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+    if (!(at > 0 && part(at - 1)) && !part(at + word.size())) return true;
+  return false;
+}
+
+/// A paper's key, an experiment's name or its beginning, or a loop behind it.
+bool isNamed(const Experiment& e, const std::string& name) {
+  return e.paper == name || e.name.rfind(name, 0) == 0 || containsWord(e.behind, name);
+}
 
 std::vector<Experiment> chosen(const std::vector<std::string>& names) {
   const auto all = experiments();
   if (names.empty()) return all;
   std::vector<Experiment> some;
-  for (const auto& name : names) {
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const Experiment& e) { return e.name == name; });
-    require(found != all.end(), name, "an experiment that fmbpc reproduce --list names");
-    some.push_back(*found);
-  }
+  for (const auto& name : names)
+    require(!name.empty() && std::any_of(all.begin(), all.end(),
+                                         [&](const Experiment& e) { return isNamed(e, name); }),
+            name, "a paper, an experiment or a loop that fmbpc reproduce --list names");
+  std::copy_if(all.begin(), all.end(), std::back_inserter(some), [&](const Experiment& e) {
+    return std::any_of(names.begin(), names.end(),
+                       [&](const std::string& name) { return isNamed(e, name); });
+  });
   return some;
-}
-
-std::string cell(double value) {
-  if (std::isnan(value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-void print(const Experiment& experiment, const std::vector<ReproduceRow>& rows) {
-  std::cout << experiment.name << ": " << experiment.source << "\n";
-  for (const auto& row : rows) {
-    char line[600];
-    std::snprintf(line, sizeof line, "  %-52s %12s %12s %9s %-9s %-16s %s\n", row.quantity.c_str(),
-                  cell(row.paper).c_str(), cell(row.here).c_str(),
-                  cell(row.paper == 0.0 ? std::nan("") : row.here / row.paper).c_str(),
-                  row.unit.c_str(), name(row.verdict), row.note.c_str());
-    std::cout << line;
-  }
-  std::cout << "\n";
 }
 
 int list(const std::vector<Experiment>& all, bool json) {
   Json names = Json::array();
-  for (const auto& experiment : all) {
-    names.push_back({{"name", experiment.name}, {"source", experiment.source}});
-    if (!json) std::printf("%-28s %s\n", experiment.name.c_str(), experiment.source.c_str());
+  for (const auto& e : all) {
+    names.push_back({{"name", e.name},
+                     {"paper", e.paper},
+                     {"item", e.item},
+                     {"shows", e.shows},
+                     {"printed", e.printed},
+                     {"behind", e.behind}});
+    if (!json)
+      std::printf("%-22s %-13s %-18s %s (%s)\n", e.name.c_str(), e.paper.c_str(), e.item.c_str(),
+                  e.shows.c_str(), e.printed.c_str());
   }
   if (json) std::cout << names.dump(2) << "\n";
   return 0;
+}
+
+std::vector<Outcome> outcomesOf(const std::vector<Experiment>& some) {
+  const bool shown = isatty(STDERR_FILENO) != 0;
+  std::vector<Outcome> outcomes;
+  for (const auto& experiment : some) {
+    if (shown)
+      std::fprintf(stderr, "\r\033[K%zu of %zu: %s ...", outcomes.size() + 1, some.size(),
+                   experiment.name.c_str());
+    outcomes.push_back({experiment, rowsOf(experiment)});
+  }
+  if (shown) std::fprintf(stderr, "\r\033[K");
+  return outcomes;
+}
+
+void draw(const std::vector<Outcome>& outcomes, const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  require(!error, folder, "a folder that can be made (" + error.message() + ")");
+  for (const auto& outcome : outcomes) {
+    const Experiment& e = outcome.experiment;
+    if (!hasPicture(e.name)) continue;
+    Json json = toJson(pictureOf(e.name));
+    json["title"] = e.paper + ", " + e.item + ": " + e.shows;
+    json["rows"] = toJson(std::vector<Outcome>{outcome});
+    const std::string file = (fs::path(folder) / (e.name + ".json")).string();
+    std::ofstream stream(file);
+    stream << json.dump() << "\n";
+    stream.close();
+    require(!stream.fail(), file, "a writable file");
+  }
+  const PlotResult plot = drawReproduction(folder);
+  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
+}
+
+void print(const std::vector<Outcome>& outcomes, const ReproduceArguments& arguments) {
+  if (arguments.json) {
+    std::cout << toJson(outcomes).dump(2) << "\n";
+  } else if (arguments.markdown) {
+    std::cout << markdown(outcomes);
+  } else {
+    if (arguments.details || !arguments.names.empty())
+      for (const auto& outcome : outcomes) std::cout << detailsText(outcome) << "\n";
+    std::cout << summaryText(outcomes);
+    if (!arguments.details && arguments.names.empty())
+      std::cout << "details: fmbpc reproduce --details, or the name of a paper in brackets\n";
+  }
+}
+
+/// Rows without a result and failed runs, on standard error.
+int failures(const std::vector<Outcome>& outcomes) {
+  std::size_t lost = 0;
+  for (const auto& outcome : outcomes)
+    for (const auto& row : outcome.rows)
+      if (row.verdict() == Verdict::kNoResult) ++lost;
+  for (const auto& text : failedRuns()) std::fprintf(stderr, "fmbpc: failed: %s\n", text.c_str());
+  if (lost == 0) return 0;
+  std::fprintf(stderr, "fmbpc: %zu rows without a result\n", lost);
+  return 1;
 }
 
 }  // namespace
@@ -66,29 +132,10 @@ int list(const std::vector<Experiment>& all, bool json) {
 int reproduce(const ReproduceArguments& arguments) {
   const auto some = chosen(arguments.names);
   if (arguments.list) return list(some, arguments.json);
-  const bool shown = isatty(STDERR_FILENO) != 0;
-  Json all = Json::array();
-  if (!arguments.json)
-    std::printf("  %-52s %12s %12s %9s %-9s %-16s %s\n", "quantity", "paper", "here", "ratio",
-                "unit", "verdict", "note");
-  std::fflush(stdout);
-  for (const auto& experiment : some) {
-    if (shown) std::fprintf(stderr, "\r\033[K%s ...", experiment.name.c_str());
-    const auto rows = experiment.rows();
-    if (shown) std::fprintf(stderr, "\r\033[K");
-    if (!arguments.json) print(experiment, rows);
-    for (const auto& row : rows)
-      all.push_back({{"name", experiment.name},
-                     {"source", experiment.source},
-                     {"quantity", row.quantity},
-                     {"paper", number(row.paper)},
-                     {"here", number(row.here)},
-                     {"unit", row.unit},
-                     {"verdict", name(row.verdict)},
-                     {"note", row.note}});
-  }
-  if (arguments.json) std::cout << all.dump(2) << "\n";
-  return 0;
+  const auto outcomes = outcomesOf(some);
+  print(outcomes, arguments);
+  if (!arguments.plots.empty()) draw(outcomes, arguments.plots);
+  return failures(outcomes);
 }
 
 }  // namespace fpc::tool

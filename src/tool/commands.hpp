@@ -41,7 +41,10 @@ struct StabilityArguments {
 
 struct ReproduceArguments {
   std::vector<std::string> names;
+  std::string plots;  ///< folder, empty: none
   bool list{false};
+  bool details{false};
+  bool markdown{false};
   bool json{false};
 };
 

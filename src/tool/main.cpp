@@ -87,9 +87,14 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
 
 void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
   CLI::App* reproduce = app.add_subcommand(
-      "reproduce", "Runs the papers' experiments: paper | here | ratio | verdict");
-  reproduce->add_option("NAME", a.names, "experiments; all of them if none is named");
-  reproduce->add_flag("--list", a.list, "only list their names and sources");
+      "reproduce", "Tables and figures of the papers: paper | here | verdict");
+  reproduce->add_option("NAME", a.names,
+                        "papers, experiments (or how their names begin), loops behind them; all of "
+                        "them if none is named");
+  reproduce->add_flag("--list", a.list, "only list them: what each shows and prints");
+  reproduce->add_flag("--details", a.details, "every row, not only the summary of each paper");
+  reproduce->add_option("--plots", a.plots, "folder for a picture of every figure");
+  reproduce->add_flag("--markdown", a.markdown, "the page docs/results.md");
   reproduce->add_flag("--json", a.json, "print one JSON array and nothing else");
   reproduce->callback([&a] { chosen = [&a] { return fpc::tool::reproduce(a); }; });
 }

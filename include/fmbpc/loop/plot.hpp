@@ -22,4 +22,7 @@ PlotResult drawTuning(const std::string& folder);
 /// pictures, none is named.
 PlotResult drawModelPlots(const std::string& folder);
 
+/// The same by scripts/plot_reproduce.py for a folder that `fmbpc reproduce --plots` fills.
+PlotResult drawReproduction(const std::string& folder);
+
 }  // namespace fpc

@@ -1,5 +1,8 @@
 #include "tool/reproduce/taieb_steps.hpp"
 
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
 #include "tool/reproduce/runs.hpp"
 
 namespace fpc::tool {
@@ -13,10 +16,13 @@ std::vector<StepIndices> stepsOf(const std::string& loop, Eigen::Index output, d
     y[k] = sample.measurement.outputs[output];
     setpoint[k] = sample.tracking.setpoint[output];
   }
-  return stepIndices(y, setpoint, record.info.sample_time_s / unit_s);
+  auto steps = stepIndices(y, setpoint, record.info.sample_time_s / unit_s);
+  require(!steps.empty(), loop, "at least one step of the setpoint");
+  return steps;
 }
 
 StepIndices meanOf(const std::vector<StepIndices>& steps) {
+  require(!steps.empty(), "step indices", "at least one step of the setpoint");
   StepIndices mean;
   const auto n = static_cast<double>(steps.size());
   for (const StepIndices& step : steps) {

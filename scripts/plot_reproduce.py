@@ -1,0 +1,105 @@
+#!/usr/bin/python3
+"""Draws the figures of the papers as they come out here, with the printed numbers beside ours.
+
+    plot_reproduce.py DIR [--only NAME]
+
+DIR holds the NAME.json files that `fmbpc reproduce --plots DIR` writes; NAME.png goes beside each.
+"""
+import argparse
+import glob
+import json
+import os
+import sys
+import textwrap
+
+COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a"]
+STYLES = {"setpoint": {"color": "black", "linestyle": "--", "linewidth": 1.0, "drawstyle": "steps-post", "zorder": 2},
+          "reference": {"color": "#888888", "linestyle": ":", "linewidth": 1.2, "zorder": 2}}
+ROWS = 12  # of the table below a picture
+
+
+def draw_panel(axis, panel):
+    number = 0
+    for curve in panel["curves"]:
+        style = dict(STYLES.get(curve["style"], {}))
+        if not style:
+            style = {"color": COLOURS[number % len(COLOURS)], "linewidth": 1.3 - 0.15 * min(number, 3),
+                     "zorder": 3 + number, "linestyle": "-" if number < len(COLOURS) else "--"}
+            if curve["style"] == "step":
+                style["drawstyle"] = "steps-post"
+            number += 1
+        axis.plot(curve["x"], curve["y"], label=curve["label"], **style)
+    for limit in panel["limits"]:
+        axis.axhline(limit, color="black", linestyle=":", linewidth=1.0)
+    axis.set_ylabel(panel["label"], fontsize=9)
+    axis.grid(True, color="#dddddd", linewidth=0.6)
+    axis.margins(x=0.0)
+    if len(panel["curves"]) > 1:
+        low, high = axis.get_ylim()
+        axis.set_ylim(low, high + 0.2 * (high - low))  # room for the legend
+        axis.legend(loc="upper right", ncol=3, fontsize=7, framealpha=0.85, borderpad=0.3)
+
+
+def cell(value):
+    return "-" if value is None else "%.4g" % value
+
+
+def table_of(rows):
+    """One line a row: quantity, paper (or limit), here with its range, verdict."""
+    lines = []
+    for row in rows[:ROWS]:
+        here = cell(row["here"])
+        if row["runs"] > 1:
+            here += " (%s .. %s)" % (cell(row["lowest"]), cell(row["highest"]))
+        kind = "limit" if row["kind"] == "check" else "paper"
+        lines.append("%s: %s %s, here %s %s: %s" % (row["quantity"], kind, cell(row["paper"]), here, row["unit"],
+                                                   row["verdict"].replace("_", " ")))
+    if len(rows) > ROWS:
+        lines.append("and %d more rows" % (len(rows) - ROWS))
+    return "\n".join(textwrap.shorten(line, 150) for line in lines)
+
+
+def draw(file):
+    import matplotlib
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    with open(file, encoding="utf-8") as stream:
+        picture = json.load(stream)
+    panels, text = picture["panels"], table_of(picture["rows"])
+    below = 0.16 * (text.count("\n") + 1) + 0.5
+    height = 1.9 * len(panels) + 1.0 + below
+    figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(9.0, height))
+    for axis, panel in zip(axes[:, 0], panels):
+        draw_panel(axis, panel)
+    axes[-1, 0].set_xlabel(picture["x_label"])
+    axes[0, 0].set_title(picture["title"], fontsize=10)
+    figure.align_ylabels(axes[:, 0])
+    figure.tight_layout(rect=(0.0, below / height, 1.0, 1.0))
+    figure.text(0.02, 0.1 / height, text, fontsize=7, family="monospace", va="bottom")
+    figure.savefig(os.path.splitext(file)[0] + ".png", dpi=100)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", metavar="DIR", help="filled by fmbpc reproduce --plots DIR")
+    parser.add_argument("--only", metavar="NAME", default="*", help="one experiment, as NAME.json is called")
+    arguments = parser.parse_args()
+    files = sorted(glob.glob(os.path.join(arguments.folder, arguments.only + ".json")))
+    if not files:
+        print("plot_reproduce.py: no NAME.json in %s" % arguments.folder, file=sys.stderr)
+        return 1
+    try:
+        for file in files:
+            draw(file)
+    except ImportError as error:
+        print("plot_reproduce.py: no pictures, a python module is missing: %s" % error, file=sys.stderr)
+        return 3
+    except (OSError, ValueError, KeyError) as error:
+        print("plot_reproduce.py: cannot read %s: %r" % (file, error), file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,35 @@
+// What `fmbpc reproduce` prints: a summary per paper, details, JSON, a page in Markdown.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tool/reproduce/experiment.hpp"
+
+namespace fpc::tool {
+
+/// An experiment with its rows.
+struct Outcome {
+  Experiment experiment;
+  Rows rows;
+};
+
+/// Four significant digits; "-" if not finite.
+std::string figureText(double value);
+using Counts = std::map<Verdict, std::size_t>;
+Counts countsOf(const Rows& rows);
+/// "3 reproduced, 1 close; 2 hold, 1 fails": figures, then statements, then rows without a result.
+std::string inWords(const Counts& counts);
+/// "within 0.3 %", "12 % off", "median of 24, 0.31..0.52, 22 agree" and the row's own words.
+std::string remarkOf(const ReproduceRow& row);
+/// Of the row that says most about what is not reached; empty if all is.
+std::string reasonOf(const Rows& rows);
+
+std::string summaryText(const std::vector<Outcome>& outcomes);
+std::string detailsText(const Outcome& outcome);
+nlohmann::ordered_json toJson(const std::vector<Outcome>& outcomes);
+std::string markdown(const std::vector<Outcome>& outcomes);
+
+}  // namespace fpc::tool
