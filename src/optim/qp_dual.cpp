@@ -14,8 +14,6 @@ constexpr double kBlockingTolerance =
     1e-12;  // of |normal|: a smaller r of a dependent normal is noise
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
 }  // namespace
 
 void DualActiveSet::resize(Index n, Index m) {
@@ -23,6 +21,9 @@ void DualActiveSet::resize(Index n, Index m) {
   R_.setZero(n, n);
   for (Vector* v : {&x_, &u_, &normal_, &d_, &z_, &r_, &c_, &scale_}) v->setZero(n);
   ax_.setZero(m);
+  proof_x_.setZero(n);
+  proof_a_.setZero(m);
+  proof_error_.setZero(n);
   row_norm_.setZero(m);
   active_.assign(at(n), 0);
   active_side_.assign(at(n), kOff);
@@ -30,12 +31,11 @@ void DualActiveSet::resize(Index n, Index m) {
   q_ = 0;
 }
 
-bool DualActiveSet::start(const QpProblem& p, KktSystem& kkt, Sides& sides) {
+bool DualActiveSet::start(const QpProblem& p, const Vector& g, KktSystem& kkt, Sides& sides) {
   if (!kkt.factorFree(p, sides) || !kkt.complete()) return false;
   const Index n = p.g.size(), m = p.a_lower.size();
-  scale_ = p.H.diagonal().cwiseSqrt();
+  scale_ = (p.H.diagonal() + kkt.shift()).cwiseSqrt();
   row_norm_.setConstant(-1.0);
-  std::fill(ignored_.begin(), ignored_.end(), char{0});
   culprit_ = -1;
   seed(p, kkt, sides);
   for (const bool equalities :
@@ -52,12 +52,17 @@ bool DualActiveSet::start(const QpProblem& p, KktSystem& kkt, Sides& sides) {
       append(id, sides[at(id)]);
     }
   }
-  minimise(p);
-  dropWrongSigns(p, sides);
+  return restart(p, g, sides);
+}
+
+bool DualActiveSet::restart(const QpProblem& p, const Vector& g, Sides& sides) {
+  std::fill(ignored_.begin(), ignored_.end(), char{0});
+  minimise(p, g);
+  dropWrongSigns(p, g, sides);
   return x_.allFinite();
 }
 
-void DualActiveSet::dropWrongSigns(const QpProblem& p, Sides& sides) {
+void DualActiveSet::dropWrongSigns(const QpProblem& p, const Vector& g, Sides& sides) {
   for (;;) {
     Index worst = -1;
     double most = 0.0;
@@ -68,7 +73,7 @@ void DualActiveSet::dropWrongSigns(const QpProblem& p, Sides& sides) {
     }
     if (worst < 0) return;
     remove(worst, sides);
-    minimise(p);
+    minimise(p, g);
   }
 }
 
@@ -79,8 +84,8 @@ double DualActiveSet::rowNorm(const QpProblem& p, Index row) {
 
 /// The constraint outside the working set that is violated most in the metric diag(H)^-1; -1 if
 /// none is.
-Index DualActiveSet::mostViolated(const QpProblem& p, double tolerance, const Sides& sides,
-                                  Side& side) {
+Index DualActiveSet::mostViolated(const QpProblem& p, double tolerance, RowNoise& noise,
+                                  const Sides& sides, Side& side) {
   const Index n = p.g.size(), m = p.a_lower.size();
   Index worst = -1;
   double most = 0.0;
@@ -89,7 +94,9 @@ Index DualActiveSet::mostViolated(const QpProblem& p, double tolerance, const Si
     const double violation = std::max(below, above);
     if (!(violation * metric > most) || ignored_[at(id)]) return;
     const Side violated = below > above ? kLower : kUpper;
-    if (violation <= tolerance * feasibilityScale(p, id, x_, limitOf(p, id, violated))) return;
+    if (violation <= tolerance * feasibilityScale(p, id, x_, limitOf(p, id, violated)) ||
+        noise.covers(p, id, violation, x_))
+      return;
     most = violation * metric;
     worst = id;
     side = violated;
@@ -124,8 +131,8 @@ Index DualActiveSet::blocking(const QpProblem& p, bool dependent, double& step) 
 }
 
 /// One major iteration: partial steps until the constraint is in the working set.
-SolveStatus DualActiveSet::add(const QpProblem& p, const QpSettings& settings, Index id, Side side,
-                               Sides& sides, int& iterations) {
+SolveStatus DualActiveSet::add(const QpProblem& p, const QpSettings& settings, RowNoise& noise,
+                               Index id, Side side, Sides& sides, int& iterations) {
   const Index n = p.g.size();
   const double limit = limitOf(p, id, side), sign = static_cast<double>(side);
   double u_new = 0.0;
@@ -142,10 +149,9 @@ SolveStatus DualActiveSet::add(const QpProblem& p, const QpSettings& settings, I
     const double violation = sign * limit - (id < n ? sign * x_(id) : normal_.dot(x_));
     if (!std::isfinite(violation) || !d_.allFinite()) return SolveStatus::kNumericalError;
     if (blocked && leaving < 0) {
-      if (violation > settings.feasibility_tolerance * feasibilityScale(p, id, x_, limit)) {
-        culprit_ = id;
-        return SolveStatus::kInfeasible;
-      }
+      if (violation > settings.feasibility_tolerance * feasibilityScale(p, id, x_, limit) &&
+          !noise.covers(p, id, violation, x_))
+        return contradiction(p, id, side);
       ignored_[at(id)] = 1;
       return SolveStatus::kSolved;
     }
@@ -169,12 +175,12 @@ SolveStatus DualActiveSet::add(const QpProblem& p, const QpSettings& settings, I
 }
 
 SolveStatus DualActiveSet::run(const QpProblem& p, const QpSettings& settings, double tolerance,
-                               Sides& sides, int& iterations) {
+                               RowNoise& noise, Sides& sides, int& iterations) {
   for (;;) {
     Side side = kOff;
-    const Index id = mostViolated(p, tolerance, sides, side);
+    const Index id = mostViolated(p, tolerance, noise, sides, side);
     if (id < 0) return SolveStatus::kSolved;
-    const SolveStatus status = add(p, settings, id, side, sides, iterations);
+    const SolveStatus status = add(p, settings, noise, id, side, sides, iterations);
     if (status != SolveStatus::kSolved) return status;
   }
 }

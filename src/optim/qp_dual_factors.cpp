@@ -7,12 +7,6 @@
 #include "optim/qp_workspace.hpp"
 
 namespace fpc::qp {
-namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
 void DualActiveSet::setNormal(const QpProblem& p, Index id, Side side) {
   if (id >= p.g.size()) normal_ = static_cast<double>(side) * p.A.row(id - p.g.size()).transpose();
 }
@@ -67,13 +61,13 @@ void DualActiveSet::seed(const QpProblem& p, const KktSystem& kkt, const Sides& 
 }
 
 /// x and u of the working set: R'c = b, x = J_1 c - J_2 J_2'g, R u = c + J_1'g.
-void DualActiveSet::minimise(const QpProblem& p) {
+void DualActiveSet::minimise(const QpProblem& p, const Vector& g) {
   const Index n = p.g.size();
   for (Index k = 0; k < q_; ++k) {
     c_(k) =
         static_cast<double>(active_side_[at(k)]) * limitOf(p, active_[at(k)], active_side_[at(k)]);
   }
-  d_.noalias() = J_.transpose() * p.g;
+  d_.noalias() = J_.transpose() * g;
   c_.tail(n - q_) = -d_.tail(n - q_);
   if (q_ > 0) {
     const auto R = R_.topLeftCorner(q_, q_).triangularView<Eigen::Upper>();

@@ -17,6 +17,7 @@ constexpr double kPivotTolerance =
     1e-14;  // of H_ii: below it H is not positive definite in this arithmetic
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr int kMaxCorrections = 4;
+constexpr int kMaxShiftedCorrections = 30;
 
 bool sameBits(const double* a, const double* b, Index count) {
   return std::memcmp(a, b, static_cast<std::size_t>(count) * sizeof(double)) == 0;
@@ -24,11 +25,14 @@ bool sameBits(const double* a, const double* b, Index count) {
 
 }  // namespace
 
-void KktSystem::resize(Index n) {
+void KktSystem::resize(Index n, Index m) {
   const auto size = static_cast<std::size_t>(n);
   for (Matrix* M : {&H_, &L_, &At_, &Vt_, &Q_, &R_}) M->setZero(n, n);
-  for (Vector* v : {&y_, &hx_, &aty_, &residual_free_, &residual_row_, &work_, &work_row_, &norm_})
+  for (Vector* v :
+       {&y_, &hx_, &aty_, &residual_free_, &residual_row_, &work_, &work_row_, &norm_, &shift_})
     v->setZero(n);
+  row_scale_.setZero(m);
+  shift_size_ = 0.0;
   order_.assign(size, 0);
   fixed_.assign(size, 0);
   rows_.assign(size, 0);
@@ -40,15 +44,19 @@ void KktSystem::resize(Index n) {
 void KktSystem::setHessian(const Matrix& H) {
   if (sameBits(H.data(), H_.data(), H.size())) return;
   H_ = H;
-  factored_ = rows_factored_ = complete_ = definite_ = false;
+  shift_.setZero();
+  shift_size_ = 0.0;
+  forgetFactors();
 }
+
+void KktSystem::forgetFactors() { factored_ = rows_factored_ = complete_ = definite_ = false; }
 
 /// Left-looking, for the given columns of L and the given rows (those on and below the diagonal).
 bool KktSystem::cholesky(Index column_begin, Index column_end, Index row_begin, Index row_end) {
   for (Index j = column_begin; j < column_end; ++j) {
     const Index first = std::max(j, row_begin), count = row_end - first;
-    const double H_jj =
-        H_(order_[static_cast<std::size_t>(j)], order_[static_cast<std::size_t>(j)]);
+    const Index unknown = order_[static_cast<std::size_t>(j)];
+    const double H_jj = H_(unknown, unknown) + shift_(unknown);
     auto column = L_.col(j).segment(first, count);
     if (j > 0) column.noalias() -= L_.block(first, 0, count, j) * L_.row(j).head(j).transpose();
     if (first == j) {
@@ -82,6 +90,7 @@ bool KktSystem::factorFree(const QpProblem& p, const Sides& sides) {
   for (Index j = 0; j < free; ++j) {
     const double* column = H_.data() + order_[static_cast<std::size_t>(j)] * n;
     for (Index i = j; i < free; ++i) L_(i, j) = column[order_[static_cast<std::size_t>(i)]];
+    L_(j, j) += shift_(order_[static_cast<std::size_t>(j)]);
   }
   factored_ = cholesky(0, free, 0, free);
   return factored_;
@@ -95,6 +104,7 @@ bool KktSystem::complete() {
     const double* column = H_.data() + order_[static_cast<std::size_t>(j)] * n;
     for (Index i = std::max(j, n_free_); i < n; ++i)
       L_(i, j) = column[order_[static_cast<std::size_t>(i)]];
+    if (j >= n_free_) L_(j, j) += shift_(order_[static_cast<std::size_t>(j)]);
   }
   complete_ = cholesky(0, n_free_, n_free_, n) && cholesky(n_free_, n, n_free_, n);
   definite_ = definite_ || complete_;
@@ -222,7 +232,8 @@ void KktSystem::solve(const QpProblem& p, const Sides& sides, QpResult& result) 
     result.x(i) = limitOf(p, i, sides[static_cast<std::size_t>(i)]);
   }
   for (Index k = 0; k < n_rows_; ++k) y_(k) = result.y_a(rows_[static_cast<std::size_t>(k)]);
-  for (int correction = 0; !residual(p, result) && correction < kMaxCorrections; ++correction)
+  const int corrections = shifted() ? kMaxShiftedCorrections : kMaxCorrections;
+  for (int correction = 0; !residual(p, result) && correction < corrections; ++correction)
     correct(result);
   result.y_x.setZero();
   result.y_a.setZero();

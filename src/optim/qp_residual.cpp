@@ -12,15 +12,18 @@ namespace fpc {
 namespace qp {
 namespace {
 
+constexpr double kRowRounding = 1e-14;  // of the largest coefficient
+
 double largest(VectorRef v) { return v.size() > 0 ? v.lpNorm<Eigen::Infinity>() : 0.0; }
 
 /// Feasibility, sign and complementarity errors of one constraint with value and multiplier y.
-double constraintError(const QpProblem& p, Index id, VectorRef x, double value, double y,
-                       double y_scale) {
+double constraintError(const QpProblem& p, RowNoise& noise, Index id, VectorRef x, double value,
+                       double y, double y_scale) {
   const double lower = lowerOf(p, id), upper = upperOf(p, id);
   double error = 0.0;
   if (value < lower) error = (lower - value) / feasibilityScale(p, id, x, lower);
   if (value > upper) error = (value - upper) / feasibilityScale(p, id, x, upper);
+  if (error > 0.0 && noise.covers(p, id, std::max(lower - value, value - upper), x)) error = 0.0;
   if (y == 0.0 || lower == upper) return error;
   const double limit = y > 0.0 ? lower : upper;
   const double multiplier = std::abs(y) / y_scale;
@@ -46,8 +49,26 @@ double gradientScale(const QpProblem& p, VectorRef Hx, VectorRef y_x, VectorRef 
   return 1.0 + std::max({largest(Hx), largest(p.g), largest(y_x), largest(Aty)});
 }
 
-double scaledResidual(const QpProblem& p, VectorRef x, VectorRef y_x, VectorRef y_a, VectorRef Hx,
-                      VectorRef Aty, VectorRef Ax) {
+double RowNoise::rounding(const QpProblem& p) {
+  if (largest_ < 0.0) largest_ = p.A.lpNorm<Eigen::Infinity>();
+  return kRowRounding * largest_;
+}
+
+bool RowNoise::covers(const QpProblem& p, Index id, double violation, VectorRef x) {
+  const Index n = p.g.size();
+  if (id < n) return false;
+  const double limit = rounding(p);
+  bool zero = true;
+  for (Index j = 0; j < n; ++j) {
+    const double coefficient = std::abs(p.A(id - n, j));
+    if (!(coefficient <= limit)) return false;
+    zero = zero && coefficient == 0.0;
+  }
+  return (zero && violation <= kRowRounding) || violation <= limit * (1.0 + largest(x));
+}
+
+double scaledResidual(const QpProblem& p, RowNoise& noise, VectorRef x, VectorRef y_x,
+                      VectorRef y_a, VectorRef Hx, VectorRef Aty, VectorRef Ax) {
   if (!Hx.allFinite() || !Aty.allFinite() || !Ax.allFinite() || !y_x.allFinite() ||
       !y_a.allFinite()) {
     return std::numeric_limits<double>::infinity();
@@ -58,10 +79,10 @@ double scaledResidual(const QpProblem& p, VectorRef x, VectorRef y_x, VectorRef 
   for (Index i = 0; i < n; ++i) error = std::max(error, std::abs(Hx(i) + p.g(i) - y_x(i) - Aty(i)));
   error /= gradient;
   for (Index i = 0; i < n; ++i)
-    error = std::max(error, constraintError(p, i, x, x(i), y_x(i), gradient));
+    error = std::max(error, constraintError(p, noise, i, x, x(i), y_x(i), gradient));
   const double y_scale = 1.0 + largest(y_a);
   for (Index i = 0; i < m; ++i)
-    error = std::max(error, constraintError(p, n + i, x, Ax(i), y_a(i), y_scale));
+    error = std::max(error, constraintError(p, noise, n + i, x, Ax(i), y_a(i), y_scale));
   return error;
 }
 
@@ -77,7 +98,8 @@ double kktResidual(const QpProblem& problem, VectorRef x, VectorRef y_x, VectorR
     Aty.noalias() = problem.A.transpose() * y_a;
     Ax.noalias() = problem.A * x;
   }
-  return qp::scaledResidual(problem, x, y_x, y_a, Hx, Aty, Ax);
+  qp::RowNoise noise;
+  return qp::scaledResidual(problem, noise, x, y_x, y_a, Hx, Aty, Ax);
 }
 
 }  // namespace fpc

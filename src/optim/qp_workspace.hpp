@@ -1,8 +1,10 @@
 // Private parts of the QP solver: the equality-constrained KKT system of one working set (used to
-// try a working set and to polish the answer) and the dual active-set method (Goldfarb and Idnani
-// 1983, section 4) that finds the set.
+// try a working set and to polish the answer), the dual active-set method (Goldfarb and Idnani
+// 1983, section 4) that finds the set, and the proximal-point method around both for Hessians that
+// are only semidefinite.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "fmbpc/optim/qp.hpp"
@@ -10,6 +12,8 @@
 namespace fpc::qp {
 
 using Index = Eigen::Index;
+
+inline std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Which limit of a constraint is in the working set. Constraint i < n is the bound of x_i, n + j
 /// is row j.
@@ -35,20 +39,42 @@ constexpr double kDependent = 1e-10;
 /// What an error in constraint id is measured against: |limit| + sum_j |a_j| (1 + |x_j|).
 double feasibilityScale(const QpProblem& p, Index id, VectorRef x, double limit);
 
+/// Rows whose coefficients are rounding of numbers as large as the largest coefficient
+/// (0 x <= -2.8e-17) say nothing: a violation below the rounding is none.
+class RowNoise {
+ public:
+  void reset() { largest_ = -1.0; }  ///< for another problem
+  bool covers(const QpProblem& p, Index id, double violation, VectorRef x);
+
+ private:
+  double rounding(const QpProblem& p);
+
+  double largest_{-1.0};  // |a_ij|, negative while unknown
+};
+
 /// max(1 + the terms of stationarity): what an error in the gradient is measured against.
 double gradientScale(const QpProblem& p, VectorRef Hx, VectorRef y_x, VectorRef Aty);
 
 /// kktResidual() for products that are known already.
-double scaledResidual(const QpProblem& p, VectorRef x, VectorRef y_x, VectorRef y_a, VectorRef Hx,
-                      VectorRef Aty, VectorRef Ax);
+double scaledResidual(const QpProblem& p, RowNoise& noise, VectorRef x, VectorRef y_x,
+                      VectorRef y_a, VectorRef Hx, VectorRef Aty, VectorRef Ax);
 
 /// min 1/2 x'Hx + g'x with the constraints of a working set as equalities. Active bounds only
-/// remove their unknowns; the rest is L L' = H_ff and Q R = L^-1 A_wf'. Factors are kept as long as
-/// H and the working set stay the same.
+/// remove their unknowns; the rest is L L' = H_ff + shift and Q R = L^-1 A_wf'. Factors are kept as
+/// long as H and the working set stay the same. The shift is zero unless H is only semidefinite: it
+/// is in the factors alone, so that the refinement of solve() is a proximal-point iteration on the
+/// problem as it was given.
 class KktSystem {
  public:
-  void resize(Index n);
-  void setHessian(const Matrix& H);  ///< forgets the factors unless H is bitwise the one before
+  void resize(Index n, Index m);
+  void setHessian(
+      const Matrix& H);  ///< forgets factors and shift unless H is bitwise the one before
+  /// Sets the shift that equilibrates H and A. @return false if H is not positive semidefinite
+  bool regularise(const QpProblem& p);
+  /// Divides the shift by that; @return false, and nothing is changed, if it is at its least
+  bool reduceShift(double factor);
+  bool shifted() const { return shift_size_ > 0.0; }
+  const Vector& shift() const { return shift_; }
   /// @return false if H_ff is not positive definite or the rows are dependent, that is a row's sine
   /// of the angle to the rows before is not above the tolerance
   bool factor(const QpProblem& p, const Sides& sides, double dependent_tolerance);
@@ -73,7 +99,12 @@ class KktSystem {
   bool residual(const QpProblem& p, QpResult& result);
   void correct(QpResult& result);
 
+  void equilibrate(const QpProblem& p);
+  void forgetFactors();
+
   Matrix H_, L_;
+  Vector shift_, row_scale_;
+  double shift_size_{};       // of the shift, relative to the equilibrated problem
   std::vector<Index> order_;  // free unknowns, then fixed ones, each ascending
   std::vector<char> fixed_;
   std::vector<Index> rows_;  // of A, in the working set
@@ -91,23 +122,30 @@ class KktSystem {
 class DualActiveSet {
  public:
   void resize(Index n, Index m);
-  /// Starts from a working set; dependent rows and constraints with multipliers of the wrong sign
-  /// leave it.
-  /// @return false if H is not positive definite
-  bool start(const QpProblem& p, KktSystem& kkt, Sides& sides);
-  /// @return kSolved, kInfeasible, kIterationLimit or kNumericalError
-  SolveStatus run(const QpProblem& p, const QpSettings& settings, double tolerance, Sides& sides,
-                  int& iterations);
+  /// Starts from a working set with the cost of p but the gradient g; dependent rows and
+  /// constraints with multipliers of the wrong sign leave it.
+  /// @return false if H plus shift is not positive definite
+  bool start(const QpProblem& p, const Vector& g, KktSystem& kkt, Sides& sides);
+  /// The same for another gradient, from the factors and the working set as they are.
+  bool restart(const QpProblem& p, const Vector& g, Sides& sides);
+  /// @return kSolved, kInfeasible (with a certificate), kIterationLimit or kNumericalError
+  SolveStatus run(const QpProblem& p, const QpSettings& settings, double tolerance, RowNoise& noise,
+                  Sides& sides, int& iterations);
   const Vector& x() const { return x_; }
   void multipliers(Index n, QpResult& result) const;
   Index culprit() const {
     return culprit_;
   }  ///< the constraint that could not be satisfied, after kInfeasible
+  void certificate(QpResult& result) const;  ///< after kInfeasible, as multipliers
 
  private:
-  Index mostViolated(const QpProblem& p, double tolerance, const Sides& sides, Side& side);
-  SolveStatus add(const QpProblem& p, const QpSettings& settings, Index id, Side side, Sides& sides,
-                  int& iterations);
+  Index mostViolated(const QpProblem& p, double tolerance, RowNoise& noise, const Sides& sides,
+                     Side& side);
+  SolveStatus add(const QpProblem& p, const QpSettings& settings, RowNoise& noise, Index id,
+                  Side side, Sides& sides, int& iterations);
+  SolveStatus contradiction(const QpProblem& p, Index id, Side side);
+  void combineActive();
+  void absorbIntoBounds(const QpProblem& p);
   void seed(const QpProblem& p, const KktSystem& kkt, const Sides& sides);
   void setNormal(const QpProblem& p, Index id, Side side);
   void transformNormal(Index id, Side side);
@@ -115,8 +153,8 @@ class DualActiveSet {
   Index blocking(const QpProblem& p, bool dependent, double& step) const;
   void append(Index id, Side side);
   void remove(Index k, Sides& sides);
-  void minimise(const QpProblem& p);
-  void dropWrongSigns(const QpProblem& p, Sides& sides);
+  void minimise(const QpProblem& p, const Vector& g);
+  void dropWrongSigns(const QpProblem& p, const Vector& g, Sides& sides);
   double rowNorm(const QpProblem& p, Index row);
 
   Matrix J_, R_;
@@ -127,6 +165,7 @@ class DualActiveSet {
   Vector x_, u_, normal_, d_, z_, r_, c_, ax_;
   Vector scale_;     // sqrt(H_ii)
   Vector row_norm_;  // of a row in the metric diag(H)^-1, negative while unknown
+  Vector proof_x_, proof_a_, proof_error_;  // Farkas certificate and A'y_a + y_x of it
 };
 
 }  // namespace fpc::qp

@@ -74,6 +74,10 @@ TEST(QpAllocation, NoOutcomeOnRandomProblemsAllocates) {
     const Eigen::Index n = draw.index(1, 150), m = draw.index(1, 100);
     QpProblem p = knownQp(draw, n, m).problem;
     if (draw.chance(0.2)) p.H(0, 0) = -1.0;
+    if (draw.chance(0.3)) {  // semidefinite
+      p.H.row(n - 1).setZero();
+      p.H.col(n - 1).setZero();
+    }
     if (draw.chance(0.2)) p.A(0, 0) = std::nan("");
     if (draw.chance(0.3)) {  // infeasible
       p.A.row(m - 1).setZero();

@@ -14,9 +14,15 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
+/// Infeasible counts only with its proof.
 SolveStatus statusOf(const QpProblem& p) {
   QpSolver solver(4, 4);
-  return solver.solve(p, false).status;
+  const QpResult& r = solver.solve(p, false);
+  if (r.status == SolveStatus::kInfeasible) {
+    EXPECT_TRUE(provesInfeasible(p, r.y_x, r.y_a, 100.0));
+    EXPECT_GE(farkasRadius(p, r.y_x, r.y_a), 100.0);
+  }
+  return r.status;
 }
 
 TEST(Qp, ContradictionsAreInfeasible) {
@@ -53,17 +59,28 @@ TEST(Qp, IterationCapIsReported) {
   EXPECT_EQ(enough.solve(nearestPointOfHalfPlane()).status, SolveStatus::kSolved);
 }
 
-TEST(Qp, IndefiniteOrSingularHessianIsANumericalError) {
+TEST(Qp, IndefiniteHessianIsANumericalError) {
   QpProblem p(2, 0);
   p.H << 1.0, 2.0, 2.0, 1.0;
   EXPECT_EQ(statusOf(p), SolveStatus::kNumericalError);
-  p.H << 1.0, 1.0, 1.0, 1.0;
-  EXPECT_EQ(statusOf(p), SolveStatus::kNumericalError);
-  p.H.setZero();
+  p.H << 1.0, 1.0, 1.0, 1.0 - 1e-8;
   EXPECT_EQ(statusOf(p), SolveStatus::kNumericalError);
   p.H << 1.0, 0.0, 0.0, -1.0;
   p.x_lower(1) = p.x_upper(1) = 0.0;  // the bad direction is fixed, H is still not what it must be
   EXPECT_EQ(statusOf(p), SolveStatus::kNumericalError);
+}
+
+TEST(Qp, ACostWithoutAMinimumIsANumericalError) {
+  QpProblem p(2, 0);
+  p.H << 1.0, 1.0, 1.0, 1.0;
+  p.g << 1.0, -1.0;  // falls along (-1, 1)
+  EXPECT_EQ(statusOf(p), SolveStatus::kNumericalError);
+  p.x_upper(1) = 5.0;  // until there: x_0 = -1 - x_1
+  QpSolver solver(2, 0);
+  const QpResult& r = solver.solve(p);
+  ASSERT_EQ(r.status, SolveStatus::kSolved);
+  EXPECT_LE((r.x - Eigen::Vector2d(-6.0, 5.0)).norm(), 1e-12);
+  EXPECT_NEAR(r.y_x(1), -2.0, 1e-12);
 }
 
 TEST(Qp, AConcaveProblemIsNotSolvedByTheRememberedBounds) {

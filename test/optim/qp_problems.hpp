@@ -98,6 +98,47 @@ inline KnownQp knownQp(Draw& draw, Eigen::Index n, Eigen::Index m) {
   return known;
 }
 
+/// Makes the last row a positive combination of finite upper limits, asked to exceed their sum by
+/// `gap`.
+inline void makeInfeasible(Draw& draw, QpProblem& p, double gap) {
+  const Eigen::Index n = p.g.size(), last = p.a_lower.size() - 1;
+  p.A.row(last).setZero();
+  double reach = 0.0;
+  for (int k = 0; k < 8; ++k) {
+    const double weight = draw.uniform(0.1, 2.0);
+    const Eigen::Index i = draw.index(0, n - 1), row = draw.index(0, last - 1);
+    if (draw.chance(0.5) && std::isfinite(p.x_upper(i))) {
+      p.A(last, i) += weight;
+      reach += weight * p.x_upper(i);
+    } else if (std::isfinite(p.a_upper(row))) {
+      p.A.row(last) += weight * p.A.row(row);
+      reach += weight * p.a_upper(row);
+    }
+  }
+  p.a_lower(last) = reach + gap;
+  p.a_upper(last) = kInf;
+}
+
+/// Farkas: y_x + A'y_a must vanish while the limits that y stands for add up to more than zero. Own
+/// arithmetic (long double): no x with |x_j| <= radius can be inside all limits.
+inline bool provesInfeasible(const QpProblem& p, const Vector& y_x, const Vector& y_a,
+                             double radius) {
+  using Long = long double;
+  Long support = 0.0L, error = 0.0L;
+  const auto add = [&](double y, double lower, double upper) {
+    if (y != 0.0) support += static_cast<Long>(y) * static_cast<Long>(y > 0.0 ? lower : upper);
+  };
+  for (Eigen::Index i = 0; i < y_x.size(); ++i) add(y_x(i), p.x_lower(i), p.x_upper(i));
+  for (Eigen::Index i = 0; i < y_a.size(); ++i) add(y_a(i), p.a_lower(i), p.a_upper(i));
+  for (Eigen::Index j = 0; j < y_x.size(); ++j) {
+    Long sum = y_x(j);
+    for (Eigen::Index i = 0; i < y_a.size(); ++i)
+      sum += static_cast<Long>(p.A(i, j)) * static_cast<Long>(y_a(i));
+    error += std::abs(sum);
+  }
+  return std::isfinite(support) && support > static_cast<Long>(radius) * error;
+}
+
 /// What a predictive controller asks for over 42 samples: inputs near those of a base law (least
 /// perturbation), inside bounds, with move limits and soft limits on two outputs that share a slack
 /// each.

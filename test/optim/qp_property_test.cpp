@@ -54,27 +54,6 @@ TEST(QpProperty, WarmStartFromAnUnrelatedProblemGivesTheSameAnswer) {
   }
 }
 
-/// Makes the last row a positive combination of finite upper limits, asked to exceed their sum by
-/// `gap`.
-void makeInfeasible(Draw& draw, QpProblem& p, double gap) {
-  const Eigen::Index n = p.g.size(), last = p.a_lower.size() - 1;
-  p.A.row(last).setZero();
-  double reach = 0.0;
-  for (int k = 0; k < 8; ++k) {
-    const double weight = draw.uniform(0.1, 2.0);
-    const Eigen::Index i = draw.index(0, n - 1), row = draw.index(0, last - 1);
-    if (draw.chance(0.5) && std::isfinite(p.x_upper(i))) {
-      p.A(last, i) += weight;
-      reach += weight * p.x_upper(i);
-    } else if (std::isfinite(p.a_upper(row))) {
-      p.A.row(last) += weight * p.A.row(row);
-      reach += weight * p.a_upper(row);
-    }
-  }
-  p.a_lower(last) = reach + gap;
-  p.a_upper(last) = kInf;
-}
-
 TEST(QpProperty, InfeasibleProblemsAreAlwaysReportedColdAndWarm) {
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
@@ -84,7 +63,9 @@ TEST(QpProperty, InfeasibleProblemsAreAlwaysReportedColdAndWarm) {
     QpProblem infeasible = known.problem;
     makeInfeasible(draw, infeasible, std::pow(10.0, draw.uniform(-6.0, 1.0)));
     QpSolver solver(n, m);
-    ASSERT_EQ(solver.solve(infeasible).status, SolveStatus::kInfeasible);
+    const QpResult& proof = solver.solve(infeasible);
+    ASSERT_EQ(proof.status, SolveStatus::kInfeasible);
+    ASSERT_TRUE(provesInfeasible(infeasible, proof.y_x, proof.y_a, 100.0));
     ASSERT_EQ(solver.solve(known.problem).status, SolveStatus::kSolved);
     ASSERT_EQ(solver.solve(infeasible).status, SolveStatus::kInfeasible);
   }

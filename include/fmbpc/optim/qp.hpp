@@ -1,5 +1,6 @@
 // Dense convex quadratic programmes of the size a controller meets, solved by a dual active-set
-// method (Goldfarb and Idnani 1983) with warm start and no allocation after construction.
+// method (Goldfarb and Idnani 1983) with warm start and no allocation after construction; inside
+// proximal-point iterations (Rockafellar 1976) where the Hessian is only semidefinite.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ namespace fpc {
 
 /// min 1/2 x'Hx + g'x  subject to  x_lower <= x <= x_upper,  a_lower <= A x <= a_upper.
 /// Infinite bounds are absent; equal bounds are equalities.
-/// Symbols: H n n symmetric positive definite, A m n
+/// Symbols: H n n symmetric positive semidefinite, A m n
 struct QpProblem {
   Matrix H;
   Vector g;
@@ -27,13 +28,13 @@ struct QpProblem {
 };
 
 struct QpSettings {
-  int max_iterations{500};
+  int max_iterations{10000};
   double feasibility_tolerance{1e-10};  ///< relative to |limit| + sum_j |a_j| (1 + |x_j|)
   void validate() const;                ///< @throws InputError naming the field
 };
 
 /// Multipliers: stationarity is H x + g = y_x + A' y_a, where y >= 0 on an active lower bound and
-/// <= 0 on an upper one.
+/// <= 0 on an upper one. After kInfeasible they are a Farkas certificate: see farkasRadius().
 struct QpResult {
   SolveStatus status{SolveStatus::kNumericalError};
   Vector x;               ///< n, meaningless unless usable(); exactly at the active bounds
@@ -48,9 +49,19 @@ struct QpResult {
 
 /// Scaled KKT residual of a point (independent of how it was found): stationarity relative to
 /// 1 + its largest term, feasibility to |limit| + sum_j |a_j| (1 + |x_j|), complementarity
-/// min(multiplier, distance to the limit), both scaled. Infinite if anything is not finite.
+/// min(multiplier, distance to the limit), both scaled. A violation within the rounding (1e-14) of
+/// the largest coefficient of A is none in a row that has no larger coefficients itself. Infinite
+/// if anything is not finite.
 /// @throws InputError if the sizes of x, y_x, y_a are not those of the problem
 double kktResidual(const QpProblem& problem, VectorRef x, VectorRef y_x, VectorRef y_a);
+
+/// How much a Farkas certificate proves. With y_x + A'y_a = 0 any x inside all limits would give
+/// 0 = y_x'x + y_a'Ax >= sum y+ lower + sum y- upper, so a positive right side proves that there is
+/// none. @return r such that no x with |x_j| <= r for all j is inside all limits, rounding counted
+/// against the certificate: right side / sum_j |y_x + A'y_a|_j; infinite if that is exactly zero, 0
+/// if nothing is proven
+/// @throws InputError if the sizes of y_x and y_a are not those of the problem
+double farkasRadius(const QpProblem& problem, VectorRef y_x, VectorRef y_a);
 
 class QpSolver {
  public:
@@ -64,9 +75,11 @@ class QpSolver {
 
   /// Solves; with warm = true starts from the active set of the previous solve of the same size.
   /// Non-finite or wrongly sized data, or lower > upper, give kInvalidProblem; an H that is not
-  /// positive definite kNumericalError; never throws. kSolved implies kkt_residual <= 1e-9 (or
-  /// 10 feasibility_tolerance if that is larger). The factors of H are kept while H stays bitwise
-  /// the same.
+  /// positive semidefinite, or a cost without a minimum, kNumericalError; never throws. kSolved
+  /// implies kkt_residual <= 1e-9 (or 10 feasibility_tolerance if that is larger), kInfeasible a
+  /// certificate in y_x and y_a with farkasRadius() >= 100 (and 100 |x| of the point that it was
+  /// found at). Where H is semidefinite and the minimum not unique, x is one of them. The factors
+  /// of H are kept while H stays bitwise the same.
   const QpResult& solve(const QpProblem& problem, bool warm = true);
   void forget();  ///< the next solve is cold
 

@@ -29,7 +29,7 @@ struct ClpParams {
   Vector output_lower, output_upper;  ///< n_y, soft; infinite if absent
   double output_penalty{1e4};         ///< weight of squared soft violations beside the scaled cost:
                                       ///< largest entry of H near 1, slacks over slack_scale
-  QpSettings qp;
+  QpSettings qp{500};
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;  ///< @throws InputError naming the field
 };
 
