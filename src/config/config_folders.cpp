@@ -8,6 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/config/study_file.hpp"
 #include "fmbpc/config/tuning_file.hpp"
 
 #ifndef FMBPC_SOURCE_CONFIG
@@ -80,6 +81,10 @@ std::string findLoop(const std::string& name_or_path) { return find("loop", name
 std::string findStructure(const std::string& name_or_path) {
   return find("structure", name_or_path);
 }
+
+std::vector<std::string> studyNames() { return namesIn("study"); }
+
+std::string findStudy(const std::string& name_or_path) { return find("study", name_or_path); }
 
 std::vector<std::string> tuningNames() { return namesIn("tuning"); }
 

@@ -64,6 +64,12 @@ PlotResult drawStability(const std::string& folder) {
   return {(fs::path(folder) / "root_locus.png").string(), ""};
 }
 
+PlotResult drawStudy(const std::string& folder) {
+  const std::string warning = drawWith("plot_study.py", folder);
+  if (!warning.empty()) return {"", warning};
+  return {(fs::path(folder) / "distributions.png").string(), ""};
+}
+
 PlotResult drawTuning(const std::string& folder) {
   const std::string warning = drawWith("plot_tuning.py", folder);
   if (!warning.empty()) return {"", warning};

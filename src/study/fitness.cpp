@@ -63,7 +63,6 @@ const std::map<std::string, OfRun>& runTable() {
 }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr char kConsumption[] = "consumption";
 
 double unitInSeconds(const std::string& unit) {
   if (unit == "s") return 1.0;
@@ -119,11 +118,6 @@ double sumOf(const FitnessParams& fitness, const FitnessTerm& term, const LoopFi
   return runTable().at(term.index)(summary);
 }
 
-template <typename Table>
-void addNames(const Table& table, std::vector<std::string>& names) {
-  for (const auto& entry : table) names.push_back(entry.first);
-}
-
 std::vector<std::string> signalsOf(const FitnessTerm& term, const LoopFile& loop) {
   std::vector<std::string> names;
   const IndexOf kind = kindOf(term.index);
@@ -137,25 +131,6 @@ std::vector<std::string> signalsOf(const FitnessTerm& term, const LoopFile& loop
 }
 
 }  // namespace
-
-std::vector<std::string> fitnessIndices() {
-  std::vector<std::string> names;
-  addNames(outputTable(), names);
-  addNames(stepTable(), names);
-  addNames(inputTable(), names);
-  addNames(runTable(), names);
-  names.emplace_back(kConsumption);
-  return names;
-}
-
-IndexOf kindOf(const std::string& index) {
-  if (outputTable().count(index) > 0) return IndexOf::kOutput;
-  if (stepTable().count(index) > 0) return IndexOf::kStep;
-  if (inputTable().count(index) > 0) return IndexOf::kInput;
-  if (index == kConsumption) return IndexOf::kConsumption;
-  require(runTable().count(index) > 0, "index '" + index + "'", "one of " + join(fitnessIndices()));
-  return IndexOf::kRun;
-}
 
 void checkFitness(const FitnessParams& fitness, const LoopFile& loop) {
   for (std::size_t t = 0; t < fitness.terms.size(); ++t) {

@@ -14,6 +14,7 @@
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/fitness.hpp"
+#include "study/text_hash.hpp"
 
 namespace fpc {
 namespace {
@@ -49,15 +50,6 @@ std::string contentsOf(const LoopFile& loop) {
   return all;
 }
 
-/// FNV-1a, in hexadecimal.
-std::string hashOf(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ULL;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  char word[17];
-  std::snprintf(word, sizeof word, "%016llx", static_cast<unsigned long long>(hash));
-  return word;
-}
-
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
@@ -80,7 +72,7 @@ TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning, con
       checkFitness(tuning_.fitness, first);
       all += scenario.text + contentsOf(first);
     }
-  fingerprint_ = hashOf(all);
+  fingerprint_ = textHash(all);
   judgeUntouched(cases_, untouched_);
   if (!held_out_.empty()) judgeUntouched(held_out_, untouched_held_out_);
 }

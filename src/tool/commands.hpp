@@ -65,6 +65,22 @@ struct TuneArguments {
   bool no_plot{false};
 };
 
+struct StudyArguments {
+  std::vector<std::string> names;  ///< a study file, or loops
+  std::vector<std::string> set;
+  std::vector<std::string> vary;   ///< "KEY=0.7:1.3"
+  std::vector<std::string> noise;  ///< "OUTPUT=STD"
+  double noise_percent{-1.0};      ///< of the span of setpoints; negative: as the file says
+  std::string seeds;               ///< "1:40"
+  std::string against;             ///< name of the loop to pair with
+  std::string index;               ///< without a file; empty: ise
+  std::string out;                 ///< folder, empty: nothing is written
+  int threads{0};                  ///< 0: all cores
+  bool resume{false};
+  bool json{false};
+  bool no_plot{false};
+};
+
 int identify(const IdentifyArguments& arguments);
 int run(const RunArguments& arguments);
 /// `sets`: more of them in one text, see parseOverrides().
@@ -77,6 +93,7 @@ std::string findModel(const std::string& name);
 int stability(const StabilityArguments& arguments);
 int reproduce(const ReproduceArguments& arguments);
 int tune(const TuneArguments& arguments);
+int study(const StudyArguments& arguments);
 int table(const std::vector<std::string>& folders);
 
 }  // namespace fpc::tool

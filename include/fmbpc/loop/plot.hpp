@@ -17,6 +17,8 @@ PlotResult drawPlot(const std::string& folder);
 PlotResult drawStability(const std::string& folder);
 /// convergence.png in a folder with a tuning.json or compare.json.
 PlotResult drawTuning(const std::string& folder);
+/// distributions.png in a folder with a study.json.
+PlotResult drawStudy(const std::string& folder);
 
 /// The same by scripts/plot_model.py for a folder that `fmbpc identify --plots` fills; several
 /// pictures, none is named.

@@ -4,18 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/config/fitness_index.hpp"
 #include "fmbpc/config/tuning_file.hpp"
 #include "fmbpc/loop/record.hpp"
 
 namespace fpc {
-
-/// Of what an index is: that decides which key names its signal.
-enum class IndexOf { kOutput, kStep, kInput, kConsumption, kRun };
-
-/// The names of all indices.
-std::vector<std::string> fitnessIndices();
-/// @throws InputError for an unknown name.
-IndexOf kindOf(const std::string& index);
 
 /// @throws InputError naming the term whose signal the loop has not.
 void checkFitness(const FitnessParams& fitness, const LoopFile& loop);

@@ -1,0 +1,116 @@
+// What tuning files and study files share: fitness, changes of a loop, scenarios.
+#include "config/read_scenarios.hpp"
+
+#include <cmath>
+#include <set>
+
+#include "config/read.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/config/fitness_index.hpp"
+
+namespace fpc {
+namespace {
+
+/// The key of a term that names its signal.
+std::string signalKey(const std::string& index) {
+  switch (kindOf(index)) {
+    case IndexOf::kOutput:
+    case IndexOf::kStep:
+      return "output";
+    case IndexOf::kInput:
+      return "input";
+    case IndexOf::kConsumption:
+      return "name";
+    case IndexOf::kRun:
+      break;
+  }
+  return "";
+}
+
+FitnessTerm readTerm(YamlSection& item) {
+  FitnessTerm term;
+  need(item, "index", "one of " + join(fitnessIndices()));
+  item.oneOf("index", term.index, fitnessIndices());
+  item.number("weight", term.weight, kFiniteNotNegative);
+  const std::string key = signalKey(term.index);
+  if (!key.empty()) item.text(key, term.signal);
+  item.finish();
+  return term;
+}
+
+TuningScenario readScenario(YamlSection& item) {
+  TuningScenario scenario;
+  item.text("name", scenario.name);
+  item.text("loop", scenario.loop);
+  scenario.has_seed = item.has("seed");
+  item.seed("seed", scenario.seed);
+  scenario.set = readSet(item);
+  item.finish();
+  return scenario;
+}
+
+std::string nameOf(const TuningScenario& scenario, std::size_t number) {
+  if (!scenario.name.empty()) return scenario.name;
+  if (scenario.has_seed) return "seed " + std::to_string(scenario.seed);
+  return scenario.loop.empty() ? "scenario " + std::to_string(number) : scenario.loop;
+}
+
+}  // namespace
+
+FitnessParams readFitness(YamlSection& root, bool of_tuning) {
+  FitnessParams fitness;
+  YamlSection section = root.section("fitness");
+  for (auto& item : section.list("terms")) fitness.terms.push_back(readTerm(item));
+  if (fitness.terms.empty()) section.fail("terms", "a list of at least one {index, ...}");
+  section.number("band", fitness.band, kFinitePositive);
+  section.oneOf("time_unit", fitness.time_unit, {"s", "min", "h"});
+  if (of_tuning) {
+    section.oneOf("across", fitness.across, {"mean", "median", "worst"});
+    section.boolean("relative", fitness.relative);
+    section.number("failure", fitness.failure, {0.0, kInfinite, true});
+  }
+  section.finish();
+  return fitness;
+}
+
+Overrides readSet(YamlSection& section) {
+  Overrides set;
+  const YAML::Node node = section.raw("set");
+  if (node.IsDefined() && !node.IsMap()) section.fail("set", "a mapping of key.path: value");
+  for (const auto& entry : node) {
+    YAML::Emitter text;
+    text << YAML::Flow << entry.second;
+    set.emplace_back(entry.first.Scalar(), text.c_str());
+  }
+  return set;
+}
+
+std::vector<TuningScenario> readScenarios(YamlSection& root, const std::string& key) {
+  std::vector<TuningScenario> scenarios;
+  const YAML::Node node = root.raw(key);
+  if (!node.IsDefined()) return scenarios;
+  if (node.IsMap()) {
+    YamlSection section = root.section(key);
+    std::vector<double> seeds;
+    section.numbers("seeds", seeds, kFiniteNotNegative);
+    section.finish();
+    for (const double seed : seeds) {
+      if (seed != std::floor(seed)) root.fail(key, "whole numbers as seeds");
+      TuningScenario scenario;
+      scenario.has_seed = true;
+      scenario.seed = static_cast<std::uint64_t>(seed);
+      scenarios.push_back(scenario);
+    }
+  } else {
+    for (auto& item : root.list(key)) scenarios.push_back(readScenario(item));
+  }
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    scenarios[i].name = nameOf(scenarios[i], i + 1);
+    if (!names.insert(scenarios[i].name).second)
+      root.fail(key, "scenarios with names of their own; twice " + scenarios[i].name);
+  }
+  return scenarios;
+}
+
+}  // namespace fpc

@@ -1,0 +1,148 @@
+#include "fmbpc/study/run_judgement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fmbpc/loop/report.hpp"
+#include "fmbpc/study/fitness.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kAtBound = 1e-6;  // of an input's range
+constexpr double kLockedError =
+    0.02;  // of the setpoint, below which an output is where it should be
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// -1: at the lower bound, 1: at the upper one, 0: between them.
+int boundOf(const InputLimits& limits, const Vector& input, Index i) {
+  const double range = limits.upper[i] - limits.lower[i];
+  if (!std::isfinite(range) || range <= 0.0) return 0;
+  if (input[i] <= limits.lower[i] + kAtBound * range) return -1;
+  return input[i] >= limits.upper[i] - kAtBound * range ? 1 : 0;
+}
+
+double errorOf(const SampleRecord& sample, Index output) {
+  return std::abs(sample.tracking.setpoint[output] - sample.measurement.outputs[output]);
+}
+
+/// Mean |error| over samples [first, last).
+double meanError(const RunRecord& record, Index output, std::size_t first, std::size_t last) {
+  double sum = 0.0;
+  for (std::size_t k = first; k < last; ++k) sum += errorOf(record.samples[k], output);
+  return sum / static_cast<double>(last - first);
+}
+
+bool lockedOver(const RunRecord& record, std::size_t first, std::size_t last) {
+  const std::size_t quarter = std::max<std::size_t>(1, (last - first) / 4);
+  const auto& setpoint = record.samples[last - 1].tracking.setpoint;
+  for (Index i = 0; i < setpoint.size(); ++i) {
+    const double begin = meanError(record, i, first, first + quarter);
+    const double end = meanError(record, i, last - quarter, last);
+    if (end >= begin && end > kLockedError * std::abs(setpoint[i])) return true;
+  }
+  return false;
+}
+
+double meanMove(const Summary& summary) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < summary.inputs.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    const double range = summary.limits.upper[k] - summary.limits.lower[k];
+    sum += summary.inputs[i].mean_abs_move / (std::isfinite(range) && range > 0.0 ? range : 1.0);
+  }
+  return sum;
+}
+
+double largestMove(const RunRecord& record) {
+  double largest = 0.0;
+  for (std::size_t k = 1; k < record.samples.size(); ++k) {
+    const Vector& now = record.samples[k].measurement.input_applied;
+    const Vector& before = record.samples[k - 1].measurement.input_applied;
+    if (now.size() > 0 && now.size() == before.size())
+      largest = std::max(largest, (now - before).cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+double leastOutput(const RunRecord& record) {
+  double least = kInfinity;
+  for (const auto& sample : record.samples)
+    if (sample.measurement.outputs.size() > 0)
+      least = std::min(least, sample.measurement.outputs[0]);
+  return least;
+}
+
+}  // namespace
+
+const char* wordOf(RunFailure failure) {
+  switch (failure) {
+    case RunFailure::kDiverged:
+      return "diverged";
+    case RunFailure::kLocked:
+      return "locked";
+    case RunFailure::kViolated:
+      return "violated";
+    case RunFailure::kHeld:
+      return "held";
+    case RunFailure::kOutOfModel:
+      break;
+  }
+  return "out_of_model";
+}
+
+RunRecord withoutNoise(RunRecord record) {
+  for (auto& sample : record.samples)
+    if (sample.has_state && sample.has_measurement)
+      sample.measurement.outputs = sample.state.outputs;
+  return record;
+}
+
+std::uint64_t lockedSamples(const LoopFile& loop, const RunRecord& record, int locked_samples) {
+  const InputLimits& limits = loop.simulation.actuator.limits;
+  const std::size_t n = record.samples.size();
+  const std::size_t enough = locked_samples > 0 ? static_cast<std::size_t>(locked_samples)
+                                                : std::max<std::size_t>(20, n / 10);
+  std::size_t longest = 0;
+  for (Index i = 0; i < limits.lower.size(); ++i) {
+    std::size_t first = 0;
+    int bound = 0;
+    for (std::size_t k = 0; k <= n; ++k) {
+      const bool there =
+          k < n && record.samples[k].has_measurement && record.samples[k].has_tracking;
+      const int now = there ? boundOf(limits, record.samples[k].measurement.input_applied, i) : 0;
+      if (k < n && now == bound) continue;
+      const std::size_t length = k - first;
+      if (bound != 0 && length >= enough && length > longest && lockedOver(record, first, k))
+        longest = length;
+      bound = now;
+      first = k;
+    }
+  }
+  return longest;
+}
+
+RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord record) {
+  if (study.noise_free) record = withoutNoise(std::move(record));
+  const Summary summary = summarize(loop, record, 0.0);
+  RunJudgement judged;
+  const auto note = [&](RunFailure kind) -> std::uint64_t& {
+    return judged.failures[static_cast<std::size_t>(kind)];
+  };
+  judged.cost = fitness(study.fitness, loop, record);
+  judged.move = meanMove(summary);
+  judged.least = leastOutput(record);
+  judged.largest_move = largestMove(record);
+  if (!std::isfinite(judged.cost)) note(RunFailure::kDiverged) = record.samples.size();
+  note(RunFailure::kLocked) = lockedSamples(loop, record, study.locked_samples);
+  note(RunFailure::kViolated) =
+      summary.input_violations + summary.move_violations + summary.output_violations;
+  note(RunFailure::kHeld) = summary.sources[static_cast<std::size_t>(ActionSource::kHeld)] +
+                            summary.sources[static_cast<std::size_t>(ActionSource::kFallback)];
+  return judged;
+}
+
+}  // namespace fpc

@@ -1,0 +1,144 @@
+#include "fmbpc/study/study_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/random.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/config/extending_loop.hpp"
+#include "fmbpc/study/fitness.hpp"
+#include "study/text_hash.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+/// The number at a key of a resolved loop, or the plant's own where the loop does not say.
+double numberAt(const LoopFile& loop, const std::string& key) {
+  const std::string text = scalarOf(loop.resolved, key);
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (!text.empty() && *end == '\0' && std::isfinite(value)) return value;
+  const std::string expected = "a key that has a number in loop " + loop.name;
+  require(text.empty() && !loop.external_plant, "vary." + key, expected);
+  const PlantDescription about = makePlant(loop.simulation)->description();
+  const auto dot = key.find_last_of('.');
+  const std::string section = key.substr(0, dot == std::string::npos ? 0 : dot);
+  const auto& known = section == "plant.parameters"      ? about.parameters
+                      : section == "plant.initial_state" ? about.states
+                                                         : about.disturbances;
+  const bool ours = section == "plant.parameters" || section == "plant.initial_state" ||
+                    section == "disturbance.nominal";
+  for (const auto& quantity : known)
+    if (ours && key == section + "." + quantity.name) return quantity.nominal;
+  throw InputError("vary." + key + ": expected " + expected);
+}
+
+/// Distance from the least to the largest setpoint, or the setpoint where that never changes.
+Vector spanOf(const LoopFile& loop) {
+  Vector least = loop.setpoint.initial, most = least;
+  for (const auto& step : loop.setpoint.schedule)
+    for (Index i = 0; i < least.size(); ++i) {
+      if (step.value.size() != least.size() || !std::isfinite(step.value[i])) continue;
+      least[i] = std::min(least[i], step.value[i]);
+      most[i] = std::max(most[i], step.value[i]);
+    }
+  Vector span = most - least;
+  for (Index i = 0; i < span.size(); ++i)
+    if (span[i] == 0.0) span[i] = std::abs(most[i]);
+  return span;
+}
+
+Overrides noiseOf(const StudyFile& study, const LoopFile& loop) {
+  Overrides noise;
+  for (const auto& [output, std] : study.noise)
+    noise.emplace_back("noise.std." + output, exactText(std));
+  if (study.noise_percent == 0.0) return noise;
+  const Vector span = spanOf(loop);
+  for (Index i = 0; i < span.size(); ++i)
+    noise.emplace_back("noise.std." + loop.plant_info.outputs[static_cast<std::size_t>(i)].name,
+                       exactText(0.01 * study.noise_percent * span[i]));
+  return noise;
+}
+
+}  // namespace
+
+StudyPlan::StudyPlan(StudyFile study) : study_(std::move(study)) {
+  study_.validate();
+  makeCases();
+  std::string all = study_.text;
+  for (const auto& loop : study_.loops) {
+    prepared_.emplace_back();
+    for (std::size_t s = 0; s < std::max<std::size_t>(1, study_.scenarios.size()); ++s) {
+      prepared_.back().push_back(
+          prepare(loop, study_.scenarios.empty() ? nullptr : &study_.scenarios[s]));
+      all += prepared_.back().back().text;
+    }
+    all += loop.name;
+  }
+  for (const auto& one : cases_) all += one.name;
+  for (const auto& [key, value] : study_.set) all += key + value;
+  fingerprint_ = textHash(all);
+  for (std::size_t run = 0; run < runs(); run += cases_.size())
+    checkFitness(study_.fitness, loop(run));
+}
+
+StudyPlan::Prepared StudyPlan::prepare(const StudyLoop& loop,
+                                       const TuningScenario* scenario) const {
+  const std::string name = scenario && !scenario->loop.empty() ? scenario->loop : loop.loop;
+  Overrides overrides = study_.set;
+  overrides.insert(overrides.end(), loop.set.begin(), loop.set.end());
+  if (scenario) overrides.insert(overrides.end(), scenario->set.begin(), scenario->set.end());
+  const LoopFile read = readLoop(name, overrides);
+  Prepared prepared;
+  prepared.text = read.resolved;
+  prepared.noise = noiseOf(study_, read);
+  for (const auto& variation : study_.vary)
+    prepared.numbers.push_back(variation.factor ? numberAt(read, variation.key) : 1.0);
+  const bool noisy = !prepared.noise.empty() || read.simulation.noise_std.any();
+  if (read.disturbance.source == "pattern")
+    prepared.seeded.emplace_back("disturbance.pattern.seed");
+  if (noisy) prepared.seeded.emplace_back("noise.seed");
+  require(study_.seeds.empty() || !prepared.seeded.empty() || !study_.vary.empty(), "seeds",
+          "a disturbance pattern, noise or vary in loop " + read.name);
+  return prepared;
+}
+
+void StudyPlan::makeCases() {
+  const std::size_t scenarios = std::max<std::size_t>(1, study_.scenarios.size());
+  const std::size_t seeds = std::max<std::size_t>(1, study_.seeds.size());
+  for (std::size_t s = 0; s < scenarios; ++s) {
+    for (std::size_t i = 0; i < seeds; ++i) {
+      StudyCase one;
+      if (!study_.scenarios.empty()) one.scenario = study_.scenarios[s].name;
+      one.has_seed = !study_.seeds.empty();
+      if (one.has_seed) one.seed = study_.seeds[i];
+      const std::string seed = one.has_seed ? "seed " + std::to_string(one.seed) : "";
+      one.name = one.scenario + (one.scenario.empty() || seed.empty() ? "" : ", ") + seed;
+      if (one.name.empty()) one.name = "as it is";
+      for (std::size_t v = 0; v < study_.vary.size(); ++v) {
+        std::mt19937_64 engine = seededEngine(one.seed, {0x5354554459U, v});
+        const StudyVariation& range = study_.vary[v];
+        one.drawn.push_back(range.lower + (range.upper - range.lower) * uniform(engine));
+      }
+      cases_.push_back(std::move(one));
+    }
+  }
+}
+
+LoopFile StudyPlan::loop(std::size_t run) const {
+  const StudyCase& one = cases_[caseOf(run)];
+  const std::size_t seeds = std::max<std::size_t>(1, study_.seeds.size());
+  const Prepared& prepared = prepared_[loopOf(run)][caseOf(run) / seeds];
+  Overrides overrides = prepared.noise;
+  for (std::size_t v = 0; v < study_.vary.size(); ++v)
+    overrides.emplace_back(study_.vary[v].key, exactText(prepared.numbers[v] * one.drawn[v]));
+  for (const auto& key : prepared.seeded)
+    if (one.has_seed) overrides.emplace_back(key, std::to_string(one.seed));
+  return parseLoop(prepared.text, study_.loops[loopOf(run)].name, overrides);
+}
+
+}  // namespace fpc

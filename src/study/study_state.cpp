@@ -1,0 +1,78 @@
+#include "study/study_state.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json toJson(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+double number(const Json& json) {
+  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
+}
+
+Json toJson(const RunJudgement& run) {
+  return {{"cost", toJson(run.cost)},   {"move", toJson(run.move)},
+          {"least", toJson(run.least)}, {"largest_move", toJson(run.largest_move)},
+          {"failures", run.failures},   {"trouble", run.trouble}};
+}
+
+RunJudgement runOf(const Json& json) {
+  RunJudgement run;
+  run.cost = number(json.at("cost"));
+  run.move = number(json.at("move"));
+  run.least = number(json.at("least"));
+  run.largest_move = number(json.at("largest_move"));
+  run.failures = json.at("failures").get<std::vector<std::uint64_t>>();
+  run.failures.resize(kRunFailures, 0);
+  run.trouble = json.at("trouble");
+  return run;
+}
+
+}  // namespace
+
+void writeStudyState(const std::string& file, const std::string& fingerprint,
+                     const std::vector<std::optional<RunJudgement>>& runs) {
+  Json done = Json::object();
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (runs[i]) done[std::to_string(i)] = toJson(*runs[i]);
+  const Json json{{"study", fingerprint}, {"runs", done}};
+  const std::string beside = file + ".new";
+  std::ofstream stream(beside);
+  stream << json.dump() << "\n";
+  stream.close();
+  std::error_code error;
+  if (!stream.fail()) std::filesystem::rename(beside, file, error);
+  require(!stream.fail() && !error, file, "a writable file");
+}
+
+std::vector<std::optional<RunJudgement>> readStudyState(const std::string& file,
+                                                        const std::string& fingerprint,
+                                                        std::size_t runs) {
+  std::ifstream stream(file);
+  require(stream.good(), file, "a readable file, as a stopped `fmbpc study --out` leaves it");
+  try {
+    const Json json = Json::parse(stream);
+    require(json.at("study") == fingerprint, file,
+            "the state of this study: loops, seeds and options as they were when it stopped");
+    std::vector<std::optional<RunJudgement>> done(runs);
+    for (const auto& [index, run] : json.at("runs").items()) {
+      const std::size_t at = std::stoul(index);
+      require(at < runs, file, "runs of this study");
+      done[at] = runOf(run);
+    }
+    return done;
+  } catch (const Json::exception& e) {
+    throw InputError(file + ": expected the state of a study: " + e.what());
+  }
+}
+
+}  // namespace fpc

@@ -1,0 +1,18 @@
+// The state file of a study. Private to the room.
+#pragma once
+
+#include <string>
+
+#include "fmbpc/study/study.hpp"
+
+namespace fpc {
+
+/// Written beside and renamed, so that a crash leaves the old one. @throws InputError.
+void writeStudyState(const std::string& file, const std::string& fingerprint,
+                     const std::vector<std::optional<RunJudgement>>& runs);
+/// @throws InputError if it is not there, not a state, or of another study.
+std::vector<std::optional<RunJudgement>> readStudyState(const std::string& file,
+                                                        const std::string& fingerprint,
+                                                        std::size_t runs);
+
+}  // namespace fpc

@@ -1,0 +1,142 @@
+#include "fmbpc/study/study_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fpc {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// z with P(|N(0,1)| < z) = confidence, by bisection of erf.
+double normalBound(double confidence) {
+  double low = 0.0, high = 10.0;
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (low + high);
+    (std::erf(middle / std::sqrt(2.0)) < confidence ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+std::vector<double> sorted(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+LoopStatistics statisticsOfLoop(const StudyPlan& plan, const StudyResult& result,
+                                std::size_t loop) {
+  LoopStatistics s;
+  s.name = plan.study().loops[loop].name;
+  s.failures.assign(kRunFailures, 0);
+  s.worst = -std::numeric_limits<double>::infinity();
+  std::vector<double> costs, moves;
+  for (std::size_t c = 0; c < plan.cases().size(); ++c) {
+    const auto& run = result.runs[loop * plan.cases().size() + c];
+    if (!run) continue;
+    ++s.runs;
+    costs.push_back(run->cost);
+    moves.push_back(run->move);
+    s.largest_move = std::max(s.largest_move, run->largest_move);
+    if (run->cost > s.worst) {
+      s.worst = run->cost;
+      s.worst_case = plan.cases()[c].name;
+    }
+    bool any = false;
+    for (std::size_t f = 0; f < s.failures.size(); ++f) {
+      s.failures[f] += run->failures[f] > 0;
+      any = any || run->failures[f] > 0;
+    }
+    if (any) s.failing_cases.push_back(plan.cases()[c].name);
+    if (s.trouble.empty()) s.trouble = run->trouble;
+  }
+  costs = sorted(std::move(costs));
+  s.median = quantileOf(costs, 0.5);
+  s.lower_quartile = quantileOf(costs, 0.25);
+  s.upper_quartile = quantileOf(costs, 0.75);
+  s.median_move = quantileOf(sorted(std::move(moves)), 0.5);
+  return s;
+}
+
+PairStatistics statisticsOfPair(const StudyPlan& plan, const StudyResult& result, std::size_t loop,
+                                std::size_t other) {
+  PairStatistics p;
+  p.name = plan.study().loops[loop].name;
+  p.against = plan.study().loops[other].name;
+  std::vector<double> ratios;
+  const std::size_t n = plan.cases().size();
+  for (std::size_t c = 0; c < n; ++c) {
+    const auto &mine = result.runs[loop * n + c], &theirs = result.runs[other * n + c];
+    if (!mine || !theirs) continue;
+    ++p.pairs;
+    const bool equal = mine->cost == theirs->cost;
+    p.wins += equal ? 0.5 : static_cast<double>(mine->cost < theirs->cost);
+    ratios.push_back(equal ? 1.0 : mine->cost / theirs->cost);
+  }
+  if (p.pairs == 0) return p;
+  const double confidence = 0.01 * plan.study().confidence_percent;
+  p.share = p.wins / static_cast<double>(p.pairs);
+  const Interval share = wilsonInterval(p.wins, p.pairs, confidence);
+  p.lower = share.lower;
+  p.upper = share.upper;
+  ratios = sorted(std::move(ratios));
+  p.median_ratio = quantileOf(ratios, 0.5);
+  const Interval ratio = medianInterval(ratios, confidence);
+  p.ratio_lower = ratio.lower;
+  p.ratio_upper = ratio.upper;
+  return p;
+}
+
+}  // namespace
+
+double quantileOf(const std::vector<double>& sorted, double p) {
+  if (sorted.empty()) return kNaN;
+  const double place = p * static_cast<double>(sorted.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  const double share = place - static_cast<double>(below);
+  if (share == 0.0 || sorted[below] == sorted[above]) return sorted[below];
+  return sorted[below] + share * (sorted[above] - sorted[below]);
+}
+
+Interval wilsonInterval(double wins, std::size_t n, double confidence) {
+  const double z = normalBound(confidence), count = static_cast<double>(n), share = wins / count;
+  const double scale = 1.0 + z * z / count;
+  const double centre = (share + z * z / (2.0 * count)) / scale;
+  const double half =
+      z / scale * std::sqrt(share * (1.0 - share) / count + z * z / (4.0 * count * count));
+  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
+Interval medianInterval(const std::vector<double>& sorted, double confidence) {
+  const std::size_t n = sorted.size();
+  if (n == 0) return {kNaN, kNaN};
+  // Largest j with P(B < j) <= (1 - confidence) / 2, B binomial(n, 1/2), in logarithms.
+  const double count = static_cast<double>(n);
+  double below = 0.0;
+  std::size_t j = 0;
+  while (j < n / 2) {
+    const double i = static_cast<double>(j);
+    below += std::exp(std::lgamma(count + 1.0) - std::lgamma(i + 1.0) -
+                      std::lgamma(count - i + 1.0) - count * std::log(2.0));
+    if (below > 0.5 * (1.0 - confidence)) break;
+    ++j;
+  }
+  const std::size_t low = j > 0 ? j - 1 : 0;
+  return {sorted[low], sorted[n - 1 - low]};
+}
+
+StudyStatistics statisticsOf(const StudyPlan& plan, const StudyResult& result) {
+  StudyStatistics statistics;
+  const auto& loops = plan.study().loops;
+  std::size_t other = 0;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    statistics.loops.push_back(statisticsOfLoop(plan, result, i));
+    if (loops[i].name == plan.study().against) other = i;
+  }
+  for (std::size_t i = 0; i < loops.size(); ++i)
+    if (i != other) statistics.pairs.push_back(statisticsOfPair(plan, result, i, other));
+  return statistics;
+}
+
+}  // namespace fpc

@@ -1,0 +1,124 @@
+// fmbpc study: loops compared in pairs over seeds, parameters, noise and records.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/plot.hpp"
+#include "tool/commands.hpp"
+#include "tool/progress_bar.hpp"
+#include "tool/study_report.hpp"
+
+namespace fpc::tool {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string inFolder(const StudyArguments& arguments, const char* name) {
+  return (fs::path(arguments.out) / name).string();
+}
+
+bool isStudy(const std::string& name) {
+  const auto known = studyNames();
+  if (std::find(known.begin(), known.end(), name) != known.end()) return true;
+  std::ifstream stream(name);
+  for (std::string line; std::getline(stream, line);)
+    if (line.rfind("loops:", 0) == 0) return true;
+  return false;
+}
+
+/// "H=0.001"
+std::pair<std::string, double> parseNoise(const std::string& text) {
+  const auto [output, value] = parseOverride(text);
+  char* end = nullptr;
+  const double std = std::strtod(value.c_str(), &end);
+  require(!value.empty() && *end == '\0', "--noise", "OUTPUT=STD; got '" + text + "'");
+  return {output, std};
+}
+
+StudyFile fromOptions(const StudyArguments& arguments) {
+  StudyFile study;
+  for (const auto& name : arguments.names) {
+    study.loops.push_back({name, name, {}});
+    study.text += name + "\n";
+  }
+  study.against = study.loops.back().name;
+  FitnessTerm term;
+  term.index = arguments.index.empty() ? "ise" : arguments.index;
+  study.fitness.terms = {term};
+  study.text += term.index;
+  return study;
+}
+
+/// The options over the study file.
+void layOver(const StudyArguments& arguments, StudyFile& study) {
+  for (const auto& text : arguments.set) study.set.push_back(parseOverride(text));
+  for (const auto& text : arguments.vary) study.vary.push_back(parseVariation(text));
+  for (const auto& text : arguments.noise) study.noise.push_back(parseNoise(text));
+  if (arguments.noise_percent >= 0.0) study.noise_percent = arguments.noise_percent;
+  if (!arguments.seeds.empty()) study.seeds = parseSeeds(arguments.seeds, "--seeds");
+  if (!arguments.against.empty()) study.against = arguments.against;
+  for (const auto* list : {&arguments.vary, &arguments.noise})
+    for (const auto& text : *list) study.text += "\n" + text;
+  study.text += "\n" + arguments.seeds + " " + exactText(study.noise_percent);
+}
+
+StudyResult runWithBar(const StudyPlan& plan, const StudyArguments& arguments) {
+  StudyOptions options;
+  options.threads = arguments.threads;
+  if (!arguments.out.empty()) options.state = inFolder(arguments, "state.json");
+  options.resume = arguments.resume;
+  options.stop = [] { return interruption().load(); };
+  ProgressBar bar("study");
+  options.progress = [&](std::size_t done, std::size_t runs) {
+    bar.show(static_cast<double>(done) / static_cast<double>(runs),
+             std::to_string(done) + " of " + std::to_string(runs) + " runs");
+  };
+  return runStudy(plan, options);
+}
+
+void write(const StudyArguments& arguments, const StudyPlan& plan, const StudyResult& result,
+           const StudyStatistics& statistics) {
+  const std::string file = inFolder(arguments, "study.json");
+  std::ofstream stream(file);
+  stream << toJson(plan, result, statistics).dump(2) << "\n";
+  stream.close();
+  require(!stream.fail(), file, "a writable file");
+  writeRuns(plan, result, inFolder(arguments, "runs.csv"));
+  if (arguments.no_plot || !result.complete) return;
+  const PlotResult plot = drawStudy(arguments.out);
+  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
+}
+
+}  // namespace
+
+int study(const StudyArguments& arguments) {
+  const bool from_file = arguments.names.size() == 1 && isStudy(arguments.names.front());
+  require(!from_file || arguments.index.empty(), "--index", "no study file beside it");
+  require(!arguments.resume || !arguments.out.empty(), "--resume", "--out with a stopped study");
+  StudyFile study = from_file ? readStudy(arguments.names.front()) : fromOptions(arguments);
+  layOver(arguments, study);
+  const StudyPlan plan(std::move(study));
+  if (!arguments.out.empty()) {
+    std::error_code error;
+    fs::create_directories(arguments.out, error);
+    require(!error, arguments.out, "a folder that can be made (" + error.message() + ")");
+  }
+  catchInterrupts();
+  const StudyResult result = runWithBar(plan, arguments);
+  const StudyStatistics statistics = statisticsOf(plan, result);
+  if (!arguments.out.empty()) write(arguments, plan, result, statistics);
+  if (arguments.json)
+    std::cout << toJson(plan, result, statistics).dump(2) << "\n";
+  else
+    std::cout << toTable(plan, result, statistics);
+  if (result.complete) return 0;
+  std::fprintf(stderr, "fmbpc: interrupted%s\n",
+               arguments.out.empty() ? "" : "; --resume goes on with what is in --out");
+  return kInterrupted;
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,151 @@
+// Studies of a cheap loop: paired cases, the same bits on any number of threads and after a stop,
+// failures by kind, statistics known on paper.
+#include "fmbpc/study/study.hpp"
+
+#include <atomic>
+#include <cmath>
+#include <fstream>
+
+#include "fmbpc/loop/run.hpp"
+#include "fmbpc/study/study_statistics.hpp"
+#include "study/tuning_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+class Study : public LoopFolder {
+ protected:
+  Study() { write("lag.yaml", lagLoop()); }
+  /// A good PI and the badly tuned one.
+  StudyPlan plan(const std::string& more = "seeds: 1:4\n") const {
+    const std::string loop = path("lag.yaml");
+    return StudyPlan(
+        parseStudy("loops:\n  - {loop: " + loop +
+                       ", name: good, set: {controller.loops.0.kp: 1}}\n  - {loop: " + loop +
+                       ", name: bad}\nfitness: {terms: [{index: ise}]}\n" + more,
+                   "s.yaml"));
+  }
+};
+
+void expectSame(const StudyResult& one, const StudyResult& other) {
+  ASSERT_EQ(one.runs.size(), other.runs.size());
+  for (std::size_t i = 0; i < one.runs.size(); ++i) {
+    ASSERT_TRUE(one.runs[i] && other.runs[i]) << i;
+    EXPECT_EQ(one.runs[i]->cost, other.runs[i]->cost) << i;
+    EXPECT_EQ(one.runs[i]->move, other.runs[i]->move) << i;
+    EXPECT_EQ(one.runs[i]->failures, other.runs[i]->failures) << i;
+  }
+}
+
+TEST_F(Study, PairsSeeTheSameNoiseAndTheSamePlant) {
+  const StudyPlan study = plan("seeds: 1:4\nvary: {plant.matrix.elements.0.gain: [0.5, 1.5]}\n");
+  ASSERT_EQ(study.runs(), 8U);
+  std::set<double> drawn;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const LoopFile good = study.loop(c), bad = study.loop(4 + c);
+    EXPECT_EQ(good.simulation.noise_seed, c + 1);
+    EXPECT_EQ(bad.simulation.noise_seed, c + 1);
+    const double gain = good.simulation.matrix.elements[0].gain;
+    EXPECT_EQ(gain, bad.simulation.matrix.elements[0].gain);
+    EXPECT_GE(gain, 1.0);  // 2 times 0.5..1.5
+    EXPECT_LE(gain, 3.0);
+    drawn.insert(gain);
+  }
+  EXPECT_EQ(drawn.size(), 4U);
+}
+
+TEST_F(Study, CostIsThatOfTheRunWithoutItsNoise) {
+  const StudyPlan study = plan();
+  const StudyResult result = runStudy(study);
+  const RunRecord record = runLoop(study.loop(2));
+  double ise = 0.0;
+  for (const auto& sample : record.samples)
+    ise += std::pow(sample.tracking.setpoint[0] - sample.state.outputs[0], 2);
+  EXPECT_NEAR(result.runs[2]->cost, ise, 1e-12 * ise);
+}
+
+TEST_F(Study, TheBetterLoopWinsEveryPair) {
+  const StudyPlan study = plan("seeds: 1:8\n");
+  const StudyStatistics statistics = statisticsOf(study, runStudy(study));
+  ASSERT_EQ(statistics.pairs.size(), 1U);
+  EXPECT_EQ(statistics.pairs[0].wins, 8.0);
+  EXPECT_LT(statistics.pairs[0].ratio_upper, 1.0);
+  EXPECT_GT(statistics.pairs[0].lower, 0.5);
+}
+
+TEST_F(Study, GivesTheSameBitsOnAnyNumberOfThreadsAndAfterAStop) {
+  const StudyPlan study = plan("seeds: 1:6\n");
+  const StudyResult whole = runStudy(study, {1, "", false, {}, {}});
+  expectSame(whole, runStudy(study, {4, "", false, {}, {}}));
+  std::atomic<int> done{0};
+  StudyOptions options{1, path("state.json"), false, [&] { return done >= 5; }, {}};
+  options.progress = [&](std::size_t n, std::size_t) { done = static_cast<int>(n); };
+  const StudyResult stopped = runStudy(study, options);
+  EXPECT_FALSE(stopped.complete);
+  const StudyResult resumed = runStudy(study, {1, path("state.json"), true, {}, {}});
+  EXPECT_EQ(resumed.resumed, 5U);
+  EXPECT_TRUE(resumed.complete);
+  expectSame(whole, resumed);
+  const StudyPlan other = plan("seeds: 2:7\n");
+  expectWords(errorOf([&] {
+                runStudy(other, {1, path("state.json"), true, {}, {}});
+              }),
+              {"state.json", "of this study"});
+}
+
+TEST_F(Study, FailuresAreCountedByKind) {
+  // The plant cannot reach 20 with inputs up to 5 and gain 2: the input stays at its bound.
+  const StudyPlan locked = plan("seeds: 1\nset: {setpoint.schedule: [{time_h: 0.2, y: 20}]}\n");
+  const StudyResult result = runStudy(locked);
+  const auto count = [&](const StudyResult& r, RunFailure kind) {
+    return r.runs[0]->failures[static_cast<std::size_t>(kind)];
+  };
+  EXPECT_EQ(count(result, RunFailure::kDiverged), 0U);
+  // y still approaches 10 while the input stands at 5, so that is no lock-up ...
+  EXPECT_EQ(count(result, RunFailure::kLocked), 0U);
+  // ... but a law of the wrong sign runs away from its setpoint and stays there.
+  const StudyPlan wrong = plan("seeds: 1\nset: {controller.loops.0.reverse: true}\n");
+  EXPECT_GT(count(runStudy(wrong), RunFailure::kLocked), 20U);
+  EXPECT_EQ(count(runStudy(plan("seeds: 1\n")), RunFailure::kLocked), 0U);
+  const StudyPlan bounded = plan("seeds: 1\nset: {report.output_upper: {y: 0.1}}\n");
+  EXPECT_GT(count(runStudy(bounded), RunFailure::kViolated), 10U);
+}
+
+TEST_F(Study, ARunThatCannotBeMadeIsADivergedOneWithItsWords) {
+  const StudyPlan study = plan("seeds: 1:2\nvary: {noise.std.y: {values: [-1, -0.5]}}\n");
+  const StudyStatistics statistics = statisticsOf(study, runStudy(study));
+  EXPECT_EQ(statistics.loops[0].failures[0], 2U);
+  expectWords(statistics.loops[0].trouble, {"noise.std", ">= 0"});
+  EXPECT_EQ(statistics.pairs[0].wins, 1.0);  // two draws
+}
+
+TEST_F(Study, NoiseInPercentIsThatOfTheSpanOfTheSetpoints) {
+  const LoopFile loop = plan("seeds: 1\nnoise: {percent_of_span: 2}\n").loop(0);
+  EXPECT_NEAR(loop.simulation.noise_std[0], 0.02 * 0.5, 1e-12);  // setpoints 1 and 0.5
+}
+
+TEST_F(Study, KeysWithoutANumberAndSeedsWithoutUseAreRefused) {
+  expectWords(errorOf([&] { plan("seeds: 1\nvary: {plant.parameters.k: [1, 2]}\n"); }),
+              {"vary.plant.parameters.k", "number"});
+  expectWords(errorOf([&] { plan("seeds: 1\nset: {noise.std: 0}\n"); }),
+              {"seeds", "noise or vary"});
+}
+
+TEST(StudyStatistics, QuantilesAndIntervalsAreThoseOfTheBooks) {
+  EXPECT_EQ(quantileOf({1, 2, 3, 4}, 0.5), 2.5);
+  EXPECT_EQ(quantileOf({1, 2, 3, 4}, 0.25), 1.75);
+  EXPECT_EQ(quantileOf({5}, 0.9), 5.0);
+  // Newcombe (1998), table I: 81 of 263 by the score method: 0.2553 to 0.3662.
+  const Interval share = wilsonInterval(81, 263, 0.95);
+  EXPECT_NEAR(share.lower, 0.2553, 5e-5);
+  EXPECT_NEAR(share.upper, 0.3662, 5e-5);
+  // n = 10: the 2nd and the 9th value hold the median with 97.9 %, the 3rd and 8th only with 89 %.
+  const std::vector<double> ten{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
+  EXPECT_EQ(medianInterval(ten, 0.95).lower, 2.0);
+  EXPECT_EQ(medianInterval(ten, 0.95).upper, 9.0);
+  EXPECT_EQ(medianInterval(ten, 0.85).lower, 3.0);
+  EXPECT_EQ(medianInterval({1, 2, 3}, 0.95).lower, 1.0);
+}
+
+}  // namespace
+}  // namespace fpc
