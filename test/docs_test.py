@@ -1,0 +1,56 @@
+#!/usr/bin/python3
+"""What people read holds together: links lead somewhere, sources that are cited by key are in docs/references.bib, the README
+stays a page."""
+import pathlib
+import re
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parent.parent
+PAGES = [TOP / "README.md", TOP / "CONTRIBUTING.md", *sorted((TOP / "docs").glob("*.md")), *sorted((TOP / "examples").rglob("*.md"))]
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+KEY = re.compile(r"\b([a-z]{3,}(?:19|20)\d\d[a-z]?|vallejo2021thesis)\b(?=[\])};,. ]|$)", re.MULTILINE)
+FENCED = re.compile(r"^```.*?^```|^    .*?$", re.MULTILINE | re.DOTALL)
+
+
+def anchors(page):
+    """Anchors of a page's headings, as they are made on the web."""
+    heads = re.findall(r"^#+ (.*)$", page.read_text(), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).strip().replace(" ", "-") for head in heads}
+
+
+def keys_of_the_list():
+    return set(re.findall(r"^@\w+\{(\w+),", (TOP / "docs/references.bib").read_text(), re.MULTILINE))
+
+
+class Docs(unittest.TestCase):
+    def test_links_lead_somewhere(self):
+        for page in PAGES:
+            for link in LINK.findall(page.read_text()):
+                if "://" in link:
+                    continue
+                file, _, anchor = link.partition("#")
+                target = (page.parent / file).resolve() if file else page
+                self.assertTrue(target.exists(), f"{page.name} links to {link}")
+                if anchor and target.suffix == ".md":
+                    self.assertIn(anchor, anchors(target), f"{page.name} links to {link}")
+
+    def test_sources_are_in_the_list(self):
+        known = keys_of_the_list()
+        self.assertGreater(len(known), 20)
+        texts = PAGES + [p for folder in ("include", "src") for p in sorted((TOP / folder).rglob("*.?pp"))]
+        cited = {}
+        for path in texts:
+            for line in path.read_text().splitlines():
+                if path.suffix == ".md" or "//" in line:
+                    for key in KEY.findall(line if path.suffix == ".md" else line.partition("//")[2]):
+                        cited.setdefault(key, path)
+        unknown = {key: str(path) for key, path in cited.items() if key not in known}
+        self.assertEqual({}, unknown)
+        self.assertGreater(len(cited), 10)
+
+    def test_the_readme_is_a_page(self):
+        self.assertLessEqual(len((TOP / "README.md").read_text().splitlines()), 120)
+
+
+if __name__ == "__main__":
+    unittest.main()
