@@ -40,6 +40,15 @@ class House(unittest.TestCase):
                     self.assertLess(RANKS[other], RANKS[room], f"{path} includes {other}/")
                     self.assertNotIn((room, other), FORBIDDEN, f"{path} includes {other}/")
 
+    def test_types_of_controllers_are_compared_nowhere(self):
+        """Everything learns of them from the registry; their names stand in their own registration."""
+        named = re.compile(r'(?:ControllerType type\{|\{\{)"(\w+)"')
+        types = {name for p in sources("src/control") if p.name.endswith("_type.cpp") for name in named.findall(p.read_text())}
+        self.assertGreaterEqual(len(types), 8)
+        compared = re.compile(r'[=!]= *"(' + "|".join(sorted(types)) + r')"|"(' + "|".join(sorted(types)) + r')" *[=!]=')
+        for path in sources("include", "src"):
+            self.assertIsNone(compared.search(path.read_text()), path)
+
     def test_our_nodes_never_read_the_ros_clock(self):
         paths = list(sources("include", "src")) + sorted((TOP / "scripts").glob("*.py"))
         for path in paths:

@@ -284,30 +284,4 @@ void YamlSection::finish() const {
   throw InputError(where(unread.front()) + ": unknown key; expected one of " + join(known));
 }
 
-void need(const YamlSection& section, const std::string& key, const std::string& expected) {
-  if (!section.has(key)) section.fail(key, expected);
-}
-
-int indexByName(YamlSection& section, const std::string& key,
-                const std::vector<std::string>& names) {
-  std::string name;
-  need(section, key, "one of " + join(names));
-  section.oneOf(key, name, names);
-  for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return static_cast<int>(i);
-  section.fail(key, "one of " + join(names));
-}
-
-void failAt(const YamlSection& section, const std::string& message) {
-  const auto colon = message.find(':');
-  std::string field = message.substr(0, colon);
-  field = field.substr(field.find_last_of('.') + 1);
-  const bool is_field =
-      colon != std::string::npos && field.find_first_of(" /[]") == std::string::npos;
-  if (is_field) throw InputError(section.where(field) + message.substr(colon));
-  std::string place = section.where("");
-  if (place.back() == '.') place.pop_back();
-  throw InputError(place + ": " + message);
-}
-
 }  // namespace fpc

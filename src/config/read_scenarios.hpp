@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/yaml_section.hpp"
+#include "base/yaml_node.hpp"
 #include "fmbpc/config/tuning_file.hpp"
 
 namespace fpc {

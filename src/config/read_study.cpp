@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "base/yaml_section.hpp"
+#include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "config/read_scenarios.hpp"
 #include "fmbpc/base/input_error.hpp"

@@ -8,6 +8,7 @@
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/plant/plant.hpp"
 #include "loop/loop_fixture.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -17,7 +18,7 @@ class Plugins : public LoopFolder {
  protected:
   Plugins() {
     setenv("FMBPC_PLUGIN_PATH", FMBPC_TEST_PLUGINS, 1);
-    setenv("FMBPC_CONFIG_PATH", FMBPC_SOURCE_DIR "/examples/two_tanks/config", 1);
+    setenv("FMBPC_CONFIG_PATH", (sourceDir() + "/examples/two_tanks/config").c_str(), 1);
   }
   std::string errorWith(const std::string& plugin) const {
     return errorOf([&] { readLoop(write("p.yaml", smallLoop() + "plugins: [" + plugin + "]\n")); });
@@ -38,7 +39,7 @@ TEST_F(Plugins, ALoopBringsThePlantAndTheControllerOfItsPackage) {
 TEST_F(Plugins, ThePathOfALibraryIsTakenBesideTheLoopFile) {
   std::filesystem::create_symlink(FMBPC_TEST_PLUGINS "/libtwo_tanks.so", folder_ / "link.so");
   write("by_path.yaml", "extends: two_tanks_outflow.yaml\nplugins: [./link.so]\n");
-  std::filesystem::copy(FMBPC_SOURCE_DIR "/examples/two_tanks/config/loop/two_tanks_outflow.yaml",
+  std::filesystem::copy(sourceDir() + "/examples/two_tanks/config/loop/two_tanks_outflow.yaml",
                         folder_ / "two_tanks_outflow.yaml");
   const std::string resolved = resolveLoop(path("by_path.yaml"));
   EXPECT_NE(resolved.find((folder_ / "link.so").string()), std::string::npos) << resolved;

@@ -5,7 +5,9 @@
 #include <regex>
 #include <set>
 
+#include "base/yaml_node.hpp"
 #include "config/read.hpp"
+#include "paths.hpp"
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {
@@ -68,7 +70,7 @@ TEST(StudyFile, MistakesNameFileKeyAndWhatWasExpected) {
 }
 
 TEST(StudyFile, TheDocumentTellsItsKeys) {
-  std::ifstream stream(std::string(FMBPC_SOURCE_DIR) + "/docs/study.md");
+  std::ifstream stream(sourceDir() + "/docs/study.md");
   const std::string page((std::istreambuf_iterator<char>(stream)), {});
   const auto knownAfter = [](const std::string& error) {
     std::set<std::string> keys;

@@ -10,6 +10,7 @@
 #include "fmbpc/config/plugins.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "loop/loops_of_type.hpp"
+#include "paths.hpp"
 
 namespace fpc {
 namespace {
@@ -216,7 +217,7 @@ std::string nameOf(const ::testing::TestParamInfo<std::string>& type) { return t
 
 /// Ours, and those of the example of a user's package.
 std::vector<std::string> everyType() {
-  setenv("FMBPC_CONFIG_PATH", FMBPC_SOURCE_DIR "/examples/two_tanks/config", 1);
+  setenv("FMBPC_CONFIG_PATH", (sourceDir() + "/examples/two_tanks/config").c_str(), 1);
   setenv("FMBPC_PLUGIN_PATH", FMBPC_TEST_PLUGINS, 1);
   loadPlugin("two_tanks", "test");
   return controllerNames();

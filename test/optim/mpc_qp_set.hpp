@@ -12,6 +12,7 @@
 #include <string>
 
 #include "fmbpc/optim/qp.hpp"
+#include "paths.hpp"
 
 namespace fpc::testing {
 
@@ -34,7 +35,7 @@ inline bool readArray(std::FILE* pipe, MpcQpSet& set) {
 
 /// All .npz files of the folder whose names begin like that.
 inline MpcQpSet readMpcQpSet(const std::filesystem::path& folder, const std::string& begin = "") {
-  std::string command = "/usr/bin/python3 '" FMBPC_SOURCE_DIR "/test/optim/npz_dump.py'";
+  std::string command = "/usr/bin/python3 '" + sourceDir() + "/test/optim/npz_dump.py'";
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     const auto& path = entry.path();
     if (path.extension() == ".npz" && path.filename().string().rfind(begin, 0) == 0)

@@ -25,7 +25,7 @@ def message(time_h, mode, values):
 
 class HybridStuck(unittest.TestCase):
     def test_a_stuck_valve_is_survived_and_reported(self):
-        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log, "/hybrid_mpc_controller", "/plant_simulator")
+        recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator")
         disturbance = ring.publisher("disturbance", Disturbance)
         disturbance.publish(message(STUCK_H, Disturbance.OVERRIDE, [0.0]))
         disturbance.publish(message(FREE_H, Disturbance.RELEASE, []))

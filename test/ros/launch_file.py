@@ -60,6 +60,26 @@ class LaunchFile(unittest.TestCase):
         if shutil.which("rqt_plot") is None:
             self.assertIn("rqt_plot is not installed", text)
 
+    def test_the_arguments_are_listed_without_a_loop(self):
+        done = subprocess.run(["roslaunch", "--ros-args", "fmbpc", "loop.launch"], text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, timeout=60, check=False)
+        self.assertEqual(0, done.returncode, done.stdout)
+        for name in ("loop", "set", "pace", "out"):
+            self.assertIn(f"  {name}", done.stdout)
+
+    def test_paths_and_values_may_hold_spaces(self):
+        folder = os.path.join(self.out, "my loops")
+        os.mkdir(folder)
+        loop, out = os.path.join(folder, "it's mine.yaml"), os.path.join(self.out, "my results")
+        with open(loop, "w", encoding="utf-8") as file:
+            file.write("extends: asp_case1\ntitle: Mine\n")
+        _, text = roslaunch("loop:=" + loop, "set:=setpoint.initial={s: 55, x: 1900} sampling.duration_h=2 title='Mine, too'",
+                            "pace:=lockstep", "record:=true", "draw:=false", "out:=" + out)
+        with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
+            summary = json.load(file)
+        self.assertEqual(("Mine, too", 10), (summary["title"], summary["steps"]), text)
+        self.assertTrue(os.path.isfile(os.path.join(out, "loop.bag")), text)
+
     def test_a_bad_loop_starts_nothing(self):
         for arguments, words in ((["loop:=nobody"], "nobody"),
                                  (["loop:=asp_case1", "set:=controller.coincidence_stepz=3"], "coincidence_stepz"),

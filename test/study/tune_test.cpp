@@ -10,6 +10,7 @@
 #include "fmbpc/control/pi/pi.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/fitness.hpp"
+#include "paths.hpp"
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {
@@ -120,7 +121,7 @@ TEST_F(Tune, AStateOfAnotherTuningIsRefused) {
 TEST_F(Tune, TheFingerprintCoversWhatTheNamedFilesHold) {
   const auto fingerprint = [&](double flow, double gain) {
     write("load.csv", "t[h],q\n0,1300\n1," + std::to_string(flow) + "\n2,1300\n");
-    std::ifstream shipped(std::string(FMBPC_SOURCE_DIR) + "/config/model/fm_1.yaml");
+    std::ifstream shipped(sourceDir() + "/config/model/fm_1.yaml");
     write("own.yaml", std::string((std::istreambuf_iterator<char>(shipped)), {}) + "# " +
                           std::to_string(gain) + "\n");
     const std::string loop = write(

@@ -26,6 +26,11 @@ TEST_F(Tool, JsonIsOneObjectAndNothingElse) {
   EXPECT_EQ(two["loops"][1]["loop"], "asp_case1_pi_s");
   const auto plants = nlohmann::json::parse(tool("plants --json").printed);
   EXPECT_EQ(plants["plants"][0]["name"], "activated_sludge");
+  const auto controllers = nlohmann::json::parse(tool("controllers --json").printed)["controllers"];
+  EXPECT_GE(controllers.size(), 8U);
+  for (const auto& controller : controllers)
+    if (controller["type"] == "pi") EXPECT_EQ(controller["settings"][0], "kp");
+  EXPECT_NE(tool("controllers").printed.find("fuzzy_optimal"), std::string::npos);
 }
 
 TEST_F(Tool, NoBarIsDrawnWhereNobodyLooks) {

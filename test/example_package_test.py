@@ -1,0 +1,77 @@
+#!/usr/bin/python3
+"""The example of a user's package builds against an installed fmbpc and does there what its README says."""
+import json
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parent.parent
+BUILD = pathlib.Path(os.environ.get("FMBPC_BUILD", TOP / "build"))
+
+
+def run(*command, check=True, **variables):
+    done = subprocess.run([str(word) for word in command], env={**os.environ, **{k: str(v) for k, v in variables.items()}},
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=300, check=False)
+    if check and done.returncode != 0:
+        raise AssertionError(f"{command}\n{done.stdout[-3000:]}")
+    return done.stdout
+
+
+class ExamplePackage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.fmbpc, cls.own = cls.folder / "fmbpc", cls.folder / "two tanks"
+        run("cmake", "--install", BUILD, "--prefix", cls.fmbpc)
+        shutil.copytree(TOP / "examples" / "two_tanks", cls.folder / "source")
+        run("cmake", "-S", cls.folder / "source", "-B", cls.folder / "build", "-DCMAKE_BUILD_TYPE=Release",
+            f"-DCMAKE_INSTALL_PREFIX={cls.own}", f"-DCATKIN_DEVEL_PREFIX={cls.folder}/devel",
+            f"-DCMAKE_PREFIX_PATH={cls.fmbpc}", "-DPYTHON_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
+        run("cmake", "--build", cls.folder / "build", "--target", "install")
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    def tool(self, *arguments, **variables):
+        return run(self.fmbpc / "lib" / "fmbpc" / "fmbpc_tool", *arguments, CMAKE_PREFIX_PATH=self.own,
+                   FMBPC_CONFIG_PATH=self.own / "share" / "two_tanks" / "config", LD_LIBRARY_PATH="", **variables)
+
+    def summary(self, loop):
+        with open(self.folder / "results" / loop / "summary.json", encoding="utf-8") as file:
+            return json.load(file)
+
+    def test_its_build_found_the_installed_targets(self):
+        cache = (self.folder / "build" / "CMakeCache.txt").read_text()
+        self.assertIn(f"fmbpc_DIR:PATH={self.fmbpc}", cache)
+        self.assertTrue((self.own / "lib" / "libtwo_tanks.so").is_file())
+
+    def test_the_tour_of_its_readme(self):
+        results = self.folder / "results"
+        self.tool("run", "two_tanks_outflow", "two_tanks_excite", "--no-plot", "--out", results)
+        self.assertTrue(self.summary("two_tanks_outflow")["complete"])
+        self.assertEqual(self.summary("two_tanks_excite")["steps"], 3600)
+        model = self.folder / "model.yaml"
+        report = json.loads(self.tool("identify", results / "two_tanks_excite" / "trajectory.csv", "two_tanks", "--out", model,
+                                      "--json"))
+        self.assertEqual(sorted(report["rules"]), ["h1", "h2"])
+        self.tool("run", "two_tanks_fmbpc", "--no-plot", "--out", results, TWO_TANKS_MODEL=model)
+        predictive = self.summary("two_tanks_fmbpc")
+        self.assertTrue(predictive["complete"])
+        self.assertEqual((0, 0), (predictive["violations"]["input"], predictive["violations"]["move"]))
+
+    def test_without_the_package_one_line_says_what_is_missing(self):
+        text = run(self.fmbpc / "lib" / "fmbpc" / "fmbpc_tool", "run",
+                   self.own / "share" / "two_tanks" / "config" / "loop" / "two_tanks_outflow.yaml", check=False,
+                   CMAKE_PREFIX_PATH="", FMBPC_PLUGIN_PATH="")
+        self.assertEqual(len(text.splitlines()), 1, text)
+        for word in ("plugins", "'two_tanks'", "libtwo_tanks.so", "FMBPC_PLUGIN_PATH"):
+            self.assertIn(word, text)
+
+
+if __name__ == "__main__":
+    sys.exit(unittest.main())
