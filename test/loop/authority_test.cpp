@@ -6,7 +6,7 @@ namespace fpc {
 namespace {
 
 TEST(Authority, OnlyTheNamedNodesSpeakOnAGuardedTopic) {
-  Authority authority({{"measurement", {"/plant_simulator"}}, {"setpoint", {}}});
+  Authority authority(Publishers{{"measurement", {"/plant_simulator"}}, {"setpoint", {}}});
   EXPECT_TRUE(authority.admits("measurement", "/plant_simulator"));
   EXPECT_FALSE(authority.admits("measurement", "/stranger"));
   EXPECT_FALSE(authority.admits("measurement", "/stranger"));
@@ -19,7 +19,7 @@ TEST(Authority, OnlyTheNamedNodesSpeakOnAGuardedTopic) {
 }
 
 TEST(Authority, ManyStrangersDoNotFillTheMemory) {
-  Authority authority({{"measurement", {"/plant_simulator"}}});
+  Authority authority(Publishers{{"measurement", {"/plant_simulator"}}});
   for (int i = 0; i < 1000; ++i) authority.admits("measurement", "/s" + std::to_string(i));
   EXPECT_LE(authority.refused().size(), Authority::kMostNamed + 1);
   EXPECT_EQ(authority.refused().at("measurement from others"), 1000 - Authority::kMostNamed);
