@@ -8,9 +8,12 @@ add_message_files(DIRECTORY msg FILES
   FuzzyRule.msg
   FuzzySet.msg
   FuzzySubmodel.msg
+  Identified.msg
+  LoopState.msg
   Matrix.msg
   Measurement.msg
   NodeReady.msg
+  OperatorState.msg
   PlantInfo.msg
   PlantState.msg
   PredictiveAction.msg

@@ -62,6 +62,12 @@ void CommandTable::apply(Eigen::Ref<Vector> values) const {
   }
 }
 
+std::vector<Command> CommandTable::waiting() const {
+  std::vector<Command> commands;
+  for (const Pending& pending : pending_) commands.push_back(pending.command);
+  return commands;
+}
+
 void CommandTable::clear() {
   active_.assign(names_.size(), {});
   pending_.clear();

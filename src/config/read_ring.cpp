@@ -24,6 +24,26 @@ std::vector<std::string> ringNodes(const LoopFile& loop) {
   return nodes;
 }
 
+/// Who speaks on which topic; a plant that is not ours may have any name.
+std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& loop) {
+  using Names = std::vector<std::string>;
+  const std::string controller = ringNodes(loop)[1];
+  const Names plant = loop.external_plant ? Names{} : Names{"plant_simulator"};
+  const Names law{controller};
+  const Names answers = loop.has_clp ? Names{"clp_optimizer", controller} : law;
+  const Names model{"fuzzy_identifier"};
+  return {{"plant_info", plant},     {"measurement", plant},   {"plant_state", plant},
+          {"base_action", law},      {"tracking", law},        {"predictive_action", law},
+          {"control_action", answers}, {"solver_report", answers}, {"fuzzy_model", model},
+          {"identified", model},     {"setpoint", {}},         {"disturbance", {}}};
+}
+
+void readPublishers(YamlSection& section, RingParams& ring) {
+  YamlSection publishers = section.section("publishers");
+  for (auto& [topic, names] : ring.publishers) publishers.names(topic, names);
+  publishers.finish();
+}
+
 void readFrame(YamlSection& item, EquipmentFrame& frame) {
   item.text("parent", frame.parent);
   item.number("x", frame.x, kFinite);
@@ -126,10 +146,15 @@ void readRing(YamlSection& root, LoopFile& loop) {
   section.oneOf("pace", pace, {"lockstep", "paced", "realtime"});
   loop.ring.pace = paceFrom(pace);
   section.number("speedup", loop.ring.speedup, kFinitePositive);
-  loop.ring.wait_for = ringNodes(loop);
+  loop.ring.wait_for = loop.ring.members = ringNodes(loop);
   section.names("wait_for", loop.ring.wait_for);
   section.number("ready_timeout_s", loop.ring.ready_timeout_s, {0.0, 1e6, true});
   section.boolean("publish_clock", loop.ring.publish_clock);
+  section.number("action_timeout_s", loop.ring.action_timeout_s, kFinitePositive);
+  section.number("optimizer_timeout_s", loop.ring.optimizer_timeout_s, kFinitePositive);
+  section.number("commands_per_s", loop.ring.commands_per_s, kFinitePositive);
+  loop.ring.publishers = ringPublishers(loop);
+  readPublishers(section, loop.ring);
   section.finish();
 }
 

@@ -1,5 +1,6 @@
 #include "fmbpc/control/session.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -80,6 +81,8 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   if (arrival == Arrival::kFirst) arrival_reason_ = "first sample is " + std::to_string(step);
   if (arrival == Arrival::kNewRun) arrival_reason_ = "new run";
   if (arrival == Arrival::kGap) arrival_reason_ = missingSamples(before.step + 1, step - 1);
+  if (arrival == Arrival::kResync)
+    arrival_reason_ = "back to sample " + std::to_string(step) + ", where the plant is";
   if (arrival == Arrival::kNewRun) setpoint_.restart();
   if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) setpoint_.anchor(m.header);
 
@@ -100,7 +103,10 @@ void ControllerSession::process(const Measurement& m) {
     interruption_ = "data before were not finite";
   } else {
     present_ = m;
-    if (manual_) {
+    if (unreleased_) {
+      hold(m, "joined a run without knowing what its operator asked: held until ~manual is called");
+      interruption_ = "released";
+    } else if (manual_) {
       sendManual(m);
       interruption_ = "back from manual";
     } else {
@@ -169,6 +175,7 @@ void ControllerSession::setModel(const TsModel& model) {
 void ControllerSession::manual(bool on) {
   if (on && !manual_) manual_given_ = false;
   manual_ = on;
+  unreleased_ = false;
 }
 
 void ControllerSession::manualInput(VectorRef input) {
@@ -179,6 +186,43 @@ void ControllerSession::manualInput(VectorRef input) {
   require(controller_->mayBeSent(input), "manual input", "an input that the controller may send");
   manual_input_ = input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
   manual_given_ = true;
+}
+
+bool ControllerSession::adapt(bool on) {
+  const bool done = controller_->adapt(on);
+  if (done) adapt_ = on;
+  return done;
+}
+
+bool ControllerSession::retune(const Settings& settings) {
+  if (!controller_->retune(settings)) return false;
+  for (const auto& [key, value] : settings) {
+    const auto known = std::find_if(settings_.begin(), settings_.end(),
+                                    [&name = key](const auto& s) { return s.first == name; });
+    if (known == settings_.end())
+      settings_.emplace_back(key, value);
+    else
+      known->second = value;
+  }
+  return true;
+}
+
+OperatorWishes ControllerSession::wishes() const {
+  return {manual_,   manual_given_, manual_input_,        setpoint_.recipe(), adapt_,
+          settings_, setpoint_.standing()};
+}
+
+void ControllerSession::restore(const OperatorWishes& wishes) {
+  if (gate_.counts().accepted > 0) return;
+  manual_ = wishes.manual;
+  manual_given_ = wishes.manual_given && wishes.manual_input.size() == last_input_.size() &&
+                  wishes.manual_input.allFinite();
+  if (manual_given_)
+    manual_input_ = wishes.manual_input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
+  setpoint_.restore(wishes.recipe);
+  for (const Command& command : wishes.setpoints) setpoint_.restore(command);
+  if (wishes.adapt) adapt(*wishes.adapt);
+  if (!wishes.settings.empty()) retune(wishes.settings);
 }
 
 }  // namespace fpc

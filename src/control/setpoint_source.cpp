@@ -207,4 +207,18 @@ std::vector<Command> SetpointSource::inForce() const {
   return commands;
 }
 
+std::vector<Command> SetpointSource::standing() const {
+  std::vector<Command> commands = inForce();
+  const std::vector<Command> later = commands_.waiting();
+  commands.insert(commands.end(), later.begin(), later.end());
+  commands.insert(commands.end(), waiting_.begin(), waiting_.end());
+  return commands;
+}
+
+void SetpointSource::restore(const Recipe& recipe) {
+  hold_wanted_ = held_ = recipe.held;
+  held_at_ = recipe.held_at;
+  shift_ = recipe.shift;
+}
+
 }  // namespace fpc

@@ -67,7 +67,7 @@ Arrival SampleCollector::take(const Measurement& m) {
   const Arrival arrival = gate_.pass(m.header);
   if (!isNew(arrival)) return arrival;
   if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) ++counts_.runs;
-  if (arrival == Arrival::kNewRun) breakRows(kLongestBreak);
+  if (arrival == Arrival::kNewRun || arrival == Arrival::kResync) breakRows(kLongestBreak);
   if (arrival == Arrival::kGap) {
     counts_.missing += m.header.step - before - 1;
     breakRows(std::min<std::uint64_t>(m.header.step - before - 1, kLongestBreak));

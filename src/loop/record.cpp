@@ -1,123 +1,73 @@
 #include "fmbpc/loop/record.hpp"
 
-#include <limits>
-#include <utility>
+#include "fmbpc/loop/recorder_session.hpp"
 
 namespace fpc {
 namespace {
-constexpr std::uint32_t kLargestJump = 100000;  // a stray step number must not ask for gigabytes
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+template <typename List>
+Eigen::Index count(const List& list) {
+  return static_cast<Eigen::Index>(list.size());
+}
+
 }  // namespace
 
-Recorder::Recorder(std::string loop, PlantInfo info, bool has_optimizer, bool has_state,
-                   std::vector<std::string> states, std::vector<std::string> state_units)
-    : has_optimizer_(has_optimizer), has_state_(has_state) {
-  record_.loop = std::move(loop);
-  record_.info = std::move(info);
-  record_.states = std::move(states);
-  record_.state_units = std::move(state_units);
+bool RecordLayout::fits(const Measurement& m) const {
+  return m.outputs.size() == count(info.outputs) &&
+         m.disturbances.size() == count(info.disturbances) &&
+         m.input_applied.size() == count(info.inputs);
 }
 
-SampleRecord* Recorder::at(const StepHeader& header) {
-  if (header.run_id < run_id_ || header.step > record_.samples.size() + kLargestJump)
-    return nullptr;
-  if (header.run_id > run_id_) {
-    run_id_ = header.run_id;
-    record_.samples.clear();
-    record_.complete = false;
-  }
-  if (header.step >= record_.samples.size()) record_.samples.resize(header.step + std::size_t{1});
-  return &record_.samples[header.step];
+bool RecordLayout::fits(const PlantState& s) const {
+  return s.outputs.size() == count(info.outputs) && s.state.size() == count(states);
 }
 
-void Recorder::add(const Measurement& m) {
-  if (SampleRecord* sample = at(m.header)) {
-    sample->measurement = m;
-    sample->has_measurement = true;
-  }
+bool RecordLayout::fits(const Tracking& t) const {
+  return t.setpoint.size() == count(info.outputs) && t.reference.size() == count(info.outputs);
 }
 
-void Recorder::add(const PlantState& s) {
-  if (SampleRecord* sample = at(s.header)) {
-    sample->state = s;
-    sample->has_state = true;
-  }
+bool RecordLayout::fits(const ControlAction& a) const {
+  return a.input.size() == count(info.inputs) && a.input.allFinite();
 }
 
-void Recorder::add(const Tracking& t) {
-  if (SampleRecord* sample = at(t.header)) {
-    sample->tracking = t;
-    for (const Eigen::Index i : without_setpoint_)
-      sample->tracking.setpoint[i] = sample->tracking.reference[i] = kMissing;
-    sample->has_tracking = true;
-  }
+bool RecordLayout::fits(const SolverReport& r) const {
+  return r.perturbation.size() == count(info.inputs);
 }
 
-void Recorder::addBase(const ControlAction& a) {
-  SampleRecord* sample = at(a.header);
-  if (!sample) return;
-  sample->base = a;
-  sample->has_base = true;
-  if (has_optimizer_) return;
-  sample->action = a;
-  sample->has_action = true;
+bool RecordLayout::isComplete(const SampleRecord& s) const {
+  if (!s.has_measurement || !s.has_tracking || (has_state && !s.has_state)) return false;
+  if (s.measurement.final) return true;
+  return s.has_base && s.has_action && (!has_optimizer || s.has_report);
 }
 
-void Recorder::addAction(const ControlAction& a) {
-  SampleRecord* sample = at(a.header);
-  if (!sample) return;
-  sample->action = a;
-  sample->has_action = true;
-  if (has_optimizer_) return;
-  sample->base = a;
-  sample->has_base = true;
+RunRecord RecordLayout::emptyRecord() const {
+  return {loop, info, states, state_units, {}, false, 0, {}};
 }
 
-void Recorder::add(const SolverReport& r) {
-  if (SampleRecord* sample = at(r.header)) {
-    sample->report = r;
-    sample->has_report = true;
-  }
-}
-
-bool Recorder::finalSeen() const {
-  return !record_.samples.empty() && record_.samples.back().has_measurement &&
-         record_.samples.back().measurement.final;
-}
-
-bool Recorder::complete() const { return finalSeen() && gaps(1).empty(); }
-
-std::vector<std::string> Recorder::gaps(std::size_t limit) const {
-  std::vector<std::string> lines;
-  const std::size_t last = record_.samples.size() - 1;
-  const auto note = [&](std::size_t step, bool there, const char* what) {
-    if (!there && lines.size() < limit)
-      lines.push_back("sample " + std::to_string(step) + ": no " + what);
-  };
-  for (std::size_t step = 0; step < record_.samples.size() && lines.size() < limit; ++step) {
-    const SampleRecord& sample = record_.samples[step];
-    note(step, sample.has_measurement, "measurement");
-    note(step, sample.has_tracking, "tracking");
-    if (has_state_) note(step, sample.has_state, "plant_state");
-    if (step == last && finalSeen()) continue;
-    note(step, sample.has_base, "base_action");
-    if (!has_optimizer_) continue;
-    note(step, sample.has_action, "control_action");
-    note(step, sample.has_report, "solver_report");
-  }
-  return lines;
-}
-
-RunRecord Recorder::take() {
-  for (const SampleRecord& sample : record_.samples) {
+void conclude(RunRecord& record, bool nothing_missing) {
+  record.failed_samples = 0;
+  for (const SampleRecord& sample : record.samples) {
     if (sample.state.trouble.empty()) continue;
-    if (record_.failed_samples++ == 0) record_.trouble = sample.state.trouble;
+    if (record.failed_samples++ == 0) record.trouble = sample.state.trouble;
   }
-  record_.complete = complete() && record_.failed_samples == 0;
-  RunRecord taken = std::move(record_);
-  record_ = {taken.loop, taken.info, taken.states, taken.state_units, {}, false, 0, {}};
-  run_id_ = 0;
-  return taken;
+  record.complete = nothing_missing && record.failed_samples == 0;
+}
+
+RecordLayout recordLayout(const LoopFile& loop) {
+  RecordLayout layout;
+  layout.loop = loop.name;
+  layout.info = loop.plant_info;
+  layout.has_optimizer = loop.has_clp;
+  layout.has_state = !loop.external_plant;
+  layout.without_setpoint = loop.report.without_setpoint;
+  if (loop.external_plant) return layout;
+  const auto plant = makePlant(loop.simulation);
+  layout.true_disturbances = plant->description().disturbances.size();
+  for (const Quantity& state : plant->description().states) {
+    layout.states.push_back(state.name);
+    layout.state_units.push_back(state.unit);
+  }
+  return layout;
 }
 
 }  // namespace fpc

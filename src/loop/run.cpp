@@ -3,7 +3,11 @@
 #include <optional>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/command_player.hpp"
 #include "fmbpc/loop/factory.hpp"
+#include "fmbpc/loop/identifier_session.hpp"
+#include "fmbpc/loop/plant_session.hpp"
+#include "fmbpc/loop/recorder_session.hpp"
 
 namespace fpc {
 namespace {
@@ -13,55 +17,109 @@ constexpr std::uint64_t kRunId = 1;
 /// The members of the ring, called in the order in which messages would travel.
 class Ring {
  public:
-  explicit Ring(const LoopFile& loop)
-      : simulation_(makeSimulation(loop)),
+  Ring(const LoopFile& loop, const RunOptions& options)
+      : loop_(loop),
+        options_(options),
+        plant_(makeSimulation(loop), PlantPolicy{}),
         controller_(makeControllerSession(loop)),
-        recorder_(makeRecorder(loop)) {
+        player_(options.commands, plant_.simulation().clock()),
+        record_(recordLayout(loop).emptyRecord()),
+        recorder_(recordLayout(loop),
+                  [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
+        targets_{plant_.simulation(), controller_,
+                 [this](int window) {
+                   identify(identifier_->job(loop_.identify.structure,
+                                             static_cast<std::size_t>(window),
+                                             loop_.identify.validation_share));
+                 },
+                 [this](const std::string& words) { remark(words); }} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
-    if (loop.has_model && controller_.controller().needsModel()) controller_.setModel(loop.model);
-    simulation_.reset(kRunId);
+    if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
+    plant_.begin(kRunId);
+    recorder_.announce(kRunId);
+    if (identifier_) use(identifier_->start());
+    require(controller_.ready(), loop.name + ": model.file",
+            "a model for controller " + loop.controllerType().name);
+    player_.begin(targets_);
+    plant_.start(0.0);
   }
 
   /// Answers the present sample; false after the final one.
   bool step() {
-    const Measurement& now = simulation_.measurement();
-    recorder_.add(now);
-    recorder_.add(simulation_.state());
+    const Measurement now = plant_.simulation().measurement();
+    player_.advance(now.header.step, targets_);
+    recorder_.receive(now);
+    recorder_.receive(plant_.simulation().state());
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    recorder_.add(answer.tracking);
-    if (now.final) return false;
-    recorder_.addBase(answer.base);
-    simulation_.advance(optimizer_ ? optimize(answer) : answer.base.input);
-    return true;
+    recorder_.receive(answer.tracking);
+    if (!now.final) {
+      recorder_.receiveBase(answer.base);
+      plant_.receive(optimizer_ ? optimize(answer) : answer.base);
+      plant_.advance(0.0);
+    }
+    if (loop_.has_identify) learn(now);
+    return !now.final;
   }
 
-  RunRecord take() { return recorder_.take(); }
+  RunRecord take() {
+    recorder_.close();
+    conclude(record_, recorder_.complete());
+    return std::move(record_);
+  }
 
  private:
-  Recorder makeRecorder(const LoopFile& loop) const {
-    std::vector<std::string> names, units;
-    for (const auto& state : simulation_.description().states) {
-      names.push_back(state.name);
-      units.push_back(state.unit);
-    }
-    Recorder recorder(loop.name, simulation_.info(), loop.has_clp, true, names, units);
-    recorder.leaveOut(loop.report.without_setpoint);
-    return recorder;
-  }
-
-  const Vector& optimize(const ControllerAnswer& answer) {
+  const ControlAction& optimize(const ControllerAnswer& answer) {
     if (answer.has_prediction) optimizer_->receive(answer.prediction);
     optimizer_->receive(answer.base);
-    recorder_.addAction(optimizer_->action());
-    recorder_.add(optimizer_->report());
-    return optimizer_->action().input;
+    recorder_.receiveAction(optimizer_->action());
+    recorder_.receive(optimizer_->report());
+    return optimizer_->action();
   }
 
-  Simulation simulation_;
+  void learn(const Measurement& now) {
+    const std::uint64_t refused = identifier_->refused();
+    const IdentifierSession::Due due = identifier_->take(now);
+    if (identifier_->refused() > refused) remark(identifier_->lastRefusal());
+    use(due.model);
+    if (due.job) identify(*due.job);
+  }
+
+  void identify(const IdentificationJob& job) {
+    try {
+      const RecordIdentification result =
+          identifyRecord(job.values, job.structure, job.source, job.share);
+      const TsModel& model = identifier_->accept(result.found.model);
+      if (options_.identified) options_.identified(model);
+      use(&model);
+    } catch (const InputError& error) {
+      remark(std::string("identification: ") + error.what());
+    }
+  }
+
+  void use(const TsModel* model) {
+    if (model == nullptr || !controller_.controller().needsModel()) return;
+    try {
+      controller_.setModel(*model);
+    } catch (const InputError& error) {
+      remark(error.what());
+    }
+  }
+
+  void remark(const std::string& words) const {
+    if (options_.remark) options_.remark(words);
+  }
+
+  const LoopFile& loop_;
+  const RunOptions& options_;
+  PlantSession plant_;
   ControllerSession controller_;
   std::optional<OptimizerSession> optimizer_;
-  Recorder recorder_;
+  std::optional<IdentifierSession> identifier_;
+  CommandPlayer player_;
+  RunRecord record_;
+  RecorderSession recorder_;
+  CommandTargets targets_;
 };
 
 }  // namespace
@@ -70,10 +128,7 @@ RunRecord runLoop(const LoopFile& loop, const RunOptions& options) {
   const std::uint32_t samples = loop.simulation.samples;
   require(samples > 0, loop.name + ": sampling.duration_h",
           "a time > 0: a run in one process must end");
-  const ControllerType& controller = loop.controllerType();
-  require(loop.has_model || !controller.needs_model, loop.name + ": model.file",
-          "a model for controller " + controller.name);
-  Ring ring(loop);
+  Ring ring(loop, options);
   for (std::uint32_t step = 0; ring.step(); ++step) {
     if (options.progress) options.progress(step + 1, samples);
     if (options.stop && options.stop()) break;

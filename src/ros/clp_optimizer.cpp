@@ -7,6 +7,8 @@
 namespace fpc {
 namespace {
 
+constexpr double kSilence = 1.0;  // [s] without a base action that is due
+
 const char* words(SolveStatus status) {
   switch (status) {
     case SolveStatus::kSolved:
@@ -41,7 +43,8 @@ std::string ClpOptimizer::idleReason(const LoopFile& loop) {
 
 ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_node,
                            const LoopFile& loop)
-    : session_(makeOptimizerSession(loop)),
+    : Node(node, loop),
+      session_(makeOptimizerSession(loop)),
       ready_(node),
       signals_(node),
       plant_(loop.plant_info),
@@ -53,22 +56,30 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
           subscribe(node, topics::kBaseAction, topics::kRingQueue, &ClpOptimizer::onBase, this)),
       prediction_subscriber_(subscribe(node, topics::kPredictiveAction, topics::kRingQueue,
                                        &ClpOptimizer::onPrediction, this)),
-      diagnostics_(node, private_node, "optimizer", loop.name,
-                   [this](Diagnostics::Status& status) { report(status); }) {
+      summary_(node, loop),
+      pace_(loop.ring.pace),
+      period_s_(loop.plant_info.sample_time_s / loop.ring.speedup),
+      controller_(loop.ring.publishers.at(topics::kBaseAction).front()),
+      health_(node, private_node, "optimizer", loop.name, false,
+              {[this](double now_s) { return health(now_s); },
+               [this] { return session_.report().header; },
+               [this](Diagnostics::Status& status) { report(status); }}) {
   for (const SignalInfo& input : loop.plant_info.inputs) signals_.add(input.name + "_perturbation");
 }
 
 void ClpOptimizer::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    if (plant_.introduce(fromMsg(*msg))) ready_.announce();
+    if (!plant_.introduce(fromMsg(*msg))) return;
+    session_.announce(plant_.runId());
+    ready_.announce();
   });
 }
 
 template <typename Item>
 void ClpOptimizer::receive(const Item& item) {
-  if (plant_.admits(item.header.run_id, ros::WallTime::now()) && listeners_.open() &&
-      session_.receive(item))  // if not, both will come again
-    publish();
+  if (!plant_.admits(item.header.run_id)) return;
+  heard_s_ = steadyNow();
+  if (listeners_.open() && session_.receive(item)) publish();  // if not, both will come again
 }
 
 void ClpOptimizer::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
@@ -92,22 +103,24 @@ void ClpOptimizer::publish() {
              session_.trouble().c_str());
 }
 
-void ClpOptimizer::reportWords(Diagnostics::Status& status) const {
-  using diagnostic_msgs::DiagnosticStatus;
+// What it can see of the loop's life: base actions.
+Health ClpOptimizer::health(double now_s) const {
   const SolveStatus solve = session_.report().status;
-  if (!plant_.problem().empty())
-    status.summary(DiagnosticStatus::ERROR, plant_.problem());
-  else if (!plant_.open())
-    status.summary(DiagnosticStatus::WARN, "waiting for plant_info");
-  else if (session_.counts().accepted == 0)
-    status.summary(DiagnosticStatus::OK, "waiting for the first base action");
-  else
-    status.summary(trouble(solve) ? DiagnosticStatus::WARN : DiagnosticStatus::OK, words(solve));
+  if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
+  if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {"plant_simulator"}};
+  if (session_.counts().accepted == 0)
+    return {LoopMode::kStarting, "waiting for the first base action", {controller_}};
+  const double period_s = pace_ == Pace::kLockstep ? 0.0 : period_s_;
+  if (const auto rest = summary_.rest()) return *rest;
+  if (now_s - heard_s_ > period_s + kSilence)
+    return {LoopMode::kStalled,
+            "no base action since sample " + std::to_string(session_.report().header.step),
+            {controller_}};
+  return {trouble(solve) ? LoopMode::kDegraded : LoopMode::kAutomatic, words(solve), {}};
 }
 
 void ClpOptimizer::report(Diagnostics::Status& status) const {
   const SolverReport& last = session_.report();
-  reportWords(status);
   status.add("step", last.header.step);
   status.add("iterations", last.iterations);
   status.add("KKT residual", last.kkt_residual);
@@ -115,6 +128,7 @@ void ClpOptimizer::report(Diagnostics::Status& status) const {
   addCounts(status, session_.counts());
   status.add("dropped: run not announced", plant_.foreign());
   addRefused(status, refused());
+  addRefused(status, authority().refused());
 }
 
 }  // namespace fpc

@@ -1,5 +1,7 @@
 #include "fmbpc/ros/controller_node.hpp"
 
+#include <utility>
+
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
@@ -9,7 +11,8 @@
 namespace fpc {
 namespace {
 
-constexpr double kRestorePatience = 1.0;  // [s] of wall time
+constexpr double kSilence = 1.0;  // [s] without a measurement that is due
+constexpr double kBurst = 200;    // commands at once
 
 const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_node) {
   const bool answers_plant = private_node.param("final_action", !loop.has_clp);
@@ -20,8 +23,12 @@ const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_nod
 
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node,
                                const LoopFile& loop)
-    : loop_(loop),
+    : Node(node, loop),
+      loop_(loop),
       session_(makeControllerSession(loop)),
+      inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep &&
+             session_.controller().needsModel()),
+      desk_(node, loop, session_),
       ready_(node),
       signals_(node),
       plant_(loop.plant_info),
@@ -36,10 +43,10 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &ControllerNode::onModel, this)),
       measurement_subscriber_(subscribe(node, topics::kMeasurement, topics::kRingQueue,
                                         &ControllerNode::onMeasurement, this)),
+      identified_subscriber_(subscribe(node, topics::kIdentified, topics::kPairQueue,
+                                       &ControllerNode::onIdentified, this)),
       setpoint_subscriber_(subscribe(node, topics::kSetpoint, topics::kViewQueue,
                                      &ControllerNode::onSetpoint, this)),
-      setpoint_active_subscriber_(subscribe(node, topics::kSetpointActive, topics::kViewQueue,
-                                            &ControllerNode::onSetpointActive, this)),
       manual_(private_node.advertiseService(topics::kManual, &ControllerNode::onManual, this)),
       manual_input_(private_node.advertiseService(topics::kManualInput,
                                                   &ControllerNode::onManualInput, this)),
@@ -48,9 +55,17 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       settings_(
           private_node, loop.controllerType().settings,
           [this] { return session_.controller().settings(); },
-          [this](const Settings& settings) { session_.retune(settings); }),
-      diagnostics_(node, private_node, "controller", loop.name,
-                   [this](Diagnostics::Status& status) { report(status); }) {
+          [this](const Settings& settings) {
+            session_.retune(settings);
+            tell();
+          }),
+      summary_(node, loop),
+      commands_(loop.ring.commands_per_s, kBurst),
+      health_(node, private_node, "controller", loop.name, false,
+              {[this](double now_s) { return health(now_s); },
+               [this] { return session_.answer().tracking.header; },
+               [this](Diagnostics::Status& status) { report(status); }}) {
+  if (loop.has_clp) standin_.emplace(node, loop);
   if (!session_.controller().followsSetpoint()) return;
   for (const SignalInfo& output : loop.plant_info.outputs) signals_.add(output.name + "_setpoint");
   for (const SignalInfo& output : loop.plant_info.outputs) signals_.add(output.name + "_reference");
@@ -58,22 +73,42 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
 
 void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    if (plant_.introduce(fromMsg(*msg))) announceIfReady();
+    if (!plant_.introduce(fromMsg(*msg))) return;
+    session_.announce(plant_.runId());
+    inbox_.announce(plant_.runId());
+    announceIfReady();
   });
 }
 
 void ControllerNode::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
   if (!session_.controller().needsModel()) return;
-  try {
-    session_.setModel(matchToPlant(fromMsg(*msg), loop_.plant_info));
-    model_ = msg->name;
-    model_problem_.clear();
-    ROS_INFO("%s: model %s from the next sample on", ros::this_node::getName().c_str(),
-             model_.c_str());
+  guarded(topics::kFuzzyModel, [&] {
+    inbox_.put(matchToPlant(fromMsg(*msg), loop_.plant_info), headerOf(*msg));
+    if (!session_.ready()) useModels({});  // the first one
     announceIfReady();
-  } catch (const InputError& error) {
-    model_problem_ = error.what();
-    refuse(topics::kFuzzyModel, error.what());
+    answerParked();
+  });
+}
+
+void ControllerNode::onIdentified(const fmbpc::Identified::ConstPtr& msg) {
+  guarded(topics::kIdentified, [&] {
+    inbox_.hear(fromMsg(*msg));
+    answerParked();
+  });
+}
+
+void ControllerNode::useModels(const StepHeader& next) {
+  for (const TsModel& model : inbox_.take(next)) {
+    try {
+      session_.setModel(model);
+      model_ = model.name;
+      model_problem_.clear();
+      ROS_INFO("%s: model %s from the next sample on", ros::this_node::getName().c_str(),
+               model_.c_str());
+    } catch (const InputError& error) {
+      model_problem_ = error.what();
+      refuse(topics::kFuzzyModel, error.what());
+    }
   }
 }
 
@@ -84,54 +119,55 @@ void ControllerNode::announceIfReady() {
 void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   guarded(topics::kMeasurement, [&] {
     const Measurement measurement = fromMsg(*msg);
-    if (!plant_.admits(measurement.header.run_id, ros::WallTime::now())) return;
-    if (!plant_.open() || mustAwaitSetpoints(measurement) || !listeners_.open())
+    if (!plant_.admits(measurement.header.run_id)) return;
+    parked_.reset();
+    if (!listeners_.open() || !session_.ready() || !desk_.mayStart(measurement))
       return;  // the plant will send it again
-    switch (session_.receive(measurement)) {
-      case Receipt::kAnswered:
-        return publish(false);
-      case Receipt::kRepeated:
-        return publish(true);
-      case Receipt::kDropped:
-      case Receipt::kNotReady:
-        return;
+    if (!inbox_.complete(measurement.header)) {
+      parked_ = measurement;
+      parked_since_s_ = steadyNow();
+      return;
     }
+    answer(measurement);
   });
 }
 
-// A controller that joins in the middle of a run first hears from the recorder what people have
-// asked until now; if there is no recorder it does not wait long.
-bool ControllerNode::mustAwaitSetpoints(const Measurement& measurement) {
-  if (setpoints_restored_ || session_.counts().accepted > 0 || measurement.header.step == 0)
-    return false;
-  const ros::WallTime now = ros::WallTime::now();
-  if (restore_deadline_.isZero()) restore_deadline_ = now + ros::WallDuration(kRestorePatience);
-  return now < restore_deadline_;
+// What the sample waited for has come.
+void ControllerNode::answerParked() {
+  if (!parked_ || !inbox_.complete(parked_->header)) return;
+  const Measurement measurement = std::move(*std::exchange(parked_, std::nullopt));
+  answer(measurement);
+}
+
+void ControllerNode::answer(const Measurement& measurement) {
+  heard_s_ = steadyNow();
+  useModels(measurement.header);
+  switch (session_.receive(measurement)) {
+    case Receipt::kAnswered:
+      return publish(false);
+    case Receipt::kRepeated:
+      return publish(true);
+    case Receipt::kDropped:
+    case Receipt::kNotReady:
+      return;
+  }
 }
 
 void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
+  if (!commands_.pass(steadyNow())) return;
   guarded(topics::kSetpoint, [&] {
     const Command command = fromMsg(*msg);
     const std::uint32_t step = session_.command(command);
     ROS_INFO("%s: setpoint of %s from sample %u on", ros::this_node::getName().c_str(),
              join(command.name).c_str(), step);
-  });
-}
-
-void ControllerNode::onSetpointActive(const fmbpc::Setpoint::ConstPtr& msg) {
-  setpoints_restored_ = true;
-  if (msg->name.empty()) return;  // nothing stands
-  guarded(topics::kSetpointActive, [&] {
-    const Command command = fromMsg(*msg);
-    if (session_.restore(command))
-      ROS_INFO("%s: setpoint of %s restored", ros::this_node::getName().c_str(),
-               join(command.name).c_str());
+    tell();
   });
 }
 
 bool ControllerNode::onManual(std_srvs::SetBool::Request& request,
                               std_srvs::SetBool::Response& response) {
   session_.manual(request.data != 0);
+  tell();
   response.success = true;
   response.message = session_.isManual() ? "manual" : "auto";
   return true;
@@ -140,6 +176,7 @@ bool ControllerNode::onManual(std_srvs::SetBool::Request& request,
 bool ControllerNode::onAdapt(std_srvs::SetBool::Request& request,
                              std_srvs::SetBool::Response& response) {
   response.success = session_.adapt(request.data != 0);
+  tell();
   response.message = !response.success   ? "this controller does not adapt"
                      : request.data != 0 ? "adapting"
                                          : "frozen";
@@ -151,6 +188,7 @@ bool ControllerNode::onManualInput(fmbpc::ManualInput::Request& request,
   try {
     session_.manualInput(Eigen::Map<const Vector>(request.input.data(),
                                                   static_cast<Eigen::Index>(request.input.size())));
+    tell();
     response.success = true;
   } catch (const InputError& error) {
     response.message = error.what();
@@ -161,6 +199,7 @@ bool ControllerNode::onManualInput(fmbpc::ManualInput::Request& request,
 bool ControllerNode::onHold(std_srvs::SetBool::Request& request,
                             std_srvs::SetBool::Response& response) {
   session_.holdRecipe(request.data != 0);
+  tell();
   response.success = true;
   response.message = session_.setpoint().held() ? "recipe held" : "recipe running";
   ROS_INFO("%s: %s", ros::this_node::getName().c_str(), response.message.c_str());
@@ -172,9 +211,12 @@ void ControllerNode::publish(bool repeated) {
   if (answer.has_prediction && prediction_.getNumSubscribers() > 0)
     prediction_.publish(toMsg(answer.prediction));
   if (answer.has_action) base_.publish(toMsg(answer.base));
+  if (standin_) standin_->asked(answer, repeated);
   if (tracking_.getNumSubscribers() > 0) tracking_.publish(toMsg(answer.tracking));
   if (repeated) return;
   for (const CommandEffect& effect : answer.effects) effect_.publish(toMsg(effect));
+  if (!answer.effects.empty() || session_.counts().accepted == 1) desk_.changed();
+  desk_.tell(answer.tracking.header);
   publishSignals();
   if (!session_.resetReason().empty())
     ROS_INFO("%s: reset: %s", ros::this_node::getName().c_str(), session_.resetReason().c_str());
@@ -200,30 +242,48 @@ void ControllerNode::publishSignals() {
   }
 }
 
-void ControllerNode::reportWords(Diagnostics::Status& status) const {
-  using diagnostic_msgs::DiagnosticStatus;
-  if (!plant_.problem().empty())
-    status.summary(DiagnosticStatus::ERROR, plant_.problem());
-  else if (!plant_.open())
-    status.summary(DiagnosticStatus::WARN, "waiting for plant_info");
-  else if (!session_.ready())
-    status.summary(DiagnosticStatus::WARN, "waiting for fuzzy_model");
-  else if (session_.isManual())
-    status.summary(DiagnosticStatus::WARN, "manual");
-  else if (session_.counts().accepted == 0)
-    status.summary(DiagnosticStatus::OK, "waiting for the first measurement");
-  else if (*session_.output().remark != '\0' ||
-           session_.answer().base.source == ActionSource::kHeld)
-    status.summary(DiagnosticStatus::WARN, session_.output().remark);
-  else if (!model_problem_.empty())
-    status.summary(DiagnosticStatus::WARN, "controlling; refused: " + model_problem_);
-  else
-    status.summary(DiagnosticStatus::OK, "controlling");
+void ControllerNode::tell() {
+  desk_.changed();
+  desk_.tell(session_.answer().tracking.header);
+}
+
+// Nothing that waits is "controlling".
+Health ControllerNode::health(double now_s) const {
+  if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
+  if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {plantName()}};
+  if (!session_.ready())
+    return {LoopMode::kStarting, "waiting for fuzzy_model", {modelName()}};
+  if (parked_ && now_s - parked_since_s_ > kSilence)
+    return {LoopMode::kStalled, "waits for the identifier to be done with the sample before",
+            {modelName()}};
+  if (session_.counts().accepted == 0)
+    return {LoopMode::kStarting, "waiting for the first measurement", {plantName()}};
+  const std::string step = std::to_string(session_.answer().tracking.header.step);
+  if (!session_.answer().has_action) return {LoopMode::kFinished, "finished", {}};
+  if (session_.unreleased()) return {LoopMode::kHeld, session_.output().remark, {}};
+  if (standin_ && standin_->watch().waitsInVain(now_s))
+    return {LoopMode::kStalled, "no answer of " + standin_->optimizer() + " to sample " + step,
+            {standin_->optimizer()}};
+  const double period_s = loop_.ring.pace == Pace::kLockstep
+                              ? 0.0
+                              : loop_.plant_info.sample_time_s / loop_.ring.speedup;
+  if (const auto rest = summary_.rest()) return *rest;
+  if (now_s - heard_s_ > period_s + kSilence)
+    return {LoopMode::kStalled, "no measurement since sample " + step, {plantName()}};
+  if (standin_ && standin_->watch().degraded())
+    return {LoopMode::kDegraded, "no answer of " + standin_->optimizer() +
+            ": the base action goes to the plant", {standin_->optimizer()}};
+  if (session_.isManual()) return {LoopMode::kManual, "manual", {}};
+  if (session_.answer().base.source == ActionSource::kHeld)
+    return {LoopMode::kHeld, session_.output().remark, {}};
+  if (*session_.output().remark != '\0') return {LoopMode::kDegraded, session_.output().remark, {}};
+  if (!model_problem_.empty())
+    return {LoopMode::kDegraded, "controlling; refused: " + model_problem_, {}};
+  return {LoopMode::kAutomatic, "controlling", {}};
 }
 
 void ControllerNode::report(Diagnostics::Status& status) const {
-  reportWords(status);
-  status.add("mode", session_.isManual() ? "manual" : "auto");
+  status.add("hand", session_.isManual() ? "manual" : "auto");
   status.add("recipe", session_.setpoint().held() ? "held" : "running");
   status.add("step", session_.answer().tracking.header.step);
   addCounts(status, session_.counts());
@@ -232,7 +292,11 @@ void ControllerNode::report(Diagnostics::Status& status) const {
     status.add("model", model_);
     status.add("models taken", session_.models());
   }
+  status.add("commands dropped: too many", commands_.dropped());
+  if (standin_) status.add("samples without the optimizer", standin_->watch().takenOver());
   addRefused(status, refused());
+  addRefused(status, desk_.refused());
+  addRefused(status, authority().refused());
 }
 
 }  // namespace fpc

@@ -10,8 +10,8 @@ Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& pri
     : updater_(node, private_node) {
   updater_.setHardwareID(hardware_id);
   updater_.add(title, [report = std::move(report)](Status& status) { report(status); });
-  timer_ = node.createWallTimer(ros::WallDuration(1.0),
-                                [this](const ros::WallTimerEvent&) { updater_.force_update(); });
+  timer_ = node.createSteadyTimer(ros::WallDuration(1.0),
+                                  [this](const ros::SteadyTimerEvent&) { updater_.force_update(); });
 }
 
 void addCounts(Diagnostics::Status& status, const ArrivalCounts& counts) {
@@ -19,7 +19,9 @@ void addCounts(Diagnostics::Status& status, const ArrivalCounts& counts) {
   status.add("repeated", counts.repeated);
   status.add("gaps", counts.gaps);
   status.add("new runs", counts.new_runs);
+  status.add("back to the plant's step", counts.resyncs);
   status.add("dropped: old step", counts.old);
+  status.add("dropped: step too far ahead", counts.suspect);
   status.add("dropped: other run", counts.other_run);
   status.add("dropped: wrong size", counts.wrong_size);
   status.add("not finite", counts.not_finite);

@@ -1,5 +1,4 @@
 #include "fmbpc/ros/fuzzy_identifier.hpp"
-#include "fmbpc/config/structure_file.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -7,8 +6,7 @@
 
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/model_file.hpp"
-#include "fmbpc/fuzzy/model_check.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/ros/conversions.hpp"
 #include "fmbpc/ros/identify_messages.hpp"
 #include "fmbpc/ros/topics.hpp"
@@ -18,6 +16,7 @@ namespace {
 
 constexpr double kPollPeriod = 0.05;  // [s] of wall time: feedback, end of a job
 constexpr std::size_t kMostUnannounced = 1000;
+constexpr double kKeptPatience = 1.0;  // [s] for a plant that keeps models
 
 /// A status is sent when something changes; the timer of actionlib, which goes by simulated time,
 /// stays off.
@@ -49,22 +48,29 @@ std::string FuzzyIdentifier::idleReason(const LoopFile& loop) {
 
 FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& private_node,
                                  const LoopFile& loop)
-    : loop_(loop),
+    : Node(node, loop),
+      loop_(loop),
       out_(private_node.param<std::string>("out", "")),
       ready_(node),
       plant_(loop.plant_info),
-      collector_(loop.plant_info, static_cast<std::size_t>(loop.identify.window)),
+      session_(loop),
       model_publisher_(node.advertise<fmbpc::FuzzyModel>(topics::kFuzzyModel, 1, true)),
+      identified_(
+          node.advertise<fmbpc::Identified>(topics::kIdentified, topics::kPairQueue, true)),
       plant_subscriber_(
           subscribe(node, topics::kPlantInfo, 1, &FuzzyIdentifier::onPlantInfo, this)),
+      kept_subscriber_(
+          subscribe(node, topics::kModelKept, 1, &FuzzyIdentifier::onModelKept, this)),
       server_(
           withoutTimer(private_node), topics::kIdentify,
           [this](Server::GoalHandle goal) { onGoal(std::move(goal)); },
           [this](Server::GoalHandle goal) { onCancel(std::move(goal)); }, false),
-      poll_timer_(node.createWallTimer(ros::WallDuration(kPollPeriod),
-                                       [this](const ros::WallTimerEvent&) { poll(); })),
-      diagnostics_(node, private_node, "model", loop.name,
-                   [this](Diagnostics::Status& status) { report(status); }) {
+      poll_timer_(node.createSteadyTimer(ros::WallDuration(kPollPeriod),
+                                         [this](const ros::SteadyTimerEvent&) { poll(); })),
+      health_(node, private_node, "model", loop.name, false,
+              {[this](double now_s) { return health(now_s); },
+               [this] { return session_.present(); },
+               [this](Diagnostics::Status& status) { report(status); }}) {
   if (loop.has_identify)  // otherwise nobody needs the samples
     measurement_subscriber_ = subscribe(node, topics::kMeasurement, topics::kRingQueue,
                                         &FuzzyIdentifier::onMeasurement, this);
@@ -74,15 +80,32 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
 void FuzzyIdentifier::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
     if (!plant_.introduce(fromMsg(*msg))) return;
-    if (loop_.has_model && published_ == 0) publishStartModel();
+    session_.announce(plant_.runId());
+    if (introduced_s_ < 0) introduced_s_ = steadyNow();
+    publishStartModel();
     announceIfReady();
     for (const auto& measurement : std::exchange(unannounced_, {})) onMeasurement(measurement);
   });
 }
 
+// The plant says at once whether it has kept a model of this run; without such a plant nobody does.
+void FuzzyIdentifier::onModelKept(const fmbpc::FuzzyModel::ConstPtr& msg) {
+  guarded(topics::kModelKept, [&] {
+    kept_known_ = true;
+    if (msg->run_id != 0 && session_.published() == 0) {
+      publish(session_.restore(fromMsg(*msg)), headerOf(*msg));
+      ROS_INFO("fuzzy_identifier: model %s of this run restored", msg->name.c_str());
+    }
+    publishStartModel();
+    announceIfReady();
+  });
+}
+
 void FuzzyIdentifier::publishStartModel() {
+  const bool known = kept_known_ || steadyNow() - introduced_s_ > kKeptPatience;
+  if (!loop_.has_model || !plant_.open() || !known || session_.published() > 0) return;
   try {
-    publish(matchToPlant(loop_.model, loop_.plant_info));
+    if (const TsModel* model = session_.start()) publish(*model, {});
     problem_.clear();
   } catch (const InputError& error) {
     problem_ = error.what();
@@ -91,7 +114,7 @@ void FuzzyIdentifier::publishStartModel() {
 }
 
 void FuzzyIdentifier::announceIfReady() {
-  const bool has_model = published_ > 0 || !loop_.has_model;
+  const bool has_model = session_.published() > 0 || !loop_.has_model;
   const bool listens = !loop_.has_identify || measurement_subscriber_.getNumPublishers() > 0;
   if (plant_.open() && has_model && listens) ready_.announce();
 }
@@ -99,55 +122,40 @@ void FuzzyIdentifier::announceIfReady() {
 void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   guarded(topics::kMeasurement, [&] {
     const Measurement measurement = fromMsg(*msg);
-    if (!plant_.admits(measurement.header.run_id, ros::WallTime::now())) {
+    if (!plant_.admits(measurement.header.run_id)) {
       if (unannounced_.size() < kMostUnannounced) unannounced_.push_back(msg);
       return;
     }
-    const Arrival arrival = collector_.take(measurement);
-    if (!isNew(arrival)) return;
-    learn(measurement, arrival);
-    const auto after = static_cast<std::uint64_t>(loop_.identify.after);
-    if (after == 0 || done_by_itself_ || collector_.counts().samples < after || worker_.busy())
-      return;
-    done_by_itself_ = true;
-    begin(loop_.identify.structure, 0, loop_.identify.validation_share, true);
+    const std::uint64_t refused = session_.refused();
+    IdentifierSession::Due due = session_.take(measurement);
+    if (due.arrival == Arrival::kRepeat) return sayDone();
+    if (!isNew(due.arrival)) return;
+    done_ = made_model_ = false;
+    if (session_.refused() > refused)
+      ROS_WARN("fuzzy_identifier: sample %u: the model learned online is not published: %s",
+               measurement.header.step, session_.lastRefusal().c_str());
+    if (due.model != nullptr) publish(*due.model, measurement.header);
+    if (due.job) waiting_ = std::move(due.job);
+    if (waiting_ && !worker_.busy())
+      begin(std::move(*std::exchange(waiting_, std::nullopt)), true);
+    const bool wait = loop_.ring.pace == Pace::kLockstep && worker_.busy();
+    done_ = !wait;
+    sayDone();
   });
 }
 
-void FuzzyIdentifier::learn(const Measurement& measurement, Arrival arrival) {
-  if (!learner_ || !learner_->take(measurement, arrival)) return;
-  try {
-    offer(learner_->model());
-  } catch (const InputError& error) {
-    ROS_WARN("fuzzy_identifier: sample %u: the model learned online is not published: %s",
-             measurement.header.step, error.what());
-  }
+// In lockstep the next sample is answered only when this has been heard.
+void FuzzyIdentifier::sayDone() {
+  if (done_) identified_.publish(toMsg(IdentifierWord{session_.present(), made_model_}));
 }
 
-void FuzzyIdentifier::offer(const TsModel& model) {
-  try {
-    const TsModel matched = matchToPlant(model, loop_.plant_info);
-    if (collector_.present().outputs.size() > 0)
-      requireStable(matched, collector_.present(), loop_.max_pole);
-    publish(matched);
-  } catch (const InputError& error) {
-    ++models_refused_;
-    last_refusal_ = error.what();
-    throw;
-  }
-}
-
-void FuzzyIdentifier::publish(const TsModel& matched) {
-  remarks_ = reportModel(matched);
-  model_publisher_.publish(toMsg(matched));
-  model_ = matched;
-  if (published_++ == 0) {
-    for (const RuleRemark& remark : remarks_)
-      ROS_INFO("fuzzy_identifier: %s, output %s, rule %zu: %s", matched.name.c_str(),
-               remark.output.c_str(), remark.rule, remark.text.c_str());
-    if (loop_.identify.online.enabled)
-      learner_.emplace(matched, loop_.plant_info, loop_.identify.online);
-  }
+void FuzzyIdentifier::publish(const TsModel& matched, const StepHeader& made_from) {
+  model_publisher_.publish(toMsg(matched, made_from));
+  made_model_ = made_model_ || made_from.run_id != 0;
+  if (session_.published() > 1) return;
+  for (const RuleRemark& remark : reportModel(matched))
+    ROS_INFO("fuzzy_identifier: %s, output %s, rule %zu: %s", matched.name.c_str(),
+             remark.output.c_str(), remark.rule, remark.text.c_str());
 }
 
 void FuzzyIdentifier::write(const TsModel& model) const {
@@ -159,16 +167,7 @@ void FuzzyIdentifier::write(const TsModel& model) const {
   if (!stream.good()) ROS_WARN("fuzzy_identifier: %s could not be written", file.c_str());
 }
 
-void FuzzyIdentifier::begin(Structure structure, std::size_t newest, double share, bool publish) {
-  IdentificationWorker::Job job;
-  job.values = collector_.rows(structure, newest);
-  job.structure = std::move(structure);
-  const CollectorCounts& counts = collector_.counts();
-  job.source = "the running plant " + loop_.plant_info.name + ", samples up to " +
-               std::to_string(collector_.present().header.step) + " (" +
-               std::to_string(counts.missing) + " missing, " + std::to_string(counts.incomplete) +
-               " incomplete, " + std::to_string(counts.runs) + " runs)";
-  job.share = share;
+void FuzzyIdentifier::begin(IdentificationJob job, bool publish) {
   publish_ = publish;
   ROS_INFO("fuzzy_identifier: identifies %s from %zu rows", job.structure.name.c_str(),
            static_cast<std::size_t>(job.values.rows()));
@@ -179,11 +178,11 @@ void FuzzyIdentifier::onGoal(Server::GoalHandle goal) {
   const auto& wish = *goal.getGoal();
   fmbpc::IdentifyModelResult result;
   try {
+    require(!worker_.busy(), "identify", "one goal at a time: another identification is running");
     require(loop_.has_identify, "model.identify",
             "that section in the loop file: nothing is collected");
-    require(!worker_.busy(), "identify", "one goal at a time: another identification is running");
-    require(collector_.size() > 0, "identify", "samples: none have come yet");
-    begin(structureOf(wish, loop_), wish.window, shareOf(wish, loop_), wish.publish != 0);
+    begin(session_.job(structureOf(wish, loop_), wish.window, shareOf(wish, loop_)),
+          wish.publish != 0);
   } catch (const InputError& error) {
     result.message = error.what();
     ROS_WARN("fuzzy_identifier: goal rejected: %s", error.what());
@@ -200,6 +199,7 @@ void FuzzyIdentifier::onCancel(Server::GoalHandle goal) {
 }
 
 void FuzzyIdentifier::poll() {
+  publishStartModel();
   if (!ready_.announced()) announceIfReady();
   if (!worker_.busy()) return;
   // The end first, so that the last progress is not told after it.
@@ -216,6 +216,8 @@ void FuzzyIdentifier::finishJob(const IdentificationWorker::Outcome& outcome) {
   fmbpc::IdentifyModelResult result;
   conclude(outcome, result);
   last_identification_ = result.message;
+  done_ = true;
+  sayDone();
   ROS_INFO("fuzzy_identifier: %s", result.message.c_str());
   if (!has_goal_) return;
   has_goal_ = false;
@@ -245,49 +247,42 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   result.ok = 1;
   if (!publish_) return;
   try {
-    offer(model);
-    if (loop_.identify.online.enabled)  // goes on learning from here
-      learner_.emplace(model_, loop_.plant_info, loop_.identify.online);
-    write(model_);
+    publish(session_.accept(model), session_.present());
+    write(session_.model());
   } catch (const InputError& error) {
     result.ok = 0;
     result.message = std::string("identified, but refused: ") + error.what();
   }
 }
 
-void FuzzyIdentifier::reportWords(Diagnostics::Status& status) const {
-  using diagnostic_msgs::DiagnosticStatus;
+Health FuzzyIdentifier::health(double) const {
   const std::string& problem = plant_.problem().empty() ? problem_ : plant_.problem();
-  if (!problem.empty())
-    status.summary(DiagnosticStatus::ERROR, problem);
-  else if (!plant_.open())
-    status.summary(DiagnosticStatus::WARN, "waiting for plant_info");
-  else if (worker_.busy())
-    status.summary(DiagnosticStatus::OK, "identifying: " + progress_);
-  else if (!last_refusal_.empty())
-    status.summary(DiagnosticStatus::WARN, "refused: " + last_refusal_);
-  else if (published_ == 0)
-    status.summary(DiagnosticStatus::OK, "collecting, no model yet");
-  else
-    status.summary(DiagnosticStatus::OK, "published " + model_.name);
+  if (!problem.empty()) return {LoopMode::kFailed, problem, {}};
+  if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {"plant_simulator"}};
+  if (worker_.busy()) return {LoopMode::kAutomatic, "identifying: " + progress_, {}};
+  if (!session_.lastRefusal().empty())
+    return {LoopMode::kDegraded, "refused: " + session_.lastRefusal(), {}};
+  if (session_.published() == 0) return {LoopMode::kAutomatic, "collecting, no model yet", {}};
+  return {LoopMode::kAutomatic, "published " + session_.model().name, {}};
 }
 
 void FuzzyIdentifier::report(Diagnostics::Status& status) const {
-  reportWords(status);
-  const CollectorCounts& counts = collector_.counts();
-  status.add("source", model_.source);
-  status.add("models published", published_);
-  status.add("models refused", models_refused_);
+  const CollectorCounts& counts = session_.collector().counts();
+  status.add("source", session_.model().source);
+  status.add("models published", session_.published());
+  status.add("models refused", session_.refused());
   status.add("last identification", last_identification_);
   status.add("samples collected", counts.samples);
   status.add("samples missing", counts.missing);
   status.add("samples incomplete", counts.incomplete);
   status.add("runs", counts.runs);
-  status.add("rows in the window", collector_.size());
-  if (learner_) status.add("samples learned online", learner_->samples());
-  for (const RuleRemark& remark : remarks_)
-    status.add(remark.output + ", rule " + std::to_string(remark.rule), remark.text);
+  status.add("rows in the window", session_.collector().size());
+  if (session_.learned() > 0) status.add("samples learned online", session_.learned());
+  if (session_.published() > 0)
+    for (const RuleRemark& remark : reportModel(session_.model()))
+      status.add(remark.output + ", rule " + std::to_string(remark.rule), remark.text);
   addRefused(status, refused());
+  addRefused(status, authority().refused());
 }
 
 }  // namespace fpc

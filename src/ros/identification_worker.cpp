@@ -9,14 +9,14 @@ IdentificationWorker::~IdentificationWorker() {
   if (thread_.joinable()) thread_.join();
 }
 
-void IdentificationWorker::start(Job job) {
+void IdentificationWorker::start(IdentificationJob job) {
   cancelled_ = false;
   progress_.reset();
   outcome_.reset();
   thread_ = std::thread([this, job = std::move(job)] { work(job); });
 }
 
-void IdentificationWorker::work(const Job& job) {
+void IdentificationWorker::work(const IdentificationJob& job) {
   Outcome outcome;
   try {
     outcome.result = identifyRecord(job.values, job.structure, job.source, job.share,

@@ -6,6 +6,8 @@
 #include <map>
 #include <string>
 
+#include "fmbpc/ros/wall_throttle.hpp"
+
 namespace fpc {
 namespace {
 
@@ -34,9 +36,9 @@ bool ListenerGate::allConnected() const {
 
 bool ListenerGate::open() {
   if (open_) return true;
-  const ros::WallTime now = ros::WallTime::now();
-  if (deadline_.isZero()) deadline_ = now + ros::WallDuration(kPatience);
-  open_ = allConnected() || now >= deadline_;
+  const double now_s = steadyNow();
+  if (deadline_s_ < 0) deadline_s_ = now_s + kPatience;
+  open_ = allConnected() || now_s >= deadline_s_;
   return open_;
 }
 

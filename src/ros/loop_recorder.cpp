@@ -3,72 +3,40 @@
 #include <std_msgs/String.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <utility>
 
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/plot.hpp"
-#include "fmbpc/loop/report.hpp"
 #include "fmbpc/ros/conversions.hpp"
 #include "fmbpc/ros/topics.hpp"
+#include "fmbpc/ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr double kPollPeriod = 0.05;  // [s] of wall time
-constexpr double kFinalPatience =
-    10;  // [s] of wall time for stragglers after the final measurement
-constexpr int kPollsConnected =
-    3;  // a connection is complete at both ends a moment after it is made
-constexpr std::size_t kMostEarly = 10000;
-
-std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  names.reserve(signals.size());
-  for (const SignalInfo& signal : signals) names.push_back(signal.name);
-  return names;
-}
-
-Recorder makeRecorder(const LoopFile& loop) {
-  std::vector<std::string> names, units;
-  if (!loop.external_plant) {
-    const auto plant = makePlant(loop.simulation);
-    for (const Quantity& state : plant->description().states) {
-      names.push_back(state.name);
-      units.push_back(state.unit);
-    }
-  }
-  Recorder recorder(loop.name, loop.plant_info, loop.has_clp, !loop.external_plant, names, units);
-  recorder.leaveOut(loop.report.without_setpoint);
-  return recorder;
-}
-
-template <typename List>
-Eigen::Index count(const List& list) {
-  return static_cast<Eigen::Index>(list.size());
-}
+constexpr double kPollPeriod = 0.05;    // [s] of wall time
+constexpr double kFinalPatience = 10;   // [s] for stragglers after the final measurement
+constexpr double kWritePatience = 10;   // [s] for room on the disk at the end
+constexpr int kPollsConnected = 3;      // a connection is complete at both ends a moment later
 
 }  // namespace
 
 LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_node,
                            const LoopFile& loop)
-    : loop_(loop),
-      out_(private_node.param<std::string>("out", "")),
+    : Node(node, loop),
+      loop_(loop),
       keep_(private_node.param("keep", false)),
       plot_(private_node.param("plot", true)),
-      recorder_(makeRecorder(loop)),
-      setpoints_(node, namesOf(loop.plant_info.outputs)),
+      store_(loop, private_node.param<std::string>("out", "")),
+      session_(recordLayout(loop), [this](const SampleRecord& sample) { store_.append(sample); }),
       ready_(node),
       plant_(loop.plant_info),
-      n_y_(count(loop.plant_info.outputs)),
-      n_u_(count(loop.plant_info.inputs)),
-      n_d_(count(loop.plant_info.disturbances)),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
-      poll_timer_(node.createWallTimer(ros::WallDuration(kPollPeriod),
-                                       [this](const ros::WallTimerEvent&) { poll(); })),
-      diagnostics_(node, private_node, "recorder", loop.name,
-                   [this](Diagnostics::Status& status) { report(status); }) {
-  removeOldFiles();
+      poll_timer_(node.createSteadyTimer(ros::WallDuration(kPollPeriod),
+                                         [this](const ros::SteadyTimerEvent&) { poll(); })),
+      health_(node, private_node, "recorder", loop.name, false,
+              {[this](double now_s) { return health(now_s); },
+               [this] { return session_.latest(); },
+               [this](Diagnostics::Status& status) { report(status); }}) {
   const auto listen = [&](const char* topic, auto handler) {
     ring_.push_back(subscribe(node, topic, topics::kRingQueue, handler, this));
   };
@@ -82,19 +50,17 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
   listen(topics::kSolverReport, &LoopRecorder::onReport);
 }
 
-// Results of an earlier run must not be taken for those of this one.
-void LoopRecorder::removeOldFiles() const {
-  if (out_.empty()) return;
-  for (const char* name : {"summary.json", "trajectory.csv", "plot.png"})
-    std::filesystem::remove(std::filesystem::path(out_) / name);
-}
-
 void LoopRecorder::poll() {
   if (!ready_.announced()) announceIfConnected();
-  if (final_seen_.isZero() || (ros::SteadyTime::now() - final_seen_).toSec() < kFinalPatience)
-    return;
-  final_seen_ = {};
-  fail("the final sample came, but the record has gaps: " + join(recorder_.gaps()));
+  store_.flush();
+  if (written_) return;
+  const double now_s = steadyNow();
+  if (closed_s_ >= 0) return conclude();  // the disk had no room
+  if (final_seen_s_ < 0 || now_s - final_seen_s_ < kFinalPatience) return;
+  problem_ = "the final sample came, but the record has gaps: " + join(session_.gaps());
+  session_.close();
+  conclude();
+  fail(problem_);
 }
 
 void LoopRecorder::announceIfConnected() {
@@ -106,185 +72,148 @@ void LoopRecorder::announceIfConnected() {
 
 void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    if (!plant_.introduce(fromMsg(*msg))) return;
-    const auto parked = std::exchange(unannounced_, {});
-    for (const auto& measurement : parked) onMeasurement(measurement);
+    const std::uint64_t before = plant_.runId();
+    if (plant_.introduce(fromMsg(*msg)) && plant_.runId() != before) beginRun(plant_.runId());
   });
 }
 
-bool LoopRecorder::fits(const Measurement& m) const {
-  return m.outputs.size() == n_y_ && m.disturbances.size() == n_d_ &&
-         m.input_applied.size() == n_u_;
-}
-bool LoopRecorder::fits(const PlantState& s) const {
-  const auto& record = recorder_.record();
-  return s.outputs.size() == n_y_ && s.state.size() == count(record.states);
-}
-bool LoopRecorder::fits(const Tracking& t) const {
-  return t.setpoint.size() == n_y_ && t.reference.size() == n_y_;
-}
-bool LoopRecorder::fits(const ControlAction& a) const {
-  return a.input.size() == n_u_ && a.input.allFinite();
-}
-bool LoopRecorder::fits(const SolverReport& r) const { return r.perturbation.size() == n_u_; }
-
-template <typename Item>
-void LoopRecorder::collect(const Item& item, bool SampleRecord::*has,
-                           void (Recorder::*add)(const Item&)) {
-  const StepHeader& header = item.header;
-  if (!fits(item)) {
-    ++wrong_size_;
-    return;
-  }
-  const bool later_run = !run_known_ || header.run_id > measured_.run_id;
-  const bool this_run = run_known_ && header.run_id == measured_.run_id;
-  if (later_run || (this_run && header.step > measured_.step)) {
-    if (early_.size() < kMostEarly)
-      early_.push_back({header, [this, item, has, add] { collect(item, has, add); }});
-    else
-      ++strays_;
-    return;
-  }
-  if (!this_run || written_) {
-    ++strays_;
-    return;
-  }
-  const auto& samples = recorder_.record().samples;
-  if (header.step < samples.size() && samples[header.step].*has) return;  // repeated
-  (recorder_.*add)(item);
-  if (!final_seen_.isZero()) checkComplete();
-}
-
-void LoopRecorder::deliverEarly() {
-  std::vector<Early> due;
-  const auto later = std::stable_partition(early_.begin(), early_.end(), [&](const Early& e) {
-    return e.header.run_id < measured_.run_id ||
-           (e.header.run_id == measured_.run_id && e.header.step <= measured_.step);
-  });
-  std::move(early_.begin(), later, std::back_inserter(due));
-  early_.erase(early_.begin(), later);
-  for (const Early& early : due) early.deliver();
-}
-
-void LoopRecorder::beginRun(const StepHeader& header) {
-  if (run_known_) {
-    setpoints_.clear();
-    recorder_.take();  // an unfinished run is forgotten
-  }
-  run_known_ = true;
+// What there is of an unfinished run before is set aside, not lost.
+void LoopRecorder::beginRun(std::uint64_t run_id) {
+  if (session_.running() && !written_) session_.close();
   written_ = false;
-  final_seen_ = {};
-  began_ = ros::SteadyTime::now();
-  measured_ = header;
+  final_seen_s_ = closed_s_ = -1;
+  problem_.clear();
+  began_s_ = steadyNow();
+  const std::uint32_t here = store_.begin(run_id);
+  if (here > 0) {
+    session_.resume(run_id, here);
+    ROS_INFO("loop_recorder: goes on after the %u samples that are on disk", here);
+  } else {
+    session_.announce(run_id);
+  }
 }
 
 void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   guarded(topics::kMeasurement, [&] {
-    const Measurement m = fromMsg(*msg);
-    if (!fits(m)) {
-      ++wrong_size_;
-      return;
-    }
-    if (!plant_.admits(m.header.run_id, ros::WallTime::now())) {
-      ++strays_;
-      if (unannounced_.size() < kMostEarly) unannounced_.push_back(msg);
-      return;
-    }
-    if (!run_known_ || m.header.run_id > measured_.run_id) beginRun(m.header);
-    if (m.header.run_id < measured_.run_id) {
-      ++strays_;
-      return;
-    }
-    measured_.step = std::max(measured_.step, m.header.step);
-    if (m.final && !written_ && final_seen_.isZero()) final_seen_ = ros::SteadyTime::now();
-    setpoints_.advance(m.header.time_ns);
-    collect<Measurement>(m, &SampleRecord::has_measurement, &Recorder::add);
-    if (!early_.empty()) deliverEarly();
+    session_.receive(fromMsg(*msg));
+    if (!session_.finalSeen())
+      final_seen_s_ = -1;
+    else if (!written_ && final_seen_s_ < 0)
+      final_seen_s_ = steadyNow();
+    checkComplete();
   });
 }
 
 void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
-  guarded(topics::kPlantState,
-          [&] { collect<PlantState>(fromMsg(*msg), &SampleRecord::has_state, &Recorder::add); });
+  guarded(topics::kPlantState, [&] {
+    session_.receive(fromMsg(*msg));
+    checkComplete();
+  });
 }
 
 void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
-  guarded(topics::kTracking,
-          [&] { collect<Tracking>(fromMsg(*msg), &SampleRecord::has_tracking, &Recorder::add); });
+  guarded(topics::kTracking, [&] {
+    session_.receive(fromMsg(*msg));
+    checkComplete();
+  });
 }
 
 void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
   guarded(topics::kBaseAction, [&] {
-    collect<ControlAction>(fromMsg(*msg), &SampleRecord::has_base, &Recorder::addBase);
+    session_.receiveBase(fromMsg(*msg));
+    checkComplete();
   });
 }
 
 void LoopRecorder::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
   guarded(topics::kControlAction, [&] {
-    collect<ControlAction>(fromMsg(*msg), &SampleRecord::has_action, &Recorder::addAction);
+    session_.receiveAction(fromMsg(*msg));
+    checkComplete();
   });
 }
 
 void LoopRecorder::onReport(const fmbpc::SolverReport::ConstPtr& msg) {
-  guarded(topics::kSolverReport,
-          [&] { collect<SolverReport>(fromMsg(*msg), &SampleRecord::has_report, &Recorder::add); });
+  guarded(topics::kSolverReport, [&] {
+    session_.receive(fromMsg(*msg));
+    checkComplete();
+  });
 }
 
 void LoopRecorder::checkComplete() {
-  if (!recorder_.complete()) return;
-  final_seen_ = {};
-  write();
-  if (!keep_) done();
+  if (!written_ && closed_s_ < 0 && session_.complete()) conclude();
 }
 
-void LoopRecorder::write() {
-  const double wall_s = (ros::SteadyTime::now() - began_).toSec();
-  const RunRecord record = recorder_.take();
-  const Summary summary = summarize(loop_, record, wall_s);
-  written_ = true;
-  ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, wall_s);
-  if (!out_.empty()) {
-    writeRun(loop_, record, summary, out_);
-    const PlotResult plot = plot_ ? drawPlot(out_) : PlotResult{};
+// Writes the files; a disk without room gets some time, the journal stays whatever happens.
+void LoopRecorder::conclude() {
+  if (closed_s_ < 0) closed_s_ = steadyNow();
+  if (!tryWrite()) {
+    if (!keep_ && steadyNow() - closed_s_ > kWritePatience) fail(problem_);
+    return;
+  }
+  if (!problem_.empty() && !keep_) return fail(problem_);
+  if (!keep_ && session_.complete()) done();
+}
+
+bool LoopRecorder::tryWrite() {
+  try {
+    const Summary summary = store_.finish(steadyNow() - began_s_);
+    written_ = true;
+    trouble_ = troubleOf(summary);
+    ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, summary.wall_s);
+  } catch (const InputError& error) {
+    problem_ = error.what();
+    return false;
+  }
+  if (session_.complete()) problem_ = trouble_;
+  if (!store_.folder().empty()) {
+    const PlotResult plot = plot_ ? drawPlot(store_.folder()) : PlotResult{};
     if (!plot.warning.empty()) ROS_WARN("loop_recorder: %s", plot.warning.c_str());
-    ROS_INFO("loop_recorder: written: %s", out_.c_str());
+    ROS_INFO("loop_recorder: written: %s", store_.folder().c_str());
   }
   std_msgs::String folder;
-  folder.data = out_;
-  if (ros::ok()) recorded_.publish(folder);
-  if (record.failed_samples == 0) return;
-  const std::string words = troubleOf(summary);
-  if (!keep_) return fail(words);
-  ROS_ERROR("loop_recorder: %s", words.c_str());
+  folder.data = store_.folder();
+  if (ros::ok() && session_.complete()) recorded_.publish(folder);
+  return true;
 }
 
 int LoopRecorder::finish() {
   const int code = Node::finish();
-  if (code != 0 || written_) return code;
-  if (loop_.simulation.samples == 0 && run_known_) {
-    write();
-    return 0;
+  if (code != 0 || written_ || !session_.running()) {
+    if (code == 0 && !written_) ROS_WARN("loop_recorder: stopped before the first sample");
+    return code == 0 && !written_ ? 1 : code;
   }
-  ROS_ERROR("loop_recorder: stopped before the final sample: nothing is written");
+  session_.close();
+  if (!tryWrite()) {
+    ROS_ERROR("loop_recorder: %s", problem_.c_str());
+    return 1;
+  }
+  if (loop_.simulation.samples == 0) return 0;
+  ROS_ERROR("loop_recorder: stopped before the final sample: what came until then is written");
   return 1;
 }
 
+Health LoopRecorder::health(double) const {
+  if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
+  if (!store_.problem().empty()) return {LoopMode::kFailed, store_.problem(), {}};
+  if (!problem_.empty()) return {LoopMode::kFailed, problem_, {}};
+  if (!ready_.announced())
+    return {LoopMode::kStarting, "waiting for publishers of the ring", {}};
+  if (written_) return {LoopMode::kFinished, "written", {}};
+  if (session_.gapCount() > 0)
+    return {LoopMode::kDegraded, "recording, with gaps: " + session_.gaps(1).front(), {}};
+  return {LoopMode::kAutomatic, session_.running() ? "recording" : "waiting", {}};
+}
+
 void LoopRecorder::report(Diagnostics::Status& status) const {
-  using diagnostic_msgs::DiagnosticStatus;
-  if (!plant_.problem().empty())
-    status.summary(DiagnosticStatus::ERROR, plant_.problem());
-  else if (!ready_.announced())
-    status.summary(DiagnosticStatus::WARN, "waiting for publishers of the ring");
-  else
-    status.summary(DiagnosticStatus::OK, written_     ? "written"
-                                         : run_known_ ? "recording"
-                                                      : "waiting");
-  status.add("step", measured_.step);
-  status.add("waiting for their measurement", early_.size());
-  status.add("dropped: other run", strays_);
-  status.add("dropped: wrong size or not finite", wrong_size_);
+  status.add("step", session_.latest().step);
+  status.add("samples on disk", store_.samples());
+  status.add("samples lost", store_.lost());
+  status.add("samples with gaps", session_.gapCount());
+  status.add("waiting for what belongs to them", session_.waiting());
+  status.add("dropped: other run", session_.strays());
+  status.add("dropped: wrong size or not finite", session_.wrongSize());
   addRefused(status, refused());
-  addRefused(status, setpoints_.refused());
+  addRefused(status, authority().refused());
 }
 
 }  // namespace fpc

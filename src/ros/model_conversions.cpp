@@ -123,6 +123,31 @@ fmbpc::FuzzyModel toMsg(const TsModel& model) {
   return msg;
 }
 
+StepHeader headerOf(const fmbpc::FuzzyModel& msg) {
+  return {fromStamp(msg.header.stamp), msg.run_id, msg.step};
+}
+
+fmbpc::FuzzyModel toMsg(const TsModel& model, const StepHeader& made_from) {
+  fmbpc::FuzzyModel msg = toMsg(model);
+  msg.header.stamp = toStamp(made_from.time_ns);
+  msg.run_id = made_from.run_id;
+  msg.step = made_from.step;
+  return msg;
+}
+
+fmbpc::Identified toMsg(const IdentifierWord& word) {
+  fmbpc::Identified msg;
+  msg.header.stamp = toStamp(word.header.time_ns);
+  msg.run_id = word.header.run_id;
+  msg.step = word.header.step;
+  msg.model = word.model;
+  return msg;
+}
+
+IdentifierWord fromMsg(const fmbpc::Identified& msg) {
+  return {{fromStamp(msg.header.stamp), msg.run_id, msg.step}, msg.model != 0};
+}
+
 TsModel fromMsg(const fmbpc::FuzzyModel& msg) {
   TsModel model;
   model.name = msg.name;

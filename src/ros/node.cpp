@@ -1,10 +1,28 @@
 #include "fmbpc/ros/node.hpp"
 
 #include <filesystem>
+#include <utility>
 
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/ros/topics.hpp"
 
 namespace fpc {
+
+Node::Node(const ros::NodeHandle& node, const LoopFile& loop) {
+  Publishers publishers = loop.ring.publishers;
+  for (auto& [topic, names] : publishers)
+    for (std::string& name : names) name = node.resolveName(name);
+  authority_ = Authority(std::move(publishers));
+}
+
+bool Node::mayPass(const char* topic, const std::string& publisher) {
+  if (authority_.admits(topic, publisher)) return true;
+  if (refuse_log_.pass())
+    ROS_ERROR("%s: %s of %s dropped: the loop takes it only from %s",
+              ros::this_node::getName().c_str(), topic, publisher.c_str(),
+              join(authority_.publishersOf(topic)).c_str());
+  return false;
+}
 
 void Node::fail(const std::string& what) {
   ROS_FATAL("%s: %s", ros::this_node::getName().c_str(), what.c_str());
@@ -15,6 +33,11 @@ void Node::fail(const std::string& what) {
 void Node::refuse(const char* topic, const std::string& why) {
   ++refused_[topic];
   if (refuse_log_.pass()) ROS_WARN("%s: message dropped: %s", topic, why.c_str());
+}
+
+void Node::mishap(const char* topic, const std::string& what) {
+  ++refused_[topic];
+  ROS_ERROR("%s: %s: %s", ros::this_node::getName().c_str(), topic, what.c_str());
 }
 
 LoopFile loopParameter(const ros::NodeHandle& node) {

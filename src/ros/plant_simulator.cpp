@@ -1,6 +1,7 @@
 #include "fmbpc/ros/plant_simulator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "fmbpc/base/text.hpp"
@@ -11,13 +12,31 @@
 namespace fpc {
 namespace {
 
-constexpr double kResendPeriod = 0.05;  // [s] of wall time
+constexpr double kPoll = 0.05;         // [s] of wall time
+constexpr double kIntroduceAgain = 1;  // [s], while nobody answers
+constexpr double kPatience = 1.0;      // [s] without an action before that is said
+constexpr double kBurst = 200;         // commands at once
 
 std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
   std::vector<std::string> names = loop.ring.wait_for;
   std::istringstream also(private_node.param<std::string>("also_wait_for", ""));
   for (std::string name; also >> name;) names.push_back(name);
   return names;
+}
+
+/// The nodes of ours that beat.
+std::vector<std::string> namesToWatch(const LoopFile& loop, const ros::NodeHandle& node) {
+  std::vector<std::string> names = loop.ring.members;
+  for (std::string& name : names) name = node.resolveName(name);
+  return names;
+}
+
+PlantPolicy policyOf(const LoopFile& loop) {
+  PlantPolicy policy;
+  policy.pace = loop.ring.pace;
+  policy.period_s = loop.simulation.sample_time_s / loop.ring.speedup;
+  policy.action_timeout_s = loop.ring.action_timeout_s;
+  return policy;
 }
 
 }  // namespace
@@ -28,51 +47,66 @@ std::string PlantSimulator::idleReason(const LoopFile& loop) {
 
 PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_node,
                                const LoopFile& loop)
-    : loop_(loop),
-      simulation_(makeSimulation(loop)),
-      publishers_(node, simulation_, loop.ring.publish_clock),
+    : Node(node, loop),
+      loop_(loop),
+      session_(makeSimulation(loop), policyOf(loop)),
+      publishers_(node, session_.simulation(), loop.ring.publish_clock),
+      keeper_(node, loop),
       ready_(node, namesToWaitFor(loop, private_node)),
       lines_(loop.tf.sample_lines),
-      pacer_(loop.ring.pace, loop.simulation.sample_time_s / loop.ring.speedup),
-      begun_(ros::WallTime::now()),
-      action_subscriber_(subscribe(node, topics::kControlAction, topics::kRingQueue,
+      watch_(namesToWatch(loop, node)),
+      commands_(loop.ring.commands_per_s, kBurst),
+      begun_s_(steadyNow()),
+      node_(node),
+      action_subscriber_(subscribe(node, topics::kControlAction, topics::kPairQueue,
                                    &PlantSimulator::onAction, this)),
       disturbance_subscriber_(subscribe(node, topics::kDisturbance, topics::kViewQueue,
                                         &PlantSimulator::onDisturbance, this)),
+      state_subscriber_(subscribe(node, topics::kLoopState, topics::kPairQueue,
+                                  &PlantSimulator::onLoopState, this)),
       pause_(private_node.advertiseService(topics::kPause, &PlantSimulator::onPause, this)),
       step_(private_node.advertiseService(topics::kStep, &PlantSimulator::onStep, this)),
       reset_(private_node.advertiseService(topics::kReset, &PlantSimulator::onReset, this)),
-      poll_timer_(node.createWallTimer(ros::WallDuration(kResendPeriod),
-                                       [this](const ros::WallTimerEvent&) { onPoll(); })),
-      pace_timer_(node.createWallTimer(
-          ros::WallDuration(kResendPeriod), [this](const ros::WallTimerEvent&) { tryAdvance(); },
-          true, false)),
-      diagnostics_(node, private_node, "plant", loop.name,
-                   [this](Diagnostics::Status& status) { report(status); }) {
+      poll_timer_(node.createSteadyTimer(ros::WallDuration(kPoll),
+                                         [this](const ros::SteadyTimerEvent&) { onPoll(); })),
+      pace_timer_(node.createSteadyTimer(
+          ros::WallDuration(kPoll), [this](const ros::SteadyTimerEvent&) { tryAdvance(); }, true,
+          false)),
+      health_(node, private_node, "plant", loop.name, true,
+              {[this](double now_s) { return health(now_s); },
+               [this] { return session_.simulation().measurement().header; },
+               [this](Diagnostics::Status& status) { report(status); }}) {
   beginRun();
-  frames_.broadcast(loop_.tf, simulation_.info().header.time_ns);
+  frames_.broadcast(loop_.tf, session_.simulation().info().header.time_ns);
 }
 
-// A new run: larger run_id than any before, also than those of an earlier process.
+// A number that no run had before, also of an earlier process; which one counts is said by
+// plant_info, not by its size.
 void PlantSimulator::beginRun() {
   run_id_ = std::max(run_id_ + 1, ros::WallTime::now().toNSec());
-  have_action_ = false;
-  simulation_.reset(run_id_);
-  publishers_.introduce(simulation_);
+  session_.begin(run_id_);
+  keeper_.beginRun(run_id_);
+  publishers_.introduce(session_.simulation());
+  introduced_s_ = steadyNow();
+  tracking_subscriber_.shutdown();
 }
 
 void PlantSimulator::start() {
-  phase_ = Phase::kRunning;
-  pacer_.restart(ros::WallTime::now());
+  session_.start(steadyNow());
   ROS_INFO("plant_simulator: run %lu of %s starts", run_id_, loop_.name.c_str());
   publishSample();
 }
 
 void PlantSimulator::onPoll() {
-  if (phase_ == Phase::kWaiting) return waitForOthers();
-  const bool unanswered = phase_ == Phase::kRunning && !have_action_;
-  if (unanswered && ros::WallTime::now() - sent_ >= ros::WallDuration(kResendPeriod))
-    publishers_.resend();
+  if (session_.phase() == PlantPhase::kWaiting) return waitForOthers();
+  const double now_s = steadyNow();
+  if (!session_.mustResend(now_s)) return;
+  session_.resent(now_s);
+  publishers_.resend();
+  if (session_.unansweredFor(now_s) < kIntroduceAgain || now_s - introduced_s_ < kIntroduceAgain)
+    return;
+  introduced_s_ = now_s;  // somebody may have been told of another run
+  publishers_.introduce(session_.simulation());
 }
 
 std::vector<std::string> PlantSimulator::missing() const {
@@ -84,106 +118,74 @@ std::vector<std::string> PlantSimulator::missing() const {
 
 void PlantSimulator::waitForOthers() {
   for (const auto& [output, delay_s] : lines_.poll()) {
-    const auto& outputs = simulation_.info().outputs;
+    const auto& outputs = session_.simulation().info().outputs;
     const auto found =
         std::find_if(outputs.begin(), outputs.end(),
                      [&name = output](const SignalInfo& o) { return o.name == name; });
-    simulation_.setOutputDelay(static_cast<std::size_t>(found - outputs.begin()), delay_s);
+    session_.simulation().setOutputDelay(static_cast<std::size_t>(found - outputs.begin()),
+                                         delay_s);
   }
   const std::vector<std::string> names = missing();
   if (names.empty()) return start();
-  if ((ros::WallTime::now() - begun_).toSec() < loop_.ring.ready_timeout_s) return;
+  if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
   fail("not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
        " s: " + join(names));
 }
 
 void PlantSimulator::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
   guarded(topics::kControlAction, [&] {
-    const ControlAction action = fromMsg(*msg);
-    if (!admit(action)) return;
-    action_ = action.input;
-    have_action_ = true;
-    tryAdvance();
+    if (session_.receive(fromMsg(*msg))) tryAdvance();
   });
 }
 
-bool PlantSimulator::admit(const ControlAction& action) {
-  const bool awaited = phase_ == Phase::kRunning && !have_action_;
-  if (!awaited || !simulation_.answers(action.header)) {
-    countStray(action.header);
-    return false;
-  }
-  if (action.input.size() != static_cast<Eigen::Index>(simulation_.info().inputs.size())) {
-    ++counts_.wrong_size;
-    return false;
-  }
-  if (!action.input.allFinite()) {
-    ++counts_.not_finite;
-    return false;
-  }
-  ++counts_.accepted;
-  return true;
+void PlantSimulator::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
+  const StepHeader& now = session_.simulation().measurement().header;
+  if (session_.phase() == PlantPhase::kFinished && msg->run_id == now.run_id &&
+      msg->step == now.step)
+    session_.finish();
 }
 
-// Dropped, each kind apart: of another run, for a later sample, the last answer again, older.
-void PlantSimulator::countStray(const StepHeader& header) {
-  const std::uint32_t now = simulation_.measurement().header.step;
-  const std::uint32_t answered = have_action_ ? now + 1 : now;  // samples answered so far
-  if (header.run_id != run_id_)
-    ++counts_.other_run;
-  else if (header.step >= answered)
-    ++counts_.gaps;
-  else if (header.step + 1 == answered)
-    ++counts_.repeated;
-  else
-    ++counts_.old;
+void PlantSimulator::onLoopState(const fmbpc::LoopState::ConstPtr& msg) {
+  watch_.hear(msg->node, {static_cast<LoopMode>(msg->mode), msg->reason, msg->missing},
+              steadyNow());
 }
 
-// Moves on if the run is on, not paused, the pace allows it, and there is an input (or, in
-// realtime, its time is up).
 void PlantSimulator::tryAdvance() {
-  if (phase_ != Phase::kRunning || (paused_ && steps_allowed_ == 0)) return;
-  if (!paused_ && !pacer_.due(ros::WallTime::now())) return armTimer();
-  if (have_action_) {
-    simulation_.advance(action_);
-  } else if (pacer_.pace() == Pace::kRealtime && !paused_) {
-    simulation_.advanceWithoutAction();
-    ++missing_inputs_;
-    if (trouble_log_.pass())
-      ROS_WARN("plant_simulator: no action in time (%lu so far)", missing_inputs_);
-  } else {
-    return;
-  }
-  if (paused_) --steps_allowed_;
-  pacer_.sent(ros::WallTime::now());
+  const std::uint64_t missed = session_.missingInputs();
+  if (!session_.advance(steadyNow())) return armTimer();
+  if (session_.missingInputs() > missed && trouble_log_.pass())
+    ROS_WARN("plant_simulator: no action in time (%lu so far)", session_.missingInputs());
   publishSample();
 }
 
 void PlantSimulator::publishSample() {
-  have_action_ = false;
-  sent_ = ros::WallTime::now();
-  publishers_.sample(simulation_);
-  if (!simulation_.trouble().empty() && trouble_log_.pass())
-    ROS_WARN("plant_simulator: %s", simulation_.trouble().c_str());
-  if (simulation_.measurement().final) {
-    phase_ = Phase::kFinished;
-    ROS_INFO("plant_simulator: final sample %u sent", simulation_.measurement().header.step);
-  } else if (pacer_.timed()) {
+  const Simulation& simulation = session_.simulation();
+  publishers_.sample(simulation);
+  if (!simulation.trouble().empty() && trouble_log_.pass())
+    ROS_WARN("plant_simulator: %s", simulation.trouble().c_str());
+  if (session_.phase() == PlantPhase::kFinished) {
+    ROS_INFO("plant_simulator: final sample %u sent", simulation.measurement().header.step);
+    tracking_subscriber_ = subscribe(node_, topics::kTracking, topics::kPairQueue,
+                                     &PlantSimulator::onTracking, this);
+  } else {
     armTimer();
   }
 }
 
 void PlantSimulator::armTimer() {
+  if (!session_.pacer().timed()) return;
+  const double due_s = session_.nextDue();
   pace_timer_.stop();
-  if (paused_) return;
-  pace_timer_.setPeriod(pacer_.remaining(ros::WallTime::now()));
+  if (!std::isfinite(due_s)) return;
+  pace_timer_.setPeriod(ros::WallDuration(std::max(1e-6, due_s - steadyNow())));
   pace_timer_.start();
 }
 
 void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
+  if (!commands_.pass(steadyNow())) return;
   guarded(topics::kDisturbance, [&] {
     const Command command = fromMsg(*msg);
-    const std::uint32_t step = simulation_.command(command);
+    const std::uint32_t step = session_.simulation().command(command);
     ROS_INFO("plant_simulator: disturbance of %s from sample %u on", join(command.name).c_str(),
              step);
   });
@@ -191,72 +193,89 @@ void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
 
 bool PlantSimulator::onPause(std_srvs::SetBool::Request& request,
                              std_srvs::SetBool::Response& response) {
-  paused_ = request.data != 0;
-  steps_allowed_ = 0;
-  if (!paused_) {
-    pacer_.restart(ros::WallTime::now());
-    tryAdvance();
-  }
+  session_.pause(request.data != 0, steadyNow());
+  if (!session_.paused()) tryAdvance();
   response.success = true;
-  response.message = paused_ ? "paused" : "running";
+  response.message = session_.paused() ? "paused" : "running";
+  health_.look();
   return true;
 }
 
 bool PlantSimulator::onStep(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  response.success = paused_ && phase_ == Phase::kRunning;
-  response.message = !paused_                    ? "pause first"
-                     : phase_ != Phase::kRunning ? "there is no run under way"
-                                                 : "one sample";
-  if (response.success) {
-    ++steps_allowed_;
-    tryAdvance();
-  }
+  response.success = session_.step();
+  response.message = response.success      ? "one sample"
+                     : !session_.paused()  ? "pause first"
+                                           : "there is no run under way";
+  if (response.success) tryAdvance();
   return true;
 }
 
 bool PlantSimulator::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  response.success = phase_ != Phase::kWaiting;
+  response.success = session_.phase() != PlantPhase::kWaiting;
   response.message = response.success ? "sample 0 of a new run" : "the first run has not begun";
   if (response.success) {
-    steps_allowed_ = 0;
     beginRun();
     start();
   }
   return true;
 }
 
-void PlantSimulator::reportWords(Diagnostics::Status& status) const {
-  using diagnostic_msgs::DiagnosticStatus;
-  const std::uint32_t step = simulation_.measurement().header.step;
-  if (phase_ == Phase::kWaiting)
-    status.summary(DiagnosticStatus::WARN, "waiting for " + join(missing()));
-  else if (!simulation_.trouble().empty())
-    status.summary(DiagnosticStatus::ERROR, simulation_.trouble());
-  else if (phase_ == Phase::kFinished)
-    status.summary(DiagnosticStatus::OK, "finished");
-  else if (paused_)
-    status.summary(DiagnosticStatus::OK, "paused");
-  else if ((ros::WallTime::now() - sent_).toSec() > 1.0 && !pacer_.timed() && !have_action_)
-    status.summary(DiagnosticStatus::WARN, "no action for sample " + std::to_string(step));
-  else
-    status.summary(DiagnosticStatus::OK, "running");
+Health PlantSimulator::health(double now_s) const {
+  if (session_.phase() == PlantPhase::kWaiting)
+    return {LoopMode::kStarting, "waiting for " + join(missing()), missing()};
+  if (!session_.simulation().trouble().empty())
+    return {LoopMode::kFailed, session_.simulation().trouble(), {}};
+  if (session_.phase() == PlantPhase::kFinished)
+    return session_.acknowledged()
+               ? Health{LoopMode::kFinished, "finished", {}}
+               : Health{LoopMode::kFinished, "finished; the final sample is sent again until it is "
+                                             "tracked", watch_.silent(now_s)};
+  if (session_.paused()) return {LoopMode::kHeld, "paused", {}};
+  return runningHealth(now_s);
+}
+
+// Nothing that stands still is "running".
+Health PlantSimulator::runningHealth(double now_s) const {
+  const std::vector<std::string> silent = watch_.silent(now_s);
+  const Health others = watch_.worst(now_s);
+  std::string who = silent.empty() ? "" : "; no word from " + join(silent);
+  if (who.empty() && !others.words.empty()) who = "; " + others.words;
+  const std::string step = std::to_string(session_.simulation().measurement().header.step);
+  const Actuator& actuator = session_.simulation().actuator();
+  if (actuator.missing()) {
+    const bool fallback = actuator.fellBack();
+    return {fallback ? LoopMode::kFallback : LoopMode::kHeld,
+            std::string("no actions: the input is ") +
+                (fallback ? "the configured fallback" : "held") + " at sample " + step + who,
+            silent};
+  }
+  const double late_s = session_.unansweredFor(now_s);
+  if (late_s > kPatience && loop_.ring.pace != Pace::kRealtime)
+    return {LoopMode::kStalled, "no action for sample " + step + who, silent};
+  if (!silent.empty()) return {LoopMode::kDegraded, "no word from " + join(silent), silent};
+  if (others.mode == LoopMode::kAutomatic) return {LoopMode::kAutomatic, "running", {}};
+  if (others.mode == LoopMode::kManual) return {LoopMode::kManual, others.words, {}};
+  return {others.mode == LoopMode::kHeld ? LoopMode::kHeld : LoopMode::kDegraded, others.words,
+          others.missing};
 }
 
 void PlantSimulator::report(Diagnostics::Status& status) const {
-  reportWords(status);
+  const ActionCounts& counts = session_.counts();
   status.add("run_id", run_id_);
-  status.add("step", simulation_.measurement().header.step);
-  status.add("actions accepted", counts_.accepted);
-  status.add("actions dropped: repeated", counts_.repeated);
-  status.add("actions dropped: old step", counts_.old);
-  status.add("actions dropped: later step", counts_.gaps);
-  status.add("actions dropped: other run", counts_.other_run);
-  status.add("actions dropped: wrong size", counts_.wrong_size);
-  status.add("actions dropped: not finite", counts_.not_finite);
+  status.add("step", session_.simulation().measurement().header.step);
+  status.add("actions accepted", counts.accepted);
+  status.add("actions dropped: repeated", counts.repeated);
+  status.add("actions dropped: old step", counts.old);
+  status.add("actions dropped: later step", counts.later);
+  status.add("actions dropped: other run", counts.other_run);
+  status.add("actions dropped: wrong size", counts.wrong_size);
+  status.add("actions dropped: not finite", counts.not_finite);
   status.add("measurements sent again", publishers_.resent());
-  status.add("inputs missing", missing_inputs_);
-  status.add("realtime slips", pacer_.slips());
+  status.add("inputs missing", session_.missingInputs());
+  status.add("realtime slips", session_.pacer().slips());
+  status.add("commands dropped: too many", commands_.dropped());
   addRefused(status, refused());
+  addRefused(status, authority().refused());
 }
 
 }  // namespace fpc

@@ -2,10 +2,13 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <set>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/config/command_file.hpp"
+#include "fmbpc/config/model_file.hpp"
 #include "fmbpc/loop/plot.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
@@ -17,13 +20,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Summary runOne(const LoopFile& loop, const std::string& folder) {
+/// Where the models that a run identifies go, as fuzzy_identifier writes them.
+void writeModelFile(const TsModel& model, const std::string& folder) {
+  if (folder.empty()) return;
+  fs::create_directories(folder);
+  const std::string file = (fs::path(folder) / "model.yaml").string();
+  std::ofstream stream(file);
+  stream << writeModel(model);
+  require(stream.good(), file, "a writable file");
+}
+
+Summary runOne(const LoopFile& loop, const std::string& folder, const std::string& commands) {
   ProgressBar bar(loop.name);
   RunOptions options;
   options.progress = [&bar](std::uint32_t step, std::uint32_t samples) {
     bar.show(static_cast<double>(step) / samples);
   };
   options.stop = [] { return interruption().load(); };
+  if (!commands.empty()) options.commands = readCommands(commands, loop);
+  options.identified = [&folder](const TsModel& model) { writeModelFile(model, folder); };
+  options.remark = [&loop](const std::string& words) {
+    std::fprintf(stderr, "fmbpc: %s: %s\n", loop.name.c_str(), words.c_str());
+  };
   const auto start = std::chrono::steady_clock::now();
   const RunRecord record = runLoop(loop, options);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
@@ -80,7 +98,7 @@ int run(const RunArguments& arguments) {
   for (const auto& loop : loops) {
     std::string folder = arguments.out;
     if (!folder.empty() && loops.size() > 1) folder = (fs::path(folder) / loop.name).string();
-    summaries.push_back(runOne(loop, folder));
+    summaries.push_back(runOne(loop, folder, arguments.commands));
     if (!folder.empty()) written.push_back(folder);
     if (!folder.empty() && !arguments.no_plot && !interruption()) draw(folder);
     if (interruption()) break;

@@ -13,6 +13,7 @@ struct RunArguments {
   std::vector<std::string> set;  ///< "path=value"
   std::string sets;              ///< several of them in one text
   std::string out;               ///< folder, empty: nothing is written
+  std::string commands;          ///< file of what an operator does, empty: nothing
   bool json{false};
   bool no_plot{false};
 };

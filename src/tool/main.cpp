@@ -20,6 +20,8 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
   run->add_option(
       "--out", a.out,
       "folder for trajectory.csv, summary.json, plot.png (one below it per loop if several)");
+  run->add_option("--commands", a.commands,
+                  "file of what an operator does at which time (docs/operation.md)");
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
   run->add_flag("--no-plot", a.no_plot, "no plot.png");
   run->callback([&a] { chosen = [&a] { return fpc::tool::run(a); }; });

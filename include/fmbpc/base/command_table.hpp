@@ -41,6 +41,8 @@ class CommandTable {
   double apply(std::size_t index, double nominal) const;
   const std::vector<ActiveCommand>& active() const { return active_; }
   const std::vector<std::string>& names() const { return names_; }
+  /// What has been accepted and is not in force yet, in the order in which it will be.
+  std::vector<Command> waiting() const;
   void clear();  ///< releases everything and forgets what is pending
 
  private:

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,17 @@ struct ControllerAnswer {
   bool has_prediction{false};
   PredictiveAction prediction;
   std::vector<CommandEffect> effects;  ///< setpoint commands that took effect with this sample
+};
+
+/// What an operator has asked of a controller, apart from its model: kept by others for one that
+/// comes back.
+struct OperatorWishes {
+  bool manual{}, manual_given{};
+  Vector manual_input;  ///< n_u if manual_given
+  SetpointSource::Recipe recipe;
+  std::optional<bool> adapt;
+  Settings settings;               ///< those that were changed
+  std::vector<Command> setpoints;  ///< in force, and to come
 };
 
 /// What became of a message.
@@ -48,6 +60,8 @@ class ControllerSession {
                     InputLimits limits, Vector initial_input, PlantInfo plant,
                     double max_pole = 1.0);
 
+  /// From now on only measurements of this run are answered.
+  void announce(std::uint64_t run_id) { gate_.announce(run_id); }
   bool ready() const;  ///< has its model, if it needs one
   /// `resetReason()` says in words why the last answered sample reset the controller (empty if it
   /// did not).
@@ -75,10 +89,18 @@ class ControllerSession {
   void manualInput(VectorRef input);
   bool isManual() const { return manual_; }
   /// Lets the controller change itself, or freezes it; false if it never does.
-  bool adapt(bool on) { return controller_->adapt(on); }
+  bool adapt(bool on);
 
   /// New settings of the law from the next sample on; see Controller::retune().
-  bool retune(const Settings& settings) { return controller_->retune(settings); }
+  bool retune(const Settings& settings);
+
+  OperatorWishes wishes() const;
+  /// Before the first sample. @throws InputError for what the controller refuses; the rest is taken.
+  void restore(const OperatorWishes& wishes);
+  /// Sends the last applied input, source held, until manual() is called: for a controller that
+  /// joins a run and cannot know what its operator has asked.
+  void holdUntilReleased() { unreleased_ = true; }
+  bool unreleased() const { return unreleased_; }
 
   const ArrivalCounts& counts() const { return gate_.counts(); }
   const SetpointSource& setpoint() const { return setpoint_; }
@@ -106,7 +128,9 @@ class ControllerSession {
   Measurement present_;  // the last finite one; empty before the first
   double max_pole_{1.0};
   std::uint64_t models_{};
-  bool manual_{false}, manual_given_{false};
+  bool manual_{false}, manual_given_{false}, unreleased_{false};
+  std::optional<bool> adapt_;
+  Settings settings_;
 };
 
 /// The optimizer behind the ring: pairs base action and prediction of the same sample. Base actions
@@ -119,6 +143,8 @@ class OptimizerSession {
   /// @throws InputError naming the field.
   OptimizerSession(ClpParams params, InputLimits limits, PlantInfo plant);
 
+  /// From now on only messages of this run are answered.
+  void announce(std::uint64_t run_id) { gate_.announce(run_id); }
   /// Both return true when the answer for that sample has just been made (or is repeated).
   bool receive(const ControlAction& base);
   bool receive(const PredictiveAction& prediction);

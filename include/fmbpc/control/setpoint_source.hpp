@@ -67,6 +67,16 @@ class SetpointSource {
   bool restore(const Command& command);
   /// What is in force now, as commands for restore(): at most one override and one offset.
   std::vector<Command> inForce() const;
+  /// The same with what waits for its time.
+  std::vector<Command> standing() const;
+  /// Where the schedule is, for a source that takes over in the middle of a run: held or not, at
+  /// which step it is held, how many samples it is late.
+  struct Recipe {
+    bool held{};
+    std::uint32_t held_at{}, shift{};
+  };
+  Recipe recipe() const { return {hold_wanted_, held_at_, shift_}; }
+  void restore(const Recipe& recipe);
   /// Commands that took effect with the present sample; run_id is left to the caller.
   const std::vector<CommandEffect>& effects() const { return effects_; }
   const CommandTable& table() const { return commands_; }

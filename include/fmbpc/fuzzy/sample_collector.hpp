@@ -32,10 +32,13 @@ class SampleCollector {
   /// become NaN.
   /// @return what the sample was; it was taken if isNew(). @throws InputError naming a wrong size.
   Arrival take(const Measurement& measurement);
+  /// From now on only samples of this run count.
+  void announce(std::uint64_t run_id) { gate_.announce(run_id); }
   /// Rows in the window.
   std::size_t size() const { return rows_.size(); }
   const CollectorCounts& counts() const { return counts_; }
   const ArrivalCounts& arrivals() const { return gate_.counts(); }
+  const StepHeader& last() const { return gate_.last(); }  ///< of the sample taken last
   /// The last complete sample; step and run of it are in its header. Empty outputs if there is
   /// none.
   const Measurement& present() const { return present_; }

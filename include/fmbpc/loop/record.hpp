@@ -2,9 +2,7 @@
 // over topics.
 #pragma once
 
-#include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "fmbpc/base/ring.hpp"
@@ -34,33 +32,7 @@ struct RunRecord {
   std::string trouble;             ///< of the first of them: "sample 17: REASON"
 };
 
-/// Collects by step; order of arrival does not matter. A new run_id starts over.
-class Recorder {
- public:
-  /// has_optimizer: actions and reports of the optimizer are expected besides the base actions.
-  Recorder(std::string loop, PlantInfo info, bool has_optimizer, bool has_state,
-           std::vector<std::string> states, std::vector<std::string> state_units);
-  /// Setpoints and references of these outputs are recorded as missing.
-  void leaveOut(std::vector<Eigen::Index> outputs) { without_setpoint_ = std::move(outputs); }
-  void add(const Measurement& m);
-  void add(const PlantState& s);
-  void add(const Tracking& t);
-  void addBase(const ControlAction& a);
-  void addAction(const ControlAction& a);
-  void add(const SolverReport& r);
-  bool complete() const;  ///< final measurement there and no gaps; the plant may have failed
-  bool finalSeen() const;
-  /// "sample 17: no control_action" for every hole, at most `limit` lines.
-  std::vector<std::string> gaps(std::size_t limit = 10) const;
-  const RunRecord& record() const { return record_; }
-  RunRecord take();
-
- private:
-  SampleRecord* at(const StepHeader& header);
-  RunRecord record_;
-  std::vector<Eigen::Index> without_setpoint_;
-  std::uint64_t run_id_{};
-  bool has_optimizer_, has_state_;
-};
+/// Counts failed samples and says whether the run is complete: nothing missing, nothing failed.
+void conclude(RunRecord& record, bool nothing_missing);
 
 }  // namespace fpc

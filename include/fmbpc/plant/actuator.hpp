@@ -14,7 +14,7 @@ struct ActuatorParams {
   InputLimits limits;
   Vector initial;        ///< n_u, u(-1)
   Vector fallback;       ///< n_u, applied after `hold_samples` samples without an action
-  int hold_samples{-1};  ///< samples an absent action is replaced by the last input; -1: for ever
+  int hold_samples{10};  ///< samples an absent action is replaced by the last input; -1: for ever
   void validate(Eigen::Index n_u) const;  ///< @throws InputError naming the field
 };
 
@@ -37,6 +37,8 @@ class Actuator {
     return clips_;
   }  ///< elements of the last command beyond 1e-9 of the range
   bool missing() const { return missed_ > 0; }
+  /// Nothing has come for longer than an input is held.
+  bool fellBack() const { return params_.hold_samples >= 0 && missed_ > params_.hold_samples; }
   const ActuatorParams& params() const { return params_; }
 
  private:

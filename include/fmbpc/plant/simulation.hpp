@@ -66,6 +66,7 @@ class Simulation {
   const Measurement& reset(std::uint64_t run_id);
   const Measurement& measurement() const { return measurement_; }  ///< sample k, until advance()
   const PlantState& state() const { return state_; }
+  const Actuator& actuator() const { return actuator_; }
 
   /// True if the action answers the present sample; anything else must be dropped (and counted) by
   /// the caller.

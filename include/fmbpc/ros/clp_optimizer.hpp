@@ -12,12 +12,13 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
-#include "fmbpc/ros/diagnostics.hpp"
+#include "fmbpc/ros/health_reporter.hpp"
 #include "fmbpc/ros/listener_gate.hpp"
 #include "fmbpc/ros/node.hpp"
 #include "fmbpc/ros/plant_gate.hpp"
 #include "fmbpc/ros/ready.hpp"
 #include "fmbpc/ros/signal_publishers.hpp"
+#include "fmbpc/ros/summary_listener.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -37,7 +38,7 @@ class ClpOptimizer : public Node {
   void receive(const Item& item);
   void publish();
   void report(Diagnostics::Status& status) const;
-  void reportWords(Diagnostics::Status& status) const;
+  Health health(double now_s) const;
 
   OptimizerSession session_;
   ReadyPublisher ready_;
@@ -49,7 +50,11 @@ class ClpOptimizer : public Node {
   ros::Publisher action_, report_;
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, base_subscriber_, prediction_subscriber_;
-  Diagnostics diagnostics_;
+  SummaryListener summary_;
+  Pace pace_;
+  double period_s_, heard_s_{};
+  std::string controller_;
+  HealthReporter health_;
 };
 
 }  // namespace fpc

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmbpc/FuzzyModel.h>
+#include <fmbpc/Identified.h>
 #include <fmbpc/ManualInput.h>
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
@@ -10,18 +11,22 @@
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
 
-#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
-#include "fmbpc/ros/diagnostics.hpp"
+#include "fmbpc/loop/model_inbox.hpp"
+#include "fmbpc/ros/health_reporter.hpp"
 #include "fmbpc/ros/listener_gate.hpp"
 #include "fmbpc/ros/node.hpp"
+#include "fmbpc/ros/operator_desk.hpp"
+#include "fmbpc/ros/optimizer_standin.hpp"
 #include "fmbpc/ros/plant_gate.hpp"
 #include "fmbpc/ros/ready.hpp"
 #include "fmbpc/ros/settings_server.hpp"
 #include "fmbpc/ros/signal_publishers.hpp"
+#include "fmbpc/ros/summary_listener.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -43,35 +48,45 @@ class ControllerNode : public Node {
   void onModel(const fmbpc::FuzzyModel::ConstPtr& msg);
   void onMeasurement(const fmbpc::Measurement::ConstPtr& msg);
   void onSetpoint(const fmbpc::Setpoint::ConstPtr& msg);
-  void onSetpointActive(const fmbpc::Setpoint::ConstPtr& msg);
+  void onIdentified(const fmbpc::Identified::ConstPtr& msg);
   bool onManual(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onManualInput(fmbpc::ManualInput::Request& request, fmbpc::ManualInput::Response& response);
   bool onHold(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onAdapt(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void announceIfReady();
-  bool mustAwaitSetpoints(const Measurement& measurement);
+  void useModels(const StepHeader& next);
+  void answer(const Measurement& measurement);
+  void answerParked();
+  void tell();  ///< what the operator asks has changed
   void publish(bool repeated);
   void publishSignals();
   void report(Diagnostics::Status& status) const;
-  void reportWords(Diagnostics::Status& status) const;
+  Health health(double now_s) const;
+  std::string plantName() const { return loop_.external_plant ? "the plant" : "plant_simulator"; }
+  static std::string modelName() { return "fuzzy_identifier"; }
 
   LoopFile loop_;
   ControllerSession session_;
+  ModelInbox inbox_;
+  OperatorDesk desk_;
+  std::optional<OptimizerStandin> standin_;  // of a loop with an optimizer
+  std::optional<Measurement> parked_;        // waits for a model that belongs before it
+  double parked_since_s_{}, heard_s_{};
   ReadyPublisher ready_;
   SignalPublishers signals_;
   PlantGate plant_;
   std::string model_, model_problem_;  // name of the one in use; why the latest was refused
-  bool setpoints_restored_{false};     // what stood before this process began is known
-  ros::WallTime restore_deadline_;
   WallThrottle log_{1.0};
 
   ros::Publisher base_, prediction_, tracking_, effect_;
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
-      setpoint_subscriber_, setpoint_active_subscriber_;
+      identified_subscriber_, setpoint_subscriber_;
   ros::ServiceServer manual_, manual_input_, hold_, adapt_;
   SettingsServer settings_;
-  Diagnostics diagnostics_;
+  SummaryListener summary_;
+  RateLimit commands_;
+  HealthReporter health_;
 };
 
 }  // namespace fpc

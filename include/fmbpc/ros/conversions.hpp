@@ -6,6 +6,7 @@
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/Disturbance.h>
 #include <fmbpc/FuzzyModel.h>
+#include <fmbpc/Identified.h>
 #include <fmbpc/Matrix.h>
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
@@ -23,6 +24,7 @@
 #include "fmbpc/base/command_table.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
+#include "fmbpc/loop/model_inbox.hpp"
 
 namespace fpc {
 
@@ -41,6 +43,11 @@ fmbpc::Tracking toMsg(const Tracking& tracking);
 fmbpc::PlantState toMsg(const PlantState& state);
 fmbpc::CommandEffect toMsg(const CommandEffect& effect);
 fmbpc::FuzzyModel toMsg(const TsModel& model);
+/// The sample that a model was made from; run 0: none.
+StepHeader headerOf(const fmbpc::FuzzyModel& msg);
+fmbpc::FuzzyModel toMsg(const TsModel& model, const StepHeader& made_from);
+fmbpc::Identified toMsg(const IdentifierWord& word);
+IdentifierWord fromMsg(const fmbpc::Identified& msg);
 fmbpc::Setpoint toSetpointMsg(const Command& command);
 fmbpc::Disturbance toDisturbanceMsg(const Command& command);
 

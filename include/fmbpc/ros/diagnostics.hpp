@@ -25,7 +25,7 @@ class Diagnostics {
 
  private:
   diagnostic_updater::Updater updater_;
-  ros::WallTimer timer_;
+  ros::SteadyTimer timer_;
 };
 
 /// What arrived and was not simply the next sample.

@@ -16,9 +16,8 @@
 #include <vector>
 
 #include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/fuzzy/online_learner.hpp"
-#include "fmbpc/fuzzy/sample_collector.hpp"
-#include "fmbpc/ros/diagnostics.hpp"
+#include "fmbpc/loop/identifier_session.hpp"
+#include "fmbpc/ros/health_reporter.hpp"
 #include "fmbpc/ros/identification_worker.hpp"
 #include "fmbpc/ros/node.hpp"
 #include "fmbpc/ros/plant_gate.hpp"
@@ -29,8 +28,9 @@ namespace fpc {
 /// Ready when the loop's model, if it names one, fits the plant and is published and, with
 /// model.identify, measurements can come. Action ~identify (IdentifyModel), one goal at a time;
 /// another one is rejected. Identification runs in a thread of its own, everything else in the
-/// node's callbacks. Parameter ~out: folder where each published identified model is written as
-/// model.yaml.
+/// node's callbacks; in lockstep the word that a sample is done (`identified`) waits for it. One
+/// that comes back publishes the model that the plant kept. Parameter ~out: folder where each
+/// published identified model is written as model.yaml.
 class FuzzyIdentifier : public Node {
  public:
   static std::string idleReason(const LoopFile& loop);
@@ -40,47 +40,45 @@ class FuzzyIdentifier : public Node {
   using Server = actionlib::ActionServer<fmbpc::IdentifyModelAction>;
 
   void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg);
+  void onModelKept(const fmbpc::FuzzyModel::ConstPtr& msg);
   void onMeasurement(const fmbpc::Measurement::ConstPtr& msg);
   void onGoal(Server::GoalHandle goal);
   void onCancel(Server::GoalHandle goal);
   void poll();
   void publishStartModel();
   void announceIfReady();
-  void learn(const Measurement& measurement, Arrival arrival);
-  void begin(Structure structure, std::size_t newest, double share, bool publish);
+  void begin(IdentificationJob job, bool publish);
   void finishJob(const IdentificationWorker::Outcome& outcome);
   void conclude(const IdentificationWorker::Outcome& outcome, fmbpc::IdentifyModelResult& result);
-  /// Publishes a model that fits the plant and is stable at the present sample. @throws InputError
-  /// otherwise.
-  void offer(const TsModel& model);
-  void publish(const TsModel& matched);
+  void publish(const TsModel& matched, const StepHeader& made_from);
+  void sayDone();
   void write(const TsModel& model) const;
+  Health health(double now_s) const;
   void report(Diagnostics::Status& status) const;
-  void reportWords(Diagnostics::Status& status) const;
 
   LoopFile loop_;
   std::string out_;
   ReadyPublisher ready_;
   PlantGate plant_;
-  SampleCollector collector_;
+  IdentifierSession session_;
   std::vector<fmbpc::Measurement::ConstPtr>
       unannounced_;  // of runs that plant_info has not announced yet
-  std::optional<OnlineLearner> learner_;
-  TsModel model_;  // published last, matched to the plant
-  std::uint64_t published_{}, models_refused_{};
-  std::string problem_, last_refusal_, last_identification_{"none"};
-  std::vector<RuleRemark> remarks_;
+  std::string problem_, last_identification_{"none"};
+  double introduced_s_{-1};
+  bool kept_known_{false};  // what the plant kept, if anything
 
   IdentificationWorker worker_;
-  Server::GoalHandle goal_;  // of the job at work, if a client asked for it
-  bool has_goal_{false}, publish_{false}, done_by_itself_{false};
+  std::optional<IdentificationJob> waiting_;  // until the worker is free
+  Server::GoalHandle goal_;                   // of the job at work, if a client asked for it
+  bool has_goal_{false}, publish_{false};
+  bool done_{false}, made_model_{false};  // the present sample is done; it gave a model
   std::string progress_;
 
-  ros::Publisher model_publisher_;
-  ros::Subscriber plant_subscriber_, measurement_subscriber_;
+  ros::Publisher model_publisher_, identified_;
+  ros::Subscriber plant_subscriber_, kept_subscriber_, measurement_subscriber_;
   Server server_;
-  ros::WallTimer poll_timer_;
-  Diagnostics diagnostics_;
+  ros::SteadyTimer poll_timer_;
+  HealthReporter health_;
 };
 
 }  // namespace fpc

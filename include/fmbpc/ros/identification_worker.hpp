@@ -8,19 +8,12 @@
 #include <string>
 #include <thread>
 
-#include "fmbpc/fuzzy/record_identification.hpp"
+#include "fmbpc/loop/identifier_session.hpp"
 
 namespace fpc {
 
 class IdentificationWorker {
  public:
-  /// What identifyRecord() needs.
-  struct Job {
-    Matrix values;
-    Structure structure;
-    std::string source;
-    double share{};
-  };
   struct Outcome {
     RecordIdentification result;
     bool cancelled{false};
@@ -34,7 +27,7 @@ class IdentificationWorker {
 
   /// From start() until outcome() has been taken.
   bool busy() const { return thread_.joinable(); }
-  void start(Job job);                  ///< only if not busy()
+  void start(IdentificationJob job);    ///< only if not busy()
   void cancel() { cancelled_ = true; }  ///< takes effect at the next step of a clustering or fit
   /// How far it is, if that has changed since the last call.
   std::optional<RecordProgress> progress();
@@ -42,7 +35,7 @@ class IdentificationWorker {
   std::optional<Outcome> outcome();
 
  private:
-  void work(const Job& job);
+  void work(const IdentificationJob& job);
 
   std::thread thread_;
   std::atomic<bool> cancelled_{false};

@@ -20,7 +20,7 @@ class ListenerGate {
   bool allConnected() const;
 
   std::vector<ros::Publisher> publishers_;
-  ros::WallTime deadline_;
+  double deadline_s_{-1};
   bool open_{false};
 };
 

@@ -1,5 +1,4 @@
-// Listens to the whole ring and writes the files that `fmbpc run --out` writes; keeps the
-// operator's setpoints.
+// Listens to the whole ring and writes the files that `fmbpc run --out` writes.
 #pragma once
 
 #include <fmbpc/ControlAction.h>
@@ -10,30 +9,29 @@
 #include <fmbpc/Tracking.h>
 #include <ros/ros.h>
 
-#include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/loop/record.hpp"
-#include "fmbpc/ros/diagnostics.hpp"
+#include "fmbpc/loop/record_store.hpp"
+#include "fmbpc/loop/recorder_session.hpp"
+#include "fmbpc/ros/health_reporter.hpp"
 #include "fmbpc/ros/node.hpp"
 #include "fmbpc/ros/plant_gate.hpp"
 #include "fmbpc/ros/ready.hpp"
-#include "fmbpc/ros/setpoint_latch.hpp"
 
 namespace fpc {
 
-/// Ready when every publisher of the ring is connected. Ends with the run: exit code 0 when it is
-/// complete and written (then `recorded`, latched, names the folder); otherwise 1, naming the gaps,
-/// and no summary.json is left. An endless run is written at Ctrl-C. Parameters: ~out, folder of
+/// Ready when every publisher of the ring is connected. What it records is on disk at once (see
+/// RecordStore) and becomes the run's files at its end, at Ctrl-C, and in the next run if the
+/// process was killed. Ends with the run: exit code 0 when it is complete and written (then
+/// `recorded`, latched, names the folder); otherwise 1, naming the gaps. Parameters: ~out, folder of
 /// the files (nothing is written without it); ~keep, do not end with the run; ~plot, draw plot.png
 /// (default true).
 class LoopRecorder : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }
-  /// @throws InputError
+  /// @throws InputError, also if the folder cannot be written.
   LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_node, const LoopFile& loop);
   int finish() override;
 
@@ -46,50 +44,31 @@ class LoopRecorder : public Node {
   void onAction(const fmbpc::ControlAction::ConstPtr& msg);
   void onReport(const fmbpc::SolverReport::ConstPtr& msg);
 
-  void beginRun(const StepHeader& header);
-  /// Takes one item per sample and kind; what is ahead of the measurements waits for them.
-  template <typename Item>
-  void collect(const Item& item, bool SampleRecord::*has, void (Recorder::*add)(const Item&));
-  void deliverEarly();
-  bool fits(const Measurement& m) const;
-  bool fits(const PlantState& s) const;
-  bool fits(const Tracking& t) const;
-  bool fits(const ControlAction& a) const;
-  bool fits(const SolverReport& r) const;
   void poll();
   void announceIfConnected();
+  void beginRun(std::uint64_t run_id);
   void checkComplete();
-  void write();
-  void removeOldFiles() const;
+  void conclude();
+  bool tryWrite();
+  Health health(double now_s) const;
   void report(Diagnostics::Status& status) const;
 
   LoopFile loop_;
-  std::string out_;
   bool keep_, plot_;
-  Recorder recorder_;
-  SetpointLatch setpoints_;
+  RecordStore store_;
+  RecorderSession session_;
   ReadyPublisher ready_;
   PlantGate plant_;
-  Eigen::Index n_y_, n_u_, n_d_;
 
-  StepHeader measured_;  // the latest sample of the run being recorded
-  bool run_known_{false};
-  struct Early {
-    StepHeader header;
-    std::function<void()> deliver;
-  };
-  std::vector<Early> early_;
-  std::vector<fmbpc::Measurement::ConstPtr>
-      unannounced_;  // of runs that plant_info has not announced yet
-  std::uint64_t strays_{}, wrong_size_{};
-  ros::SteadyTime began_, final_seen_;
+  double began_s_{}, final_seen_s_{-1}, closed_s_{-1};
   bool written_{false};
+  std::string problem_, trouble_;  // of the recorder; of the plant
   int polls_connected_{};
 
   ros::Publisher recorded_;
   std::vector<ros::Subscriber> ring_;  // every publisher that must be connected
-  ros::WallTimer poll_timer_;
-  Diagnostics diagnostics_;
+  ros::SteadyTimer poll_timer_;
+  HealthReporter health_;
 };
 
 }  // namespace fpc

@@ -10,6 +10,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/loop/authority.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -17,6 +18,8 @@ namespace fpc {
 /// Base of the node classes.
 class Node {
  public:
+  /// Who may say what: loop.publishers, names relative to the namespace of `node`.
+  Node(const ros::NodeHandle& node, const LoopFile& loop);
   virtual ~Node() = default;
   /// Called after spinning; the exit code of the process.
   virtual int finish() { return exit_code_; }
@@ -27,19 +30,38 @@ class Node {
   /// Ends the process with exit code 0.
   void done() { ros::shutdown(); }
   /// Runs a message handler; a message that it refuses (InputError) is dropped, counted by topic
-  /// and logged.
+  /// and logged. Whatever else goes wrong in it is logged as an error, and the node goes on.
   template <typename Handler>
   void guarded(const char* topic, Handler handler) {
     try {
       handler();
     } catch (const InputError& error) {
       refuse(topic, error.what());
+    } catch (const std::exception& error) {
+      mishap(topic, error.what());
     }
   }
   void refuse(const char* topic, const std::string& why);
+  void mishap(const char* topic, const std::string& what);
   const std::map<std::string, std::uint64_t>& refused() const { return refused_; }
+  const Authority& authority() const { return authority_; }
+  /// Subscribes without Nagle's delay; only messages of those who may speak reach the handler.
+  template <typename Msg, typename Class>
+  ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
+                            void (Class::*handler)(const boost::shared_ptr<const Msg>&),
+                            Class* object) {
+    const boost::function<void(const ros::MessageEvent<const Msg>&)> guard =
+        [this, topic, handler, object](const ros::MessageEvent<const Msg>& event) {
+          if (mayPass(topic, event.getPublisherName())) (object->*handler)(event.getMessage());
+        };
+    return node.subscribe<Msg>(topic, queue, guard, ros::VoidConstPtr(),
+                               ros::TransportHints().tcpNoDelay());
+  }
 
  private:
+  bool mayPass(const char* topic, const std::string& publisher);
+
+  Authority authority_;
   int exit_code_{0};
   std::map<std::string, std::uint64_t> refused_;
   WallThrottle refuse_log_{1.0};

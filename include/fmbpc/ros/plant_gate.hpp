@@ -1,14 +1,11 @@
 // The plant that a node serves: one that does not fit the loop file is refused, and so are runs
-// that nobody announced.
+// that it has not announced.
 #pragma once
-
-#include <ros/time.h>
 
 #include <cstdint>
 #include <string>
 
 #include "fmbpc/base/ring.hpp"
-#include "fmbpc/ros/run_guard.hpp"
 
 namespace fpc {
 
@@ -16,20 +13,21 @@ class PlantGate {
  public:
   explicit PlantGate(PlantInfo expected) : expected_(std::move(expected)) {}
 
-  /// A plant introduces itself, at its start or before a new run. One that does not fit is logged
-  /// and leaves problem().
+  /// A plant introduces itself, at its start or before a new run: from now on its run counts,
+  /// whichever number is larger. One that does not fit is logged and leaves problem().
   /// @return true if it fits. @throws InputError if the plant in service stops fitting: that
   /// message is to be refused.
   bool introduce(const PlantInfo& info);
-  /// False: to be dropped, and counted.
-  bool admits(std::uint64_t run_id, ros::WallTime now);
+  /// False: to be dropped; it is counted.
+  bool admits(std::uint64_t run_id);
   bool open() const { return open_; }  ///< a plant that fits has introduced itself
+  std::uint64_t runId() const { return run_id_; }
   const std::string& problem() const { return problem_; }
-  std::uint64_t foreign() const { return foreign_; }  ///< messages of runs that nobody announced
+  std::uint64_t foreign() const { return foreign_; }  ///< messages of runs that were not announced
 
  private:
   PlantInfo expected_;
-  RunGuard guard_;
+  std::uint64_t run_id_{};
   std::string problem_;
   std::uint64_t foreign_{};
   bool open_{false};

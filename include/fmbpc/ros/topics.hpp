@@ -13,6 +13,7 @@ inline constexpr char kPredictiveAction[] = "predictive_action";
 inline constexpr char kSolverReport[] = "solver_report";
 inline constexpr char kTracking[] = "tracking";
 inline constexpr char kFuzzyModel[] = "fuzzy_model";
+inline constexpr char kIdentified[] = "identified";
 inline constexpr char kSetpoint[] = "setpoint";
 inline constexpr char kSetpointActive[] = "setpoint_active";
 inline constexpr char kSetpointEffect[] = "setpoint_effect";
@@ -20,6 +21,10 @@ inline constexpr char kDisturbance[] = "disturbance";
 inline constexpr char kDisturbanceEffect[] = "disturbance_effect";
 inline constexpr char kRecorded[] = "recorded";
 inline constexpr char kReady[] = "ready";
+inline constexpr char kLoopState[] = "loop_state";
+inline constexpr char kOperatorState[] = "operator_state";
+inline constexpr char kOperatorKept[] = "operator_kept";
+inline constexpr char kModelKept[] = "model_kept";
 inline constexpr char kSignalPrefix[] = "signal/";
 inline constexpr char kClock[] = "/clock";
 
@@ -39,8 +44,10 @@ inline constexpr char kHold[] = "hold";
 inline constexpr char kLoopText[] = "loop_text";
 inline constexpr char kLoopName[] = "loop_name";
 
-/// Queues of ring topics: a whole run, so that a slow listener loses nothing.
-inline constexpr unsigned kRingQueue = 100000;
+/// Queues of ring topics: so much a listener may lag; a hung one costs no more.
+inline constexpr unsigned kRingQueue = 10000;
+/// Of what only the other members of the ring need: in realtime the newest counts.
+inline constexpr unsigned kPairQueue = 100;
 /// Queues of everything that only people look at.
 inline constexpr unsigned kViewQueue = 1000;
 

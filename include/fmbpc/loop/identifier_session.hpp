@@ -1,0 +1,79 @@
+// The model's keeper as a member of the ring: when to identify, what is learned online, and which
+// models may be handed over. The node and the run in one process are made of it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/fuzzy/ts_model.hpp"
+#include "fmbpc/fuzzy/online_learner.hpp"
+#include "fmbpc/fuzzy/record_identification.hpp"
+#include "fmbpc/fuzzy/sample_collector.hpp"
+
+namespace fpc {
+
+/// What identifyRecord() needs.
+struct IdentificationJob {
+  Matrix values;
+  Structure structure;
+  std::string source;  ///< provenance in words
+  double share{};      ///< of the rows, held out
+};
+
+/// A model made from the samples up to k is handed over with the header of sample k; a controller
+/// uses it from sample k + 1 on.
+class IdentifierSession {
+ public:
+  explicit IdentifierSession(const LoopFile& loop);
+
+  void announce(std::uint64_t run_id) { collector_.announce(run_id); }
+  /// The model of the loop file, matched to the plant; null if it names none. @throws InputError if
+  /// it does not fit.
+  const TsModel* start();
+  /// A model that was in force before this object was made.
+  const TsModel& restore(const TsModel& model);
+
+  /// What a sample asks for.
+  struct Due {
+    Arrival arrival{Arrival::kOld};
+    const TsModel* model{nullptr};           ///< learned online: to be handed over now
+    std::optional<IdentificationJob> job{};  ///< model.identify.after: to be identified, once
+  };
+  /// @throws InputError naming a wrong size.
+  Due take(const Measurement& measurement);
+  /// An identification that somebody asks for, of the newest rows (0: all).
+  /// @throws InputError without samples, or naming a signal of the structure.
+  IdentificationJob job(Structure structure, std::size_t newest, double share) const;
+  /// Takes an identified model: it must fit the plant and be stable at the present sample (see
+  /// requireStable()); online learning goes on from it. @throws InputError otherwise, counted.
+  const TsModel& accept(const TsModel& identified);
+
+  const TsModel& model() const { return model_; }  ///< handed over last, matched to the plant
+  const StepHeader& present() const { return collector_.last(); }  ///< the sample taken last
+  std::uint64_t published() const { return published_; }
+  std::uint64_t refused() const { return refused_; }
+  const std::string& lastRefusal() const { return last_refusal_; }
+  const SampleCollector& collector() const { return collector_; }
+  std::uint64_t learned() const { return learner_ ? learner_->samples() : 0; }
+
+ private:
+  const TsModel* learn(const Measurement& measurement, Arrival arrival);
+  TsModel checked(const TsModel& model);
+  const TsModel& use(TsModel matched);
+
+  PlantInfo plant_;
+  IdentifyParams params_;
+  double max_pole_;
+  bool has_start_, has_identify_;
+  TsModel start_, model_;
+  SampleCollector collector_;
+  std::optional<OnlineLearner> learner_;
+  std::uint64_t published_{}, refused_{};
+  std::string last_refusal_;
+  bool done_by_itself_{false};
+};
+
+}  // namespace fpc

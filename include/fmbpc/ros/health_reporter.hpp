@@ -1,0 +1,44 @@
+// The health of a node, for programs on loop_state and for people on /diagnostics: both from one
+// source, so that they never disagree.
+#pragma once
+
+#include <ros/ros.h>
+
+#include <functional>
+#include <string>
+
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/loop/health.hpp"
+#include "fmbpc/ros/diagnostics.hpp"
+
+namespace fpc {
+
+class HealthReporter {
+ public:
+  struct Source {
+    std::function<Health(double now_s)> health;
+    std::function<StepHeader()> sample;                  ///< the latest
+    std::function<void(Diagnostics::Status&)> values;  ///< counters
+  };
+  /// `summary`: it speaks for the whole loop (the plant).
+  HealthReporter(ros::NodeHandle node, const ros::NodeHandle& private_node,
+                 const std::string& title, const std::string& hardware_id, bool summary,
+                 Source source);
+  /// Looks now instead of within a quarter of a second.
+  void look();
+
+ private:
+  void publish();
+  void fill(Diagnostics::Status& status) const;
+
+  Source source_;
+  bool summary_;
+  Health shown_;
+  Hysteresis hysteresis_{1.0};
+  double published_s_{-1e9};
+  ros::Publisher publisher_;
+  Diagnostics diagnostics_;
+  ros::SteadyTimer timer_;
+};
+
+}  // namespace fpc

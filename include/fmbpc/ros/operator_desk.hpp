@@ -1,0 +1,43 @@
+// What operators ask of a controller, said to others whenever it changes, and asked back from the
+// plant by one that comes back in the middle of a run.
+#pragma once
+
+#include <fmbpc/OperatorState.h>
+#include <ros/ros.h>
+
+#include <cstdint>
+#include <optional>
+
+#include "fmbpc/control/session.hpp"
+#include "fmbpc/ros/node.hpp"
+
+namespace fpc {
+
+class OperatorDesk : public Node {
+ public:
+  OperatorDesk(ros::NodeHandle node, const LoopFile& loop, ControllerSession& session);
+
+  /// False: the first sample is not to be answered yet, since what was asked before is not known;
+  /// after a second it is answered, held (see ControllerSession::holdUntilReleased).
+  bool mayStart(const Measurement& first);
+  /// Says what has changed, if anything has; call it after each new answer and each service.
+  void tell(const StepHeader& sample);
+  void changed() { changed_ = true; }
+  using Node::refused;
+
+ private:
+  void onKept(const fmbpc::OperatorState::ConstPtr& msg);
+  void restore(const fmbpc::OperatorState& msg);
+  fmbpc::OperatorState message(const StepHeader& sample) const;
+  void tellSetpoints();
+
+  ControllerSession& session_;
+  bool keeper_expected_;
+  bool changed_{true};
+  double deadline_s_{-1};
+  std::optional<fmbpc::OperatorState> kept_;  // the latest word of the plant
+  ros::Publisher state_, setpoint_active_;
+  ros::Subscriber subscriber_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,41 @@
+// What the plant says of the whole loop, for members that cannot see its end or a pause themselves.
+#pragma once
+
+#include <fmbpc/LoopState.h>
+#include <ros/ros.h>
+
+#include <optional>
+
+#include "fmbpc/loop/health.hpp"
+#include "fmbpc/ros/node.hpp"
+#include "fmbpc/ros/topics.hpp"
+
+namespace fpc {
+
+class SummaryListener : public Node {
+ public:
+  SummaryListener(ros::NodeHandle node, const LoopFile& loop)
+      : Node(node, loop),
+        subscriber_(subscribe(node, topics::kLoopState, topics::kPairQueue,
+                              &SummaryListener::onState, this)) {}
+
+  /// Why nothing is due: the run is finished or paused. Empty otherwise.
+  std::optional<Health> rest() const {
+    if (mode_ == LoopMode::kFinished) return Health{LoopMode::kFinished, "finished", {}};
+    if (paused_) return Health{LoopMode::kHeld, "the plant is paused", {}};
+    return {};
+  }
+
+ private:
+  void onState(const fmbpc::LoopState::ConstPtr& msg) {
+    if (!msg->summary) return;
+    mode_ = static_cast<LoopMode>(msg->mode);
+    paused_ = mode_ == LoopMode::kHeld && msg->reason == "paused";
+  }
+
+  LoopMode mode_{LoopMode::kStarting};
+  bool paused_{false};
+  ros::Subscriber subscriber_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,95 @@
+#include "fmbpc/loop/identifier_session.hpp"
+
+#include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/model_check.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
+
+namespace fpc {
+
+IdentifierSession::IdentifierSession(const LoopFile& loop)
+    : plant_(loop.plant_info),
+      params_(loop.identify),
+      max_pole_(loop.max_pole),
+      has_start_(loop.has_model),
+      has_identify_(loop.has_identify),
+      start_(loop.model),
+      collector_(loop.plant_info, static_cast<std::size_t>(loop.identify.window)) {}
+
+const TsModel* IdentifierSession::start() {
+  return has_start_ ? &use(matchToPlant(start_, plant_)) : nullptr;
+}
+
+const TsModel& IdentifierSession::restore(const TsModel& model) {
+  use(matchToPlant(model, plant_));
+  if (params_.online.enabled) learner_.emplace(model_, plant_, params_.online);
+  done_by_itself_ = true;
+  return model_;
+}
+
+const TsModel& IdentifierSession::use(TsModel matched) {
+  model_ = std::move(matched);
+  if (published_++ == 0 && params_.online.enabled)
+    learner_.emplace(model_, plant_, params_.online);
+  return model_;
+}
+
+IdentifierSession::Due IdentifierSession::take(const Measurement& measurement) {
+  Due due;
+  due.arrival = collector_.take(measurement);
+  if (!isNew(due.arrival)) return due;
+  due.model = learn(measurement, due.arrival);
+  const auto after = static_cast<std::uint64_t>(params_.after);
+  if (after == 0 || done_by_itself_ || collector_.counts().samples < after) return due;
+  done_by_itself_ = true;
+  due.job = job(params_.structure, 0, params_.validation_share);
+  return due;
+}
+
+const TsModel* IdentifierSession::learn(const Measurement& measurement, Arrival arrival) {
+  if (!learner_ || !learner_->take(measurement, arrival)) return nullptr;
+  try {
+    return &use(checked(learner_->model()));
+  } catch (const InputError&) {  // counted, and told by lastRefusal()
+    return nullptr;
+  }
+}
+
+IdentificationJob IdentifierSession::job(Structure structure, std::size_t newest,
+                                         double share) const {
+  require(has_identify_, "model.identify",
+          "that section in the loop file: nothing is collected");
+  require(collector_.size() > 0, "identify", "samples: none have come yet");
+  IdentificationJob job;
+  job.values = collector_.rows(structure, newest);
+  job.structure = std::move(structure);
+  const CollectorCounts& counts = collector_.counts();
+  job.source = "the running plant " + plant_.name + ", samples up to " +
+               std::to_string(collector_.present().header.step) + " (" +
+               std::to_string(counts.missing) + " missing, " + std::to_string(counts.incomplete) +
+               " incomplete, " + std::to_string(counts.runs) + " runs)";
+  job.share = share;
+  return job;
+}
+
+TsModel IdentifierSession::checked(const TsModel& model) {
+  try {
+    TsModel matched = matchToPlant(model, plant_);
+    if (collector_.present().outputs.size() > 0)
+      requireStable(matched, collector_.present(), max_pole_);
+    return matched;
+  } catch (const InputError& error) {
+    ++refused_;
+    last_refusal_ = error.what();
+    throw;
+  }
+}
+
+const TsModel& IdentifierSession::accept(const TsModel& identified) {
+  use(checked(identified));
+  if (params_.online.enabled) learner_.emplace(model_, plant_, params_.online);
+  return model_;
+}
+
+}  // namespace fpc

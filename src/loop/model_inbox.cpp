@@ -1,0 +1,56 @@
+#include "fmbpc/loop/model_inbox.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace fpc {
+namespace {
+
+bool same(const StepHeader& a, const StepHeader& b) {
+  return a.run_id == b.run_id && a.step == b.step;
+}
+
+}  // namespace
+
+void ModelInbox::put(TsModel model, const StepHeader& made_from) {
+  if (owed_ && same(*owed_, made_from)) owed_.reset();
+  if (made_from.run_id != 0 && used_ && same(*used_, made_from)) return;
+  items_.push_back({made_from, std::move(model)});
+}
+
+void ModelInbox::hear(const IdentifierWord& word) {
+  if (word.header.run_id != run_id_) return;
+  word_ = word.header;
+  if (!word.model) return;
+  const bool here = std::any_of(items_.begin(), items_.end(), [&](const Item& item) {
+    return same(item.made_from, word.header);
+  });
+  if (!here) owed_ = word.header;
+}
+
+bool ModelInbox::belongsBefore(const StepHeader& made_from, const StepHeader& next) const {
+  return !in_step_ || made_from.run_id != next.run_id || made_from.step < next.step;
+}
+
+bool ModelInbox::complete(const StepHeader& next) const {
+  if (!in_step_ || next.step == 0) return true;
+  const bool done = word_ && word_->run_id == next.run_id && word_->step + 1 >= next.step;
+  return done && !(owed_ && owed_->run_id == next.run_id && owed_->step < next.step);
+}
+
+std::vector<TsModel> ModelInbox::take(const StepHeader& next) {
+  std::vector<TsModel> due;
+  std::deque<Item> later;
+  for (Item& item : items_) {
+    if (!belongsBefore(item.made_from, next)) {
+      later.push_back(std::move(item));
+      continue;
+    }
+    used_ = item.made_from;
+    due.push_back(std::move(item.model));
+  }
+  items_ = std::move(later);
+  return due;
+}
+
+}  // namespace fpc

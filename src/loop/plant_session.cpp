@@ -1,0 +1,120 @@
+#include "fmbpc/loop/plant_session.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace fpc {
+namespace {
+constexpr double kNever = std::numeric_limits<double>::infinity();
+}
+
+PlantSession::PlantSession(Simulation simulation, const PlantPolicy& policy)
+    : simulation_(std::move(simulation)), policy_(policy), pacer_(policy.pace, policy.period_s) {}
+
+void PlantSession::begin(std::uint64_t run_id) {
+  simulation_.reset(run_id);
+  phase_ = PlantPhase::kWaiting;
+  have_action_ = starving_ = acknowledged_ = false;
+  steps_allowed_ = 0;
+}
+
+void PlantSession::start(double now_s) {
+  phase_ = simulation_.measurement().final ? PlantPhase::kFinished : PlantPhase::kRunning;
+  pacer_.restart(now_s);
+  table_since_s_ = sent_s_ = now_s;
+}
+
+bool PlantSession::receive(const ControlAction& action) {
+  const bool awaited = phase_ == PlantPhase::kRunning && !have_action_;
+  if (!awaited || !simulation_.answers(action.header)) {
+    countStray(action.header);
+    return false;
+  }
+  if (action.input.size() != static_cast<Eigen::Index>(simulation_.info().inputs.size())) {
+    ++counts_.wrong_size;
+    return false;
+  }
+  if (!action.input.allFinite()) {
+    ++counts_.not_finite;
+    return false;
+  }
+  ++counts_.accepted;
+  action_ = action.input;
+  have_action_ = true;
+  starving_ = false;
+  return true;
+}
+
+// Dropped, each kind apart: of another run, for a later sample, the last answer again, older.
+void PlantSession::countStray(const StepHeader& header) {
+  const std::uint32_t now = simulation_.measurement().header.step;
+  const std::uint32_t answered = have_action_ ? now + 1 : now;  // samples answered so far
+  if (header.run_id != runId())
+    ++counts_.other_run;
+  else if (header.step >= answered)
+    ++counts_.later;
+  else if (header.step + 1 == answered)
+    ++counts_.repeated;
+  else
+    ++counts_.old;
+}
+
+bool PlantSession::mayGoWithout(double now_s) const {
+  if (paused_ || policy_.pace == Pace::kLockstep) return false;
+  if (policy_.pace == Pace::kRealtime || starving_) return true;
+  return now_s - table_since_s_ >= policy_.action_timeout_s;
+}
+
+bool PlantSession::advance(double now_s) {
+  if (phase_ != PlantPhase::kRunning || (paused_ && steps_allowed_ == 0)) return false;
+  if (!paused_ && !pacer_.due(now_s)) return false;
+  if (have_action_) {
+    simulation_.advance(action_);
+  } else if (mayGoWithout(now_s)) {
+    simulation_.advanceWithoutAction();
+    ++missing_inputs_;
+    starving_ = policy_.pace == Pace::kPaced;
+  } else {
+    return false;
+  }
+  if (paused_) --steps_allowed_;
+  have_action_ = false;
+  pacer_.sent(now_s);
+  table_since_s_ = sent_s_ = now_s;
+  if (simulation_.measurement().final) phase_ = PlantPhase::kFinished;
+  return true;
+}
+
+double PlantSession::nextDue() const {
+  if (phase_ != PlantPhase::kRunning || paused_ || !pacer_.timed()) return kNever;
+  if (have_action_ || starving_ || policy_.pace == Pace::kRealtime) return pacer_.deadline();
+  return std::max(pacer_.deadline(), table_since_s_ + policy_.action_timeout_s);
+}
+
+bool PlantSession::mustResend(double now_s) const {
+  const bool unanswered = phase_ == PlantPhase::kRunning && !have_action_;
+  const bool unheard = phase_ == PlantPhase::kFinished && !acknowledged_;
+  return (unanswered || unheard) && now_s - sent_s_ >= policy_.resend_s;
+}
+
+void PlantSession::resent(double now_s) { sent_s_ = now_s; }
+
+double PlantSession::unansweredFor(double now_s) const {
+  return phase_ == PlantPhase::kRunning && !have_action_ ? now_s - table_since_s_ : 0.0;
+}
+
+void PlantSession::pause(bool on, double now_s) {
+  paused_ = on;
+  steps_allowed_ = 0;
+  if (on) return;
+  pacer_.restart(now_s);
+  table_since_s_ = now_s;
+}
+
+bool PlantSession::step() {
+  if (!paused_ || phase_ != PlantPhase::kRunning) return false;
+  ++steps_allowed_;
+  return true;
+}
+
+}  // namespace fpc

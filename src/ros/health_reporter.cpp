@@ -1,0 +1,65 @@
+#include "fmbpc/ros/health_reporter.hpp"
+
+#include <fmbpc/LoopState.h>
+
+#include <utility>
+
+#include "fmbpc/ros/conversions.hpp"
+#include "fmbpc/ros/topics.hpp"
+#include "fmbpc/ros/wall_throttle.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kLook = 0.25;  // [s] of wall time
+
+bool same(const Health& a, const Health& b) {
+  return a.mode == b.mode && a.words == b.words && a.missing == b.missing;
+}
+
+}  // namespace
+
+HealthReporter::HealthReporter(ros::NodeHandle node, const ros::NodeHandle& private_node,
+                               const std::string& title, const std::string& hardware_id,
+                               bool summary, Source source)
+    : source_(std::move(source)),
+      summary_(summary),
+      publisher_(node.advertise<fmbpc::LoopState>(topics::kLoopState, topics::kPairQueue, true)),
+      diagnostics_(node, private_node, title, hardware_id,
+                   [this](Diagnostics::Status& status) { fill(status); }),
+      timer_(node.createSteadyTimer(ros::WallDuration(kLook),
+                                    [this](const ros::SteadyTimerEvent&) { look(); })) {}
+
+void HealthReporter::look() {
+  const double now_s = steadyNow();
+  const Health before = shown_;
+  shown_ = hysteresis_.show(source_.health(now_s), now_s);
+  const bool changed = before.mode != shown_.mode || before.missing != shown_.missing;
+  if (same(before, shown_) && now_s - published_s_ < RingWatch::kBeat - 0.5 * kLook) return;
+  published_s_ = now_s;
+  publish();
+  if (changed) diagnostics_.update();
+}
+
+void HealthReporter::publish() {
+  const StepHeader sample = source_.sample();
+  fmbpc::LoopState msg;
+  msg.header.stamp = toStamp(sample.time_ns);
+  msg.run_id = sample.run_id;
+  msg.step = sample.step;
+  msg.node = ros::this_node::getName();
+  msg.summary = summary_;
+  msg.mode = static_cast<std::uint8_t>(shown_.mode);
+  msg.word = wordOf(shown_.mode);
+  msg.reason = shown_.words;
+  msg.missing = shown_.missing;
+  publisher_.publish(msg);
+}
+
+void HealthReporter::fill(Diagnostics::Status& status) const {
+  status.summary(static_cast<unsigned char>(levelOf(shown_.mode)), shown_.words);
+  status.add("mode", wordOf(shown_.mode));
+  source_.values(status);
+}
+
+}  // namespace fpc

@@ -1,0 +1,102 @@
+#include "fmbpc/ros/operator_desk.hpp"
+
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/ros/conversions.hpp"
+#include "fmbpc/ros/topics.hpp"
+#include "fmbpc/ros/wall_throttle.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kPatience = 1.0;  // [s] of wall time
+
+OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
+  OperatorWishes wishes;
+  wishes.manual = msg.manual != 0;
+  wishes.manual_given = msg.manual_given != 0;
+  wishes.manual_input = Eigen::Map<const Vector>(
+      msg.manual_input.data(), static_cast<Eigen::Index>(msg.manual_input.size()));
+  wishes.recipe = {msg.recipe_held != 0, msg.recipe_held_at, msg.recipe_shift};
+  if (msg.adapt_given) wishes.adapt = msg.adapt != 0;
+  for (std::size_t i = 0; i < msg.setting.size() && i < msg.setting_value.size(); ++i)
+    wishes.settings.emplace_back(msg.setting[i], msg.setting_value[i]);
+  for (const auto& setpoint : msg.setpoint) wishes.setpoints.push_back(fromMsg(setpoint));
+  return wishes;
+}
+
+}  // namespace
+
+OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, ControllerSession& session)
+    : Node(node, loop),
+      session_(session),
+      keeper_expected_(!loop.external_plant),
+      state_(node.advertise<fmbpc::OperatorState>(topics::kOperatorState, 10, true)),
+      setpoint_active_(
+          node.advertise<fmbpc::Setpoint>(topics::kSetpointActive, topics::kPairQueue, true)),
+      subscriber_(subscribe(node, topics::kOperatorKept, 1, &OperatorDesk::onKept, this)) {}
+
+void OperatorDesk::onKept(const fmbpc::OperatorState::ConstPtr& msg) {
+  if (session_.counts().accepted == 0) kept_ = *msg;
+}
+
+bool OperatorDesk::mayStart(const Measurement& first) {
+  if (session_.counts().accepted > 0 || first.header.step == 0) return true;
+  if (kept_ && kept_->run_id == first.header.run_id) {
+    guarded(topics::kOperatorKept, [this] { restore(*kept_); });
+    return true;
+  }
+  const double now_s = steadyNow();
+  if (deadline_s_ < 0) deadline_s_ = now_s + kPatience;
+  if (now_s < deadline_s_) return false;
+  if (keeper_expected_) session_.holdUntilReleased();
+  return true;
+}
+
+void OperatorDesk::restore(const fmbpc::OperatorState& msg) {
+  const OperatorWishes wishes = wishesOf(msg);
+  for (const Command& setpoint : wishes.setpoints)
+    ROS_INFO("%s: setpoint of %s restored", ros::this_node::getName().c_str(),
+             join(setpoint.name).c_str());
+  if (wishes.manual) ROS_INFO("%s: manual restored", ros::this_node::getName().c_str());
+  changed_ = true;
+  session_.restore(wishes);
+}
+
+void OperatorDesk::tell(const StepHeader& sample) {
+  if (!changed_) return;
+  changed_ = false;
+  if (session_.counts().accepted > 0) state_.publish(message(sample));
+  tellSetpoints();
+}
+
+fmbpc::OperatorState OperatorDesk::message(const StepHeader& sample) const {
+  const OperatorWishes wishes = session_.wishes();
+  fmbpc::OperatorState msg;
+  msg.header.stamp = toStamp(sample.time_ns);
+  msg.run_id = sample.run_id;
+  msg.node = ros::this_node::getName();
+  msg.manual = wishes.manual;
+  msg.manual_given = wishes.manual_given;
+  msg.manual_input.assign(wishes.manual_input.begin(), wishes.manual_input.end());
+  msg.recipe_held = wishes.recipe.held;
+  msg.recipe_held_at = wishes.recipe.held_at;
+  msg.recipe_shift = wishes.recipe.shift;
+  msg.adapt_given = wishes.adapt.has_value();
+  msg.adapt = wishes.adapt.value_or(false);
+  for (const auto& [key, value] : wishes.settings) {
+    msg.setting.push_back(key);
+    msg.setting_value.push_back(value);
+  }
+  for (const Command& setpoint : wishes.setpoints) msg.setpoint.push_back(toSetpointMsg(setpoint));
+  return msg;
+}
+
+// What stands; if nothing does, a release without names says so.
+void OperatorDesk::tellSetpoints() {
+  const std::vector<Command> commands = session_.setpoint().inForce();
+  for (const Command& command : commands) setpoint_active_.publish(toSetpointMsg(command));
+  if (commands.empty())
+    setpoint_active_.publish(toSetpointMsg(Command{0, {}, {}, CommandMode::kRelease}));
+}
+
+}  // namespace fpc

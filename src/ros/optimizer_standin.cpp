@@ -1,0 +1,74 @@
+#include "fmbpc/ros/optimizer_standin.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/ros/conversions.hpp"
+#include "fmbpc/ros/topics.hpp"
+
+namespace fpc {
+
+OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop)
+    : Node(node, loop),
+      watch_(loop.ring.pace, loop.plant_info.sample_time_s / loop.ring.speedup,
+             loop.ring.optimizer_timeout_s),
+      optimizer_(node.resolveName("clp_optimizer")),
+      action_(node.advertise<fmbpc::ControlAction>(topics::kControlAction, topics::kRingQueue)),
+      report_(node.advertise<fmbpc::SolverReport>(topics::kSolverReport, topics::kRingQueue)),
+      subscriber_(subscribe(node, topics::kControlAction, topics::kPairQueue,
+                            &OptimizerStandin::onAction, this)),
+      timer_(node.createSteadyTimer(
+          ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) { onTimer(); }, true,
+          false)) {}
+
+void OptimizerStandin::asked(const ControllerAnswer& answer, bool repeated) {
+  if (!answer.has_action) return;
+  if (repeated) {
+    if (sent_) action_.publish(toMsg(base_));  // the plant has missed it
+    return;
+  }
+  base_ = answer.base;
+  sent_ = false;
+  if (watch_.asked(base_.header, steadyNow()))
+    takeOver();
+  else
+    arm();
+}
+
+void OptimizerStandin::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
+  const bool own = sent_ && msg->run_id == base_.header.run_id && msg->step == base_.header.step &&
+                   msg->source == static_cast<std::uint8_t>(base_.source) &&
+                   std::equal(msg->input.begin(), msg->input.end(), base_.input.begin(),
+                              base_.input.end());
+  if (!own) guarded(topics::kControlAction, [&] { watch_.answered(fromMsg(*msg).header); });
+}
+
+void OptimizerStandin::arm() {
+  const double due_s = watch_.deadline();
+  if (!std::isfinite(due_s)) return;
+  timer_.stop();
+  timer_.setPeriod(ros::WallDuration(std::max(1e-6, due_s - steadyNow())));
+  timer_.start();
+}
+
+void OptimizerStandin::onTimer() {
+  if (watch_.mustTakeOver(steadyNow()))
+    takeOver();
+  else
+    arm();
+}
+
+void OptimizerStandin::takeOver() {
+  sent_ = true;
+  action_.publish(toMsg(base_));
+  SolverReport report;
+  report.header = base_.header;
+  report.perturbation = Vector::Zero(base_.input.size());
+  report.status = SolveStatus::kNotRun;
+  report_.publish(toMsg(report));
+  if (log_.pass())
+    ROS_WARN("%s: sample %u: no answer of %s, the base action goes to the plant",
+             ros::this_node::getName().c_str(), base_.header.step, optimizer_.c_str());
+}
+
+}  // namespace fpc

@@ -1,0 +1,120 @@
+// What an operator does, from a file, in a run in one process.
+#include <gtest/gtest.h>
+
+#include "fmbpc/config/command_file.hpp"
+#include "fmbpc/loop/run.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+class Commands : public LoopFolder {
+ protected:
+  LoopFile loop(const std::string& name, Overrides overrides = {}) const {
+    overrides.emplace_back("sampling.duration_h", "40");
+    return readLoop(name, overrides);
+  }
+  std::vector<TimedCommand> commands(const std::string& entries, const LoopFile& loop) const {
+    return readCommands(write("commands.yaml", "commands:\n" + entries), loop);
+  }
+  RunRecord run(const LoopFile& loop, const std::string& entries) {
+    RunOptions options;
+    options.commands = commands(entries, loop);
+    options.remark = [this](const std::string& words) { remarks_.push_back(words); };
+    return runLoop(loop, options);
+  }
+  std::vector<std::string> remarks_;
+};
+
+void expectSameBits(const RunRecord& a, const RunRecord& b) {
+  ASSERT_EQ(a.samples.size(), b.samples.size());
+  for (std::size_t k = 0; k < a.samples.size(); ++k) {
+    EXPECT_EQ(a.samples[k].measurement.outputs, b.samples[k].measurement.outputs) << k;
+    EXPECT_EQ(a.samples[k].measurement.input_applied, b.samples[k].measurement.input_applied) << k;
+    EXPECT_EQ(a.samples[k].tracking.setpoint, b.samples[k].tracking.setpoint) << k;
+  }
+}
+
+TEST_F(Commands, SetpointsAndDisturbancesActAsThoseOfTheLoopFile) {
+  const RunRecord by_file =
+      runLoop(loop("asp_case1", {{"setpoint.commands",
+                                  "[{time_h: 5, name: x, value: 1900},"
+                                  " {time_h: 12, name: x, mode: release}]"},
+                                 {"disturbance.commands",
+                                  "[{time_h: 4, name: q_i, value: 1900},"
+                                  " {time_h: 10, name: input/q_r, mode: offset, value: 30}]"}}));
+  const RunRecord by_hand = run(loop("asp_case1"),
+                                "- {time_h: 12, setpoint: [x], mode: release}\n"
+                                "- {time_h: 5, setpoint: {x: 1900}}\n"
+                                "- {time_h: 4, disturbance: {q_i: 1900}}\n"
+                                "- {time_h: 10, disturbance: {input/q_r: 30}, mode: offset}\n");
+  expectSameBits(by_file, by_hand);
+  EXPECT_EQ(by_hand.samples[25].tracking.setpoint[1], 1900.0);
+}
+
+TEST_F(Commands, ManualActsFromItsSampleOnAndReturnsWithoutABump) {
+  const RunRecord record = run(loop("asp_case1"),
+                               "- {time_h: 10, manual: true}\n"
+                               "- {time_h: 12, manual_input: {q_r: 650}}\n"
+                               "- {time_h: 20, manual: false}\n");
+  const auto applied = [&](std::size_t k) {
+    return record.samples[k + 1].measurement.input_applied[0];
+  };
+  EXPECT_EQ(record.samples[49].action.source, ActionSource::kBase);
+  EXPECT_EQ(record.samples[50].action.source, ActionSource::kManual);
+  EXPECT_EQ(applied(50), applied(49));
+  for (std::size_t k = 60; k < 100; ++k) EXPECT_EQ(applied(k), 650.0) << k;
+  EXPECT_EQ(record.samples[100].action.source, ActionSource::kBase);
+  EXPECT_NEAR(applied(100), 650.0, 1e-6);
+  EXPECT_TRUE(remarks_.empty());
+}
+
+TEST_F(Commands, WhatIsRefusedIsToldAndTheRunGoesOn) {
+  const RunRecord record = run(loop("asp_case1"),
+                               "- {time_h: 1, manual_input: {q_r: 650}}\n"
+                               "- {time_h: 2, adapt: true}\n"
+                               "- {time_h: 3, settings: {horizon_steps: 3}}\n");
+  EXPECT_TRUE(record.complete);
+  ASSERT_EQ(remarks_.size(), 3U);
+  expectWords(remarks_[0], {"sample 5", "manual mode"});
+  expectWords(remarks_[1], {"sample 10", "adapts"});
+  expectWords(remarks_[2], {"sample 15", "settings"});
+}
+
+TEST_F(Commands, SettingsAndHoldReachTheController) {
+  const LoopFile tuned = loop("surge_tank_steps", {{"sampling.duration_h", "1"}});
+  const RunRecord plain = runLoop(tuned);
+  const RunRecord record = run(tuned, "- {time_h: 0.1, settings: {weight_move: '1e6'}}\n");
+  EXPECT_TRUE(remarks_.empty()) << remarks_.front();
+  bool differs = false;
+  for (std::size_t k = 0; k + 1 < record.samples.size(); ++k)
+    differs = differs || record.samples[k].action.input != plain.samples[k].action.input;
+  EXPECT_TRUE(differs);
+  const RunRecord held = run(loop("asp_case1"), "- {time_h: 20, hold: true}\n");
+  EXPECT_EQ(held.samples[199].tracking.setpoint[1], 1800.0);  // 2200 from 30 h on
+}
+
+TEST_F(Commands, AModelIsUsedFromItsSampleOn) {
+  const RunRecord plain = runLoop(loop("asp_case1"));
+  const RunRecord record = run(loop("asp_case1"), "- {time_h: 20, model: asp_d.yaml}\n");
+  for (std::size_t k = 0; k < 100; ++k)
+    EXPECT_EQ(plain.samples[k].action.input, record.samples[k].action.input) << k;
+  EXPECT_NE(plain.samples[101].action.input, record.samples[101].action.input);
+}
+
+TEST_F(Commands, ErrorsNameFileEntryAndWhatWasExpected) {
+  const LoopFile plain = loop("asp_case1");
+  for (const auto& [entry, word] : std::vector<std::pair<std::string, std::string>>{
+           {"- {time_h: 1}\n", "one of setpoint, disturbance"},
+           {"- {manual: true}\n", "time_h"},
+           {"- {time_h: -1, manual: true}\n", "time_h"},
+           {"- {time_h: 1, manual: true, hold: true}\n", "one of"},
+           {"- {time_h: 1, setpoint: {z: 1}}\n", "z"},
+           {"- {time_h: 1, setpoint: {x: .nan}}\n", "x"},
+           {"- {time_h: 1, manual_input: {q_r: 1, q_s: 2}}\n", "q_s"},
+           {"- {time_h: 1, model: nobody.yaml}\n", "nobody.yaml"}})
+    expectWords(errorOf([&, text = entry] { commands(text, plain); }), {"commands", word});
+}
+
+}  // namespace
+}  // namespace fpc

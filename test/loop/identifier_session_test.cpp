@@ -1,0 +1,86 @@
+#include "fmbpc/loop/identifier_session.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fmbpc/loop/run.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+/// What a run told of models.
+struct Told {
+  std::vector<TsModel> models;
+  std::vector<std::string> remarks;
+  RunRecord record;
+};
+
+Told run(const LoopFile& loop) {
+  Told told;
+  RunOptions options;
+  options.identified = [&](const TsModel& model) { told.models.push_back(model); };
+  options.remark = [&](const std::string& words) { told.remarks.push_back(words); };
+  told.record = runLoop(loop, options);
+  return told;
+}
+
+TEST(IdentifierSession, SaysWhenToIdentifyAndThatOnce) {
+  const LoopFile loop = readLoop("asp_identify", {{"sampling.duration_h", "30"},
+                                                  {"model.identify.after", "100"}});
+  LoopFile plain = loop;
+  plain.has_identify = false;
+  const RunRecord record = runLoop(plain);
+  IdentifierSession session(loop);
+  EXPECT_EQ(session.start(), nullptr);
+  for (std::size_t k = 0; k < record.samples.size(); ++k) {
+    const auto due = session.take(record.samples[k].measurement);
+    ASSERT_EQ(due.job.has_value(), k == 99) << k;
+    if (!due.job) continue;
+    EXPECT_EQ(due.job->values.rows(), 100);
+    expectWords(due.job->source, {"activated_sludge", "samples up to 99"});
+  }
+  EXPECT_EQ(session.take(record.samples[100].measurement).arrival, Arrival::kOld);
+}
+
+TEST(IdentifierSession, AModelThatIsUnstableWhereThePlantIsIsRefusedAndTheOldOneStays) {
+  const LoopFile loop = readLoop("asp_case1", {{"model.identify.online.every", "40"},
+                                               {"sampling.duration_h", "4"}});
+  LoopFile plain = loop;
+  plain.has_identify = false;
+  const RunRecord record = runLoop(plain);
+  IdentifierSession session(loop);
+  ASSERT_NE(session.start(), nullptr);
+  session.take(record.samples[0].measurement);
+  TsModel wild = loop.model;
+  for (OutputModel& submodel : wild.submodels)
+    for (Rule& rule : submodel.rules) rule.coefficients *= 3.0;
+  expectWords(errorOf([&] { session.accept(wild); }), {"pole"});
+  EXPECT_EQ(session.refused(), 1U);
+  EXPECT_EQ(session.published(), 1U);
+  EXPECT_EQ(session.model().name, loop.model.name);
+}
+
+TEST(Run, OnlineLearningChangesTheModelAtItsStatedSamples) {
+  const Overrides learning{{"sampling.duration_h", "40"}, {"model.identify.online.every", "40"}};
+  const Told plain = run(readLoop("asp_case1", {{"sampling.duration_h", "40"}}));
+  const Told told = run(readLoop("asp_case1", learning));
+  std::size_t first = 0;
+  const auto& a = plain.record.samples;
+  const auto& b = told.record.samples;
+  while (first < 200 && a[first].action.input == b[first].action.input) ++first;
+  EXPECT_EQ(first, 41U);  // learned from sample 40, used from 41 on
+  const Told again = run(readLoop("asp_case1", learning));
+  for (std::size_t k = 0; k < 200; ++k)
+    ASSERT_EQ(b[k].action.input, again.record.samples[k].action.input) << k;
+}
+
+TEST(Run, IdentifiesByItselfAndHandsTheModelOver) {
+  const LoopFile loop = readLoop(
+      "asp_identify", {{"sampling.duration_h", "90"}, {"model.identify.after", "400"}});
+  const Told told = run(loop);
+  ASSERT_EQ(told.models.size(), 1U) << (told.remarks.empty() ? "" : told.remarks.front());
+  expectWords(told.models[0].source, {"samples up to 399"});
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,69 @@
+#include "fmbpc/loop/model_inbox.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fpc {
+namespace {
+
+StepHeader header(std::uint32_t step, std::uint64_t run = 7) { return {0, run, step}; }
+TsModel model(const std::string& name) {
+  TsModel m;
+  m.name = name;
+  return m;
+}
+
+TEST(ModelInbox, InStepAModelOfSampleKIsUsedAtSampleKPlusOneWhateverArrivesFirst) {
+  for (const bool model_first : {true, false}) {
+    ModelInbox inbox(true);
+    inbox.announce(7);
+    EXPECT_TRUE(inbox.complete(header(0)));
+    EXPECT_FALSE(inbox.complete(header(1)));
+    if (model_first) inbox.put(model("a"), header(0));
+    inbox.hear({header(0), true});
+    EXPECT_EQ(inbox.complete(header(1)), model_first);
+    EXPECT_TRUE(inbox.take(header(0)).empty());  // not before its time
+    if (!model_first) inbox.put(model("a"), header(0));
+    ASSERT_TRUE(inbox.complete(header(1)));
+    ASSERT_EQ(inbox.take(header(1)).size(), 1U);
+    EXPECT_TRUE(inbox.take(header(1)).empty());
+    EXPECT_FALSE(inbox.complete(header(2)));
+    inbox.hear({header(1), false});
+    EXPECT_TRUE(inbox.complete(header(2)));
+  }
+}
+
+TEST(ModelInbox, AModelOfNoSampleIsUsedAtOnce) {
+  ModelInbox inbox(true);
+  inbox.announce(7);
+  inbox.put(model("file"), {});
+  EXPECT_EQ(inbox.take(header(0)).size(), 1U);
+}
+
+TEST(ModelInbox, OutOfStepModelsAreUsedWhenTheyCome) {
+  ModelInbox inbox(false);
+  inbox.announce(7);
+  EXPECT_TRUE(inbox.complete(header(9)));
+  inbox.put(model("a"), header(9));
+  EXPECT_EQ(inbox.take(header(9)).size(), 1U);
+}
+
+TEST(ModelInbox, WordsOfOtherRunsDoNotCount) {
+  ModelInbox inbox(true);
+  inbox.announce(7);
+  inbox.hear({header(4, 9), false});
+  EXPECT_FALSE(inbox.complete(header(5)));
+  inbox.hear({header(4), false});
+  EXPECT_TRUE(inbox.complete(header(5)));
+  inbox.announce(3);
+  EXPECT_FALSE(inbox.complete(header(5, 3)));
+}
+
+TEST(ModelInbox, AnIdentifierThatCameBackLaterDoesNotStallTheLoop) {
+  ModelInbox inbox(true);
+  inbox.announce(7);
+  inbox.hear({header(10), false});  // it died after sample 9, heard 10 first
+  EXPECT_TRUE(inbox.complete(header(10)));
+}
+
+}  // namespace
+}  // namespace fpc

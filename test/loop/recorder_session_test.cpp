@@ -1,0 +1,165 @@
+#include "fmbpc/loop/recorder_session.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fpc {
+namespace {
+
+StepHeader header(std::uint32_t step, std::uint64_t run = 7) { return {1000 + step, run, step}; }
+
+Measurement measurement(std::uint32_t step, bool final = false, std::uint64_t run = 7) {
+  Measurement m;
+  m.header = header(step, run);
+  m.outputs = Vector::Constant(1, step);
+  m.disturbances = Vector(0);
+  m.input_applied = Vector::Zero(1);
+  m.final = final;
+  return m;
+}
+
+Tracking tracking(std::uint32_t step) { return {header(step), Vector::Ones(1), Vector::Ones(1)}; }
+ControlAction action(std::uint32_t step) {
+  return {header(step), Vector::Ones(1), ActionSource::kBase};
+}
+SolverReport report(std::uint32_t step) {
+  SolverReport r;
+  r.header = header(step);
+  r.perturbation = Vector::Zero(1);
+  return r;
+}
+
+class RecorderSessionTest : public ::testing::Test {
+ protected:
+  RecorderSession recorder(bool has_optimizer = false) {
+    RecordLayout layout;
+    layout.info.outputs = {{"y", "-", 0, 1}};
+    layout.info.inputs = {{"u", "-", 0, 1}};
+    layout.has_optimizer = has_optimizer;
+    return {layout, [this](const SampleRecord& s) { passed_.push_back(s); }};
+  }
+  static void addSample(RecorderSession& r, std::uint32_t step, bool final = false) {
+    r.receive(measurement(step, final));
+    r.receive(tracking(step));
+    if (!final) r.receiveBase(action(step));
+  }
+  std::vector<SampleRecord> passed_;
+};
+
+TEST_F(RecorderSessionTest, IsCompleteWithTheFinalSampleAndNoGap) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  EXPECT_FALSE(r.complete());
+  addSample(r, 0);
+  addSample(r, 1);
+  EXPECT_FALSE(r.complete());
+  EXPECT_EQ(r.passedOn(), 2U);
+  addSample(r, 2, true);
+  EXPECT_TRUE(r.finalSeen() && r.complete());
+  ASSERT_EQ(passed_.size(), 3U);
+  EXPECT_TRUE(passed_[0].has_base && passed_[0].has_action);
+  EXPECT_EQ(passed_[2].measurement.outputs[0], 2.0);
+}
+
+TEST_F(RecorderSessionTest, OrderOfArrivalDoesNotMatterAndSamplesGoOutInOrder) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 2, true);
+  addSample(r, 0);
+  EXPECT_EQ(r.gaps(), (std::vector<std::string>{"sample 1: no measurement", "sample 1: no tracking",
+                                                "sample 1: no control_action"}));
+  addSample(r, 1);
+  EXPECT_TRUE(r.complete());
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(passed_[k].measurement.header.step, k);
+}
+
+TEST_F(RecorderSessionTest, AnOptimizerOwesActionAndReport) {
+  RecorderSession r = recorder(true);
+  r.announce(7);
+  addSample(r, 0);
+  addSample(r, 1, true);
+  EXPECT_EQ(r.gaps(), (std::vector<std::string>{"sample 0: no control_action",
+                                                "sample 0: no solver_report"}));
+  EXPECT_EQ(r.gaps(1).size(), 1U);
+  r.receiveAction(action(0));
+  r.receive(report(0));
+  EXPECT_TRUE(r.complete());
+}
+
+TEST_F(RecorderSessionTest, WhatComesBeforeTheAnnouncementIsNotLost) {
+  RecorderSession r = recorder();
+  addSample(r, 0);
+  EXPECT_EQ(r.passedOn(), 0U);
+  r.announce(7);
+  EXPECT_EQ(r.passedOn(), 1U);
+}
+
+TEST_F(RecorderSessionTest, AnAnnouncedRunStartsOverWhicheverNumberIsLarger) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  r.receive(measurement(1, true, 1ULL << 63));
+  EXPECT_FALSE(r.finalSeen());
+  EXPECT_EQ(r.strays(), 1U);
+  r.announce(3);
+  addSample(r, 1);  // of run 7
+  EXPECT_EQ(r.passedOn(), 0U);
+  EXPECT_EQ(r.strays(), 4U);
+}
+
+TEST_F(RecorderSessionTest, AForgedFinalDoesNotEndARunThatGoesOn) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  r.receive(measurement(1, true));
+  EXPECT_TRUE(r.finalSeen());
+  r.receive(measurement(2));
+  EXPECT_FALSE(r.finalSeen());
+}
+
+TEST_F(RecorderSessionTest, AStrayStepNumberDoesNotFillTheMemory) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  r.receive(measurement(4000000000U));
+  r.receive(tracking(4000000000U));
+  EXPECT_EQ(r.waiting(), 0U);
+  EXPECT_EQ(r.strays(), 2U);
+  addSample(r, 1);
+  EXPECT_EQ(r.passedOn(), 2U);
+}
+
+TEST_F(RecorderSessionTest, WhatIsMissingForLongIsGivenUpAndNamed) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  r.receive(measurement(0));  // its tracking never comes
+  r.receiveBase(action(0));
+  for (std::uint32_t k = 1; k <= RecorderSession::kWindow; ++k) addSample(r, k);
+  EXPECT_EQ(r.gapCount(), 1U);
+  EXPECT_EQ(r.gaps(), (std::vector<std::string>{"sample 0: no tracking"}));
+  EXPECT_EQ(passed_.size(), RecorderSession::kWindow + 1U);
+  EXPECT_EQ(r.waiting(), 0U);
+}
+
+TEST_F(RecorderSessionTest, ClosePassesOnWhatWaits) {
+  RecorderSession r = recorder(true);
+  r.announce(7);
+  addSample(r, 0);
+  r.receive(tracking(1));
+  r.close();
+  ASSERT_EQ(passed_.size(), 1U);
+  EXPECT_TRUE(passed_[0].has_base && !passed_[0].has_action);
+  EXPECT_FALSE(r.complete());
+}
+
+TEST_F(RecorderSessionTest, WrongSizesAreCounted) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  Measurement m = measurement(0);
+  m.outputs = Vector::Zero(2);
+  r.receive(m);
+  EXPECT_EQ(r.wrongSize(), 1U);
+  EXPECT_FALSE(r.running());
+}
+
+}  // namespace
+}  // namespace fpc
