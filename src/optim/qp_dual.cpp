@@ -94,9 +94,8 @@ Index DualActiveSet::mostViolated(const QpProblem& p, double tolerance, RowNoise
     const double violation = std::max(below, above);
     if (!(violation * metric > most) || ignored_[at(id)]) return;
     const Side violated = below > above ? kLower : kUpper;
-    if (violation <= tolerance * feasibilityScale(p, id, x_, limitOf(p, id, violated)) ||
-        noise.covers(p, id, violation, x_))
-      return;
+    if (violation <= tolerance * feasibilityScale(p, id, x_, limitOf(p, id, violated))) return;
+    if (noise.covers(p, id, violation, x_)) return;
     most = violation * metric;
     worst = id;
     side = violated;

@@ -23,7 +23,8 @@ double constraintError(const QpProblem& p, RowNoise& noise, Index id, VectorRef 
   double error = 0.0;
   if (value < lower) error = (lower - value) / feasibilityScale(p, id, x, lower);
   if (value > upper) error = (value - upper) / feasibilityScale(p, id, x, upper);
-  if (error > 0.0 && noise.covers(p, id, std::max(lower - value, value - upper), x)) error = 0.0;
+  if (error > kRowRounding && noise.covers(p, id, std::max(lower - value, value - upper), x))
+    error = 0.0;
   if (y == 0.0 || lower == upper) return error;
   const double limit = y > 0.0 ? lower : upper;
   const double multiplier = std::abs(y) / y_scale;
@@ -50,7 +51,7 @@ double gradientScale(const QpProblem& p, VectorRef Hx, VectorRef y_x, VectorRef 
 }
 
 double RowNoise::rounding(const QpProblem& p) {
-  if (largest_ < 0.0) largest_ = p.A.lpNorm<Eigen::Infinity>();
+  if (largest_ < 0.0) largest_ = p.A.cwiseAbs().maxCoeff();
   return kRowRounding * largest_;
 }
 
