@@ -88,6 +88,7 @@ TEST_P(ControllerContract, LimitsHoldAtEverySampleWhateverIsMeasured) {
   if (any_input) loop_.simulation.actuator.limits.move = 0.1 * range();
   ControllerSession session = makeSession();
   Measurement now = makeSimulation(loop_).measurement();
+  now.header.run_id = 1;
   std::mt19937_64 generator(7);
   for (std::uint32_t k = 0; k < kRun; ++k) {
     now.header.step = k;
