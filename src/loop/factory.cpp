@@ -13,8 +13,12 @@ Simulation makeSimulation(const LoopFile& loop) {
 
 ControllerSession makeControllerSession(const LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
-  return {loop.controller->make(controllerContext(loop)), loop.setpoint,   actuator.limits,
-          actuator.initial,     loop.plant_info, loop.max_pole};
+  return {loop.controller->make(controllerContext(loop)),
+          loop.setpoint,
+          actuator.limits,
+          actuator.initial,
+          loop.plant_info,
+          loop.max_pole};
 }
 
 OptimizerSession makeOptimizerSession(const LoopFile& loop) {

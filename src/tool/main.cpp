@@ -109,8 +109,8 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
 }
 
 void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
-  CLI::App* reproduce = app.add_subcommand(
-      "reproduce", "Tables and figures of the papers: paper | here | verdict");
+  CLI::App* reproduce =
+      app.add_subcommand("reproduce", "Tables and figures of the papers: paper | here | verdict");
   reproduce->add_option("NAME", a.names,
                         "papers, experiments (or how their names begin), loops behind them; all of "
                         "them if none is named");

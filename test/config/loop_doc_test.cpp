@@ -122,8 +122,14 @@ std::set<std::string> readerKeys() {
       "loops: "
       "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
       "integral_time_min: 1}], model: [{output: y_D, input: L, gain: 1, time_constant_min: 1}]}\n";
-  std::vector<std::string> texts{controlled(fmbpc + lists), controlled(external), controlled(column),
-                                 controlled(adaptive), optimal, prbs, levels, steps,
+  std::vector<std::string> texts{controlled(fmbpc + lists),
+                                 controlled(external),
+                                 controlled(column),
+                                 controlled(adaptive),
+                                 optimal,
+                                 prbs,
+                                 levels,
+                                 steps,
                                  batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
                                  batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest};
   for (const auto& type : controllerNames())

@@ -119,8 +119,7 @@ struct LoopFile {
   template <typename Params>
   const Params& controllerParams() const {
     const Params* params = controller ? findParams<Params>(*controller) : nullptr;
-    require(params, name + ": controller.type",
-            "another controller than " + controllerType().name);
+    require(params, name + ": controller.type", "another controller than " + controllerType().name);
     return *params;
   }
 };

@@ -39,11 +39,11 @@ struct ControllerContext {
 
 /// What the rest of the house knows of a type.
 struct ControllerType {
-  std::string name;                   ///< controller.type
-  std::string summary;                ///< one line for lists
-  bool needs_model{false};            ///< it waits for a fuzzy model
-  bool predicts{false};               ///< an optimizer (clp) can stand behind it
-  bool open_loop{false};              ///< it follows no setpoint
+  std::string name;                     ///< controller.type
+  std::string summary;                  ///< one line for lists
+  bool needs_model{false};              ///< it waits for a fuzzy model
+  bool predicts{false};                 ///< an optimizer (clp) can stand behind it
+  bool open_loop{false};                ///< it follows no setpoint
   std::vector<SettingInfo> settings{};  ///< what may change in a run; empty: nothing
 };
 

@@ -58,8 +58,7 @@ ControllerType describe() {
   return type;
 }
 
-const bool kRegistered =
-    registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc});
+const bool kRegistered = registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc});
 
 }  // namespace
 }  // namespace fpc

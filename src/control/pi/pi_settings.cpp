@@ -15,9 +15,9 @@ Vector PiController::gains(double PiLoop::*gain, double LoopState::*next) const 
 }
 
 Settings PiController::settings() const {
-  return {{"kp", signalValuesText(gains(&PiLoop::kp, &LoopState::next_kp), inputs_)},
-          {"ki_per_h",
-           signalValuesText(gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h), inputs_)}};
+  return {
+      {"kp", signalValuesText(gains(&PiLoop::kp, &LoopState::next_kp), inputs_)},
+      {"ki_per_h", signalValuesText(gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h), inputs_)}};
 }
 
 bool PiController::retune(const Settings& settings) {

@@ -83,7 +83,7 @@ class PiController final : public Controller {
   PiParams params_;
   InputLimits limits_;
   double sample_time_h_;
-  std::vector<LoopState> states_;  // one per loop
+  std::vector<LoopState> states_;   // one per loop
   std::vector<SignalInfo> inputs_;  // of each loop
   bool retuned_{false};             // gains of the states wait for the next step
   bool running_{false};             // an input has been computed since the reset
