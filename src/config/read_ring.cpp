@@ -35,7 +35,8 @@ std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& l
   return {{"plant_info", plant},     {"measurement", plant},   {"plant_state", plant},
           {"base_action", law},      {"tracking", law},        {"predictive_action", law},
           {"control_action", answers}, {"solver_report", answers}, {"fuzzy_model", model},
-          {"identified", model},     {"setpoint", {}},         {"disturbance", {}}};
+          {"identified", model},     {"setpoint", {}},         {"disturbance", {}},
+          {"operator_kept", plant},  {"model_kept", plant}};
 }
 
 void readPublishers(YamlSection& section, RingParams& ring) {
