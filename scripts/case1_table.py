@@ -47,4 +47,7 @@ def main(seeds):
 
 
 if __name__ == "__main__":
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        print(__doc__.strip())
+        sys.exit(0)
     main(sys.argv[1:] or [str(seed) for seed in range(1, 9)])

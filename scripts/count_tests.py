@@ -75,4 +75,7 @@ def main(build, since="0"):
 
 
 if __name__ == "__main__":
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        print(__doc__.strip())
+        sys.exit(0)
     sys.exit(main(*sys.argv[1:]))

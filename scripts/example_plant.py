@@ -2,7 +2,12 @@
 """A plant of one's own in 40 lines: a tank, area dh/dt = q - c sqrt(h), speaking the ring of config/loop/
 example_external.yaml. Replace level() by whatever reads your sensors and moves your valves."""
 import math
+import sys
 import time
+
+if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
+    print(__doc__.strip())
+    sys.exit(0)
 
 import rospy
 from fmbpc.msg import ControlAction, Measurement, NodeReady, PlantInfo, SignalInfo

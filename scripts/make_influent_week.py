@@ -5,6 +5,7 @@ A daily cycle with its harmonic, weekends with less load, a storm on the fifth d
 measurement scatter from a fixed linear congruential generator, and three missing cells.
 """
 import math
+import sys
 
 HOURS = 168
 MISSING = {(37, "flow"), (90, "cod"), (91, "cod")}
@@ -30,6 +31,9 @@ def rows():
 
 
 def main():
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        print(__doc__.strip())
+        return
     print("time[h],flow[m3/h],cod[mg/l]")
     for t, values in rows():
         cells = ["" if (t, name) in MISSING else "%.1f" % values[name] for name in ("flow", "cod")]

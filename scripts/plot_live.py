@@ -6,6 +6,10 @@ import shutil
 import sys
 import threading
 
+if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
+    print(__doc__.strip())
+    sys.exit(0)
+
 import rospkg
 import rospy
 from fmbpc.msg import PlantInfo

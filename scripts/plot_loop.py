@@ -3,8 +3,8 @@
 
     plot_loop.py DIR [DIR ...] [--out FILE]
 
-Outputs with setpoint and reference, inputs with their limits and the optimizer's perturbation, disturbances that change; time
-in hours, of short runs in seconds. One folder: DIR/plot.png. Several folders are compared, one colour each, in comparison.png
+Outputs with setpoint and reference, inputs with their limits and the optimizer's perturbation, disturbances that change (gains
+of the plant in a panel of their own); time in hours, of long runs in days, of short ones in seconds. One folder: DIR/plot.png. Several folders are compared, one colour each, in comparison.png
 of the current folder.
 """
 import argparse
@@ -14,6 +14,7 @@ import os
 import sys
 import textwrap
 
+LONG_H = 240.0  # days beyond
 COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a"]
 SUFFIXES = ("_setpoint", "_reference", "_true", "_commanded", "_base", "_perturbation")
 
@@ -47,7 +48,11 @@ class Run:
         first = names.index(self.inputs()[-1]) + 1
         plain = [n for n in names[first:] if not n.endswith(SUFFIXES)]
         last = names.index(self.outputs()[0] + "_setpoint")
-        return [n for n in plain if names.index(n) < last]
+        return [n for n in plain if names.index(n) < last and not n.startswith("gain/")]
+
+    def gains(self):
+        """The plant's own gains: what changes in it, not what acts on it."""
+        return [n for n in self.columns if n.startswith("gain/") and not n.endswith(SUFFIXES)]
 
     def limits(self, kind, name):
         return self.summary.get("limits", {}).get(kind, {}).get(name, {})
@@ -66,7 +71,26 @@ def draw_limits(axis, limits, values, always):
         limit = limits.get(key)
         near = finite and limit is not None and min(finite) - 1e-9 <= limit <= max(finite) + 1e-9
         if limit is not None and (always or near):
-            axis.axhline(limit, color="black", linewidth=1.1, linestyle=":", zorder=3)
+            known = axis.get_legend_handles_labels()[1]
+            axis.axhline(limit, color="black", linewidth=1.1, linestyle=":", zorder=3,
+                         label=None if "limit" in known else "limit")
+
+
+def is_hidden(values, drawn):
+    """True if a line drawn later lies on one drawn before, so that the first would not be seen."""
+    finite = [v for v in values if v == v]
+    span = max(finite) - min(finite) if finite else 0.0
+    near = [[abs(a - b) <= 5e-3 * span for a, b in zip(values, other) if a == a and b == b] for other in drawn]
+    return any(same and sum(same) > 0.9 * len(same) for same in near)
+
+
+def draw_run(axis, run, values, colour, text, drawn, step):
+    """One line; dashed with gaps where another lies under it."""
+    style = {"drawstyle": "steps-post"} if step else {}
+    if is_hidden(values, drawn):
+        style["dashes"] = (5, 4)
+    drawn.append(values)
+    axis.plot(run.time, values, color=colour, linewidth=1.2, label=text, zorder=3 + 0.1 * len(drawn), **style)
 
 
 def draw_output(axis, runs, name):
@@ -77,19 +101,20 @@ def draw_output(axis, runs, name):
         axis.step(first.time, first.columns[name + "_setpoint"], where="post", color="black", linewidth=1.1,
                   linestyle="--", label="setpoint")
     if single and followed:
-        axis.plot(first.time, first.columns[name + "_reference"], color=COLOURS[2], linewidth=1.1, label="reference")
+        axis.plot(first.time, first.columns[name + "_reference"], color=COLOURS[2], linewidth=2.4, alpha=0.6,
+                  label="reference")
+    drawn = []
     for run, colour in zip(runs, COLOURS):
-        axis.plot(run.time, run.columns[name], color=colour, linewidth=1.2, label=name if single else run.name)
+        draw_run(axis, run, run.columns[name], colour, name if single else run.name, drawn, False)
     draw_limits(axis, first.limits("outputs", name), [], True)
     axis.set_ylabel(label(first, name))
 
 
 def draw_input(axis, runs, name):
     single = len(runs) == 1
-    values = []
+    values, drawn = [], []
     for run, colour in zip(runs, COLOURS):
-        axis.step(run.time, run.columns[name], where="post", color=colour, linewidth=1.0,
-                  label=name if single else run.name)
+        draw_run(axis, run, run.columns[name], colour, name if single else run.name, drawn, True)
         values += run.columns[name]
     run = runs[0]
     if single and name + "_perturbation" in run.columns:
@@ -109,6 +134,16 @@ def draw_disturbance(axis, runs, name):
     axis.set_ylabel(label(runs[0], name))
 
 
+def draw_gains(axis, runs, names):
+    """All gains that change, each as a share of what it was at the start."""
+    for number, name in enumerate(names):
+        values = runs[0].columns[name]
+        start = next((v for v in values if v == v and v != 0.0), 1.0)
+        axis.step(runs[0].time, [v / start for v in values], where="post", linewidth=1.0 + 1.7 * (len(names) - 1 - number),
+                  color=COLOURS[number % len(COLOURS)], label=name[len("gain/"):])
+    axis.set_ylabel("gain /\nits start")
+
+
 def changes(runs, name):
     return any(len(set(v for v in run.columns.get(name, []) if v == v)) > 1 for run in runs)
 
@@ -123,8 +158,11 @@ def title_of(runs):
 
 
 def time_unit(runs):
-    """Hours, but seconds where the whole run is a few minutes: (per hour, name)."""
-    return (3600.0, "s") if max(run.time[-1] for run in runs) < 0.1 else (1.0, "h")
+    """Hours, but seconds where the whole run is a few minutes and days where it is more than ten: (per hour, name)."""
+    length = max(run.time[-1] for run in runs)
+    if length > LONG_H:
+        return (1.0 / 24.0, "d")
+    return (3600.0, "s") if length < 0.1 else (1.0, "h")
 
 
 def draw(runs, file):
@@ -137,6 +175,8 @@ def draw(runs, file):
         run.time = [per_hour * hours for hours in run.time]
     panels = [(draw_output, n, 2.0) for n in first.outputs()] + [(draw_input, n, 1.7) for n in first.inputs()]
     panels += [(draw_disturbance, n, 1.0) for n in first.disturbances() if changes(runs, n)]
+    gains = [n for n in first.gains() if changes(runs, n)]
+    panels += [(draw_gains, gains, 1.6)] if gains else []
     heights = [height for _, _, height in panels]
     figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(9.0, 1.15 * sum(heights) + 1.0),
                                 gridspec_kw={"height_ratios": heights})

@@ -88,6 +88,9 @@ def draw_bifurcation(report, folder):
 
 
 def main():
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        print(__doc__.strip())
+        return
     if len(sys.argv) != 2:
         sys.exit("usage: plot_stability.py DIR")
     with open(os.path.join(sys.argv[1], "stability.json"), encoding="utf-8") as stream:

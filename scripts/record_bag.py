@@ -7,6 +7,10 @@ import subprocess
 import sys
 import threading
 
+if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
+    print(__doc__.strip())
+    sys.exit(0)
+
 import rosgraph
 import rospy
 from fmbpc.msg import NodeReady

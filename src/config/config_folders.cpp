@@ -68,8 +68,11 @@ std::string find(const std::string& kind, const std::string& name_or_path) {
   const auto files = filesOf(kind);
   const auto file = files.find(name_or_path);
   if (file != files.end()) return fs::absolute(file->second).lexically_normal().string();
-  throw InputError(kind + " '" + name_or_path + "': expected a path or one of " +
-                   join(namesIn(kind)));
+  constexpr std::size_t kFew = 12;  // more names than a person reads
+  const auto names = namesIn(kind), near = nearest(name_or_path, names);
+  throw InputError(kind + " '" + name_or_path + "': expected a path or " +
+                   (names.size() <= kFew ? "one of " + join(names) : "a name from config/" + kind) +
+                   (near.empty() ? "" : "; near: " + join(near)));
 }
 
 }  // namespace

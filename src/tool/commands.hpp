@@ -17,6 +17,12 @@ struct RunArguments {
   bool no_plot{false};
 };
 
+struct LoopsArguments {
+  std::vector<std::string> words;
+  bool names_only{false};
+  bool json{false};
+};
+
 struct IdentifyArguments {
   std::string data;           ///< CSV or bag
   std::string structure;      ///< name of config/structure, or path
@@ -87,6 +93,8 @@ int run(const RunArguments& arguments);
 int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets);
 int plants(bool json);
 int controllers(bool json);
+/// Names, titles, plants and controllers of the loops that contain all words (in any of these).
+int loops(const std::vector<std::string>& words, bool names_only, bool json);
 int model(const std::string& file, bool json);
 /// A path, or a name below config/model; what it was given if there is neither.
 std::string findModel(const std::string& name);

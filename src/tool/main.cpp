@@ -1,10 +1,12 @@
 // The command-line tool `fmbpc`.
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
 
+#include "fmbpc/base/text.hpp"
 #include "tool/commands.hpp"
 
 namespace {
@@ -22,6 +24,7 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
       "folder for trajectory.csv, summary.json, plot.png (one below it per loop if several)");
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
   run->add_flag("--no-plot", a.no_plot, "no plot.png");
+  run->footer("Example: fmbpc run asp_case1 asp_case1_pi_s --out results\n");
   run->callback([&a] { chosen = [&a] { return fpc::tool::run(a); }; });
 }
 
@@ -31,6 +34,7 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
   resolve->add_option("LOOP", a.loops, "name or path")->required()->expected(1);
   resolve->add_option("--set", a.set, "KEY.PATH=VALUE, may be repeated")->allow_extra_args(false);
   resolve->add_option("--sets", a.sets, "several of them in one text, separated by spaces");
+  resolve->footer("Example: fmbpc resolve asp_case1 --set controller.coincidence_steps=3\n");
   resolve->callback(
       [&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets); }; });
 }
@@ -41,31 +45,47 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
   identify->add_option("STRUCTURE", a.structure, "name of config/structure, or path")->required();
   identify->add_option("--out", a.out, "model file to write");
-  identify->add_option("--rows", a.rows, "FIRST:LAST data rows to identify from, from 1");
+  identify->add_option("--rows", a.rows, "FIRST:LAST data rows to identify from, from 1 (default: all)");
   identify->add_option("--validate", a.validate, "another record to validate on");
   identify->add_option("--validate-rows", a.validate_rows, "FIRST:LAST rows to validate on");
   identify->add_option("--plots", a.plots, "folder for pictures of sets, predictions, residuals");
   identify->add_flag("--json", a.json, "print one JSON object and nothing else");
+  identify->footer("Example: fmbpc identify results/trajectory.csv asp_d --out my_model.yaml\n");
   identify->callback([&a] { chosen = [&a] { return fpc::tool::identify(a); }; });
+}
+
+void addLoops(CLI::App& app, fpc::tool::LoopsArguments& a) {
+  CLI::App* loops =
+      app.add_subcommand("loops", "Lists the loop files with title, plant and controller");
+  loops->add_option("WORDS", a.words, "only loops that contain all of them (default: all loops)");
+  loops->add_flag("--names", a.names_only, "names only, one a line");
+  loops->add_flag("--json", a.json, "print one JSON object and nothing else");
+  loops->footer("Example: fmbpc loops column clp\n");
+  loops->callback(
+      [&a] { chosen = [&a] { return fpc::tool::loops(a.words, a.names_only, a.json); }; });
 }
 
 void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   CLI::App* plants =
       app.add_subcommand("plants", "Lists the plants with their signals, units and ranges");
   plants->add_flag("--json", a.json, "print one JSON object and nothing else");
+  plants->footer("Example: fmbpc plants\n");
   plants->callback([&a] { chosen = [&a] { return fpc::tool::plants(a.json); }; });
   CLI::App* controllers = app.add_subcommand(
       "controllers", "Lists the types of controller: what they are, need and let change in a run");
   controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
+  controllers->footer("Example: fmbpc controllers\n");
   controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
   CLI::App* model =
       app.add_subcommand("model", "Reports what to know of a model file before trusting it");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
   model->add_flag("--json", a.json, "print one JSON object and nothing else");
+  model->footer("Example: fmbpc model fm_1\n");
   model->callback([&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json); }; });
   CLI::App* table =
       app.add_subcommand("table", "Prints one table of runs that were written before");
   table->add_option("DIR", a.loops, "folders with a summary.json")->required();
+  table->footer("Example: fmbpc table results/asp_case1 results/asp_case1_pi_s\n");
   table->callback([&a] { chosen = [&a] { return fpc::tool::table(a.loops); }; });
 }
 
@@ -75,13 +95,14 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
   stability->add_option("MODEL|LOOP", a.name, "model or loop, by name or path")->required();
   stability->add_option("--at", a.at,
                         "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
-  stability->add_option("--horizon", a.horizon, "coincidence horizons, FIRST..LAST");
+  stability->add_option("--horizon", a.horizon, "coincidence horizons, FIRST..LAST")->capture_default_str();
   stability->add_option("--noise-gain", a.noise_gain,
                         "advise a horizon: largest std of the input per std of measurement noise");
   stability->add_option("--settling", a.settling, "advise a horizon: largest settling [samples]");
   stability->add_option("--out", a.out, "folder for stability.json and plots");
   stability->add_flag("--json", a.json, "print one JSON object and nothing else");
   stability->add_flag("--no-plot", a.no_plot, "no plots");
+  stability->footer("Example: fmbpc stability fm_1 --at q_r=570,q_i=1300,s_i=366.67\n");
   stability->callback([&a] { chosen = [&a] { return fpc::tool::stability(a); }; });
 }
 
@@ -96,6 +117,7 @@ void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
   reproduce->add_option("--plots", a.plots, "folder for a picture of every figure");
   reproduce->add_flag("--markdown", a.markdown, "the page docs/results.md");
   reproduce->add_flag("--json", a.json, "print one JSON array and nothing else");
+  reproduce->footer("Example: fmbpc reproduce blazic2007 --plots figures\n");
   reproduce->callback([&a] { chosen = [&a] { return fpc::tool::reproduce(a); }; });
 }
 
@@ -108,17 +130,19 @@ void addTune(CLI::App& app, fpc::tool::TuneArguments& a) {
       ->allow_extra_args(false);
   tune->add_option("--out", a.out,
                    "folder for the tuned loop, tuning.json, history.csv, state, plot");
-  tune->add_option("--method", a.method, "apso, pso, random, de, cmaes");
-  tune->add_option("--population", a.population, "points per generation");
-  tune->add_option("--evaluations", a.evaluations, "points in all, each on every scenario");
-  tune->add_option("--seed", a.seed, "of the search");
-  tune->add_option("--threads", a.threads, "0: all cores; the answer does not depend on it");
+  tune->add_option("--method", a.method, "apso, pso, random, de, cmaes (default: the tuning file's)");
+  tune->add_option("--population", a.population, "points per generation (default: the tuning file's)");
+  tune->add_option("--evaluations", a.evaluations, "points in all, each on every scenario (default: the tuning file's)");
+  tune->add_option("--seed", a.seed, "of the search (default: the tuning file's)");
+  tune->add_option("--threads", a.threads, "0: all cores; the answer does not depend on it")
+      ->capture_default_str();
   tune->add_flag("--resume", a.resume, "go on with what --out holds");
   tune->add_flag("--compare", a.compare, "all methods at equal evaluations instead of one tuning");
-  tune->add_option("--seeds", a.seeds, "seeds of the comparison");
-  tune->add_option("--methods", a.methods, "methods of the comparison")->delimiter(',');
+  tune->add_option("--seeds", a.seeds, "seeds of the comparison")->capture_default_str();
+  tune->add_option("--methods", a.methods, "methods of the comparison (default: all)")->delimiter(',');
   tune->add_flag("--json", a.json, "print one JSON object and nothing else");
   tune->add_flag("--no-plot", a.no_plot, "no plot");
+  tune->footer("Example: fmbpc tune cstr_tracking cstr_law --out results/tuned\n");
   tune->callback([&a] { chosen = [&a] { return fpc::tool::tune(a); }; });
 }
 
@@ -140,19 +164,37 @@ void addStudy(CLI::App& app, fpc::tool::StudyArguments& a) {
   study->add_flag("--resume", a.resume, "go on with what --out holds");
   study->add_flag("--json", a.json, "print one JSON object and nothing else");
   study->add_flag("--no-plot", a.no_plot, "no plot");
+  study->footer("Example: fmbpc study asp_case1 asp_case1_pi_x --seeds 1:24\n");
   study->callback([&a] { chosen = [&a] { return fpc::tool::study(a); }; });
+}
+
+/// What is wrong with the arguments; for an unknown command what may have been meant.
+std::string wrongWith(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
+  const bool known = std::find(commands.begin(), commands.end(), first) != commands.end();
+  if (first.empty()) return "expected a command: " + fpc::join(commands);
+  if (known || first[0] == '-') return error.what();
+  const auto near = fpc::nearest(first, commands, 1);
+  return "unknown command '" + first + "'" +
+         (near.empty() ? ": expected one of " + fpc::join(commands) : ", did you mean " + near[0] + "?");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Process control with fuzzy model-based predictive control"};
+  CLI::App app{"Process control with fuzzy model-based predictive control", "fmbpc"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", "fmbpc " FMBPC_VERSION);
+  app.footer("fmbpc COMMAND --help: options and an example of each\n");
   fpc::tool::RunArguments arguments;
   addRun(app, arguments);
   addResolve(app, arguments);
   fpc::tool::IdentifyArguments identify_arguments;
   addIdentify(app, identify_arguments);
+  fpc::tool::LoopsArguments loops_arguments;
+  addLoops(app, loops_arguments);
   addLists(app, arguments);
   fpc::tool::StabilityArguments stability;
   addStability(app, stability);
@@ -167,7 +209,7 @@ int main(int argc, char** argv) {
     return chosen();
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "fmbpc: %s\n", e.what());
+    std::fprintf(stderr, "fmbpc: %s\n", wrongWith(app, e, argc, argv).c_str());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "fmbpc: %s\n", e.what());
   }

@@ -17,6 +17,12 @@ std::optional<double> numberOf(const std::string& text);
 std::string shortText(double value);
 /// Rows of equally many cells, in lines: first column left, the others right aligned.
 std::string alignedTable(const std::vector<std::vector<std::string>>& rows);
+/// The same with all columns left aligned, for words; no blanks at the end of a line.
+std::string leftTable(const std::vector<std::vector<std::string>>& rows);
+/// The known words that somebody may have meant, the likeliest first, at most `limit`: few letters
+/// left out, added, changed or swapped, or the same beginning. Empty if none is near.
+std::vector<std::string> nearest(const std::string& word, const std::vector<std::string>& known,
+                                 std::size_t limit = 3);
 /// The text with every ${NAME} replaced by the environment variable NAME.
 /// @throws InputError naming `where` if a variable is not set or a brace is not closed.
 std::string expandEnvironment(const std::string& text, const std::string& where);

@@ -134,7 +134,8 @@ Overrides parseOverrides(const std::string& text);
 /// Folders that hold loop/, model/, structure/ and data/: ${FMBPC_CONFIG_PATH} (colon separated),
 /// then those of the build.
 std::vector<std::string> configFolders();
-/// A loop's file from its name ("asp_case1") or path. @throws InputError listing the known names.
+/// A loop's file from its name ("asp_case1") or path. @throws InputError with the nearest
+/// names.
 std::string findLoop(const std::string& name_or_path);
 std::vector<std::string> loopNames();
 /// An identification structure's file from its name ("asp_c") or path, in the same way.

@@ -11,13 +11,14 @@ namespace {
 TEST(ColumnReproduction, ReachesEveryFigureButThoseOfThePrintedLoopTwo) {
   std::size_t count = 0;
   for (const Experiment& experiment : experiments()) {
-    if (experiment.name.rfind("column_table", 0) != 0) continue;
-    for (const ReproduceRow& row : experiment.rows()) {
+    if (experiment.name < "column_table_3" || experiment.name > "column_table_5") continue;
+    for (const ReproduceRow& row : rowsOf(experiment)) {
       std::printf("%-14s %-28s %10.4g %10.4g %-14s %-16s %s\n", experiment.name.c_str(),
-                  row.quantity.c_str(), row.paper, row.here, row.unit.c_str(), name(row.verdict),
-                  row.note.c_str());
+                  row.quantity.c_str(), row.paper, row.here.median(), row.unit.c_str(),
+                  name(row.verdict()), row.note.c_str());
       const bool misprint = row.note.find("contradicts") != std::string::npos;
-      EXPECT_TRUE(misprint || row.verdict != Verdict::kNotReproducible) << row.quantity;
+      EXPECT_TRUE(misprint || !isShort(row.verdict())) << row.quantity;
+      EXPECT_NE(row.verdict(), Verdict::kNoResult) << row.quantity;
       EXPECT_FALSE(row.unit.empty());
       ++count;
     }

@@ -1,0 +1,40 @@
+"""Every script says what it is for: --help prints words and ends well, without ROS and without doing anything."""
+import os
+import subprocess
+import unittest
+
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+SCRIPTS = os.path.join(TOP, "scripts")
+NOT_RUN = {"env.sh", "packages.txt", "fmbpc_completion.bash", "fmbpc"}  # sourced, read, or the tool itself
+
+
+def programs():
+    return [n for n in sorted(os.listdir(SCRIPTS)) if n not in NOT_RUN and os.path.isfile(os.path.join(SCRIPTS, n))]
+
+
+class Scripts(unittest.TestCase):
+    def test_help(self):
+        self.assertGreater(len(programs()), 10)
+        for name in programs():
+            with self.subTest(name):
+                done = subprocess.run([os.path.join(SCRIPTS, name), "--help"], capture_output=True, text=True, timeout=60,
+                                      env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", "/")}, check=False)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertGreater(len(done.stdout.split()), 5, done.stdout)
+
+    def test_completion(self):
+        """The names that bash offers, with a tool that knows two loops."""
+        lines = """
+        . %s/fmbpc_completion.bash
+        fmbpc() { case "$1" in loops) printf 'asp_case1\\nasp_case2\\n' ;; --help) printf 'Subcommands:\\n  run  x\\n  resolve  x\\n' ;;
+          run) printf -- '  --out TEXT\\n  --json\\n' ;; esac; }
+        try() { COMP_WORDS=(fmbpc "$@"); COMP_CWORD=$#; _fmbpc; echo "${COMPREPLY[*]}"; }
+        cd /; try r; try run asp_case1; try run --o; try resolve asp
+        """ % SCRIPTS
+        done = subprocess.run(["bash", "-c", lines], capture_output=True, text=True, timeout=60, check=True)
+        self.assertEqual(done.stdout.split("\n")[:4], ["run resolve", "asp_case1", "--out", "asp_case1 asp_case2"],
+                         done.stdout + done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

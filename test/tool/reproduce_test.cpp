@@ -1,0 +1,136 @@
+// The table of experiments: every table and figure with results in the papers has an entry, every
+// figure a picture, and what fails says so.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "fmbpc/base/input_error.hpp"
+#include "tool/reproduce/picture.hpp"
+#include "tool/reproduce/report.hpp"
+#include "tool/reproduce/runs.hpp"
+#include "tool/reproduce/taieb_steps.hpp"
+
+namespace fpc::tool {
+namespace {
+
+std::vector<std::string> figures(int from, int to) {
+  std::vector<std::string> all;
+  for (int i = from; i <= to; ++i) all.push_back("figure " + std::to_string(i));
+  return all;
+}
+
+void append(std::vector<std::string>& all, const std::vector<std::string>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+}
+
+/// Read in the papers: every table and figure that shows a result, not a diagram or a definition.
+std::map<std::string, std::vector<std::string>> withResults() {
+  std::map<std::string, std::vector<std::string>> all{
+      {"blazic2007", {"table 1", "figure 1", "figure 2", "figure 3"}},
+      {"vallejo2019", {"table 5", "table 6", "table 7", "table 8", "table 11"}},
+      {"vallejo2021a",
+       {"table 3", "table 4", "table 5", "table 6", "table 7", "table 8", "table A1", "table A2"}},
+      {"vallejo2021b", {"table 1", "figure 4", "figure 5"}},
+      {"karer2007", {}},
+      {"mekki", {"table 1", "table 2", "table 3", "table 4", "table 5"}},
+      {"taieb2017", {"table 1", "table 3", "table 5", "table 6"}}};
+  append(all["vallejo2019"], figures(4, 10));
+  append(all["vallejo2019"], figures(13, 28));
+  append(all["vallejo2021a"], figures(5, 11));
+  append(all["karer2007"], figures(3, 14));
+  append(all["mekki"], figures(6, 8));
+  append(all["taieb2017"], figures(4, 10));
+  return all;
+}
+
+TEST(Experiments, CoverEveryTableAndFigureWithResults) {
+  std::size_t count = 0;
+  for (const auto& [paper, items] : withResults())
+    for (const auto& item : items) {
+      const auto all = experiments();
+      EXPECT_EQ(std::count_if(all.begin(), all.end(),
+                              [&, key = paper](const Experiment& e) {
+                                return e.paper == key && e.item == item;
+                              }),
+                1)
+          << paper << ", " << item;
+      ++count;
+    }
+  EXPECT_EQ(count, 81U);
+  const auto all = experiments();
+  EXPECT_EQ(std::count_if(all.begin(), all.end(), isTableOrFigure), 81);
+}
+
+TEST(Experiments, SayWhatTheyShowAndWhatIsBehindThem) {
+  std::set<std::string> names;
+  for (const auto& e : experiments()) {
+    EXPECT_TRUE(names.insert(e.name).second) << e.name << " twice";
+    for (const std::string& text : {e.shows, e.printed, e.behind})
+      EXPECT_FALSE(text.empty()) << e.name;
+  }
+}
+
+TEST(Experiments, OfFiguresHaveAPicture) {
+  for (const auto& e : experiments())
+    if (e.item.rfind("figure", 0) == 0) EXPECT_TRUE(hasPicture(e.name)) << e.name;
+}
+
+TEST(Experiments, AreInTheOrderOfThePapersAndTheirNumbers) {
+  std::vector<std::string> items;
+  for (const auto& e : experiments())
+    if (e.paper == "taieb2017" && e.item.rfind("figure", 0) == 0) items.push_back(e.item);
+  EXPECT_EQ(items, figures(4, 10));
+}
+
+TEST(Experiments, ThatThrowHaveOneRowWithoutAResultThatSaysWhy) {
+  Experiment broken;
+  broken.name = "broken";
+  broken.behind = "nothing";
+  broken.rows = []() -> Rows { throw InputError("a loop: expected luck"); };
+  const Rows rows = rowsOf(broken);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].verdict(), Verdict::kNoResult);
+  EXPECT_NE(rows[0].note.find("expected luck"), std::string::npos);
+  EXPECT_EQ(rows[0].behind, "nothing");
+}
+
+TEST(Runs, ThatFailLeaveNothingInTheCache) {
+  const Overrides wrong{{"sampling.sample_time_s", "-1"}};
+  for (int i = 0; i < 2; ++i) EXPECT_THROW(summaryOf("linear_2x2", wrong), InputError) << i;
+  for (int i = 0; i < 2; ++i) EXPECT_THROW(recordOf("linear_2x2", wrong), InputError) << i;
+}
+
+TEST(Steps, NoneAreNotFollowedButAnError) {
+  EXPECT_THROW(stepsOf("linear_2x2", 0, 1.0,
+                       {{"plant.initial_state", "{x11: 0, x12: 0, x21: 0, x22: 0}"},
+                        {"setpoint", "{initial: {y1: 0, y2: 0}, schedule: []}"}}),
+               InputError);
+  EXPECT_THROW(meanOf({}), InputError);
+}
+
+TEST(Report, CountsFiguresAndStatementsApart) {
+  const Rows rows{figure("a", 1.0, 1.0, "-"), figure("b", 1.0, 2.0, "-"),
+                  check("c", 0.5, Direction::kLower, 1.0, "-", "")};
+  EXPECT_EQ(inWords(countsOf(rows)), "1 reproduced, 1 not reproduced, 1 holds");
+  EXPECT_NE(reasonOf(rows).find("b: 100 % off"), std::string::npos) << reasonOf(rows);
+}
+
+TEST(Report, HasNoMinusZeroAndAMarkForNoNumber) {
+  EXPECT_EQ(figureText(-0.0), "0");
+  EXPECT_EQ(figureText(std::nan("")), "-");
+  EXPECT_EQ(figureText(-51653.6597), "-5.165e+04");
+}
+
+TEST(Report, MarkdownHasARowForEachAndKeepsItsColumns) {
+  Experiment e;
+  e.paper = "mekki";
+  e.item = "table 9";
+  const std::string page = markdown({{e, {figure("|m|", 1.0, 1.0, "-")}}});
+  EXPECT_NE(page.find("\\|m\\|"), std::string::npos);
+  EXPECT_NE(page.find("| table 9 |"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace fpc::tool

@@ -1,0 +1,58 @@
+// docs/results.md is what `fmbpc reproduce --markdown` prints: the same words, and numbers within
+// one per cent, as another machine may round otherwise. Minutes: only with FMBPC_LONG_TESTS.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "tool/tool_run.hpp"
+
+namespace fpc {
+namespace {
+
+std::vector<std::string> wordsOf(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  return words;
+}
+
+/// Equal, or numbers that agree within a per cent (or are both next to nothing).
+bool alike(const std::string& a, const std::string& b) {
+  if (a == b) return true;
+  char *end_a = nullptr, *end_b = nullptr;
+  const double x = std::strtod(a.c_str(), &end_a), y = std::strtod(b.c_str(), &end_b);
+  if (end_a == a.c_str() || end_b == b.c_str() || std::string(end_a) != end_b) return false;
+  return std::abs(x - y) <= 1e-2 * std::max(std::abs(x), std::abs(y)) + 1e-9;
+}
+
+TEST(ResultsPage, ComparesNumbersByTheirSizeAndWordsByLetters) {
+  EXPECT_TRUE(alike("0.4331", "0.4335"));
+  EXPECT_TRUE(alike("1.054e-16,", "2e-17,"));
+  EXPECT_FALSE(alike("0.43", "0.45"));
+  EXPECT_FALSE(alike("close", "better"));
+  EXPECT_FALSE(alike("3", "x"));
+}
+
+TEST(ResultsPage, IsWhatTheCommandPrints) {
+  if (!std::getenv("FMBPC_LONG_TESTS")) GTEST_SKIP() << "FMBPC_LONG_TESTS is not set";
+  std::ifstream stream(FMBPC_SOURCE_DIR "/docs/results.md");
+  std::stringstream text;
+  text << stream.rdbuf();
+  const std::string page = text.str(), first = "\n## ";
+  const auto from = page.find(first);
+  ASSERT_NE(from, std::string::npos);
+  const Outcome outcome = tool("reproduce --markdown");
+  EXPECT_EQ(outcome.code, 0);
+  const auto written = wordsOf(page.substr(from)), printed = wordsOf(outcome.printed);
+  ASSERT_EQ(written.size(), printed.size());
+  for (std::size_t i = 0; i < written.size(); ++i)
+    EXPECT_TRUE(alike(written[i], printed[i]))
+        << "word " << i << ": " << written[i] << " / " << printed[i] << " after "
+        << written[i > 0 ? i - 1 : 0];
+}
+
+}  // namespace
+}  // namespace fpc
