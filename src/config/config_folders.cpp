@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/nearest.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/study_file.hpp"

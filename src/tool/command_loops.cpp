@@ -55,6 +55,21 @@ std::vector<Entry> entries(const std::vector<std::string>& words) {
   return all;
 }
 
+/// Columns of words, left aligned, without blanks at the end of a line.
+std::string leftTable(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths(rows.front().size(), 0);
+  for (const auto& row : rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      line += row[i] + (i + 1 < row.size() ? std::string(widths[i] + 2 - row[i].size(), ' ') : "");
+    text += line + "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 int loops(const std::vector<std::string>& words, bool names_only, bool json) {

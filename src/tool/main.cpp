@@ -6,6 +6,7 @@
 #include <exception>
 #include <functional>
 
+#include "fmbpc/base/nearest.hpp"
 #include "fmbpc/base/text.hpp"
 #include "tool/commands.hpp"
 

@@ -33,21 +33,6 @@ TEST(Text, ExactTextReadsBackToTheSameDouble) {
   EXPECT_EQ(exactText(std::numeric_limits<double>::quiet_NaN()), "nan");
 }
 
-TEST(Text, NearestFindsSlipsOfTheFingersAndBeginnings) {
-  const std::vector<std::string> known{"resolve", "run", "reproduce", "asp_case1", "asp_case1_clp"};
-  EXPECT_EQ(nearest("rnu", known), std::vector<std::string>{"run"});
-  EXPECT_EQ(nearest("reproduc", known).at(0), "reproduce");
-  EXPECT_EQ(nearest("asp_caes1", known).at(0), "asp_case1");
-  EXPECT_EQ(nearest("asp_c", known).size(), 2U);
-  EXPECT_EQ(nearest("asp_case", known, 1).size(), 1U);
-  EXPECT_TRUE(nearest("thermostat", known).empty());
-  EXPECT_TRUE(nearest("", known).empty());
-}
-
-TEST(Text, LeftTablesHaveNoBlanksAtTheEndOfALine) {
-  EXPECT_EQ(leftTable({{"a", "b"}, {"longer", "c"}}), "a       b\nlonger  c\n");
-}
-
 TEST(Text, EnvironmentVariablesAreReplacedInPlace) {
   setenv("FMBPC_TEXT_TEST", "folder", 1);
   EXPECT_EQ(expandEnvironment("a/${FMBPC_TEXT_TEST}/b/${FMBPC_TEXT_TEST}", "file"),

@@ -24,8 +24,13 @@ struct RingParams {
   double speedup{3600.0};  ///< simulated seconds per second of wall time (paced, realtime)
   std::vector<std::string>
       wait_for;  ///< nodes that must be ready before sample 0; filled from controller, clp, model
+  std::vector<std::string> members;  ///< all nodes of ours but the plant that the loop needs
   double ready_timeout_s{60.0};  ///< wall time after which missing nodes are named
   bool publish_clock{true};
+  double action_timeout_s{5.0};  ///< wall time without an action after which a paced plant goes on
+  double optimizer_timeout_s{1.0};  ///< wall time after which the controller answers for it
+  double commands_per_s{20.0};      ///< of people that a node takes, on the average
+  std::map<std::string, std::vector<std::string>> publishers;  ///< by topic; nobody named: anyone
 };
 
 /// A sample line from the process to an analyser; its transport delay is length / velocity.
