@@ -25,7 +25,7 @@ Entry entryOf(const std::string& name) {
   try {
     const LoopFile loop = readLoop(name);
     const std::string plant = loop.external_plant ? "external" : loop.simulation.plant;
-    return {name, loop.report.title, plant, loop.controller + (loop.has_clp ? " + clp" : "")};
+    return {name, loop.report.title, plant, loop.controllerType().name + (loop.has_clp ? " + clp" : "")};
   } catch (const std::exception& e) {
     return {name, std::string("cannot be read: ") + e.what(), "-", "-"};
   }

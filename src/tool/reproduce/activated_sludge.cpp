@@ -8,7 +8,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kPaper[] = "vallejo2021b";
+constexpr char kPaper[] = "vallejo2021a";
 constexpr char kBehind[] = "paperReducedLoop(), eqs. 47 and 64";
 constexpr double kLastDigit = 0.5e-4;  // of figures printed with four decimals
 

@@ -8,7 +8,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kPaper[] = "vallejo2021a";
+constexpr char kPaper[] = "vallejo2019";
 
 /// Printed ISE: s with FMBPC and PI, x with FMBPC and PI [(mg/l)^2].
 struct Printed {

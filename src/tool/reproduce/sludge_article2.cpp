@@ -7,7 +7,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kArticle2[] = "vallejo2021b", kArticle3[] = "vallejo2021c";
+constexpr char kArticle2[] = "vallejo2021a", kArticle3[] = "vallejo2021b";
 constexpr char kNearer[] = "the paper: FMBPC nearer to the setpoint of x";
 constexpr char kAlike[] = "the paper: very similar";
 

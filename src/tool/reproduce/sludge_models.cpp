@@ -18,7 +18,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kPaper[] = "vallejo2021a";
+constexpr char kPaper[] = "vallejo2019";
 constexpr char kRecord[] = "the identification record was never published";
 
 /// VAF of s and x in free run [%], of the fuzzy and of the linear model.

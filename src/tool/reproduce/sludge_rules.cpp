@@ -16,7 +16,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kPaper[] = "vallejo2021a";
+constexpr char kPaper[] = "vallejo2019";
 
 /// One printed rule: what it prints of the centre of its cluster and of its consequent.
 struct PrintedRule {

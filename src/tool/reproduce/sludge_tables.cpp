@@ -13,7 +13,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kPaper[] = "vallejo2021b";
+constexpr char kPaper[] = "vallejo2021a";
 
 TsModel printed(int number) {
   return readLoop(number == 1 ? "asp_case1" : "asp_case2").model;
