@@ -100,6 +100,8 @@ TEST(Runs, ThatFailLeaveNothingInTheCache) {
   const Overrides wrong{{"sampling.sample_time_s", "-1"}};
   for (int i = 0; i < 2; ++i) EXPECT_THROW(summaryOf("linear_2x2", wrong), InputError) << i;
   for (int i = 0; i < 2; ++i) EXPECT_THROW(recordOf("linear_2x2", wrong), InputError) << i;
+  const Overrides frozen{{"plant.integrator.max_steps", "1"}, {"sampling.duration_h", "2"}};
+  for (int i = 0; i < 2; ++i) EXPECT_THROW(summaryOf("asp_case1_pi_x", frozen), InputError) << i;
 }
 
 TEST(Steps, NoneAreNotFollowedButAnError) {
