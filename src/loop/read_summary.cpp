@@ -20,6 +20,7 @@ double numberOf(const Json& y, const char* key) {
 void readOutputs(const Json& json, Summary& summary) {
   for (const auto& [name, y] : json.items()) {
     summary.output_names.push_back(name);
+    summary.output_units.push_back(y.value("unit", ""));
     summary.outputs.push_back({numberOf(y, "ise"), numberOf(y, "iae"), numberOf(y, "itae"),
                                numberOf(y, "itse"), numberOf(y, "rmse"),
                                numberOf(y, "ise_reference")});
@@ -36,6 +37,7 @@ void readOutputs(const Json& json, Summary& summary) {
 void readInputs(const Json& json, Summary& summary) {
   for (const auto& [name, u] : json.items()) {
     summary.input_names.push_back(name);
+    summary.input_units.push_back(u.value("unit", ""));
     summary.inputs.push_back(
         {u.at("min"), u.at("max"), u.at("mean_abs_move"), u.at("travel"), u.at("switches")});
   }

@@ -27,8 +27,13 @@ Json outputsOf(const Summary& summary) {
   for (std::size_t i = 0; i < summary.outputs.size(); ++i) {
     const OutputIndices& y = summary.outputs[i];
     Json& output = outputs[summary.output_names[i]];
-    output = {{"ise", y.ise},   {"iae", y.iae},   {"itae", y.itae},
-              {"itse", y.itse}, {"rmse", y.rmse}, {"ise_reference", y.ise_reference}};
+    output = {{"unit", i < summary.output_units.size() ? summary.output_units[i] : ""},
+              {"ise", y.ise},
+              {"iae", y.iae},
+              {"itae", y.itae},
+              {"itse", y.itse},
+              {"rmse", y.rmse},
+              {"ise_reference", y.ise_reference}};
     for (const WindowIndices& w : summary.windows)
       if (w.output == summary.output_names[i])
         output["windows"].push_back({{"name", w.window.name},
@@ -45,11 +50,13 @@ Json inputsOf(const Summary& summary) {
   Json inputs = Json::object();
   for (std::size_t i = 0; i < summary.inputs.size(); ++i) {
     const InputIndices& u = summary.inputs[i];
-    inputs[summary.input_names[i]] = {{"min", u.min},
-                                      {"max", u.max},
-                                      {"mean_abs_move", u.mean_abs_move},
-                                      {"switches", u.switches},
-                                      {"travel", u.travel}};
+    inputs[summary.input_names[i]] = {
+        {"unit", i < summary.input_units.size() ? summary.input_units[i] : ""},
+        {"min", u.min},
+        {"max", u.max},
+        {"mean_abs_move", u.mean_abs_move},
+        {"switches", u.switches},
+        {"travel", u.travel}};
   }
   return inputs;
 }

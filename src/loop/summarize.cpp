@@ -190,6 +190,7 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
   for (const auto& output : loop.plant_info.outputs) {
     const auto i = static_cast<Eigen::Index>(summary.output_names.size());
     summary.output_names.push_back(output.name);
+    summary.output_units.push_back(output.unit);
     summary.outputs.push_back(indicesOfOutput(record, i, sample_time_h));
     for (const auto& window : loop.report.windows)
       if (window.output.empty() || window.output == output.name)
@@ -199,6 +200,7 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
     summary.inputs.push_back(
         indicesOfInput(record, static_cast<Eigen::Index>(summary.input_names.size())));
     summary.input_names.push_back(input.name);
+    summary.input_units.push_back(input.unit);
   }
   for (const auto& [name, rate] : loop.report.consumption)
     summary.consumption.emplace_back(name, consumed(record, rate, loop.plant_info.sample_time_s));

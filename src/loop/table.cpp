@@ -7,12 +7,30 @@ namespace {
 
 using Row = std::vector<std::string>;
 
+/// "s [mg/l]"; the name alone where no unit is known or none is needed.
+std::string withUnit(const std::vector<std::string>& names, const std::vector<std::string>& units,
+                     std::size_t i) {
+  const bool known = i < units.size() && !units[i].empty() && units[i] != "-";
+  return known ? names[i] + " [" + units[i] + "]" : names[i];
+}
+
+/// As a person reads it: no "-0", and nothing for rounding errors beside the other figures.
+std::string cell(double value) {
+  const std::string text = shortText(value);
+  return text == "-0" ? "0" : text;
+}
+
+/// Moves are counted as switches only of an input that rests more often than it moves.
+std::string switches(const InputIndices& u, std::uint32_t steps) {
+  return 2 * u.switches > steps ? "-" : std::to_string(u.switches);
+}
+
 void addOutputRows(const Summary& s, std::vector<Row>& rows) {
   for (std::size_t i = 0; i < s.outputs.size(); ++i) {
     const OutputIndices& y = s.outputs[i];
-    rows.push_back({i == 0 ? s.loop : "", s.output_names[i], shortText(y.ise), shortText(y.iae),
-                    shortText(y.itae), shortText(y.itse), shortText(y.rmse),
-                    shortText(y.ise_reference), i == 0 ? std::to_string(s.output_violations) : ""});
+    rows.push_back({i == 0 ? s.loop : "", withUnit(s.output_names, s.output_units, i), cell(y.ise),
+                    cell(y.iae), cell(y.itae), cell(y.itse), cell(y.rmse), cell(y.ise_reference),
+                    i == 0 ? std::to_string(s.output_violations) : ""});
   }
 }
 
@@ -20,19 +38,26 @@ void addInputRows(const Summary& s, std::vector<Row>& rows) {
   for (std::size_t i = 0; i < s.inputs.size(); ++i) {
     const InputIndices& u = s.inputs[i];
     const bool first = i == 0;
-    rows.push_back({first ? s.loop : "", s.input_names[i], shortText(u.min), shortText(u.max),
-                    shortText(u.mean_abs_move), std::to_string(u.switches), shortText(u.travel),
+    rows.push_back({first ? s.loop : "", withUnit(s.input_names, s.input_units, i), cell(u.min),
+                    cell(u.max), cell(u.mean_abs_move), switches(u, s.steps), cell(u.travel),
                     first ? std::to_string(s.input_violations) : "",
                     first ? std::to_string(s.move_violations) : "",
                     first ? std::to_string(s.actuator_clips) : "",
-                    first ? std::to_string(s.steps) : "", first ? shortText(s.wall_s) : ""});
+                    first ? std::to_string(s.steps) : "", first ? cell(s.wall_s) : ""});
   }
 }
+
+constexpr char kLegend[] =
+    "e: setpoint - measured. ISE, IAE: sums of e^2, |e| over the samples; ITAE, ITSE: with the "
+    "time\n"
+    "in h; rmse: root mean square of e; ISE ref: sum of (reference - measured)^2; beyond: samples\n"
+    "outside the limits of the loop file; travel: sum of moves; switches: moves of an input that\n"
+    "rests more often than it moves; clips: inputs that the actuator had to cut.\n";
 
 void addWindowRows(const Summary& s, std::vector<Row>& rows) {
   for (const WindowIndices& w : s.windows)
     rows.push_back({s.loop, w.output, w.window.name, shortText(w.window.from_h),
-                    shortText(w.window.to_h), shortText(w.rmse), shortText(w.mean_error)});
+                    shortText(w.window.to_h), cell(w.rmse), cell(w.mean_error)});
 }
 
 }  // namespace
@@ -63,6 +88,7 @@ std::string toTable(const std::vector<Summary>& summaries) {
   std::string remarks;
   for (const auto& summary : summaries)
     for (const auto& remark : remarksOf(summary)) remarks += remark + "\n";
+  text += std::string("\n") + kLegend;
   return text + (remarks.empty() ? "" : "\n" + remarks);
 }
 

@@ -25,7 +25,8 @@ Entry entryOf(const std::string& name) {
   try {
     const LoopFile loop = readLoop(name);
     const std::string plant = loop.external_plant ? "external" : loop.simulation.plant;
-    return {name, loop.report.title, plant, loop.controller + (loop.has_clp ? " + clp" : "")};
+    return {name, loop.report.title, plant,
+            loop.controllerType().name + (loop.has_clp ? " + clp" : "")};
   } catch (const std::exception& e) {
     return {name, std::string("cannot be read: ") + e.what(), "-", "-"};
   }
@@ -72,7 +73,8 @@ int loops(const std::vector<std::string>& words, bool names_only, bool json) {
                     {"controller", entry.controller}});
     table.push_back({entry.name, entry.plant, entry.controller, entry.title});
   }
-  require(!all.empty(), join(words, " "), "words that a loop's name, title, plant or controller has");
+  require(!all.empty(), join(words, " "),
+          "words that a loop's name, title, plant or controller has");
   std::cout << (json ? Json{{"loops", list}}.dump(2) + "\n" : leftTable(table));
   return 0;
 }

@@ -47,7 +47,8 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
   identify->add_option("STRUCTURE", a.structure, "name of config/structure, or path")->required();
   identify->add_option("--out", a.out, "model file to write");
-  identify->add_option("--rows", a.rows, "FIRST:LAST data rows to identify from, from 1 (default: all)");
+  identify->add_option("--rows", a.rows,
+                       "FIRST:LAST data rows to identify from, from 1 (default: all)");
   identify->add_option("--validate", a.validate, "another record to validate on");
   identify->add_option("--validate-rows", a.validate_rows, "FIRST:LAST rows to validate on");
   identify->add_option("--plots", a.plots, "folder for pictures of sets, predictions, residuals");
@@ -97,7 +98,8 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
   stability->add_option("MODEL|LOOP", a.name, "model or loop, by name or path")->required();
   stability->add_option("--at", a.at,
                         "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
-  stability->add_option("--horizon", a.horizon, "coincidence horizons, FIRST..LAST")->capture_default_str();
+  stability->add_option("--horizon", a.horizon, "coincidence horizons, FIRST..LAST")
+      ->capture_default_str();
   stability->add_option("--noise-gain", a.noise_gain,
                         "advise a horizon: largest std of the input per std of measurement noise");
   stability->add_option("--settling", a.settling, "advise a horizon: largest settling [samples]");
@@ -132,16 +134,20 @@ void addTune(CLI::App& app, fpc::tool::TuneArguments& a) {
       ->allow_extra_args(false);
   tune->add_option("--out", a.out,
                    "folder for the tuned loop, tuning.json, history.csv, state, plot");
-  tune->add_option("--method", a.method, "apso, pso, random, de, cmaes (default: the tuning file's)");
-  tune->add_option("--population", a.population, "points per generation (default: the tuning file's)");
-  tune->add_option("--evaluations", a.evaluations, "points in all, each on every scenario (default: the tuning file's)");
+  tune->add_option("--method", a.method,
+                   "apso, pso, random, de, cmaes (default: the tuning file's)");
+  tune->add_option("--population", a.population,
+                   "points per generation (default: the tuning file's)");
+  tune->add_option("--evaluations", a.evaluations,
+                   "points in all, each on every scenario (default: the tuning file's)");
   tune->add_option("--seed", a.seed, "of the search (default: the tuning file's)");
   tune->add_option("--threads", a.threads, "0: all cores; the answer does not depend on it")
       ->capture_default_str();
   tune->add_flag("--resume", a.resume, "go on with what --out holds");
   tune->add_flag("--compare", a.compare, "all methods at equal evaluations instead of one tuning");
   tune->add_option("--seeds", a.seeds, "seeds of the comparison")->capture_default_str();
-  tune->add_option("--methods", a.methods, "methods of the comparison (default: all)")->delimiter(',');
+  tune->add_option("--methods", a.methods, "methods of the comparison (default: all)")
+      ->delimiter(',');
   tune->add_flag("--json", a.json, "print one JSON object and nothing else");
   tune->add_flag("--no-plot", a.no_plot, "no plot");
   tune->footer("Example: fmbpc tune cstr_tracking cstr_law --out results/tuned\n");
@@ -174,13 +180,15 @@ void addStudy(CLI::App& app, fpc::tool::StudyArguments& a) {
 std::string wrongWith(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";
   std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands(nullptr)) commands.push_back(command->get_name());
+  for (const CLI::App* command : app.get_subcommands(nullptr))
+    commands.push_back(command->get_name());
   const bool known = std::find(commands.begin(), commands.end(), first) != commands.end();
   if (first.empty()) return "expected a command: " + fpc::join(commands);
   if (known || first[0] == '-') return error.what();
   const auto near = fpc::nearest(first, commands, 1);
   return "unknown command '" + first + "'" +
-         (near.empty() ? ": expected one of " + fpc::join(commands) : ", did you mean " + near[0] + "?");
+         (near.empty() ? ": expected one of " + fpc::join(commands)
+                       : ", did you mean " + near[0] + "?");
 }
 
 }  // namespace

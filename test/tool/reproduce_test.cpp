@@ -29,16 +29,16 @@ void append(std::vector<std::string>& all, const std::vector<std::string>& more)
 std::map<std::string, std::vector<std::string>> withResults() {
   std::map<std::string, std::vector<std::string>> all{
       {"blazic2007", {"table 1", "figure 1", "figure 2", "figure 3"}},
-      {"vallejo2021a", {"table 5", "table 6", "table 7", "table 8", "table 11"}},
-      {"vallejo2021b",
+      {"vallejo2019", {"table 5", "table 6", "table 7", "table 8", "table 11"}},
+      {"vallejo2021a",
        {"table 3", "table 4", "table 5", "table 6", "table 7", "table 8", "table A1", "table A2"}},
-      {"vallejo2021c", {"table 1", "figure 4", "figure 5"}},
+      {"vallejo2021b", {"table 1", "figure 4", "figure 5"}},
       {"karer2007", {}},
       {"mekki", {"table 1", "table 2", "table 3", "table 4", "table 5"}},
       {"taieb2017", {"table 1", "table 3", "table 5", "table 6"}}};
-  append(all["vallejo2021a"], figures(4, 10));
-  append(all["vallejo2021a"], figures(13, 28));
-  append(all["vallejo2021b"], figures(5, 11));
+  append(all["vallejo2019"], figures(4, 10));
+  append(all["vallejo2019"], figures(13, 28));
+  append(all["vallejo2021a"], figures(5, 11));
   append(all["karer2007"], figures(3, 14));
   append(all["mekki"], figures(6, 8));
   append(all["taieb2017"], figures(4, 10));
@@ -100,6 +100,8 @@ TEST(Runs, ThatFailLeaveNothingInTheCache) {
   const Overrides wrong{{"sampling.sample_time_s", "-1"}};
   for (int i = 0; i < 2; ++i) EXPECT_THROW(summaryOf("linear_2x2", wrong), InputError) << i;
   for (int i = 0; i < 2; ++i) EXPECT_THROW(recordOf("linear_2x2", wrong), InputError) << i;
+  const Overrides frozen{{"plant.integrator.max_steps", "1"}, {"sampling.duration_h", "2"}};
+  for (int i = 0; i < 2; ++i) EXPECT_THROW(summaryOf("asp_case1_pi_x", frozen), InputError) << i;
 }
 
 TEST(Steps, NoneAreNotFollowedButAnError) {

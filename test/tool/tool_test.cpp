@@ -38,6 +38,16 @@ TEST_F(Tool, NoBarIsDrawnWhereNobodyLooks) {
   EXPECT_EQ(tool("run asp_case1_pi_s" + kShort, true).printed, "");
 }
 
+TEST_F(Tool, TablesHaveUnitsALegendAndNoSwitchesOfAContinuousValve) {
+  const std::string printed = tool("run asp_case1_pi_x" + kShort).printed;
+  EXPECT_NE(printed.find("x [mg/l]"), std::string::npos) << printed;
+  EXPECT_NE(printed.find("q_r [m3/h]"), std::string::npos) << printed;
+  EXPECT_NE(printed.find("beyond: samples"), std::string::npos) << printed;
+  EXPECT_NE(printed.find("  -  "), std::string::npos) << printed;
+  const std::string valves = tool("run batch_fuzzy_eq45 --set sampling.duration_h=1").printed;
+  EXPECT_EQ(valves.find("  -  "), std::string::npos) << valves;
+}
+
 TEST_F(Tool, SaysItsVersion) {
   const std::string printed = tool("--version").printed;
   EXPECT_EQ(printed.rfind("fmbpc 0.", 0), 0U) << printed;
@@ -183,8 +193,8 @@ TEST_F(Tool, StabilitySaysThatItDoesNotAnalyseThePrintedStateSpace) {
 }
 
 TEST_F(Tool, ReproduceJsonIsAListOfRowsWithAVerdictEach) {
-  const auto json =
-      nlohmann::json::parse(tool("reproduce asp2_table_8 asp2_equations cstr_section_2 --json").printed);
+  const auto json = nlohmann::json::parse(
+      tool("reproduce asp2_table_8 asp2_equations cstr_section_2 --json").printed);
   ASSERT_TRUE(json.is_array());
   ASSERT_GE(json.size(), 18U);
   for (const auto& row : json)

@@ -86,16 +86,16 @@ TEST(Verdict, GetsNoWorseAsAFigureComesNearer) {
 }
 
 TEST(Row, OverSeedsIsJudgedByItsMedianAndCountsWhoAgrees) {
-  const ReproduceRow row = check("ratio", std::vector<double>{0.5, 0.7, 0.9, 1.2},
-                                 Direction::kLower, 1.0, "-", "");
+  const ReproduceRow row =
+      check("ratio", std::vector<double>{0.5, 0.7, 0.9, 1.2}, Direction::kLower, 1.0, "-", "");
   EXPECT_DOUBLE_EQ(row.here.median(), 0.8);
   EXPECT_EQ(row.verdict(), Verdict::kHolds);
   EXPECT_DOUBLE_EQ(row.agreeing(), 0.75);
 }
 
 TEST(Row, WithOneFailedRunHasNoResult) {
-  const ReproduceRow row = check("ratio", std::vector<double>{0.5, std::nan(""), 0.9},
-                                 Direction::kLower, 1.0, "-", "");
+  const ReproduceRow row =
+      check("ratio", std::vector<double>{0.5, std::nan(""), 0.9}, Direction::kLower, 1.0, "-", "");
   EXPECT_EQ(row.verdict(), Verdict::kNoResult);
 }
 

@@ -34,6 +34,7 @@ struct Summary {
   std::uint32_t steps{};  ///< number of actions
   double wall_s{};
   std::vector<std::string> output_names, input_names;
+  std::vector<std::string> output_units, input_units;  ///< empty: not known
   std::vector<OutputIndices> outputs;
   std::vector<InputIndices> inputs;
   std::vector<WindowIndices> windows;  ///< per output, the windows of the loop file
@@ -48,9 +49,9 @@ struct Summary {
       repaired_cells{};  ///< missing cells of the influent record that were held or interpolated
   std::uint64_t implausible_cells{};  ///< of that record, clipped or filled
   std::uint32_t failed_samples{};     ///< samples over which the plant could not be moved
-  std::string trouble;             ///< of the first of them, with its number
-  std::vector<LockUp> locked;      ///< of at least a tenth of the run and ten samples
-  InputLimits limits;              ///< of the inputs
+  std::string trouble;                ///< of the first of them, with its number
+  std::vector<LockUp> locked;         ///< of at least a tenth of the run and ten samples
+  InputLimits limits;                 ///< of the inputs
   std::vector<double> output_lower, output_upper;  ///< limits behind output_violations
 };
 
@@ -62,8 +63,8 @@ Summary readSummary(const std::string& file);
 std::string troubleOf(const Summary& summary);
 /// True if every action was held or the fallback.
 bool neverControlled(const Summary& summary);
-/// Everything that did not go as asked, a line each, beginning with the loop's name: samples failed,
-/// held, on the fallback, clipped, locked, cells filled.
+/// Everything that did not go as asked, a line each, beginning with the loop's name: samples
+/// failed, held, on the fallback, clipped, locked, cells filled.
 std::vector<std::string> remarksOf(const Summary& summary);
 std::string toTable(const std::vector<Summary>& summaries);
 /// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot

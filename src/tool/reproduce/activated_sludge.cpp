@@ -8,7 +8,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kPaper[] = "vallejo2021b";
+constexpr char kPaper[] = "vallejo2021a";
 constexpr char kBehind[] = "paperReducedLoop(), eqs. 47 and 64";
 constexpr double kLastDigit = 0.5e-4;  // of figures printed with four decimals
 
@@ -39,8 +39,9 @@ double farthest() {
   const ClosedLoop full = closeLoop(paperModel(kA, kB), LoopLaw{});
   double most = 0.0;
   for (const auto& value : full.values)
-    most = std::max(most, std::min(std::abs(value), std::abs(value - paperSecondEigenvalue(
-                                                                        0.88, LoopLaw{}.coincidence_steps))));
+    most = std::max(
+        most, std::min(std::abs(value),
+                       std::abs(value - paperSecondEigenvalue(0.88, LoopLaw{}.coincidence_steps))));
   return most;
 }
 
@@ -78,13 +79,13 @@ Rows elements() {
   return rows;
 }
 
-const bool kRegistered = registerExperiments(
-    {{"asp2_table_7", kPaper, "table 7", "eigenvalues of the closed loop, formulas", "formulas",
-      kBehind, table7},
-     {"asp2_table_8", kPaper, "table 8", "eigenvalues of the closed loop, numbers", "10 numbers",
-      kBehind, table8},
-     {"asp2_equations_66_73", kPaper, "eqs. 66-73", "closed-loop state matrices", "3 numbers",
-      kBehind, elements}});
+const bool kRegistered =
+    registerExperiments({{"asp2_table_7", kPaper, "table 7",
+                          "eigenvalues of the closed loop, formulas", "formulas", kBehind, table7},
+                         {"asp2_table_8", kPaper, "table 8",
+                          "eigenvalues of the closed loop, numbers", "10 numbers", kBehind, table8},
+                         {"asp2_equations_66_73", kPaper, "eqs. 66-73",
+                          "closed-loop state matrices", "3 numbers", kBehind, elements}});
 
 }  // namespace
 }  // namespace fpc::tool

@@ -51,8 +51,8 @@ Matrix excite(unsigned seed) {
       left = static_cast<int>(generator() % 15U);
     }
     values.row(k) << x.transpose(), u.transpose();
-    require(integrator.advance(x, u, Eigen::Vector3d(12.0, 75.0, 20.0), 10.0).ok(),
-            "batch_reactor", "an integrator that goes on");
+    require(integrator.advance(x, u, Eigen::Vector3d(12.0, 75.0, 20.0), 10.0).ok(), "batch_reactor",
+            "an integrator that goes on");
   }
   return values;
 }
@@ -95,12 +95,10 @@ Rows jacket(const double (&printed)[4][5], std::size_t first) {
   for (std::size_t rule = 0; rule < 5; ++rule)
     for (std::size_t term = 0; term < 4; ++term) {
       const bool misprint = printed[term][rule] > 20.0;
-      rows.push_back(figure(std::string(names[term]) + ", rule " + std::to_string(rule + 1),
-                            printed[term][rule],
-                            over(1, first + rule, static_cast<Eigen::Index>(term)), units[term],
-                            {0.1},
-                            misprint ? "as printed cold water would heat; about -0.07 is meant"
-                                     : kCircular));
+      rows.push_back(figure(
+          std::string(names[term]) + ", rule " + std::to_string(rule + 1), printed[term][rule],
+          over(1, first + rule, static_cast<Eigen::Index>(term)), units[term], {0.1},
+          misprint ? "as printed cold water would heat; about -0.07 is meant" : kCircular));
     }
   return rows;
 }
@@ -111,9 +109,10 @@ Rows record(Eigen::Index samples) {
   Rows rows;
   for (const auto& [column, name] : {std::pair<Eigen::Index, const char*>{0, "T"}, {1, "Tw"}})
     for (const bool low : {true, false})
-      rows.push_back(incomparable(std::string(low ? "lowest " : "highest ") + name, notPrinted(),
-                                  low ? values.col(column).minCoeff() : values.col(column).maxCoeff(),
-                                  "degC", "curves of a random record that was not published"));
+      rows.push_back(
+          incomparable(std::string(low ? "lowest " : "highest ") + name, notPrinted(),
+                       low ? values.col(column).minCoeff() : values.col(column).maxCoeff(), "degC",
+                       "curves of a random record that was not published"));
   rows.push_back(check("highest Tw", values.col(1).maxCoeff(), Direction::kHigher, 70.0, "degC",
                        "covers the sets of figure 5"));
   return rows;

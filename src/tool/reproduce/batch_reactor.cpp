@@ -59,7 +59,7 @@ Rows followed(const std::string& loop, double most) {
   return rows;
 }
 
-ReproduceRow pricedShare(const char* what, double Pooled::* of, const std::string& loop,
+ReproduceRow pricedShare(const char* what, double Pooled::*of, const std::string& loop,
                          const char* note) {
   ReproduceRow row = check(std::string(what) + ", " + loop + " / " + kPlain,
                            runs(loop).*of / runs(kPlain).*of, Direction::kLower, 1.0, "-", note);
@@ -87,14 +87,15 @@ Rows valvesPlain() {
 Rows compared(std::size_t window, Direction fuzzy) {
   const Pooled &mine = runs(kPriced), &rival = runs(kLinear);
   const std::string at = std::string(" at ") + kWindows[window];
-  return {check("mean error, fuzzy - linear" + at, mine.error[window] - rival.error[window], fuzzy,
-                0.0, "K",
-                fuzzy == Direction::kHigher ? "the figure: fuzzy higher" : "the figure: fuzzy lower"),
-          check("|mean error|, fuzzy / linear" + at,
-                std::abs(mine.error[window]) / std::abs(rival.error[window]), Direction::kLower, 1.0,
-                "-", "the paper: nearer to the recipe"),
-          check("rms, fuzzy / linear" + at, mine.rms[window] / rival.rms[window], Direction::kLower,
-                1.0, "-", "the paper: the fuzzy model is the better one")};
+  return {
+      check("mean error, fuzzy - linear" + at, mine.error[window] - rival.error[window], fuzzy, 0.0,
+            "K",
+            fuzzy == Direction::kHigher ? "the figure: fuzzy higher" : "the figure: fuzzy lower"),
+      check("|mean error|, fuzzy / linear" + at,
+            std::abs(mine.error[window]) / std::abs(rival.error[window]), Direction::kLower, 1.0,
+            "-", "the paper: nearer to the recipe"),
+      check("rms, fuzzy / linear" + at, mine.rms[window] / rival.rms[window], Direction::kLower,
+            1.0, "-", "the paper: the fuzzy model is the better one")};
 }
 
 Experiment entry(const std::string& number, const char* shows, const std::string& behind,

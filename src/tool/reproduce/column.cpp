@@ -130,9 +130,9 @@ Rows step(const char* loop, Eigen::Index stepped) {
 double largestDeviation(const RunRecord& record, Eigen::Index output) {
   double most = 0.0;
   for (const auto& sample : record.samples)
-    most = std::max(most, std::abs(sample.measurement.outputs[output] /
-                                       sample.tracking.setpoint[output] -
-                                   1.0));
+    most = std::max(
+        most,
+        std::abs(sample.measurement.outputs[output] / sample.tracking.setpoint[output] - 1.0));
   return 100.0 * most;
 }
 

@@ -44,8 +44,9 @@ Rows table1() {
                   {"K22", {-19.4, 14.4, 3.0}, -15.52, -23.28}};
   Rows rows;
   for (const auto& e : elements)
-    for (const auto& [what, gain] :
-         {std::pair<const char*, double>{"nominal", e.element.gain}, {"Max", e.max}, {"Min", e.min}}) {
+    for (const auto& [what, gain] : {std::pair<const char*, double>{"nominal", e.element.gain},
+                                     {"Max", e.max},
+                                     {"Min", e.min}}) {
       Fopdt element = e.element;
       element.gain = gain;
       rows.push_back(figure(std::string("estimated ") + e.name + ", " + what, gain,
@@ -92,16 +93,16 @@ Rows table3() {
   const PiTuning pso_1 = swarmTuning(kTop, TuningCost::kStepTimes);
   const PiTuning pso_2 = swarmTuning(kBottom, TuningCost::kStepTimes);
   const Judged judged{kClose};
-  return {figure("IMC-PI 1, Kp", 0.3054, imc_1.kp, gain, judged, rule),
-          figure("IMC-PI 1, Ti", 17.25, imc_1.integral_time_min, "min", judged, rule),
-          figure("IMC-PI 2, Kp", -0.0863, imc_2.kp, gain, judged, rule),
-          figure("IMC-PI 2, Ti", 15.98, imc_2.integral_time_min, "min", judged, rule),
-          figure("PSO-PI 1, Kp", 0.6116, pso_1.kp, gain, judged, "J jumps at the 2 % band"),
-          figure("PSO-PI 1, 1/Ti", 0.0475, 1.0 / pso_1.integral_time_min, "1/min", judged,
-                 "printed as Ti: as a time the loop is unstable"),
-          figure("PSO-PI 2, Kp", -0.1442, pso_2.kp, gain, judged, printed),
-          figure("PSO-PI 2, 1/Ti", 0.0312, 1.0 / pso_2.integral_time_min, "1/min", judged,
-                 printed)};
+  return {
+      figure("IMC-PI 1, Kp", 0.3054, imc_1.kp, gain, judged, rule),
+      figure("IMC-PI 1, Ti", 17.25, imc_1.integral_time_min, "min", judged, rule),
+      figure("IMC-PI 2, Kp", -0.0863, imc_2.kp, gain, judged, rule),
+      figure("IMC-PI 2, Ti", 15.98, imc_2.integral_time_min, "min", judged, rule),
+      figure("PSO-PI 1, Kp", 0.6116, pso_1.kp, gain, judged, "J jumps at the 2 % band"),
+      figure("PSO-PI 1, 1/Ti", 0.0475, 1.0 / pso_1.integral_time_min, "1/min", judged,
+             "printed as Ti: as a time the loop is unstable"),
+      figure("PSO-PI 2, Kp", -0.1442, pso_2.kp, gain, judged, printed),
+      figure("PSO-PI 2, 1/Ti", 0.0312, 1.0 / pso_2.integral_time_min, "1/min", judged, printed)};
 }
 
 const bool kRegistered = registerExperiments(

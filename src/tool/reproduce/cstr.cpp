@@ -62,8 +62,7 @@ Rows scores(const std::string& loop, double pi, double fmbpc) {
   other("sum, aiming at y_r(k + H + delay)", loop + "_preview", "an option of ours");
   const auto against = [&](const char* what, const std::string& mine, const std::string& rival,
                            const char* note) {
-    rows.push_back(
-        check(what, score(mine) / score(rival), Direction::kLower, 1.0, "-", note));
+    rows.push_back(check(what, score(mine) / score(rival), Direction::kLower, 1.0, "-", note));
     rows.back().behind = mine + ", " + rival;
   };
   against("FMBPC as printed, model B / PI", loop + "_literal_b", loop + "_pi",
@@ -77,10 +76,9 @@ Rows scores(const std::string& loop, double pi, double fmbpc) {
 }
 
 double tuned(double kp, double Ti_min) {
-  const Summary run =
-      freshSummaryOf("cstr_tracking_pi",
-                     {{"controller.loops.0.kp", std::to_string(kp)},
-                      {"controller.loops.0.ki_per_h", std::to_string(60.0 * kp / Ti_min)}});
+  const Summary run = freshSummaryOf(
+      "cstr_tracking_pi", {{"controller.loops.0.kp", std::to_string(kp)},
+                           {"controller.loops.0.ki_per_h", std::to_string(60.0 * kp / Ti_min)}});
   return indicesOf(run, "CA").ise_reference;
 }
 
@@ -91,8 +89,8 @@ std::pair<double, double> leastOf(const std::function<double(double, double)>& c
   for (double factor = 1.3; factor > 1.002; factor = std::sqrt(factor)) {
     for (bool moved = true; moved;) {
       moved = false;
-      for (const auto& [p, q] : {std::pair{factor, 1.0}, {1.0 / factor, 1.0}, {1.0, factor},
-                                 {1.0, 1.0 / factor}}) {
+      for (const auto& [p, q] :
+           {std::pair{factor, 1.0}, {1.0 / factor, 1.0}, {1.0, factor}, {1.0, 1.0 / factor}}) {
         const double there = cost(a * p, b * q);
         if (!(there < best)) continue;
         best = there;
@@ -119,8 +117,9 @@ Rows smallSteps() {
   for (const char* name :
        {"cstr_small_steps_literal_b", "cstr_small_steps_literal", "cstr_small_steps",
         "cstr_small_steps_own", "cstr_small_steps_preview", "cstr_small_steps_gspi"}) {
-    rows.push_back(check(std::string(name) + " / the PI", score(name) / score("cstr_small_steps_pi"),
-                         Direction::kLower, 1.0, "-", "steps of 0.12 and 0.08 mol/l"));
+    rows.push_back(check(std::string(name) + " / the PI",
+                         score(name) / score("cstr_small_steps_pi"), Direction::kLower, 1.0, "-",
+                         "steps of 0.12 and 0.08 mol/l"));
     rows.back().behind = std::string(name) + ", cstr_small_steps_pi";
   }
   return rows;
@@ -136,8 +135,8 @@ Rows bounds() {
     const std::string within = std::string(", q_c ") + lower + ".." + upper;
     const double pi = score("cstr_tracking_pi", limits);
     const auto add = [&](const std::string& what, const std::string& loop) {
-      rows.push_back(check(what + " / the PI" + within, score(loop, limits) / pi,
-                           Direction::kLower, 1.0, "-", "the paper sets no bounds"));
+      rows.push_back(check(what + " / the PI" + within, score(loop, limits) / pi, Direction::kLower,
+                           1.0, "-", "the paper sets no bounds"));
       rows.back().behind = loop + ", cstr_tracking_pi --set actuator.input_lower.q_c=" + lower;
     };
     add("PI with anti-windup", "cstr_tracking_pi_aw");

@@ -97,8 +97,7 @@ Rows equation12() {
   const auto rules = readLoop("cstr_tracking_own").model.submodels[0].rules;
   require(rules.size() == 6, "cstr_tracking_own", "six rules");
   Rows rows;
-  const auto add = [&](const char* what, const double (&printed)[6], const char* unit,
-                       auto&& here) {
+  const auto add = [&](const char* what, const double(&printed)[6], const char* unit, auto&& here) {
     for (std::size_t i = 0; i < 6; ++i)
       rows.push_back(figure(std::string(what) + " of rule " + std::to_string(i + 1), printed[i],
                             here(rules[i]), unit, {0.1}, "our record and our six sets"));

@@ -18,7 +18,8 @@ std::vector<Experiment>& registry() {
 
 std::size_t rankOf(const std::string& key) {
   const auto& all = papers();
-  const auto at = std::find_if(all.begin(), all.end(), [&](const Paper& p) { return p.key == key; });
+  const auto at =
+      std::find_if(all.begin(), all.end(), [&](const Paper& p) { return p.key == key; });
   require(at != all.end(), key, "the key of a paper");
   return static_cast<std::size_t>(at - all.begin());
 }
@@ -112,9 +113,12 @@ double notPrinted() { return std::numeric_limits<double>::quiet_NaN(); }
 const std::vector<Paper>& papers() {
   static const std::vector<Paper> all{
       {"blazic2007", "Blazic and Skrjanc 2007: stirred-tank reactor"},
-      {"vallejo2021a", "Vallejo Llamas 2021, article 1: activated sludge, law and cases A to D"},
-      {"vallejo2021b", "Vallejo Llamas 2021, article 2: activated sludge, stability, cases 1 to 3"},
-      {"vallejo2021c", "Vallejo Llamas 2021, article 3: activated sludge, FMBPC/CLP"},
+      {"vallejo2019",
+       "Vallejo and Vega 2019 (article 1 of the thesis of 2021): activated sludge, law and cases A "
+       "to D"},
+      {"vallejo2021a",
+       "Vallejo and Vega 2021 (article 2): activated sludge, stability, cases 1 to 3"},
+      {"vallejo2021b", "Vallejo and Vega 2021 (article 3): activated sludge, FMBPC/CLP"},
       {"karer2007", "Karer, Music, Skrjanc and Zupancic 2007: batch reactor"},
       {"mekki", "Mekki and Saad: distillation column"},
       {"taieb2017", "Taieb, Soltani and Chaari 2017: surge tank and stirred tank"}};

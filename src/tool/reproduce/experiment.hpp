@@ -13,7 +13,7 @@ namespace fpc::tool {
 /// One figure, or the same of many runs (seeds): judged by the median, shown with the range.
 class Values {
  public:
-  Values(double value) : all_{value} {}                        // NOLINT: a number is one value
+  Values(double value) : all_{value} {}                            // NOLINT: a number is one value
   Values(std::vector<double> values) : all_{std::move(values)} {}  // NOLINT
   std::size_t count() const { return all_.size(); }
   double median() const;  ///< NaN if there is none, or if one is not finite: a run failed

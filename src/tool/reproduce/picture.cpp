@@ -51,10 +51,10 @@ struct Found {
 };
 
 Found find(const RunRecord& run, const std::string& signal) {
-  for (const auto& [kind, known] : {std::pair<char, const std::vector<SignalInfo>*>{
-                                        'y', &run.info.outputs},
-                                    {'u', &run.info.inputs},
-                                    {'d', &run.info.disturbances}})
+  for (const auto& [kind, known] :
+       {std::pair<char, const std::vector<SignalInfo>*>{'y', &run.info.outputs},
+        {'u', &run.info.inputs},
+        {'d', &run.info.disturbances}})
     for (std::size_t i = 0; i < known->size(); ++i)
       if ((*known)[i].name == signal) return {&(*known)[i], kind, static_cast<Eigen::Index>(i)};
   throw InputError(run.loop + ": expected a signal " + signal);
@@ -86,8 +86,8 @@ Panel panelOf(const std::vector<const RunRecord*>& runs, const std::string& sign
     }));
   }
   for (const RunRecord* run : runs)
-    panel.curves.push_back(curveOf(*run, run->loop, found.kind == 'y' ? "line" : "step",
-                                   reader(find(*run, signal))));
+    panel.curves.push_back(
+        curveOf(*run, run->loop, found.kind == 'y' ? "line" : "step", reader(find(*run, signal))));
   return panel;
 }
 
@@ -134,11 +134,10 @@ Json toJson(const Picture& picture) {
     Json curves = Json::array();
     for (const auto& curve : panel.curves)
       if (!curve.x.empty())
-        curves.push_back({{"label", curve.label},
-                          {"style", curve.style},
-                          {"x", curve.x},
-                          {"y", curve.y}});
-    json["panels"].push_back({{"label", panel.label}, {"curves", curves}, {"limits", panel.limits}});
+        curves.push_back(
+            {{"label", curve.label}, {"style", curve.style}, {"x", curve.x}, {"y", curve.y}});
+    json["panels"].push_back(
+        {{"label", panel.label}, {"curves", curves}, {"limits", panel.limits}});
   }
   return json;
 }

@@ -34,7 +34,8 @@ std::string spreadOf(const ReproduceRow& row) {
   std::string text = "median of " + std::to_string(row.here.count()) + ", " +
                      figureText(row.here.lowest()) + " .. " + figureText(row.here.highest());
   if (row.incomparable.empty())
-    text += ", " + std::to_string(std::lround(row.agreeing() * static_cast<double>(row.here.count()))) +
+    text += ", " +
+            std::to_string(std::lround(row.agreeing() * static_cast<double>(row.here.count()))) +
             " agree";
   return text;
 }
@@ -124,9 +125,7 @@ std::string remarkOf(const ReproduceRow& row) {
 }
 
 std::string reasonOf(const Rows& rows) {
-  const auto first = [&](auto&& wanted) {
-    return std::find_if(rows.begin(), rows.end(), wanted);
-  };
+  const auto first = [&](auto&& wanted) { return std::find_if(rows.begin(), rows.end(), wanted); };
   auto at = first([](const ReproduceRow& row) { return isShort(row.verdict()); });
   if (at != rows.end()) return at->quantity + ": " + remarkOf(*at);
   at = first([](const ReproduceRow& row) { return !row.incomparable.empty(); });
@@ -157,7 +156,8 @@ std::string detailsText(const Outcome& outcome) {
                      "  from " + e.behind + "\n";
   const std::string aligned = alignedTable(table);
   std::size_t from = 0, line = 0;
-  for (std::size_t to; (to = aligned.find('\n', from)) != std::string::npos; from = to + 1, ++line) {
+  for (std::size_t to; (to = aligned.find('\n', from)) != std::string::npos;
+       from = to + 1, ++line) {
     text += "  " + aligned.substr(from, to - from);
     if (line > 0 && line <= outcome.rows.size()) text += "  " + remarkOf(outcome.rows[line - 1]);
     text += "\n";

@@ -21,6 +21,7 @@ struct Done {
 /// @throws InputError unless the run went as asked.
 void requireSound(const Summary& summary) {
   require(summary.complete, summary.loop, "a run to the end (" + troubleOf(summary) + ")");
+  require(!neverControlled(summary), summary.loop, "actions that are not all held or the fallback");
 }
 
 Done run(const std::string& loop, const Overrides& overrides) {
@@ -103,8 +104,7 @@ const OutputIndices& indicesOf(const Summary& summary, const std::string& output
 
 Values overSeeds(const std::string& loop, const OfSummary& what) {
   std::vector<double> values;
-  for (const auto& one : seeded(loop))
-    values.push_back(one ? what(one->summary) : notPrinted());
+  for (const auto& one : seeded(loop)) values.push_back(one ? what(one->summary) : notPrinted());
   return values;
 }
 
@@ -121,8 +121,7 @@ Values iseOver(const std::string& loop, const std::string& output) {
 Values ratio(const Values& above, const Values& below) {
   require(above.count() == below.count(), "ratio", "equally many runs above and below");
   std::vector<double> values;
-  for (std::size_t i = 0; i < above.count(); ++i)
-    values.push_back(above.all()[i] / below.all()[i]);
+  for (std::size_t i = 0; i < above.count(); ++i) values.push_back(above.all()[i] / below.all()[i]);
   return values;
 }
 

@@ -9,7 +9,8 @@
 
 namespace fpc::tool {
 
-inline constexpr char kUnpublished[] = "curves only; the paper's influent record was never published";
+inline constexpr char kUnpublished[] =
+    "curves only; the paper's influent record was never published";
 
 /// ISE of one output, one loop against another, seed by seed.
 Values iseRatio(const std::string& loop, const std::string& rival, const std::string& output);

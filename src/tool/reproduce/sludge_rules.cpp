@@ -1,6 +1,6 @@
-// The printed rules of case D of the activated-sludge thesis (Vallejo Llamas 2021, article 1, tables
-// 5 to 8 and figure 6) beside those of our record. Clusters are matched by their centres first; where
-// ours lie elsewhere, coefficients cannot be compared.
+// The printed rules of case D of the activated-sludge thesis (Vallejo Llamas 2021, article 1,
+// tables 5 to 8 and figure 6) beside those of our record. Clusters are matched by their centres
+// first; where ours lie elsewhere, coefficients cannot be compared.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,7 +16,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kPaper[] = "vallejo2021a";
+constexpr char kPaper[] = "vallejo2019";
 
 /// One printed rule: what it prints of the centre of its cluster and of its consequent.
 struct PrintedRule {
@@ -85,8 +85,8 @@ double distance(const PrintedModel& table, const PrintedRule& printed, const Rul
   const OutputModel& model = modelD().submodels[table.output];
   double sum = 0.0;
   for (std::size_t i = 0; i < table.columns.size(); ++i)
-    sum += std::pow((centreOf(model, rule, table.columns[i]) - printed.centre[i]) / table.spans[i],
-                    2);
+    sum +=
+        std::pow((centreOf(model, rule, table.columns[i]) - printed.centre[i]) / table.spans[i], 2);
   return std::sqrt(sum);
 }
 
@@ -114,12 +114,10 @@ Rows centres(const PrintedModel& table) {
   Rows rows;
   for (std::size_t r = 0; r < table.rules.size(); ++r)
     for (std::size_t i = 0; i < table.columns.size(); ++i)
-      rows.push_back(figure("centre of " + table.names[i] + ", rule " +
-                                std::to_string(table.rules[r].number),
-                            table.rules[r].centre[i],
-                            centreOf(model, model.rules[match[r]], table.columns[i]),
-                            table.units[i], {},
-                            "nearest cluster of our record; the paper's was never published"));
+      rows.push_back(figure(
+          "centre of " + table.names[i] + ", rule " + std::to_string(table.rules[r].number),
+          table.rules[r].centre[i], centreOf(model, model.rules[match[r]], table.columns[i]),
+          table.units[i], {}, "nearest cluster of our record; the paper's was never published"));
   return rows;
 }
 

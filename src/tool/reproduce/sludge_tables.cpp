@@ -13,11 +13,9 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kPaper[] = "vallejo2021b";
+constexpr char kPaper[] = "vallejo2021a";
 
-TsModel printed(int number) {
-  return readLoop(number == 1 ? "asp_case1" : "asp_case2").model;
-}
+TsModel printed(int number) { return readLoop(number == 1 ? "asp_case1" : "asp_case2").model; }
 
 double setsOf(const TsModel& model) {
   double count = 0.0;
@@ -39,12 +37,12 @@ double unsorted(const TsModel& model) {
 Rows structure(int number) {
   const TsModel model = printed(number);
   const char* count = "the table's";
-  return {check("rules of s", static_cast<double>(model.submodels.at(0).rules.size()),
-                Direction::kEqual, 6.0, "-", count),
-          check("rules of x", static_cast<double>(model.submodels.at(1).rules.size()),
-                Direction::kEqual, 5.0, "-", count),
-          check("fuzzy sets", setsOf(model), Direction::kEqual, number == 1 ? 51.0 : 40.0, "-",
-                count)};
+  return {
+      check("rules of s", static_cast<double>(model.submodels.at(0).rules.size()),
+            Direction::kEqual, 6.0, "-", count),
+      check("rules of x", static_cast<double>(model.submodels.at(1).rules.size()),
+            Direction::kEqual, 5.0, "-", count),
+      check("fuzzy sets", setsOf(model), Direction::kEqual, number == 1 ? 51.0 : 40.0, "-", count)};
 }
 
 /// The own past of an output in a rule: its pole, as these models have one lag.
@@ -86,13 +84,13 @@ Values oneStepError(int number) {
   std::vector<double> errors(kSeeds, notPrinted());
   parallelFor(errors.size(), 0, [&](std::size_t i) {
     const std::string seed = std::to_string(i + 1);
-    const DataSet data = dataOf(runLoop(readLoop("asp_excite", {{"disturbance.pattern.seed", seed},
-                                                                {"controller.seed", seed},
-                                                                {"sampling.duration_h", "166"},
-                                                                {"controller.signals.0.lower", "400"},
-                                                                {"controller.signals.0.upper",
-                                                                 "1600"}})),
-                                structure);
+    const DataSet data =
+        dataOf(runLoop(readLoop("asp_excite", {{"disturbance.pattern.seed", seed},
+                                               {"controller.seed", seed},
+                                               {"sampling.duration_h", "166"},
+                                               {"controller.signals.0.lower", "400"},
+                                               {"controller.signals.0.upper", "1600"}})),
+               structure);
     errors[i] = fitFigures(data.values.col(0), predictOneStep(model, data).col(0)).rmse;
   });
   return errors;
@@ -112,19 +110,22 @@ template <Rows (*rows)(int)>
 Experiment entry(const std::string& item, int model, const char* shows, const char* numbers) {
   std::string name = "asp2_" + item;
   std::replace(name.begin(), name.end(), ' ', '_');
-  return {name,    kPaper,
-          item,    std::string(model == 1 ? "FM_1: " : "FM_2: ") + shows,
-          numbers, model == 1 ? "config/model/fm_1.yaml" : "config/model/fm_2.yaml",
+  return {name,
+          kPaper,
+          item,
+          std::string(model == 1 ? "FM_1: " : "FM_2: ") + shows,
+          numbers,
+          model == 1 ? "config/model/fm_1.yaml" : "config/model/fm_2.yaml",
           [model] { return rows(model); }};
 }
 
-const bool kRegistered = registerExperiments(
-    {entry<structure>("table 3", 1, "names of the sets", "none"),
-     entry<coefficients>("table 4", 1, "consequents", "62 numbers"),
-     entry<structure>("table 5", 2, "names of the sets", "none"),
-     entry<coefficients>("table 6", 2, "consequents", "51 numbers"),
-     entry<sets>("table A1", 1, "membership functions", "204 numbers"),
-     entry<sets>("table A2", 2, "membership functions", "160 numbers")});
+const bool kRegistered =
+    registerExperiments({entry<structure>("table 3", 1, "names of the sets", "none"),
+                         entry<coefficients>("table 4", 1, "consequents", "62 numbers"),
+                         entry<structure>("table 5", 2, "names of the sets", "none"),
+                         entry<coefficients>("table 6", 2, "consequents", "51 numbers"),
+                         entry<sets>("table A1", 1, "membership functions", "204 numbers"),
+                         entry<sets>("table A2", 2, "membership functions", "160 numbers")});
 
 }  // namespace
 }  // namespace fpc::tool

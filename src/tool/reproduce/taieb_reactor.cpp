@@ -70,13 +70,24 @@ struct Algorithm {
   const char *name, *loop;
   double rise[2], settling[2], overshoot[2], peak[2];  // as printed, Ca and T [min, min, %, -]
 };
-constexpr Algorithm kAlgorithms[] = {
-    {"NMPC", "mimo_cstr_steps_nmpc", {1.4965, 1.3711}, {6.8561, 9.2185}, {5.0973, 5.4003},
-     {1.0510, 1.0540}},
-    {"FMPC-APSO (swarm each sample)", "mimo_cstr_steps_swarm", {4.4693, 3.0459}, {7.2779, 4.5471},
-     {0.1215, 1.6309}, {1.0012, 1.0163}},
-    {"FOMPC-APSO", "mimo_cstr_steps", {0.4135, 0.4116}, {3.5480, 3.2626}, {0.0, 0.0011},
-     {1.0000, 1.0000}}};
+constexpr Algorithm kAlgorithms[] = {{"NMPC",
+                                      "mimo_cstr_steps_nmpc",
+                                      {1.4965, 1.3711},
+                                      {6.8561, 9.2185},
+                                      {5.0973, 5.4003},
+                                      {1.0510, 1.0540}},
+                                     {"FMPC-APSO (swarm each sample)",
+                                      "mimo_cstr_steps_swarm",
+                                      {4.4693, 3.0459},
+                                      {7.2779, 4.5471},
+                                      {0.1215, 1.6309},
+                                      {1.0012, 1.0163}},
+                                     {"FOMPC-APSO",
+                                      "mimo_cstr_steps",
+                                      {0.4135, 0.4116},
+                                      {3.5480, 3.2626},
+                                      {0.0, 0.0011},
+                                      {1.0000, 1.0000}}};
 
 std::vector<StepIndices> stepsOf(const Algorithm& a, Eigen::Index output) {
   return tool::stepsOf(a.loop, output, 60.0, kTrueAnalyser);
@@ -134,9 +145,10 @@ Rows followed(Eigen::Index output) {
     rows.back().behind = kAlgorithms[i].loop;
   }
   for (const std::size_t rival : {0U, 1U})
-    rows.push_back(check(std::string("10 Es + Ov + Ts + Tr, FOMPC-APSO / ") + kAlgorithms[rival].name,
-                         cost[2] / cost[rival], Direction::kLower, 1.0, "-",
-                         "the paper: the best of the three; on our setpoints"));
+    rows.push_back(
+        check(std::string("10 Es + Ov + Ts + Tr, FOMPC-APSO / ") + kAlgorithms[rival].name,
+              cost[2] / cost[rival], Direction::kLower, 1.0, "-",
+              "the paper: the best of the three; on our setpoints"));
   return rows;
 }
 
@@ -148,8 +160,8 @@ Rows effort(Eigen::Index input) {
   Rows rows;
   for (const std::size_t rival : {0U, 1U})
     rows.push_back(check(std::string("energy, FOMPC-APSO / ") + kAlgorithms[rival].name,
-                         energy(kAlgorithms[2]) / energy(kAlgorithms[rival]), Direction::kLower, 1.0,
-                         "-", "the paper: a more acceptable effort; on our setpoints"));
+                         energy(kAlgorithms[2]) / energy(kAlgorithms[rival]), Direction::kLower,
+                         1.0, "-", "the paper: a more acceptable effort; on our setpoints"));
   return rows;
 }
 

@@ -79,9 +79,8 @@ Rows table3() {
     add("Tr", a.rise, up.rise, "s", lower, note);
     add("Ts", a.settling, up.settling, "s", lower, note);
     add("Ov", a.overshoot, up.overshoot, "%", lower, "first step, 0.15 to 0.20 m");
-    add("peak above the setpoint of 0.20 m", a.peak - 0.20,
-        (up.to - up.from) * 0.01 * up.overshoot, "m", lower,
-        "the printed peaks fit neither the printed Ov nor each other");
+    add("peak above the setpoint of 0.20 m", a.peak - 0.20, (up.to - up.from) * 0.01 * up.overshoot,
+        "m", lower, "the printed peaks fit neither the printed Ov nor each other");
     add("Es", 0.0, 0.01 * up.offset, "-", absolute, "printed as 0.00");
   }
   addEnergy(rows);
@@ -113,9 +112,9 @@ Rows figure4() {
     rows.back().behind = kAlgorithms[i].loop;
   }
   for (const std::size_t rival : {0U, 1U})
-    rows.push_back(check(std::string("10 Es + Ov + Ts + Tr, FOMPC-APSO / ") + kAlgorithms[rival].name,
-                         cost[2] / cost[rival], Direction::kLower, 1.0, "-",
-                         "the paper: the best of the three"));
+    rows.push_back(check(
+        std::string("10 Es + Ov + Ts + Tr, FOMPC-APSO / ") + kAlgorithms[rival].name,
+        cost[2] / cost[rival], Direction::kLower, 1.0, "-", "the paper: the best of the three"));
   return rows;
 }
 
@@ -144,8 +143,8 @@ Rows limits() {
   const auto row = [](const char* what, double here, double limit, const char* unit) {
     return check(what, here, Direction::kLower, limit, unit, "what an independent program reaches");
   };
-  return {row("FOMPC, up, Tr", up.rise, 2.3, "s"),        row("FOMPC, up, Ts", up.settling, 3.8, "s"),
-          row("FOMPC, up, Ov", up.overshoot, 1.0, "%"),   row("FOMPC, up, Es", up.offset, 0.01, "%"),
+  return {row("FOMPC, up, Tr", up.rise, 2.3, "s"), row("FOMPC, up, Ts", up.settling, 3.8, "s"),
+          row("FOMPC, up, Ov", up.overshoot, 1.0, "%"), row("FOMPC, up, Es", up.offset, 0.01, "%"),
           row("FOMPC, down, Tr", down.rise, 12.1, "s")};
 }
 
@@ -161,8 +160,8 @@ const bool kRegistered = registerExperiments(
       "10 numbers", "surge_tank_steps", equations},
      {"taieb_tank_bounds", kTaieb, "beyond the paper: tank, least rise time",
       "what the pump allows to any controller", "none", "shortestStep() of surge_tank_up", bounds},
-     {"taieb_tank_limits", kTaieb, "beyond the paper: tank, independent program",
-      "step indices", "none", "surge_tank_up, surge_tank_down", limits}});
+     {"taieb_tank_limits", kTaieb, "beyond the paper: tank, independent program", "step indices",
+      "none", "surge_tank_up, surge_tank_down", limits}});
 
 }  // namespace
 }  // namespace fpc::tool
