@@ -32,18 +32,18 @@ struct AutoRecords {
 
 AutoRecords readAll(const IdentifyArguments& a) {
   AutoRecords r;
-  const CsvTable first = readRecord(a.data.front(), {});
+  const CsvTable first = readRecord(a.data.front(), csvFormat(a.format));
   const AutoColumns columns{a.outputs, a.inputs, a.disturbances, a.time, a.sample_time_s};
   const Structure structure = autoStructure(first, columns, r.remarks);
   r.each.push_back(makeData(first, structure, a.rows));
   for (std::size_t i = 1; i < a.data.size(); ++i)
-    r.each.push_back(makeData(readRecord(a.data[i], {}), structure, a.rows));
+    r.each.push_back(makeData(readRecord(a.data[i], csvFormat(a.format)), structure, a.rows));
   r.joined = joinRecords(r.each);
   if (a.validate.empty() && a.validate_rows.empty()) return r;
   std::error_code ignored;
   const bool same =
       a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  r.validation = makeData(same ? first : readRecord(a.validate, {}), structure, a.validate_rows);
+  r.validation = makeData(same ? first : readRecord(a.validate, csvFormat(a.format)), structure, a.validate_rows);
   if (same && rowsOverlap(a.rows, a.validate_rows))
     r.remarks.push_back("validation rows are among the identification rows: not held out");
   return r;

@@ -69,7 +69,7 @@ Structure structureOf(const TsModel& model, const CsvTable& table,
 
 int validate(const ValidateArguments& a) {
   const IdentifiedModel model = readIdentified(findModel(a.model));
-  const CsvTable table = readRecord(a.data, {});
+  const CsvTable table = readRecord(a.data, csvFormat(a.format));
   const auto columns = columnsOf(a.columns);
   const Structure structure = structureOf(model.model, table, columns);
   const DataSet data = makeData(table, structure, a.rows);

@@ -24,6 +24,12 @@ struct LoopsArguments {
   bool json{false};
 };
 
+/// How records are written, for the commands without a structure file.
+struct RecordFormat {
+  std::string separator{"comma"}, decimal{"point"};
+  std::vector<std::string> missing;
+};
+
 struct IdentifyArguments {
   std::vector<std::string> data;  ///< CSV or bag; more than one with `automatic` only
   std::string structure;      ///< name of config/structure, or path; none with `automatic`
@@ -36,6 +42,7 @@ struct IdentifyArguments {
   bool automatic{false};  ///< search over structures; the rest is for it
   std::vector<std::string> inputs, outputs, disturbances;  ///< columns
   std::string time;                                        ///< column, empty: found
+  RecordFormat format;
   double sample_time_s{};                                  ///< 0: from the time column
   std::string kind{"best"};                                ///< best, linear, regressors, state
   double budget_s{45.0};
@@ -47,6 +54,7 @@ struct ValidateArguments {
   std::string model, data;
   std::string rows;
   std::vector<std::string> columns;  ///< "signal=column"
+  RecordFormat format;
   int steps{10};
   std::string plots;
   bool json{false};

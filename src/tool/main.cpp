@@ -41,6 +41,12 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
       [&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets); }; });
 }
 
+void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
+  command.add_option("--separator", f.separator, "comma, semicolon, tab or bar");
+  command.add_option("--decimal", f.decimal, "point or comma");
+  command.add_option("--missing", f.missing, "cells that mean missing")->delimiter(',');
+}
+
 void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   CLI::App* identify = app.add_subcommand(
       "identify", "Identifies a fuzzy model from a record and validates it beside a linear one");
@@ -68,6 +74,7 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--blocks", a.blocks, "held out in turn")->check(CLI::Range(2, 20));
   identify->add_option("--window", a.window, "measured samples that start a free run")
       ->check(CLI::Range(1, 1000));
+  addFormat(*identify, a.format);
   identify->add_option("--seed", a.seed, "of the starts of all fits");
   identify->footer(
       "Example: fmbpc identify tanks.csv --auto --inputs u_V --outputs y_V --out tanks.yaml\n"
@@ -84,6 +91,7 @@ void addValidate(CLI::App& app, fpc::tool::ValidateArguments& a) {
   validate->add_option("--columns", a.columns, "SIGNAL=COLUMN where names differ")->delimiter(',');
   validate->add_option("--steps", a.steps, "samples ahead of the n-step prediction")
       ->check(CLI::Range(1, 100000));
+  addFormat(*validate, a.format);
   validate->add_option("--plots", a.plots, "folder for pictures");
   validate->add_flag("--json", a.json, "print one JSON object and nothing else");
   validate->footer("Example: fmbpc validate tanks.yaml other_day.csv --rows 1:500\n");

@@ -14,6 +14,12 @@ std::string rowsText(const std::string& text) { return text.empty() ? ":" : text
 
 }  // namespace
 
+CsvFormat csvFormat(const RecordFormat& format) {
+  CsvFormat csv{separatorOf(format.separator), decimalOf(format.decimal), format.missing};
+  csv.validate();
+  return csv;
+}
+
 DataSet makeData(const CsvTable& table, const Structure& structure, const std::string& rows) {
   DataSet data = makeDataSet(table, structure, parseRows(rowsText(rows)));
   const std::string name = fs::path(table.file).filename().string();

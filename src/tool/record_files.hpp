@@ -5,9 +5,11 @@
 
 #include "fmbpc/base/csv.hpp"
 #include "fmbpc/fuzzy/data_set.hpp"
+#include "tool/commands.hpp"
 
 namespace fpc::tool {
 
+CsvFormat csvFormat(const RecordFormat& format);
 /// Rows "A:B" (empty: all) of a table; its source names the file without folders, so that
 /// provenance does not depend on where the user's folders are.
 DataSet makeData(const CsvTable& table, const Structure& structure, const std::string& rows);
