@@ -74,6 +74,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readSampling(root, loop);
   readActuator(root, loop, names);
   readNoise(root, loop, names);
+  readSensors(root, loop, names);
   readDisturbance(root, loop, names);
   readTf(root, loop, names);
   describePlant(root, loop);

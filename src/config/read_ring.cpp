@@ -182,6 +182,7 @@ void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   if ((lower.array() > upper.array()).any()) section.fail("output_upper", "limits >= output_lower");
   for (auto& item : section.list("windows"))
     loop.report.windows.push_back(readWindow(item, names.outputs));
+  section.number("record_from_h", loop.report.record_from_h, {0.0, 1e7});
   readConsumption(section, names, loop.report.consumption);
   std::vector<std::string> free;
   section.subset("without_setpoint", free, names.outputs);

@@ -113,6 +113,15 @@ struct StudyArguments {
   bool no_plot{false};
 };
 
+struct EvaluateArguments {
+  std::vector<std::string> runs;  ///< folders of `run --out`, or loops that are run first
+  std::vector<std::string> set;   ///< "path=value", of loops
+  double from_h{-1.0}, to_h{-1.0};
+  bool weights_2002{false};
+  bool json{false};
+};
+
+int evaluate(const EvaluateArguments& arguments);
 int identify(const IdentifyArguments& arguments);
 int validate(const ValidateArguments& arguments);
 int run(const RunArguments& arguments);

@@ -47,6 +47,20 @@ void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
   command.add_option("--missing", f.missing, "cells that mean missing")->delimiter(',');
 }
 
+void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
+  CLI::App* evaluate = app.add_subcommand(
+      "evaluate", "Effluent quality, operational cost and violations of runs of BSM1");
+  evaluate->add_option("RUN", a.runs, "folders of `run --out`, or loops that are run first")
+      ->required();
+  evaluate->add_option("--set", a.set, "KEY.PATH=VALUE over the loop files, may be repeated")
+      ->allow_extra_args(false);
+  evaluate->add_option("--from-h", a.from_h, "start of the judged part [h], default the last 168");
+  evaluate->add_option("--to-h", a.to_h, "its end [h], default the end of the run");
+  evaluate->add_flag("--weights-2002", a.weights_2002, "formulas of the benchmark's 2002 book");
+  evaluate->add_flag("--json", a.json, "print one JSON object and nothing else");
+  evaluate->callback([&a] { chosen = [&a] { return fpc::tool::evaluate(a); }; });
+}
+
 void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   CLI::App* identify = app.add_subcommand(
       "identify", "Identifies a fuzzy model from a record and validates it beside a linear one");
@@ -243,6 +257,8 @@ int main(int argc, char** argv) {
   fpc::tool::RunArguments arguments;
   addRun(app, arguments);
   addResolve(app, arguments);
+  fpc::tool::EvaluateArguments evaluate_arguments;
+  addEvaluate(app, evaluate_arguments);
   fpc::tool::IdentifyArguments identify_arguments;
   addIdentify(app, identify_arguments);
   fpc::tool::ValidateArguments validate_arguments;

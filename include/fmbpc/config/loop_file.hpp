@@ -75,6 +75,7 @@ struct ReportParams {
       output_upper;  ///< n_y limits for violations.output; infinite if absent
   std::vector<ReportWindow> windows;
   std::vector<Consumption> consumption;
+  double record_from_h{};  ///< rows of trajectory.csv begin here
   std::vector<Eigen::Index> without_setpoint;  ///< outputs that nobody asks anything of
 };
 

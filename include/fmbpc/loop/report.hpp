@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fmbpc/analysis/performance.hpp"
+#include "fmbpc/base/csv.hpp"
 #include "fmbpc/base/input_limits.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/record.hpp"
@@ -67,6 +68,8 @@ bool neverControlled(const Summary& summary);
 /// failed, held, on the fallback, clipped, locked, cells filled.
 std::vector<std::string> remarksOf(const Summary& summary);
 std::string toTable(const std::vector<Summary>& summaries);
+/// What trajectory.csv holds: a row for each sample from `report.record_from_h` on.
+CsvTable trajectoryOf(const LoopFile& loop, const RunRecord& record);
 /// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot
 /// be written.
 void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
