@@ -100,6 +100,7 @@ TsModel readSections(YamlSection& top) {
   model.inputs = readSignals(top, "inputs", false);
   model.disturbances = readSignals(top, "disturbances", false);
   readRanges(top, model);
+  readDomain(top, model);
   YamlSection submodels = requiredMapping(top, "submodels", "a mapping of outputs to submodels");
   for (const auto& output : model.outputs)
     model.submodels.push_back(readSubmodel(submodels, model, output.name));
@@ -111,6 +112,45 @@ TsModel readSections(YamlSection& top) {
     throw InputError(top.file() + ": " + e.what());
   }
   return model;
+}
+
+/// `domain`: where the identification data were.
+void readDomain(YamlSection& top, TsModel& model) {
+  if (!top.has("domain")) return;
+  YamlSection section = requiredMapping(top, "domain", "a mapping of radius, scale and centres");
+  ModelDomain& domain = model.domain;
+  std::vector<double> scale;
+  for (const char* key : {"radius", "scale", "centres"}) requireKey(section, key, "a value");
+  section.number("radius", domain.radius, Range::positive());
+  section.numbers("scale", scale);
+  domain.scale = Eigen::Map<const Vector>(scale.data(), static_cast<Eigen::Index>(scale.size()));
+  const YAML::Node rows = section.raw("centres");
+  const auto n = static_cast<Eigen::Index>(scale.size());
+  if (!rows.IsSequence()) section.fail("centres", "a list of points");
+  domain.centres.resize(n, static_cast<Eigen::Index>(rows.size()));
+  for (std::size_t c = 0; c < rows.size(); ++c) {
+    if (!rows[c].IsSequence() || rows[c].size() != scale.size())
+      section.fail("centres", "points of " + std::to_string(n) + " numbers");
+    for (std::size_t j = 0; j < scale.size(); ++j)
+      domain.centres(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(c)) =
+          rows[c][j].as<double>(std::nan(""));
+  }
+  section.finish();
+}
+
+void writeDomain(YAML::Emitter& out, const ModelDomain& domain) {
+  if (domain.empty()) return;
+  const auto numbers = [](const Vector& v) {
+    return std::vector<double>(v.data(), v.data() + v.size());
+  };
+  out << YAML::Key << "domain" << YAML::Value << YAML::BeginMap;
+  out << YAML::Key << "radius" << YAML::Value << yamlNumber(domain.radius);
+  out << YAML::Key << "scale" << YAML::Value;
+  writeNumbers(out, numbers(domain.scale));
+  out << YAML::Key << "centres" << YAML::Value << YAML::BeginSeq;
+  for (Eigen::Index c = 0; c < domain.centres.cols(); ++c)
+    writeNumbers(out, numbers(domain.centres.col(c)));
+  out << YAML::EndSeq << YAML::EndMap;
 }
 
 void writeSignals(YAML::Emitter& out, const std::string& key,
@@ -176,6 +216,7 @@ std::string writeModel(const TsModel& model) {
   writeSignals(out, "inputs", model.inputs);
   writeSignals(out, "disturbances", model.disturbances);
   writeRanges(out, model);
+  writeDomain(out, model.domain);
   out << YAML::Key << "submodels" << YAML::Value << YAML::BeginMap;
   for (std::size_t i = 0; i < model.submodels.size(); ++i) {
     const OutputModel& submodel = model.submodels[i];

@@ -39,6 +39,7 @@ struct Summary {
   std::vector<WindowIndices> windows;  ///< per output, the windows of the loop file
   std::vector<std::pair<std::string, double>> consumption;
   std::uint64_t input_violations{}, move_violations{}, output_violations{}, actuator_clips{};
+  std::uint64_t outside_model{};  ///< samples below guard.trust_low of the loop's model
   bool has_clp{};
   std::uint64_t clp_solves{}, clp_infeasible{};
   std::uint64_t clp_failed{};  ///< solves without a usable result for another reason
@@ -48,13 +49,16 @@ struct Summary {
       repaired_cells{};  ///< missing cells of the influent record that were held or interpolated
   std::uint64_t implausible_cells{};  ///< of that record, clipped or filled
   std::uint32_t failed_samples{};     ///< samples over which the plant could not be moved
-  std::string trouble;             ///< of the first of them, with its number
-  std::vector<LockUp> locked;      ///< of at least a tenth of the run and ten samples
-  InputLimits limits;              ///< of the inputs
+  std::string trouble;                ///< of the first of them, with its number
+  std::vector<LockUp> locked;         ///< of at least a tenth of the run and ten samples
+  InputLimits limits;                 ///< of the inputs
   std::vector<double> output_lower, output_upper;  ///< limits behind output_violations
 };
 
 Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s);
+/// Samples (with an action) whose measurement and input lie where the loop's model has no data; 0
+/// for a law without a model.
+std::uint64_t samplesOutsideModel(const LoopFile& loop, const RunRecord& record);
 std::string toJson(const Summary& summary);  ///< keys of README, one object
 /// What toTable() needs of a summary.json. @throws InputError naming the file.
 Summary readSummary(const std::string& file);
@@ -62,8 +66,8 @@ Summary readSummary(const std::string& file);
 std::string troubleOf(const Summary& summary);
 /// True if every action was held or the fallback.
 bool neverControlled(const Summary& summary);
-/// Everything that did not go as asked, a line each, beginning with the loop's name: samples failed,
-/// held, on the fallback, clipped, locked, cells filled.
+/// Everything that did not go as asked, a line each, beginning with the loop's name: samples
+/// failed, held, on the fallback, clipped, locked, cells filled.
 std::vector<std::string> remarksOf(const Summary& summary);
 std::string toTable(const std::vector<Summary>& summaries);
 /// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot
