@@ -13,7 +13,6 @@
 namespace fpc {
 namespace {
 
-
 std::vector<SignalInfo> readSignals(YamlSection& top, const std::string& key, bool required) {
   std::vector<SignalInfo> signals;
   if (!required && (!top.has(key) || top.raw(key).IsNull())) return signals;
@@ -107,6 +106,7 @@ TsModel readModelSections(YamlSection& top) {
   model.inputs = readSignals(top, "inputs", false);
   model.disturbances = readSignals(top, "disturbances", false);
   readRanges(top, model);
+  readDomain(top, model);
   YamlSection submodels = requiredMapping(top, "submodels", "a mapping of outputs to submodels");
   for (const auto& output : model.outputs)
     model.submodels.push_back(readSubmodel(submodels, model, output.name));
@@ -201,6 +201,7 @@ std::string writeModel(const TsModel& model) {
   writeSignals(out, "inputs", model.inputs);
   writeSignals(out, "disturbances", model.disturbances);
   writeRanges(out, model);
+  writeDomain(out, model.domain);
   out << YAML::Key << "submodels" << YAML::Value;
   writeSubmodels(out, model, model.submodels);
   out << YAML::EndMap;

@@ -32,6 +32,9 @@ void writeSubmodels(YAML::Emitter& out, const TsModel& names,
 /// A list of variables NAME(k) or NAME(k-LAG).
 std::vector<Regressor> readVariables(YamlSection& section, const std::string& key,
                                      const TsModel& model);
+/// Key `domain`: where the identification data were; nothing is written for an empty one.
+void readDomain(YamlSection& top, TsModel& model);
+void writeDomain(YAML::Emitter& out, const ModelDomain& domain);
 /// The whole file but its section `identified`, which is left to readIdentified().
 TsModel readModelSections(YamlSection& top);
 

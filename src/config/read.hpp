@@ -47,6 +47,7 @@ void readCsvFormat(YamlSection& section, CsvFormat& format);
 void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
                     const std::vector<std::string>& names);
 void readModelSection(YamlSection& root, LoopFile& loop);
+void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);
 

@@ -228,6 +228,7 @@ std::string toJson(const Summary& summary) {
   for (const auto& [name, value] : summary.consumption) json[name] = value;
   json["repaired_cells"] = summary.repaired_cells;
   json["implausible_cells"] = summary.implausible_cells;
+  json["outside_model"] = summary.outside_model;
   json["limits"] = limitsOf(summary);
   return json.dump(2);
 }

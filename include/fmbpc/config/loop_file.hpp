@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "fmbpc/control/guard.hpp"
 #include "fmbpc/control/registry.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
@@ -106,6 +107,7 @@ struct LoopFile {
   IdentifyParams identify;
   std::shared_ptr<const ControllerConfig> controller;  ///< never null in a loop that was read
   Vector disturbance_nominal;                          ///< n_d, of the measured disturbances
+  GuardParams guard;                                   ///< around a law with a model
   bool has_clp{false};
   ClpParams clp;
   RingParams ring;

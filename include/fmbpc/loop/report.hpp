@@ -41,6 +41,7 @@ struct Summary {
   std::vector<WindowIndices> windows;  ///< per output, the windows of the loop file
   std::vector<std::pair<std::string, double>> consumption;
   std::uint64_t input_violations{}, move_violations{}, output_violations{}, actuator_clips{};
+  std::uint64_t outside_model{};  ///< samples below guard.trust_low of the loop's model
   bool has_clp{};
   std::uint64_t clp_solves{}, clp_infeasible{};
   std::uint64_t clp_failed{};  ///< solves without a usable result for another reason
@@ -57,6 +58,9 @@ struct Summary {
 };
 
 Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s);
+/// Samples (with an action) whose measurement and input lie where the loop's model has no data; 0
+/// for a law without a model.
+std::uint64_t samplesOutsideModel(const LoopFile& loop, const RunRecord& record);
 std::string toJson(const Summary& summary);  ///< keys of README, one object
 /// What toTable() needs of a summary.json. @throws InputError naming the file.
 Summary readSummary(const std::string& file);
