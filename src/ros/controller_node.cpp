@@ -11,8 +11,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kSilence = 1.0;  // [s] without a measurement that is due
-constexpr double kBurst = 200;    // commands at once
+constexpr double kBurst = 200;  // commands at once
 
 const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_node) {
   const bool answers_plant = private_node.param("final_action", !loop.has_clp);
@@ -258,58 +257,6 @@ void ControllerNode::publishSignals() {
 void ControllerNode::tell() {
   desk_.changed();
   desk_.tell(session_.answer().tracking.header);
-}
-
-// Nothing that waits is "controlling".
-Health ControllerNode::health(double now_s) const {
-  if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
-  if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {plantName()}};
-  if (!session_.ready())
-    return {LoopMode::kStarting, "waiting for fuzzy_model", {modelName()}};
-  if (parked_ && now_s - parked_since_s_ > kSilence)
-    return {LoopMode::kStalled, "waits for the identifier to be done with the sample before",
-            {modelName()}};
-  if (session_.counts().accepted == 0)
-    return {LoopMode::kStarting, "waiting for the first measurement", {plantName()}};
-  const std::string step = std::to_string(session_.answer().tracking.header.step);
-  if (!session_.answer().has_action) return {LoopMode::kFinished, "finished", {}};
-  if (session_.unreleased()) return {LoopMode::kHeld, session_.output().remark, {}};
-  if (standin_ && standin_->watch().waitsInVain(now_s))
-    return {LoopMode::kStalled, "no answer of " + standin_->optimizer() + " to sample " + step,
-            {standin_->optimizer()}};
-  const double period_s = loop_.ring.pace == Pace::kLockstep
-                              ? 0.0
-                              : loop_.plant_info.sample_time_s / loop_.ring.speedup;
-  if (const auto rest = summary_.rest()) return *rest;
-  if (now_s - heard_s_ > period_s + kSilence)
-    return {LoopMode::kStalled, "no measurement since sample " + step, {plantName()}};
-  if (standin_ && standin_->watch().degraded())
-    return {LoopMode::kDegraded, "no answer of " + standin_->optimizer() +
-            ": the base action goes to the plant", {standin_->optimizer()}};
-  if (session_.isManual()) return {LoopMode::kManual, "manual", {}};
-  if (session_.answer().base.source == ActionSource::kHeld)
-    return {LoopMode::kHeld, session_.output().remark, {}};
-  if (*session_.output().remark != '\0') return {LoopMode::kDegraded, session_.output().remark, {}};
-  if (!model_problem_.empty())
-    return {LoopMode::kDegraded, "controlling; refused: " + model_problem_, {}};
-  return {LoopMode::kAutomatic, "controlling", {}};
-}
-
-void ControllerNode::report(Diagnostics::Status& status) const {
-  status.add("hand", session_.isManual() ? "manual" : "auto");
-  status.add("recipe", session_.setpoint().held() ? "held" : "running");
-  status.add("step", session_.answer().tracking.header.step);
-  addCounts(status, session_.counts());
-  status.add("dropped: run not announced", plant_.foreign());
-  if (session_.controller().needsModel()) {
-    status.add("model", model_);
-    status.add("models taken", session_.models());
-  }
-  status.add("commands dropped: too many", commands_.dropped());
-  if (standin_) status.add("samples without the optimizer", standin_->watch().takenOver());
-  addRefused(status, refused());
-  addRefused(status, desk_.refused());
-  addRefused(status, authority().refused());
 }
 
 }  // namespace fpc

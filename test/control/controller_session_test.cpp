@@ -206,7 +206,7 @@ TEST_F(ControllerSessionRing, WhatTheOperatorAskedComesBackInAnotherSession) {
   EXPECT_TRUE(other.setpoint().held());
   other.receive(sample(50));
   EXPECT_EQ(other.answer().tracking.setpoint, of({60.0, 1900.0}));
-  other.restore({});  // too late: it knows better
+  other.restore(OperatorWishes{});  // too late: it knows better
   other.receive(sample(51));
   EXPECT_TRUE(other.isManual());
 }
