@@ -28,9 +28,16 @@ def listens_to_all(master):
     return needed <= heard and wanted <= heard
 
 
+def bag_file(arguments):
+    """The one argument; words of a name with spaces that nobody quoted are an error, not another name."""
+    if len(arguments) != 1:
+        raise SystemExit(f"record_bag.py: expected one file, got {len(arguments)}: {arguments}")
+    return os.path.abspath(arguments[0])
+
+
 def main():
     rospy.init_node("bag_recorder", disable_signals=True)
-    bag = os.path.abspath(rospy.myargv()[1])
+    bag = bag_file(rospy.myargv()[1:])
     os.makedirs(os.path.dirname(bag), exist_ok=True)
     ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
     stop = threading.Event()

@@ -44,7 +44,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
   require(controller_ != nullptr, "controller", "a controller");
   const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
   limits_.validate(n_u);
-  require(last_input_.size() == n_u && last_input_.allFinite(), "actuator.initial_input",
+  require(last_input_.size() == n_u && last_input_.allFinite(), "actuator.initial",
           std::to_string(n_u) + " finite numbers");
   manual_input_ = last_input_;
   answer_.base.input = last_input_;

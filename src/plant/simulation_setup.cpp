@@ -72,7 +72,7 @@ void checkSensors(SimulationParams& params) {
   if (params.output_delay_s.empty()) params.output_delay_s.assign(n_y, 0.0);
   if (params.noise_std.size() == 0) params.noise_std = Vector::Zero(static_cast<Index>(n_y));
   const std::string numbers = std::to_string(n_y) + " numbers";
-  require(params.output_delay_s.size() == n_y, "plant.output_delay_s", numbers);
+  require(params.output_delay_s.size() == n_y, "tf.sample_lines", numbers);
   require(params.noise_std.size() == static_cast<Index>(n_y), "noise.std", numbers);
   for (const double std : params.noise_std)
     require(std >= 0.0 && std::isfinite(std), "noise.std", "finite numbers >= 0");
