@@ -115,13 +115,12 @@ class PagmoSearch : public PopulationSearch {
   pagmo::population population_;
 };
 
-}  // namespace
-
-bool hasPagmo() { return true; }
-
-std::unique_ptr<PopulationSearch> makePagmoSearch(const SearchParams& params, const Matrix& first,
-                                                  const Vector& lower, const Vector& upper) {
+std::unique_ptr<PopulationSearch> make(const SearchParams& params, const Matrix& first,
+                                       const Vector& lower, const Vector& upper) {
   return std::make_unique<PagmoSearch>(params, first, lower, upper);
 }
 
+const bool kRegistered = registerPagmo(&make);
+
+}  // namespace
 }  // namespace fpc

@@ -1,5 +1,5 @@
-// Differential evolution and CMA-ES of pagmo2 (Biscani and Izzo 2020), or, in a build without it,
-// the news that they are missing: pagmo_search.cpp or no_pagmo_search.cpp is linked.
+// Differential evolution and CMA-ES of pagmo2 (Biscani and Izzo 2020). Only programs that tune link
+// them (target fmbpc_pagmo: pagmo_search.cpp, which registers itself): nodes do not map pagmo2.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,13 @@ namespace fpc {
 
 constexpr int kPagmoPopulation = 7;  ///< what every variant of its methods accepts
 
+using PagmoMaker = std::unique_ptr<PopulationSearch> (*)(const SearchParams& params,
+                                                         const Matrix& first, const Vector& lower,
+                                                         const Vector& upper);
+bool registerPagmo(PagmoMaker maker);  ///< @return true
+
 bool hasPagmo();
-/// `first`: the first generation, n x population. @throws InputError in a build without pagmo2.
+/// `first`: the first generation, n x population. @throws InputError in a program without pagmo2.
 std::unique_ptr<PopulationSearch> makePagmoSearch(const SearchParams& params, const Matrix& first,
                                                   const Vector& lower, const Vector& upper);
 
