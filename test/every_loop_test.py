@@ -31,7 +31,7 @@ class EveryLoop(unittest.TestCase):
         for loop, path in LOOPS.items():
             text = path.read_text()
             external = "type: external" in text
-            no_data = loop.startswith(("asp_bsm1", "asp_uci")) and not os.environ.get("FMBPC_DATA")
+            no_data = loop.startswith(("asp_bsm1", "asp_uci", "bsm1_")) and not os.environ.get("FMBPC_DATA")
             if external or no_data:
                 continue
             with self.subTest(loop=loop), tempfile.TemporaryDirectory() as folder:
@@ -39,7 +39,7 @@ class EveryLoop(unittest.TestCase):
 
     def compare(self, loop, folder):
         sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6, "linear_2x2": 1, "column": 60,
-                        "heated_tank": 30}
+                        "heated_tank": 30, "bsm1_": 900}
         seconds = next((s for name, s in sample_times.items() if loop.startswith(name)), 720)
         duration = f"sampling.duration_h={480 * seconds / 3600}"
         port = free_port()

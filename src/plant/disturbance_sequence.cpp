@@ -1,4 +1,5 @@
 // Records one after the other, as a benchmark's protocol asks: constant, then one file, then another.
+#include <algorithm>
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
@@ -8,15 +9,15 @@
 namespace fpc {
 namespace {
 
-/// A time as a number of samples that leaves at least one of `most`.
+/// A time as a number of samples, at most `most`: a shorter run ends before.
 std::uint32_t wholeSamples(double hours, double sample_time_s, std::uint32_t most,
                            const std::string& key) {
   const double samples = hours * 3600.0 / sample_time_s;
   const double whole = std::round(samples);
-  require(std::isfinite(hours) && std::abs(samples - whole) <= 1e-6 * std::max(1.0, samples) &&
-              whole >= 0.0 && whole < static_cast<double>(most),
-          key, "a whole number of samples within the run, got " + exactText(hours) + " h");
-  return static_cast<std::uint32_t>(whole);
+  require(std::isfinite(hours) && hours >= 0.0 &&
+              std::abs(samples - whole) <= 1e-6 * std::max(1.0, samples),
+          key, "a whole number of samples, got " + exactText(hours) + " h");
+  return static_cast<std::uint32_t>(std::min(whole, static_cast<double>(most)));
 }
 
 }  // namespace
@@ -34,6 +35,7 @@ DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
     first = wholeSamples(params.next_after_h, sample_time_s, first, "disturbance.csv.next.after_h");
     require(first > 0, "disturbance.csv.next.after_h", "a time > 0");
   }
+  if (lead == samples) return {nominal.replicate(1, static_cast<Eigen::Index>(samples) + 1), 0};
   DisturbanceRecord result = readDisturbances(params, names, nominal, sample_time_s, first);
   Matrix values(nominal.size(), static_cast<Eigen::Index>(samples) + 1);
   values.leftCols(lead) = nominal.replicate(1, lead);

@@ -60,7 +60,8 @@ inline bool hasRecords() { return std::getenv("FMBPC_DATA") != nullptr; }
 
 /// True if the loop reads a file of ${FMBPC_DATA}.
 inline bool needsRecords(const std::string& loop) {
-  return loop.rfind("asp_bsm1", 0) == 0 || loop.rfind("asp_uci", 0) == 0;
+  return loop.rfind("asp_bsm1", 0) == 0 || loop.rfind("asp_uci", 0) == 0 ||
+         (loop.rfind("bsm1_", 0) == 0 && loop.rfind("bsm1_own", 0) != 0);
 }
 
 }  // namespace fpc

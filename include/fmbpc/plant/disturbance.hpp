@@ -81,8 +81,8 @@ struct CsvDisturbanceParams {
 DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
                                    const std::vector<std::string>& names, const Vector& nominal,
                                    double sample_time_s, std::uint32_t samples);
-/// The same with the lead-in before it and the next record behind it. @throws InputError also
-/// unless these begin at a sample within the run.
+/// The same with the lead-in before it and the next record behind it. A run that is shorter
+/// ends before. @throws InputError also unless these begin at a sample.
 DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
                                           const std::vector<std::string>& names,
                                           const Vector& nominal, double sample_time_s,

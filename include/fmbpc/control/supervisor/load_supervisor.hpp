@@ -1,0 +1,46 @@
+// A supervisor of one output: PI control with the measured load ahead of it, as good plants run
+// their aeration. The honest rival of the predictive laws on BSM1.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fmbpc/control/controller.hpp"
+
+namespace fpc {
+
+/// e = y - setpoint,  v = gain e + I + load_gain (concentration flow / nominal load - 1),
+/// u = clip(v),  dI/dt = gain e / Ti + (u - v) / Tt,  |I| <= integral_limit.
+struct LoadSupervisorParams {
+  int input{}, output{};
+  int concentration{}, flow{};        ///< measured disturbances whose product is the load
+  double nominal_load{1.0};           ///< their product at the usual load
+  double gain{}, load_gain{};         ///< input per output unit; input per relative load
+  double integral_time_h{1.0}, tracking_time_h{1.0};
+  double integral_limit{1e9};         ///< in units of the input
+  void validate() const;              ///< @throws InputError naming the field
+};
+
+/// Other inputs stay where they are. A start in the middle of a run gives the integral the value at
+/// which the input stays, as far as its limit allows.
+class LoadSupervisor final : public Controller {
+ public:
+  /// @throws InputError naming the field.
+  LoadSupervisor(const LoadSupervisorParams& params, InputLimits limits, const PlantInfo& plant);
+  void reset(const Measurement& start) override;
+  void step(const Measurement& now, const SetpointSource& setpoint,
+            ControllerOutput& output) override;
+  const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
+
+ private:
+  double ahead(const Measurement& now, double error) const;
+
+  LoadSupervisorParams params_;
+  InputLimits limits_;
+  double sample_time_h_, integral_{};
+  bool transfer_pending_{false};
+  std::vector<std::pair<std::string, double>> signals_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,78 @@
+#include "fmbpc/control/supervisor/load_supervisor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+
+void LoadSupervisorParams::validate() const {
+  const std::string key = "controller.";
+  for (const auto& [name, value] :
+       {std::pair{"gain", gain}, {"load.gain", load_gain}, {"load.nominal", nominal_load}})
+    require(std::isfinite(value), key + name, "a finite number");
+  require(nominal_load > 0.0, key + "load.nominal", "a number > 0");
+  require(std::isfinite(integral_time_h) && integral_time_h > 0.0, key + "integral_time_h",
+          "a time > 0");
+  require(std::isfinite(tracking_time_h) && tracking_time_h > 0.0, key + "tracking_time_h",
+          "a time > 0");
+  require(integral_limit >= 0.0, key + "integral_limit", "a number >= 0");
+}
+
+LoadSupervisor::LoadSupervisor(const LoadSupervisorParams& params, InputLimits limits,
+                               const PlantInfo& plant)
+    : params_(params), limits_(std::move(limits)), sample_time_h_(plant.sample_time_s / 3600.0) {
+  params_.validate();
+  limits_.validate(static_cast<Eigen::Index>(plant.inputs.size()));
+  const std::string& input = plant.inputs[static_cast<std::size_t>(params_.input)].name;
+  signals_ = {{input + "_integral", 0.0}, {"load", 0.0}};
+}
+
+void LoadSupervisor::reset(const Measurement& start) {
+  integral_ = 0.0;
+  transfer_pending_ = start.header.step > 0;
+}
+
+double LoadSupervisor::ahead(const Measurement& now, double error) const {
+  const double load = now.disturbances[params_.concentration] * now.disturbances[params_.flow] /
+                      params_.nominal_load;
+  return params_.gain * error + params_.load_gain * (load - 1.0);
+}
+
+void LoadSupervisor::step(const Measurement& now, const SetpointSource& setpoint,
+                          ControllerOutput& output) {
+  output.input = now.input_applied;
+  output.reference = setpoint.present();
+  output.predictive = false;
+  output.ok = true;
+  output.remark = "";
+  output.source = ActionSource::kBase;
+  const double error = now.outputs[params_.output] - setpoint.present()[params_.output];
+  const double direct = ahead(now, error);
+  const double limit = params_.integral_limit;
+  if (transfer_pending_ && std::isfinite(direct))
+    integral_ = std::clamp(now.input_applied[params_.input] - direct, -limit, limit);
+  const double wanted = direct + integral_;
+  if (!std::isfinite(wanted)) {
+    output.ok = false;
+    output.source = ActionSource::kHeld;
+    output.remark = "the control law overflowed: input held";
+    limits_.clip(output.input, now.input_applied);
+    return;
+  }
+  // Free of rounding where the integral could take up all of the difference.
+  const bool handed = transfer_pending_ && std::abs(integral_) < limit;
+  transfer_pending_ = false;
+  double& u = output.input[params_.input];
+  u = handed ? u : wanted;
+  limits_.clip(output.input, now.input_applied);
+  if (u != wanted && !handed) output.source = ActionSource::kClipped;
+  const double rate =
+      params_.gain * error / params_.integral_time_h + (u - wanted) / params_.tracking_time_h;
+  integral_ = std::clamp(integral_ + sample_time_h_ * rate, -limit, limit);
+  signals_[0].second = integral_;
+  signals_[1].second = (direct - params_.gain * error);
+}
+
+}  // namespace fpc

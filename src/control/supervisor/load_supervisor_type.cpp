@@ -1,0 +1,41 @@
+// Controller type load_supervisor: its section of a loop file.
+#include "fmbpc/control/registry.hpp"
+#include "fmbpc/control/supervisor/load_supervisor.hpp"
+
+namespace fpc {
+namespace {
+
+LoadSupervisorParams readSupervisor(YamlSection& section, const ControllerContext& loop) {
+  LoadSupervisorParams params;
+  params.input = indexByName(section, "input", loop.inputs());
+  params.output = indexByName(section, "output", loop.outputs());
+  for (const char* key : {"gain", "integral_time_h"}) need(section, key, "a number");
+  section.number("gain", params.gain, kFinite);
+  section.number("integral_time_h", params.integral_time_h, kFinitePositive);
+  params.tracking_time_h = params.integral_time_h;
+  section.number("tracking_time_h", params.tracking_time_h, kFinitePositive);
+  section.number("integral_limit", params.integral_limit, kFiniteNotNegative);
+  YamlSection load = section.section("load");
+  params.concentration = indexByName(load, "concentration", loop.disturbances());
+  params.flow = indexByName(load, "flow", loop.disturbances());
+  params.nominal_load =
+      loop.disturbance_nominal[params.concentration] * loop.disturbance_nominal[params.flow];
+  load.number("nominal", params.nominal_load, kFinitePositive);
+  load.number("gain", params.load_gain, kFinite);
+  load.finish();
+  checked(section, [&] { params.validate(); });
+  return params;
+}
+
+std::unique_ptr<Controller> makeSupervisor(const LoadSupervisorParams& params,
+                                           const ControllerContext& loop) {
+  return std::make_unique<LoadSupervisor>(params, loop.limits, loop.plant);
+}
+
+const bool kRegistered = registerController<LoadSupervisorParams>(
+    {{"load_supervisor", "PI control of one output with the measured load ahead of it"},
+     &readSupervisor,
+     &makeSupervisor});
+
+}  // namespace
+}  // namespace fpc
