@@ -245,7 +245,6 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.loops[].setpoint_pole", exactText(pi.terms.setpoint_pole)},
           {"controller.observer.adaptive", word(law.observer.adaptive)},
           {"controller.observer.adaptation", exactText(law.observer.adaptation)},
-          {"guard.enabled", word(loop.guard.enabled)},
           {"guard.trust_low", exactText(loop.guard.trust_low)},
           {"guard.trust_high", exactText(loop.guard.trust_high)},
           {"guard.least_move", exactText(loop.guard.least_move)},

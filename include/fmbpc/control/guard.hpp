@@ -14,7 +14,7 @@ namespace fpc {
 
 /// Section `guard` of a loop file.
 struct GuardParams {
-  bool enabled{false};
+  bool enabled{true};
   double trust_low{0.25};   ///< below: the fallback takes over, or moves are smallest
   double trust_high{0.75};  ///< above: the law acts freely (again)
   double least_move{0.02};  ///< largest move at no trust, in parts of an input's range
