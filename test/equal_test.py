@@ -43,6 +43,15 @@ CASES = {
     "online": ("asp_case1_clp", 300, ["sampling.duration_h=60", "model.identify.online.every=40"], "lockstep", 3600),
     "identified": ("asp_case1", 300, ["sampling.duration_h=60", "model.identify.structure=asp_d.yaml",
                                       "model.identify.after=200"], "lockstep", 3600),
+    "guard": ("asp_case_c_own", 400, ["sampling.duration_h=80", "guard.lock_samples=12"], "lockstep", 3600),
+    "guard_clp": ("asp_case1_own", 200, ["sampling.duration_h=40", "guard.trust_low=0.5", "clp.perturbation_steps=10"],
+                  "lockstep", 3600),
+    "observer": ("cstr_tracking_observer", 400, ["noise.std.CA=0.0005"], "lockstep", 3600),
+    "observer_clp": ("surge_tank_steps_clp", 600, ["sampling.duration_h=0.016666666666666666", "noise.std.H=0.001"],
+                     "lockstep", 3600),
+    "observer_nmpc": ("surge_tank_steps_nmpc", 300, ["sampling.duration_h=0.008333333333333333", "noise.std.H=0.001"],
+                      "lockstep", 3600),
+    "pi_best": ("asp_case1_pi_x_best", 200, ["sampling.duration_h=40"], "lockstep", 3600),
     "plugin": ("two_tanks_outflow", 360, [], "lockstep", 3600),
 }
 

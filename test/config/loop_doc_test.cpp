@@ -87,7 +87,8 @@ std::set<std::string> readerKeys() {
       "upper: 1}]\n"
       "  disturbances: [{name: d}]\nsetpoint: {initial: {y: 1}}\n"
       "controller: {type: pi, loops: [{input: u, output: y, kp: 1, gain_schedule: [{output: 0, "
-      "gain: 1}]}]}\n";
+      "gain: 1}], static_input: [{output: 0, input: 1}], feedforward: [{disturbance: d, gain: "
+      "1}]}]}\n";
   const std::string excitation =
       "plant: {type: activated_sludge}\ncontroller:\n  type: excitation\n  signals: [{input: q_r, "
       "signal: ";
@@ -239,6 +240,15 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.disturbance_gain", exactText(optimal.disturbance_gain)},
           {"controller.loops[].ki_per_h", exactText(pi.ki_per_h)},
           {"controller.loops[].reverse", word(pi.reverse)},
+          {"controller.observer.adaptation", exactText(law.observer.adaptation)},
+          {"guard.trust_low", exactText(loop.guard.trust_low)},
+          {"guard.trust_high", exactText(loop.guard.trust_high)},
+          {"guard.least_move", exactText(loop.guard.least_move)},
+          {"guard.return_samples", std::to_string(loop.guard.return_samples)},
+          {"guard.lock_samples", std::to_string(loop.guard.lock_samples)},
+          {"guard.lock_error", exactText(loop.guard.lock_error)},
+          {"guard.lock_step", exactText(loop.guard.lock_step)},
+          {"guard.lock_release", std::to_string(loop.guard.lock_release)},
           {"controller.loops[].anti_windup", pi.anti_windup},
           {"controller.loops[].start", pi.start},
           {"controller.seed", std::to_string(ExcitationParams{}.seed)},

@@ -1,15 +1,22 @@
 #include "fmbpc/control/fmbpc/disturbance_forecast.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 
 DisturbanceForecast::DisturbanceForecast(Eigen::Index n_d, int horizon_steps, int period_steps,
-                                         double pole)
-    : past_(Matrix::Zero(n_d, std::max(period_steps, 0) + 1)),
+                                         double pole, int memory_steps)
+    : past_(Matrix::Zero(n_d, std::max(period_steps, 0) + 1 +
+                                  (memory_steps > 0 ? std::max(1, horizon_steps / 5) : 0))),
       future_(Matrix::Zero(n_d, std::max(horizon_steps, 1))),
+      weight_(Vector::Ones(n_d)),
+      product_(Vector::Zero(n_d)),
+      square_(product_),
+      fading_(memory_steps > 0 ? std::exp(-1.0 / memory_steps) : 1.0),
+      lead_(std::max(1, horizon_steps / 5)),
       period_(period_steps),
       pole_(pole) {
   require(period_steps == 0 || period_steps >= horizon_steps, "controller.forecast_period_h",
@@ -17,7 +24,27 @@ DisturbanceForecast::DisturbanceForecast(Eigen::Index n_d, int horizon_steps, in
   require(pole >= 0.0 && pole <= 1.0, "controller.forecast_pole", "a number from 0 to 1");
 }
 
-void DisturbanceForecast::forget() { known_ = 0; }
+void DisturbanceForecast::forget() {
+  known_ = 0;
+  weight_.setOnes();
+  product_.setZero();
+  square_.setZero();
+}
+
+/// The forecast of d(k) that was made at k - lead, against holding d(k - lead).
+void DisturbanceForecast::learn() {
+  const auto back = [&](Eigen::Index samples) {
+    return past_.col(column(last_step_ - static_cast<std::uint32_t>(samples)));
+  };
+  const double faded = std::pow(pole_, static_cast<double>(lead_));
+  for (Eigen::Index i = 0; i < weight_.size(); ++i) {
+    const double held = back(lead_)[i];
+    const double daily = back(period_)[i] + faded * (held - back(lead_ + period_)[i]);
+    product_[i] = fading_ * product_[i] + (back(0)[i] - held) * (daily - held);
+    square_[i] = fading_ * square_[i] + (daily - held) * (daily - held);
+    if (square_[i] > 0.0) weight_[i] = std::clamp(product_[i] / square_[i], 0.0, 1.0);
+  }
+}
 
 Eigen::Index DisturbanceForecast::column(std::uint32_t step) const {
   return static_cast<Eigen::Index>(step) % past_.cols();
@@ -31,11 +58,12 @@ void DisturbanceForecast::add(std::uint32_t step, VectorRef disturbances) {
     past_.col(column(step - static_cast<std::uint32_t>(i))) = disturbances;
   known_ = std::min(known_ + passed, past_.cols());
   last_step_ = step;
+  if (fading_ < 1.0 && period_ > 0 && passed == 1 && known_ == past_.cols()) learn();
 }
 
 const Matrix& DisturbanceForecast::predict() {
   const auto now = past_.col(column(last_step_));
-  const bool daily = period_ > 0 && known_ == past_.cols();
+  const bool daily = period_ > 0 && known_ > period_;
   const auto before = past_.col(daily ? column(last_step_ - static_cast<std::uint32_t>(period_))
                                       : column(last_step_));
   double fading = 1.0;
@@ -44,6 +72,7 @@ const Matrix& DisturbanceForecast::predict() {
     if (!daily || i == 0) continue;
     const auto back = static_cast<std::uint32_t>(period_ - i);
     future_.col(i) = past_.col(column(last_step_ - back)) + fading * (now - before);
+    if (fading_ < 1.0) future_.col(i) = now + weight_.cwiseProduct(future_.col(i) - now);
   }
   return future_;
 }

@@ -21,6 +21,10 @@ void readForecast(YamlSection& section, const ControllerContext& loop, FmbpcPara
   params.forecast_period_steps =
       static_cast<int>(std::lround(period_h * 3600.0 / loop.plant.sample_time_s));
   section.number("forecast_pole", params.forecast_pole, {0.0, 1.0});
+  double memory_h = 0.0;
+  section.number("forecast_memory_h", memory_h, {0.0, 1e4});
+  params.forecast_memory_steps =
+      static_cast<int>(std::lround(memory_h * 3600.0 / loop.plant.sample_time_s));
 }
 
 FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {

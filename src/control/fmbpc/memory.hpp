@@ -28,7 +28,7 @@ struct FmbpcLaw::Memory {
         aim(params.coincidence_steps - 1 + params.reference_lead_steps),
         future(Matrix::Zero(countOf(plant.outputs), params.referenceSteps())),
         forecast(countOf(plant.disturbances), params.horizon_steps, params.forecast_period_steps,
-                 params.forecast_pole),
+                 params.forecast_pole, params.forecast_memory_steps),
         disturbances(params.disturbance_feedforward
                          ? Vector(Vector::Zero(countOf(plant.disturbances)))
                          : params.disturbance_nominal),

@@ -77,5 +77,26 @@ TEST(DisturbanceForecast, RefusesPeriodsShorterThanTheHorizonAndOddPoles) {
   EXPECT_NO_THROW(DisturbanceForecast(1, 4, 4, 1.0));
 }
 
+TEST(DisturbanceForecast, WhatRepeatsItselfIsBelievedWholly) {
+  DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.5, 2 * kPeriod);
+  for (int k = 0; k <= 10 * kPeriod; ++k)
+    forecast.add(static_cast<std::uint32_t>(k), one(daily(k)));
+  EXPECT_NEAR(forecast.weight()[0], 1.0, 1e-9);
+  EXPECT_NEAR(forecast.predict()(0, 2), daily(10 * kPeriod + 2), 1e-9);
+}
+
+TEST(DisturbanceForecast, AnEventThatDoesNotComeAgainIsNotBelieved) {
+  DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.9, 2 * kPeriod);
+  const int event = 5 * kPeriod;
+  for (int k = 0; k < 5 * kPeriod; ++k) forecast.add(static_cast<std::uint32_t>(k), one(1.0));
+  EXPECT_EQ(forecast.weight()[0], 1.0);  // nothing to judge by
+  for (int k = event; k < event + kPeriod + 2; ++k)
+    forecast.add(static_cast<std::uint32_t>(k), one(k == event || k == event + 1 ? 50.0 : 1.0));
+  EXPECT_LT(forecast.weight()[0], 0.6);
+  forecast.add(static_cast<std::uint32_t>(event + kPeriod + 2), one(1.0));
+  forecast.add(static_cast<std::uint32_t>(event + kPeriod + 3), one(1.0));
+  EXPECT_LT(forecast.weight()[0], 0.3);
+}
+
 }  // namespace
 }  // namespace fpc

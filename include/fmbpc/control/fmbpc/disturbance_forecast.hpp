@@ -8,22 +8,32 @@ namespace fpc {
 
 /// d(k+i) = d(k+i-P) + pole^i (d(k) - d(k-P)), from past measurements only; until a period has been
 /// seen, and without one (P = 0), d(k) is held. Source: the seasonal naive forecast with an error
-/// of first order, Box and Jenkins 1976, chapter 9. No allocation after construction.
+/// of first order, Box and Jenkins 1976, chapter 9. With a memory the forecast is believed as far
+/// as it was right lately: d(k) + w (forecast - d(k)), w in [0, 1] of each disturbance the least
+/// squares weight of forecasts made a fifth of the horizon ago, squares fading over memory_steps.
+/// An event that does not come again weighs as much as it was large. No allocation after
+/// construction.
 class DisturbanceForecast {
  public:
   /// @throws InputError unless 0 <= period_steps and 0 <= pole <= 1, or if a period is shorter than
   /// the horizon it is to be known over.
-  DisturbanceForecast(Eigen::Index n_d, int horizon_steps, int period_steps, double pole);
+  DisturbanceForecast(Eigen::Index n_d, int horizon_steps, int period_steps, double pole,
+                      int memory_steps = 0);
   void forget();
   /// d of sample `step`; samples that were missed are taken to be like it.
   void add(std::uint32_t step, VectorRef disturbances);
   /// n_d horizon_steps, column i = d(k+i).
   const Matrix& predict();
+  const Vector& weight() const { return weight_; }  ///< n_d, w
 
  private:
   Eigen::Index column(std::uint32_t step) const;
+  void learn();
 
-  Matrix past_, future_;  ///< past_: d of sample k in column k mod (P+1)
+  Matrix past_, future_;              ///< past_: d of sample k in column k mod its columns
+  Vector weight_, product_, square_;  ///< w = product / square
+  double fading_{1.0};                ///< of the squares, per sample; 1: w stays 1
+  Eigen::Index lead_{};               ///< samples ahead at which w is judged
   Eigen::Index period_;
   double pole_;
   std::uint32_t last_step_{};

@@ -21,6 +21,7 @@ struct FmbpcParams {
   int horizon_steps{40};         ///< N (iterated)
   int iterations{8};             ///< most linearisations per sample (iterated)
   int forecast_period_steps{0};  ///< d is expected as it was so long ago; 0: as it is (iterated)
+  int forecast_memory_steps{0};  ///< over which it is judged how far to believe that; 0: wholly
   double forecast_pole{0.975};   ///< how today's difference fades per sample, [0, 1]
   std::string realisation{
       "parallel"};  ///< parallel: own state, y_m = z; realigned: state from measurements;
