@@ -7,10 +7,16 @@
 
 #include <cerrno>
 #include <cstddef>
+#include <cstdlib>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(__has_feature)  // clang
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define FMBPC_ALLOCATION_COUNTER_WORKS 0
-#else
+#endif
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // gcc
+#define FMBPC_ALLOCATION_COUNTER_WORKS 0
+#endif
+#ifndef FMBPC_ALLOCATION_COUNTER_WORKS
 #define FMBPC_ALLOCATION_COUNTER_WORKS 1
 #endif
 

@@ -40,6 +40,9 @@ CASES = {
     "hybrid_mpc": ("batch_fuzzy_eq45", 3000, [], "lockstep", 3600),
     "nmpc": ("mimo_cstr_steps_nmpc", 600, ["sampling.duration_h=0.1"], "lockstep", 3600),
     "swarm_mpc": ("mimo_cstr_steps_swarm", 600, ["sampling.duration_h=0.1"], "lockstep", 3600),
+    "online": ("asp_case1_clp", 300, ["sampling.duration_h=60", "model.identify.online.every=40"], "lockstep", 3600),
+    "identified": ("asp_case1", 300, ["sampling.duration_h=60", "model.identify.structure=asp_d.yaml",
+                                      "model.identify.after=200"], "lockstep", 3600),
     "plugin": ("two_tanks_outflow", 360, [], "lockstep", 3600),
 }
 

@@ -31,8 +31,8 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
   if (params.source == "pattern")
     return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,
                        sim.samples);
-  return readDisturbances(params.csv, names, sim.disturbance_nominal, sim.sample_time_s,
-                          sim.samples);
+  return readDisturbanceSequence(params.csv, names, sim.disturbance_nominal, sim.sample_time_s,
+                                 sim.samples);
 }
 
 }  // namespace fpc

@@ -54,6 +54,7 @@ ControllerContext controllerContext(const LoopFile& loop) {
                             actuator.initial,
                             actuator.fallback,
                             loop.disturbance_nominal,
+                            loop.simulation.noise_std,
                             loop.has_clp ? loop.clp.perturbation_steps : 0,
                             nullptr};
   if (!loop.external_plant)
@@ -74,6 +75,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readSampling(root, loop);
   readActuator(root, loop, names);
   readNoise(root, loop, names);
+  readSensors(root, loop, names);
   readDisturbance(root, loop, names);
   readTf(root, loop, names);
   describePlant(root, loop);
@@ -81,6 +83,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readSetpoint(root, loop, names);
   readClp(root, loop, names);
   readController(root, loop);
+  readGuard(root, loop, names);
   readModelSection(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);

@@ -13,7 +13,6 @@
 namespace fpc {
 namespace {
 
-
 std::vector<SignalInfo> readSignals(YamlSection& top, const std::string& key, bool required) {
   std::vector<SignalInfo> signals;
   if (!required && (!top.has(key) || top.raw(key).IsNull())) return signals;
@@ -77,6 +76,13 @@ Rule readRule(YamlSection& section, const TsModel& model, const OutputModel& out
   return rule;
 }
 
+}  // namespace
+
+std::vector<Regressor> readVariables(YamlSection& section, const std::string& key,
+                                     const TsModel& model) {
+  return readRegressors(section, key, model);
+}
+
 OutputModel readSubmodel(YamlSection& submodels, const TsModel& model, const std::string& output) {
   YamlSection section = requiredMapping(submodels, output, "the submodel of this output");
   OutputModel submodel;
@@ -90,7 +96,7 @@ OutputModel readSubmodel(YamlSection& submodels, const TsModel& model, const std
   return submodel;
 }
 
-TsModel readSections(YamlSection& top) {
+TsModel readModelSections(YamlSection& top) {
   TsModel model;
   top.text("name", model.name);
   top.text("source", model.source);
@@ -100,10 +106,12 @@ TsModel readSections(YamlSection& top) {
   model.inputs = readSignals(top, "inputs", false);
   model.disturbances = readSignals(top, "disturbances", false);
   readRanges(top, model);
+  readDomain(top, model);
   YamlSection submodels = requiredMapping(top, "submodels", "a mapping of outputs to submodels");
   for (const auto& output : model.outputs)
     model.submodels.push_back(readSubmodel(submodels, model, output.name));
   submodels.finish();
+  top.markRead("identified");
   top.finish();
   try {
     model.validate();
@@ -112,6 +120,8 @@ TsModel readSections(YamlSection& top) {
   }
   return model;
 }
+
+namespace {
 
 void writeSignals(YAML::Emitter& out, const std::string& key,
                   const std::vector<SignalInfo>& signals) {
@@ -156,14 +166,29 @@ void writeRule(YAML::Emitter& out, const TsModel& model, const OutputModel& subm
 
 }  // namespace
 
+void writeSubmodels(YAML::Emitter& out, const TsModel& names,
+                    const std::vector<OutputModel>& submodels) {
+  out << YAML::BeginMap;
+  for (std::size_t i = 0; i < submodels.size(); ++i) {
+    const OutputModel& submodel = submodels[i];
+    out << YAML::Key << names.outputs[i].name << YAML::Value << YAML::BeginMap;
+    writeRegressors(out, "antecedents", names, submodel.antecedents);
+    writeRegressors(out, "regressors", names, submodel.regressors);
+    out << YAML::Key << "rules" << YAML::Value << YAML::BeginSeq;
+    for (const auto& rule : submodel.rules) writeRule(out, names, submodel, rule);
+    out << YAML::EndSeq << YAML::EndMap;
+  }
+  out << YAML::EndMap;
+}
+
 TsModel readModel(const std::string& file) {
   YamlSection top = YamlSection::load(file);
-  return readSections(top);
+  return readModelSections(top);
 }
 
 TsModel parseModel(const std::string& text, const std::string& name) {
   YamlSection top = YamlSection::parse(text, name);
-  return readSections(top);
+  return readModelSections(top);
 }
 
 std::string writeModel(const TsModel& model) {
@@ -176,17 +201,10 @@ std::string writeModel(const TsModel& model) {
   writeSignals(out, "inputs", model.inputs);
   writeSignals(out, "disturbances", model.disturbances);
   writeRanges(out, model);
-  out << YAML::Key << "submodels" << YAML::Value << YAML::BeginMap;
-  for (std::size_t i = 0; i < model.submodels.size(); ++i) {
-    const OutputModel& submodel = model.submodels[i];
-    out << YAML::Key << model.outputs[i].name << YAML::Value << YAML::BeginMap;
-    writeRegressors(out, "antecedents", model, submodel.antecedents);
-    writeRegressors(out, "regressors", model, submodel.regressors);
-    out << YAML::Key << "rules" << YAML::Value << YAML::BeginSeq;
-    for (const auto& rule : submodel.rules) writeRule(out, model, submodel, rule);
-    out << YAML::EndSeq << YAML::EndMap;
-  }
-  out << YAML::EndMap << YAML::EndMap;
+  writeDomain(out, model.domain);
+  out << YAML::Key << "submodels" << YAML::Value;
+  writeSubmodels(out, model, model.submodels);
+  out << YAML::EndMap;
   return std::string(out.c_str()) + "\n";
 }
 

@@ -25,4 +25,17 @@ void readWhen(YamlSection& rule_section, const TsModel& model, const OutputModel
 void writeWhen(YAML::Emitter& out, const TsModel& model, const OutputModel& output,
                const Rule& rule);
 
+/// The submodel of one output; and all of them as a mapping of outputs.
+OutputModel readSubmodel(YamlSection& submodels, const TsModel& model, const std::string& output);
+void writeSubmodels(YAML::Emitter& out, const TsModel& names,
+                    const std::vector<OutputModel>& submodels);
+/// A list of variables NAME(k) or NAME(k-LAG).
+std::vector<Regressor> readVariables(YamlSection& section, const std::string& key,
+                                     const TsModel& model);
+/// Key `domain`: where the identification data were; nothing is written for an empty one.
+void readDomain(YamlSection& top, TsModel& model);
+void writeDomain(YAML::Emitter& out, const ModelDomain& domain);
+/// The whole file but its section `identified`, which is left to readIdentified().
+TsModel readModelSections(YamlSection& top);
+
 }  // namespace fpc

@@ -26,6 +26,10 @@ void readPlant(YamlSection& root, LoopFile& loop, LoopNames& names);
 void readMatrix(YamlSection& plant, SimulationParams& simulation);
 void readSampling(YamlSection& root, LoopFile& loop);
 void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names);
+/// Key actuator.lag.
+void readLag(YamlSection& actuator, ActuatorParams& params,
+             const std::vector<std::string>& inputs);
+void readSensors(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readNoise(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readDisturbance(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names);
@@ -43,6 +47,7 @@ void readCsvFormat(YamlSection& section, CsvFormat& format);
 void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
                     const std::vector<std::string>& names);
 void readModelSection(YamlSection& root, LoopFile& loop);
+void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);
 

@@ -30,8 +30,8 @@ Vector defaultSetpoint(const LoopFile& loop, const LoopNames& names) {
 void requireInRange(const YamlSection& section, const std::string& key, double value,
                     const SignalInfo& output) {
   if (std::isnan(value) || (value >= output.lower && value <= output.upper)) return;
-  throw InputError(section.where(key) + ": expected a setpoint of " + output.name + " >= " +
-                   exactText(output.lower) + " and <= " + exactText(output.upper) + " [" +
+  throw InputError(section.where(key) + ": expected a setpoint of " + output.name +
+                   " >= " + exactText(output.lower) + " and <= " + exactText(output.upper) + " [" +
                    output.unit + "], the range of the plant, got " + exactText(value));
 }
 

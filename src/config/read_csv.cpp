@@ -72,6 +72,12 @@ void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
   section.oneOf("missing", params.missing, {"error", "hold", "interpolate"});
   section.oneOf("interpolation", params.interpolation, {"hold", "linear"});
   section.oneOf("end", params.end, {"error", "hold", "repeat"});
+  section.number("lead_in_h", params.lead_in_h, {0.0, 1e7});
+  YamlSection next = section.section("next");
+  next.text("file", params.next_file);
+  if (!params.next_file.empty()) need(next, "after_h", "a time > 0");
+  next.number("after_h", params.next_after_h, {0.0, 1e7, true});
+  next.finish();
   readCsvChannels(section, params, names);
   section.finish();
 }

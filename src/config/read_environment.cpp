@@ -90,6 +90,7 @@ void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   actuator.fallback = actuator.initial;
   section.byName("fallback", actuator.fallback, names.inputs, kFinite);
   section.integer("hold_samples", actuator.hold_samples, -1);
+  readLag(section, actuator, names.inputs);
   checked(section, [&] { actuator.validate(count(names.inputs)); });
   section.finish();
 }

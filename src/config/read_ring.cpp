@@ -35,7 +35,8 @@ std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& l
   return {{"plant_info", plant},     {"measurement", plant},   {"plant_state", plant},
           {"base_action", law},      {"tracking", law},        {"predictive_action", law},
           {"control_action", answers}, {"solver_report", answers}, {"fuzzy_model", model},
-          {"identified", model},     {"setpoint", {}},         {"disturbance", {}}};
+          {"identified", model},     {"setpoint", {}},         {"disturbance", {}},
+          {"operator_kept", plant},  {"model_kept", plant}};
 }
 
 void readPublishers(YamlSection& section, RingParams& ring) {
@@ -181,6 +182,7 @@ void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   if ((lower.array() > upper.array()).any()) section.fail("output_upper", "limits >= output_lower");
   for (auto& item : section.list("windows"))
     loop.report.windows.push_back(readWindow(item, names.outputs));
+  section.number("record_from_h", loop.report.record_from_h, {0.0, 1e7});
   readConsumption(section, names, loop.report.consumption);
   std::vector<std::string> free;
   section.subset("without_setpoint", free, names.outputs);

@@ -79,8 +79,9 @@ void makeFilesAbsolute(MergedLoop& loop) {
   makeAbsolute(loop, {"model", "file"}, "model");
   makeAbsolute(loop, {"model", "identify", "structure"}, "structure");
   const YAML::Node source = scalarAt(loop.root, {"disturbance", "source"});
-  if (source.IsDefined() && source.IsScalar() && source.Scalar() == "csv")
-    makeAbsolute(loop, {"disturbance", "csv", "file"}, "data");
+  if (!source.IsDefined() || !source.IsScalar() || source.Scalar() != "csv") return;
+  makeAbsolute(loop, {"disturbance", "csv", "file"}, "data");
+  makeAbsolute(loop, {"disturbance", "csv", "next", "file"}, "data");
 }
 
 /// Reads everything once, so that errors name the line that a person wrote.

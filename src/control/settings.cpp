@@ -66,8 +66,7 @@ void readSignalValues(const std::string& text, const std::vector<SignalInfo>& si
     require(words.size() == 1 || words.size() == signals.size(), where,
             "one number, or " + std::to_string(signals.size()));
     for (std::size_t i = 0; i < signals.size(); ++i)
-      read[static_cast<Eigen::Index>(i)] =
-          settingNumber(words[words.size() == 1 ? 0 : i], where);
+      read[static_cast<Eigen::Index>(i)] = settingNumber(words[words.size() == 1 ? 0 : i], where);
   }
   values = read;
 }

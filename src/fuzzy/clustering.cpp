@@ -1,4 +1,4 @@
-// Alternating optimisation of centres, shapes and memberships, in blocks of samples.
+// Alternating optimisation of centres, shapes and memberships, one pass over the data each time.
 #include "fmbpc/fuzzy/clustering.hpp"
 
 #include <Eigen/Cholesky>
@@ -9,13 +9,13 @@
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fuzzy/cluster_pass.hpp"
 
 namespace fpc {
 namespace {
 
 using Eigen::Index;
 
-constexpr Index kBlock = 1024;
 constexpr double kLargestCondition = 1e12;  // of a cluster's covariance
 
 double uniform(std::mt19937_64& generator) {
@@ -53,9 +53,21 @@ void toMemberships(Eigen::Ref<Vector> squared, double exponent) {
   squared /= squared.sum();
 }
 
+/// R lower triangular with |R (z - v)|^2 = (z - v)' A (z - v), A = det(F)^(1/n) F^-1.
+Matrix distanceRoot(const Matrix& covariance) {
+  const Eigen::LLT<Matrix> root(covariance);
+  const double volume = Matrix(root.matrixL()).diagonal().array().log().mean();
+  Matrix inverse = Matrix::Identity(covariance.rows(), covariance.cols());
+  root.matrixL().solveInPlace(inverse);
+  return std::exp(volume) * inverse;
+}
+
 class Iteration {
  public:
-  Iteration(MatrixRef points, const ClusteringParams& params) : points_(points), params_(params) {
+  Iteration(MatrixRef points, const ClusteringParams& params)
+      : points_(points),
+        params_(params),
+        pass_(points, params.clusters, params.fuzziness, params.threads) {
     const Vector mean = points.rowwise().mean();
     Matrix spread = Matrix::Zero(points.rows(), points.rows());
     for (Index k = 0; k < points.cols(); ++k) {
@@ -79,10 +91,12 @@ class Iteration {
   double step() {
     moveCenters();
     if (params_.adaptive) reshape();
-    return moveMemberships();
+    moveMemberships();
+    return moments_->objective;
   }
 
-  double change() const { return change_; }
+  void copyMemberships() { pass_.copyMemberships(clusters_.memberships); }
+  double change() const { return moments_->change; }
   Clusters& clusters() { return clusters_; }
 
  private:
@@ -103,74 +117,48 @@ class Iteration {
     }
   }
 
+  /// The weighted means: away from the old centres by `shift_`.
   void moveCenters() {
-    const Index c = clusters_.count();
-    Matrix sums = Matrix::Zero(points_.rows(), c);
-    weight_ = Vector::Zero(c);
-    for (Index from = 0; from < points_.cols(); from += kBlock) {
-      const Index n = std::min(kBlock, points_.cols() - from);
-      const Matrix weights = weightsOf(from, n);
-      sums.noalias() += points_.middleCols(from, n) * weights.transpose();
-      weight_ += weights.rowwise().sum();
+    shift_.setZero(points_.rows(), clusters_.count());
+    for (Index i = 0; i < clusters_.count(); ++i) {
+      if (!(moments_->weight[i] > 0.0)) continue;
+      shift_.col(i) = moments_->offset.col(i) / moments_->weight[i];
+      clusters_.centers.col(i) += shift_.col(i);
     }
-    for (Index i = 0; i < c; ++i)
-      if (weight_[i] > 0.0) clusters_.centers.col(i) = sums.col(i) / weight_[i];
   }
 
   void reshape() {
-    const Index n = points_.rows();
-    std::vector<Matrix> scatter(clusters_.covariances.size(), Matrix::Zero(n, n));
-    for (Index from = 0; from < points_.cols(); from += kBlock) {
-      const Index size = std::min(kBlock, points_.cols() - from);
-      const Matrix weights = weightsOf(from, size);
-      for (std::size_t i = 0; i < scatter.size(); ++i) {
-        const auto row = static_cast<Index>(i);
-        const Matrix away = points_.middleCols(from, size).colwise() - clusters_.centers.col(row);
-        scatter[i].noalias() += (away * weights.row(row).asDiagonal()) * away.transpose();
-      }
-    }
-    for (std::size_t i = 0; i < scatter.size(); ++i) {
-      const double weight = weight_[static_cast<Index>(i)];
+    for (std::size_t i = 0; i < clusters_.covariances.size(); ++i) {
+      const auto column = static_cast<Index>(i);
+      const double weight = moments_->weight[column];
       if (!(weight > 0.0)) continue;
-      Matrix covariance = (1.0 - params_.regularisation) * scatter[i] / weight;
+      const Matrix scatter =
+          moments_->scatter[i] - weight * shift_.col(column) * shift_.col(column).transpose();
+      Matrix covariance = (1.0 - params_.regularisation) * scatter / weight;
       covariance.diagonal().array() += params_.regularisation * spread_;
       covariance = bounded(covariance);
       // A regularised shape is not the best one for the objective: it is taken only where it lowers
       // it.
-      if (distanceSum(covariance, scatter[i]) <= distanceSum(clusters_.covariances[i], scatter[i]))
+      if (distanceSum(covariance, scatter) <= distanceSum(clusters_.covariances[i], scatter))
         clusters_.covariances[i] = covariance;
     }
   }
 
-  double moveMemberships() {
-    const double exponent = 1.0 / (params_.fuzziness - 1.0);
-    if (clusters_.memberships.size() == 0)
-      clusters_.memberships = Matrix::Zero(clusters_.count(), points_.cols());
-    double objective = 0.0;
-    change_ = 0.0;
-    for (Index from = 0; from < points_.cols(); from += kBlock) {
-      const Index n = std::min(kBlock, points_.cols() - from);
-      const Matrix squared = clusters_.distances(points_.middleCols(from, n));
-      Matrix fresh = squared;
-      for (Index k = 0; k < n; ++k) toMemberships(fresh.col(k), exponent);
-      auto present = clusters_.memberships.middleCols(from, n);
-      change_ = std::max(change_, (fresh - present).cwiseAbs().maxCoeff());
-      present = fresh;
-      objective += weightsOf(from, n).cwiseProduct(squared).sum();
-    }
-    return objective;
-  }
-
-  /// u^m
-  Matrix weightsOf(Index from, Index n) const {
-    const auto u = clusters_.memberships.middleCols(from, n).array();
-    return params_.fuzziness == 2.0 ? Matrix(u.square()) : Matrix(u.pow(params_.fuzziness));
+  void moveMemberships() {
+    metric_.centers = clusters_.centers;
+    metric_.root.clear();
+    for (const Matrix& covariance : clusters_.covariances)
+      metric_.root.push_back(distanceRoot(covariance));
+    moments_ = &pass_.run(metric_, params_.adaptive);
   }
 
   MatrixRef points_;
   ClusteringParams params_;
-  double spread_{}, change_{};
-  Vector weight_;
+  clusters::Pass pass_;
+  clusters::Metric metric_;
+  const clusters::Moments* moments_{};
+  double spread_{};
+  Matrix shift_;
   Clusters clusters_;
 };
 
@@ -183,6 +171,7 @@ void ClusteringParams::validate() const {
   require(max_iterations >= 1, "max_iterations", "a number >= 1");
   require(tolerance > 0.0, "tolerance", "a number > 0");
   require(restarts >= 1, "restarts", "a number >= 1");
+  require(threads >= 0, "threads", "a number >= 0 (0: all cores)");
 }
 
 Matrix Clusters::distances(MatrixRef points) const {
@@ -219,6 +208,7 @@ Clusters findClusters(MatrixRef points, const ClusteringParams& params,
       now.converged = iteration.change() <= params.tolerance;
       now.cancelled = progress && !progress(++iterations, now.objective.back());
     }
+    iteration.copyMemberships();
     if (best.objective.empty() || now.objective.back() < best.objective.back()) best = now;
     best.cancelled = now.cancelled;
   }

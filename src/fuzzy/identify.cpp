@@ -140,6 +140,7 @@ Identification identify(const DataSet& data, const Structure& structure,
   for (std::size_t i = 0; i < structure.submodels.size() && !result.cancelled; ++i)
     result.cancelled = !identifyOutput(data, structure, i, callback, result);
   if (result.cancelled) return result;
+  result.model.domain = result.linear.domain = makeDomain(data);
   result.model.validate();
   result.linear.validate();
   return result;

@@ -52,6 +52,28 @@ std::vector<SignalInfo> reordered(const std::vector<SignalInfo>& model,
   return signals;
 }
 
+/// The domain's rows in the order of the plant; a signal that the model has not does not count.
+ModelDomain reordered(const ModelDomain& model, const std::vector<std::vector<int>>& places,
+                      const PlantInfo& plant) {
+  if (model.empty()) return {};
+  const std::size_t sizes[] = {plant.outputs.size(), plant.inputs.size(),
+                               plant.disturbances.size()};
+  ModelDomain domain;
+  domain.radius = model.radius;
+  const auto n = static_cast<Eigen::Index>(sizes[0] + sizes[1] + sizes[2]);
+  domain.centres = Matrix::Zero(n, model.centres.cols());
+  domain.scale = Vector::Constant(n, std::numeric_limits<double>::infinity());
+  Eigen::Index from = 0, first = 0;
+  for (std::size_t kind = 0; kind < places.size(); ++kind) {
+    for (const int place : places[kind]) {
+      domain.centres.row(first + place) = model.centres.row(from);
+      domain.scale[first + place] = model.scale[from++];
+    }
+    first += static_cast<Eigen::Index>(sizes[kind]);
+  }
+  return domain;
+}
+
 }  // namespace
 
 TsModel matchToPlant(const TsModel& model, const PlantInfo& plant) {
@@ -73,6 +95,7 @@ TsModel matchToPlant(const TsModel& model, const PlantInfo& plant) {
   matched.outputs = reordered(model.outputs, plant.outputs);
   matched.inputs = reordered(model.inputs, plant.inputs);
   matched.disturbances = reordered(model.disturbances, plant.disturbances);
+  matched.domain = reordered(model.domain, {outputs, inputs, disturbances}, plant);
   for (std::size_t i = 0; i < outputs.size(); ++i)
     matched.submodels[static_cast<std::size_t>(outputs[i])] = model.submodels[i];
   for (auto& submodel : matched.submodels)

@@ -130,6 +130,7 @@ void TsModel::validate() const {
     for (std::size_t r = 0; r < model.rules.size(); ++r)
       checkRule(where + ".rules[" + std::to_string(r) + "]", model, model.rules[r]);
   }
+  domain.validate(static_cast<Eigen::Index>(outputs.size() + inputs.size() + disturbances.size()));
 }
 
 int TsModel::maxLag(SignalKind kind, int index) const {

@@ -4,6 +4,18 @@
 #include "fmbpc/config/disturbance_source.hpp"
 
 namespace fpc {
+namespace {
+
+/// The law, guarded if it predicts with a model.
+std::unique_ptr<Controller> makeGuarded(const LoopFile& loop) {
+  std::unique_ptr<Controller> law = loop.controller->make(controllerContext(loop));
+  if (!loop.guard.enabled || !law->needsModel()) return law;
+  return std::make_unique<GuardedController>(std::move(law), loop.guard,
+                                             loop.simulation.actuator.limits, loop.plant_info);
+}
+
+}  // namespace
+
 Simulation makeSimulation(const LoopFile& loop) {
   requireSimulated(loop);
   SimulationParams params = loop.simulation;
@@ -13,8 +25,8 @@ Simulation makeSimulation(const LoopFile& loop) {
 
 ControllerSession makeControllerSession(const LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
-  return {loop.controller->make(controllerContext(loop)), loop.setpoint,   actuator.limits,
-          actuator.initial,     loop.plant_info, loop.max_pole};
+  return {makeGuarded(loop), loop.setpoint,   actuator.limits,
+          actuator.initial,  loop.plant_info, loop.max_pole};
 }
 
 OptimizerSession makeOptimizerSession(const LoopFile& loop) {

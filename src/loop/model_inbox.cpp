@@ -29,7 +29,8 @@ void ModelInbox::hear(const IdentifierWord& word) {
 }
 
 bool ModelInbox::belongsBefore(const StepHeader& made_from, const StepHeader& next) const {
-  return !in_step_ || made_from.run_id != next.run_id || made_from.step < next.step;
+  return !in_step_ || made_from.run_id == 0 || made_from.run_id != next.run_id ||
+         made_from.step < next.step;
 }
 
 bool ModelInbox::complete(const StepHeader& next) const {

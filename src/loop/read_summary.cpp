@@ -75,6 +75,7 @@ Summary summaryOf(const Json& json) {
   if (json.contains("locked"))
     for (const Json& lock : json.at("locked"))
       summary.locked.push_back({lock.at("input"), lock.at("limit") == "upper", lock.at("samples")});
+  summary.outside_model = json.value("outside_model", std::uint64_t{0});
   if (json.contains("clp")) readClp(json.at("clp"), summary);
   return summary;
 }

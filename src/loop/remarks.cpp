@@ -40,12 +40,14 @@ std::vector<std::string> remarksOf(const Summary& summary) {
   if (summary.failed_samples > 0) remarks.push_back(troubleOf(summary));
   if (!summary.complete && summary.failed_samples == 0) add("not complete");
   count(ActionSource::kHeld, "held: the controller had no usable answer");
-  count(ActionSource::kFallback, "on the fallback: no answer came in time");
+  count(ActionSource::kFallback, "on the fallback: no answer came in time, or the guard acted");
   count(ActionSource::kClipped, "clipped: the law or the optimizer asked for more than the limits");
   if (neverControlled(summary)) add("the controller never acted");
   for (const LockUp& lock : summary.locked)
-    add(lock.input + " locked at its " + (lock.upper ? "upper" : "lower") + " limit over the last " +
-        ofAll(lock.samples, summary));
+    add(lock.input + " locked at its " + (lock.upper ? "upper" : "lower") +
+        " limit over the last " + ofAll(lock.samples, summary));
+  if (summary.outside_model > 0)
+    add(ofAll(summary.outside_model, summary) + " outside the model's data");
   if (summary.repaired_cells > 0)
     add(std::to_string(summary.repaired_cells) + " missing cells of the influent record filled");
   if (summary.implausible_cells > 0)

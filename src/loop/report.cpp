@@ -1,5 +1,6 @@
 #include "fmbpc/loop/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -84,12 +85,13 @@ class Columns {
     table_.units.push_back(unit);
     values_.push_back(std::move(value));
   }
-  CsvTable fill(std::size_t rows) {
-    table_.values.resize(static_cast<Eigen::Index>(rows),
+  CsvTable fill(std::size_t first, std::size_t end) {
+    table_.values.resize(static_cast<Eigen::Index>(end - first),
                          static_cast<Eigen::Index>(values_.size()));
     for (std::size_t c = 0; c < values_.size(); ++c)
-      for (std::size_t r = 0; r < rows; ++r)
-        table_.values(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = values_[c](r);
+      for (std::size_t r = first; r < end; ++r)
+        table_.values(static_cast<Eigen::Index>(r - first), static_cast<Eigen::Index>(c)) =
+            values_[c](r);
     return table_;
   }
 
@@ -226,15 +228,12 @@ std::string toJson(const Summary& summary) {
   for (const auto& [name, value] : summary.consumption) json[name] = value;
   json["repaired_cells"] = summary.repaired_cells;
   json["implausible_cells"] = summary.implausible_cells;
+  json["outside_model"] = summary.outside_model;
   json["limits"] = limitsOf(summary);
   return json.dump(2);
 }
 
-void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
-              const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  require(!error, folder, "a folder that can be made (" + error.message() + ")");
+CsvTable trajectoryOf(const LoopFile& loop, const RunRecord& record) {
   Columns columns;
   const SampleClock clock(loop.plant_info.sample_time_s, loop.simulation.start_time_s);
   columns.add("time", "h",
@@ -245,7 +244,19 @@ void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summ
   addTracking(record, columns);
   addActions(loop, record, columns);
   addOtherStates(record, columns);
-  writeCsv(columns.fill(record.samples.size()),
+  const double from = std::ceil(loop.report.record_from_h * 3600.0 /
+                                loop.plant_info.sample_time_s - 1e-6);
+  const std::size_t last = record.samples.empty() ? 0 : record.samples.size() - 1;
+  return columns.fill(std::min(static_cast<std::size_t>(std::max(from, 0.0)), last),
+                      record.samples.size());
+}
+
+void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
+              const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  require(!error, folder, "a folder that can be made (" + error.message() + ")");
+  writeCsv(trajectoryOf(loop, record),
            (std::filesystem::path(folder) / "trajectory.csv").string());
   const std::string file = (std::filesystem::path(folder) / "summary.json").string();
   std::ofstream stream(file);

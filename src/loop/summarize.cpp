@@ -206,6 +206,7 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
     summary.consumption.emplace_back(name, consumed(record, rate, loop.plant_info.sample_time_s));
   countSamples(record, summary);
   findLockUps(record, summary);
+  summary.outside_model = samplesOutsideModel(loop, record);
   summary.has_clp = loop.has_clp;
   if (loop.has_clp) summarizeSolves(record, summary);
   countCells(loop, summary);

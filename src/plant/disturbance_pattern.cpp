@@ -5,6 +5,7 @@
 //   load: sin(2 pi (t-11)/24) + 0.35 sin(4 pi (t-7)/24) + 0.5 sin(2 pi t/120 + phi) + 0.35 N
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 
 #include "base/random.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double kPi = 3.141592653589793;
 constexpr double kShortestRecordH = 24.0;
+constexpr double kNear = 1e-9;  // in log p: farther from the root than this, the side is certain
 constexpr double kLogPowerLimit = 7.0;  // powers e^-7..e^7 reach any mean a usable shape can have
 
 struct Shape {
@@ -55,16 +57,43 @@ Vector interpolated(const Vector& hourly, double sample_time_h, Eigen::Index cou
   return values;
 }
 
+/// Where decreasing `f` is zero, nearly: regula falsi (Illinois) in low..high.
+double nearRoot(const std::function<double(double)>& f, double low, double high) {
+  double f_low = f(low), f_high = f(high), at = low;
+  for (int i = 0; i < 40 && high - low > kNear; ++i) {
+    at = std::clamp((low * f_high - high * f_low) / (f_high - f_low), low, high);
+    const double f_at = f(at);
+    if (std::abs(f_at) < 1e-14) break;
+    if (f_at > 0.0) {
+      low = at;
+      f_low = f_at;
+      f_high *= 0.5;
+    } else {
+      high = at;
+      f_high = f_at;
+      f_low *= 0.5;
+    }
+  }
+  return at;
+}
+
 /// The power p for which mean(unit^p) = mean; unit in [0,1], so the mean falls as p grows.
-/// Bisection in log p.
+/// Bisection in log p; the mean is only computed where a first estimate leaves its side open.
 double powerForMean(const Vector& unit, double mean, const std::string& where) {
   const auto mean_at = [&](double log_p) { return unit.array().pow(std::exp(log_p)).mean(); };
   double low = -kLogPowerLimit, high = kLogPowerLimit;
   require(mean_at(low) >= mean && mean_at(high) <= mean, where + ": mean",
           "a value that the shape can have; nearer to the middle of lower..upper");
+  const Vector logs = unit.array().log();
+  const double near =
+      nearRoot([&](double log_p) { return (std::exp(log_p) * logs.array()).exp().mean() - mean; },
+               low, high);
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
-    (mean_at(middle) > mean ? low : high) = middle;
+    const bool last = middle == low || middle == high;
+    const bool above = std::abs(middle - near) > kNear ? middle < near : mean_at(middle) > mean;
+    (above ? low : high) = middle;
+    if (last) break;
   }
   return std::exp(0.5 * (low + high));
 }

@@ -36,10 +36,14 @@ Simulation::Simulation(SimulationParams params)
       clock_(params_.sample_time_s, params_.start_time_s),
       actuator_((params_ = checked(std::move(params_), *plant_)).actuator),
       integrator_(*plant_, params_.integrator),
-      stepper_(plant_->makeStepper(params_.sample_time_s)),
+      instruments_(params_.instruments, params_.actuator.drives, params_.outputs,
+                   params_.measured_disturbances, params_.sample_time_s),
+      stepper_(plant_->makeStepper(instruments_.stepSeconds())),
       commands_(namesForCommands(params_, plant_->description())),
       info_(makePlantInfo(params_, plant_->description())) {
   const PlantDescription& plant = plant_->description();
+  require(instruments_.steps() == 1 || !stepper_ || stepper_->divisible(), "sensors.step_s",
+          "the sample time: plant " + plant.name + " moves from sample to sample only");
   for (const auto& name : params_.outputs) output_state_.push_back(indexOf(plant.states, name));
   for (const auto& name : params_.measured_disturbances)
     measured_disturbance_.push_back(indexOf(plant.disturbances, name));
@@ -49,6 +53,8 @@ Simulation::Simulation(SimulationParams params)
   measurement_.outputs.resize(n_y);
   measurement_.disturbances.resize(static_cast<Eigen::Index>(measured_disturbance_.size()));
   state_.outputs.resize(n_y);
+  true_outputs_.resize(n_y);
+  true_measured_.resize(measurement_.disturbances.size());
   state_.disturbances = params_.disturbance_nominal;
   reset(1);
 }
@@ -67,6 +73,7 @@ const Measurement& Simulation::reset(std::uint64_t run_id) {
   trouble_.clear();
   for (std::size_t i = 0; i < delays_.size(); ++i) delays_[i].reset(state_.state[output_state_[i]]);
   schedule();
+  startInstruments();
   measure();
   return measurement_;
 }
@@ -128,19 +135,38 @@ void Simulation::passLocalLoop() {
 
 // A plant that cannot be moved is held, and the sample says why.
 void Simulation::movePlant() {
-  const Vector &u = plant_input_, &d = state_.disturbances;
+  const Vector& d = state_.disturbances;
   state_.trouble.clear();
   std::string reason;
-  if (stepper_) {
-    stepper_->advance(state_.state, u, d);
-    if (!state_.state.allFinite()) reason = "the state is not finite";
-  } else {
-    reason = integrator_.advance(state_.state, u, d, params_.sample_time_s).reason;
+  for (int i = 0; i < instruments_.steps() && reason.empty(); ++i) {
+    const Vector& u = instruments_.drive(plant_input_);
+    if (stepper_) {
+      stepper_->advance(state_.state, u, d);
+      if (!state_.state.allFinite()) reason = "the state is not finite";
+    } else {
+      reason = integrator_.advance(state_.state, u, d, instruments_.stepSeconds()).reason;
+    }
+    if (!reason.empty()) state_.state = state_before_;
+    lookAtPlant();
+    instruments_.advance(true_outputs_, true_measured_);
   }
   if (reason.empty()) return;
-  state_.state = state_before_;
   state_.trouble = "sample " + std::to_string(measurement_.header.step) + ": " + reason;
   trouble_ = state_.trouble;
+}
+
+void Simulation::lookAtPlant() {
+  for (std::size_t i = 0; i < output_state_.size(); ++i)
+    true_outputs_[static_cast<Eigen::Index>(i)] = state_.state[output_state_[i]];
+  for (std::size_t i = 0; i < measured_disturbance_.size(); ++i)
+    true_measured_[static_cast<Eigen::Index>(i)] = state_.disturbances[measured_disturbance_[i]];
+}
+
+// The plant has rested at its first sample, commands of the file that act from there on included.
+void Simulation::startInstruments() {
+  updateDisturbances();
+  lookAtPlant();
+  instruments_.reset(true_outputs_, true_measured_, params_.actuator.initial);
 }
 
 void Simulation::updateDisturbances() {
@@ -161,16 +187,18 @@ void Simulation::measure() {
   for (const auto& command : commands_.advance(measurement_.header.step))
     effects_.push_back({measurement_.header, command});
   updateDisturbances();
+  lookAtPlant();
+  measurement_.disturbances = true_measured_;
+  instruments_.read(true_outputs_, measurement_.disturbances);
   const std::size_t first_output = commands_.names().size() - output_state_.size();
   for (std::size_t i = 0; i < output_state_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    state_.outputs[row] = delays_[i].pass(state_.state[output_state_[i]]);
+    const bool sensed = instruments_.hasSensor(row);
+    const double shown = delays_[i].pass(true_outputs_[row]);
+    state_.outputs[row] = sensed ? state_.state[output_state_[i]] : shown;
     const double noise = params_.noise_std[row] * standardNormal(noise_);
-    measurement_.outputs[row] = commands_.apply(first_output + i, state_.outputs[row] + noise);
+    measurement_.outputs[row] = commands_.apply(first_output + i, shown + noise);
   }
-  for (std::size_t i = 0; i < measured_disturbance_.size(); ++i)
-    measurement_.disturbances[static_cast<Eigen::Index>(i)] =
-        state_.disturbances[measured_disturbance_[i]];
   measurement_.input_applied = actuator_.applied();
   measurement_.final = params_.samples > 0 && measurement_.header.step == params_.samples;
   state_.header = measurement_.header;

@@ -81,6 +81,7 @@ class EulerStepper final : public PlantStepper {
       : tank_(tank), step_(step_s), steps_(steps) {}
   void reset(VectorRef, VectorRef) override {}
   bool remembers() const override { return false; }
+  bool divisible() const override { return false; }
   void advance(Eigen::Ref<Vector> x, VectorRef u, VectorRef d) override {
     for (int i = 0; i < steps_; ++i) {
       tank_.derivatives(x, u, d, rate_);

@@ -8,6 +8,7 @@ namespace fpc {
 namespace {
 
 constexpr double kSilence = 1.0;  // [s] without a base action that is due
+constexpr char kController[] = "fmbpc_controller";
 
 const char* words(SolveStatus status) {
   switch (status) {
@@ -59,7 +60,7 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
       summary_(node, loop),
       pace_(loop.ring.pace),
       period_s_(loop.plant_info.sample_time_s / loop.ring.speedup),
-      controller_(loop.ring.publishers.at(topics::kBaseAction).front()),
+      controller_(node.resolveName(kController)),
       health_(node, private_node, "optimizer", loop.name, false,
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.report().header; },

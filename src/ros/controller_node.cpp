@@ -26,8 +26,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
     : Node(node, loop),
       loop_(loop),
       session_(makeControllerSession(loop)),
-      inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep &&
-             session_.controller().needsModel()),
+      inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
       desk_(node, loop, session_),
       ready_(node),
       signals_(node),
@@ -81,13 +80,26 @@ void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
 }
 
 void ControllerNode::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
-  if (!session_.controller().needsModel()) return;
   guarded(topics::kFuzzyModel, [&] {
-    inbox_.put(matchToPlant(fromMsg(*msg), loop_.plant_info), headerOf(*msg));
-    if (!session_.ready()) useModels({});  // the first one
+    const bool needed = session_.controller().needsModel();
+    try {
+      inbox_.put(needed ? matchToPlant(fromMsg(*msg), loop_.plant_info) : TsModel(),
+                 headerOf(*msg));
+    } catch (const InputError& error) {
+      model_problem_ = error.what();
+      throw;
+    }
+    useModels(nextSample());
     announceIfReady();
     answerParked();
   });
+}
+
+// The one after the sample answered last; of no run before the first.
+StepHeader ControllerNode::nextSample() const {
+  StepHeader next = session_.answer().tracking.header;
+  ++next.step;
+  return session_.counts().accepted > 0 ? next : StepHeader{};
 }
 
 void ControllerNode::onIdentified(const fmbpc::Identified::ConstPtr& msg) {
@@ -99,6 +111,7 @@ void ControllerNode::onIdentified(const fmbpc::Identified::ConstPtr& msg) {
 
 void ControllerNode::useModels(const StepHeader& next) {
   for (const TsModel& model : inbox_.take(next)) {
+    if (!session_.controller().needsModel()) continue;
     try {
       session_.setModel(model);
       model_ = model.name;
@@ -215,7 +228,7 @@ void ControllerNode::publish(bool repeated) {
   if (tracking_.getNumSubscribers() > 0) tracking_.publish(toMsg(answer.tracking));
   if (repeated) return;
   for (const CommandEffect& effect : answer.effects) effect_.publish(toMsg(effect));
-  if (!answer.effects.empty() || session_.counts().accepted == 1) desk_.changed();
+  if (!answer.effects.empty() || answer.tracking.header.step == 0) desk_.changed();
   desk_.tell(answer.tracking.header);
   publishSignals();
   if (!session_.resetReason().empty())

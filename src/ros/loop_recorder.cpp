@@ -16,6 +16,7 @@ namespace {
 constexpr double kPollPeriod = 0.05;    // [s] of wall time
 constexpr double kFinalPatience = 10;   // [s] for stragglers after the final measurement
 constexpr double kWritePatience = 10;   // [s] for room on the disk at the end
+constexpr double kLastWords = 0.3;      // [s] between run_end and the end of this process
 constexpr int kPollsConnected = 3;      // a connection is complete at both ends a moment later
 
 }  // namespace
@@ -31,6 +32,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       ready_(node),
       plant_(loop.plant_info),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
+      end_(node),
       poll_timer_(node.createSteadyTimer(ros::WallDuration(kPollPeriod),
                                          [this](const ros::SteadyTimerEvent&) { poll(); })),
       health_(node, private_node, "recorder", loop.name, false,
@@ -52,6 +54,8 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
 
 void LoopRecorder::poll() {
   if (!ready_.announced()) announceIfConnected();
+  if (ending_s_ >= 0 && steadyNow() - ending_s_ > kLastWords)
+    return problem_.empty() ? done() : fail(problem_);
   store_.flush();
   if (written_) return;
   const double now_s = steadyNow();
@@ -60,7 +64,6 @@ void LoopRecorder::poll() {
   problem_ = "the final sample came, but the record has gaps: " + join(session_.gaps());
   session_.close();
   conclude();
-  fail(problem_);
 }
 
 void LoopRecorder::announceIfConnected() {
@@ -83,7 +86,6 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
   written_ = false;
   final_seen_s_ = closed_s_ = -1;
   problem_.clear();
-  began_s_ = steadyNow();
   const std::uint32_t here = store_.begin(run_id);
   if (here > 0) {
     session_.resume(run_id, here);
@@ -95,6 +97,7 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
 
 void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   guarded(topics::kMeasurement, [&] {
+    if (!session_.running()) began_s_ = steadyNow();
     session_.receive(fromMsg(*msg));
     if (!session_.finalSeen())
       final_seen_s_ = -1;
@@ -147,11 +150,17 @@ void LoopRecorder::checkComplete() {
 void LoopRecorder::conclude() {
   if (closed_s_ < 0) closed_s_ = steadyNow();
   if (!tryWrite()) {
-    if (!keep_ && steadyNow() - closed_s_ > kWritePatience) fail(problem_);
+    if (steadyNow() - closed_s_ > kWritePatience) end();
     return;
   }
-  if (!problem_.empty() && !keep_) return fail(problem_);
-  if (!keep_ && session_.complete()) done();
+  end();
+}
+
+// Everybody else who ends with the run hears it before this process goes.
+void LoopRecorder::end() {
+  if (keep_ || ending_s_ >= 0) return;
+  ending_s_ = steadyNow();
+  end_.say(problem_.empty() ? "recorded" : problem_);
 }
 
 bool LoopRecorder::tryWrite() {

@@ -108,6 +108,27 @@ OutputModel submodelStruct(const fmbpc::FuzzySubmodel& msg) {
   return submodel;
 }
 
+void fillDomain(const ModelDomain& domain, fmbpc::FuzzyModel& msg) {
+  if (domain.empty()) return;
+  msg.domain_scale = conversion::numbers(domain.scale);
+  msg.domain_radius = domain.radius;
+  msg.domain_centres.assign(domain.centres.data(), domain.centres.data() + domain.centres.size());
+}
+
+ModelDomain domainStruct(const fmbpc::FuzzyModel& msg) {
+  ModelDomain domain;
+  if (msg.domain_centres.empty()) return domain;
+  const std::size_t n = msg.domain_scale.size();
+  require(n > 0 && msg.domain_centres.size() % n == 0, "domain_centres",
+          "points of as many numbers as domain_scale");
+  domain.scale = conversion::vector(msg.domain_scale);
+  domain.radius = msg.domain_radius;
+  domain.centres =
+      Eigen::Map<const Matrix>(msg.domain_centres.data(), static_cast<Eigen::Index>(n),
+                               static_cast<Eigen::Index>(msg.domain_centres.size() / n));
+  return domain;
+}
+
 }  // namespace
 
 fmbpc::FuzzyModel toMsg(const TsModel& model) {
@@ -120,6 +141,7 @@ fmbpc::FuzzyModel toMsg(const TsModel& model) {
   msg.disturbances = list<fmbpc::SignalInfo>(model.disturbances);
   for (const OutputModel& submodel : model.submodels)
     msg.submodels.push_back(submodelMsg(submodel));
+  fillDomain(model.domain, msg);
   return msg;
 }
 
@@ -157,6 +179,7 @@ TsModel fromMsg(const fmbpc::FuzzyModel& msg) {
   model.inputs = structs<SignalInfo>(msg.inputs);
   model.disturbances = structs<SignalInfo>(msg.disturbances);
   for (const auto& submodel : msg.submodels) model.submodels.push_back(submodelStruct(submodel));
+  model.domain = domainStruct(msg);
   model.validate();
   return model;
 }

@@ -15,6 +15,7 @@ namespace {
 constexpr double kPoll = 0.05;         // [s] of wall time
 constexpr double kIntroduceAgain = 1;  // [s], while nobody answers
 constexpr double kPatience = 1.0;      // [s] without an action before that is said
+constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
 constexpr double kBurst = 200;         // commands at once
 
 std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
@@ -57,6 +58,7 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
       watch_(namesToWatch(loop, node)),
       commands_(loop.ring.commands_per_s, kBurst),
       begun_s_(steadyNow()),
+      end_(node),
       node_(node),
       action_subscriber_(subscribe(node, topics::kControlAction, topics::kPairQueue,
                                    &PlantSimulator::onAction, this)),
@@ -117,6 +119,10 @@ std::vector<std::string> PlantSimulator::missing() const {
 }
 
 void PlantSimulator::waitForOthers() {
+  if (failed_s_ >= 0) {
+    if (steadyNow() - failed_s_ > kLastWords) fail(failure_);
+    return;
+  }
   for (const auto& [output, delay_s] : lines_.poll()) {
     const auto& outputs = session_.simulation().info().outputs;
     const auto found =
@@ -128,8 +134,11 @@ void PlantSimulator::waitForOthers() {
   const std::vector<std::string> names = missing();
   if (names.empty()) return start();
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
-  fail("not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
-       " s: " + join(names));
+  failure_ = "not ready within loop.ready_timeout_s = " +
+             exactText(loop_.ring.ready_timeout_s) + " s: " + join(names);
+  failed_s_ = steadyNow();
+  end_.say(failure_);
+  health_.look();
 }
 
 void PlantSimulator::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
@@ -221,6 +230,7 @@ bool PlantSimulator::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Res
 }
 
 Health PlantSimulator::health(double now_s) const {
+  if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing()};
   if (session_.phase() == PlantPhase::kWaiting)
     return {LoopMode::kStarting, "waiting for " + join(missing()), missing()};
   if (!session_.simulation().trouble().empty())

@@ -64,8 +64,7 @@ Config endOfRange(const std::vector<SettingInfo>& table, double SettingInfo::*en
     if (info.kind == SettingKind::kInteger)
       add(config.ints, info.key, static_cast<int>(std::clamp(value, -2147483648.0, 2147483647.0)));
     if (info.kind == SettingKind::kBoolean)
-      add(config.bools, info.key,
-          static_cast<unsigned char>(end == &SettingInfo::upper ? 1 : 0));
+      add(config.bools, info.key, static_cast<unsigned char>(end == &SettingInfo::upper ? 1 : 0));
     if (info.kind == SettingKind::kText) add(config.strs, info.key, "");
   }
   return config;
@@ -150,9 +149,7 @@ Settings settingsOf(const std::vector<SettingInfo>& table, const Config& config)
 
 SettingsServer::SettingsServer(ros::NodeHandle private_node, std::vector<SettingInfo> table,
                                Current current, Change change)
-    : table_(std::move(table)),
-      current_(std::move(current)),
-      change_(std::move(change)) {
+    : table_(std::move(table)), current_(std::move(current)), change_(std::move(change)) {
   if (table_.empty()) return;
   descriptions_ =
       private_node.advertise<ConfigDescription>("parameter_descriptions", 1, /*latch=*/true);
@@ -162,9 +159,7 @@ SettingsServer::SettingsServer(ros::NodeHandle private_node, std::vector<Setting
   set_ = private_node.advertiseService("set_parameters", &SettingsServer::onSet, this);
 }
 
-void SettingsServer::publish() {
-  updates_.publish(settingsMessage(table_, current_()));
-}
+void SettingsServer::publish() { updates_.publish(settingsMessage(table_, current_())); }
 
 bool SettingsServer::onSet(dynamic_reconfigure::Reconfigure::Request& request,
                            dynamic_reconfigure::Reconfigure::Response& response) {

@@ -140,8 +140,8 @@ RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord re
   note(RunFailure::kLocked) = lockedSamples(loop, record, study.locked_samples);
   note(RunFailure::kViolated) =
       summary.input_violations + summary.move_violations + summary.output_violations;
-  note(RunFailure::kHeld) = summary.sources[static_cast<std::size_t>(ActionSource::kHeld)] +
-                            summary.sources[static_cast<std::size_t>(ActionSource::kFallback)];
+  note(RunFailure::kHeld) = summary.sources[static_cast<std::size_t>(ActionSource::kHeld)];
+  note(RunFailure::kOutOfModel) = summary.outside_model;
   return judged;
 }
 

@@ -18,9 +18,9 @@ std::vector<std::string> settingsOf(const ControllerType& type) {
 }
 
 Json toJson(const ControllerType& type) {
-  return {{"type", type.name},           {"summary", type.summary},
-          {"needs_model", type.needs_model}, {"predicts", type.predicts},
-          {"open_loop", type.open_loop}, {"settings", settingsOf(type)}};
+  return {
+      {"type", type.name},         {"summary", type.summary},     {"needs_model", type.needs_model},
+      {"predicts", type.predicts}, {"open_loop", type.open_loop}, {"settings", settingsOf(type)}};
 }
 
 std::string word(bool value) { return value ? "yes" : "no"; }

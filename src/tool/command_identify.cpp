@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 
 #include "fmbpc/base/input_error.hpp"
@@ -10,46 +9,17 @@
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/config/structure_file.hpp"
 #include "tool/commands.hpp"
+#include "tool/identify_auto.hpp"
 #include "tool/identify_report.hpp"
 #include "tool/model_plots.hpp"
 #include "tool/progress_bar.hpp"
 #include "tool/read_record.hpp"
+#include "tool/record_files.hpp"
 
 namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string rowsText(const std::string& text) { return text.empty() ? ":" : text; }
-
-/// Refuses before hours of work what could not be written after it.
-void checkTarget(const std::string& file) {
-  if (file.empty()) return;
-  const fs::path folder = fs::absolute(file).parent_path();
-  require(fs::is_directory(folder), file, "a file in an existing folder");
-  require(!fs::is_directory(file), file, "a file, not a folder");
-}
-
-/// The whole file or nothing.
-void writeAtOnce(const std::string& text, const std::string& file) {
-  const std::string partial = file + ".partial";
-  std::ofstream stream(partial);
-  stream << text;
-  stream.close();
-  std::error_code error;
-  if (!stream.fail()) fs::rename(partial, file, error);
-  if (!stream.fail() && !error) return;
-  fs::remove(partial, error);
-  throw InputError(file + ": expected a writable file");
-}
-
-/// Provenance must not depend on where the user's folders are.
-DataSet makeData(const CsvTable& table, const Structure& structure, const std::string& rows) {
-  DataSet data = makeDataSet(table, structure, parseRows(rowsText(rows)));
-  const std::string name = fs::path(table.file).filename().string();
-  data.source.replace(0, table.file.size(), name);
-  return data;
-}
 
 struct Records {
   DataSet identification;
@@ -57,22 +27,17 @@ struct Records {
   bool overlap{false};  ///< validation rows were identified from
 };
 
-bool overlap(RowRange a, RowRange b) {
-  const auto before = [](RowRange x, RowRange y) { return x.last != 0 && x.last < y.first; };
-  return !before(a, b) && !before(b, a);
-}
-
 Records readRecords(const IdentifyArguments& a, const Structure& structure) {
-  const CsvTable table = readRecord(a.data, structure.csv);
+  const CsvTable table = readRecord(a.data.front(), structure.csv);
   Records records{makeData(table, structure, a.rows), {}, false};
   if (a.validate.empty() && a.validate_rows.empty()) return records;
   Structure judging = structure;
   judging.repair.drop_constant = true;  // an input may rest while a model is judged
   std::error_code ignored;              // a file that is not there is told by its reader
-  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data, ignored);
+  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
   records.validation = makeData(same ? table : readRecord(a.validate, structure.csv), judging, a.validate_rows);
   records.overlap =
-      same && overlap(parseRows(rowsText(a.rows)), parseRows(rowsText(a.validate_rows)));
+      same && rowsOverlap(a.rows, a.validate_rows);
   return records;
 }
 
@@ -105,7 +70,7 @@ void addRemarks(const Records& records, IdentifyReport& report) {
 
 }  // namespace
 
-int identify(const IdentifyArguments& a) {
+int identifyStructure(const IdentifyArguments& a) {
   const Structure structure = readStructure(findStructure(a.structure));
   checkTarget(a.out);
   const Records records = readRecords(a, structure);

@@ -24,14 +24,39 @@ struct LoopsArguments {
   bool json{false};
 };
 
+/// How records are written, for the commands without a structure file.
+struct RecordFormat {
+  std::string separator{"comma"}, decimal{"point"};
+  std::vector<std::string> missing;
+};
+
 struct IdentifyArguments {
-  std::string data;           ///< CSV or bag
-  std::string structure;      ///< name of config/structure, or path
+  std::vector<std::string> data;  ///< CSV or bag; more than one with `automatic` only
+  std::string structure;      ///< name of config/structure, or path; none with `automatic`
   std::string rows;           ///< "FIRST:LAST", empty: all
   std::string validate;       ///< another record, empty: the same
   std::string validate_rows;  ///< of it; both empty: nothing is held out
   std::string out;            ///< model file, empty: none
   std::string plots;          ///< folder, empty: none
+  bool json{false};
+  bool automatic{false};  ///< search over structures; the rest is for it
+  std::vector<std::string> inputs, outputs, disturbances;  ///< columns
+  std::string time;                                        ///< column, empty: found
+  RecordFormat format;
+  double sample_time_s{};                                  ///< 0: from the time column
+  std::string kind{"best"};                                ///< best, linear, regressors, state
+  double budget_s{45.0};
+  int blocks{4}, window{5};
+  std::uint64_t seed{1};
+};
+
+struct ValidateArguments {
+  std::string model, data;
+  std::string rows;
+  std::vector<std::string> columns;  ///< "signal=column"
+  RecordFormat format;
+  int steps{10};
+  std::string plots;
   bool json{false};
 };
 
@@ -88,7 +113,17 @@ struct StudyArguments {
   bool no_plot{false};
 };
 
+struct EvaluateArguments {
+  std::vector<std::string> runs;  ///< folders of `run --out`, or loops that are run first
+  std::vector<std::string> set;   ///< "path=value", of loops
+  double from_h{-1.0}, to_h{-1.0};
+  bool weights_2002{false};
+  bool json{false};
+};
+
+int evaluate(const EvaluateArguments& arguments);
 int identify(const IdentifyArguments& arguments);
+int validate(const ValidateArguments& arguments);
 int run(const RunArguments& arguments);
 /// `sets`: more of them in one text, see parseOverrides().
 int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets);

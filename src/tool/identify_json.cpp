@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tool/figures_json.hpp"
 #include "tool/identify_report.hpp"
 
 namespace fpc::tool {
@@ -8,18 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json toJson(const FitFigures& figures) {
-  const auto known = [&](double value) {
-    return figures.samples > 0 ? finite(value) : Json(nullptr);
-  };
-  return {{"rmse", known(figures.rmse)},
-          {"mse", known(figures.mse)},
-          {"vaf", known(figures.vaf)},
-          {"fit", known(figures.fit)},
-          {"samples", figures.samples}};
-}
+Json finite(double value) { return finiteJson(value); }
+Json toJson(const FitFigures& figures) { return figuresJson(figures); }
 
 /// <output>.{one_step, free_run, linear.{..}, residual} and linear.<output>.{one_step, free_run}.
 Json toJson(const Judged& judged) {

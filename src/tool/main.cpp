@@ -41,11 +41,34 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
       [&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets); }; });
 }
 
+void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
+  command.add_option("--separator", f.separator, "comma, semicolon, tab or bar");
+  command.add_option("--decimal", f.decimal, "point or comma");
+  command.add_option("--missing", f.missing, "cells that mean missing")->delimiter(',');
+}
+
+void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
+  CLI::App* evaluate = app.add_subcommand(
+      "evaluate", "Effluent quality, operational cost and violations of runs of BSM1");
+  evaluate->add_option("RUN", a.runs, "folders of `run --out`, or loops that are run first")
+      ->required();
+  evaluate->add_option("--set", a.set, "KEY.PATH=VALUE over the loop files, may be repeated")
+      ->allow_extra_args(false);
+  evaluate->add_option("--from-h", a.from_h, "start of the judged part [h], default the last 168");
+  evaluate->add_option("--to-h", a.to_h, "its end [h], default the end of the run");
+  evaluate->add_flag("--weights-2002", a.weights_2002, "formulas of the benchmark's 2002 book");
+  evaluate->add_flag("--json", a.json, "print one JSON object and nothing else");
+  evaluate->callback([&a] { chosen = [&a] { return fpc::tool::evaluate(a); }; });
+}
+
 void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   CLI::App* identify = app.add_subcommand(
       "identify", "Identifies a fuzzy model from a record and validates it beside a linear one");
-  identify->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
-  identify->add_option("STRUCTURE", a.structure, "name of config/structure, or path")->required();
+  identify
+      ->add_option("DATA", a.data,
+                   "CSV, or bag recorded by loop.launch; then STRUCTURE, a name of config/structure "
+                   "or a path. With --auto: one or more records, no structure")
+      ->required();
   identify->add_option("--out", a.out, "model file to write");
   identify->add_option("--rows", a.rows,
                        "FIRST:LAST data rows to identify from, from 1 (default: all)");
@@ -53,8 +76,41 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--validate-rows", a.validate_rows, "FIRST:LAST rows to validate on");
   identify->add_option("--plots", a.plots, "folder for pictures of sets, predictions, residuals");
   identify->add_flag("--json", a.json, "print one JSON object and nothing else");
-  identify->footer("Example: fmbpc identify results/trajectory.csv asp_d --out my_model.yaml\n");
+  identify->add_flag("--auto", a.automatic, "search the structure; needs --inputs and --outputs");
+  identify->add_option("--inputs", a.inputs, "columns that a controller will move")->delimiter(',');
+  identify->add_option("--outputs", a.outputs, "columns to predict")->delimiter(',');
+  identify->add_option("--disturbances", a.disturbances, "columns that are only measured")
+      ->delimiter(',');
+  identify->add_option("--time", a.time, "column of times; found by its name if left out");
+  identify->add_option("--sample-time", a.sample_time_s, "[s], instead of a time column");
+  identify->add_option("--kind", a.kind, "best, linear, regressors or state")
+      ->check(CLI::IsMember({"best", "linear", "regressors", "state"}));
+  identify->add_option("--budget", a.budget_s, "[s] of the search")->check(CLI::PositiveNumber);
+  identify->add_option("--blocks", a.blocks, "held out in turn")->check(CLI::Range(2, 20));
+  identify->add_option("--window", a.window, "measured samples that start a free run")
+      ->check(CLI::Range(1, 1000));
+  addFormat(*identify, a.format);
+  identify->add_option("--seed", a.seed, "of the starts of all fits");
+  identify->footer(
+      "Example: fmbpc identify tanks.csv --auto --inputs u_V --outputs y_V --out tanks.yaml\n"
+      "         fmbpc identify results/trajectory.csv asp_d --out my_model.yaml\n");
   identify->callback([&a] { chosen = [&a] { return fpc::tool::identify(a); }; });
+}
+
+void addValidate(CLI::App& app, fpc::tool::ValidateArguments& a) {
+  CLI::App* validate =
+      app.add_subcommand("validate", "Judges a model file on a record: one step, n steps, free run");
+  validate->add_option("MODEL", a.model, "name of config/model, or path")->required();
+  validate->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
+  validate->add_option("--rows", a.rows, "FIRST:LAST data rows, from 1");
+  validate->add_option("--columns", a.columns, "SIGNAL=COLUMN where names differ")->delimiter(',');
+  validate->add_option("--steps", a.steps, "samples ahead of the n-step prediction")
+      ->check(CLI::Range(1, 100000));
+  addFormat(*validate, a.format);
+  validate->add_option("--plots", a.plots, "folder for pictures");
+  validate->add_flag("--json", a.json, "print one JSON object and nothing else");
+  validate->footer("Example: fmbpc validate tanks.yaml other_day.csv --rows 1:500\n");
+  validate->callback([&a] { chosen = [&a] { return fpc::tool::validate(a); }; });
 }
 
 void addLoops(CLI::App& app, fpc::tool::LoopsArguments& a) {
@@ -201,8 +257,12 @@ int main(int argc, char** argv) {
   fpc::tool::RunArguments arguments;
   addRun(app, arguments);
   addResolve(app, arguments);
+  fpc::tool::EvaluateArguments evaluate_arguments;
+  addEvaluate(app, evaluate_arguments);
   fpc::tool::IdentifyArguments identify_arguments;
   addIdentify(app, identify_arguments);
+  fpc::tool::ValidateArguments validate_arguments;
+  addValidate(app, validate_arguments);
   fpc::tool::LoopsArguments loops_arguments;
   addLoops(app, loops_arguments);
   addLists(app, arguments);

@@ -106,6 +106,16 @@ void writeText(const std::string& text, const std::string& file) {
 
 }  // namespace
 
+Json membershipsJson(const TsModel& model) {
+  Json all = Json::object();
+  for (std::size_t i = 0; i < model.outputs.size(); ++i) {
+    Json& sets = all[model.outputs[i].name] = Json::array();
+    for (std::size_t j = 0; j < model.submodels[i].antecedents.size(); ++j)
+      sets.push_back(membershipsOf(model, model.submodels[i], j));
+  }
+  return all;
+}
+
 void writeModelPlots(const IdentifyReport& report, const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -113,11 +123,7 @@ void writeModelPlots(const IdentifyReport& report, const std::string& folder) {
   const fs::path path(folder);
   Json json = Json::parse(toJson(report));
   const TsModel& model = report.found.model;
-  for (std::size_t i = 0; i < model.outputs.size(); ++i) {
-    Json& sets = json["memberships"][model.outputs[i].name] = Json::array();
-    for (std::size_t j = 0; j < model.submodels[i].antecedents.size(); ++j)
-      sets.push_back(membershipsOf(model, model.submodels[i], j));
-  }
+  json["memberships"] = membershipsJson(model);
   fs::remove(path / "validation.csv", error);  // of an earlier run
   for (const auto* judged :
        {&report.identification, report.validation ? &*report.validation : nullptr}) {

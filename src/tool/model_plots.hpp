@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include <nlohmann/json.hpp>
+
 #include "tool/identify_report.hpp"
 
 namespace fpc::tool {
@@ -12,5 +14,8 @@ namespace fpc::tool {
 /// and residuals.png. No picture is a warning on standard error, not a failure.
 /// @throws InputError if the folder cannot be written.
 void writeModelPlots(const IdentifyReport& report, const std::string& folder);
+
+/// Per output, per antecedent: the degrees of all rules over the range of the data.
+nlohmann::ordered_json membershipsJson(const TsModel& model);
 
 }  // namespace fpc::tool

@@ -102,8 +102,7 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
   if (loop.has_model && !law)
     subject.note = "the law of controller.type " + loop.controllerType().name +
                    " is not analysed; name the model file instead of the loop for that of fmbpc";
-  if (!loop.external_plant)
-    subject.plant = makePlant(loop.simulation);
+  if (!loop.external_plant) subject.plant = makePlant(loop.simulation);
 }
 
 }  // namespace

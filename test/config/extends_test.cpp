@@ -48,10 +48,8 @@ TEST_F(Extends, GoesThroughSeveralFilesAndTheConfigFolders) {
 TEST_F(Extends, AnOverrideChangesThePlaceThatItNamesAndNoAliasOfIt) {
   const std::string file =
       write("alias.yaml", smallLoop() +
-                              "noise: {std: &both {s: 1, x: 2}}
-"
-                              "report: {output_lower: *both}
-");
+                              "noise: {std: &both {s: 1, x: 2}}\n"
+                              "report: {output_lower: *both}\n");
   const LoopFile plain = readLoop(file);
   EXPECT_EQ(plain.report.output_lower, (std::vector<double>{1, 2}));
   const LoopFile changed = readLoop(file, {{"noise.std.s", "7"}});
@@ -59,10 +57,8 @@ TEST_F(Extends, AnOverrideChangesThePlaceThatItNamesAndNoAliasOfIt) {
   EXPECT_EQ(changed.report.output_lower, (std::vector<double>{1, 2}));
   EXPECT_EQ(changed.resolved.find('*'), std::string::npos) << changed.resolved;
   const LoopFile again = parseLoop(smallLoop() +
-                                       "noise: {std: &both {s: 1, x: 2}}
-"
-                                       "report: {output_lower: *both}
-",
+                                       "noise: {std: &both {s: 1, x: 2}}\n"
+                                       "report: {output_lower: *both}\n",
                                    "text", {{"noise.std.x", "5"}});
   EXPECT_EQ(again.report.output_lower, (std::vector<double>{1, 2}));
 }

@@ -49,9 +49,10 @@ std::map<std::string, Row> documented() {
 std::string general(std::string path) {
   path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
   const std::regex named(
-      R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|)"
+      R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|actuator\.lag|)"
       R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
+  path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
   const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(s|x|T|Tw)$)");
   return std::regex_replace(path, outputs, "setpoint.$1[].NAME");
 }
@@ -75,6 +76,7 @@ std::set<std::string> readerKeys() {
       "disturbance:\n  commands: [{time_h: 0, name: q_i, value: 1}]\n"
       "  pattern: {channels: {q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}\n"
       "  csv: {channels: {q_i: {column: a, plausible: [0, 1]}}}\n"
+      "sensors: {s: {class: B0}}\nactuator: {lag: {q_r: {t90_s: 60}}}\n"
       "tf:\n  frames: {reactor: {x: 1}}\n"
       "  sample_lines: [{output: s, from: plant, to: reactor, velocity_m_s: 1}]\n";
   const std::string fmbpc =
@@ -122,8 +124,14 @@ std::set<std::string> readerKeys() {
       "loops: "
       "[{input: L, output: y_D, kp: 1, integral_time_min: 1}, {input: V, output: x_B, kp: 1, "
       "integral_time_min: 1}], model: [{output: y_D, input: L, gain: 1, time_constant_min: 1}]}\n";
-  std::vector<std::string> texts{controlled(fmbpc + lists), controlled(external), controlled(column),
-                                 controlled(adaptive), optimal, prbs, levels, steps,
+  std::vector<std::string> texts{controlled(fmbpc + lists),
+                                 controlled(external),
+                                 controlled(column),
+                                 controlled(adaptive),
+                                 optimal,
+                                 prbs,
+                                 levels,
+                                 steps,
                                  batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
                                  batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest};
   for (const auto& type : controllerNames())

@@ -28,7 +28,8 @@ TEST(OverrideText, NothingIsNoOverride) {
 }
 
 TEST(OverrideText, AValueWithoutAKeyIsNamed) {
-  expectWords(errorOf([] { parseOverrides("fast loop.pace=paced"); }), {"--set fast", "path=value"});
+  expectWords(errorOf([] { parseOverrides("fast loop.pace=paced"); }),
+              {"--set fast", "path=value"});
 }
 
 }  // namespace

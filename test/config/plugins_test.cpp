@@ -47,8 +47,9 @@ TEST_F(Plugins, ThePathOfALibraryIsTakenBesideTheLoopFile) {
 
 TEST_F(Plugins, AMissingOneNamesTheFoldersThatWereSearched) {
   setenv("CMAKE_PREFIX_PATH", "/some/workspace", 1);
-  expectWords(errorWith("nowhere"), {"p.yaml:12: plugins", "'nowhere'", "libnowhere.so",
-                                     FMBPC_TEST_PLUGINS, "/some/workspace/lib", "FMBPC_PLUGIN_PATH"});
+  expectWords(errorWith("nowhere"),
+              {"p.yaml:12: plugins", "'nowhere'", "libnowhere.so", FMBPC_TEST_PLUGINS,
+               "/some/workspace/lib", "FMBPC_PLUGIN_PATH"});
   expectWords(errorWith("./nowhere.so"), {"p.yaml:12: plugins", "existing library", "nowhere.so"});
   unsetenv("CMAKE_PREFIX_PATH");
 }

@@ -68,8 +68,8 @@ TEST(StructureDocs, EveryDocumentedSettingIsAKeyOfTheReader) {
     const auto dot = key.find('.');
     const std::string section = key.substr(0, dot);
     if (dot == std::string::npos || fallback.empty() ||
-        std::set<std::string>{"partition", "consequents", "repair", "validation", "csv"}.count(section) ==
-            0)
+        std::set<std::string>{"partition", "consequents", "repair", "validation", "csv"}.count(
+            section) == 0)
       continue;
     const std::string text = section + ": {" + key.substr(dot + 1) + ": " + fallback + "}\n";
     EXPECT_EQ(errorOf(kBase + text), "") << text;

@@ -183,6 +183,64 @@ TEST_F(ControllerSessionRing, NewModelInARunGoesToTheControllerAndABadOneChanges
   EXPECT_EQ(law->resets, Steps{0});  // the controller itself sees to a bumpless change
 }
 
+TEST_F(ControllerSessionRing, WhatTheOperatorAskedComesBackInAnotherSession) {
+  session->receive(sample(0));
+  session->command({0, {"x"}, {1900.0}, CommandMode::kOverride});
+  session->command({kStart + 50 * kSample, {"s"}, {60.0}, CommandMode::kOverride});
+  session->holdRecipe(true);
+  session->manual(true);
+  session->manualInput(of({650.0}));
+  session->receive(sample(1));
+  const OperatorWishes wishes = session->wishes();
+  FakeLaw* other_law = new FakeLaw;
+  ControllerSession other(std::unique_ptr<Controller>(other_law), setpoints(), limits(),
+                          of({570.0}), plant());
+  TsModel model;
+  model.name = "first";
+  other.setModel(model);
+  other.restore(wishes);
+  ASSERT_EQ(other.receive(sample(2)), Receipt::kAnswered);
+  EXPECT_EQ(other.answer().base.source, ActionSource::kManual);
+  EXPECT_EQ(other.answer().base.input, of({650.0}));
+  EXPECT_EQ(other.answer().tracking.setpoint, of({55.0, 1900.0}));
+  EXPECT_TRUE(other.setpoint().held());
+  other.receive(sample(50));
+  EXPECT_EQ(other.answer().tracking.setpoint, of({60.0, 1900.0}));
+  other.restore({});  // too late: it knows better
+  other.receive(sample(51));
+  EXPECT_TRUE(other.isManual());
+}
+
+TEST_F(ControllerSessionRing, OneThatDoesNotKnowWhatWasAskedHoldsUntilItIsReleased) {
+  session->holdUntilReleased();
+  session->receive(sample(7, 1, 612.0));
+  EXPECT_EQ(session->answer().base.source, ActionSource::kHeld);
+  EXPECT_EQ(session->answer().base.input, of({612.0}));
+  session->manual(false);
+  session->receive(sample(8, 1, 612.0));
+  EXPECT_EQ(session->answer().base.source, ActionSource::kBase);
+  EXPECT_EQ(session->resetReason(), "first sample is 7; released");
+}
+
+TEST_F(ControllerSessionRing, AnEarlierClockOfThePlantDoesNotStopIt) {
+  session->announce(9);
+  session->receive(sample(0, 9));
+  session->announce(3);
+  EXPECT_EQ(session->receive(sample(1, 9)), Receipt::kDropped);
+  EXPECT_EQ(session->receive(sample(0, 3)), Receipt::kAnswered);
+  EXPECT_EQ(session->resetReason(), "new run");
+}
+
+TEST_F(ControllerSessionRing, OneMessageFromTheFarFutureDoesNotEndTheRun) {
+  session->receive(sample(0));
+  EXPECT_EQ(session->receive(sample(4000000000U)), Receipt::kDropped);
+  EXPECT_EQ(session->receive(sample(1)), Receipt::kAnswered);
+  EXPECT_EQ(session->resetReason(), "");
+  EXPECT_EQ(session->receive(sample(500)), Receipt::kAnswered);  // may be true
+  EXPECT_EQ(session->receive(sample(2)), Receipt::kAnswered);    // it was not
+  EXPECT_EQ(session->resetReason(), "back to sample 2, where the plant is");
+}
+
 TEST(ControllerSession, BadConstructionNamesTheField) {
   const auto make = [](Vector initial, const InputLimits& l) {
     ControllerSession(std::make_unique<FakeLaw>(), setpoints(), l, std::move(initial), plant());

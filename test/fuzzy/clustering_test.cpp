@@ -108,6 +108,60 @@ TEST(Clustering, SameSeedSameBitsAndDataThatRepeatThemselvesAreFine) {
   }
 }
 
+/// Samples of three flat clouds in n dimensions; their number is no multiple of any block.
+Matrix flatClouds(Eigen::Index n, Eigen::Index samples) {
+  std::mt19937_64 generator(5);
+  std::normal_distribution<double> normal;
+  Matrix points(n, samples);
+  for (double& value : points.reshaped()) value = normal(generator);
+  for (Eigen::Index k = 0; k < samples; ++k) {
+    points(k % n, k) *= 0.01;
+    points.col(k).array() += 3.0 * static_cast<double>(k % 3);
+  }
+  return points;
+}
+
+TEST(Clustering, TheAnswerDoesNotDependOnTheNumberOfThreads) {
+  const Matrix points = flatClouds(5, 9001);
+  ClusteringParams params;
+  params.max_iterations = 5;
+  for (const double fuzziness : {2.0, 1.5, 1.8}) {
+    params.fuzziness = fuzziness;
+    params.threads = 1;
+    const Clusters one = findClusters(points, params);
+    params.threads = 2;
+    const Clusters two = findClusters(points, params);
+    EXPECT_EQ(one.memberships, two.memberships);
+    EXPECT_EQ(one.centers, two.centers);
+    EXPECT_EQ(one.objective, two.objective);
+  }
+}
+
+/// What one iteration must have made of the memberships before it, by the formulas.
+TEST(Clustering, CentersShapesAndMembershipsAreThoseOfTheFormulas) {
+  for (const Eigen::Index n : {1, 3, 4, 7}) {
+    const Matrix points = flatClouds(n, 4500);
+    ClusteringParams params;
+    params.regularisation = 0.0;
+    params.fuzziness = 1.7;
+    params.tolerance = 1e-15;
+    params.max_iterations = 3;
+    const Clusters before = findClusters(points, params);
+    params.max_iterations = 4;
+    const Clusters after = findClusters(points, params);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      const Vector weight = before.memberships.row(i).array().pow(1.7).transpose();
+      const Vector center = points * weight / weight.sum();
+      EXPECT_LE((center - after.centers.col(i)).norm(), 1e-11);
+      const Matrix away = points.colwise() - center;
+      const Matrix covariance = away * weight.asDiagonal() * away.transpose() / weight.sum();
+      const Matrix& shape = after.covariances[static_cast<std::size_t>(i)];
+      EXPECT_LE((covariance - shape).norm(), 1e-10 * covariance.norm());
+    }
+    EXPECT_LE((after.membershipsOf(points) - after.memberships).cwiseAbs().maxCoeff(), 1e-11);
+  }
+}
+
 TEST(Clustering, IdenticalPointsDoNotBreakIt) {
   const Clusters clusters = findClusters(Matrix::Ones(3, 30), paramsWith(true, 2));
   EXPECT_TRUE(clusters.memberships.allFinite());

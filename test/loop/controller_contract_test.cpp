@@ -75,17 +75,20 @@ Vector anywhere(const std::vector<SignalInfo>& signals, std::mt19937_64& generat
   Vector values(static_cast<Eigen::Index>(signals.size()));
   for (std::size_t i = 0; i < signals.size(); ++i) {
     const bool bounded = std::isfinite(signals[i].lower) && std::isfinite(signals[i].upper);
-    const double lower = bounded ? signals[i].lower : -1e3, upper = bounded ? signals[i].upper : 1e3;
+    const double lower = bounded ? signals[i].lower : -1e3,
+                 upper = bounded ? signals[i].upper : 1e3;
     values[static_cast<Eigen::Index>(i)] = lower + draw(generator) * (upper - lower);
   }
   return values;
 }
 
 TEST_P(ControllerContract, LimitsHoldAtEverySampleWhateverIsMeasured) {
-  const bool any_input = makeSession().controller().mayBeSent(0.5 * (limits().lower + limits().upper));
+  const bool any_input =
+      makeSession().controller().mayBeSent(0.5 * (limits().lower + limits().upper));
   if (any_input) loop_.simulation.actuator.limits.move = 0.1 * range();
   ControllerSession session = makeSession();
   Measurement now = makeSimulation(loop_).measurement();
+  now.header.run_id = 1;
   std::mt19937_64 generator(7);
   for (std::uint32_t k = 0; k < kRun; ++k) {
     now.header.step = k;
@@ -240,7 +243,8 @@ TEST(ControllerRegistry, ANameIsTakenOnlyOnce) {
 TEST(ControllerRegistry, ParametersOfAnotherTypeAreNotGuessed) {
   struct Other {};
   const LoopFile loop = readLoop(loopsOfType("pi").front());
-  expectWords(errorOf([&] { loop.controllerParams<Other>(); }), {loop.name, "controller.type", "pi"});
+  expectWords(errorOf([&] { loop.controllerParams<Other>(); }),
+              {loop.name, "controller.type", "pi"});
   EXPECT_EQ(findParams<Other>(*loop.controller), nullptr);
 }
 

@@ -44,8 +44,7 @@ TEST_F(ExcitationLoop, TimesInSecondsAreThoseInSamples) {
   EXPECT_EQ(prbs.controllerParams<ExcitationParams>().signals.at(0).start_steps, 5);
   const LoopFile steps = read("signal: steps, schedule: [{time_h: 0.2, value: 5}]");
   EXPECT_EQ(steps.controllerParams<ExcitationParams>().signals.at(0).schedule.at(0).step, 1);
-  EXPECT_EQ(steps.ring.wait_for,
-            (std::vector<std::string>{"loop_recorder", "fmbpc_controller"}));
+  EXPECT_EQ(steps.ring.wait_for, (std::vector<std::string>{"loop_recorder", "fmbpc_controller"}));
 }
 
 TEST_F(ExcitationLoop, MistakesNameFileLineKeyAndWhatIsExpected) {
@@ -103,7 +102,8 @@ TEST_F(ExcitationLoop, TheValidationRecordHasOtherLoadsAndOtherLevels) {
   const LoopFile first = readLoop("asp_excite"), second = readLoop("asp_excite_validation");
   EXPECT_EQ(first.simulation.samples, 3320U);
   EXPECT_EQ(second.simulation.samples, 1660U);
-  EXPECT_NE(first.controllerParams<ExcitationParams>().seed, second.controllerParams<ExcitationParams>().seed);
+  EXPECT_NE(first.controllerParams<ExcitationParams>().seed,
+            second.controllerParams<ExcitationParams>().seed);
   EXPECT_NE(first.disturbance.pattern.seed, second.disturbance.pattern.seed);
   EXPECT_NEAR(makeDisturbance(first).values.row(1).mean(), 366.67, 1e-9);
 }

@@ -149,8 +149,8 @@ TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
   record.samples[6].action.source = ActionSource::kClipped;
   const Summary summary = summarize(loop, record, 0.0);
   const std::string table = toTable({summary});
-  for (const char* words : {"2 of 200 samples held", "1 of 200 samples on the fallback",
-                            "1 of 200 samples clipped"})
+  for (const char* words :
+       {"2 of 200 samples held", "1 of 200 samples on the fallback", "1 of 200 samples clipped"})
     EXPECT_NE(table.find(words), std::string::npos) << words << table;
   EXPECT_EQ(table.find("locked"), std::string::npos) << table;
   writeRun(loop, record, summary, path("told"));

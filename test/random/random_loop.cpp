@@ -56,7 +56,7 @@ std::string sampleLine(Dice& dice, RandomFrame& frame) {
 std::string controllerFor(Dice& dice, RandomFrame& frame) {
   std::vector<std::string> types{"pi", "excitation"};
   const bool dead_times = frame.plant.name == "distillation_column";
-  if (!dead_times && !frame.delayed) types.emplace_back("nmpc");
+  if (!dead_times && frame.plant.name != "linear_2x2" && !frame.delayed) types.emplace_back("nmpc");
   if (dead_times) types.emplace_back("adaptive_pi");
   return dice.pick(types);
 }
@@ -84,7 +84,9 @@ RandomLoop randomLoop(std::uint64_t seed) {
   for (const auto& name : loop.outputs) frame.outputs.push_back(stateOf(frame.plant, name));
   frame.sample_time_s = usualSampleTime(frame.plant);
   frame.samples = dice.whole(10, 40);
-  if (!believes && loop.plant != "linear_2x2")
+  if (!believes && loop.plant == "surge_tank")  // a difference equation of 0.1 s, or finer
+    frame.sample_time_s *= dice.pick<double>({1.0, 2.0, 5.0});
+  else if (!believes && loop.plant != "linear_2x2")
     frame.sample_time_s *= dice.pick<double>({1.0, 1.0, 0.5, 2.0, 1.0 / 3.0});
   const std::string line = sampleLine(dice, frame);
   loop.controller = believes ? dice.pick(believer.controllers) : controllerFor(dice, frame);

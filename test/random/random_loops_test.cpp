@@ -15,7 +15,7 @@
 namespace fpc {
 namespace {
 
-constexpr std::uint64_t kQuick = 300;
+constexpr std::uint64_t kQuick = 120;
 constexpr std::uint64_t kLong = 6000;
 constexpr double kTolerance = 1e-9;  // of an input's range
 
@@ -94,19 +94,25 @@ std::string beyondLimits(const LoopFile& loop, const RunRecord& record) {
   return "";
 }
 
+/// The same bits; what is missing (a setpoint that nobody follows) equals what is missing.
+bool same(const Vector& a, const Vector& b) {
+  if (a.size() != b.size()) return false;
+  return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
+}
+
 /// The first sample that differs in what a plant and a controller say; -1 if none does.
 int firstDifference(const RunRecord& a, const RunRecord& b) {
   if (a.samples.size() != b.samples.size()) return 0;
   for (std::size_t k = 0; k < a.samples.size(); ++k) {
     const SampleRecord &x = a.samples[k], &y = b.samples[k];
-    const bool same = x.measurement.outputs == y.measurement.outputs &&
-                      x.measurement.input_applied == y.measurement.input_applied &&
-                      x.state.state == y.state.state &&
-                      x.state.disturbances == y.state.disturbances &&
-                      x.tracking.setpoint == y.tracking.setpoint &&
-                      x.tracking.reference == y.tracking.reference &&
-                      x.action.input == y.action.input;
-    if (!same) return static_cast<int>(k);
+    const bool equal = same(x.measurement.outputs, y.measurement.outputs) &&
+                       same(x.measurement.input_applied, y.measurement.input_applied) &&
+                       same(x.state.state, y.state.state) &&
+                       same(x.state.disturbances, y.state.disturbances) &&
+                       same(x.tracking.setpoint, y.tracking.setpoint) &&
+                       same(x.tracking.reference, y.tracking.reference) &&
+                       same(x.action.input, y.action.input);
+    if (!equal) return static_cast<int>(k);
   }
   return -1;
 }
@@ -139,7 +145,7 @@ TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
 }
 
 TEST_F(RandomLoops, GiveTheSameBitsAgainFromTheirPrintedTextAndAtAnotherTime) {
-  each(seeds(100), [&](const RandomLoop& random, const LoopFile& loop, const RunRecord& record) {
+  each(seeds(40), [&](const RandomLoop& random, const LoopFile& loop, const RunRecord& record) {
     EXPECT_EQ(firstDifference(record, runLoop(loop)), -1) << "again\n" << random.told();
     EXPECT_EQ(firstDifference(record, runLoop(parseLoop(loop.resolved, loop.name))), -1)
         << "printed\n"
@@ -159,14 +165,16 @@ Vector reordered(const Vector& values, const std::vector<std::string>& from,
   return result;
 }
 
-// Noise is drawn in the order of the outputs, and a particle swarm or a search over sequences may take
-// another of two equal answers: those are left out.
+// Left out: noise, which is drawn in the order of the outputs; a particle swarm and a search over
+// sequences, which may take another of two equal answers; the law `published`, which follows the last
+// output by definition.
 TEST_F(RandomLoops, DoNotDependOnTheOrderOfTheOutputs) {
   int compared = 0;
-  for (const std::uint64_t seed : seeds(100)) {
+  for (const std::uint64_t seed : seeds(40)) {
     const RandomLoop random = randomLoop(seed);
     const std::set<std::string> unordered{"swarm_mpc", "hybrid_mpc"};
-    if (random.outputs.size() < 2 || unordered.count(random.controller) > 0) continue;
+    const bool last = random.text.find("law: published") != std::string::npos;
+    if (random.outputs.size() < 2 || unordered.count(random.controller) > 0 || last) continue;
     const std::vector<std::string> turned(random.outputs.rbegin(), random.outputs.rend());
     const Overrides calm{{"noise", "{seed: 1}"}};
     const Overrides other{{"noise", "{seed: 1}"}, {"plant.outputs", "[" + join(turned) + "]"}};
@@ -187,12 +195,12 @@ TEST_F(RandomLoops, DoNotDependOnTheOrderOfTheOutputs) {
       error = e.what();  // the first property tells what is refused
     }
   }
-  if (seeds(100).size() >= 100) EXPECT_GT(compared, 20);
+  if (seeds(40).size() >= 40) EXPECT_GT(compared, 8);
 }
 
 // Powers of two, so that not a single bit may differ.
 TEST_F(RandomLoops, DoNotDependOnTheUnitsOfAnOutputOrAnInput) {
-  for (const std::uint64_t seed : seeds(100)) {
+  for (const std::uint64_t seed : seeds(40)) {
     const RandomLoop random = randomMatrixLoop(seed);
     const RunRecord plain = runLoop(read(random));
     for (const auto& [output, input] :

@@ -44,7 +44,7 @@ class Commands(unittest.TestCase):
         effects = {kind: ring.Listener(kind, CommandEffect) for kind in ("setpoint_effect", "disturbance_effect")}
         active = ring.Listener("setpoint_active", Setpoint)
         for listener in (*effects.values(), active, recorded):
-        setpoint = ring.publisher("setpoint", Setpoint, listeners=2)
+        setpoint = ring.publisher("setpoint", Setpoint, listeners=1)
         disturbance = ring.publisher("disturbance", Disturbance)
         for command in SETPOINTS:
             setpoint.publish(message(Setpoint, *command))

@@ -75,11 +75,11 @@ class Intruder(unittest.TestCase):
             ring.assert_same_run(self, folder, reference)
         for node, keys in (("plant_simulator", ("actions dropped: wrong size", "actions dropped: other run",
                                                 "refused: control_action", "refused: disturbance")),
-                           ("fmbpc_controller", ("dropped: wrong size", "dropped: other run", "refused: setpoint",
+                           ("fmbpc_controller", ("dropped: wrong size", "refused: setpoint",
                                                  "refused: fuzzy_model", "refused: plant_info",
                                                  "dropped: run not announced")),
                            ("clp_optimizer", ("refused: base_action", "refused: predictive_action",
-                                              "dropped: other run", "dropped: run not announced")),
+                                              "dropped: run not announced")),
                            ("loop_recorder", ("dropped: other run", "dropped: wrong size or not finite"))):
             diagnostics.wait(lambda m, n=node, k=keys: ring.diagnostics_of(m, n) is not None and all(
                 int(ring.values(ring.diagnostics_of(m, n)).get(key, 0)) > 0 for key in k))

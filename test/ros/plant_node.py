@@ -157,7 +157,7 @@ class PlantNode(unittest.TestCase):
     def test_the_final_sample_is_marked_and_nothing_follows(self):
         finals = [self.advance().final for _ in range(10)]
         self.assertEqual([False] * 9 + [True], finals)
-        self.status.wait(lambda s: s.message == "finished")
+        self.status.wait(lambda s: s.message.startswith("finished"))
         self.measurements.clear()
         again = ring.Listener("measurement", Measurement).wait()  # latched for those who come later
         self.assertEqual((10, True), (again.step, again.final))

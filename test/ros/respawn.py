@@ -31,7 +31,7 @@ class Respawn(unittest.TestCase):
         """Asks for x = 1900, kills the victim once that acts; returns the step from which it acts."""
         effects, active = ring.Listener("setpoint_effect", CommandEffect), ring.Listener("setpoint_active", Setpoint)
         ring.Listener("control_action", ControlAction).wait(lambda a: a.step >= 5)
-        setpoint = ring.publisher("setpoint", Setpoint, listeners=2)
+        setpoint = ring.publisher("setpoint", Setpoint, listeners=1)
         setpoint.publish(name=["x"], value=[1900.0], mode=Setpoint.OVERRIDE)
         asked = effects.wait().step
         active.wait(lambda m: m.name == ["x"] and list(m.value) == [1900.0])

@@ -11,9 +11,9 @@
 namespace {
 
 struct OutflowParams {
-  int output{};             // index of the level it holds
-  double outlet{10.0};      // c [l/(s m^0.5)]
-  double kp{5.0};           // [l/(s m)]
+  int output{};         // index of the level it holds
+  double outlet{10.0};  // c [l/(s m^0.5)]
+  double kp{5.0};       // [l/(s m)]
   double integral_time_s{600.0};
 };
 

@@ -1,4 +1,5 @@
-// Two tanks in series, each with an outlet at its floor; a pump and an unsteered feed fill the first.
+// Two tanks in series, each with an outlet at its floor; a pump and an unsteered feed fill the
+// first.
 //
 //   1000 A1 dh1/dt = q + f - c1 sqrt(h1)
 //   1000 A2 dh2/dt = c1 sqrt(h1) - c2 sqrt(h2)            flows in l/s, levels in m, areas in m2
@@ -36,8 +37,7 @@ class TwoTanks final : public fpc::Plant {
   explicit TwoTanks(const fpc::PlantParameters& parameters)
       : description_(describe()), values_(fpc::parameterValues(description_, parameters)) {}
   const fpc::PlantDescription& description() const override { return description_; }
-  void derivatives(VectorRef x, VectorRef u, VectorRef d,
-                   Eigen::Ref<Vector> dxdt) const override {
+  void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     const double first = values_[2] * std::sqrt(std::max(x[0], 0.0));
     const double second = values_[3] * std::sqrt(std::max(x[1], 0.0));
     dxdt[0] = (u[0] + d[0] - first) / (kLitres * values_[0]);
@@ -49,9 +49,8 @@ class TwoTanks final : public fpc::Plant {
   Vector values_;
 };
 
-const bool kRegistered =
-    fpc::registerPlant("two_tanks", [](const fpc::PlantParameters& parameters) {
-      return std::make_unique<TwoTanks>(parameters);
-    });
+const bool kRegistered = fpc::registerPlant(
+    "two_tanks",
+    [](const fpc::PlantParameters& parameters) { return std::make_unique<TwoTanks>(parameters); });
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "fmbpc/control/guard.hpp"
 #include "fmbpc/control/registry.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
@@ -75,6 +76,7 @@ struct ReportParams {
       output_upper;  ///< n_y limits for violations.output; infinite if absent
   std::vector<ReportWindow> windows;
   std::vector<Consumption> consumption;
+  double record_from_h{};  ///< rows of trajectory.csv begin here
   std::vector<Eigen::Index> without_setpoint;  ///< outputs that nobody asks anything of
 };
 
@@ -105,6 +107,7 @@ struct LoopFile {
   IdentifyParams identify;
   std::shared_ptr<const ControllerConfig> controller;  ///< never null in a loop that was read
   Vector disturbance_nominal;                          ///< n_d, of the measured disturbances
+  GuardParams guard;                                   ///< around a law with a model
   bool has_clp{false};
   ClpParams clp;
   RingParams ring;
@@ -119,8 +122,7 @@ struct LoopFile {
   template <typename Params>
   const Params& controllerParams() const {
     const Params* params = controller ? findParams<Params>(*controller) : nullptr;
-    require(params, name + ": controller.type",
-            "another controller than " + controllerType().name);
+    require(params, name + ": controller.type", "another controller than " + controllerType().name);
     return *params;
   }
 };

@@ -8,8 +8,8 @@
 namespace fpc {
 
 /// Folders in which a library is looked for by name, in this order: ${FMBPC_PLUGIN_PATH}, `lib` of
-/// every prefix of ${CMAKE_PREFIX_PATH} (a catkin workspace, an install prefix) and of every install
-/// space of ${ROS_PACKAGE_PATH}, and the folder of fmbpc itself.
+/// every prefix of ${CMAKE_PREFIX_PATH} (a catkin workspace, an install prefix) and of every
+/// install space of ${ROS_PACKAGE_PATH}, and the folder of fmbpc itself.
 std::vector<std::string> pluginFolders();
 
 /// Loads `name`: a library NAME as libNAME.so out of pluginFolders(), or a path (with a slash).

@@ -25,6 +25,7 @@ struct ControllerContext {
   Vector initial_input;        ///< n_u, u(-1)
   Vector fallback_input;       ///< n_u, what the actuator falls back to
   Vector disturbance_nominal;  ///< n_d, of the measured disturbances
+  Vector noise_std;            ///< n_y, of the measurements, as the loop file states; 0: unknown
   int perturbation_steps{0};   ///< n_c of the optimizer behind the controller; 0: there is none
   /// One sample of the simulated plant by this many integration steps; empty for an external plant.
   /// @throws InputError for a plant that has no such model.
@@ -39,11 +40,11 @@ struct ControllerContext {
 
 /// What the rest of the house knows of a type.
 struct ControllerType {
-  std::string name;                   ///< controller.type
-  std::string summary;                ///< one line for lists
-  bool needs_model{false};            ///< it waits for a fuzzy model
-  bool predicts{false};               ///< an optimizer (clp) can stand behind it
-  bool open_loop{false};              ///< it follows no setpoint
+  std::string name;                     ///< controller.type
+  std::string summary;                  ///< one line for lists
+  bool needs_model{false};              ///< it waits for a fuzzy model
+  bool predicts{false};                 ///< an optimizer (clp) can stand behind it
+  bool open_loop{false};                ///< it follows no setpoint
   std::vector<SettingInfo> settings{};  ///< what may change in a run; empty: nothing
 };
 

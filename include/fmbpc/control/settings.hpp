@@ -22,7 +22,7 @@ enum class SettingKind { kNumber, kInteger, kBoolean, kText };
 struct SettingInfo {
   std::string key;
   SettingKind kind{SettingKind::kText};
-  std::string description;  ///< one line, with an example
+  std::string description;                            ///< one line, with an example
   double lower{-std::numeric_limits<double>::max()};  ///< of numbers and integers
   double upper{std::numeric_limits<double>::max()};
 };

@@ -18,6 +18,7 @@ struct ClusteringParams {
   double tolerance{1e-4};  ///< stops when no membership moves by more
   int restarts{1};
   std::uint64_t seed{1};
+  int threads{0};         ///< 0: all cores; the answer does not depend on it
   void validate() const;  ///< @throws InputError naming the field
 };
 
@@ -42,7 +43,8 @@ struct Clusters {
 using ClusteringProgress = std::function<bool(int iteration, double objective)>;
 
 /// Clusters columns of `points` (dimensions x samples); scale the dimensions first. Same data and
-/// seed, same bits. Memory: the points, two matrices c x samples, and blocks. When cancelled, what
+/// seed, same bits. Memory: the points, two matrices
+/// c x samples, and blocks. When cancelled, what
 /// there is so far. Source: Bezdek (1981); Gustafson and Kessel (1979); regularised as in Babuska,
 /// van der Veen and Kaymak (2002).
 /// @throws InputError naming the field; also when there are fewer points than clusters.

@@ -9,6 +9,7 @@
 
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/types.hpp"
+#include "fmbpc/fuzzy/domain.hpp"
 #include "fmbpc/fuzzy/membership.hpp"
 #include "fmbpc/fuzzy/multivariate_membership.hpp"
 
@@ -53,6 +54,7 @@ struct TsModel {
   std::vector<SignalInfo> outputs, inputs,
       disturbances;                    ///< lower/upper: range of the data, or infinite
   std::vector<OutputModel> submodels;  ///< one per output
+  ModelDomain domain;                  ///< where the data were; may be empty
 
   /// @throws InputError naming the part: sizes, indices, lags, non-finite coefficients, no rules,
   /// repeated names, multivariate rules among others.

@@ -49,7 +49,7 @@ class Hysteresis {
 class RingWatch {
  public:
   static constexpr double kBeat = 0.5;     ///< [s] between two beats
-  static constexpr double kSilence = 1.3;  ///< [s]
+  static constexpr double kSilence = 1.1;  ///< [s]
 
   explicit RingWatch(std::vector<std::string> nodes) : nodes_(std::move(nodes)) {}
   void hear(const std::string& node, const Health& health, double now_s);

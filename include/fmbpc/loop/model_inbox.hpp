@@ -32,7 +32,8 @@ class ModelInbox {
   void hear(const IdentifierWord& word);
   /// Whether `next` may be answered: nothing that belongs before it is still under way.
   bool complete(const StepHeader& next) const;
-  /// Models to be used before `next` is answered, in their order. They are taken out.
+  /// Models to be used before `next` is answered, in their order. They are taken out; `next` of run 0
+  /// stands for a controller that has answered nothing yet.
   std::vector<TsModel> take(const StepHeader& next);
 
  private:

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "fmbpc/analysis/performance.hpp"
+#include "fmbpc/base/csv.hpp"
 #include "fmbpc/base/input_limits.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/record.hpp"
@@ -40,6 +41,7 @@ struct Summary {
   std::vector<WindowIndices> windows;  ///< per output, the windows of the loop file
   std::vector<std::pair<std::string, double>> consumption;
   std::uint64_t input_violations{}, move_violations{}, output_violations{}, actuator_clips{};
+  std::uint64_t outside_model{};  ///< samples below guard.trust_low of the loop's model
   bool has_clp{};
   std::uint64_t clp_solves{}, clp_infeasible{};
   std::uint64_t clp_failed{};  ///< solves without a usable result for another reason
@@ -56,6 +58,9 @@ struct Summary {
 };
 
 Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s);
+/// Samples (with an action) whose measurement and input lie where the loop's model has no data; 0
+/// for a law without a model.
+std::uint64_t samplesOutsideModel(const LoopFile& loop, const RunRecord& record);
 std::string toJson(const Summary& summary);  ///< keys of README, one object
 /// What toTable() needs of a summary.json. @throws InputError naming the file.
 Summary readSummary(const std::string& file);
@@ -67,6 +72,8 @@ bool neverControlled(const Summary& summary);
 /// failed, held, on the fallback, clipped, locked, cells filled.
 std::vector<std::string> remarksOf(const Summary& summary);
 std::string toTable(const std::vector<Summary>& summaries);
+/// What trajectory.csv holds: a row for each sample from `report.record_from_h` on.
+CsvTable trajectoryOf(const LoopFile& loop, const RunRecord& record);
 /// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot
 /// be written.
 void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,

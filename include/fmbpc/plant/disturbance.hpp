@@ -65,6 +65,9 @@ struct CsvDisturbanceParams {
   std::string interpolation{"hold"};  ///< hold (zero order) or linear
   std::string end{"error"};  ///< what if the record is shorter than the run: error, hold, repeat
   std::vector<CsvChannel> channels;
+  double lead_in_h{};     ///< nominal values for so long before the record begins
+  std::string next_file;  ///< a record of the same columns that follows; empty: none
+  double next_after_h{};  ///< ... after so much of the first one
 };
 
 /// Reads and resamples a record; its first time is the loop's start. A row acts from its time on
@@ -78,5 +81,11 @@ struct CsvDisturbanceParams {
 DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
                                    const std::vector<std::string>& names, const Vector& nominal,
                                    double sample_time_s, std::uint32_t samples);
+/// The same with the lead-in before it and the next record behind it. @throws InputError also
+/// unless these begin at a sample within the run.
+DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
+                                          const std::vector<std::string>& names,
+                                          const Vector& nominal, double sample_time_s,
+                                          std::uint32_t samples);
 
 }  // namespace fpc

@@ -54,6 +54,8 @@ class PlantStepper {
   virtual void advance(Eigen::Ref<Vector> x, VectorRef u, VectorRef d) = 0;
   /// False for a difference equation: x, u and d say everything, as with an integrator.
   virtual bool remembers() const { return true; }
+  /// False if the sample time is part of the plant: it cannot be moved over a part of a sample.
+  virtual bool divisible() const { return true; }
 };
 
 /// dx/dt = f(x, u, d), measured outputs are states.

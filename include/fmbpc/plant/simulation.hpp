@@ -13,6 +13,7 @@
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/plant/actuator.hpp"
 #include "fmbpc/plant/disturbance.hpp"
+#include "fmbpc/plant/instruments.hpp"
 #include "fmbpc/plant/integrator.hpp"
 #include "fmbpc/plant/plant.hpp"
 #include "fmbpc/plant/transfer_matrix.hpp"
@@ -43,6 +44,7 @@ struct SimulationParams {
   std::vector<ScheduledCommand> disturbance_commands;
   Vector noise_std;  ///< n_y, standard deviation of white measurement noise; empty: none
   std::uint64_t noise_seed{1};
+  InstrumentParams instruments;  ///< sensors of outputs and measured disturbances
   double sample_time_s{1.0};
   double start_time_s{1.0};
   std::uint32_t samples{};  ///< N; 0 is endless
@@ -101,6 +103,8 @@ class Simulation {
   void updateDisturbances();
   void passLocalLoop();
   void measure();
+  void startInstruments();
+  void lookAtPlant();
   const Measurement& integrate();
   void movePlant();
 
@@ -109,6 +113,7 @@ class Simulation {
   SampleClock clock_;
   Actuator actuator_;
   Integrator integrator_;
+  Instruments instruments_;
   std::unique_ptr<PlantStepper> stepper_;  // moves the plant if there is one
   CommandTable commands_;
   PlantInfo info_;
@@ -118,6 +123,7 @@ class Simulation {
   std::mt19937_64 noise_;
   std::string trouble_;
   Vector state_before_;  // one sample ago
+  Vector true_outputs_, true_measured_;  // what the sensors look at
   Vector plant_input_;   // the applied input as the plant's local loop passes it on
   std::vector<Eigen::Index> output_state_;          // index of the state behind each output
   std::vector<Eigen::Index> measured_disturbance_;  // index into the plant's disturbances

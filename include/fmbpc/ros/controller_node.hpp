@@ -55,6 +55,7 @@ class ControllerNode : public Node {
   bool onAdapt(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void announceIfReady();
   void useModels(const StepHeader& next);
+  StepHeader nextSample() const;
   void answer(const Measurement& measurement);
   void answerParked();
   void tell();  ///< what the operator asks has changed

@@ -50,6 +50,7 @@ class LoopRecorder : public Node {
   void checkComplete();
   void conclude();
   bool tryWrite();
+  void end();
   Health health(double now_s) const;
   void report(Diagnostics::Status& status) const;
 
@@ -60,12 +61,13 @@ class LoopRecorder : public Node {
   ReadyPublisher ready_;
   PlantGate plant_;
 
-  double began_s_{}, final_seen_s_{-1}, closed_s_{-1};
+  double began_s_{}, final_seen_s_{-1}, closed_s_{-1}, ending_s_{-1};
   bool written_{false};
   std::string problem_, trouble_;  // of the recorder; of the plant
   int polls_connected_{};
 
   ros::Publisher recorded_;
+  RunEndPublisher end_;
   std::vector<ros::Subscriber> ring_;  // every publisher that must be connected
   ros::SteadyTimer poll_timer_;
   HealthReporter health_;

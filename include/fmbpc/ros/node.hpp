@@ -11,6 +11,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/authority.hpp"
+#include "fmbpc/ros/run_end.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -83,6 +84,7 @@ int runNode(int argc, char** argv, const std::string& name) {
   const ros::NodeHandle node,
       private_node("~");  // outlives the catch: without a node nothing is logged
   try {
+    const RunEndListener end(node, private_node);
     const LoopFile loop = loopParameter(node);
     const std::string idle = Class::idleReason(loop);
     if (!idle.empty()) return stayIdle(private_node, idle);

@@ -21,6 +21,7 @@ inline constexpr char kDisturbance[] = "disturbance";
 inline constexpr char kDisturbanceEffect[] = "disturbance_effect";
 inline constexpr char kRecorded[] = "recorded";
 inline constexpr char kReady[] = "ready";
+inline constexpr char kRunEnd[] = "run_end";
 inline constexpr char kLoopState[] = "loop_state";
 inline constexpr char kOperatorState[] = "operator_state";
 inline constexpr char kOperatorKept[] = "operator_kept";

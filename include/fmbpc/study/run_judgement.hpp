@@ -14,7 +14,7 @@ enum class RunFailure {
   kDiverged,    ///< it ended early, or something was not finite
   kLocked,      ///< an input stayed at its bound while an output did not come nearer its setpoint
   kViolated,    ///< an input, a move or an output beyond its limits
-  kHeld,        ///< an action was held or the fallback
+  kHeld,        ///< an action was held
   kOutOfModel,  ///< the law said that it was outside its model's data
 };
 constexpr int kRunFailures = 5;

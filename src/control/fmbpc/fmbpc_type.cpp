@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/control/read_observer.hpp"
 #include "fmbpc/control/registry.hpp"
 
 namespace fpc {
@@ -34,11 +35,13 @@ FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
   section.integer("horizon_steps", params.horizon_steps, 1, 10000);
   section.integer("iterations", params.iterations, 1, 1000);
   readForecast(section, loop, params);
-  section.oneOf("realisation", params.realisation, {"parallel", "realigned", "literal"});
+  section.oneOf("realisation", params.realisation,
+                {"parallel", "realigned", "literal", "observer"});
   section.integer("delay_steps", params.delay_steps, 0, 1000);
   section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
   section.oneOf("antecedent", params.antecedent, {"model", "measured"});
   section.number("offset_gain", params.offset_gain, {0.0, 1.0});
+  readObserver(section, params.observer, loop);
   section.boolean("disturbance_feedforward", params.disturbance_feedforward);
   section.byName("disturbance_nominal", params.disturbance_nominal, loop.disturbances(), kFinite);
   section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
@@ -58,8 +61,7 @@ ControllerType describe() {
   return type;
 }
 
-const bool kRegistered =
-    registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc});
+const bool kRegistered = registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc});
 
 }  // namespace
 }  // namespace fpc

@@ -50,6 +50,10 @@ bool FmbpcLaw::Belief::inherit(const Belief& other) {
   state = realigned || !goes_on ? measured : other.state;
   for (Eigen::Index i = 0; i < undelayed.size(); ++i) undelayed[i] = state[local.outputState(i)];
   if (goes_on) error_filtered = other.error_filtered;
+  if (observer && other.observer) {
+    observer->inherit(*other.observer);
+    state = observer->state();
+  }
   return true;
 }
 

@@ -23,7 +23,10 @@ FmbpcLaw::Belief::Belief(const TsModel& model, const FmbpcParams& params, Eigen:
       outputs(offset_output),
       lacking(offset_output),
       correction(state) {
-  if (params.delay_steps > 0) twin.emplace(local, canonical, params.delay_steps);
+  if (params.realisation == "observer")
+    observer.emplace(local, params.observer, params.delay_steps);
+  else if (params.delay_steps > 0)
+    twin.emplace(local, canonical, params.delay_steps);
 }
 
 void FmbpcLaw::Belief::rest(const Measurement& now, VectorRef disturbances) {
@@ -36,11 +39,19 @@ void FmbpcLaw::Belief::rest(const Measurement& now, VectorRef disturbances) {
     state = measured;
   }
   if (twin) twin->rest(now.outputs, now.input_applied, disturbances);
+  if (observer) observer->rest(now.outputs, now.input_applied, disturbances);
   error_filtered.setZero();
   undelayed = now.outputs;
 }
 
 void FmbpcLaw::Belief::advance(const Measurement& now, VectorRef disturbances) {
+  if (observer) {
+    observer->advance(now.outputs, now.input_applied, disturbances);
+    local.shiftState(now.outputs, now.input_applied, disturbances, measured);
+    state = observer->state();
+    for (Eigen::Index i = 0; i < undelayed.size(); ++i) undelayed[i] = state[local.outputState(i)];
+    return;
+  }
   next = affine().g;
   next.noalias() += affine().A * state;
   next.noalias() += affine().B * now.input_applied;
@@ -63,11 +74,21 @@ void FmbpcLaw::Belief::compare(const Measurement& now) {
   outputs = undelayed;
   if (twin) twin->output(outputs);
   offset_output.setZero();
-  if (!realigned) offset_output = now.outputs - outputs;
   offset_state = affine().g;
+  if (observer) {
+    outputs = now.outputs - observer->innovation();
+    observer->addDisturbance(offset_state);
+    return;
+  }
+  if (!realigned) offset_output = now.outputs - outputs;
   if (!realigned) return;
   for (Eigen::Index i = 0; i < outputs.size(); ++i)
     offset_state[local.outputState(i)] += error_filtered[i];
+}
+
+double FmbpcLaw::Belief::correctionOf(Eigen::Index output) const {
+  if (observer) return observer->disturbance()[output];
+  return realigned ? error_filtered[output] : offset_output[output];
 }
 
 }  // namespace fpc

@@ -9,6 +9,7 @@
 #include "fmbpc/control/fmbpc/coincidence.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/control/fmbpc/path_planner.hpp"
+#include "fmbpc/control/model_observer.hpp"
 #include "fmbpc/fuzzy/canonical_form.hpp"
 #include "fmbpc/fuzzy/local_model.hpp"
 
@@ -33,22 +34,26 @@ struct FmbpcLaw::Belief {
   /// The model of the undelayed process, as blended last.
   const AffineModel& affine() const { return canonical ? canonical->affine() : local.affine(); }
 
+  /// What is added to the model's output (or, per sample, to its state) to be offset-free.
+  double correctionOf(Eigen::Index output) const;
+
   bool realigned, antecedent_measured;
   double offset_gain;
   LocalModel local;                        ///< the rules, without the delay
   std::optional<CanonicalForm> canonical;  ///< literal: the state space instead of local's
   CoincidenceGains gains;
-  Vector state;                        ///< xi(k): own (parallel, literal) or measured (realigned)
-  Vector measured;                     ///< local's rows filled with measurements
-  Vector next;                         ///< xi(k) as predicted at k-1
-  Vector offset_state;                 ///< g
-  Vector offset_output;                ///< y - y_m
-  Vector error_filtered;               ///< w_hat
-  Vector undelayed;                    ///< y_m0, output of the model without delay
-  Vector outputs;                      ///< y_m
-  Vector lacking;                      ///< e, without C A^H xi
-  Vector correction;                   ///< w_hat in the rows of the outputs
-  std::optional<DelayedTwin> twin;     ///< with delay_steps > 0
+  Vector state;                     ///< xi(k): own (parallel, literal) or measured (realigned)
+  Vector measured;                  ///< local's rows filled with measurements
+  Vector next;                      ///< xi(k) as predicted at k-1
+  Vector offset_state;              ///< g
+  Vector offset_output;             ///< y - y_m
+  Vector error_filtered;            ///< w_hat
+  Vector undelayed;                 ///< y_m0, output of the model without delay
+  Vector outputs;                   ///< y_m
+  Vector lacking;                   ///< e, without C A^H xi
+  Vector correction;                ///< w_hat in the rows of the outputs
+  std::optional<DelayedTwin> twin;  ///< with delay_steps > 0, unless observed
+  std::optional<ModelObserver> observer;
   std::optional<PathPlanner> planner;  ///< of the iterated law
 };
 

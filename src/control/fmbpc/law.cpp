@@ -167,8 +167,8 @@ void FmbpcLaw::refreshSignals(const Measurement& now) {
   std::size_t place = 0;
   for (Eigen::Index i = 0; i < now.outputs.size(); ++i) {
     m.signals[place++].second = b.outputs[i];
-    m.signals[place++].second = m.realigned ? b.error_filtered[i] : b.offset_output[i];
-    if (b.twin) m.signals[place++].second = b.undelayed[i] + b.offset_output[i];
+    m.signals[place++].second = b.correctionOf(i);
+    if (m.params.delay_steps > 0) m.signals[place++].second = b.undelayed[i] + b.offset_output[i];
   }
   for (Eigen::Index i = 0; i < m.proposal.size(); ++i) m.signals[place++].second = m.proposal[i];
 }

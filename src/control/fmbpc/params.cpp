@@ -15,9 +15,10 @@ void requireWeights(const Vector& weight, Eigen::Index n, const std::string& key
 /// What only some realisations can do.
 void requireCombination(const FmbpcParams& p) {
   const std::string& realisation = p.realisation;
-  require(realisation == "parallel" || realisation == "realigned" || realisation == "literal",
+  require(realisation == "parallel" || realisation == "realigned" || realisation == "literal" ||
+              realisation == "observer",
           "controller.realisation",
-          "one of parallel, realigned, literal, got '" + realisation + "'");
+          "one of parallel, realigned, literal, observer, got '" + realisation + "'");
   require(p.delay_steps >= 0 && p.delay_steps <= 1000, "controller.delay_steps",
           "an integer from 0 to 1000");
   require(p.delay_steps == 0 || realisation != "realigned", "controller.delay_steps",
@@ -44,6 +45,7 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
           "one of published, general, iterated, got '" + law + "'");
   requireOneOf(antecedent, "model", "measured", "controller.antecedent");
   requireCombination(*this);
+  if (realisation == "observer") observer.validate(n_y);
   require(coincidence_steps >= 1 && coincidence_steps <= 100000, "controller.coincidence_steps",
           "an integer from 1 to 100000");
   require(prediction_steps >= 1 && prediction_steps <= 100000, "controller.prediction_steps",

@@ -1,11 +1,16 @@
 #include "fmbpc/control/horizon/horizon_mpc.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
 
 using Eigen::Index;
+
+constexpr double kDifference = 1e-5;  // relative, of finite differences
 
 Index countOf(const std::vector<SignalInfo>& signals) { return static_cast<Index>(signals.size()); }
 
@@ -34,7 +39,13 @@ HorizonMpc::HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo
 void HorizonMpc::believe(std::unique_ptr<SampleModel> model) {
   cost_ = std::make_unique<PlanCost>(*model, params_);
   model_ = std::move(model);
-  state_ = Vector::Zero(model_->stateSize());
+  state_ = next_ = moved_ = Vector::Zero(model_->stateSize());
+  if (params_.observe) {
+    std::vector<Index> rows;
+    for (Index i = 0; i < n_y_; ++i) rows.push_back(model_->outputState(i));
+    observer_.emplace(params_.observer, state_.size(), rows);
+    A_ = Matrix::Zero(state_.size(), state_.size());
+  }
   fresh_ = true;
 }
 
@@ -43,8 +54,42 @@ void HorizonMpc::reset(const Measurement& start) {
   fresh_ = true;
 }
 
+/// A at the state of k-1, and the state of k; false if something is not finite.
+bool HorizonMpc::linearise(const Measurement& now) {
+  next_ = state_;
+  if (!model_->step(now.input_applied, disturbances_, next_)) return false;
+  for (Index j = 0; j < state_.size(); ++j) {
+    moved_ = state_;
+    const double h = kDifference * std::max(kDifference, std::abs(state_[j]));
+    moved_[j] += h;
+    if (!model_->step(now.input_applied, disturbances_, moved_)) return false;
+    A_.col(j) = (moved_ - next_) / h;
+  }
+  state_ = next_;
+  return A_.allFinite();
+}
+
+/// estimate() with the observer.
+bool HorizonMpc::observe(const Measurement& now) {
+  const bool follows = !fresh_ && linearise(now);
+  disturbances_ = now.disturbances;
+  fresh_ = false;
+  if (follows) {
+    observer_->addDisturbance(state_);
+    observer_->predict(A_);
+    observer_->correct(now.outputs, state_);
+  } else {
+    model_->rest(now.outputs, now.input_applied, disturbances_, state_);
+    for (Index i = 0; i < n_y_; ++i) state_[model_->outputState(i)] = now.outputs[i];
+    observer_->reset();
+  }
+  correction_ = observer_->disturbance();
+  return follows;
+}
+
 /// False if the state had to start anew.
 bool HorizonMpc::estimate(const Measurement& now) {
+  if (observer_) return observe(now);
   const bool follows = !fresh_ && model_->step(now.input_applied, disturbances_, state_);
   disturbances_ = now.disturbances;
   fresh_ = false;

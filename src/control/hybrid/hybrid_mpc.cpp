@@ -161,7 +161,8 @@ void HybridMpc::startBlock(const Measurement& now, const SetpointSource& setpoin
       reference_.col(i) = setpoint.present();
   }
   search(now.input_applied, now.disturbances);
-  choice_ = decision_.usable() ? decision_.choices.front() : params_.nearestChoice(now.input_applied);
+  choice_ =
+      decision_.usable() ? decision_.choices.front() : params_.nearestChoice(now.input_applied);
   samples_left_ = params_.hold_samples;
   signals_[0].second = static_cast<double>(choice_);
   signals_[1].second = decision_.cost;

@@ -58,7 +58,8 @@ FuzzyOptimalLaw::Bank::Bank(const TsModel& model, const FuzzyOptimalParams& para
   }
   const Index n_y = count(model.outputs), n_u = count(model.inputs), n_x = local.stateSize();
   state = before = predicted = offset_state = Vector::Zero(n_x);
-  error = offset_output = Vector::Zero(n_y);
+  error = offset_output = seen = Vector::Zero(n_y);
+  if (params.observe) observer.emplace(local, params.observer, 0);
   constant = Vector::Zero(n_u);
   future = Matrix::Zero(n_y, params.prediction_steps + tuning.horizon_steps - 1);
   K = Matrix::Zero(n_u, n_x);
@@ -69,15 +70,36 @@ void FuzzyOptimalLaw::Bank::rest(const Measurement& now, VectorRef disturbances)
   local.restState(now.outputs, now.input_applied, disturbances, state);
   before = state;
   begun = false;
+  if (observer) observer->rest(now.outputs, now.input_applied, disturbances);
 }
 
 void FuzzyOptimalLaw::Bank::advance(const Measurement& now, VectorRef disturbances) {
+  if (observer) {
+    observer->advance(now.outputs, now.input_applied, disturbances);
+    before = observer->before();
+    state = observer->state();
+    return;
+  }
   before = state;
   local.shiftState(now.outputs, now.input_applied, disturbances, state);
 }
 
+/// What every rule is to agree with: the measurement, or what the observer makes of it.
+void FuzzyOptimalLaw::Bank::look(const Measurement& now, VectorRef disturbances) {
+  seen = now.outputs;
+  if (!observer) return;
+  local.blend(before, now.input_applied, disturbances);
+  const AffineModel& m = local.affine();
+  predicted = m.g;
+  predicted.noalias() += m.A * before;
+  predicted.noalias() += m.B * now.input_applied;
+  for (Index i = 0; i < seen.size(); ++i)
+    seen[i] = predicted[local.outputState(i)] + observer->disturbance()[i];
+}
+
 void FuzzyOptimalLaw::Bank::estimate(const Measurement& now, VectorRef disturbances) {
   if (!estimated) return;
+  look(now, disturbances);
   for (FuzzyOptimalRule& rule : rules) {
     rule.model.blend(before, disturbances);
     const AffineModel& m = rule.model.affine();
@@ -85,9 +107,9 @@ void FuzzyOptimalLaw::Bank::estimate(const Measurement& now, VectorRef disturban
     predicted.noalias() += m.A * before;
     predicted.noalias() += m.B * now.input_applied;
     for (Index i = 0; i < error.size(); ++i) {
-      const double one_step = now.outputs[i] - predicted[local.outputState(i)];
+      const double one_step = seen[i] - predicted[local.outputState(i)];
       double& d = rule.disturbance[i];
-      d = begun ? d + gain * (one_step - d) : one_step;
+      d = begun && !observer ? d + gain * (one_step - d) : one_step;
     }
   }
   begun = true;
@@ -134,6 +156,7 @@ bool FuzzyOptimalLaw::Bank::inherit(const Bank& other) {
   if (!other.state.allFinite() || !other.before.allFinite()) return false;
   state = other.state;
   before = other.before;
+  if (observer && other.observer) observer->inherit(*other.observer);
   return true;
 }
 

@@ -2,8 +2,10 @@
 // of all at one sample. Private to the room.
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "fmbpc/control/model_observer.hpp"
 #include "fmbpc/control/optimal/law.hpp"
 #include "fmbpc/control/reference.hpp"
 #include "fmbpc/fuzzy/local_model.hpp"
@@ -28,6 +30,7 @@ struct FuzzyOptimalLaw::Bank {
 
   void rest(const Measurement& now, VectorRef disturbances);
   void advance(const Measurement& now, VectorRef disturbances);  ///< d(k-1) as the model took it
+  void look(const Measurement& now, VectorRef disturbances);
   /// d_g from the one-step errors; disturbances: those of k-1.
   void estimate(const Measurement& now, VectorRef disturbances);
   /// Models and laws at x(k), d(k). False if no rule fired; then the nearest one is used.
@@ -44,13 +47,15 @@ struct FuzzyOptimalLaw::Bank {
   LocalModel local;       ///< all rules: firing weights, blended matrices
   std::size_t partition;  ///< output whose firing weights count
   std::vector<FuzzyOptimalRule> rules;
-  bool short_sighted{false};  ///< some rule's horizon is too short for some input
-  bool begun{false};          ///< the d_g have been estimated since rest()
-  Vector state, before;       ///< x(k), x(k-1): measured values
-  Vector predicted;           ///< of one rule
-  Vector error;               ///< y - y_hat(k|k-1), blended
-  Matrix future;              ///< col(i) = y_r(k+1+i)
-  Matrix K, reference;        ///< blended
+  std::optional<ModelObserver> observer;  ///< without: the measurements are believed
+  bool short_sighted{false};              ///< some rule's horizon is too short for some input
+  bool begun{false};                      ///< the d_g have been estimated since rest()
+  Vector state, before;                   ///< x(k), x(k-1): measured, or as observed
+  Vector predicted;                       ///< of one rule
+  Vector seen;          ///< y(k): measured, or what the blended model and d expect
+  Vector error;         ///< y - y_hat(k|k-1), blended
+  Matrix future;        ///< col(i) = y_r(k+1+i)
+  Matrix K, reference;  ///< blended
   Vector constant, offset_state, offset_output;
 };
 

@@ -1,6 +1,7 @@
 // Controller type fuzzy_optimal: its section of a loop file, with horizons, weights of all rules or
 // of each, and what becomes of the disturbance estimate; its settings that may change in a run.
 #include "fmbpc/control/optimal/law.hpp"
+#include "fmbpc/control/read_observer.hpp"
 #include "fmbpc/control/registry.hpp"
 
 namespace fpc {
@@ -35,6 +36,8 @@ FuzzyOptimalParams readFuzzyOptimal(YamlSection& section, const ControllerContex
   section.oneOf("solve", params.solve, {"together", "each"});
   section.oneOf("disturbance", params.disturbance, {"inside", "outside", "none"});
   section.number("disturbance_gain", params.disturbance_gain, {0.0, 1.0, true});
+  params.observe = readObserver(section, params.observer, loop) && params.disturbance == "inside" &&
+                   params.disturbance_gain == 1.0;
   section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
   section.boolean("preview", params.preview);
   section.boolean("disturbance_feedforward", params.disturbance_feedforward);

@@ -30,6 +30,9 @@ void FuzzyOptimalParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
           "controller.disturbance", "one of inside, outside, none, got '" + disturbance + "'");
   require(disturbance_gain > 0.0 && disturbance_gain <= 1.0, "controller.disturbance_gain",
           "a number > 0 and <= 1");
+  require(!observe || disturbance == "inside", "controller.observer",
+          "disturbance inside; got '" + disturbance + "'");
+  if (observe) observer.validate(n_y);
   requireCount(reference_pole, n_y, "controller.reference_pole");
   require((reference_pole.array() >= 0.0).all() && (reference_pole.array() < 1.0).all(),
           "controller.reference_pole", "numbers >= 0 and < 1");

@@ -33,7 +33,8 @@ std::string weightText(const FuzzyOptimalTuning& tuning, Weight weight,
                        const std::vector<SignalInfo>& signals) {
   if (tuning.rules.empty()) return signalValuesText(tuning.weight.*weight, signals);
   std::vector<std::string> groups;
-  for (const QuadraticWeights& rule : tuning.rules) groups.push_back(signalValuesText(rule.*weight, signals));
+  for (const QuadraticWeights& rule : tuning.rules)
+    groups.push_back(signalValuesText(rule.*weight, signals));
   return join(groups, "; ");
 }
 

@@ -35,7 +35,18 @@ void validateSchedule(const std::vector<GainPoint>& points, const std::string& k
   }
 }
 
-void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, Eigen::Index n_u) {
+void validateSignal(const PiScheduleSignal& signal, const std::string& key, Eigen::Index n_y,
+                    Eigen::Index n_u, Eigen::Index n_d) {
+  using Kind = PiScheduleSignal::Kind;
+  const Eigen::Index n = signal.kind == Kind::kInput         ? n_u
+                         : signal.kind == Kind::kDisturbance ? n_d
+                                                             : n_y;
+  require(signal.index >= 0 && (signal.kind == Kind::kFollowedOutput || signal.index < n), key,
+          "a signal of the plant");
+}
+
+void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, Eigen::Index n_u,
+                  Eigen::Index n_d) {
   require(loop.input >= 0 && loop.input < n_u, key + "input", "one of the plant's inputs");
   require(loop.output >= 0 && loop.output < n_y, key + "output", "one of the plant's outputs");
   require(std::isfinite(loop.kp), key + "kp", "a finite number");
@@ -46,16 +57,18 @@ void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, 
           "none, clamp or tracking");
   require(loop.start == "bias" || loop.start == "bumpless", key + "start", "bias or bumpless");
   validateSchedule(loop.gain_schedule, key + "gain_schedule");
+  loop.terms.validate(key, n_d);
+  validateSignal(loop.terms.schedule, key + "schedule_by", n_y, n_u, n_d);
 }
 
 }  // namespace
 
-void PiParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
+void PiParams::validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d) const {
   require(!loops.empty(), "controller.loops", "at least one loop");
   std::set<int> moved;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const std::string key = "controller.loops[" + std::to_string(i) + "].";
-    validateLoop(loops[i], key, n_y, n_u);
+    validateLoop(loops[i], key, n_y, n_u, n_d);
     require(moved.insert(loops[i].input).second, key + "input",
             "an input that no other loop moves");
   }
@@ -72,11 +85,17 @@ PiController::PiController(PiParams params, InputLimits limits, PlantInfo plant)
       sample_time_h_(plant.sample_time_s / 3600.0),
       states_(params_.loops.size()) {
   const auto n_u = static_cast<Eigen::Index>(plant.inputs.size());
-  params_.validate(static_cast<Eigen::Index>(plant.outputs.size()), n_u);
+  const auto n_y = static_cast<Eigen::Index>(plant.outputs.size());
+  params_.validate(n_y, n_u, static_cast<Eigen::Index>(plant.disturbances.size()));
   limits_.validate(n_u);
   require(std::isfinite(sample_time_h_) && sample_time_h_ > 0.0, "sampling.sample_time_s",
           "a number > 0");
   if (params_.reference_pole.size() > 0) path_.emplace(params_.reference_pole, false);
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    const PiLoop& loop = params_.loops[i];
+    if (loop.terms.any())
+      states_[i].terms.emplace(loop.terms, loop.output, n_y, plant.sample_time_s);
+  }
   for (const PiLoop& loop : params_.loops)
     inputs_.push_back(plant.inputs[static_cast<std::size_t>(loop.input)]);
   for (const PiLoop& loop : params_.loops)
@@ -89,7 +108,9 @@ void PiController::reset(const Measurement& start) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
     if (retuned_) params_.loops[i].kp = states_[i].next_kp;
     if (retuned_) params_.loops[i].ki_per_h = states_[i].next_ki_per_h;
-    states_[i] = {};
+    LoopState& state = states_[i];
+    state.integral = state.error = state.wanted = state.next_kp = state.next_ki_per_h = 0.0;
+    if (state.terms) state.terms->reset();
     const bool from_bias = start.header.step == 0 && params_.loops[i].start == "bias";
     states_[i].transfer_pending = !from_bias;
   }
@@ -102,17 +123,37 @@ void PiController::refer(const SetpointSource& setpoint, std::uint32_t step, Vec
 }
 
 double PiController::errorOf(const PiLoop& loop, const Measurement& now,
-                             const SetpointSource& setpoint) const {
-  const double difference = setpoint.present()[loop.output] - now.outputs[loop.output];
+                             const SetpointSource& setpoint, double aim) const {
+  const double difference = aim - now.outputs[loop.output];
   return (loop.reverse ? -difference : difference) *
-         scheduledGain(loop.gain_schedule, now.outputs[loop.output]);
+         scheduledGain(loop.gain_schedule, scheduleSignal(loop, now, setpoint));
+}
+
+double PiController::scheduleSignal(const PiLoop& loop, const Measurement& now,
+                                    const SetpointSource& setpoint) const {
+  const int index = loop.terms.schedule.index;
+  switch (loop.terms.schedule.kind) {
+    case PiScheduleSignal::Kind::kOutput:
+      return now.outputs[index];
+    case PiScheduleSignal::Kind::kSetpoint:
+      return setpoint.present()[index];
+    case PiScheduleSignal::Kind::kDisturbance:
+      return now.disturbances[index];
+    case PiScheduleSignal::Kind::kInput:
+      return now.input_applied[index];
+    case PiScheduleSignal::Kind::kFollowedOutput:
+      break;
+  }
+  return now.outputs[loop.output];
 }
 
 // u = bias + kp g e + ki int g e dt
 void PiController::propose(const PiLoop& loop, const Measurement& now,
                            const SetpointSource& setpoint, LoopState& state) const {
-  state.error = errorOf(loop, now, setpoint);
-  const double proportional = loop.bias + loop.kp * state.error;
+  state.error = errorOf(loop, now, setpoint, state.aim);
+  const bool curve = !loop.terms.static_input.empty();
+  double proportional = (curve ? 0.0 : loop.bias) + loop.kp * state.error;
+  if (state.terms) proportional += state.terms->sum(now, loop.reverse ? -1.0 : 1.0);
   state.wanted = proportional + state.integral;
   if (!state.transfer_pending || !std::isfinite(proportional)) return;
   state.wanted = now.input_applied[loop.input];  // not by the sum: free of rounding
@@ -149,6 +190,11 @@ void PiController::step(const Measurement& now, const SetpointSource& setpoint,
   output.predictive = false;
   output.ok = true;
   output.remark = "";
+  for (std::size_t i = 0; i < states_.size(); ++i) {
+    LoopState& state = states_[i];
+    const Eigen::Index followed = params_.loops[i].output;
+    state.aim = state.terms ? state.terms->aim(now, setpoint) : setpoint.present()[followed];
+  }
   if (retuned_)
     for (std::size_t i = 0; i < states_.size(); ++i)
       takeSettings(params_.loops[i], now, setpoint, states_[i]);

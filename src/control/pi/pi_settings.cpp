@@ -15,9 +15,9 @@ Vector PiController::gains(double PiLoop::*gain, double LoopState::*next) const 
 }
 
 Settings PiController::settings() const {
-  return {{"kp", signalValuesText(gains(&PiLoop::kp, &LoopState::next_kp), inputs_)},
-          {"ki_per_h",
-           signalValuesText(gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h), inputs_)}};
+  return {
+      {"kp", signalValuesText(gains(&PiLoop::kp, &LoopState::next_kp), inputs_)},
+      {"ki_per_h", signalValuesText(gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h), inputs_)}};
 }
 
 bool PiController::retune(const Settings& settings) {
@@ -41,7 +41,7 @@ bool PiController::retune(const Settings& settings) {
 /// u(k) stays what the old gains make of it: bias + kp' e + I' = bias + kp e + I.
 void PiController::takeSettings(PiLoop& loop, const Measurement& now,
                                 const SetpointSource& setpoint, LoopState& state) const {
-  const double change = (loop.kp - state.next_kp) * errorOf(loop, now, setpoint);
+  const double change = (loop.kp - state.next_kp) * errorOf(loop, now, setpoint, state.aim);
   if (running_ && std::isfinite(change)) state.integral += change;
   loop.kp = state.next_kp;
   loop.ki_per_h = state.next_ki_per_h;

@@ -1,6 +1,5 @@
 // Controller type pi: its section of a loop file.
-#include "fmbpc/control/pi/pi.hpp"
-#include "fmbpc/control/registry.hpp"
+#include "control/pi/read_pi.hpp"
 
 namespace fpc {
 namespace {
@@ -31,9 +30,12 @@ PiLoop readLoop(YamlSection& item, const ControllerContext& loop) {
   item.oneOf("anti_windup", pi.anti_windup, {"none", "clamp", "tracking"});
   item.oneOf("start", pi.start, {"bias", "bumpless"});
   pi.gain_schedule = readSchedule(item);
+  readPiTerms(item, pi.terms, loop);
   item.finish();
   return pi;
 }
+
+}  // namespace
 
 PiParams readPi(YamlSection& section, const ControllerContext& loop) {
   PiParams params;
@@ -43,9 +45,14 @@ PiParams readPi(YamlSection& section, const ControllerContext& loop) {
   }
   need(section, "loops", "a list of loops");
   for (auto& item : section.list("loops")) params.loops.push_back(readLoop(item, loop));
-  checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
+  checked(section, [&] {
+    params.validate(loop.outputCount(), loop.inputCount(),
+                    static_cast<Eigen::Index>(loop.disturbances().size()));
+  });
   return params;
 }
+
+namespace {
 
 std::unique_ptr<Controller> makePi(const PiParams& params, const ControllerContext& loop) {
   return std::make_unique<PiController>(params, loop.limits, loop.plant);

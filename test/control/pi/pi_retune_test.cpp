@@ -31,8 +31,8 @@ class PiRetune : public ::testing::Test {
     return p;
   }
   double next(double y) {
-    Measurement now{{0, 1, step_++}, Vector::Constant(1, y), {}, Vector::Constant(1, applied_),
-                    false};
+    Measurement now{
+        {0, 1, step_++}, Vector::Constant(1, y), {}, Vector::Constant(1, applied_), false};
     if (now.header.step == 0) pi_->reset(now);
     pi_->step(now, setpoint_, out_);
     return applied_ = out_.input[0];
@@ -49,7 +49,7 @@ TEST_F(PiRetune, TheInputGoesOnAsTheOldGainsHaveItAndThenFollowsTheNewOnes) {
   EXPECT_DOUBLE_EQ(next(6.0), 508.0);  // 500 + 2 4
   EXPECT_DOUBLE_EQ(next(6.0), 512.0);  // + 5 0.2 4
   EXPECT_TRUE(pi_->retune({{"kp", "u=3"}, {"ki_per_h", "10"}}));
-  EXPECT_NEAR(next(6.0), 516.0, 1e-12);       // what the old gains say
+  EXPECT_NEAR(next(6.0), 516.0, 1e-12);        // what the old gains say
   EXPECT_NEAR(next(6.0), 516.0 + 8.0, 1e-12);  // + 10 0.2 4
   EXPECT_NEAR(next(5.0), 524.0 + 8.0 + 3.0, 1e-12);
 }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/disturbance_observer.hpp"
 #include "fmbpc/control/reference.hpp"
 #include "fmbpc/fuzzy/local_model.hpp"
 
@@ -23,11 +24,13 @@ struct FmbpcParams {
   double forecast_pole{0.975};   ///< how today's difference fades per sample, [0, 1]
   std::string realisation{
       "parallel"};  ///< parallel: own state, y_m = z; realigned: state from measurements;
-                    ///< literal: parallel in the state space of Blazic and Skrjanc, CanonicalForm
+                    ///< literal: parallel in the state space of Blazic and Skrjanc, CanonicalForm;
+                    ///< observer: state and disturbance from a ModelObserver
   std::string antecedent{"model"};     ///< outputs in the antecedents: model or measured
   int delay_steps{0};                  ///< transport delay taken out of the model, see FmbpcLaw
   int reference_lead_steps{0};         ///< the law aims at y_r(k + H + this)
   double offset_gain{0.2};             ///< filter gain of the one-step error w_hat (realigned)
+  ObserverParams observer;             ///< used by realisation observer
   bool disturbance_feedforward{true};  ///< d(k) in the model; false: the nominal d
   Vector disturbance_nominal;          ///< n_d, used without feedforward
   double transfer_decay{0.9};  ///< how fast the bias of a bumpless start decays per sample, [0, 1)
@@ -47,7 +50,8 @@ struct FmbpcParams {
 /// DisturbanceForecast); the first is applied, the rest is handed to an optimizer as feedforward.
 /// delay_steps takes a transport delay out of the model: xi, A, B, C, g and H are then those of the
 /// undelayed process, and y_m in e is the output of the model with its delay, which runs beside it
-/// on the same applied inputs (Blazic and Skrjanc 2007, eqs. 17-27).
+/// on the same applied inputs (Blazic and Skrjanc 2007, eqs. 17-27). With realisation observer the
+/// late measurement corrects the state of its own time, and xi is that state run forward.
 /// A start in the middle of a run adds a bias to u that makes it the applied input and dies out
 /// with transfer_decay. A new model takes over in the next step: the old one still says what u(k)
 /// would have been, and the new one starts with a bias that makes its u(k) the very same. If both

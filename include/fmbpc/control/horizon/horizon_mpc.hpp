@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,7 +23,9 @@ struct PlanFound {
 };
 
 /// Each sample: the model moves on with u(k-1), the measured outputs take the place of the
-/// predicted ones, and what lay between them is added to every predicted sample. The search starts
+/// predicted ones, and what lay between them is added to every predicted sample. With `observe` an
+/// extended Kalman filter moves the whole state, those that are not measured too, and what is added
+/// is its disturbance; the Jacobian comes from differences. The search starts
 /// from the plan of the sample before, moved on by one sample and put inside the limits; if it
 /// fails that plan's input is sent, ok is false and the source `clipped`. Hard limits on inputs and
 /// moves. signals(): NAME_correction of each output, plan_cost, plan_effort.
@@ -49,6 +52,8 @@ class HorizonMpc : public Controller {
 
  private:
   bool estimate(const Measurement& now);
+  bool observe(const Measurement& now);
+  bool linearise(const Measurement& now);
   void refreshSignals(const PlanFound& found);
 
   HorizonParams params_;
@@ -57,6 +62,9 @@ class HorizonMpc : public Controller {
   Vector range_;
   std::unique_ptr<SampleModel> model_;
   std::unique_ptr<PlanCost> cost_;
+  std::optional<DisturbanceObserver> observer_;
+  Matrix A_;             // of the model at the state of k-1
+  Vector moved_, next_;  // for the differences
   ReferenceTrajectory reference_;
   Matrix future_;  // n_y P
   Vector state_, correction_, disturbances_, plan_, kept_;

@@ -2,17 +2,20 @@
 #pragma once
 
 #include "fmbpc/base/input_limits.hpp"
+#include "fmbpc/control/disturbance_observer.hpp"
 #include "fmbpc/control/horizon/sample_model.hpp"
 
 namespace fpc {
 
 struct HorizonParams {
-  int horizon_steps{40};  ///< P, samples predicted
-  int move_steps{1};      ///< M <= P, inputs that are free; the last one is held
-  Vector weight_output;   ///< n_y, W
-  Vector weight_move;     ///< n_u, L
-  Vector reference_pole;  ///< n_y
-  bool preview{false};    ///< references follow the setpoint schedule over the horizon
+  int horizon_steps{40};    ///< P, samples predicted
+  int move_steps{1};        ///< M <= P, inputs that are free; the last one is held
+  Vector weight_output;     ///< n_y, W
+  Vector weight_move;       ///< n_u, L
+  Vector reference_pole;    ///< n_y
+  bool preview{false};      ///< references follow the setpoint schedule over the horizon
+  bool observe{false};      ///< state and correction come from an observer with stated noise
+  ObserverParams observer;  ///< used if observe
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;  ///< @throws InputError naming the field
 };
 

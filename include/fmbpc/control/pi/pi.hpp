@@ -8,18 +8,21 @@
 #include <vector>
 
 #include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/pi/pi_terms.hpp"
 #include "fmbpc/control/reference.hpp"
 
 namespace fpc {
 
-/// At this value of the followed output both gains are multiplied by `gain`.
+/// At this value of the scheduling signal (the followed output, unless PiTerms says another) both
+/// gains, and that of the derivative, are multiplied by `gain`.
 struct GainPoint {
   double output{};
   double gain{1.0};
 };
 
 /// u = bias + kp g e + ki int g e dt, e = setpoint - y. Gains in input units per output unit (and
-/// per hour); g = 1 unless scheduled.
+/// per hour); g = 1 unless scheduled. With `terms` the setpoint may be looked up ahead, filtered
+/// and led, and u takes on derivative, feed-forward and the steady input of the setpoint.
 struct PiLoop {
   int input{};   ///< index of the input it moves
   int output{};  ///< index of the output it follows
@@ -31,6 +34,7 @@ struct PiLoop {
   std::string start{"bias"};         ///< bias: integral starts at 0; bumpless: u(0) = input_applied
   /// g(y): outputs increasing, linear between points, held outside; empty: 1.
   std::vector<GainPoint> gain_schedule;
+  PiTerms terms;
 };
 
 struct PiParams {
@@ -39,7 +43,7 @@ struct PiParams {
   /// rivals are judged by the same path; e stays setpoint - y. Empty: the setpoint itself.
   Vector reference_pole;
   /// @throws InputError naming the field: indices, finite gains, words, two loops on one input.
-  void validate(Eigen::Index n_y, Eigen::Index n_u) const;
+  void validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d = 0) const;
 };
 
 /// Inputs without a loop stay where they are. The integral uses forward Euler: it is updated after
@@ -70,20 +74,25 @@ class PiController final : public Controller {
     double wanted{};    // u before the limits
     bool transfer_pending{false};
     double next_kp{}, next_ki_per_h{};  // of the latest retuning
+    double aim{};                       // what the error is taken from
+    std::optional<PiTermState> terms;   // only where one is on
   };
   void takeSettings(PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
                     LoopState& state) const;
-  double errorOf(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint) const;
+  double errorOf(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
+                 double aim) const;
   Vector gains(double PiLoop::*gain, double LoopState::*next) const;
   void propose(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
                LoopState& state) const;
+  double scheduleSignal(const PiLoop& loop, const Measurement& now,
+                        const SetpointSource& setpoint) const;
   void refer(const SetpointSource& setpoint, std::uint32_t step, Vector& reference);
   void integrate(const PiLoop& loop, const Measurement& now, double sent, LoopState& state) const;
 
   PiParams params_;
   InputLimits limits_;
   double sample_time_h_;
-  std::vector<LoopState> states_;  // one per loop
+  std::vector<LoopState> states_;   // one per loop
   std::vector<SignalInfo> inputs_;  // of each loop
   bool retuned_{false};             // gains of the states wait for the next step
   bool running_{false};             // an input has been computed since the reset

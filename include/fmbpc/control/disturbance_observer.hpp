@@ -1,0 +1,61 @@
+// How much of what a model did not foresee is disturbance, and how much is noise: a Kalman filter
+// over the model's state and one constant disturbance per output.
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <string>
+#include <vector>
+
+#include "fmbpc/base/types.hpp"
+
+namespace fpc {
+
+/// Section `controller.observer`.
+struct ObserverParams {
+  Vector noise_std;         ///< n_y, of the measurements; 0: all of an error is disturbance
+  Vector disturbance_std;   ///< n_y, of the change of d per sample, > 0
+  bool adaptive{false};     ///< the noise's variance is learned from the innovations
+  double adaptation{0.02};  ///< how fast, per sample, (0, 1)
+  bool noisy() const { return adaptive || noise_std.any(); }
+  /// @throws InputError naming controller.observer.KEY.
+  void validate(Eigen::Index n_y) const;
+};
+
+/// For x(k+1) = A x + B u + g + E d, d(k+1) = d + w, y = C x + v, where the outputs are rows of x
+/// and E adds d to them: covariances and gains; the caller moves the state. Per sample predict()
+/// with the A that led from k-1 to k, then correct(). Without noise the corrected output is the
+/// measurement and d takes all of the error, as from raw differences. Joseph's form; fixed work, no
+/// allocation. Source: Kalman 1960; the disturbance model is Muske and Badgwell 2002.
+/// Symbols: P covariance of (x, d), S = C P C' + R of the innovation, K gain.
+class DisturbanceObserver {
+ public:
+  /// output_rows: row of each output in x. @throws InputError as ObserverParams::validate().
+  DisturbanceObserver(ObserverParams params, Eigen::Index n_x,
+                      std::vector<Eigen::Index> output_rows);
+  /// d = 0; the state is known as well as the measurements are, the disturbance badly.
+  void reset();
+  /// After reset(): d = its rows of `lacking`, n_x, what the model lacks to rest.
+  void startFrom(VectorRef lacking);
+  void predict(const Matrix& A);
+  /// state: x(k|k-1), d(k-1) already in it; becomes x(k|k). Not finite: nothing changes, false.
+  bool correct(VectorRef outputs, Eigen::Ref<Vector> state);
+  const Vector& disturbance() const { return disturbance_; }  ///< n_y, d(k|k)
+  const Vector& innovation() const { return innovation_; }    ///< n_y, y - C x(k|k-1)
+  const Matrix& gain() const { return K_; }                   ///< (n_x + n_y) n_y
+  const Vector& noiseVariance() const { return R_; }          ///< n_y, as it is used
+  /// x += E d, in place.
+  void addDisturbance(Eigen::Ref<Vector> state) const;
+
+ private:
+  bool computeGain();
+  void learnNoise();
+
+  ObserverParams params_;
+  Eigen::Index n_x_, n_y_;
+  std::vector<Eigen::Index> rows_;
+  Matrix F_, P_, PF_, PC_, S_, K_, IKC_;
+  Vector R_, disturbance_, innovation_, correction_;
+  Eigen::LDLT<Matrix> factor_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,133 @@
+// What a predictive law does where its model has no data, and when it has locked itself up: a
+// controller around the law.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/pi/pi.hpp"
+
+namespace fpc {
+
+/// Section `guard` of a loop file.
+struct GuardParams {
+  bool enabled{true};
+  double trust_low{0.25};   ///< below: the fallback takes over, or moves are smallest
+  double trust_high{0.75};  ///< above: the law acts freely (again)
+  double least_move{0.02};  ///< largest move at no trust, in parts of an input's range
+  int return_samples{10};   ///< so long above trust_high before the law is back
+  bool has_pi{false};       ///< without: moves shrink with trust
+  PiParams pi;              ///< the fallback
+  int lock_samples{25};     ///< an input so long at its bound is suspected; 0: never
+  double lock_error{0.02};  ///< ... while an error is larger than this part of its setpoint
+  double lock_step{0.1};    ///< by how much the bound is drawn in at once, in parts of the range
+  int lock_release{250};    ///< samples over which a drawn-in bound opens again
+  std::vector<Eigen::Index> lock_outputs;  ///< whose errors count; empty: all
+  /// @throws InputError naming guard.KEY.
+  void validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d) const;
+};
+
+/// What the guard sees at one sample.
+struct GuardView {
+  double trust{1.0};    ///< least of now and of what the law wants
+  bool outside{false};  ///< trust below GuardParams::trust_low
+  bool locked{false};   ///< some input is locked up
+  bool acting{false};   ///< the input is not the law's
+};
+
+/// Whether one input is locked up, found by trying. An input at a bound for `lock_samples` while
+/// the error stays beyond its tolerance and does not shrink (last quarter of that time against the
+/// first) is suspected. Its bound is then drawn in by lock_step of the range, and a window of
+/// lock_samples later the error is compared with what it would have become at its old rate.
+/// Smaller: less of what the law asks for helps, so the gain's sign is against the law: locked; the
+/// bound is drawn in by another step. Not smaller: that step is taken back, and nothing is tried
+/// for lock_release samples. A bound that helped opens over lock_release samples once the error
+/// shrinks or the law leaves it.
+class LockUpWatch {
+ public:
+  LockUpWatch(const GuardParams& params, double lower, double upper);
+  void reset();
+  /// One sample: the applied input, and the largest error in units of its tolerance. Returns
+  /// whether the input is locked.
+  bool observe(double applied, double error);
+  double lower() const { return lower_ + (side_ < 0 ? drawn_ : 0.0); }
+  double upper() const { return upper_ - (side_ > 0 ? drawn_ : 0.0); }
+  bool drawnIn() const { return drawn_ > 0.0; }
+
+ private:
+  int sideOf(double applied) const;
+  void open();
+  void suspect();
+  void judge();
+  double mean(Eigen::Index from) const;  ///< of a quarter of the window
+
+  double lower_, upper_, range_, step_;
+  int release_, wait_{0};
+  int side_{0};  ///< of the bound that is watched or drawn in
+  double drawn_{0.0}, expected_{0.0};
+  bool trying_{false}, locked_{false};
+  Vector past_;  ///< lock_samples errors at the bound, oldest first
+  Eigen::Index known_{};
+};
+
+/// The law `inside`, and four rules:
+/// - trust is that of the model (trustOf) at the measured outputs, the input in force and the
+///   measured disturbances, and at the input that the law wants; the smaller counts;
+/// - between trust_high and trust_low the largest move shrinks from the actuator's to
+///   `least_move`; below trust_low a PI, if there is one, takes over without a bump until trust has
+///   been above trust_high for `return_samples`, then the law goes on from the applied input;
+/// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in;
+/// - where the guard changes an input the source is `fallback`, there is no prediction, and remark
+///   says why.
+/// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
+/// then model_trust, locked.
+class GuardedController final : public Controller {
+ public:
+  /// @throws InputError naming the field.
+  GuardedController(std::unique_ptr<Controller> inside, GuardParams params, InputLimits limits,
+                    PlantInfo plant);
+  ~GuardedController() override;
+  void reset(const Measurement& start) override;
+  void step(const Measurement& now, const SetpointSource& setpoint,
+            ControllerOutput& output) override;
+  bool needsModel() const override { return inside_->needsModel(); }
+  bool followsSetpoint() const override { return inside_->followsSetpoint(); }
+  void setModel(const TsModel& model) override;
+  bool mayBeSent(VectorRef input) const override { return inside_->mayBeSent(input); }
+  void makeSendable(Eigen::Ref<Vector> input) const override { inside_->makeSendable(input); }
+  bool adapt(bool on) override { return inside_->adapt(on); }
+  Settings settings() const override { return inside_->settings(); }
+  bool retune(const Settings& settings) override { return inside_->retune(settings); }
+  const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
+  const GuardView& view() const { return view_; }
+  const Controller& inside() const { return *inside_; }
+
+ private:
+  double trustAt(const Measurement& now, VectorRef input);
+  void comeBack(const Measurement& now, double trust);
+  void watchLocks(const Measurement& now, const SetpointSource& setpoint);
+  double worstError(const Measurement& now, const SetpointSource& setpoint) const;
+  void shrink(double trust);
+  void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
+  void refreshSignals();
+
+  std::unique_ptr<Controller> inside_;
+  GuardParams params_;
+  InputLimits limits_, shrunk_;
+  PlantInfo plant_;
+  std::unique_ptr<PiController> pi_;
+  ControllerOutput pi_output_;
+  std::vector<LockUpWatch> locks_;  // one per input
+  TsModel model_;
+  bool known_{false};  // the model says where its data were
+  bool fallback_{false};
+  int above_{};  // samples in a row above trust_high
+  Vector point_;
+  GuardView view_;
+  std::vector<std::pair<std::string, double>> signals_;
+};
+
+}  // namespace fpc

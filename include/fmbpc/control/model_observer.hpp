@@ -1,0 +1,44 @@
+// Where a process stands, estimated with its Takagi-Sugeno model from measurements that are noisy
+// and may come late.
+#pragma once
+
+#include <vector>
+
+#include "fmbpc/control/disturbance_observer.hpp"
+#include "fmbpc/fuzzy/local_model.hpp"
+
+namespace fpc {
+
+/// Extended Kalman filter on a fuzzy model with one constant disturbance per output: the rules are
+/// blended at the estimate, and their matrix stands for the Jacobian. Measurements that are `delay`
+/// samples old correct the state of that time; from there the model runs forward on the inputs
+/// applied since, with the disturbance estimated. Per sample: rest() or advance(). Fixed work, no
+/// allocation after construction.
+class ModelObserver {
+ public:
+  /// local: of the undelayed process. delay >= 0 samples. @throws InputError of ObserverParams.
+  ModelObserver(LocalModel local, const ObserverParams& params, int delay);
+  /// Everything has rested at these values: d is what the model lacks to rest there, too.
+  void rest(VectorRef outputs, VectorRef input, VectorRef disturbances);
+  /// To sample k: y(k) as measured, u(k-1), d(k-1) as the model takes it.
+  void advance(VectorRef outputs, VectorRef input, VectorRef disturbances);
+  /// Goes on from another one with states of the same meaning and the same delay.
+  void inherit(const ModelObserver& other);
+  const Vector& state() const { return state_; }  ///< x(k), run forward over the delay
+  /// x(k-1) that state() came from, without the forward run; with no delay.
+  const Vector& before() const { return before_; }
+  const Vector& disturbance() const { return filter_.disturbance(); }  ///< n_y, per sample
+  const Vector& innovation() const { return filter_.innovation(); }
+  void addDisturbance(Eigen::Ref<Vector> state) const { filter_.addDisturbance(state); }
+  const Vector& delayed() const { return delayed_; }  ///< x(k - delay), as corrected
+
+ private:
+  void move(VectorRef input, VectorRef disturbances, Vector& state);
+
+  LocalModel local_;
+  DisturbanceObserver filter_;
+  Vector delayed_, state_, before_, next_;
+  Matrix inputs_, disturbances_;  ///< of the last samples, oldest first
+};
+
+}  // namespace fpc

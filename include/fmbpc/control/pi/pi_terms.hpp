@@ -1,0 +1,74 @@
+// What a PI may take besides its error: feed-forward, derivative, setpoint preview and lead, the
+// steady input of the setpoint. Private state per loop; all terms are off by default.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/control/setpoint_source.hpp"
+
+namespace fpc {
+
+/// u += gain (1 + lead s) / (1 + lag s) (d - nominal), of a measured disturbance.
+struct PiFeedforward {
+  int disturbance{};  ///< index into the measured ones
+  double gain{};      ///< input per unit of the disturbance
+  double nominal{};   ///< where it adds nothing
+  double lead_h{}, lag_h{};
+};
+
+/// A point of a curve, linear between points, held outside.
+struct CurvePoint {
+  double at{}, value{};
+};
+
+/// 0 for an empty curve.
+double valueOf(const std::vector<CurvePoint>& curve, double at);
+
+/// Which signal the gains are scheduled by.
+struct PiScheduleSignal {
+  enum class Kind { kFollowedOutput, kOutput, kSetpoint, kDisturbance, kInput };
+  Kind kind{Kind::kFollowedOutput};
+  int index{};
+};
+
+struct PiTerms {
+  double kd_h{};              ///< input per output, times h; acts on -dy/dt
+  double derivative_lag_h{};  ///< of the filter on the derivative; 0: a difference over one sample
+  double preview_h{};         ///< the setpoint is that of so much later in the schedule
+  double setpoint_pole{};     ///< per sample, of a first-order path that e takes for the setpoint
+  double setpoint_lead_h{};   ///< e takes r + lead dr/dt
+  std::vector<CurvePoint> static_input;  ///< steady input of r, in the place of the bias
+  std::vector<PiFeedforward> feedforward;
+  PiScheduleSignal schedule;
+  bool any() const;  ///< whether a term is on (the schedule's signal is none)
+  /// @throws InputError naming `key`....
+  void validate(const std::string& key, Eigen::Index n_d) const;
+};
+
+/// The terms of one loop with their memory. Works without allocation after construction.
+class PiTermState {
+ public:
+  PiTermState(const PiTerms& terms, int output, Eigen::Index n_y, double sample_time_s);
+  void reset();
+  /// What e is taken from: setpoint ahead, on its path, with its lead. Once per sample.
+  double aim(const Measurement& now, const SetpointSource& setpoint);
+  /// Steady input, derivative (times `gain`, its sign) and feed-forward, in units of the input.
+  /// After aim(), once a sample.
+  double sum(const Measurement& now, double gain);
+
+ private:
+  double derivative(double output);
+  double feedforward(const Measurement& now);
+
+  PiTerms terms_;
+  int output_;
+  double sample_time_h_;
+  std::uint32_t preview_samples_;
+  Vector ahead_, lagged_;  // setpoints of later; states of the feed-forward lags
+  double path_{}, path_before_{}, output_before_{}, slope_{};
+  bool fresh_{true};
+};
+
+}  // namespace fpc

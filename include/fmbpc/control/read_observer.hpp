@@ -1,0 +1,13 @@
+// Section `controller.observer` of the laws that estimate a disturbance.
+#pragma once
+
+#include "fmbpc/control/disturbance_observer.hpp"
+#include "fmbpc/control/registry.hpp"
+
+namespace fpc {
+
+/// How noisy the measurements are; defaults: those of `noise`. Returns whether an observer is to
+/// take the place of raw differences: `enabled`, by default where there is noise.
+bool readObserver(YamlSection& controller, ObserverParams& params, const ControllerContext& loop);
+
+}  // namespace fpc

@@ -1,0 +1,63 @@
+// Section `guard`: what a law does outside its model's data, and when it is locked up.
+#include "base/yaml_node.hpp"
+#include "config/read.hpp"
+#include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/control/optimal/law.hpp"
+#include "fmbpc/control/pi/pi_reader.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+/// Outputs that the law follows: those with a weight; the published law follows the last one.
+std::vector<Index> followed(const LoopFile& loop, Index n_y) {
+  Vector weight = Vector::Ones(n_y);
+  if (const auto* law = findParams<FmbpcParams>(*loop.controller)) {
+    if (law->law == "published") return {n_y - 1};
+    weight = law->weight_output;
+  } else if (const auto* optimal = findParams<FuzzyOptimalParams>(*loop.controller)) {
+    weight = optimal->tuning.weight.output;
+  }
+  std::vector<Index> outputs;
+  for (Index i = 0; i < weight.size(); ++i)
+    if (weight[i] > 0.0) outputs.push_back(i);
+  return outputs;
+}
+
+}  // namespace
+
+void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
+  YamlSection section = root.section("guard");
+  GuardParams& guard = loop.guard;
+  section.boolean("enabled", guard.enabled);
+  section.number("trust_low", guard.trust_low, {0.0, 1.0});
+  section.number("trust_high", guard.trust_high, {0.0, 1.0});
+  section.number("least_move", guard.least_move, {0.0, 1.0, true});
+  section.integer("return_samples", guard.return_samples, 1);
+  section.integer("lock_samples", guard.lock_samples, 0);
+  section.number("lock_error", guard.lock_error, kFinitePositive);
+  section.number("lock_step", guard.lock_step, {0.0, 1.0, true});
+  section.integer("lock_release", guard.lock_release, 1);
+  guard.lock_outputs = followed(loop, static_cast<Index>(names.outputs.size()));
+  std::vector<std::string> outputs;
+  section.subset("lock_outputs", outputs, names.outputs);
+  if (!outputs.empty()) guard.lock_outputs.clear();
+  for (std::size_t i = 0; i < names.outputs.size(); ++i)
+    for (const auto& output : outputs)
+      if (output == names.outputs[i]) guard.lock_outputs.push_back(static_cast<Index>(i));
+  guard.has_pi = section.has("pi") && !section.raw("pi").IsNull();
+  if (guard.has_pi) {
+    YamlSection pi = section.section("pi");
+    guard.pi = readPi(pi, controllerContext(loop));
+    pi.finish();
+  }
+  checked(section, [&] {
+    guard.validate(static_cast<Index>(names.outputs.size()),
+                   static_cast<Index>(names.inputs.size()),
+                   static_cast<Index>(names.seen_disturbances.size()));
+  });
+  section.finish();
+}
+
+}  // namespace fpc

@@ -1,0 +1,79 @@
+// Section `sensors` and key `actuator.lag`: instruments and drives that follow late.
+#include <cmath>
+
+#include "config/read.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+/// A benchmark class; what else the section says goes over it.
+void readClass(YamlSection& section, SensorParams& params) {
+  std::string name;
+  bool noisy = false;
+  section.number("lower", params.lower, {});
+  section.number("upper", params.upper, {});
+  section.oneOf("class", name, {"A", "B0", "B1", "C0", "C1", "D"});
+  section.boolean("class_noise", noisy);
+  if (noisy && name.empty()) section.fail("class_noise", "a class besides");
+  if (name.empty()) return;
+  if (noisy && !(std::isfinite(params.lower) && std::isfinite(params.upper)))
+    section.fail("class_noise", "finite lower and upper: noise is a part of the range");
+  params = sensorOfClass(sensorClass(name), params.lower, params.upper, noisy);
+}
+
+SensorParams readSensor(YamlSection& section) {
+  SensorParams params;
+  readClass(section, params);
+  section.integer("lags", params.lags, 0, 20);
+  double t90_s = params.lags > 0 ? params.lag_s * lagsToNinety(params.lags) : 0.0;
+  section.number("t90_s", t90_s, kFiniteNotNegative);
+  if (section.has("t90_s") && params.lags == 0) params.lags = 1;
+  if (section.has("t90_s") || section.has("lags"))
+    params.lag_s = params.lags > 0 ? t90_s / lagsToNinety(params.lags) : 0.0;
+  if (params.lag_s == 0.0) params.lags = 0;
+  section.number("delay_s", params.delay_s, kFiniteNotNegative);
+  section.number("interval_s", params.interval_s, kFiniteNotNegative);
+  section.number("noise_std", params.noise_std, kFiniteNotNegative);
+  section.boolean("average", params.average);
+  section.number("stuck_from_h", params.stuck_from_h, Range{0.0, kInfinite});
+  section.number("stuck_to_h", params.stuck_to_h, Range{0.0, kInfinite});
+  checked(section, [&] { params.validate(); });
+  section.finish();
+  return params;
+}
+
+}  // namespace
+
+void readSensors(YamlSection& root, LoopFile& loop, const LoopNames& names) {
+  YamlSection section = root.section("sensors");
+  InstrumentParams& params = loop.simulation.instruments;
+  section.seed("seed", params.seed);
+  section.number("step_s", params.step_s, kFinitePositive);
+  for (const auto* group : {&names.outputs, &names.seen_disturbances})
+    for (const auto& name : *group) {
+      section.markRead(name);
+      if (!section.has(name)) continue;
+      YamlSection sensor = section.section(name);
+      params.sensors[name] = readSensor(sensor);
+    }
+  section.finish();
+}
+
+void readLag(YamlSection& actuator, ActuatorParams& params,
+             const std::vector<std::string>& inputs) {
+  YamlSection section = actuator.section("lag");
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    section.markRead(inputs[i]);
+    if (!section.has(inputs[i])) continue;
+    params.drives.resize(inputs.size());
+    YamlSection lag = section.section(inputs[i]);
+    need(lag, "t90_s", "a time >= 0");
+    lag.number("t90_s", params.drives[i].t90_s, kFiniteNotNegative);
+    lag.integer("order", params.drives[i].order, 1, 20);
+    lag.finish();
+  }
+  section.finish();
+}
+
+}  // namespace fpc

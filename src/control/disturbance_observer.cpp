@@ -1,0 +1,130 @@
+#include "fmbpc/control/disturbance_observer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kUnknown = 10.0;     // std of d at a start, in units of the larger std
+constexpr double kLeastNoise = 1e-6;  // of the variance of d's change: keeps S regular
+
+}  // namespace
+
+void ObserverParams::validate(Index n_y) const {
+  require(noise_std.size() == n_y && noise_std.allFinite() && (noise_std.array() >= 0.0).all(),
+          "controller.observer.noise_std", std::to_string(n_y) + " finite numbers >= 0");
+  require(disturbance_std.size() == n_y && disturbance_std.allFinite() &&
+              (disturbance_std.array() > 0.0).all(),
+          "controller.observer.disturbance_std", std::to_string(n_y) + " finite numbers > 0");
+  require(adaptation > 0.0 && adaptation < 1.0, "controller.observer.adaptation",
+          "a number > 0 and < 1");
+}
+
+DisturbanceObserver::DisturbanceObserver(ObserverParams params, Index n_x,
+                                         std::vector<Index> output_rows)
+    : params_((params.validate(static_cast<Index>(output_rows.size())), std::move(params))),
+      n_x_(n_x),
+      n_y_(static_cast<Index>(output_rows.size())),
+      rows_(std::move(output_rows)),
+      F_(Matrix::Identity(n_x_ + n_y_, n_x_ + n_y_)),
+      P_(Matrix::Zero(n_x_ + n_y_, n_x_ + n_y_)),
+      PF_(P_),
+      PC_(Matrix::Zero(n_x_ + n_y_, n_y_)),
+      S_(Matrix::Zero(n_y_, n_y_)),
+      K_(PC_),
+      IKC_(P_),
+      R_(Vector::Zero(n_y_)),
+      disturbance_(R_),
+      innovation_(R_),
+      correction_(Vector::Zero(n_x_ + n_y_)),
+      factor_(n_y_) {
+  for (Index i = 0; i < n_y_; ++i) F_(rows_[static_cast<std::size_t>(i)], n_x_ + i) = 1.0;
+  reset();
+}
+
+void DisturbanceObserver::reset() {
+  P_.setZero();
+  disturbance_.setZero();
+  innovation_.setZero();
+  for (Index i = 0; i < n_y_; ++i) {
+    const Index row = rows_[static_cast<std::size_t>(i)];
+    const double noise = params_.noise_std[i], change = params_.disturbance_std[i];
+    R_[i] = std::max(noise * noise, noise > 0.0 ? kLeastNoise * change * change : 0.0);
+    P_(row, row) = noise * noise;
+    P_(n_x_ + i, n_x_ + i) = std::pow(kUnknown * std::max(noise, change), 2);
+  }
+}
+
+void DisturbanceObserver::startFrom(VectorRef lacking) {
+  for (Index i = 0; i < n_y_; ++i) {
+    const double d = lacking[rows_[static_cast<std::size_t>(i)]];
+    disturbance_[i] = std::isfinite(d) ? d : 0.0;
+  }
+}
+
+void DisturbanceObserver::predict(const Matrix& A) {
+  F_.topLeftCorner(n_x_, n_x_) = A;
+  PF_.noalias() = P_.lazyProduct(F_.transpose());
+  P_.noalias() = F_.lazyProduct(PF_);
+  for (Index i = 0; i < n_y_; ++i)
+    P_(n_x_ + i, n_x_ + i) += params_.disturbance_std[i] * params_.disturbance_std[i];
+}
+
+bool DisturbanceObserver::computeGain() {
+  for (Index i = 0; i < n_y_; ++i) PC_.col(i) = P_.col(rows_[static_cast<std::size_t>(i)]);
+  for (Index i = 0; i < n_y_; ++i) S_.row(i) = PC_.row(rows_[static_cast<std::size_t>(i)]);
+  S_.diagonal() += R_;
+  factor_.compute(S_);
+  if (factor_.info() != Eigen::Success || !(factor_.vectorD().array() > 0.0).all()) return false;
+  for (Index row = 0; row < K_.rows(); ++row) {
+    innovation_ = PC_.row(row);  // S symmetric: K' = S^-1 (P C')'
+    factor_.solveInPlace(innovation_);
+    K_.row(row) = innovation_;
+  }
+  return K_.allFinite();
+}
+
+/// R + alpha (nu^2 - C P C' - R), never negative: what the filter does not expect of itself.
+void DisturbanceObserver::learnNoise() {
+  for (Index i = 0; i < n_y_; ++i) {
+    const double own = PC_(rows_[static_cast<std::size_t>(i)], i);
+    const double excess = innovation_[i] * innovation_[i] - own;
+    const double change = params_.disturbance_std[i];
+    R_[i] = std::max(R_[i] + params_.adaptation * (excess - R_[i]), kLeastNoise * change * change);
+  }
+}
+
+bool DisturbanceObserver::correct(VectorRef outputs, Eigen::Ref<Vector> state) {
+  if (!computeGain()) {
+    innovation_.setZero();
+    return false;
+  }
+  for (Index i = 0; i < n_y_; ++i)
+    innovation_[i] = outputs[i] - state[rows_[static_cast<std::size_t>(i)]];
+  correction_.noalias() = K_.lazyProduct(innovation_);
+  if (!correction_.allFinite()) return false;
+  state += correction_.head(n_x_);
+  disturbance_ += correction_.tail(n_y_);
+  IKC_.setIdentity();
+  for (Index i = 0; i < n_y_; ++i) IKC_.col(rows_[static_cast<std::size_t>(i)]) -= K_.col(i);
+  PF_.noalias() = P_.lazyProduct(IKC_.transpose());
+  P_.noalias() = IKC_.lazyProduct(PF_);
+  for (Index i = 0; i < n_y_; ++i)
+    for (Index row = 0; row < P_.rows(); ++row)
+      for (Index column = 0; column < P_.cols(); ++column)
+        P_(row, column) += K_(row, i) * R_[i] * K_(column, i);
+  if (params_.adaptive) learnNoise();
+  return true;
+}
+
+void DisturbanceObserver::addDisturbance(Eigen::Ref<Vector> state) const {
+  for (Index i = 0; i < n_y_; ++i) state[rows_[static_cast<std::size_t>(i)]] += disturbance_[i];
+}
+
+}  // namespace fpc

@@ -1,0 +1,190 @@
+#include "fmbpc/control/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr const char* kOutside = "outside the model: moves shrink";
+constexpr const char* kFallback = "outside the model: the fallback acts";
+constexpr const char* kOutsideOnly = "outside the model";
+constexpr const char* kLocked = "locked up: the input's bound is drawn in";
+
+Index countOf(const std::vector<SignalInfo>& signals) { return static_cast<Index>(signals.size()); }
+
+bool isLaws(ActionSource source) {
+  return source == ActionSource::kBase || source == ActionSource::kClipped;
+}
+
+}  // namespace
+
+void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
+  require(trust_low >= 0.0 && trust_low <= 1.0, "guard.trust_low", "a number from 0 to 1");
+  require(trust_high >= trust_low && trust_high <= 1.0, "guard.trust_high",
+          "a number from trust_low to 1");
+  require(least_move > 0.0 && least_move <= 1.0, "guard.least_move", "a number > 0 and <= 1");
+  require(return_samples >= 1, "guard.return_samples", "an integer >= 1");
+  require(lock_samples >= 0, "guard.lock_samples", "an integer >= 0");
+  require(lock_error > 0.0 && std::isfinite(lock_error), "guard.lock_error", "a number > 0");
+  require(lock_step > 0.0 && lock_step <= 1.0, "guard.lock_step", "a number > 0 and <= 1");
+  require(lock_release >= 1, "guard.lock_release", "an integer >= 1");
+  for (const Index i : lock_outputs)
+    require(i >= 0 && i < n_y, "guard.lock_outputs", "outputs of the plant");
+  if (has_pi) pi.validate(n_y, n_u, n_d);
+}
+
+GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardParams params,
+                                     InputLimits limits, PlantInfo plant)
+    : inside_(std::move(inside)),
+      params_(std::move(params)),
+      limits_(std::move(limits)),
+      shrunk_(limits_),
+      plant_(std::move(plant)) {
+  require(inside_ != nullptr, "guard", "a law to guard");
+  const Index n_y = countOf(plant_.outputs), n_u = countOf(plant_.inputs);
+  params_.validate(n_y, n_u, countOf(plant_.disturbances));
+  limits_.validate(n_u);
+  if (params_.has_pi) pi_ = std::make_unique<PiController>(params_.pi, limits_, plant_);
+  for (Index i = 0; i < n_u; ++i) locks_.emplace_back(params_, limits_.lower[i], limits_.upper[i]);
+  if (params_.lock_outputs.empty())
+    for (Index i = 0; i < n_y; ++i) params_.lock_outputs.push_back(i);
+  point_ = Vector::Zero(n_y + n_u + countOf(plant_.disturbances));
+  refreshSignals();
+}
+
+GuardedController::~GuardedController() = default;
+
+void GuardedController::setModel(const TsModel& model) {
+  inside_->setModel(model);
+  model_ = matchToPlant(model, plant_);
+  known_ = knowsDomain(model_);
+}
+
+void GuardedController::reset(const Measurement& start) {
+  inside_->reset(start);
+  if (pi_) pi_->reset(start);
+  for (LockUpWatch& lock : locks_) lock.reset();
+  fallback_ = false;
+  above_ = 0;
+  view_ = {};
+}
+
+double GuardedController::trustAt(const Measurement& now, VectorRef input) {
+  if (!known_) return 1.0;
+  const Index n_y = now.outputs.size(), n_u = input.size();
+  point_.head(n_y) = now.outputs;
+  point_.segment(n_y, n_u) = input;
+  point_.tail(now.disturbances.size()) = now.disturbances;
+  return trustOf(model_, point_);
+}
+
+/// The law goes on from the applied input once the data are back for long enough.
+void GuardedController::comeBack(const Measurement& now, double trust) {
+  above_ = trust >= params_.trust_high ? above_ + 1 : 0;
+  if (!fallback_ || above_ < params_.return_samples) return;
+  fallback_ = false;
+  inside_->reset(now);
+}
+
+/// The largest error that counts, in units of its tolerance.
+double GuardedController::worstError(const Measurement& now, const SetpointSource& setpoint) const {
+  double worst = 0.0;
+  for (const Index i : params_.lock_outputs) {
+    const double asked = setpoint.present()[i];
+    const double tolerated = params_.lock_error * std::abs(asked);
+    if (tolerated > 0.0) worst = std::max(worst, std::abs(asked - now.outputs[i]) / tolerated);
+  }
+  return worst;
+}
+
+void GuardedController::watchLocks(const Measurement& now, const SetpointSource& setpoint) {
+  const double error = worstError(now, setpoint);
+  view_.locked = false;
+  for (std::size_t i = 0; i < locks_.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    view_.locked = locks_[i].observe(now.input_applied[k], error) || view_.locked;
+    shrunk_.lower[k] = locks_[i].lower();
+    shrunk_.upper[k] = locks_[i].upper();
+  }
+}
+
+/// Between trust_high and trust_low the move limit goes from that of the actuator, at most the
+/// range, to least_move of the range.
+void GuardedController::shrink(double trust) {
+  const double width = params_.trust_high - params_.trust_low;
+  const double part = width > 0.0 ? std::clamp((trust - params_.trust_low) / width, 0.0, 1.0) : 0.0;
+  for (Index i = 0; i < shrunk_.move.size(); ++i) {
+    const double range = limits_.upper[i] - limits_.lower[i];
+    const double share = params_.least_move + (1.0 - params_.least_move) * part;
+    shrunk_.move[i] = limits_.move[i];
+    if (trust < params_.trust_high && std::isfinite(range))
+      shrunk_.move[i] = std::min(limits_.move[i], share * range);
+  }
+}
+
+/// Limits that are drawn in are reached by allowed moves only.
+void GuardedController::act(const Measurement& now, const SetpointSource& setpoint,
+                            ControllerOutput& output) {
+  if (fallback_) {
+    pi_->step(now, setpoint, pi_output_);
+    output.input = pi_output_.input;
+  }
+  shrink(fallback_ ? 1.0 : view_.trust);
+  bool drawn = false;
+  for (Index i = 0; i < output.input.size(); ++i) {
+    const double before = now.input_applied[i];
+    const double proposed = output.input[i];
+    double allowed = std::clamp(proposed, shrunk_.lower[i], shrunk_.upper[i]);
+    allowed = std::clamp(allowed, before - shrunk_.move[i], before + shrunk_.move[i]);
+    allowed = std::clamp(allowed, limits_.lower[i], limits_.upper[i]);
+    drawn = drawn || (allowed != proposed && locks_[static_cast<std::size_t>(i)].drawnIn());
+    view_.acting = view_.acting || allowed != proposed;
+    if (allowed != proposed) output.input[i] = allowed;
+  }
+  view_.acting = view_.acting || fallback_;
+  if (view_.outside) output.remark = kOutsideOnly;
+  if (!view_.acting) return;
+  output.source = ActionSource::kFallback;
+  output.predictive = false;
+  output.remark = fallback_ ? kFallback : drawn ? kLocked : kOutside;
+}
+
+void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,
+                             ControllerOutput& output) {
+  view_ = {};
+  const double present = trustAt(now, now.input_applied);
+  if (pi_) comeBack(now, present);
+  watchLocks(now, setpoint);
+  inside_->step(now, setpoint, output);
+  view_.trust = present;
+  if (isLaws(output.source)) {
+    view_.trust = std::min(present, trustAt(now, output.input));
+    if (pi_ && !fallback_ && present < params_.trust_low) {
+      fallback_ = true;
+      pi_->reset(now);
+    }
+    view_.outside = view_.trust < params_.trust_low;
+    act(now, setpoint, output);
+  }
+  refreshSignals();
+}
+
+void GuardedController::refreshSignals() {
+  const auto& inner = inside_->signals();
+  if (signals_.size() != inner.size() + 2) {
+    signals_ = inner;
+    signals_.emplace_back("model_trust", 1.0);
+    signals_.emplace_back("locked", 0.0);
+  }
+  for (std::size_t i = 0; i < inner.size(); ++i) signals_[i].second = inner[i].second;
+  signals_[inner.size()].second = view_.trust;
+  signals_[inner.size() + 1].second = view_.locked ? 1.0 : 0.0;
+}
+
+}  // namespace fpc

@@ -1,0 +1,80 @@
+#include "fmbpc/control/model_observer.hpp"
+
+#include <utility>
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+std::vector<Index> rowsOf(const LocalModel& local) {
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < local.model().outputs.size(); ++i)
+    rows.push_back(local.outputState(static_cast<Index>(i)));
+  return rows;
+}
+
+}  // namespace
+
+ModelObserver::ModelObserver(LocalModel local, const ObserverParams& params, int delay)
+    : local_(std::move(local)),
+      filter_(params, local_.stateSize(), rowsOf(local_)),
+      delayed_(Vector::Zero(local_.stateSize())),
+      state_(delayed_),
+      before_(delayed_),
+      next_(delayed_),
+      inputs_(Matrix::Zero(local_.affine().B.cols(), delay + 1)),
+      disturbances_(
+          Matrix::Zero(static_cast<Index>(local_.model().disturbances.size()), delay + 1)) {}
+
+void ModelObserver::rest(VectorRef outputs, VectorRef input, VectorRef disturbances) {
+  local_.restState(outputs, input, disturbances, delayed_);
+  local_.blend(delayed_, input, disturbances);
+  const AffineModel& m = local_.affine();
+  next_ = delayed_ - m.g;
+  next_ -= m.A.lazyProduct(delayed_);
+  next_ -= m.B.lazyProduct(Vector::Map(input.data(), input.size()));
+  filter_.reset();
+  filter_.startFrom(next_);
+  state_ = before_ = delayed_;
+  inputs_.colwise() = Vector::Map(input.data(), input.size());
+  disturbances_.colwise() = Vector::Map(disturbances.data(), disturbances.size());
+}
+
+void ModelObserver::inherit(const ModelObserver& other) {
+  delayed_ = other.delayed_;
+  state_ = other.state_;
+  before_ = other.before_;
+  inputs_ = other.inputs_;
+  disturbances_ = other.disturbances_;
+  filter_ = other.filter_;
+}
+
+/// One sample on, with the disturbance; the matrices of the blend stay in local_.
+void ModelObserver::move(VectorRef input, VectorRef disturbances, Vector& state) {
+  local_.blend(state, input, disturbances);
+  const AffineModel& m = local_.affine();
+  next_ = m.g;
+  next_ += m.A.lazyProduct(state);
+  next_ += m.B.lazyProduct(Vector::Map(input.data(), input.size()));
+  filter_.addDisturbance(next_);
+  state.swap(next_);
+}
+
+void ModelObserver::advance(VectorRef outputs, VectorRef input, VectorRef disturbances) {
+  const Index last = inputs_.cols() - 1;
+  for (Index j = 0; j < last; ++j) {
+    inputs_.col(j) = inputs_.col(j + 1);
+    disturbances_.col(j) = disturbances_.col(j + 1);
+  }
+  inputs_.col(last) = input;
+  disturbances_.col(last) = disturbances;
+  before_ = delayed_;
+  move(inputs_.col(0), disturbances_.col(0), delayed_);
+  filter_.predict(local_.affine().A);
+  filter_.correct(outputs, delayed_);
+  state_ = delayed_;
+  for (Index j = 1; j <= last; ++j) move(inputs_.col(j), disturbances_.col(j), state_);
+}
+
+}  // namespace fpc

@@ -1,0 +1,169 @@
+#include "fuzzy/auto_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "fmbpc/fuzzy/prediction.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kFewestMembers = 5;  // of a committee
+constexpr std::size_t kMostGroups = 4;     // of structures in it
+constexpr int kLastIterations = 150;
+constexpr double kSuspicious = 1.3;  // fitted error over held-out error: another minimum
+constexpr double kCoverage = 0.95;
+
+/// Half width that holds the stated share of the errors.
+double widthOf(const Vector& errors) {
+  std::vector<double> sizes;
+  for (const double e : errors)
+    if (std::isfinite(e)) sizes.push_back(std::abs(e));
+  if (sizes.empty()) return 0.0;
+  const auto at = static_cast<std::size_t>(
+      std::min<double>(std::ceil(kCoverage * static_cast<double>(sizes.size() + 1)),
+                       static_cast<double>(sizes.size())) -
+      1.0);
+  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(at), sizes.end());
+  return sizes[at];
+}
+
+double trainedError(const AutoData& data, const Fitted& fitted, int window) {
+  double sum = 0.0, n = 0.0;
+  for (const auto& s : data.all) {
+    const Vector y = freeRunOf(data, fitted, s, window);
+    for (Index k = s.first + window; k < s.last; ++k) {
+      const double e = data.data->values(k, data.output) - y[k];
+      if (std::isfinite(e)) sum += e * e, n += 1.0;
+    }
+  }
+  return n > 0.0 ? std::sqrt(sum / n) : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+Committee chooseCommittee(const AutoData& data, const SearchResult& found) {
+  Committee best;
+  double lowest = std::numeric_limits<double>::infinity();
+  const auto consider = [&](std::vector<const Judgement*> members) {
+    if (members.empty()) return;
+    const Vector mean = averaged(members);
+    const double error = rmseOf(data, mean);
+    if (!(error < lowest)) return;
+    lowest = error;
+    best.members = std::move(members);
+    best.free_run = mean;
+  };
+  const auto take = [](const std::vector<Judgement>& from, std::size_t most, auto& members) {
+    for (std::size_t i = 0; i < std::min(most, from.size()); ++i) members.push_back(&from[i]);
+  };
+  std::vector<const Judgement*> members, mixed;
+  for (std::size_t g = 0; g < std::min(kMostGroups, found.state.size()); ++g) {
+    take(found.state[g].members, found.state[g].members.size(), members);
+    if (members.size() >= kFewestMembers) consider(members);
+    if (g == 0) mixed = members;
+  }
+  std::vector<const Judgement*> past;
+  take(found.regressors, kFewestMembers, past);
+  consider(past);
+  mixed.insert(mixed.end(), past.begin(), past.end());
+  consider(mixed);
+  std::vector<const Judgement*> lines;
+  take(found.linear, kFewestMembers, lines);
+  consider(lines);
+  if (best.members.empty()) return best;
+  const Vector measured = data.data->values.col(data.output);
+  best.correction = fitCorrection(measured - best.free_run);
+  best.one_step = corrected(measured, best.free_run, best.correction);
+  return best;
+}
+
+AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step) {
+  const Vector measured = data.data->values.col(data.output);
+  AutoFigures f;
+  const FitFigures free = fitFigures(measured, free_run), one = fitFigures(measured, one_step);
+  f.free_run = free.rmse;
+  f.fit = free.fit;
+  f.one_step = one.samples > 0 ? one.rmse : kMissing;
+  f.blocks = blockErrors(data, free_run);
+  f.width = widthOf(measured - free_run);
+  f.one_step_width = widthOf(measured - one_step);
+  return f;
+}
+
+OutputModel toSubmodel(const AutoData& data, const Fitted& fitted) {
+  const RecurrentShape& shape = fitted.shape;
+  OutputModel model;
+  std::vector<Regressor> phi;
+  for (Index i = 0; i < shape.states; ++i)
+    phi.push_back({SignalKind::kOutput, data.output, static_cast<int>(i)});
+  phi.insert(phi.end(), fitted.exogenous.begin(), fitted.exogenous.end());
+  const auto columnOf = [&](const Regressor& r) { return data.data->column(r.kind, r.index); };
+  for (const Index i : shape.regressors) model.regressors.push_back(phi[static_cast<std::size_t>(i)]);
+  if (shape.rules > 1)
+    for (const Index i : shape.antecedents)
+      model.antecedents.push_back(phi[static_cast<std::size_t>(i)]);
+  const double y_scale = data.scale[data.output];
+  for (Index r = 0; r < shape.rules; ++r) {
+    Rule rule;
+    const Index at = shape.at(r, 0), p = shape.terms() - 1;
+    rule.coefficients.resize(p);
+    rule.offset = data.shift[data.output] + y_scale * fitted.parameters[at + p];
+    for (Index j = 0; j < p; ++j) {
+      const Index column = columnOf(model.regressors[static_cast<std::size_t>(j)]);
+      rule.coefficients[j] = fitted.parameters[at + j] * y_scale / data.scale[column];
+      rule.offset -= rule.coefficients[j] * data.shift[column];
+    }
+    for (std::size_t j = 0; j < model.antecedents.size(); ++j) {
+      const Index column = columnOf(model.antecedents[j]), z = static_cast<Index>(j);
+      const double centre = fitted.parameters[shape.centre(r) + z];
+      const double width = std::exp(fitted.parameters[shape.logWidth(r) + z]);
+      rule.antecedents.push_back({MembershipShape::kGaussian,
+                                  {data.shift[column] + data.scale[column] * centre,
+                                   data.scale[column] * width}});
+    }
+    model.rules.push_back(std::move(rule));
+  }
+  return model;
+}
+
+Fitted fitWhole(const AutoData& data, const Judgement& judged, int window) {
+  Candidate c = judged.candidate;
+  c.iterations = kLastIterations;
+  Fitted best;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int attempt = 0; attempt < 3; ++attempt) {
+    Fitted fitted = fitCandidate(data, c, data.all);
+    const double error = fitted.finite ? trainedError(data, fitted, window)
+                                       : std::numeric_limits<double>::infinity();
+    if (error < lowest) {
+      lowest = error;
+      best = std::move(fitted);
+    }
+    if (lowest < kSuspicious * judged.rmse) return best;
+    ++c.seed;
+  }
+  best.finite = best.finite && lowest < 2.0 * judged.rmse;
+  return best;
+}
+
+bool beyondSpread(const AutoFigures& other, const AutoFigures& linear) {
+  if (!(other.free_run < linear.free_run)) return false;
+  std::vector<double> ratios;
+  for (std::size_t b = 0; b < std::min(other.blocks.size(), linear.blocks.size()); ++b) {
+    const double ratio = std::log(other.blocks[b] / linear.blocks[b]);
+    if (std::isfinite(ratio)) ratios.push_back(ratio);
+  }
+  if (ratios.size() < 2) return false;
+  double mean = 0.0, spread = 0.0;
+  for (const double r : ratios) mean += r / static_cast<double>(ratios.size());
+  for (const double r : ratios) spread += (r - mean) * (r - mean);
+  const double n = static_cast<double>(ratios.size());
+  return mean + std::sqrt(spread / (n - 1.0) / n) < 0.0;
+}
+
+}  // namespace fpc

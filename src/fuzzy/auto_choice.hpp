@@ -1,0 +1,29 @@
+// From judgements to models: which kinds are worth it, fitted once more to the whole record.
+#pragma once
+
+#include "fuzzy/auto_search.hpp"
+
+namespace fpc {
+
+/// Up to so many of the best judgements whose averaged free runs are best on the held-out blocks.
+struct Committee {
+  std::vector<const Judgement*> members;
+  Vector free_run, one_step;  ///< held out
+  Vector correction;
+};
+Committee chooseCommittee(const AutoData& data, const SearchResult& found);
+
+/// Figures of held-out predictions.
+AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step);
+
+/// A model of the output's past as a submodel with Gaussian sets, in the signals' own units.
+OutputModel toSubmodel(const AutoData& data, const Fitted& fitted);
+
+/// Fits a candidate to all rows; from other seeds where that fails by the measure of its held-out
+/// error. Not finite: none came near.
+Fitted fitWhole(const AutoData& data, const Judgement& judged, int window);
+
+/// `other` is better than `linear` by more than the spread of their ratio over the blocks.
+bool beyondSpread(const AutoFigures& other, const AutoFigures& linear);
+
+}  // namespace fpc

@@ -1,0 +1,135 @@
+#include "fmbpc/fuzzy/domain.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/data_set.hpp"
+#include "fmbpc/fuzzy/ts_model.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Index kMostRows = 5000;
+
+double fade(double t) {
+  if (t <= 0.0) return 1.0;
+  return t >= 1.0 ? 0.0 : 0.5 * (1.0 + std::cos(kPi * t));
+}
+
+/// Rows without gaps, evenly spaced, at most kMostRows; column: one row, scaled.
+Matrix scaledRows(const DataSet& data, const Vector& scale) {
+  std::vector<Index> whole;
+  for (Index k = 0; k < data.rows(); ++k)
+    if (data.values.row(k).allFinite()) whole.push_back(k);
+  const Index n = std::min(kMostRows, static_cast<Index>(whole.size()));
+  Matrix rows(data.values.cols(), n);
+  for (Index i = 0; i < n; ++i) {
+    const auto from = static_cast<std::size_t>(i) * whole.size() / static_cast<std::size_t>(n);
+    rows.col(i) = data.values.row(whole[from]).transpose().cwiseQuotient(scale);
+  }
+  return rows;
+}
+
+const SignalInfo& signalAt(const TsModel& model, Index i) {
+  const auto n_y = static_cast<Index>(model.outputs.size());
+  const auto n_u = static_cast<Index>(model.inputs.size());
+  if (i < n_y) return model.outputs[static_cast<std::size_t>(i)];
+  if (i < n_y + n_u) return model.inputs[static_cast<std::size_t>(i - n_y)];
+  return model.disturbances[static_cast<std::size_t>(i - n_y - n_u)];
+}
+
+Index signalCount(const TsModel& model) {
+  return static_cast<Index>(model.outputs.size() + model.inputs.size() + model.disturbances.size());
+}
+
+/// Distance from the box of the ranges, in parts of each range.
+double beyondRanges(const TsModel& model, VectorRef point) {
+  double square = 0.0;
+  for (Index i = 0; i < point.size(); ++i) {
+    const SignalInfo& s = signalAt(model, i);
+    const double range = s.upper - s.lower;
+    if (!std::isfinite(range) || range <= 0.0) continue;
+    const double beyond = std::max({s.lower - point[i], point[i] - s.upper, 0.0}) / range;
+    square += beyond * beyond;
+  }
+  return std::sqrt(square);
+}
+
+}  // namespace
+
+void ModelDomain::validate(Index n) const {
+  if (empty()) return;
+  require(centres.rows() == n && centres.allFinite(), "domain.centres",
+          "lists of " + std::to_string(n) + " finite numbers");
+  require(scale.size() == n && (scale.array() > 0.0).all(), "domain.scale",
+          std::to_string(n) + " numbers > 0");
+  require(std::isfinite(radius) && radius > 0.0, "domain.radius", "a number > 0");
+}
+
+ModelDomain makeDomain(const DataSet& data, int centres) {
+  ModelDomain domain;
+  const Index n = data.values.cols();
+  domain.scale = Vector::Constant(n, kInfinity);
+  for (Index j = 0; j < n; ++j) {
+    double least = kInfinity, most = -kInfinity;
+    for (Index k = 0; k < data.rows(); ++k) {
+      if (!std::isfinite(data.values(k, j))) continue;
+      least = std::min(least, data.values(k, j));
+      most = std::max(most, data.values(k, j));
+    }
+    if (most > least) domain.scale[j] = most - least;
+  }
+  const Matrix rows = scaledRows(data, domain.scale);
+  if (rows.cols() == 0) return {};
+  Vector nearest = Vector::Constant(rows.cols(), kInfinity);
+  std::vector<Index> chosen;
+  Index next = 0;
+  (rows.colwise() - rows.rowwise().mean()).colwise().squaredNorm().minCoeff(&next);
+  for (int c = 0; c < centres; ++c) {
+    chosen.push_back(next);
+    nearest =
+        nearest.cwiseMin((rows.colwise() - rows.col(next)).colwise().squaredNorm().transpose());
+    if (nearest.maxCoeff(&next) <= 0.0) break;
+  }
+  domain.radius = std::max(std::sqrt(nearest.maxCoeff()), 1e-3);
+  domain.centres.resize(n, static_cast<Index>(chosen.size()));
+  for (std::size_t c = 0; c < chosen.size(); ++c)
+    for (Index j = 0; j < n; ++j)
+      domain.centres(j, static_cast<Index>(c)) =
+          std::isfinite(domain.scale[j]) ? rows(j, chosen[c]) * domain.scale[j] : 0.0;
+  return domain;
+}
+
+double trustOf(const TsModel& model, VectorRef point) {
+  const ModelDomain& domain = model.domain;
+  if (!point.allFinite()) return 0.0;
+  if (domain.empty()) return fade(beyondRanges(model, point) / kRangeFade);
+  double nearest = kInfinity;
+  for (Index c = 0; c < domain.centres.cols(); ++c) {
+    double square = 0.0;
+    for (Index j = 0; j < point.size(); ++j) {
+      const double apart = (point[j] - domain.centres(j, c)) / domain.scale[j];
+      square += apart * apart;
+    }
+    nearest = std::min(nearest, square);
+  }
+  return fade((std::sqrt(nearest) / domain.radius - 1.0) / kDomainFade);
+}
+
+bool knowsDomain(const TsModel& model) {
+  if (!model.domain.empty()) return true;
+  for (Index i = 0; i < signalCount(model); ++i) {
+    const SignalInfo& s = signalAt(model, i);
+    if (std::isfinite(s.lower) && std::isfinite(s.upper)) return true;
+  }
+  return false;
+}
+
+}  // namespace fpc

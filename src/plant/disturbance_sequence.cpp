@@ -1,0 +1,53 @@
+// Records one after the other, as a benchmark's protocol asks: constant, then one file, then another.
+#include <cmath>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/plant/disturbance.hpp"
+
+namespace fpc {
+namespace {
+
+/// A time as a number of samples that leaves at least one of `most`.
+std::uint32_t wholeSamples(double hours, double sample_time_s, std::uint32_t most,
+                           const std::string& key) {
+  const double samples = hours * 3600.0 / sample_time_s;
+  const double whole = std::round(samples);
+  require(std::isfinite(hours) && std::abs(samples - whole) <= 1e-6 * std::max(1.0, samples) &&
+              whole >= 0.0 && whole < static_cast<double>(most),
+          key, "a whole number of samples within the run, got " + exactText(hours) + " h");
+  return static_cast<std::uint32_t>(whole);
+}
+
+}  // namespace
+
+DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
+                                          const std::vector<std::string>& names,
+                                          const Vector& nominal, double sample_time_s,
+                                          std::uint32_t samples) {
+  if (params.lead_in_h == 0.0 && params.next_file.empty())
+    return readDisturbances(params, names, nominal, sample_time_s, samples);
+  const std::uint32_t lead =
+      wholeSamples(params.lead_in_h, sample_time_s, samples, "disturbance.csv.lead_in_h");
+  std::uint32_t first = samples - lead;
+  if (!params.next_file.empty()) {
+    first = wholeSamples(params.next_after_h, sample_time_s, first, "disturbance.csv.next.after_h");
+    require(first > 0, "disturbance.csv.next.after_h", "a time > 0");
+  }
+  DisturbanceRecord result = readDisturbances(params, names, nominal, sample_time_s, first);
+  Matrix values(nominal.size(), static_cast<Eigen::Index>(samples) + 1);
+  values.leftCols(lead) = nominal.replicate(1, lead);
+  values.middleCols(lead, first + 1) = result.values;
+  if (lead + first < samples) {
+    CsvDisturbanceParams next = params;
+    next.file = params.next_file;
+    const DisturbanceRecord second =
+        readDisturbances(next, names, nominal, sample_time_s, samples - lead - first);
+    values.rightCols(samples - lead - first + 1) = second.values;
+    result.repaired += second.repaired;
+  }
+  result.values = std::move(values);
+  return result;
+}
+
+}  // namespace fpc

@@ -1,0 +1,220 @@
+// fmbpc identify DATA.. --auto: the structure is searched; the verdict comes first.
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/fuzzy/record_remarks.hpp"
+#include "tool/auto_structure.hpp"
+#include "tool/figures_json.hpp"
+#include "tool/identify_auto.hpp"
+#include "tool/judgement.hpp"
+#include "tool/progress_bar.hpp"
+#include "tool/read_record.hpp"
+#include "tool/record_files.hpp"
+
+namespace fpc::tool {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using Row = std::vector<std::string>;
+
+struct AutoRecords {
+  std::vector<DataSet> each;
+  DataSet joined;
+  std::optional<DataSet> validation;
+  std::vector<std::string> remarks;
+};
+
+AutoRecords readAll(const IdentifyArguments& a) {
+  AutoRecords r;
+  const CsvTable first = readRecord(a.data.front(), csvFormat(a.format));
+  const AutoColumns columns{a.outputs, a.inputs, a.disturbances, a.time, a.sample_time_s};
+  const Structure structure = autoStructure(first, columns, r.remarks);
+  r.each.push_back(makeData(first, structure, a.rows));
+  for (std::size_t i = 1; i < a.data.size(); ++i)
+    r.each.push_back(makeData(readRecord(a.data[i], csvFormat(a.format)), structure, a.rows));
+  r.joined = joinRecords(r.each);
+  if (a.validate.empty() && a.validate_rows.empty()) return r;
+  std::error_code ignored;
+  const bool same =
+      a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
+  r.validation = makeData(same ? first : readRecord(a.validate, csvFormat(a.format)), structure, a.validate_rows);
+  if (same && rowsOverlap(a.rows, a.validate_rows))
+    r.remarks.push_back("validation rows are among the identification rows: not held out");
+  return r;
+}
+
+/// Keeps what --kind asks for.
+void choose(const std::string& kind, AutoIdentification& found) {
+  for (auto& o : found.outputs) {
+    if (kind == "linear") o.best = ModelKind::kLinear;
+    if (kind == "state" && !found.state.outputs.empty()) o.best = ModelKind::kState;
+    if (kind == "regressors") o.best = ModelKind::kRegressors;
+  }
+  if (kind == "linear") found.model.submodels = found.linear.submodels;
+  if (kind == "linear" || kind == "regressors") found.state.outputs.clear();
+}
+
+AutoIdentification search(const IdentifyArguments& a, const DataSet& data) {
+  AutoParams params;
+  params.budget_s = a.budget_s;
+  params.blocks = a.blocks;
+  params.window = a.window;
+  params.seed = a.seed;
+  params.states = a.kind == "best" || a.kind == "state";
+  ProgressBar bar("auto");
+  AutoIdentification found = autoIdentify(data, params, [&bar](const AutoProgress& progress) {
+    bar.show(progress.share, progress.stage);
+    return !interruption();
+  });
+  choose(a.kind, found);
+  return found;
+}
+
+std::string blocksText(const AutoFigures& f) {
+  Row words;
+  for (const double b : f.blocks) words.push_back(shortText(b));
+  return join(words, " ");
+}
+
+std::string crossTable(const AutoIdentification& found) {
+  std::vector<Row> rows{{"held-out blocks", "model", "free-run RMSE", "fit %", "1-step RMSE",
+                         "95 % interval +-", "free-run RMSE of the blocks"}};
+  for (const auto& o : found.outputs) {
+    std::string label = o.output;
+    const auto add = [&](ModelKind kind, const AutoFigures& f) {
+      if (f.blocks.empty()) return;
+      rows.push_back({label, name(kind) + (kind == o.best ? " *" : ""), shortText(f.free_run),
+                      shortText(f.fit), shortText(f.one_step), shortText(f.width), blocksText(f)});
+      label.clear();
+    };
+    add(ModelKind::kState, o.state);
+    add(ModelKind::kRegressors, o.regressors);
+    add(ModelKind::kLinear, o.linear);
+  }
+  return alignedTable(rows);
+}
+
+std::string searchTable(const AutoIdentification& found) {
+  std::vector<Row> rows{
+      {"structures of", "kind", "structure", "parameters", "held-out free-run RMSE", "+-", ""}};
+  for (const auto& t : found.trials)
+    rows.push_back({t.output, name(t.kind), t.structure, std::to_string(t.parameters),
+                    shortText(t.free_run), shortText(t.spread), t.chosen ? "chosen" : ""});
+  return alignedTable(rows);
+}
+
+Json toJson(const AutoFigures& f) {
+  if (f.blocks.empty()) return nullptr;
+  Json blocks = Json::array();
+  for (const double b : f.blocks) blocks.push_back(finiteJson(b));
+  return {{"free_run", finiteJson(f.free_run)},     {"fit", finiteJson(f.fit)},
+          {"one_step", finiteJson(f.one_step)},     {"blocks", blocks},
+          {"half_width", finiteJson(f.width)}};
+}
+
+Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>& parts,
+            const std::vector<std::string>& remarks, double seconds) {
+  Json json{{"name", found.model.name}, {"source", found.model.source}};
+  for (const auto& o : found.outputs) {
+    json["verdict"][o.output] = o.verdict;
+    json["beats_linear"][o.output] = o.beats_linear;
+    json["cross_validation"][o.output] = {{"best", name(o.best)},
+                                          {"state", toJson(o.state)},
+                                          {"regressors", toJson(o.regressors)},
+                                          {"linear", toJson(o.linear)}};
+    json["delays"][o.output] = o.delay;
+  }
+  json["identification"] = nullptr;
+  json["validation"] = nullptr;
+  for (const auto& part : parts) {
+    if (part.title == "identification" || part.title == "validation")
+      json[part.title] = toJson(part);
+    else
+      json["records"][part.title] = toJson(part);
+  }
+  json["search"] = Json::array();
+  for (const auto& t : found.trials)
+    json["search"].push_back({{"output", t.output},
+                              {"kind", name(t.kind)},
+                              {"structure", t.structure},
+                              {"parameters", t.parameters},
+                              {"free_run", finiteJson(t.free_run)},
+                              {"spread", finiteJson(t.spread)},
+                              {"chosen", t.chosen}});
+  json["remarks"] = remarks;
+  json["seconds"] = seconds;
+  return json;
+}
+
+std::vector<RecordJudgement> judgeAll(const AutoRecords& records, const IdentifiedModel& model) {
+  constexpr int kSteps = 10;
+  std::vector<RecordJudgement> parts{
+      judgeRecord("identification", records.joined, model, kSteps)};
+  for (std::size_t i = 0; records.each.size() > 1 && i < records.each.size(); ++i)
+    parts.push_back(judgeRecord(records.each[i].source, records.each[i], model, kSteps));
+  if (records.validation)
+    parts.push_back(judgeRecord("validation", *records.validation, model, kSteps));
+  return parts;
+}
+
+void checkArguments(const IdentifyArguments& a) {
+  require(!a.outputs.empty(), "--outputs", "the columns to predict, NAME,NAME,..");
+  require(!a.inputs.empty() || !a.disturbances.empty(), "--inputs",
+          "the columns that act on them, NAME,NAME,..");
+  checkTarget(a.out);
+}
+
+}  // namespace
+
+int identifyAuto(const IdentifyArguments& a) {
+  checkArguments(a);
+  const AutoRecords records = readAll(a);
+  catchInterrupts();
+  const auto start = std::chrono::steady_clock::now();
+  AutoIdentification found = search(a, records.joined);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  if (!a.out.empty()) found.model.name = fs::path(a.out).stem().string();
+  const IdentifiedModel model = toIdentified(found);
+  if (!a.out.empty()) writeAtOnce(writeIdentified(model), a.out);
+  const auto parts = judgeAll(records, model);
+  std::vector<std::string> remarks = records.remarks;
+  if (found.cancelled) remarks.push_back("stopped: the best found so far is kept");
+  remarks.insert(remarks.end(), found.remarks.begin(), found.remarks.end());
+  const TsModel linear = model.linearModel();
+  for (const auto& remark : recordRemarks(records.joined, &linear)) remarks.push_back(remark);
+  for (const auto& part : parts)
+    for (const auto& remark : part.remarks) remarks.push_back(part.title + ": " + remark);
+  const Json json = toJson(found, parts, remarks, wall.count());
+  if (!a.plots.empty()) plotJudgements(model, parts, json, a.plots);
+  if (a.json) {
+    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    return 0;
+  }
+  for (const auto& o : found.outputs) std::cout << o.output << ": " << o.verdict << "\n";
+  std::cout << "\n"
+            << crossTable(found) << "\n"
+            << searchTable(found) << "\n"
+            << toTable(parts) << "\n";
+  for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
+  std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s\n";
+  if (!a.out.empty()) std::cout << "written: " << a.out << "\n";
+  return 0;
+}
+
+int identify(const IdentifyArguments& a) {
+  if (a.automatic) return identifyAuto(a);
+  require(a.data.size() == 2, "identify",
+          "DATA and STRUCTURE, or --auto with --inputs and --outputs");
+  IdentifyArguments structured = a;
+  structured.structure = a.data.back();
+  structured.data.resize(1);
+  return identifyStructure(structured);
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,93 @@
+// fmbpc validate MODEL DATA: a saved model on another record.
+#include <iostream>
+#include <limits>
+#include <map>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/record_remarks.hpp"
+#include "tool/commands.hpp"
+#include "tool/judgement.hpp"
+#include "tool/read_record.hpp"
+#include "tool/record_files.hpp"
+
+namespace fpc::tool {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::map<std::string, std::string> columnsOf(const std::vector<std::string>& pairs) {
+  std::map<std::string, std::string> columns;
+  for (const auto& pair : pairs) {
+    const auto at = pair.find('=');
+    require(at != std::string::npos && at > 0 && at + 1 < pair.size(), "--columns '" + pair + "'",
+            "SIGNAL=COLUMN");
+    columns[pair.substr(0, at)] = pair.substr(at + 1);
+  }
+  return columns;
+}
+
+/// The model's signals as a structure; anything may be missing or rest while a model is judged.
+Structure structureOf(const TsModel& model, const CsvTable& table,
+                      const std::map<std::string, std::string>& columns) {
+  const double infinite = std::numeric_limits<double>::infinity();
+  const auto signals = [&](const std::vector<SignalInfo>& infos) {
+    std::vector<StructureSignal> list;
+    for (SignalInfo info : infos) {
+      info.lower = -infinite;
+      info.upper = infinite;
+      const auto given = columns.find(info.name);
+      std::string column = given == columns.end() ? info.name : given->second;
+      if (given == columns.end())
+        for (const auto& name : table.names) {
+          std::string plain = name;
+          for (char& c : plain)
+            if (c == ' ' || c == '\t' || c == '(' || c == ')') c = '_';
+          if (plain == info.name) column = name;
+        }
+      list.push_back({info, column});
+    }
+    return list;
+  };
+  Structure s;
+  s.name = model.name;
+  s.sample_time_s = model.sample_time_s;
+  s.outputs = signals(model.outputs);
+  s.inputs = signals(model.inputs);
+  s.disturbances = signals(model.disturbances);
+  for (const auto& submodel : model.submodels) {
+    OutputStructure part;
+    part.regressors = submodel.regressors;
+    part.antecedents = submodel.antecedents;
+    s.submodels.push_back(part);
+  }
+  s.repair.missing = MissingCells::kDrop;
+  s.repair.drop_constant = true;
+  return s;
+}
+
+}  // namespace
+
+int validate(const ValidateArguments& a) {
+  const IdentifiedModel model = readIdentified(findModel(a.model));
+  const CsvTable table = readRecord(a.data, csvFormat(a.format));
+  const auto columns = columnsOf(a.columns);
+  const Structure structure = structureOf(model.model, table, columns);
+  const DataSet data = makeData(table, structure, a.rows);
+  const RecordJudgement part = judgeRecord("validation", data, model, a.steps);
+  std::vector<std::string> remarks = data.repairs;
+  for (const auto& remark : recordRemarks(data, nullptr)) remarks.push_back(remark);
+  remarks.insert(remarks.end(), part.remarks.begin(), part.remarks.end());
+  Json json{{"name", model.model.name}, {"data", data.source}, {"validation", toJson(part)}};
+  json["remarks"] = remarks;
+  if (!a.plots.empty()) plotJudgements(model, {part}, json, a.plots);
+  if (a.json) {
+    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    return 0;
+  }
+  std::cout << model.model.name << " on " << data.source << "\n\n" << toTable({part}) << "\n";
+  for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
+  if (!a.plots.empty()) std::cout << "written: " << a.plots << "\n";
+  return 0;
+}
+
+}  // namespace fpc::tool

@@ -1,0 +1,158 @@
+#include "tool/judgement.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/fuzzy/prediction.hpp"
+#include "fmbpc/fuzzy/record_remarks.hpp"
+#include "tool/figures_json.hpp"
+
+namespace fpc::tool {
+namespace {
+
+using Eigen::Index;
+using Json = nlohmann::ordered_json;
+using Row = std::vector<std::string>;
+
+std::string fixed(double value) {
+  if (!std::isfinite(value)) return "-";
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+KindFigures figuresOf(ModelKind kind, const KindPrediction& p, const Vector& measured, Index i) {
+  KindFigures f;
+  f.kind = kind;
+  f.one_step = fitFigures(measured, p.one_step.col(i));
+  f.free_run = fitFigures(measured, p.free_run.col(i));
+  f.one_step_width = p.one_step_width[i];
+  f.free_run_width = p.free_run_width[i];
+  f.one_step_coverage = coverage(measured, p.one_step.col(i), f.one_step_width);
+  f.free_run_coverage = coverage(measured, p.free_run.col(i), f.free_run_width);
+  return f;
+}
+
+ModelKind bestOf(const IdentifiedModel& model, std::size_t i) {
+  return i < model.outputs.size() ? model.outputs[i].best : ModelKind::kRegressors;
+}
+
+Json toJson(const KindFigures& f) {
+  return {{"one_step", figuresJson(f.one_step)}, {"free_run", figuresJson(f.free_run)}};
+}
+
+Json intervalJson(const KindFigures& f) {
+  const auto one = [](double width, double covered) {
+    return Json{{"half_width", width > 0.0 ? Json(width) : Json(nullptr)},
+                {"coverage", finiteJson(covered)}};
+  };
+  return {{"stated", 95.0},
+          {"one_step", one(f.one_step_width, f.one_step_coverage)},
+          {"free_run", one(f.free_run_width, f.free_run_coverage)}};
+}
+
+const KindFigures& bestFigures(const OutputJudgement& o) {
+  for (const auto& f : o.kinds)
+    if (f.kind == o.best) return f;
+  return o.kinds.front();
+}
+
+Row rowOf(const OutputJudgement& o, const KindFigures& f, const std::string& label,
+          const std::string& title) {
+  Row row{label, title, name(f.kind) + (f.kind == o.best ? " *" : "")};
+  for (const auto* figures : {&f.one_step, &f.free_run}) {
+    const bool any = figures->samples > 0;
+    row.push_back(any ? fixed(figures->vaf) : "-");
+    row.push_back(any ? fixed(figures->fit) : "-");
+    row.push_back(any ? shortText(figures->rmse) : "-");
+  }
+  row.push_back(f.kind == o.best && o.ahead.samples > 0 ? shortText(o.ahead.rmse) : "-");
+  row.push_back(fixed(f.free_run_coverage));
+  row.push_back(std::to_string(f.free_run.samples));
+  return row;
+}
+
+}  // namespace
+
+RecordJudgement judgeRecord(const std::string& title, DataSet data, const IdentifiedModel& model,
+                            int steps, const ValidationParams& params) {
+  RecordJudgement part;
+  part.title = title;
+  part.data = std::move(data);
+  part.steps = steps;
+  part.best = predictBest(model, part.data);
+  const Matrix ahead = predictSteps(model, part.data, steps);
+  for (std::size_t i = 0; i < model.model.outputs.size(); ++i) {
+    const SignalInfo& y = model.model.outputs[i];
+    part.outputs.push_back({y.name, y.unit, bestOf(model, i), {}, {}, {}});
+  }
+  for (const auto kind : {ModelKind::kState, ModelKind::kRegressors, ModelKind::kLinear}) {
+    if (!model.has(kind)) continue;
+    const KindPrediction p = predictKind(model, kind, part.data);
+    for (std::size_t i = 0; i < part.outputs.size(); ++i) {
+      const auto c = static_cast<Index>(i);
+      part.outputs[i].kinds.push_back(figuresOf(kind, p, part.data.values.col(c), c));
+    }
+  }
+  for (std::size_t i = 0; i < part.outputs.size(); ++i) {
+    const auto c = static_cast<Index>(i);
+    const Vector measured = part.data.values.col(c);
+    part.outputs[i].ahead = fitFigures(measured, ahead.col(c));
+    part.outputs[i].residual =
+        residualCorrelation(part.data, measured - part.best.one_step.col(c), params);
+  }
+  part.remarks = predictionRemarks(model.model, part.data, part.best.one_step, part.best.free_run,
+                                   params);
+  return part;
+}
+
+std::string toTable(const std::vector<RecordJudgement>& parts) {
+  if (parts.empty()) return "";
+  const std::string steps = std::to_string(parts.front().steps);
+  std::vector<Row> rows{{"output", "rows", "model", "1-step VAF %", "fit %", "RMSE",
+                         "free-run VAF %", "fit %", "RMSE", steps + "-step RMSE",
+                         "in 95 % interval", "samples"}};
+  for (std::size_t i = 0; i < parts.front().outputs.size(); ++i)
+    for (const auto& part : parts) {
+      const OutputJudgement& o = part.outputs[i];
+      std::string label = o.output + (o.unit.empty() ? "" : " [" + o.unit + "]");
+      std::string title = part.title;
+      for (const auto& f : o.kinds) {
+        rows.push_back(rowOf(o, f, label, title));
+        label.clear();
+        title.clear();
+      }
+    }
+  std::string text = alignedTable(rows) +
+                     "(RMSE in the unit of the output; * chosen; free runs start from the first "
+                     "samples)\n\n";
+  std::vector<Row> residuals{{"residuals of", "rows", "correlations outside %", "bound"}};
+  for (const auto& part : parts)
+    for (const auto& o : part.outputs)
+      residuals.push_back({o.output, part.title, fixed(100.0 * o.residual.outside),
+                           shortText(o.residual.bound)});
+  return text + alignedTable(residuals);
+}
+
+Json toJson(const RecordJudgement& part) {
+  Json tree = Json::object(), linear = Json::object();
+  for (const auto& o : part.outputs) {
+    const KindFigures& best = bestFigures(o);
+    Json& output = tree[o.output] = toJson(best);
+    output["best"] = name(o.best);
+    output["ahead"] = figuresJson(o.ahead);
+    output["ahead"]["steps"] = part.steps;
+    for (const auto& f : o.kinds) {
+      output[name(f.kind)] = toJson(f);
+      if (f.kind == ModelKind::kLinear) linear[o.output] = toJson(f);
+    }
+    output["residual"] = {{"bound", finiteJson(o.residual.bound)},
+                          {"outside", finiteJson(o.residual.outside)}};
+    output["interval"] = intervalJson(best);
+  }
+  if (!linear.empty()) tree["linear"] = linear;
+  return tree;
+}
+
+}  // namespace fpc::tool

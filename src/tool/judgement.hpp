@@ -1,0 +1,48 @@
+// What every kind of model in a file makes of one record, as tables, JSON and plots.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fmbpc/config/identified_file.hpp"
+
+namespace fpc::tool {
+
+/// Figures of one kind on one output. Coverage [%] of the 95 % intervals; NaN: no interval.
+struct KindFigures {
+  ModelKind kind{};
+  FitFigures one_step, free_run;
+  double one_step_coverage{}, free_run_coverage{};
+  double one_step_width{}, free_run_width{};
+};
+
+struct OutputJudgement {
+  std::string output, unit;
+  ModelKind best{};
+  std::vector<KindFigures> kinds;
+  FitFigures ahead;  ///< of the best kind, `steps` samples ahead
+  ResidualCorrelation residual;
+};
+
+/// One record (or part of one) judged.
+struct RecordJudgement {
+  std::string title;  ///< "identification", "validation"
+  DataSet data;
+  int steps{};
+  std::vector<OutputJudgement> outputs;
+  KindPrediction best;
+  std::vector<std::string> remarks;
+};
+RecordJudgement judgeRecord(const std::string& title, DataSet data, const IdentifiedModel& model,
+                            int steps, const ValidationParams& params = {});
+
+std::string toTable(const std::vector<RecordJudgement>& parts);
+/// <output>.{best, one_step, free_run, ahead, residual, interval, <kind>..}, linear.<output>..
+nlohmann::ordered_json toJson(const RecordJudgement& part);
+/// Pictures and their data into a folder; `json` is what the command prints.
+void plotJudgements(const IdentifiedModel& model, const std::vector<RecordJudgement>& parts,
+                    nlohmann::ordered_json json, const std::string& folder);
+
+}  // namespace fpc::tool

@@ -1,0 +1,23 @@
+// Records and model files of the identification commands.
+#pragma once
+
+#include <string>
+
+#include "fmbpc/base/csv.hpp"
+#include "fmbpc/fuzzy/data_set.hpp"
+#include "tool/commands.hpp"
+
+namespace fpc::tool {
+
+CsvFormat csvFormat(const RecordFormat& format);
+/// Rows "A:B" (empty: all) of a table; its source names the file without folders, so that
+/// provenance does not depend on where the user's folders are.
+DataSet makeData(const CsvTable& table, const Structure& structure, const std::string& rows);
+/// Refuses before hours of work what could not be written after it.
+void checkTarget(const std::string& file);
+/// The whole file or nothing. @throws InputError
+void writeAtOnce(const std::string& text, const std::string& file);
+/// True if both, "A:B" or empty, share a row.
+bool rowsOverlap(const std::string& a, const std::string& b);
+
+}  // namespace fpc::tool

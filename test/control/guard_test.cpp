@@ -1,0 +1,161 @@
+// The guard around a law of which everything is known: untouched inside, smaller moves and a PI
+// outside, bumpless both ways.
+#include "fmbpc/control/guard.hpp"
+
+#include "control/session_fixture.hpp"
+
+namespace fpc::test_session {
+namespace {
+
+/// Asks for the same input always.
+struct Wish final : Controller {
+  void reset(const Measurement& start) override { resets.push_back(start.header.step); }
+  void step(const Measurement& now, const SetpointSource& setpoint,
+            ControllerOutput& output) override {
+    output.input = of({wish});
+    output.source = ActionSource::kBase;
+    output.reference = setpoint.present();
+    output.predictive = true;
+    output.ok = true;
+    output.remark = "";
+    seen = now.input_applied[0];
+  }
+  bool needsModel() const override { return true; }
+  void setModel(const TsModel&) override {}
+  std::vector<std::uint32_t> resets;
+  double wish{700.0}, seen{};
+};
+
+/// q_r was between 400 and 1000 in the data, s between 50 and 60, x between 1800 and 2200.
+TsModel model() {
+  TsModel m;
+  m.name = "box";
+  m.sample_time_s = 720.0;
+  m.outputs = {{"s", "mg/l", 50, 60}, {"x", "mg/l", 1800, 2200}};
+  m.inputs = {{"q_r", "m3/h", 400, 1000}};
+  m.disturbances = {{"q_i", "m3/h", 1000, 1600}};
+  OutputModel submodel;
+  submodel.regressors = {{SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 0}};
+  Rule rule;
+  rule.coefficients = of({0.5, 0.5});
+  submodel.rules = {rule};
+  m.submodels = {submodel, submodel};
+  return m;
+}
+
+class Guard : public testing::Test {
+ protected:
+  void make(GuardParams params) {
+    auto owned = std::make_unique<Wish>();
+    law = owned.get();
+    guard = std::make_unique<GuardedController>(std::move(owned), std::move(params), limits(),
+                                                plant());
+    guard->setModel(model());
+    guard->reset(sample(0));
+  }
+  static GuardParams params(bool with_pi = false) {
+    GuardParams p;
+    p.lock_samples = 0;
+    p.return_samples = 3;
+    p.has_pi = with_pi;
+    PiLoop pi;
+    pi.output = 1;
+    pi.kp = 0.5;
+    pi.ki_per_h = 1.0;
+    pi.bias = 775.0;
+    p.pi.loops = {pi};
+    return p;
+  }
+  double step(std::uint32_t k, double x, double applied) {
+    Measurement now = sample(k, 1, applied);
+    now.outputs[1] = x;
+    setpoint.advance(k);
+    guard->step(now, setpoint, out);
+    return out.input[0];
+  }
+
+  Wish* law{};
+  std::unique_ptr<GuardedController> guard;
+  SetpointSource setpoint{setpoints(), {"s", "x"}, SampleClock(720.0, 1.0)};
+  ControllerOutput out;
+};
+
+TEST_F(Guard, InsideTheDataTheLawPassesUntouched) {
+  make(params());
+  EXPECT_EQ(step(0, 2000.0, 570.0), 700.0);
+  EXPECT_EQ(out.source, ActionSource::kBase);
+  EXPECT_TRUE(out.predictive);
+  EXPECT_STREQ(out.remark, "");
+  EXPECT_EQ(guard->view().trust, 1.0);
+  EXPECT_EQ(guard->signals().front().first, "model_trust");
+  EXPECT_EQ(guard->signals().front().second, 1.0);
+}
+
+TEST_F(Guard, OutsideMovesShrinkToTheLeast) {
+  make(params());
+  // x 2200 + half of its range: no trust at all.
+  EXPECT_DOUBLE_EQ(step(0, 2400.0, 570.0), 570.0 + 0.02 * 1600.0);
+  EXPECT_EQ(out.source, ActionSource::kFallback);
+  EXPECT_FALSE(out.predictive);
+  EXPECT_NE(std::string(out.remark).find("outside the model"), std::string::npos);
+  EXPECT_TRUE(guard->view().outside);
+  EXPECT_EQ(guard->signals().front().second, 0.0);
+}
+
+TEST_F(Guard, AWishOutsideTheDataCountsAsWell) {
+  make(params());
+  law->wish = 1400.0;  // two thirds of the range beyond
+  EXPECT_DOUBLE_EQ(step(0, 2000.0, 990.0), 990.0 + 32.0);
+}
+
+TEST_F(Guard, BetweenTheThresholdsMovesShrinkInProportion) {
+  GuardParams p = params();
+  p.trust_low = 0.0;
+  p.trust_high = 1.0;
+  make(p);
+  law->wish = 1600.0;
+  law->wish = 0.0;
+  const double moved = 900.0 - step(0, 2250.0, 900.0);  // an eighth of the range: trust 0.5
+  EXPECT_LT(guard->view().trust, 0.5);                  // the wish is outside, too
+  EXPECT_NEAR(moved, (0.02 + 0.98 * guard->view().trust) * 1600.0, 1e-9);
+}
+
+TEST_F(Guard, ThePiTakesOverWithoutABumpAndTheLawComesBackWithoutOne) {
+  make(params(true));
+  EXPECT_EQ(step(0, 2000.0, 570.0), 700.0);
+  EXPECT_EQ(step(1, 2400.0, 700.0), 700.0);  // bumpless
+  EXPECT_EQ(out.source, ActionSource::kFallback);
+  EXPECT_LT(step(2, 2400.0, 700.0), 700.0);  // x too high: less
+  law->resets.clear();
+  EXPECT_NE(step(3, 2000.0, 690.0), 700.0);
+  EXPECT_NE(step(4, 2000.0, 690.0), 700.0);
+  EXPECT_TRUE(law->resets.empty());
+  EXPECT_EQ(step(5, 2000.0, 690.0), 700.0);  // the third sample inside
+  EXPECT_EQ(law->resets, Steps{5});          // reset: its own bumpless start
+  EXPECT_EQ(out.source, ActionSource::kBase);
+}
+
+TEST_F(Guard, MistakesNameTheirKey) {
+  const auto errorWith = [](const std::function<void(GuardParams&)>& change) -> std::string {
+    GuardParams p = params();
+    change(p);
+    try {
+      p.validate(2, 1, 1);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto names = [](const std::string& error, const std::string& key) {
+    EXPECT_NE(error.find(key), std::string::npos) << error;
+  };
+  names(errorWith([](GuardParams& p) { p.trust_high = 0.1; }), "guard.trust_high");
+  names(errorWith([](GuardParams& p) { p.least_move = 0.0; }), "guard.least_move");
+  names(errorWith([](GuardParams& p) { p.return_samples = 0; }), "guard.return_samples");
+  names(errorWith([](GuardParams& p) { p.lock_samples = -1; }), "guard.lock_samples");
+  names(errorWith([](GuardParams& p) { p.lock_step = 2.0; }), "guard.lock_step");
+  names(errorWith([](GuardParams& p) { p.lock_outputs = {2}; }), "guard.lock_outputs");
+}
+
+}  // namespace
+}  // namespace fpc::test_session
