@@ -114,10 +114,10 @@ Rows centres(const PrintedModel& table) {
   Rows rows;
   for (std::size_t r = 0; r < table.rules.size(); ++r)
     for (std::size_t i = 0; i < table.columns.size(); ++i)
-      rows.push_back(figure(
+      rows.push_back(incomparable(
           "centre of " + table.names[i] + ", rule " + std::to_string(table.rules[r].number),
           table.rules[r].centre[i], centreOf(model, model.rules[match[r]], table.columns[i]),
-          table.units[i], {}, "nearest cluster of our record; the paper's was never published"));
+          table.units[i], "centres lie where the record is, and the paper's was never published"));
   return rows;
 }
 

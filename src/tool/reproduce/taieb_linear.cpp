@@ -77,7 +77,7 @@ Rows table1() {
       rows.push_back(figure(of + "Ts", column.settling[i], step.settling, "samples", {}, note));
       rows.push_back(figure(of + "Tr", column.rise[i], step.rise, "samples", {}, note));
       rows.push_back(figure(of + "Es", column.offset[i], 0.01 * step.offset, "-",
-                            {0.1, Direction::kLower, 0.5e-3}, "share of the step"));
+                            {0.1, Direction::kEqual, 0.5e-3}, "share of the step"));
     }
   }
   return rows;

@@ -107,10 +107,10 @@ double meanCost(const Algorithm& a) {
 
 Rows table(Eigen::Index output) {
   const std::string reason = outOfReach();
-  const Judged lower{0.1, Direction::kLower, 0.005};
+  const Judged judged{0.1, Direction::kEqual, 0.005};
   Rows rows;
   const auto add = [&](const std::string& what, double paper, double here, const char* unit) {
-    rows.push_back(figure(what, paper, here, unit, lower));
+    rows.push_back(figure(what, paper, here, unit, judged));
     rows.back().incomparable = reason;
   };
   for (const Algorithm& a : kAlgorithms) {
