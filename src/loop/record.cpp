@@ -41,7 +41,7 @@ bool RecordLayout::isComplete(const SampleRecord& s) const {
 }
 
 RunRecord RecordLayout::emptyRecord() const {
-  return {loop, info, states, state_units, {}, false, 0, {}};
+  return {loop, info, states, state_units, {}, false, 0, {}, {}};
 }
 
 void conclude(RunRecord& record, bool nothing_missing) {
