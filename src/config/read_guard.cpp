@@ -47,7 +47,8 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   for (std::size_t i = 0; i < names.outputs.size(); ++i)
     for (const auto& output : outputs)
       if (output == names.outputs[i]) guard.lock_outputs.push_back(static_cast<Index>(i));
-  guard.has_pi = section.has("pi") && !section.raw("pi").IsNull();
+  const YAML::Node fallback = section.raw("pi");
+  guard.has_pi = fallback.IsDefined() && !fallback.IsNull();
   if (guard.has_pi) {
     YamlSection pi = section.section("pi");
     guard.pi = readPi(pi, controllerContext(loop));

@@ -26,10 +26,9 @@ PiScheduleSignal readScheduleSignal(YamlSection& item, const ControllerContext& 
   std::string name;
   item.text("schedule_by", name);
   if (name.empty()) return signal;
-  item.oneOf("schedule_by", name, choices);
   for (std::size_t i = 0; i < choices.size(); ++i)
     if (choices[i] == name) return meant[i];
-  return signal;
+  item.fail("schedule_by", "one of " + join(choices));
 }
 
 std::vector<PiFeedforward> readFeedforward(YamlSection& loop, const ControllerContext& context) {
