@@ -136,7 +136,8 @@ std::set<std::string> readerKeys() {
                                  batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
                                  batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest};
   for (const auto& type : controllerNames())
-    for (const auto& loop : loopsOfType(type)) texts.push_back(resolveLoop(loop));
+    for (const auto& loop : loopsOfType(type))
+      texts.push_back(resolveLoop(loop, withoutRecords(loop)));
   std::set<std::string> keys;
   std::set<std::string> sections;
   for (const auto& text : texts)

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <random>
 
 #include "allocation_counter.hpp"
@@ -23,7 +24,7 @@ class ControllerContract : public ::testing::TestWithParam<std::string> {
   void SetUp() override {
     const auto loops = loopsOfType(GetParam());
     ASSERT_FALSE(loops.empty()) << "a shipped loop with controller.type " << GetParam();
-    loop_ = readLoop(loops.front());
+    loop_ = readLoop(loops.front(), withoutRecords(loops.front()));
     ASSERT_GT(loop_.simulation.samples, kRun) << loop_.name;
   }
   ControllerSession makeSession() const {
@@ -98,6 +99,9 @@ TEST_P(ControllerContract, LimitsHoldAtEverySampleWhateverIsMeasured) {
     ASSERT_EQ(session.receive(now), Receipt::kAnswered);
     const Vector& sent = session.answer().base.input;
     ASSERT_TRUE(sent.allFinite()) << k;
+    const Vector& given = session.output().ok ? session.output().input : sent;
+    EXPECT_LE(distance(given, sent), kRounding)
+        << k << ": the law itself, before the session's net";
     const Vector slack = kRounding * range();
     EXPECT_TRUE((sent.array() >= (limits().lower - slack).array()).all()) << k << ": " << sent;
     EXPECT_TRUE((sent.array() <= (limits().upper + slack).array()).all()) << k << ": " << sent;
@@ -131,26 +135,39 @@ TEST_P(ControllerContract, MissingDataHoldTheInputAndTheNextSampleGoesOn) {
   EXPECT_TRUE(session.output().ok) << session.output().remark;
 }
 
-/// Beside a twin that was never interrupted: back from manual the input stays where it is, or goes
-/// where the twin's goes.
+/// A random search finds the same input only so well when it starts anew.
+const std::map<std::string, double> kScatter = {{"swarm_mpc", 0.02}};
+
+/// An input elsewhere that may be sent: a twentieth of the range away.
+Vector moved(const Controller& controller, const InputLimits& limits, const Vector& input) {
+  const Vector width = (limits.upper - limits.lower).cwiseMin(1e6);
+  Vector other = (input + 0.05 * width).cwiseMin(limits.upper).cwiseMax(limits.lower);
+  controller.makeSendable(other);
+  return other;
+}
+
+/// A person moves the inputs for five samples, beside a twin that sees the same samples and was
+/// never interrupted: back from manual the input stays where the person left it, or goes where the
+/// twin's goes.
 TEST_P(ControllerContract, HandOverFromManualIsBumpless) {
   ControllerSession session = makeSession(), twin = makeSession();
   Simulation plant = makeSimulation(loop_);
   plant.reset(1);
   double bump = 0.0;
-  run(plant, twin, kRun, [&](const Measurement& now) {
+  run(plant, session, kSettle + 6, [&](const Measurement& now) {
     const std::uint32_t k = now.header.step;
-    if (k == kSettle) session.manual(true);
-    if (k == kSettle + 5) session.manual(false);
-    if (session.isManual()) session.manualInput(twin.answer().base.input);
-    ASSERT_EQ(session.receive(now), Receipt::kAnswered);
+    ASSERT_EQ(twin.receive(now), Receipt::kAnswered);
+    if (k + 1 == kSettle) session.manual(true);
+    if (k + 1 == kSettle)
+      session.manualInput(moved(session.controller(), limits(), now.input_applied));
+    if (k + 1 == kSettle + 5) session.manual(false);
     const Vector& sent = session.answer().base.input;
-    if (k < kSettle + 5) EXPECT_EQ(sent, twin.answer().base.input) << k;
     if (k == kSettle + 5)
       bump = std::min(distance(sent, now.input_applied), distance(sent, twin.answer().base.input));
   });
+  EXPECT_EQ(session.resetReason(), "back from manual");
   std::printf("%s on %s: bump %.3g of the range\n", GetParam().c_str(), loop_.name.c_str(), bump);
-  EXPECT_LE(bump, 1e-6);
+  EXPECT_LE(bump, kScatter.count(GetParam()) > 0 ? kScatter.at(GetParam()) : 1e-6);
 }
 
 TEST_P(ControllerContract, TheSameSamplesGiveTheSameBits) {
@@ -196,7 +213,8 @@ TEST_P(ControllerContract, SettingsAreThoseOfTheTableAndTakingThemAgainMovesNoth
   Simulation plant = makeSimulation(loop_);
   plant.reset(1);
   run(plant, twin, kRun, [&](const Measurement& now) {
-    if (now.header.step == kSettle) EXPECT_TRUE(session.retune(shown));
+    const bool retuned = now.header.step != kSettle || session.retune(shown);
+    EXPECT_TRUE(retuned);
     session.receive(now);
     EXPECT_LE(distance(session.answer().base.input, twin.answer().base.input), kRounding)
         << now.header.step;
