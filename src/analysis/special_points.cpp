@@ -10,7 +10,7 @@ namespace fpc {
 namespace {
 
 constexpr int kBisections = 60;
-constexpr double kNoSlope = 1e-7;     // of a unit tangent: what differences of the field cannot tell
+constexpr double kNoSlope = 1e-7;  // of a unit tangent: what differences of the field cannot tell
 constexpr double kNarrowest = 1e-11;  // of the arc length, in sizes
 
 struct Bracket {

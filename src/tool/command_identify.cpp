@@ -35,9 +35,9 @@ Records readRecords(const IdentifyArguments& a, const Structure& structure) {
   judging.repair.drop_constant = true;  // an input may rest while a model is judged
   std::error_code ignored;              // a file that is not there is told by its reader
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  records.validation = makeData(same ? table : readRecord(a.validate, structure.csv), judging, a.validate_rows);
-  records.overlap =
-      same && rowsOverlap(a.rows, a.validate_rows);
+  records.validation =
+      makeData(same ? table : readRecord(a.validate, structure.csv), judging, a.validate_rows);
+  records.overlap = same && rowsOverlap(a.rows, a.validate_rows);
   return records;
 }
 
