@@ -54,7 +54,8 @@ class Ring {
     recorder_.receive(plant_.simulation().state());
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    if (*controller_.output().remark != '\0') keep(controller_.output().remark, now.header.step);
+    if (!now.final && *controller_.output().remark != '\0')
+      keep(controller_.output().remark, now.header.step);
     recorder_.receive(answer.tracking);
     if (!now.final) {
       recorder_.receiveBase(answer.base);

@@ -49,9 +49,9 @@ Identification identifyWithBar(const DataSet& data, const Structure& structure) 
   });
 }
 
-Judged judge(const std::string& title, DataSet data, const Identification& found,
-             const ValidationParams& params) {
-  Judged judged{title, std::move(data), {}};
+JudgedRecord judge(const std::string& title, DataSet data, const Identification& found,
+                   const ValidationParams& params) {
+  JudgedRecord judged{title, std::move(data), {}};
   judged.outputs = validateModel(found.model, found.linear, judged.data, params);
   return judged;
 }
