@@ -18,6 +18,24 @@ def sources(*folders):
                 yield path
 
 
+def types_of(text):
+    """Types that are defined at namespace scope, as a::b::Name; not those of unnamed namespaces."""
+    text = re.sub(r'//[^\n]*|/\*.*?\*/|R"\w*\(.*?\)\w*"|"(?:[^"\\\n]|\\.)*"|\'(?:[^\'\\\n]|\\.)\'', "", text, flags=re.S)
+    scopes, found, last = [], [], 0
+    for brace in re.finditer(r"[{}]", text):
+        head = text[last:brace.start()].rsplit(";", 1)[-1].strip()
+        last = brace.end()
+        if brace.group() == "}":
+            scopes = scopes[:-1]
+            continue
+        space = re.search(r"namespace\s*([\w:]*)$", head)
+        named = re.search(r"(?:^|\s)(?:struct|class|enum class)\s+(\w+)(?:\s+final)?(?:\s*:[^:].*)?$", head, flags=re.S)
+        if named and None not in scopes and "template" not in head and "enum" not in head:
+            found.append("::".join(scopes + [named.group(1)]))
+        scopes = scopes + [space.group(1) if space and space.group(1) else None]
+    return found
+
+
 def room_of(path):
     parts = path.relative_to(TOP).parts
     return parts[2] if parts[0] == "include" else parts[1]
@@ -61,6 +79,19 @@ class House(unittest.TestCase):
     def test_no_public_header_shows_yaml_or_json(self):
         for path in sources("include"):
             self.assertIsNone(re.search(r"#include *<(yaml-cpp|nlohmann)", path.read_text()), path)
+
+    def test_no_two_types_share_a_name(self):
+        """Two types of one name in one namespace are undefined behaviour: the linker keeps one of their constructors."""
+        places = {}
+        for path in sources("include", "src"):
+            for name in types_of(path.read_text()):
+                places.setdefault(name, set()).add(str(path.relative_to(TOP)))
+        twice = {name: sorted(files) for name, files in places.items() if len(files) > 1}
+        self.assertEqual(twice, {})
+
+    def test_types_are_told_by_their_namespace(self):
+        text = "namespace a {\nnamespace {\nstruct X {\n};\n}  // namespace\nstruct Y final : Z {\n};\nstruct F;\n}\nstruct X {\n};\n"
+        self.assertEqual(types_of(text), ["a::Y", "X"])
 
     def test_files_are_small(self):
         for path in list(sources("include", "src", "test", "bench")) + sorted((TOP / "test").rglob("*.py")):

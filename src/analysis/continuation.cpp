@@ -29,17 +29,17 @@ class Tracer {
   Tracer(const ContinuationProblem& problem, const ContinuationParams& params)
       : problem_(problem), params_(params), curve_(problem, params) {}
 
-  std::vector<CurvePoint> scan(double parameter) const;
-  bool known(const CurvePoint& point) const;
-  void trace(const CurvePoint& start);
+  std::vector<TracedPoint> scan(double parameter) const;
+  bool known(const TracedPoint& point) const;
+  void trace(const TracedPoint& start);
   std::vector<Branch> branches_;
 
  private:
   Vector start(int i) const;
-  bool inside(const CurvePoint& point) const;
-  bool follow(const CurvePoint& start, double direction, Branch& branch) const;
-  bool back(const CurvePoint& start, const CurvePoint& now) const;
-  CurvePoint lastInside(const CurvePoint& from, double step) const;
+  bool inside(const TracedPoint& point) const;
+  bool follow(const TracedPoint& start, double direction, Branch& branch) const;
+  bool back(const TracedPoint& start, const TracedPoint& now) const;
+  TracedPoint lastInside(const TracedPoint& from, double step) const;
 
   const ContinuationProblem& problem_;
   const ContinuationParams& params_;
@@ -57,20 +57,20 @@ Vector Tracer::start(int i) const {
 }
 
 /// All steady states at one parameter value that the starts lead to.
-std::vector<CurvePoint> Tracer::scan(double parameter) const {
+std::vector<TracedPoint> Tracer::scan(double parameter) const {
   const Derivative f = [&](VectorRef x, VectorRef, VectorRef, Eigen::Ref<Vector> value) {
     problem_.field(x, parameter, value);
   };
-  std::vector<CurvePoint> found;
+  std::vector<TracedPoint> found;
   const int n = static_cast<int>(params_.starts.cols()) + params_.scanned_starts;
   for (int i = 0; i < n; ++i) {
     const SteadyState steady = findSteadyState(f, start(i), Vector(), Vector());
-    CurvePoint point;
+    TracedPoint point;
     if (!steady.ok() ||
         !curve_.pointAt(steady.x, parameter, Vector::Unit(curve_.size() + 1, curve_.size()), point))
       continue;
     if (!inside(point)) continue;
-    const bool twice = std::any_of(found.begin(), found.end(), [&](const CurvePoint& other) {
+    const bool twice = std::any_of(found.begin(), found.end(), [&](const TracedPoint& other) {
       return (other.z - point.z).norm() < kSameState;
     });
     if (!twice) found.push_back(point);
@@ -78,7 +78,7 @@ std::vector<CurvePoint> Tracer::scan(double parameter) const {
   return found;
 }
 
-bool Tracer::inside(const CurvePoint& point) const {
+bool Tracer::inside(const TracedPoint& point) const {
   const double tiny = 1e-9 * (params_.upper - params_.lower);
   const Vector span = params_.state_upper - params_.state_lower;
   return point.at.parameter >= params_.lower - tiny && point.at.parameter <= params_.upper + tiny &&
@@ -87,7 +87,7 @@ bool Tracer::inside(const CurvePoint& point) const {
 }
 
 /// Whether a branch passes through the point: projected on the nearest stretch of every branch.
-bool Tracer::known(const CurvePoint& point) const {
+bool Tracer::known(const TracedPoint& point) const {
   for (const auto& branch : branches_)
     for (std::size_t i = 0; i + 1 < branch.points.size(); ++i) {
       const auto& a = branch.points[i];
@@ -101,17 +101,17 @@ bool Tracer::known(const CurvePoint& point) const {
   return false;
 }
 
-bool Tracer::back(const CurvePoint& start, const CurvePoint& now) const {
+bool Tracer::back(const TracedPoint& start, const TracedPoint& now) const {
   return (start.z - now.z).norm() < 0.7 * params_.step_max && now.tangent.dot(start.tangent) > 0.9;
 }
 
 /// The end of a branch at the border of the parameter's range.
-CurvePoint Tracer::lastInside(const CurvePoint& from, double step) const {
-  CurvePoint last = from;
+TracedPoint Tracer::lastInside(const TracedPoint& from, double step) const {
+  TracedPoint last = from;
   double low = 0.0, high = step;
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (low + high);
-    CurvePoint point;
+    TracedPoint point;
     if (!curve_.step(from, middle, point)) break;
     if (inside(point)) {
       last = point;
@@ -124,12 +124,12 @@ CurvePoint Tracer::lastInside(const CurvePoint& from, double step) const {
 }
 
 /// Appends the points that follow `start`; true if the branch came back to it.
-bool Tracer::follow(const CurvePoint& start, double direction, Branch& branch) const {
-  CurvePoint now = start;
+bool Tracer::follow(const TracedPoint& start, double direction, Branch& branch) const {
+  TracedPoint now = start;
   double step = 0.2 * params_.step_max;
   double travelled = 0.0;
   while (static_cast<int>(branch.points.size()) < params_.max_points) {
-    CurvePoint next;
+    TracedPoint next;
     if (!curve_.step(now, direction * step, next)) {
       step *= 0.5;
       if (step < params_.step_min) return false;
@@ -154,7 +154,7 @@ bool Tracer::follow(const CurvePoint& start, double direction, Branch& branch) c
   return false;
 }
 
-void Tracer::trace(const CurvePoint& start) {
+void Tracer::trace(const TracedPoint& start) {
   Branch branch, backwards;
   branch.closed = follow(start, 1.0, branch);
   if (!branch.closed) follow(start, -1.0, backwards);

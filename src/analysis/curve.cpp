@@ -79,7 +79,7 @@ bool Curve::correct(const Vector& predicted, const Vector& tangent, Vector& z) c
   return false;
 }
 
-bool Curve::complete(const Vector& z, VectorRef direction, CurvePoint& point) const {
+bool Curve::complete(const Vector& z, VectorRef direction, TracedPoint& point) const {
   Matrix J;
   if (!computeJacobian(z, J)) return false;
   const Vector rows = J.cwiseAbs().rowwise().maxCoeff();
@@ -104,7 +104,7 @@ bool Curve::complete(const Vector& z, VectorRef direction, CurvePoint& point) co
   return true;
 }
 
-bool Curve::pointAt(VectorRef x, double parameter, VectorRef direction, CurvePoint& point) const {
+bool Curve::pointAt(VectorRef x, double parameter, VectorRef direction, TracedPoint& point) const {
   const Vector z = scaled(x, parameter);
   if (!complete(z, direction, point)) return false;
   Vector corrected;
@@ -112,7 +112,7 @@ bool Curve::pointAt(VectorRef x, double parameter, VectorRef direction, CurvePoi
   return complete(corrected, direction, point);
 }
 
-bool Curve::step(const CurvePoint& from, double step, CurvePoint& to) const {
+bool Curve::step(const TracedPoint& from, double step, TracedPoint& to) const {
   const Vector predicted = from.z + step * from.tangent;
   Vector z(from.z.size());
   if (!correct(predicted, from.tangent, z)) return false;

@@ -10,20 +10,20 @@ namespace fpc {
 namespace {
 
 constexpr int kBisections = 60;
-constexpr double kNoSlope = 1e-7;     // of a unit tangent: what differences of the field cannot tell
+constexpr double kNoSlope = 1e-7;  // of a unit tangent: what differences of the field cannot tell
 constexpr double kNarrowest = 1e-11;  // of the arc length, in sizes
 
 struct Bracket {
   double low{}, high{};  // arc lengths from `from`; they differ in what is looked for
-  CurvePoint at;         // near high
+  TracedPoint at;        // near high
 };
 
 /// Halves the bracket while `changed` tells on which side the change lies.
-bool bisect(const Curve& curve, const CurvePoint& from, Bracket& bracket,
-            const std::function<bool(const CurvePoint&)>& changed) {
+bool bisect(const Curve& curve, const TracedPoint& from, Bracket& bracket,
+            const std::function<bool(const TracedPoint&)>& changed) {
   for (int i = 0; i < kBisections && std::abs(bracket.high - bracket.low) > kNarrowest; ++i) {
     const double middle = 0.5 * (bracket.low + bracket.high);
-    CurvePoint point;
+    TracedPoint point;
     if (!curve.step(from, middle, point)) return false;
     if (changed(point)) {
       bracket.high = middle;
@@ -37,14 +37,14 @@ bool bisect(const Curve& curve, const CurvePoint& from, Bracket& bracket,
 
 /// Index of the tangent's component -> where it changes sign. A component that is nothing but
 /// rounding (a state that does not depend on the parameter) has no sign.
-bool findZero(const Curve& curve, const CurvePoint& from, double step, const CurvePoint& to,
+bool findZero(const Curve& curve, const TracedPoint& from, double step, const TracedPoint& to,
               Eigen::Index i, SpecialPoint& found) {
   const bool positive = from.tangent[i] > 0.0;
   if (std::max(std::abs(from.tangent[i]), std::abs(to.tangent[i])) < kNoSlope) return false;
   if (from.tangent[i] == 0.0 || positive == (to.tangent[i] > 0.0)) return false;
   Bracket bracket{0.0, step, to};
   if (!bisect(curve, from, bracket,
-              [&](const CurvePoint& p) { return (p.tangent[i] > 0.0) != positive; }))
+              [&](const TracedPoint& p) { return (p.tangent[i] > 0.0) != positive; }))
     return false;
   found.parameter = bracket.at.at.parameter;
   found.state = bracket.at.at.state;
@@ -65,7 +65,7 @@ std::complex<double> crossing(const Eigenvalues& values, bool map) {
   return {nearest.real(), std::abs(nearest.imag())};
 }
 
-void findCrossings(const Curve& curve, const CurvePoint& from, double step, const CurvePoint& to,
+void findCrossings(const Curve& curve, const TracedPoint& from, double step, const TracedPoint& to,
                    bool map, std::vector<SpecialPoint>& found) {
   int count = from.at.unstable;
   double low = 0.0;
@@ -73,7 +73,7 @@ void findCrossings(const Curve& curve, const CurvePoint& from, double step, cons
     Bracket bracket{low, step, to};
     const int before = count;
     if (!bisect(curve, from, bracket,
-                [before](const CurvePoint& p) { return p.at.unstable != before; }))
+                [before](const TracedPoint& p) { return p.at.unstable != before; }))
       return;
     count = bracket.at.at.unstable;
     low = bracket.high;
@@ -93,8 +93,8 @@ const std::string& name(SpecialKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-void findSpecialPoints(const Curve& curve, const CurvePoint& from, double step,
-                       const CurvePoint& to, bool map, std::vector<SpecialPoint>& found) {
+void findSpecialPoints(const Curve& curve, const TracedPoint& from, double step,
+                       const TracedPoint& to, bool map, std::vector<SpecialPoint>& found) {
   SpecialPoint point;
   const Eigen::Index n = curve.size();
   if (findZero(curve, from, step, to, n, point)) {

@@ -19,7 +19,7 @@ const std::string kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets put it befor
 
 const std::map<std::string, char>& separators() {
   static const std::map<std::string, char> words = {
-      {",", ','},   {";", ';'},         {"|", '|'},   {"\t", '\t'},
+      {",", ','},     {";", ';'},         {"|", '|'},   {"\t", '\t'},
       {"comma", ','}, {"semicolon", ';'}, {"bar", '|'}, {"tab", '\t'}};
   return words;
 }
@@ -30,7 +30,9 @@ std::string wordOf(char separator) {
   return {separator};
 }
 
-bool isBlank(const std::string& line) { return line.find_first_not_of(" \t\r") == std::string::npos; }
+bool isBlank(const std::string& line) {
+  return line.find_first_not_of(" \t\r") == std::string::npos;
+}
 
 /// The separator that this header line seems to have, if it is another one than said.
 std::string otherSeparator(const std::string& line, char said) {
@@ -133,7 +135,8 @@ void checkColumn(const CsvTable& table, const CsvFormat& format, const std::stri
 
 char separatorOf(const std::string& word) {
   const auto found = separators().find(word);
-  require(found != separators().end(), "separator", "one of comma, semicolon, tab, bar, got '" + word + "'");
+  require(found != separators().end(), "separator",
+          "one of comma, semicolon, tab, bar, got '" + word + "'");
   return found->second;
 }
 

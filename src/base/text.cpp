@@ -42,7 +42,8 @@ std::vector<std::string> nearest(const std::string& word, const std::vector<std:
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<std::string> words;
-  for (std::size_t i = 0; i < std::min(limit, ranked.size()); ++i) words.push_back(ranked[i].second);
+  for (std::size_t i = 0; i < std::min(limit, ranked.size()); ++i)
+    words.push_back(ranked[i].second);
   return words;
 }
 

@@ -27,8 +27,7 @@ void readMatrix(YamlSection& plant, SimulationParams& simulation);
 void readSampling(YamlSection& root, LoopFile& loop);
 void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names);
 /// Key actuator.lag.
-void readLag(YamlSection& actuator, ActuatorParams& params,
-             const std::vector<std::string>& inputs);
+void readLag(YamlSection& actuator, ActuatorParams& params, const std::vector<std::string>& inputs);
 void readSensors(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readNoise(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readDisturbance(YamlSection& root, LoopFile& loop, const LoopNames& names);

@@ -46,7 +46,7 @@ double trainedError(const AutoData& data, const Fitted& fitted, int window) {
 
 }  // namespace
 
-Committee chooseCommittee(const AutoData& data, const SearchResult& found) {
+Committee chooseCommittee(const AutoData& data, const StructureSearch& found) {
   Committee best;
   double lowest = std::numeric_limits<double>::infinity();
   const auto consider = [&](std::vector<const Judgement*> members) {
@@ -103,7 +103,8 @@ OutputModel toSubmodel(const AutoData& data, const Fitted& fitted) {
     phi.push_back({SignalKind::kOutput, data.output, static_cast<int>(i)});
   phi.insert(phi.end(), fitted.exogenous.begin(), fitted.exogenous.end());
   const auto columnOf = [&](const Regressor& r) { return data.data->column(r.kind, r.index); };
-  for (const Index i : shape.regressors) model.regressors.push_back(phi[static_cast<std::size_t>(i)]);
+  for (const Index i : shape.regressors)
+    model.regressors.push_back(phi[static_cast<std::size_t>(i)]);
   if (shape.rules > 1)
     for (const Index i : shape.antecedents)
       model.antecedents.push_back(phi[static_cast<std::size_t>(i)]);
@@ -122,9 +123,9 @@ OutputModel toSubmodel(const AutoData& data, const Fitted& fitted) {
       const Index column = columnOf(model.antecedents[j]), z = static_cast<Index>(j);
       const double centre = fitted.parameters[shape.centre(r) + z];
       const double width = std::exp(fitted.parameters[shape.logWidth(r) + z]);
-      rule.antecedents.push_back({MembershipShape::kGaussian,
-                                  {data.shift[column] + data.scale[column] * centre,
-                                   data.scale[column] * width}});
+      rule.antecedents.push_back(
+          {MembershipShape::kGaussian,
+           {data.shift[column] + data.scale[column] * centre, data.scale[column] * width}});
     }
     model.rules.push_back(std::move(rule));
   }

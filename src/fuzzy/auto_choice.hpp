@@ -11,7 +11,7 @@ struct Committee {
   Vector free_run, one_step;  ///< held out
   Vector correction;
 };
-Committee chooseCommittee(const AutoData& data, const SearchResult& found);
+Committee chooseCommittee(const AutoData& data, const StructureSearch& found);
 
 /// Figures of held-out predictions.
 AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step);

@@ -163,9 +163,10 @@ class OutputSearch {
     else
       found_.verdict = "the fuzzy model beats linear beyond the spread over the blocks: " + figures;
     if (found_.best == ModelKind::kState)
-      found_.verdict += "; this is the model with a state of its own, for simulation; what control "
-                        "laws take reaches " +
-                        shortNumber(fuzzy_chosen_ ? found_.regressors.free_run : line.free_run);
+      found_.verdict +=
+          "; this is the model with a state of its own, for simulation; what control "
+          "laws take reaches " +
+          shortNumber(fuzzy_chosen_ ? found_.regressors.free_run : line.free_run);
   }
 
   void keepTrials() {
@@ -201,8 +202,7 @@ class OutputSearch {
     double mean = 0.0, square = 0.0;
     for (const double b : blocks) mean += b / n;
     for (const double b : blocks) square += (b - mean) * (b - mean);
-    result_.trials.push_back(
-        {name(), kind, text, parameters, rmse, std::sqrt(square / n), picked});
+    result_.trials.push_back({name(), kind, text, parameters, rmse, std::sqrt(square / n), picked});
   }
 
   AutoData data_;
@@ -210,7 +210,7 @@ class OutputSearch {
   const SearchLimits& limits_;
   AutoIdentification& result_;
   AutoOutput found_;
-  SearchResult searched_;
+  StructureSearch searched_;
   bool fuzzy_chosen_{false}, states_complete_{true};
   std::string linear_text_, fuzzy_text_;
   std::vector<std::string> members_;

@@ -37,7 +37,7 @@ class Search {
          const SearchLimits& limits)
       : data_(data), delay_(delay), seed_(seed), limits_(limits) {}
 
-  SearchResult run(bool states) {
+  StructureSearch run(bool states) {
     judge(linearCandidates(base(), states), 0.0, 0.12);
     sortAll();
     judge(ruleCandidates(base(), result_.linear), 0.12, 0.38);
@@ -78,10 +78,11 @@ class Search {
   const std::vector<int>& delay_;
   std::uint64_t seed_;
   const SearchLimits& limits_;
-  SearchResult result_;
+  StructureSearch result_;
 };
 
-void Search::judgeGroups(const Candidates& structures, std::uint64_t seeds, double from, double to) {
+void Search::judgeGroups(const Candidates& structures, std::uint64_t seeds, double from,
+                         double to) {
   Candidates all;
   for (const auto& s : structures)
     for (std::uint64_t i = 0; i < seeds; ++i) {
@@ -156,8 +157,8 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
     parts[task].candidate = candidates[task / blocks];
     judgeBlock(parts[task], task % blocks, free[task], one[task]);
     if (task % (blocks * 2) == 0 && limits_.progress)
-      limits_.progress(from + (to - from) * static_cast<double>(task) /
-                                  static_cast<double>(free.size()));
+      limits_.progress(from +
+                       (to - from) * static_cast<double>(task) / static_cast<double>(free.size()));
   });
   std::vector<Judgement> judged(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -229,8 +230,8 @@ std::vector<double> blockErrors(const AutoData& data, const Vector& predicted) {
   return errors;
 }
 
-SearchResult searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
-                              std::uint64_t seed, const SearchLimits& limits) {
+StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
+                                 std::uint64_t seed, const SearchLimits& limits) {
   return Search(data, delay, seed, limits).run(states);
 }
 

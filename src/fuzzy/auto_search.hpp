@@ -38,13 +38,13 @@ struct Group {
 };
 
 /// All judgements of one output, the best first within each kind.
-struct SearchResult {
+struct StructureSearch {
   std::vector<Judgement> linear, regressors;
   std::vector<Group> state;  ///< own states that are not linear
-  int skipped{};                                     ///< fits that the deadline prevented
+  int skipped{};             ///< fits that the deadline prevented
 };
-SearchResult searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
-                              std::uint64_t seed, const SearchLimits& limits);
+StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
+                                 std::uint64_t seed, const SearchLimits& limits);
 
 /// Trimmed mean of what all members say at each row.
 Vector averaged(const std::vector<const Judgement*>& members);

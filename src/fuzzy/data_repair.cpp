@@ -74,11 +74,11 @@ TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& stru
   const std::string unit_wanted = dates ? "d" : structure.time_unit;
   const std::string& unit = table.units[index];
   const auto where = [&](Index row) { return table.at(first + row, column); };
-  require(unit.empty() || unit == unit_wanted, table.file + ": column '" + structure.time_column + "'",
+  require(unit.empty() || unit == unit_wanted,
+          table.file + ": column '" + structure.time_column + "'",
           "the unit [" + unit_wanted + "] of the structure, got [" + unit + "]");
   const std::string text = index < table.texts.size() ? table.texts[index] : "";
-  require(text.empty(), where(0),
-          "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
+  require(text.empty(), where(0), "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
   const Vector time = table.values.col(column).segment(first, count);
   Index moved = 0;
   const auto order = timeOrder(time, where, structure.repair.sort_time, moved);

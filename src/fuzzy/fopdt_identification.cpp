@@ -115,8 +115,7 @@ bool MisoEstimator::update(VectorRef input, double y) {
     }
   }
   unknown_ = std::max(unknown_ - 1, known || own ? 0 : n_u_);
-  model_output_ =
-      own || !known ? regressor_.dot(rls_.theta()) : y;  // after learning: a posteriori
+  model_output_ = own || !known ? regressor_.dot(rls_.theta()) : y;  // after learning: a posteriori
   for (int i = n_u_ - 1; i > 0; --i) regressor_[i] = regressor_[i - 1];
   regressor_[0] = model_output_;
   ++samples_;

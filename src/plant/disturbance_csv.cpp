@@ -169,8 +169,9 @@ DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
   close(record, params.end == "repeat");
   const double needed = samples * sample_time_s;
   require(params.end != "error" || needed <= record.length() * (1.0 + kEarly), table.file,
-          "a record of at least " + exactText(needed / 3600.0) + " h, or disturbance.csv.end hold or " +
-              "repeat; it has " + exactText(record.length() / 3600.0) + " h");
+          "a record of at least " + exactText(needed / 3600.0) +
+              " h, or disturbance.csv.end hold or " + "repeat; it has " +
+              exactText(record.length() / 3600.0) + " h");
   result.values = resampled(record, params, sample_time_s, static_cast<Eigen::Index>(samples) + 1);
   return result;
 }

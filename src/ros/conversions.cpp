@@ -213,9 +213,8 @@ fmbpc::PlantState toMsg(const PlantState& state) {
 }
 
 PlantState fromMsg(const fmbpc::PlantState& msg) {
-  return {stepHeader(msg),          vector(msg.state),  vector(msg.outputs),
-          vector(msg.disturbances), msg.actuator_clips, msg.input_missing != 0,
-          msg.trouble};
+  return {stepHeader(msg),    vector(msg.state),      vector(msg.outputs), vector(msg.disturbances),
+          msg.actuator_clips, msg.input_missing != 0, msg.trouble};
 }
 
 }  // namespace fpc

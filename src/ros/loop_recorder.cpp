@@ -13,11 +13,11 @@
 namespace fpc {
 namespace {
 
-constexpr double kPollPeriod = 0.05;    // [s] of wall time
-constexpr double kFinalPatience = 10;   // [s] for stragglers after the final measurement
-constexpr double kWritePatience = 10;   // [s] for room on the disk at the end
-constexpr double kLastWords = 0.3;      // [s] between run_end and the end of this process
-constexpr int kPollsConnected = 3;      // a connection is complete at both ends a moment later
+constexpr double kPollPeriod = 0.05;   // [s] of wall time
+constexpr double kFinalPatience = 10;  // [s] for stragglers after the final measurement
+constexpr double kWritePatience = 10;  // [s] for room on the disk at the end
+constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr int kPollsConnected = 3;     // a connection is complete at both ends a moment later
 
 }  // namespace
 
@@ -36,8 +36,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       poll_timer_(node.createSteadyTimer(ros::WallDuration(kPollPeriod),
                                          [this](const ros::SteadyTimerEvent&) { poll(); })),
       health_(node, private_node, "recorder", loop.name, false,
-              {[this](double now_s) { return health(now_s); },
-               [this] { return session_.latest(); },
+              {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },
                [this](Diagnostics::Status& status) { report(status); }}) {
   const auto listen = [&](const char* topic, auto handler) {
     ring_.push_back(subscribe(node, topic, topics::kRingQueue, handler, this));
@@ -205,8 +204,7 @@ Health LoopRecorder::health(double) const {
   if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
   if (!store_.problem().empty()) return {LoopMode::kFailed, store_.problem(), {}};
   if (!problem_.empty()) return {LoopMode::kFailed, problem_, {}};
-  if (!ready_.announced())
-    return {LoopMode::kStarting, "waiting for publishers of the ring", {}};
+  if (!ready_.announced()) return {LoopMode::kStarting, "waiting for publishers of the ring", {}};
   if (written_) return {LoopMode::kFinished, "written", {}};
   if (session_.gapCount() > 0)
     return {LoopMode::kDegraded, "recording, with gaps: " + session_.gaps(1).front(), {}};

@@ -35,9 +35,9 @@ Records readRecords(const IdentifyArguments& a, const Structure& structure) {
   judging.repair.drop_constant = true;  // an input may rest while a model is judged
   std::error_code ignored;              // a file that is not there is told by its reader
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  records.validation = makeData(same ? table : readRecord(a.validate, structure.csv), judging, a.validate_rows);
-  records.overlap =
-      same && rowsOverlap(a.rows, a.validate_rows);
+  records.validation =
+      makeData(same ? table : readRecord(a.validate, structure.csv), judging, a.validate_rows);
+  records.overlap = same && rowsOverlap(a.rows, a.validate_rows);
   return records;
 }
 
@@ -49,9 +49,9 @@ Identification identifyWithBar(const DataSet& data, const Structure& structure) 
   });
 }
 
-Judged judge(const std::string& title, DataSet data, const Identification& found,
-             const ValidationParams& params) {
-  Judged judged{title, std::move(data), {}};
+JudgedRecord judge(const std::string& title, DataSet data, const Identification& found,
+                   const ValidationParams& params) {
+  JudgedRecord judged{title, std::move(data), {}};
   judged.outputs = validateModel(found.model, found.linear, judged.data, params);
   return judged;
 }

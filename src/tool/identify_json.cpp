@@ -13,7 +13,7 @@ Json finite(double value) { return finiteJson(value); }
 Json toJson(const FitFigures& figures) { return figuresJson(figures); }
 
 /// <output>.{one_step, free_run, linear.{..}, residual} and linear.<output>.{one_step, free_run}.
-Json toJson(const Judged& judged) {
+Json toJson(const JudgedRecord& judged) {
   Json tree = Json::object();
   for (const auto& v : judged.outputs) {
     const Json one_step = toJson(v.linear_one_step), free_run = toJson(v.linear_free_run);

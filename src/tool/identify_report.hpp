@@ -11,7 +11,7 @@
 namespace fpc::tool {
 
 /// One set of rows and what the models make of it.
-struct Judged {
+struct JudgedRecord {
   std::string title;  ///< "identification", "validation"
   DataSet data;
   std::vector<OutputValidation> outputs;
@@ -19,8 +19,8 @@ struct Judged {
 
 struct IdentifyReport {
   Identification found;
-  Judged identification;
-  std::optional<Judged> validation;  ///< absent: nothing was held out
+  JudgedRecord identification;
+  std::optional<JudgedRecord> validation;  ///< absent: nothing was held out
   std::vector<std::string> remarks;
   double seconds{};  ///< wall time of identification
 };

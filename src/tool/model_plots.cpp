@@ -55,7 +55,7 @@ std::vector<double> listOf(const Vector& values) {
   return {values.data(), values.data() + values.size()};
 }
 
-Json correlationsOf(const Judged& judged) {
+Json correlationsOf(const JudgedRecord& judged) {
   Json all = Json::object();
   for (const auto& v : judged.outputs) {
     Json cross = Json::object();

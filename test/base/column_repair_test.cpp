@@ -55,8 +55,8 @@ TEST(ColumnRepair, AnImplausibleCellIsNoNeighbour) {
 }
 
 TEST(ColumnRepair, ClippedCellsCountAsMeasured) {
-  const auto clipped = repaired({10.0, 999.0, kNaN, -4.0, 80.0},
-                                rulesFor(MissingCells::kHold, Implausible::kClip));
+  const auto clipped =
+      repaired({10.0, 999.0, kNaN, -4.0, 80.0}, rulesFor(MissingCells::kHold, Implausible::kClip));
   EXPECT_EQ(clipped.cells, (Vector(5) << 10, 100, 100, 0, 80).finished());
   EXPECT_EQ(clipped.done.implausible, 2U);
 }

@@ -92,8 +92,8 @@ TEST(Csv, DatesBecomeDaysSince1970) {
 }
 
 TEST(Csv, TimesOfIso8601BecomeDays) {
-  const CsvTable table = tableOf(
-      "t\n1970-01-02T12:00\n1970-01-02 12:00:30\n1970-01-02T12:00:30.25\n1970-01-02\n");
+  const CsvTable table =
+      tableOf("t\n1970-01-02T12:00\n1970-01-02 12:00:30\n1970-01-02T12:00:30.25\n1970-01-02\n");
   EXPECT_EQ(table.values(0, 0), 1.5);
   EXPECT_NEAR(table.values(1, 0), 1.5 + 30.0 / 86400.0, 1e-15);
   EXPECT_NEAR(table.values(2, 0), 1.5 + 30.25 / 86400.0, 1e-15);
@@ -104,9 +104,9 @@ TEST(Csv, TimesOfIso8601BecomeDays) {
   EXPECT_TRUE(zoned.values.isZero(0.0)) << zoned.values;
   EXPECT_NE(errorOf("t\n1970-01-01T00:00Z\n1970-01-01T01:00\n").find(":3: column 't'"),
             std::string::npos);
-  for (const char* bad : {"1970-01-01T24:00", "1970-01-01T00:60", "1970-01-01T00:00:60",
-                          "1970-1-1", "1970-01-01T", "1970-01-01T00:00+", "1970-01-01 00:00 UTC",
-                          "1970-01-01T00:00:00.", "1970-02-30T00:00"})
+  for (const char* bad :
+       {"1970-01-01T24:00", "1970-01-01T00:60", "1970-01-01T00:00:60", "1970-1-1", "1970-01-01T",
+        "1970-01-01T00:00+", "1970-01-01 00:00 UTC", "1970-01-01T00:00:00.", "1970-02-30T00:00"})
     EXPECT_NE(errorOf("t\n1970-01-01\n" + std::string(bad) + "\n").find(":3: column 't'"),
               std::string::npos)
         << bad;

@@ -46,10 +46,9 @@ TEST_F(Extends, GoesThroughSeveralFilesAndTheConfigFolders) {
 }
 
 TEST_F(Extends, AnOverrideChangesThePlaceThatItNamesAndNoAliasOfIt) {
-  const std::string file =
-      write("alias.yaml", smallLoop() +
-                              "noise: {std: &both {s: 1, x: 2}}\n"
-                              "report: {output_lower: *both}\n");
+  const std::string file = write("alias.yaml", smallLoop() +
+                                                   "noise: {std: &both {s: 1, x: 2}}\n"
+                                                   "report: {output_lower: *both}\n");
   const LoopFile plain = readLoop(file);
   EXPECT_EQ(plain.report.output_lower, (std::vector<double>{1, 2}));
   const LoopFile changed = readLoop(file, {{"noise.std.s", "7"}});

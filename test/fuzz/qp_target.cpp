@@ -1,5 +1,5 @@
-// Bytes as a quadratic programme: sizes, then numbers of few and odd values, so that degenerate rows,
-// equal limits and semidefinite Hessians come up by themselves.
+// Bytes as a quadratic programme: sizes, then numbers of few and odd values, so that degenerate
+// rows, equal limits and semidefinite Hessians come up by themselves.
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -18,8 +18,8 @@ class Bytes {
   int below(int n) { return next() % n; }
   double number() {
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    static const double odd[] = {0.0,  1.0,    -1.0,  0.5,  2.0,   -3.0,      1e-16,      -2.8e-17,
-                                 1e-9, 1e6,    -1e6,  1e12, 1e-12, kInfinity, -kInfinity, 100.0};
+    static const double odd[] = {0.0,  1.0, -1.0, 0.5,  2.0,   -3.0,      1e-16,      -2.8e-17,
+                                 1e-9, 1e6, -1e6, 1e12, 1e-12, kInfinity, -kInfinity, 100.0};
     const int byte = next();
     return byte < 128 ? odd[byte % 16] : (byte - 192) / 16.0;
   }
@@ -36,7 +36,8 @@ double finite(Bytes& bytes) {
 }
 
 QpProblem problemOf(Bytes& bytes) {
-  const Index n = 1 + bytes.below(6), m = bytes.below(8), rank = bytes.below(static_cast<int>(n) + 1);
+  const Index n = 1 + bytes.below(6), m = bytes.below(8),
+              rank = bytes.below(static_cast<int>(n) + 1);
   QpProblem p(n, m);
   Matrix root(n, rank);
   for (double& value : root.reshaped()) value = finite(bytes);

@@ -34,8 +34,8 @@ void tolerant(Read read) {
 
 /// A file of this process with these bytes.
 std::string fileWith(const std::string& bytes, const char* ending) {
-  const auto file = std::filesystem::temp_directory_path() /
-                    ("fmbpc_fuzz_" + std::to_string(getpid()) + ending);
+  const auto file =
+      std::filesystem::temp_directory_path() / ("fmbpc_fuzz_" + std::to_string(getpid()) + ending);
   std::ofstream(file, std::ios::binary) << bytes;
   return file.string();
 }

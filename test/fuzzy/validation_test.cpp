@@ -103,9 +103,11 @@ TEST(Validation, WhiteResidualsStayInsideTheirBoundsAndColouredOnesDoNot) {
   const auto good = residualCorrelation(data, white, params),
              bad = residualCorrelation(data, coloured, params);
   EXPECT_NEAR(good.bound, 2.5758293 / std::sqrt(4000.0), 1e-7);
-  for (const auto& [confidence, quantile] :
-       {std::pair{0.5001, 0.6746471}, {0.55, 0.7554150}, {0.61, 0.8596174}, {0.95, 1.9599640},
-        {0.999999, 4.8916385}}) {
+  for (const auto& [confidence, quantile] : {std::pair{0.5001, 0.6746471},
+                                             {0.55, 0.7554150},
+                                             {0.61, 0.8596174},
+                                             {0.95, 1.9599640},
+                                             {0.999999, 4.8916385}}) {
     params.confidence = confidence;
     EXPECT_NEAR(residualCorrelation(data, white, params).bound * std::sqrt(4000.0), quantile, 2e-6)
         << confidence;

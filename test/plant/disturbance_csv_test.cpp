@@ -103,7 +103,8 @@ TEST(DisturbanceCsv, TimesOfIso8601AreRead) {
               ":2: column 't': expected a number, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '29.03.");
 }
 
-// Clocks go forward at two in the morning: local times lack an hour, a logger that was off two days.
+// Clocks go forward at two in the morning: local times lack an hour, a logger that was off two
+// days.
 TEST(DisturbanceCsv, AHoleInTimeIsMissingRows) {
   std::string text = "t,q\n";
   for (int hour = 0; hour < 24; ++hour)
@@ -111,7 +112,8 @@ TEST(DisturbanceCsv, AHoleInTimeIsMissingRows) {
       text += "2026-03-29 " + std::to_string(hour / 10) + std::to_string(hour % 10) + ":00," +
               std::to_string(100 + 10 * hour) + "\n";
   CsvDisturbanceParams params = flowFrom(text);
-  expectWords(errorOf(params, 4), ":3: column 'q': the time jumps after this row: expected no missing");
+  expectWords(errorOf(params, 4),
+              ":3: column 'q': the time jumps after this row: expected no missing");
   params.missing = "hold";
   EXPECT_EQ(flows(params, 3, 3600.0), (Values{100, 110, 110, 130}));
   params.missing = "interpolate";
@@ -178,7 +180,8 @@ TEST(DisturbanceCsv, MissingCellsAreHeldInterpolatedAndCounted) {
 }
 
 TEST(DisturbanceCsv, MissingCellsAreErrorsUnlessAllowed) {
-  expectWords(errorOf(flowFrom("t,q\n0,1\n1,\n2,3\n")), ":3: column 'q': expected no missing cells");
+  expectWords(errorOf(flowFrom("t,q\n0,1\n1,\n2,3\n")),
+              ":3: column 'q': expected no missing cells");
   CsvDisturbanceParams nothing = flowFrom("t,q\n0,\n1,\n");
   nothing.missing = "hold";
   expectWords(errorOf(nothing), "at least one number");

@@ -7,11 +7,11 @@ namespace {
 
 const std::vector<std::string>& strangeValues() {
   static const std::vector<std::string> values{
-      "-1",    "0",       "1e308",  "-1e308", "1e-320",        ".nan",       ".inf",     "-.inf",
-      "",      "[]",      "{}",     "~",      "010",           "0x10",       "1e9",      "2147483648",
-      "true",  "text",    "\"\"",   "*a",     "&a 1",          "4294967296", "[1, 2]",   "{a: 1}",
-      "1 000", "1,5",     "-0",     "5e-324", "1.0000000001",  "..",         "9999999",  "!!int x",
-      "'",     "@",       "%",      "- 1",    "[[[[[[[[[[[[",  "{{{{{{{{",   "\t1",      "0.1e1e1"};
+      "-1",    "0",    "1e308", "-1e308", "1e-320",       ".nan",       ".inf",    "-.inf",
+      "",      "[]",   "{}",    "~",      "010",          "0x10",       "1e9",     "2147483648",
+      "true",  "text", "\"\"",  "*a",     "&a 1",         "4294967296", "[1, 2]",  "{a: 1}",
+      "1 000", "1,5",  "-0",    "5e-324", "1.0000000001", "..",         "9999999", "!!int x",
+      "'",     "@",    "%",     "- 1",    "[[[[[[[[[[[[", "{{{{{{{{",   "\t1",     "0.1e1e1"};
   return values;
 }
 
@@ -35,7 +35,9 @@ void spoilValue(std::string& line, Dice& dice) {
 
 void damageOnce(std::vector<std::string>& lines, Dice& dice) {
   if (lines.empty()) return;
-  const auto at = [&] { return static_cast<std::size_t>(dice.whole(0, static_cast<int>(lines.size()) - 1)); };
+  const auto at = [&] {
+    return static_cast<std::size_t>(dice.whole(0, static_cast<int>(lines.size()) - 1));
+  };
   const auto offset = [](std::size_t i) { return static_cast<std::ptrdiff_t>(i); };
   const std::size_t i = at();
   std::string& line = lines[i];
@@ -50,7 +52,8 @@ void damageOnce(std::vector<std::string>& lines, Dice& dice) {
       line.insert(0, std::string(static_cast<std::size_t>(dice.whole(1, 4)), ' '));
       return;
     case 3:
-      if (!line.empty()) line.erase(static_cast<std::size_t>(dice.whole(0, static_cast<int>(line.size()) - 1)), 1);
+      if (!line.empty())
+        line.erase(static_cast<std::size_t>(dice.whole(0, static_cast<int>(line.size()) - 1)), 1);
       return;
     case 4:
       if (!line.empty())

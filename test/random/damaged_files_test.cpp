@@ -31,7 +31,8 @@ class DamagedFiles : public LoopFolder {
       ++accepted_;
     } catch (const InputError& e) {
       const std::string words = e.what();
-      EXPECT_NE(words.find("expected"), std::string::npos) << words << "\nseed " << seed << "\n" << text;
+      EXPECT_NE(words.find("expected"), std::string::npos) << words << "\nseed " << seed << "\n"
+                                                           << text;
       ++refused_;
     } catch (const std::exception& e) {
       ADD_FAILURE() << "seed " << seed << ": " << e.what() << "\n" << text;
@@ -41,8 +42,8 @@ class DamagedFiles : public LoopFolder {
   /// Damages every file of a shipped folder.
   template <typename Read>
   void each(const std::string& folder, std::uint64_t each_file, Read read) {
-    for (const auto& entry : std::filesystem::directory_iterator(
-             std::string(FMBPC_SOURCE_DIR) + "/config/" + folder)) {
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::string(FMBPC_SOURCE_DIR) + "/config/" + folder)) {
       if (!entry.is_regular_file() || entry.file_size() > 20000) continue;
       std::ifstream stream(entry.path());
       const std::string text((std::istreambuf_iterator<char>(stream)), {});

@@ -31,10 +31,10 @@ std::string costs(Dice& dice, const RandomFrame& frame, bool move_needed) {
   std::string text =
       "  weight_output: " + byName(namesOf(frame.outputs), weights(dice, frame.outputs)) + "\n";
   if (move_needed || dice.chance(0.7))
-    text += "  weight_move: " + byName(namesOf(frame.plant.inputs), weights(dice, frame.plant.inputs)) +
-            "\n";
-  if (dice.chance(0.7))
-    text += "  reference_pole: " + byName(namesOf(frame.outputs), poles) + "\n";
+    text +=
+        "  weight_move: " + byName(namesOf(frame.plant.inputs), weights(dice, frame.plant.inputs)) +
+        "\n";
+  if (dice.chance(0.7)) text += "  reference_pole: " + byName(namesOf(frame.outputs), poles) + "\n";
   if (dice.chance(0.3)) text += "  preview: true\n";
   return text;
 }
@@ -51,7 +51,8 @@ std::string pi(Dice& dice, RandomFrame& frame) {
   for (std::size_t i = 0; i < std::min(inputs.size(), frame.outputs.size()); ++i) {
     const Quantity& u = inputs[i];
     const Quantity& y = frame.outputs[i];
-    const double kp = spanOf(u) / spanOf(y) * dice.scale(0.01, 3.0) * (dice.chance(0.3) ? -1.0 : 1.0);
+    const double kp =
+        spanOf(u) / spanOf(y) * dice.scale(0.01, 3.0) * (dice.chance(0.3) ? -1.0 : 1.0);
     const double ki = kp / frame.hours(dice.scale(1.0, 100.0));
     text += "    - {input: " + u.name + ", output: " + y.name + ", kp: " + Dice::rounded(kp);
     if (dice.chance(0.8)) text += ", ki_per_h: " + Dice::rounded(ki);
@@ -59,8 +60,9 @@ std::string pi(Dice& dice, RandomFrame& frame) {
     text += ", anti_windup: " + dice.pick<std::string>({"none", "clamp", "tracking"}) +
             ", start: " + dice.pick<std::string>({"bias", "bumpless"});
     if (dice.chance(0.2))
-      text += ", gain_schedule: [{output: " + exactText(workingRange(y).first) + ", gain: " +
-              dice.number(0.2, 2.0) + "}, {output: " + exactText(workingRange(y).second) +
+      text += ", gain_schedule: [{output: " + exactText(workingRange(y).first) +
+              ", gain: " + dice.number(0.2, 2.0) +
+              "}, {output: " + exactText(workingRange(y).second) +
               ", gain: " + dice.number(0.2, 2.0) + "}]";
     text += "}\n";
   }
@@ -90,10 +92,11 @@ std::string excitation(Dice& dice, RandomFrame& frame) {
 
 std::string fmbpc(Dice& dice, RandomFrame& frame) {
   const bool single = frame.plant.inputs.size() == 1;
-  const auto law = dice.pick<std::string>(
-      single ? std::vector<std::string>{"published", "general", "iterated"}
-             : std::vector<std::string>{"general", "iterated"});
-  std::string text = "  law: " + law + "\n  coincidence_steps: " + std::to_string(dice.whole(1, 12)) +
+  const auto law =
+      dice.pick<std::string>(single ? std::vector<std::string>{"published", "general", "iterated"}
+                                    : std::vector<std::string>{"general", "iterated"});
+  std::string text = "  law: " + law +
+                     "\n  coincidence_steps: " + std::to_string(dice.whole(1, 12)) +
                      "\n  realisation: " + (dice.chance(0.7) ? "parallel" : "realigned") + "\n" +
                      costs(dice, frame, true);
   if (law == "iterated")
@@ -105,20 +108,21 @@ std::string fmbpc(Dice& dice, RandomFrame& frame) {
 }
 
 std::string fuzzyOptimal(Dice& dice, RandomFrame& frame) {
-  return horizon(dice, 12) + costs(dice, frame, true) + "  solve: " +
-         (dice.chance(0.8) ? "together" : "each") + "\n  disturbance: " +
-         dice.pick<std::string>({"inside", "outside", "none"}) +
+  return horizon(dice, 12) + costs(dice, frame, true) +
+         "  solve: " + (dice.chance(0.8) ? "together" : "each") +
+         "\n  disturbance: " + dice.pick<std::string>({"inside", "outside", "none"}) +
          "\n  disturbance_gain: " + dice.number(0.1, 1.0) + "\n";
 }
 
 std::string nmpc(Dice& dice, RandomFrame& frame) {
-  return horizon(dice, 5) + costs(dice, frame, true) + "  max_iterations: " +
-         std::to_string(dice.whole(1, 6)) + "\n";
+  return horizon(dice, 5) + costs(dice, frame, true) +
+         "  max_iterations: " + std::to_string(dice.whole(1, 6)) + "\n";
 }
 
 std::string swarm(Dice& dice, RandomFrame& frame) {
-  return horizon(dice, 5) + costs(dice, frame, true) + "  swarm: {particles: " +
-         std::to_string(dice.whole(2, 8)) + ", iterations: " + std::to_string(dice.whole(1, 6)) +
+  return horizon(dice, 5) + costs(dice, frame, true) +
+         "  swarm: {particles: " + std::to_string(dice.whole(2, 8)) +
+         ", iterations: " + std::to_string(dice.whole(1, 6)) +
          ", seed: " + std::to_string(dice.whole(0, 99)) + "}\n";
 }
 
@@ -127,9 +131,10 @@ std::string hybrid(Dice& dice, RandomFrame& frame) {
   for (std::size_t i = 0; i < frame.outputs.size(); ++i) costs.push_back(dice.number(0.0, 1.0));
   return "  inputs: [{kM: 0, kC: 0, kH: 1}, {kM: " + dice.number(0.01, 1.0) +
          ", kC: 0, kH: 1}, {kM: 1, kC: 1, kH: 0}]\n  hold_samples: " +
-         std::to_string(dice.whole(1, 15)) + "\n  horizon_blocks: " + std::to_string(dice.whole(1, 4)) +
-         "\n  bound: " + (dice.chance(0.5) ? "reach" : "cost") + "\n  cost:\n    tracking: " +
-         byName(namesOf(frame.outputs), costs) + "\n";
+         std::to_string(dice.whole(1, 15)) +
+         "\n  horizon_blocks: " + std::to_string(dice.whole(1, 4)) +
+         "\n  bound: " + (dice.chance(0.5) ? "reach" : "cost") +
+         "\n  cost:\n    tracking: " + byName(namesOf(frame.outputs), costs) + "\n";
 }
 
 /// The settings of the shipped loops, gains varied.
@@ -153,10 +158,14 @@ std::string adaptivePi(Dice& dice, RandomFrame&) {
 
 std::string randomController(const std::string& type, Dice& dice, RandomFrame& frame) {
   using Maker = std::string (*)(Dice&, RandomFrame&);
-  static const std::map<std::string, Maker> makers{
-      {"pi", pi},         {"excitation", excitation}, {"fmbpc", fmbpc},   {"nmpc", nmpc},
-      {"swarm_mpc", swarm}, {"hybrid_mpc", hybrid},     {"adaptive_pi", adaptivePi},
-      {"fuzzy_optimal", fuzzyOptimal}};
+  static const std::map<std::string, Maker> makers{{"pi", pi},
+                                                   {"excitation", excitation},
+                                                   {"fmbpc", fmbpc},
+                                                   {"nmpc", nmpc},
+                                                   {"swarm_mpc", swarm},
+                                                   {"hybrid_mpc", hybrid},
+                                                   {"adaptive_pi", adaptivePi},
+                                                   {"fuzzy_optimal", fuzzyOptimal}};
   return "controller:\n  type: " + type + "\n" + makers.at(type)(dice, frame);
 }
 

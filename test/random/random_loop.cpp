@@ -7,7 +7,8 @@
 namespace fpc {
 namespace {
 
-/// What a controller with a model can run: plant and model belong together, as does the sample time.
+/// What a controller with a model can run: plant and model belong together, as does the sample
+/// time.
 struct Believer {
   std::string plant, model;
   std::vector<std::string> outputs, disturbances, controllers;
@@ -31,8 +32,9 @@ const std::vector<Believer>& believers() {
 /// At which a plant is usually sampled.
 double usualSampleTime(const PlantDescription& plant) {
   static const std::map<std::string, double> known{
-      {"activated_sludge", 720}, {"batch_reactor", 10}, {"cstr", 6},        {"distillation_column", 60},
-      {"linear_2x2", 1},         {"mimo_cstr", 0.6},    {"surge_tank", 0.1}};
+      {"activated_sludge", 720},   {"batch_reactor", 10}, {"cstr", 6},
+      {"distillation_column", 60}, {"linear_2x2", 1},     {"mimo_cstr", 0.6},
+      {"surge_tank", 0.1}};
   const auto found = known.find(plant.name);
   return found != known.end() ? found->second : 0.1 * plant.time_unit_s;
 }
@@ -48,9 +50,9 @@ std::string sampleLine(Dice& dice, RandomFrame& frame) {
   const auto& frames = frame.plant.frames;
   if (frames.size() < 3 || !dice.chance(0.2)) return "";
   frame.delayed = true;
-  return "tf:\n  sample_lines:\n    - {output: " + frame.outputs.front().name + ", from: " +
-         frames[1].name + ", to: " + frames.back().name + ", velocity_m_s: " +
-         dice.number(0.01, 5.0) + "}\n";
+  return "tf:\n  sample_lines:\n    - {output: " + frame.outputs.front().name +
+         ", from: " + frames[1].name + ", to: " + frames.back().name +
+         ", velocity_m_s: " + dice.number(0.01, 5.0) + "}\n";
 }
 
 std::string controllerFor(Dice& dice, RandomFrame& frame) {
@@ -64,8 +66,9 @@ std::string controllerFor(Dice& dice, RandomFrame& frame) {
 }  // namespace
 
 std::string RandomLoop::told() const {
-  std::string all = "seed " + std::to_string(seed) + ", to run it alone: FMBPC_RANDOM_SEED=" +
-                    std::to_string(seed) + " test_random\n--- loop file\n" + text;
+  std::string all = "seed " + std::to_string(seed) +
+                    ", to run it alone: FMBPC_RANDOM_SEED=" + std::to_string(seed) +
+                    " test_random\n--- loop file\n" + text;
   for (const auto& [name, content] : files) all += "--- " + name + "\n" + content;
   return all + "---\n";
 }
@@ -90,7 +93,8 @@ RandomLoop randomLoop(std::uint64_t seed) {
     frame.sample_time_s *= dice.pick<double>({1.0, 1.0, 0.5, 2.0, 1.0 / 3.0});
   const std::string line = sampleLine(dice, frame);
   loop.controller = believes ? dice.pick(believer.controllers) : controllerFor(dice, frame);
-  std::string plant = "plant:\n  type: " + loop.plant + "\n  outputs: " + listed(loop.outputs) + "\n";
+  std::string plant =
+      "plant:\n  type: " + loop.plant + "\n  outputs: " + listed(loop.outputs) + "\n";
   if (believes) plant += "  measured_disturbances: " + listed(believer.disturbances) + "\n";
   const std::string controller = randomController(loop.controller, dice, frame);
   const bool predicts = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal";

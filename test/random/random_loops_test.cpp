@@ -105,13 +105,12 @@ int firstDifference(const RunRecord& a, const RunRecord& b) {
   if (a.samples.size() != b.samples.size()) return 0;
   for (std::size_t k = 0; k < a.samples.size(); ++k) {
     const SampleRecord &x = a.samples[k], &y = b.samples[k];
-    const bool equal = same(x.measurement.outputs, y.measurement.outputs) &&
-                       same(x.measurement.input_applied, y.measurement.input_applied) &&
-                       same(x.state.state, y.state.state) &&
-                       same(x.state.disturbances, y.state.disturbances) &&
-                       same(x.tracking.setpoint, y.tracking.setpoint) &&
-                       same(x.tracking.reference, y.tracking.reference) &&
-                       same(x.action.input, y.action.input);
+    const bool equal =
+        same(x.measurement.outputs, y.measurement.outputs) &&
+        same(x.measurement.input_applied, y.measurement.input_applied) &&
+        same(x.state.state, y.state.state) && same(x.state.disturbances, y.state.disturbances) &&
+        same(x.tracking.setpoint, y.tracking.setpoint) &&
+        same(x.tracking.reference, y.tracking.reference) && same(x.action.input, y.action.input);
     if (!equal) return static_cast<int>(k);
   }
   return -1;
@@ -166,8 +165,8 @@ Vector reordered(const Vector& values, const std::vector<std::string>& from,
 }
 
 // Left out: noise, which is drawn in the order of the outputs; a particle swarm and a search over
-// sequences, which may take another of two equal answers; the law `published`, which follows the last
-// output by definition.
+// sequences, which may take another of two equal answers; the law `published`, which follows the
+// last output by definition.
 TEST_F(RandomLoops, DoNotDependOnTheOrderOfTheOutputs) {
   int compared = 0;
   for (const std::uint64_t seed : seeds(40)) {

@@ -29,7 +29,8 @@ std::string values(const std::vector<Quantity>& signals, Dice& dice, double shar
 
 }  // namespace
 
-// Only the first output and the first input change their units, so that a mix-up of the others shows.
+// Only the first output and the first input change their units, so that a mix-up of the others
+// shows.
 RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input_unit) {
   Dice dice(seed + 1000000);
   RandomLoop loop;
@@ -45,12 +46,15 @@ RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input
   const double sample_min = dice.pick<double>({0.25, 0.5, 1.0, 2.0, 1.0 / 3.0});
   const int samples = dice.whole(10, 40);
   std::string elements, loops;
-  const auto element = [&](const std::string& y, const std::string& from, double unit, double span) {
+  const auto element = [&](const std::string& y, const std::string& from, double unit,
+                           double span) {
     const double gain = std::stod(dice.number(-2.0, 2.0)) * span;
     elements += "      - {output: " + y + ", from: " + from + ", gain: " + exactText(gain * unit) +
                 ", time_constant_min: " + Dice::rounded(dice.scale(0.01, 100.0));
-    if (dice.chance(0.6)) elements += ", dead_time_min: " + Dice::rounded(sample_min * dice.between(0.0, 6.0));
-    if (dice.chance(0.3)) elements += ", second_time_constant_min: " + Dice::rounded(dice.scale(0.01, 100.0));
+    if (dice.chance(0.6))
+      elements += ", dead_time_min: " + Dice::rounded(sample_min * dice.between(0.0, 6.0));
+    if (dice.chance(0.3))
+      elements += ", second_time_constant_min: " + Dice::rounded(dice.scale(0.01, 100.0));
     elements += "}\n";
   };
   const auto unitOf = [](int i, double unit) { return i == 0 ? unit : 1.0; };
@@ -64,12 +68,13 @@ RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input
       if (dice.chance(0.5)) element(y.name, load.name, 1.0 / unitOf(i, output_unit), 0.3);
   }
   for (int i = 0; i < std::min(n_y, n_u); ++i) {
-    const double kp = std::stod(Dice::rounded(dice.scale(0.01, 1.0) * (dice.chance(0.5) ? 1.0 : -1.0)));
+    const double kp =
+        std::stod(Dice::rounded(dice.scale(0.01, 1.0) * (dice.chance(0.5) ? 1.0 : -1.0)));
     const double ki = std::stod(Dice::rounded(kp * dice.scale(0.5, 20.0)));
     const double unit = unitOf(i, output_unit) / unitOf(i, input_unit);
     loops += "    - {input: u" + std::to_string(i) + ", output: y" + std::to_string(i) +
-             ", kp: " + exactText(kp * unit) + ", ki_per_h: " + exactText(ki * unit) + ", anti_windup: " +
-             dice.pick<std::string>({"none", "clamp", "tracking"}) + "}\n";
+             ", kp: " + exactText(kp * unit) + ", ki_per_h: " + exactText(ki * unit) +
+             ", anti_windup: " + dice.pick<std::string>({"none", "clamp", "tracking"}) + "}\n";
   }
   const auto listOf = [](const std::vector<Quantity>& signals, double unit) {
     std::string text = "[";
@@ -82,15 +87,17 @@ RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input
               "\nplant:\n  type: distillation_column\n  matrix:\n    outputs: " +
               listOf(outputs, output_unit) + "    inputs: " + listOf(inputs, input_unit);
   if (n_d > 0) loop.text += "    disturbances: " + listOf(loads, 1.0);
-  loop.text += "    elements:\n" + elements + "sampling:\n  sample_time_s: " +
-               exactText(60.0 * sample_min) + "\n  duration_h: " + exactText(samples * step) +
+  loop.text += "    elements:\n" + elements +
+               "sampling:\n  sample_time_s: " + exactText(60.0 * sample_min) +
+               "\n  duration_h: " + exactText(samples * step) +
                "\nsetpoint:\n  initial: " + values(outputs, dice, 0.3, output_unit, true) +
                "\nnoise:\n  std: " + values(outputs, dice, 0.01, output_unit, false) +
                "\nactuator:\n  move_upper: " + values(inputs, dice, 0.5, input_unit, false) +
                "\ndisturbance:\n  commands:\n";
   if (n_d > 0)
-    loop.text += "    - {time_h: " + exactText(step * dice.whole(0, samples)) + ", name: d0, value: " +
-                 Dice::rounded(loads[0].nominal + 0.3 * (loads[0].upper - loads[0].nominal)) + "}\n";
+    loop.text +=
+        "    - {time_h: " + exactText(step * dice.whole(0, samples)) + ", name: d0, value: " +
+        Dice::rounded(loads[0].nominal + 0.3 * (loads[0].upper - loads[0].nominal)) + "}\n";
   loop.text += "    - {time_h: " + exactText(step * dice.whole(0, samples)) +
                ", name: output/y0, mode: offset, value: " +
                exactText(std::stod(dice.number(-1.0, 1.0)) / output_unit) + "}\n" +

@@ -26,8 +26,8 @@ std::string at(Dice& dice, const RandomFrame& frame) {
 }
 
 std::string pattern(Dice& dice, const std::vector<Quantity>& loads) {
-  std::string text = "  pattern:\n    seed: " + std::to_string(dice.whole(0, 1000)) +
-                     "\n    channels:\n";
+  std::string text =
+      "  pattern:\n    seed: " + std::to_string(dice.whole(0, 1000)) + "\n    channels:\n";
   for (const auto& q : loads) {
     const auto [lower, upper] = workingRange(q);
     text += "      " + q.name + ": {shape: " + (dice.chance(0.5) ? "flow" : "load") +
@@ -68,8 +68,8 @@ std::string record(Dice& dice, const std::vector<Quantity>& loads, const RandomF
   return std::string("  csv:\n    file: record.csv\n    time_column: t\n    missing: ") +
          (dice.chance(0.5) ? "hold" : "interpolate") + "\n    missing_values: [Bad]\n" +
          (german ? "    separator: semicolon\n    decimal: comma\n" : "") +
-         "    interpolation: " + (dice.chance(0.5) ? "hold" : "linear") + "\n    end: " +
-         (dice.chance(0.5) ? "hold" : "repeat") + "\n    channels:\n" + channels;
+         "    interpolation: " + (dice.chance(0.5) ? "hold" : "linear") +
+         "\n    end: " + (dice.chance(0.5) ? "hold" : "repeat") + "\n    channels:\n" + channels;
 }
 
 std::string command(Dice& dice, const std::string& name, const Quantity& q, double share,
@@ -147,7 +147,8 @@ std::string randomSetpoint(Dice& dice, const RandomFrame& frame) {
     text += "  rate_per_h: " + byName(names, rates) + "\n";
   }
   if (dice.chance(0.2)) {
-    const std::size_t i = static_cast<std::size_t>(dice.whole(0, static_cast<int>(names.size()) - 1));
+    const std::size_t i =
+        static_cast<std::size_t>(dice.whole(0, static_cast<int>(names.size()) - 1));
     text += "  commands:\n" + command(dice, names[i], frame.outputs[i], 0.2, frame);
   }
   return text;
@@ -195,7 +196,8 @@ std::string randomClp(Dice& dice, const RandomFrame& frame) {
     weights.push_back(Dice::rounded(dice.scale(0.01, 10.0)));
     upper.push_back(exactText(workingRange(q).second));
   }
-  if (dice.chance(0.5)) text += "  weight_tracking: " + byName(namesOf(frame.outputs), weights) + "\n";
+  if (dice.chance(0.5))
+    text += "  weight_tracking: " + byName(namesOf(frame.outputs), weights) + "\n";
   if (dice.chance(0.4)) text += "  output_upper: " + byName(namesOf(frame.outputs), upper) + "\n";
   return text;
 }

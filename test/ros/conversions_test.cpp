@@ -111,7 +111,8 @@ TEST_P(Conversions, TrackingAndPlantStateSurvive) {
   EXPECT_TRUE(sameHeader(t.header, rt.header));
   EXPECT_TRUE(sameNumbers(t.setpoint, rt.setpoint));
   EXPECT_TRUE(sameNumbers(t.reference, rt.reference));
-  const PlantState p{kHeader, numbers.vector(6), numbers.vector(2), numbers.vector(3), 2, true, "stuck"};
+  const PlantState p{kHeader, numbers.vector(6), numbers.vector(2), numbers.vector(3), 2, true,
+                     "stuck"};
   const PlantState rp = fromMsg(sent(toMsg(p)));
   EXPECT_TRUE(sameHeader(p.header, rp.header));
   EXPECT_TRUE(sameNumbers(p.state, rp.state));

@@ -124,11 +124,11 @@ TEST_F(Tune, TheFingerprintCoversWhatTheNamedFilesHold) {
     std::ifstream shipped(sourceDir() + "/config/model/fm_1.yaml");
     write("own.yaml", std::string((std::istreambuf_iterator<char>(shipped)), {}) + "# " +
                           std::to_string(gain) + "\n");
-    const std::string loop = write(
-        "load.yaml",
-        "extends: asp_case1\nsampling: {duration_h: 2}\nmodel: {file: own.yaml}\n"
-        "disturbance:\n  source: csv\n  csv: {file: load.csv, time_column: t, end: hold,\n"
-        "        channels: {q_i: {column: q}}}\n");
+    const std::string loop =
+        write("load.yaml",
+              "extends: asp_case1\nsampling: {duration_h: 2}\nmodel: {file: own.yaml}\n"
+              "disturbance:\n  source: csv\n  csv: {file: load.csv, time_column: t, end: hold,\n"
+              "        channels: {q_i: {column: q}}}\n");
     const std::string tuning =
         "parameters: [{key: controller.reference_pole.x, lower: 0.5, upper: 0.9}]\n"
         "fitness: {terms: [{index: ise}]}\n";

@@ -112,8 +112,8 @@ TEST_F(Tool, ARunThatIsHeldThroughoutFails) {
 }
 
 TEST_F(Tool, WhatALawSaysOfItselfStandsUnderTheTable) {
-  const Outcome outcome = tool(
-      "run surge_tank_steps --set controller.horizon_steps=1 --set sampling.duration_h=0.005");
+  const Outcome outcome =
+      tool("run surge_tank_steps --set controller.horizon_steps=1 --set sampling.duration_h=0.005");
   EXPECT_EQ(outcome.code, 0);
   EXPECT_NE(outcome.printed.find("of 180 samples: controller.horizon_steps is too short"),
             std::string::npos)

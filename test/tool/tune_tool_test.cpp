@@ -91,17 +91,20 @@ TEST_F(TuneTool, SaysWhichParametersStandAtABoundAndThatHeldOutCostGotWorse) {
   EXPECT_EQ(worse, told.find("held-out scenarios got worse") != std::string::npos) << told;
   std::ifstream written(path("out") + "/lag_tuned.yaml");
   const std::string text((std::istreambuf_iterator<char>(written)), {});
-  EXPECT_NE(text.find("# controller.loops.0.kp ends at the upper bound"), std::string::npos) << text;
+  EXPECT_NE(text.find("# controller.loops.0.kp ends at the upper bound"), std::string::npos)
+      << text;
 }
 
 TEST_F(TuneTool, SaysThatHeldOutCostGotWorse) {
   write("t.yaml",
         "parameters:\n  - {key: controller.loops.0.kp, lower: 0.1, upper: 5}\n"
         "fitness: {terms: [{index: effort, input: u}]}\n"
-        "held_out: [{name: down, set: {setpoint.initial.y: 0.01, setpoint.schedule: [], noise.std.y: 0.5}}]\n"
+        "held_out: [{name: down, set: {setpoint.initial.y: 0.01, setpoint.schedule: [], "
+        "noise.std.y: 0.5}}]\n"
         "search: {population: 8, evaluations: 24}\n");
   const auto tuned = json("");
-  const double before = tuned["held_out"]["before"]["cost"], after = tuned["held_out"]["after"]["cost"];
+  const double before = tuned["held_out"]["before"]["cost"],
+               after = tuned["held_out"]["after"]["cost"];
   EXPECT_EQ(tuned["remarks"].dump().find("got worse") != std::string::npos, after > before);
 }
 

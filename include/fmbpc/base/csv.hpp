@@ -25,10 +25,10 @@ char decimalOf(const std::string& word);  ///< of point or comma, likewise
 /// Columns by name; a missing cell is NaN.
 struct CsvTable {
   std::string file;
-  std::vector<std::string> names;  ///< header, without units
-  std::vector<std::string> units;  ///< text in [] behind a name, or empty
-  Matrix values;                   ///< rows x columns
-  std::vector<bool> is_date{};     ///< of each column as read: it holds dates (days), not numbers
+  std::vector<std::string> names;    ///< header, without units
+  std::vector<std::string> units;    ///< text in [] behind a name, or empty
+  Matrix values;                     ///< rows x columns
+  std::vector<bool> is_date{};       ///< of each column as read: it holds dates (days), not numbers
   std::vector<std::size_t> lines{};  ///< of the file, for each row; empty if it was no file
   std::vector<std::string> texts{};  ///< of each column: the first cell that is no number, or empty
 
@@ -45,8 +45,8 @@ struct CsvTable {
 /// 1970-01-01 (UTC if the zone is given). Empty cells, "nan" and the format's missing values are
 /// missing; infinite numbers are errors. CRLF, a byte order mark, empty lines and quoted cells are
 /// accepted. Cells that are neither a number, a date nor missing are kept as NaN only in columns
-/// that hold nothing else; elsewhere they are errors, and so is a column of dates and numbers, or of
-/// times with and without a zone.
+/// that hold nothing else; elsewhere they are errors, and so is a column of dates and numbers, or
+/// of times with and without a zone.
 /// @throws InputError with file and line: unreadable file, no header, repeated name, a row of other
 /// length, bad cell.
 CsvTable readCsv(const std::string& file, const CsvFormat& format = {});

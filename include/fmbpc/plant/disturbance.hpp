@@ -14,7 +14,7 @@ namespace fpc {
 
 /// A disturbance record on the loop's own samples: column k of `values` acts on [t_k, t_k + Ts).
 struct DisturbanceRecord {
-  Matrix values;             ///< n_d (samples + 1)
+  Matrix values;                ///< n_d (samples + 1)
   std::uint64_t repaired{};     ///< missing cells that were held or interpolated
   std::uint64_t implausible{};  ///< cells outside `plausible` that were clipped, held, interpolated
 };
@@ -76,8 +76,8 @@ struct CsvDisturbanceParams {
 /// closes the period. Where the times jump by more than one and a half of their median interval,
 /// rows are missing: cells of their own, treated as `missing` says. `repaired` counts the missing
 /// cells of the channels' columns in the whole file, `implausible` those outside a channel's range.
-/// @throws InputError naming file, line and column: unknown column, times not increasing, missing cells
-/// where not allowed, nothing but missing cells, record too short, samples = 0.
+/// @throws InputError naming file, line and column: unknown column, times not increasing, missing
+/// cells where not allowed, nothing but missing cells, record too short, samples = 0.
 DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
                                    const std::vector<std::string>& names, const Vector& nominal,
                                    double sample_time_s, std::uint32_t samples);

@@ -122,9 +122,9 @@ class Simulation {
   std::vector<CommandEffect> effects_;
   std::mt19937_64 noise_;
   std::string trouble_;
-  Vector state_before_;  // one sample ago
+  Vector state_before_;                  // one sample ago
   Vector true_outputs_, true_measured_;  // what the sensors look at
-  Vector plant_input_;   // the applied input as the plant's local loop passes it on
+  Vector plant_input_;                   // the applied input as the plant's local loop passes it on
   std::vector<Eigen::Index> output_state_;          // index of the state behind each output
   std::vector<Eigen::Index> measured_disturbance_;  // index into the plant's disturbances
   std::vector<TransportDelay> delays_;              // of each output

@@ -43,8 +43,8 @@ class TuningObjective {
   const TuningScore& untouched() const { return untouched_; }
   const TuningScore& untouchedHeldOut() const { return untouched_held_out_; }
   const TuningFile& tuning() const { return tuning_; }
-  /// Changes when the loop files, the models and records they name, the tuning file or the overrides
-  /// do.
+  /// Changes when the loop files, the models and records they name, the tuning file or the
+  /// overrides do.
   const std::string& fingerprint() const { return fingerprint_; }
 
  private:

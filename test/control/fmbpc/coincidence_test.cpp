@@ -86,7 +86,8 @@ TEST(CoincidenceGains, EffectsThatCancelCountAsNone) {
   EXPECT_FALSE(gains.computePublished(model, 6));  // 6 * 0.1 - 15 * 0.1 * 0.4 = 0
 }
 
-// y(k+1) = 0.1 u(k) + 0.2 u(k-1) - 0.3 u(k-2) has no effect after 3 samples; a gain of 1e16 is rounding.
+// y(k+1) = 0.1 u(k) + 0.2 u(k-1) - 0.3 u(k-2) has no effect after 3 samples; a gain of 1e16 is
+// rounding.
 TEST(CoincidenceGains, BothLawsRefuseWhatCancels) {
   AffineModel model(3, 1, 1);
   model.A << 0.0, 0.2, -0.3, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0;  // y, u(k-1), u(k-2)
