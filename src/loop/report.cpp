@@ -248,8 +248,8 @@ CsvTable trajectoryOf(const LoopFile& loop, const RunRecord& record) {
   addTracking(record, columns);
   addActions(loop, record, columns);
   addOtherStates(record, columns);
-  const double from =
-      std::ceil(loop.report.record_from_h * 3600.0 / loop.plant_info.sample_time_s - 1e-6);
+  const double from = std::ceil(loop.report.record_from_h * 3600.0 /
+                                loop.plant_info.sample_time_s - 1e-6);
   const std::size_t last = record.samples.empty() ? 0 : record.samples.size() - 1;
   return columns.fill(std::min(static_cast<std::size_t>(std::max(from, 0.0)), last),
                       record.samples.size());
@@ -260,7 +260,8 @@ void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summ
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   require(!error, folder, "a folder that can be made (" + error.message() + ")");
-  writeCsv(trajectoryOf(loop, record), (std::filesystem::path(folder) / "trajectory.csv").string());
+  writeCsv(trajectoryOf(loop, record),
+           (std::filesystem::path(folder) / "trajectory.csv").string());
   const std::string file = (std::filesystem::path(folder) / "summary.json").string();
   std::ofstream stream(file);
   stream << toJson(summary) << "\n";

@@ -28,13 +28,13 @@ class Ring {
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
-        targets_{
-            plant_.simulation(), controller_,
-            [this](int window) {
-              identify(identifier_->job(loop_.identify.structure, static_cast<std::size_t>(window),
-                                        loop_.identify.validation_share));
-            },
-            [this](const std::string& words) { remark(words); }} {
+        targets_{plant_.simulation(), controller_,
+                 [this](int window) {
+                   identify(identifier_->job(loop_.identify.structure,
+                                             static_cast<std::size_t>(window),
+                                             loop_.identify.validation_share));
+                 },
+                 [this](const std::string& words) { remark(words); }} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
     plant_.begin(kRunId);

@@ -14,8 +14,7 @@ double secondsOf(const std::string& unit) {
   static const std::map<std::string, double> units = {
       {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}};
   const auto found = units.find(unit);
-  require(found != units.end(), "disturbance.csv.time_unit",
-          "one of s, min, h, d, got '" + unit + "'");
+  require(found != units.end(), "disturbance.csv.time_unit", "one of s, min, h, d, got '" + unit + "'");
   return found->second;
 }
 
@@ -42,7 +41,8 @@ std::vector<double> timesOf(const CsvTable& table, const std::string& time_colum
                 exactText(cells[std::max<Eigen::Index>(r - 1, 0)]));
     times.push_back(time);
   }
-  require(times.size() >= 2, table.file + ": column '" + time_column + "'", "at least two rows");
+  require(times.size() >= 2, table.file + ": column '" + time_column + "'",
+          "at least two rows");
   return times;
 }
 
@@ -57,7 +57,7 @@ double medianInterval(const std::vector<double>& times) {
 }  // namespace
 
 CsvRows csvRows(const CsvTable& table, const std::string& time_column,
-                const std::string& time_unit) {
+                            const std::string& time_unit) {
   const std::vector<double> times = timesOf(table, time_column, time_unit);
   const double interval = medianInterval(times);
   CsvRows rows;

@@ -35,8 +35,7 @@ struct RunRecord {
   std::vector<std::string> states,
       state_units;                    ///< names of PlantState::state, empty for an external plant
   std::vector<SampleRecord> samples;  ///< index = step
-  bool complete{
-      false};  ///< the final sample came, nothing is missing, and the plant moved as asked
+  bool complete{false};  ///< the final sample came, nothing is missing, and the plant moved as asked
   std::uint32_t failed_samples{};  ///< samples over which the plant could not be moved and was held
   std::string trouble;             ///< of the first of them: "sample 17: REASON"
   std::vector<RunRemark> remarks;  ///< of the controller, in one process only
