@@ -121,7 +121,8 @@ const std::vector<Paper>& papers() {
       {"vallejo2021b", "Vallejo and Vega 2021 (article 3): activated sludge, FMBPC/CLP"},
       {"karer2007", "Karer, Music, Skrjanc and Zupancic 2007: batch reactor"},
       {"mekki", "Mekki and Saad: distillation column"},
-      {"taieb2017", "Taieb, Soltani and Chaari 2017: surge tank and stirred tank"}};
+      {"taieb2017", "Taieb, Soltani and Chaari 2017: surge tank and stirred tank"},
+      {"bsm1", "Alex et al. 2008: benchmark simulation model no. 1, reference figures"}};
   return all;
 }
 
