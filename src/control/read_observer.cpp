@@ -4,7 +4,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kPart = 0.1;     // of the noise: what the disturbance changes per sample
+constexpr double kPart = 0.02;    // of the noise: what the disturbance changes per sample
 constexpr double kNoNoise = 1.0;  // without noise it does not matter
 
 }  // namespace
