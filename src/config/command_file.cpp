@@ -24,8 +24,8 @@ std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
 std::vector<std::string> disturbanceNames(const LoopFile& loop) {
   requireSimulated(loop);
   std::vector<std::string> names;
-  for (const Quantity& q : makePlant(loop.simulation)->description().disturbances)
-    names.push_back(q.name);
+  const auto plant = makePlant(loop.simulation);
+  for (const Quantity& q : plant->description().disturbances) names.push_back(q.name);
   for (const SignalInfo& input : loop.plant_info.inputs) names.push_back("input/" + input.name);
   for (const SignalInfo& output : loop.plant_info.outputs) names.push_back("output/" + output.name);
   return names;

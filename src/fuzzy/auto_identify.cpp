@@ -2,30 +2,17 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
-#include <cstdio>
-#include <limits>
 #include <mutex>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/parallel.hpp"
-#include "fmbpc/base/text.hpp"
-#include "fuzzy/auto_choice.hpp"
+#include "fuzzy/auto_output.hpp"
 
 namespace fpc {
 namespace {
 
 using Eigen::Index;
 
-constexpr double kWorth = 0.98;   // a fuzzy model must lower the held-out error by this
-constexpr std::size_t kShown = 5;  // trials of each kind in the report
 constexpr Index kFewestRows = 60;
-
-std::string shortNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 void checkParams(const DataSet& data, const AutoParams& p) {
   require(p.budget_s > 0.0, "budget_s", "a number > 0");
@@ -38,200 +25,6 @@ void checkParams(const DataSet& data, const AutoParams& p) {
   require(data.inputs.size() + data.disturbances.size() > 0, data.source,
           "at least one input or disturbance");
 }
-
-/// Everything of one output.
-class OutputSearch {
- public:
-  OutputSearch(const DataSet& data, int output, const AutoParams& params,
-               const SearchLimits& limits, AutoIdentification& result)
-      : data_(prepareAuto(data, output, params.blocks, params.most_rows, params.most_last)),
-        params_(params),
-        limits_(limits),
-        result_(result) {}
-
-  void run() {
-    found_.output = name();
-    const int longest =
-        std::min<int>(params_.longest_delay, static_cast<int>(data_.data->rows() / 20));
-    const DelayGuess guess = guessDelays(data_, longest);
-    found_.delay = guess.delay;
-    remarkDelays(guess);
-    searched_ = searchStructures(data_, guess.delay, params_.states, params_.seed, limits_);
-    if (searched_.skipped > 0)
-      remark("the time budget left out " + std::to_string(searched_.skipped) +
-             " of the structures; a longer --budget may find better ones");
-    require(!searched_.linear.empty(), data_.data->source + ": output '" + name() + "'",
-            "a linear model that runs freely without leaving the data; none did");
-    chooseModels();
-    chooseState();
-    decide();
-    keepTrials();
-    if (data_.lower < data_.upper) {
-      found_.sensor_lower = inUnit(data_.lower);
-      found_.sensor_upper = inUnit(data_.upper);
-    }
-    result_.outputs.push_back(found_);
-  }
-
- private:
-  const std::string& name() const {
-    return data_.data->outputs[static_cast<std::size_t>(data_.output)].name;
-  }
-  void remark(const std::string& text) { result_.remarks.push_back(name() + ": " + text); }
-  double inUnit(double scaled) const {
-    return data_.shift[data_.output] + data_.scale[data_.output] * scaled;
-  }
-
-  void remarkDelays(const DelayGuess& guess) {
-    for (std::size_t j = 0; j < guess.delay.size(); ++j) {
-      if (!guess.doubt[j]) continue;
-      const std::size_t n_u = data_.data->inputs.size();
-      const auto& signal = j < n_u ? data_.data->inputs[j] : data_.data->disturbances[j - n_u];
-      remark("delay of " + signal.name + " doubtful: " + std::to_string(guess.delay[j]) +
-             " samples fit best, others as well");
-    }
-  }
-
-  /// The best of a kind whose fit to all rows comes near its held-out error; -1: none.
-  int settle(const std::vector<Judgement>& judged, OutputModel& model) {
-    for (std::size_t i = 0; i < std::min<std::size_t>(judged.size(), 4); ++i) {
-      if (judged[i].candidate.hidden) continue;
-      const Fitted whole = fitWhole(data_, judged[i], params_.window);
-      if (!whole.finite) continue;
-      model = toSubmodel(data_, whole);
-      for (auto& rule : model.rules)
-        rule.data_count = static_cast<std::uint64_t>(data_.data->rows()) / model.rules.size();
-      return static_cast<int>(i);
-    }
-    return -1;
-  }
-
-  void chooseModels() {
-    std::vector<Judgement> lines;
-    for (const auto& j : searched_.linear)
-      if (!j.candidate.hidden) lines.push_back(j);
-    OutputModel linear, fuzzy;
-    const int line = settle(lines, linear);
-    require(line >= 0, data_.data->source + ": output '" + name() + "'",
-            "a linear model that can be fitted to all rows");
-    const Judgement& l = lines[static_cast<std::size_t>(line)];
-    found_.linear = figuresOf(data_, l.free_run, l.one_step);
-    linear_text_ = l.candidate.text();
-    result_.linear.submodels.push_back(linear);
-    const int rules = settle(searched_.regressors, fuzzy);
-    fuzzy_chosen_ = false;
-    if (rules >= 0) {
-      const Judgement& r = searched_.regressors[static_cast<std::size_t>(rules)];
-      found_.regressors = figuresOf(data_, r.free_run, r.one_step);
-      fuzzy_chosen_ = found_.regressors.free_run < kWorth * found_.linear.free_run;
-      fuzzy_text_ = r.candidate.text();
-    }
-    result_.model.submodels.push_back(fuzzy_chosen_ ? fuzzy : linear);
-  }
-
-  void chooseState() {
-    if (!params_.states) return;
-    const Committee committee = chooseCommittee(data_, searched_);
-    std::vector<Fitted> fitted(committee.members.size());
-    parallelFor(fitted.size(), params_.threads, [&](std::size_t i) {
-      fitted[i] = fitWhole(data_, *committee.members[i], params_.window);
-    });
-    StateOutput state;
-    state.shift = data_.shift[data_.output];
-    state.scale = data_.scale[data_.output];
-    const Index m = data_.shift.size() - static_cast<Index>(data_.data->outputs.size());
-    state.exogenous_shift = data_.shift.tail(m);
-    state.exogenous_scale = data_.scale.tail(m);
-    for (const auto& f : fitted)
-      if (f.finite) state.members.push_back({f.shape, f.exogenous, f.parameters, f.prior});
-    if (state.members.empty()) {
-      states_complete_ = false;
-      return;
-    }
-    state.correction = committee.correction;
-    found_.state = figuresOf(data_, committee.free_run, committee.one_step);
-    state.free_run_width = found_.state.width;
-    state.one_step_width = found_.state.one_step_width;
-    for (const auto* j : committee.members) members_.push_back(j->candidate.text());
-    result_.state.outputs.push_back(std::move(state));
-  }
-
-  void decide() {
-    const AutoFigures& line = found_.linear;
-    const AutoFigures* best = &line;
-    if (!found_.state.blocks.empty() && found_.state.free_run < kWorth * best->free_run) {
-      best = &found_.state;
-      found_.best = ModelKind::kState;
-    }
-    if (!found_.regressors.blocks.empty() && fuzzy_chosen_ &&
-        found_.regressors.free_run < best->free_run) {
-      best = &found_.regressors;
-      found_.best = ModelKind::kRegressors;
-    }
-    found_.beats_linear = best != &line && beyondSpread(*best, line);
-    const std::string figures = "free run over held-out blocks " + shortNumber(best->free_run) +
-                                " beside " + shortNumber(line.free_run) + " of the best linear one";
-    if (best == &line)
-      found_.verdict = "no fuzzy model beats the best linear one (rmse " +
-                       shortNumber(line.free_run) + "): the linear model is written";
-    else if (!found_.beats_linear)
-      found_.verdict = "the fuzzy model does not beat linear beyond the spread over the blocks (" +
-                       figures + "): consider the linear model, --kind linear";
-    else
-      found_.verdict = "the fuzzy model beats linear beyond the spread over the blocks: " + figures;
-    if (found_.best == ModelKind::kState)
-      found_.verdict += "; this is the model with a state of its own, for simulation; what control "
-                        "laws take reaches " +
-                        shortNumber(fuzzy_chosen_ ? found_.regressors.free_run : line.free_run);
-  }
-
-  void keepTrials() {
-    keepKind(searched_.linear, false, ModelKind::kLinear, {linear_text_});
-    keepKind(searched_.regressors, false, ModelKind::kRegressors,
-             fuzzy_chosen_ ? std::vector<std::string>{fuzzy_text_} : std::vector<std::string>{});
-    keepKind(searched_.linear, true, ModelKind::kState, members_);
-    for (std::size_t g = 0; g < std::min(kShown, searched_.state.size()); ++g) {
-      const Group& group = searched_.state[g];
-      const Judgement& first = group.members.front();
-      const bool picked =
-          std::find(members_.begin(), members_.end(), first.candidate.text()) != members_.end();
-      keep(ModelKind::kState,
-           first.candidate.text() + ", " + std::to_string(group.members.size()) + " starts",
-           first.parameters, group.rmse, blockErrors(data_, group.free_run), picked);
-    }
-  }
-
-  void keepKind(const std::vector<Judgement>& judged, bool hidden, ModelKind kind,
-                const std::vector<std::string>& chosen) {
-    std::size_t shown = 0;
-    for (const auto& j : judged) {
-      if (j.candidate.hidden != hidden || shown++ >= kShown) continue;
-      const std::string text = j.candidate.text();
-      keep(kind, text, j.parameters, j.rmse, j.blocks,
-           std::find(chosen.begin(), chosen.end(), text) != chosen.end());
-    }
-  }
-
-  void keep(ModelKind kind, const std::string& text, Index parameters, double rmse,
-            const std::vector<double>& blocks, bool picked) {
-    const auto n = static_cast<double>(blocks.size());
-    double mean = 0.0, square = 0.0;
-    for (const double b : blocks) mean += b / n;
-    for (const double b : blocks) square += (b - mean) * (b - mean);
-    result_.trials.push_back(
-        {name(), kind, text, parameters, rmse, std::sqrt(square / n), picked});
-  }
-
-  AutoData data_;
-  const AutoParams& params_;
-  const SearchLimits& limits_;
-  AutoIdentification& result_;
-  AutoOutput found_;
-  SearchResult searched_;
-  bool fuzzy_chosen_{false}, states_complete_{true};
-  std::string linear_text_, fuzzy_text_;
-  std::vector<std::string> members_;
-};
 
 TsModel emptyModel(const DataSet& data) {
   TsModel model;
@@ -288,7 +81,7 @@ AutoIdentification autoIdentify(const DataSet& full, const AutoParams& params,
       const double done = (static_cast<double>(i) + part) / static_cast<double>(n_y);
       if (callback && !callback({data.outputs[i].name + ": structures", done})) stopped = true;
     };
-    OutputSearch(data, static_cast<int>(i), params, limits, result).run();
+    searchOutput(data, static_cast<int>(i), params, limits, result);
   }
   if (result.state.outputs.size() != n_y) result.state.outputs.clear();
   result.cancelled = stopped;
@@ -296,49 +89,6 @@ AutoIdentification autoIdentify(const DataSet& full, const AutoParams& params,
   result.linear.validate();
   result.state.validate(result.model);
   return result;
-}
-
-DataSet subsample(const DataSet& data, Index rows, int windows) {
-  constexpr Index kGap = 40;
-  const Index each = std::max<Index>(1, rows / windows);
-  DataSet part = data;
-  part.values = Matrix::Constant((each + kGap) * windows, data.values.cols(),
-                                 std::numeric_limits<double>::quiet_NaN());
-  for (Index w = 0; w < windows; ++w) {
-    const Index first = (data.rows() - each) * w / std::max(1, windows - 1);
-    part.values.middleRows(w * (each + kGap), each) = data.values.middleRows(first, each);
-  }
-  return part;
-}
-
-DataSet joinRecords(const std::vector<DataSet>& records) {
-  constexpr Index kGap = 40;
-  require(!records.empty(), "records", "at least one");
-  DataSet all = records.front();
-  for (std::size_t i = 1; i < records.size(); ++i) {
-    const DataSet& next = records[i];
-    require(next.values.cols() == all.values.cols() && next.sample_time_s == all.sample_time_s,
-            next.source, "the signals and sample time of the first record");
-    Matrix values = Matrix::Constant(all.rows() + kGap + next.rows(), all.values.cols(),
-                                     std::numeric_limits<double>::quiet_NaN());
-    values.topRows(all.rows()) = all.values;
-    values.bottomRows(next.rows()) = next.values;
-    all.values = values;
-    all.source += " and " + next.source;
-    all.repairs.insert(all.repairs.end(), next.repairs.begin(), next.repairs.end());
-    const auto widen = [](std::vector<SignalInfo>& a, const std::vector<SignalInfo>& b) {
-      for (std::size_t j = 0; j < a.size(); ++j) {
-        a[j].lower = std::min(a[j].lower, b[j].lower);
-        a[j].upper = std::max(a[j].upper, b[j].upper);
-      }
-    };
-    widen(all.outputs, next.outputs);
-    widen(all.inputs, next.inputs);
-    widen(all.disturbances, next.disturbances);
-    for (std::size_t j = 0; j < all.constant.size(); ++j)
-      all.constant[j] = all.constant[j] && next.constant[j];
-  }
-  return all;
 }
 
 }  // namespace fpc

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fmbpc/base/parallel.hpp"
+#include "fuzzy/auto_structures.hpp"
 
 namespace fpc {
 namespace {
@@ -13,11 +14,7 @@ using Eigen::Index;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr int kSearchIterations = 60;   // models of the output's past
-constexpr int kStateIterations = 100;
 constexpr std::uint64_t kFirstSeeds = 3, kMoreSeeds = 4;
-
-using Candidates = std::vector<Candidate>;
 
 double squaredError(const AutoData& data, const Vector& predicted, Stretch s, double& n) {
   double sum = 0.0;
@@ -41,16 +38,16 @@ class Search {
       : data_(data), delay_(delay), seed_(seed), limits_(limits) {}
 
   SearchResult run(bool states) {
-    judge(linearCandidates(states), 0.0, 0.12);
+    judge(linearCandidates(base(), states), 0.0, 0.12);
     sortAll();
-    judge(ruleCandidates(), 0.12, 0.38);
+    judge(ruleCandidates(base(), result_.linear), 0.12, 0.38);
     sortAll();
-    judge(refinedRules(), 0.38, 0.5);
+    judge(refinedRules(result_.regressors), 0.38, 0.5);
     if (states) {
       sortAll();
-      judgeGroups(stateCandidates(), kFirstSeeds, 0.5, 0.8);
+      judgeGroups(stateCandidates(base(), data_.may_be_absolute), kFirstSeeds, 0.5, 0.8);
       sortAll();
-      judgeGroups(refinedStates(), kFirstSeeds, 0.8, 0.93);
+      judgeGroups(refinedStates(result_.state), kFirstSeeds, 0.8, 0.93);
       sortAll();
       deepen(3, 0.93, 1.0);
     }
@@ -62,15 +59,9 @@ class Search {
   Candidate base() const {
     Candidate c;
     c.delay = delay_;
-    c.iterations = kSearchIterations;
     c.seed = seed_;
     return c;
   }
-  Candidates linearCandidates(bool states) const;
-  Candidates ruleCandidates() const;
-  Candidates refinedRules() const;
-  Candidates stateCandidates() const;
-  Candidates refinedStates() const;
   std::vector<Judgement> judgeAll(const Candidates& candidates, double from, double to);
   void judge(const Candidates& candidates, double from, double to);
   void judgeGroups(const Candidates& structures, std::uint64_t seeds, double from, double to);
@@ -89,131 +80,6 @@ class Search {
   const SearchLimits& limits_;
   SearchResult result_;
 };
-
-Candidates Search::linearCandidates(bool states) const {
-  Candidates list;
-  Candidate c = base();
-  const std::vector<std::pair<int, int>> orders{{1, 1}, {1, 2}, {2, 1}, {2, 2}, {3, 2}, {3, 3},
-                                                {4, 4}};
-  for (const auto& [n, m] : orders)
-    for (const bool free : {false, true})
-      for (const double ridge : {1e-3, 1.0, 100.0}) {
-        if (!free && ridge > 1e-3) continue;
-        c.order = n;
-        c.input_terms = m;
-        c.free_run = free;
-        c.linear_ridge = ridge;
-        list.push_back(c);
-      }
-  c = base();
-  c.hidden = true;
-  for (int n = 1; states && n <= 4; ++n)
-    for (const bool chain : {false, true})
-      for (const double ridge : {1e-3, 1.0}) {
-        if (n == 1 && chain) continue;
-        c.order = n;
-        c.chain = chain;
-        c.linear_ridge = ridge;
-        list.push_back(c);
-      }
-  return list;
-}
-
-Candidates Search::ruleCandidates() const {
-  Candidates list;
-  std::vector<std::pair<int, int>> orders;
-  for (const auto& j : result_.linear) {
-    if (j.candidate.hidden) continue;
-    const std::pair<int, int> o{j.candidate.order, j.candidate.input_terms};
-    if (orders.size() < 2 && std::find(orders.begin(), orders.end(), o) == orders.end())
-      orders.push_back(o);
-  }
-  if (std::find(orders.begin(), orders.end(), std::pair<int, int>{2, 2}) == orders.end())
-    orders.emplace_back(2, 2);
-  Candidate c = base();
-  for (const int rules : {2, 3})
-    for (const auto& [n, m] : orders)
-      for (const auto on : {AntecedentChoice::kOutput, AntecedentChoice::kOutputAndInputs,
-                            AntecedentChoice::kInputs, AntecedentChoice::kOutputs}) {
-        if (n == 1 && on == AntecedentChoice::kOutputs) continue;
-        c.order = n;
-        c.input_terms = m;
-        c.rules = rules;
-        c.antecedents = on;
-        list.push_back(c);
-      }
-  return list;
-}
-
-Candidates Search::refinedRules() const {
-  Candidates list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(2, result_.regressors.size()); ++i) {
-    Candidate c = result_.regressors[i].candidate;
-    for (const double ridge : {0.1, 1.0, 100.0, 1000.0}) {
-      Candidate other = c;
-      other.ridge = ridge;
-      list.push_back(other);
-    }
-    for (int more = 1; more <= 2; ++more) {
-      Candidate other = c;
-      other.rules += more;
-      list.push_back(other);
-      other = c;
-      other.seed += static_cast<std::uint64_t>(more);
-      list.push_back(other);
-    }
-  }
-  return list;
-}
-
-Candidates Search::stateCandidates() const {
-  using A = AntecedentChoice;
-  struct Form {
-    int order;
-    bool chain, absolute;
-    A on;
-  };
-  std::vector<Form> forms{{2, true, false, A::kState},  {2, true, false, A::kStateAndInputs},
-                          {2, true, false, A::kOutput}, {2, false, false, A::kState},
-                          {2, false, false, A::kOutput}, {3, true, false, A::kState},
-                          {3, false, false, A::kState}};
-  if (data_.may_be_absolute)
-    forms.insert(forms.begin(), {{3, false, true, A::kOutput},
-                                 {2, false, true, A::kOutput},
-                                 {3, false, true, A::kState},
-                                 {2, false, true, A::kState}});
-  Candidates list;
-  for (const auto& form : forms)
-    for (const int rules : {1, 2, 3}) {
-      if (rules == 1 && (!form.absolute || form.on != A::kOutput)) continue;
-      Candidate c = base();
-      c.hidden = true;
-      c.iterations = kStateIterations;
-      c.order = form.order;
-      c.chain = form.chain;
-      c.absolute = form.absolute;
-      c.antecedents = form.on;
-      c.rules = rules;
-      list.push_back(c);
-    }
-  return list;
-}
-
-Candidates Search::refinedStates() const {
-  Candidates list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(2, result_.state.size()); ++i) {
-    const Candidate c = result_.state[i].members.front().candidate;
-    for (const double ridge : {3.0, 30.0, 100.0}) {
-      Candidate other = c;
-      other.ridge = ridge;
-      list.push_back(other);
-    }
-    Candidate other = c;
-    other.rules += 1;
-    list.push_back(other);
-  }
-  return list;
-}
 
 void Search::judgeGroups(const Candidates& structures, std::uint64_t seeds, double from, double to) {
   Candidates all;

@@ -72,6 +72,9 @@ Summary summaryOf(const Json& json) {
   summary.sources.assign(1, 0);
   if (json.contains("sources"))
     for (const auto& [name, count] : json.at("sources").items()) summary.sources.push_back(count);
+  if (json.contains("remarks"))
+    for (const Json& remark : json.at("remarks"))
+      summary.remarks.push_back({remark.at("words"), remark.at("samples"), remark.at("first")});
   if (json.contains("locked"))
     for (const Json& lock : json.at("locked"))
       summary.locked.push_back({lock.at("input"), lock.at("limit") == "upper", lock.at("samples")});

@@ -43,6 +43,9 @@ std::vector<std::string> remarksOf(const Summary& summary) {
   count(ActionSource::kFallback, "on the fallback: no answer came in time, or the guard acted");
   count(ActionSource::kClipped, "clipped: the law or the optimizer asked for more than the limits");
   if (neverControlled(summary)) add("the controller never acted");
+  for (const RunRemark& remark : summary.remarks)
+    add(ofAll(remark.samples, summary) + ": " + remark.words + " (first sample " +
+        std::to_string(remark.first) + ")");
   for (const LockUp& lock : summary.locked)
     add(lock.input + " locked at its " + (lock.upper ? "upper" : "lower") +
         " limit over the last " + ofAll(lock.samples, summary));

@@ -220,6 +220,10 @@ std::string toJson(const Summary& summary) {
   json["sources"] = Json::object();
   for (std::size_t i = 1; i < summary.sources.size(); ++i)
     json["sources"][kSourceNames[i]] = summary.sources[i];
+  json["remarks"] = Json::array();
+  for (const RunRemark& remark : summary.remarks)
+    json["remarks"].push_back(
+        {{"words", remark.words}, {"samples", remark.samples}, {"first", remark.first}});
   json["locked"] = Json::array();
   for (const LockUp& lock : summary.locked)
     json["locked"].push_back({{"input", lock.input},

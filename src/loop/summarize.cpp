@@ -182,6 +182,7 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
   summary.complete = record.complete;
   summary.failed_samples = record.failed_samples;
   summary.trouble = record.trouble;
+  summary.remarks = record.remarks;
   summary.wall_s = wall_s;
   summary.limits = loop.simulation.actuator.limits;
   summary.output_lower = loop.report.output_lower;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "optim/qp_kernels.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc::qp {
@@ -48,7 +49,7 @@ bool DualActiveSet::start(const QpProblem& p, const Vector& g, KktSystem& kkt, S
         sides[at(id)] = kOff;
         continue;
       }
-      z_.noalias() = J_.rightCols(n - q_) * d_.tail(n - q_);
+      product(J_.rightCols(n - q_), d_.tail(n - q_), z_);
       append(id, sides[at(id)]);
     }
   }
@@ -104,7 +105,7 @@ Index DualActiveSet::mostViolated(const QpProblem& p, double tolerance, RowNoise
     if (sides[at(i)] == kOff) consider(i, x_(i), scale_(i));
   }
   if (worst >= 0) return worst;
-  if (m > 0) ax_.noalias() = p.A * x_;
+  if (m > 0) product(p.A, x_, ax_);
   for (Index row = 0; row < m; ++row) {
     if (sides[at(n + row)] != kOff || (ax_(row) >= p.a_lower(row) && ax_(row) <= p.a_upper(row)))
       continue;
@@ -158,7 +159,7 @@ SolveStatus DualActiveSet::add(const QpProblem& p, const QpSettings& settings, R
     const double full = blocked ? kInfinity : std::max(violation, 0.0) / null_part.squaredNorm();
     const double t = std::min(step, full);
     if (!blocked) {
-      z_.noalias() = J_.rightCols(n - q_) * null_part;
+      product(J_.rightCols(n - q_), null_part, z_);
       x_ += t * z_;
     }
     u_.head(q_) -= t * r_.head(q_);

@@ -4,6 +4,7 @@
 // the product that it needs) and leave by Givens rotations.
 #include <cmath>
 
+#include "optim/qp_kernels.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc::qp {
@@ -16,7 +17,7 @@ void DualActiveSet::transformNormal(Index id, Side side) {
   if (id < x_.size()) {
     d_ = static_cast<double>(side) * J_.row(id).transpose();
   } else {
-    d_.noalias() = J_.transpose() * normal_;
+    transposedProduct(J_, normal_, d_);
   }
 }
 
@@ -37,7 +38,7 @@ void DualActiveSet::seed(const QpProblem& p, const KktSystem& kkt, const Sides& 
     column.tail(n - j).setZero();
     const double diagonal = 1.0 / L(j, j);
     if (j > 0) {
-      column.head(j).noalias() = inverse.topLeftCorner(j, j) * L.row(j).head(j).transpose();
+      product(inverse.topLeftCorner(j, j), L.row(j).head(j), column.head(j));
       column.head(j) *= -diagonal;
     }
     column(j) = diagonal;
@@ -67,7 +68,7 @@ void DualActiveSet::minimise(const QpProblem& p, const Vector& g) {
     c_(k) =
         static_cast<double>(active_side_[at(k)]) * limitOf(p, active_[at(k)], active_side_[at(k)]);
   }
-  d_.noalias() = J_.transpose() * g;
+  transposedProduct(J_, g, d_);
   c_.tail(n - q_) = -d_.tail(n - q_);
   if (q_ > 0) {
     const auto R = R_.topLeftCorner(q_, q_).triangularView<Eigen::Upper>();
@@ -77,7 +78,7 @@ void DualActiveSet::minimise(const QpProblem& p, const Vector& g) {
     u = c + d_.head(q_);
     R.solveInPlace(u);
   }
-  x_.noalias() = J_ * c_;
+  product(J_, c_, x_);
 }
 
 /// Takes the constraint with transform d and step z into the working set.

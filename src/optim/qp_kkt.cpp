@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 
+#include "optim/qp_kernels.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc::qp {
@@ -58,7 +59,7 @@ bool KktSystem::cholesky(Index column_begin, Index column_end, Index row_begin, 
     const Index unknown = order_[static_cast<std::size_t>(j)];
     const double H_jj = H_(unknown, unknown) + shift_(unknown);
     auto column = L_.col(j).segment(first, count);
-    if (j > 0) column.noalias() -= L_.block(first, 0, count, j) * L_.row(j).head(j).transpose();
+    if (j > 0) addProduct(-1.0, L_.block(first, 0, count, j), L_.row(j).head(j), column);
     if (first == j) {
       const double pivot = L_(j, j);
       if (!(pivot > kPivotTolerance * H_jj) || !std::isfinite(pivot)) return false;
@@ -147,7 +148,7 @@ bool KktSystem::factorRows(double dependent_tolerance) {
     const Index unknown = order_[static_cast<std::size_t>(j)];
     auto column = Vt_.col(j).head(n_r);
     column = At_.row(unknown).head(n_r).transpose();
-    if (j > 0) column.noalias() -= Vt_.block(0, 0, n_r, j) * L_.row(j).head(j).transpose();
+    if (j > 0) addProduct(-1.0, Vt_.block(0, 0, n_r, j), L_.row(j).head(j), column);
     column *= 1.0 / L_(j, j);
   }
   Q_.topLeftCorner(n_f, n_r) = Vt_.topLeftCorner(n_r, n_f).transpose();
@@ -177,10 +178,11 @@ bool KktSystem::factor(const QpProblem& p, const Sides& sides, double dependent_
 /// Errors of the KKT equations. @return whether they are down to rounding
 bool KktSystem::residual(const QpProblem& p, QpResult& result) {
   const Index n_r = n_rows_;
-  hx_.noalias() = p.H * result.x;
+  product(p.H, result.x, hx_);
   if (n_r > 0) {
-    aty_.noalias() = At_.leftCols(n_r) * y_.head(n_r);
-    residual_row_.head(n_r).noalias() = -At_.leftCols(n_r).transpose() * result.x;
+    product(At_.leftCols(n_r), y_, aty_);
+    transposedProduct(At_.leftCols(n_r), result.x, residual_row_);
+    residual_row_.head(n_r) *= -1.0;
   } else {
     aty_.setZero();
   }
@@ -215,9 +217,9 @@ void KktSystem::correct(QpResult& result) {
     auto step = residual_row_.head(n_r);
     auto projection = work_row_.head(n_r);
     R.transpose().solveInPlace(step);
-    projection.noalias() = Q_.topLeftCorner(n_f, n_r).transpose() * w;
+    transposedProduct(Q_.topLeftCorner(n_f, n_r), w, projection);
     step -= projection;
-    w.noalias() += Q_.topLeftCorner(n_f, n_r) * step;
+    addProduct(1.0, Q_.topLeftCorner(n_f, n_r), step, w);
     R.solveInPlace(step);
     y_.head(n_r) += step;
   }
@@ -245,9 +247,9 @@ void KktSystem::solve(const QpProblem& p, const Sides& sides, QpResult& result) 
 }
 
 void KktSystem::evaluate(const QpProblem& p, const QpResult& result) {
-  hx_.noalias() = p.H * result.x;
+  product(p.H, result.x, hx_);
   aty_.setZero();
-  if (p.a_lower.size() > 0) aty_.noalias() += p.A.transpose() * result.y_a;
+  if (p.a_lower.size() > 0) transposedProduct(p.A, result.y_a, aty_);
 }
 
 }  // namespace fpc::qp

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optim/qp_kernels.hpp"
 #include "optim/qp_solver.hpp"
 
 namespace fpc {
@@ -61,7 +62,7 @@ Index QpSolver::Workspace::revise(const QpProblem& p) {
   const QpResult& r = result;
   const double x_scale = tolerance() * qp::gradientScale(p, kkt.hx(), r.y_x, kkt.aty());
   const double a_scale = m > 0 ? tolerance() * (1.0 + r.y_a.lpNorm<Eigen::Infinity>()) : 0.0;
-  if (m > 0) ax.noalias() = p.A * r.x;
+  if (m > 0) qp::product(p.A, r.x, ax);
   Index changes = 0;
   next = sides;
   for (Index id = 0; id < n + m; ++id) {
@@ -120,7 +121,7 @@ SolveStatus QpSolver::Workspace::infeasible() {
 
 void QpSolver::Workspace::evaluate(const QpProblem& p) {
   kkt.evaluate(p, result);
-  if (p.a_lower.size() > 0) ax.noalias() = p.A * result.x;
+  if (p.a_lower.size() > 0) qp::product(p.A, result.x, ax);
 }
 
 /// The dual method from the working set, then the polish, until they agree.

@@ -19,7 +19,7 @@ double secondsOf(const std::string& unit) {
 }
 
 constexpr double kHole = 1.5;      // intervals: longer ones have rows missing
-constexpr double kMostRows = 1e7;  // with those that are missing
+constexpr double kMostAbsent = 1e6;  // rows that are missing
 
 /// Seconds since the first row.
 std::vector<double> timesOf(const CsvTable& table, const std::string& time_column,
@@ -65,7 +65,7 @@ CsvRows csvRows(const CsvTable& table, const std::string& time_column,
     const double hole = r == 0 ? 0.0 : times[r] - times[r - 1];
     const double lacking = hole > kHole * interval ? std::round(hole / interval) - 1.0 : 0.0;
     const auto row = static_cast<Eigen::Index>(r);
-    require(static_cast<double>(rows.times.size()) + lacking < kMostRows,
+    require(static_cast<double>(rows.absent) + lacking <= kMostAbsent,
             table.at(row, table.column(time_column)),
             "times without a hole of " + exactText(lacking) + " rows (another unit?)");
     for (double i = 1.0; i <= lacking; ++i, ++rows.absent) {

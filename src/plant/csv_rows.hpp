@@ -18,7 +18,7 @@ struct CsvRows {
 
 /// Where the times jump by more than one and a half of their median interval, rows are put in.
 /// @throws InputError naming file and line: unknown column, times that are missing or do not
-/// increase, fewer than two rows, a hole of ten million rows.
+/// increase, fewer than two rows, holes of a million rows.
 CsvRows csvRows(const CsvTable& table, const std::string& time_column,
                 const std::string& time_unit);
 

@@ -82,9 +82,9 @@ TEST_F(Commands, WhatIsRefusedIsToldAndTheRunGoesOn) {
 }
 
 TEST_F(Commands, SettingsAndHoldReachTheController) {
-  const LoopFile tuned = loop("surge_tank_steps", {{"sampling.duration_h", "1"}});
+  const LoopFile tuned = readLoop("surge_tank_steps", {{"sampling.duration_h", "0.01"}});
   const RunRecord plain = runLoop(tuned);
-  const RunRecord record = run(tuned, "- {time_h: 0.1, settings: {weight_move: '1e6'}}\n");
+  const RunRecord record = run(tuned, "- {time_h: 0.001, settings: {weight_move: '1e6'}}\n");
   EXPECT_TRUE(remarks_.empty()) << remarks_.front();
   bool differs = false;
   for (std::size_t k = 0; k + 1 < record.samples.size(); ++k)

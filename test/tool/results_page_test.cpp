@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "paths.hpp"
 #include "tool/tool_run.hpp"
 
 namespace fpc {
@@ -38,7 +39,7 @@ TEST(ResultsPage, ComparesNumbersByTheirSizeAndWordsByLetters) {
 
 TEST(ResultsPage, IsWhatTheCommandPrints) {
   if (!std::getenv("FMBPC_LONG_TESTS")) GTEST_SKIP() << "FMBPC_LONG_TESTS is not set";
-  std::ifstream stream(FMBPC_SOURCE_DIR "/docs/results.md");
+  std::ifstream stream(sourceDir() + "/docs/results.md");
   std::stringstream text;
   text << stream.rdbuf();
   const std::string page = text.str(), first = "\n## ";

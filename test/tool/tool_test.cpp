@@ -120,6 +120,15 @@ TEST_F(Tool, ARunThatIsHeldThroughoutFails) {
   EXPECT_NE(outcome.printed.find("60 of 60 samples held"), std::string::npos) << outcome.printed;
 }
 
+TEST_F(Tool, WhatALawSaysOfItselfStandsUnderTheTable) {
+  const Outcome outcome = tool(
+      "run surge_tank_steps --set controller.horizon_steps=1 --set sampling.duration_h=0.005");
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_NE(outcome.printed.find("of 180 samples: controller.horizon_steps is too short"),
+            std::string::npos)
+      << outcome.printed;
+}
+
 TEST_F(Tool, StabilityOfAMatrixOfTheLoopFileIsOfThatPlant) {
   const Outcome outcome = tool("stability heated_tank --json");
   ASSERT_EQ(outcome.code, 0);

@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "fmbpc/base/input_error.hpp"
+#include "paths.hpp"
 #include "tool/reproduce/experiment.hpp"
 
 namespace fpc::tool {
@@ -109,7 +110,7 @@ TEST(Verdict, IsNoConstantAnywhere) {
   namespace fs = std::filesystem;
   const std::regex asked(R"([=!]=\s*Verdict::k)");
   std::size_t files = 0;
-  for (const auto& entry : fs::directory_iterator(FMBPC_SOURCE_DIR "/src/tool/reproduce")) {
+  for (const auto& entry : fs::directory_iterator(sourceDir() + "/src/tool/reproduce")) {
     if (entry.path().filename().string().rfind("verdict.", 0) == 0) continue;
     std::ifstream stream(entry.path());
     std::string line;

@@ -2,6 +2,7 @@
 // over topics.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct SampleRecord {
   bool has_measurement{}, has_state{}, has_tracking{}, has_base{}, has_action{}, has_report{};
 };
 
+/// What a controller said of its own answers (`controller.horizon_steps is too short`, ...).
+struct RunRemark {
+  std::string words;
+  std::uint32_t samples{};  ///< at which it was said
+  std::uint32_t first{};    ///< of them
+};
+
 struct RunRecord {
   std::string loop;
   PlantInfo info;
@@ -30,6 +38,7 @@ struct RunRecord {
   bool complete{false};  ///< the final sample came, nothing is missing, and the plant moved as asked
   std::uint32_t failed_samples{};  ///< samples over which the plant could not be moved and was held
   std::string trouble;             ///< of the first of them: "sample 17: REASON"
+  std::vector<RunRemark> remarks;  ///< of the controller, in one process only
 };
 
 /// Counts failed samples and says whether the run is complete: nothing missing, nothing failed.

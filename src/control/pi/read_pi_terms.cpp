@@ -24,6 +24,8 @@ PiScheduleSignal readScheduleSignal(YamlSection& item, const ControllerContext& 
   add(context.disturbances(), Kind::kDisturbance, "");
   add(context.inputs(), Kind::kInput, "");
   std::string name;
+  item.text("schedule_by", name);
+  if (name.empty()) return signal;
   item.oneOf("schedule_by", name, choices);
   for (std::size_t i = 0; i < choices.size(); ++i)
     if (choices[i] == name) return meant[i];

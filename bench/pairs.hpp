@@ -1,0 +1,71 @@
+// Two things measured in turn in one run: A, B, A, B, ... The ratios of neighbours survive a
+// machine that is busy with other things or changes its clock; single times do not.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace fpc::bench {
+
+/// How long and how often: 2 s and 10 pairs, or what FMBPC_BENCH_SECONDS and FMBPC_BENCH_PAIRS say.
+struct Effort {
+  double seconds{2.0};
+  int pairs{10};
+
+  static Effort fromEnvironment() {
+    Effort effort;
+    if (const char* text = std::getenv("FMBPC_BENCH_SECONDS")) effort.seconds = std::atof(text);
+    if (const char* text = std::getenv("FMBPC_BENCH_PAIRS")) effort.pairs = std::atoi(text);
+    effort.pairs = std::max(effort.pairs, 1);
+    return effort;
+  }
+};
+
+/// Microseconds of one call, from as many as fill the time.
+template <class Work>
+double microseconds(const Work& work, double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  double passed = 0.0;
+  long calls = 0;
+  do {
+    work();
+    ++calls;
+    passed = std::chrono::duration<double>(Clock::now() - start).count();
+  } while (passed < seconds);
+  return 1e6 * passed / static_cast<double>(calls);
+}
+
+inline double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+/// Prints one line of JSON: the median, least and most of time(rival) / time(ours), a rate above 1
+/// being in our favour, and the median times of both.
+template <class Ours, class Rival>
+void printPairs(const std::string& path, const std::string& rival_name, const std::string& aim,
+                const Ours& ours, const Rival& rival) {
+  const Effort effort = Effort::fromEnvironment();
+  std::vector<double> ours_us, rival_us, ratios;
+  for (int i = 0; i < effort.pairs; ++i) {
+    ours_us.push_back(microseconds(ours, effort.seconds));
+    rival_us.push_back(microseconds(rival, effort.seconds));
+    ratios.push_back(rival_us.back() / ours_us.back());
+  }
+  std::printf(
+      "{\"path\": \"%s\", \"rival\": \"%s\", \"aim\": \"%s\", \"ratio\": %.4g, \"least\": %.4g, "
+      "\"most\": %.4g, \"ours_us\": %.5g, \"rival_us\": %.5g, \"pairs\": %d}\n",
+      path.c_str(), rival_name.c_str(), aim.c_str(), median(ratios),
+      *std::min_element(ratios.begin(), ratios.end()),
+      *std::max_element(ratios.begin(), ratios.end()), median(ours_us), median(rival_us),
+      effort.pairs);
+  std::fflush(stdout);
+}
+
+}  // namespace fpc::bench

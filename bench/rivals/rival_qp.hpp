@@ -1,0 +1,41 @@
+// Other people's solvers of quadratic programmes behind one interface, each linked if CMake has
+// found it (FMBPC_RIVALS: a folder with include/ and lib/).
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fmbpc/optim/qp.hpp"
+
+namespace fpc::bench {
+
+class RivalQp {
+ public:
+  virtual ~RivalQp() = default;
+  /// Converts the problem into the solver's own layout and takes all memory; not timed.
+  virtual void prepare(const QpProblem& problem) = 0;
+  /// Solves the prepared problem without knowledge of the solve before. @return whether it says so
+  virtual bool solve() = 0;
+  /// The same with the active set of the solve before.
+  virtual bool solveWarm() { return solve(); }
+  virtual bool canWarm() const { return false; }
+  virtual Vector x() const = 0;
+};
+
+struct RivalType {
+  std::string name;
+  std::unique_ptr<RivalQp> (*make)();
+};
+
+inline std::vector<RivalType>& rivals() {
+  static std::vector<RivalType> all;
+  return all;
+}
+
+inline bool registerRival(const std::string& name, std::unique_ptr<RivalQp> (*make)()) {
+  rivals().push_back({name, make});
+  return true;
+}
+
+}  // namespace fpc::bench

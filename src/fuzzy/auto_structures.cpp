@@ -1,0 +1,142 @@
+#include "fuzzy/auto_structures.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace fpc {
+namespace {
+
+constexpr int kSearchIterations = 60;  // models of the output's past
+constexpr int kStateIterations = 100;
+
+}  // namespace
+
+Candidates linearCandidates(const Candidate& base, bool states) {
+  Candidates list;
+  Candidate c = base;
+  c.iterations = kSearchIterations;
+  const std::vector<std::pair<int, int>> orders{{1, 1}, {1, 2}, {2, 1}, {2, 2}, {3, 2}, {3, 3},
+                                                {4, 4}};
+  for (const auto& [n, m] : orders)
+    for (const bool free : {false, true})
+      for (const double ridge : {1e-3, 1.0, 100.0}) {
+        if (!free && ridge > 1e-3) continue;
+        c.order = n;
+        c.input_terms = m;
+        c.free_run = free;
+        c.linear_ridge = ridge;
+        list.push_back(c);
+      }
+  c = base;
+  c.iterations = kSearchIterations;
+  c.hidden = true;
+  for (int n = 1; states && n <= 4; ++n)
+    for (const bool chain : {false, true})
+      for (const double ridge : {1e-3, 1.0}) {
+        if (n == 1 && chain) continue;
+        c.order = n;
+        c.chain = chain;
+        c.linear_ridge = ridge;
+        list.push_back(c);
+      }
+  return list;
+}
+
+Candidates ruleCandidates(const Candidate& base, const std::vector<Judgement>& linear) {
+  Candidates list;
+  std::vector<std::pair<int, int>> orders;
+  for (const auto& j : linear) {
+    if (j.candidate.hidden) continue;
+    const std::pair<int, int> o{j.candidate.order, j.candidate.input_terms};
+    if (orders.size() < 2 && std::find(orders.begin(), orders.end(), o) == orders.end())
+      orders.push_back(o);
+  }
+  if (std::find(orders.begin(), orders.end(), std::pair<int, int>{2, 2}) == orders.end())
+    orders.emplace_back(2, 2);
+  Candidate c = base;
+  c.iterations = kSearchIterations;
+  for (const int rules : {2, 3})
+    for (const auto& [n, m] : orders)
+      for (const auto on : {AntecedentChoice::kOutput, AntecedentChoice::kOutputAndInputs,
+                            AntecedentChoice::kInputs, AntecedentChoice::kOutputs}) {
+        if (n == 1 && on == AntecedentChoice::kOutputs) continue;
+        c.order = n;
+        c.input_terms = m;
+        c.rules = rules;
+        c.antecedents = on;
+        list.push_back(c);
+      }
+  return list;
+}
+
+Candidates refinedRules(const std::vector<Judgement>& regressors) {
+  Candidates list;
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, regressors.size()); ++i) {
+    Candidate c = regressors[i].candidate;
+    for (const double ridge : {0.1, 1.0, 100.0, 1000.0}) {
+      Candidate other = c;
+      other.ridge = ridge;
+      list.push_back(other);
+    }
+    for (int more = 1; more <= 2; ++more) {
+      Candidate other = c;
+      other.rules += more;
+      list.push_back(other);
+      other = c;
+      other.seed += static_cast<std::uint64_t>(more);
+      list.push_back(other);
+    }
+  }
+  return list;
+}
+
+Candidates stateCandidates(const Candidate& base, bool absolute) {
+  using A = AntecedentChoice;
+  struct Form {
+    int order;
+    bool chain, absolute;
+    A on;
+  };
+  std::vector<Form> forms{{2, true, false, A::kState},  {2, true, false, A::kStateAndInputs},
+                          {2, true, false, A::kOutput}, {2, false, false, A::kState},
+                          {2, false, false, A::kOutput}, {3, true, false, A::kState},
+                          {3, false, false, A::kState}};
+  if (absolute)
+    forms.insert(forms.begin(), {{3, false, true, A::kOutput},
+                                 {2, false, true, A::kOutput},
+                                 {3, false, true, A::kState},
+                                 {2, false, true, A::kState}});
+  Candidates list;
+  for (const auto& form : forms)
+    for (const int rules : {1, 2, 3}) {
+      if (rules == 1 && (!form.absolute || form.on != A::kOutput)) continue;
+      Candidate c = base;
+      c.hidden = true;
+      c.iterations = kStateIterations;
+      c.order = form.order;
+      c.chain = form.chain;
+      c.absolute = form.absolute;
+      c.antecedents = form.on;
+      c.rules = rules;
+      list.push_back(c);
+    }
+  return list;
+}
+
+Candidates refinedStates(const std::vector<Group>& state) {
+  Candidates list;
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, state.size()); ++i) {
+    const Candidate c = state[i].members.front().candidate;
+    for (const double ridge : {3.0, 30.0, 100.0}) {
+      Candidate other = c;
+      other.ridge = ridge;
+      list.push_back(other);
+    }
+    Candidate other = c;
+    other.rules += 1;
+    list.push_back(other);
+  }
+  return list;
+}
+
+}  // namespace fpc

@@ -1,0 +1,18 @@
+// The structures that a search tries, stage by stage.
+#pragma once
+
+#include "fuzzy/auto_search.hpp"
+
+namespace fpc {
+
+using Candidates = std::vector<Candidate>;
+
+Candidates linearCandidates(const Candidate& base, bool states);
+/// Two and three rules on the orders of the best linear models.
+Candidates ruleCandidates(const Candidate& base, const std::vector<Judgement>& linear);
+/// The best with other ridges, numbers of rules and starts.
+Candidates refinedRules(const std::vector<Judgement>& regressors);
+Candidates stateCandidates(const Candidate& base, bool absolute);
+Candidates refinedStates(const std::vector<Group>& state);
+
+}  // namespace fpc

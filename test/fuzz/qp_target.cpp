@@ -1,0 +1,85 @@
+// Bytes as a quadratic programme: sizes, then numbers of few and odd values, so that degenerate rows,
+// equal limits and semidefinite Hessians come up by themselves.
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "fmbpc/optim/qp.hpp"
+#include "fuzz/targets.hpp"
+
+namespace fpc::fuzz {
+namespace {
+
+using Eigen::Index;
+
+class Bytes {
+ public:
+  explicit Bytes(const std::string& bytes) : bytes_(bytes) {}
+  int below(int n) { return next() % n; }
+  double number() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    static const double odd[] = {0.0,  1.0,    -1.0,  0.5,  2.0,   -3.0,      1e-16,      -2.8e-17,
+                                 1e-9, 1e6,    -1e6,  1e12, 1e-12, kInfinity, -kInfinity, 100.0};
+    const int byte = next();
+    return byte < 128 ? odd[byte % 16] : (byte - 192) / 16.0;
+  }
+
+ private:
+  int next() { return at_ < bytes_.size() ? static_cast<unsigned char>(bytes_[at_++]) : 0; }
+  const std::string& bytes_;
+  std::size_t at_{0};
+};
+
+double finite(Bytes& bytes) {
+  const double value = bytes.number();
+  return std::isfinite(value) ? value : 7.0;
+}
+
+QpProblem problemOf(Bytes& bytes) {
+  const Index n = 1 + bytes.below(6), m = bytes.below(8), rank = bytes.below(static_cast<int>(n) + 1);
+  QpProblem p(n, m);
+  Matrix root(n, rank);
+  for (double& value : root.reshaped()) value = finite(bytes);
+  p.H = root * root.transpose();
+  for (double& value : p.g) value = finite(bytes);
+  for (double& value : p.A.reshaped()) value = finite(bytes);
+  const auto limits = [&](Vector& lower, Vector& upper) {
+    for (Index i = 0; i < lower.size(); ++i) {
+      const double a = bytes.number(), b = bytes.number();
+      if (a == b && std::isinf(a)) continue;
+      lower[i] = std::min(a, b);
+      upper[i] = std::max(a, b);
+    }
+  };
+  limits(p.x_lower, p.x_upper);
+  limits(p.a_lower, p.a_upper);
+  return p;
+}
+
+void check(const QpProblem& p, const QpResult& result, const char* how) {
+  const auto fail = [&](const std::string& what) {
+    throw std::logic_error(what + " (" + how + "), n " + std::to_string(p.g.size()) + ", m " +
+                           std::to_string(p.A.rows()));
+  };
+  if (result.status == SolveStatus::kSolved) {
+    if (!(kktResidual(p, result.x, result.y_x, result.y_a) <= 1e-9)) fail("solved with a residual");
+  } else if (result.status == SolveStatus::kInfeasible) {
+    if (!(farkasRadius(p, result.y_x, result.y_a) >= 100.0)) fail("infeasible without certificate");
+  } else if (result.status == SolveStatus::kInvalidProblem) {
+    fail("a valid problem called invalid");
+  }
+}
+
+}  // namespace
+
+void qp(const std::string& text) {
+  Bytes bytes(text);
+  const QpProblem first = problemOf(bytes);
+  QpProblem second = first;
+  for (double& value : second.g) value = finite(bytes);
+  QpSolver solver(first.g.size(), first.A.rows());
+  check(first, solver.solve(first, false), "cold");
+  check(second, solver.solve(second, true), "warm");
+}
+
+}  // namespace fpc::fuzz

@@ -1,0 +1,12 @@
+#include "fuzz/targets.hpp"
+
+namespace fpc::fuzz {
+
+const std::vector<NamedTarget>& targets() {
+  static const std::vector<NamedTarget> all{
+      {"loop", loopFile},     {"model", modelFile}, {"structure", structureFile},
+      {"tuning", tuningFile}, {"csv", csvTable},    {"qp", qp}};
+  return all;
+}
+
+}  // namespace fpc::fuzz

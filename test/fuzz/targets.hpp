@@ -1,0 +1,27 @@
+// What the fuzzers call with any bytes: each answers with an InputError in words or with a result
+// that holds what it promises; anything else escapes and is a finding. The committed corpora are
+// replayed by replay_test.cpp, so that every finding becomes a test.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace fpc::fuzz {
+
+using Target = void (*)(const std::string& bytes);
+
+void loopFile(const std::string& bytes);       ///< read; run over at most 30 samples, limits held
+void modelFile(const std::string& bytes);      ///< read, written, read again: the same
+void structureFile(const std::string& bytes);  ///< read
+void tuningFile(const std::string& bytes);     ///< read
+void csvTable(const std::string& bytes);       ///< read in three formats; resampled
+void qp(const std::string& bytes);             ///< solved, or infeasible with a certificate
+
+struct NamedTarget {
+  const char* name;  ///< folder of its corpus
+  Target run;
+};
+const std::vector<NamedTarget>& targets();
+
+}  // namespace fpc::fuzz
