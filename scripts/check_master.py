@@ -5,6 +5,10 @@ import socket
 import sys
 import xmlrpc.client
 
+if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
+    print(__doc__.strip())
+    sys.exit(0)
+
 import rosgraph
 import rosgraph.names
 

@@ -17,6 +17,9 @@ class Scripts(unittest.TestCase):
         self.assertGreater(len(programs()), 10)
         for name in programs():
             with self.subTest(name):
+                with open(os.path.join(SCRIPTS, name), encoding="utf-8") as script:  # never run one that does not know it
+                    text = script.read()
+                self.assertTrue("--help" in text or "argparse" in text, "knows no --help")
                 done = subprocess.run([os.path.join(SCRIPTS, name), "--help"], capture_output=True, text=True, timeout=60,
                                       env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", "/")}, check=False)
                 self.assertEqual(done.returncode, 0, done.stderr)

@@ -6,10 +6,12 @@
 namespace fpc::tool {
 namespace {
 
+/// What rounds to zero has no sign.
 std::string number(double value, const char* format = "%.5g") {
   char text[40];
   std::snprintf(text, sizeof text, format, value);
-  return text;
+  const bool zero = std::string(text).find_first_of("123456789") == std::string::npos;
+  return zero && text[0] == '-' ? text + 1 : text;
 }
 
 std::string valuesText(const Json& values) {

@@ -48,6 +48,15 @@ TEST_F(Tool, TablesHaveUnitsALegendAndNoSwitchesOfAContinuousValve) {
   EXPECT_EQ(valves.find("  -  "), std::string::npos) << valves;
 }
 
+TEST_F(Tool, StabilityPrintsNoMinusZero) {
+  for (const char* subject : {"fm_1", "cstr_tracking"}) {
+    const std::string printed =
+        tool(std::string("stability ") + subject + " --horizon 1..9").printed;
+    ASSERT_FALSE(printed.empty()) << subject;
+    EXPECT_EQ(printed.find("-0.0000"), std::string::npos) << printed;
+  }
+}
+
 TEST_F(Tool, SaysItsVersion) {
   const std::string printed = tool("--version").printed;
   EXPECT_EQ(printed.rfind("fmbpc 0.", 0), 0U) << printed;
