@@ -17,7 +17,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 Vector one(double value) { return Vector::Constant(1, value); }
 
 ActuatorParams params(double move = kInfinity, int hold_samples = -1) {
-  return {{one(0.0), one(1600.0), one(move)}, one(570.0), one(300.0), hold_samples};
+  return {{one(0.0), one(1600.0), one(move)}, one(570.0), one(300.0), {}, hold_samples};
 }
 
 TEST(Actuator, StartsAtItsInitialInput) {
