@@ -60,6 +60,7 @@ TEST(Actuator, EachElementCounts) {
   ActuatorParams p{{Vector::Zero(3), Vector::Ones(3), Vector::Constant(3, kInfinity)},
                    Vector::Zero(3),
                    Vector::Zero(3),
+                   {},
                    -1};
   Actuator actuator(p);
   actuator.apply(Eigen::Vector3d(2.0, 0.5, -1.0));
