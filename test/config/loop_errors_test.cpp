@@ -180,6 +180,16 @@ std::string nameOf(const ::testing::TestParamInfo<Mistake>& info) { return info.
 
 INSTANTIATE_TEST_SUITE_P(Loop, EveryMistake, ::testing::ValuesIn(kMistakes), nameOf);
 
+TEST_F(LoopErrors, ARecordForYearsOfSamplesIsRefusedBeforeItIsMade) {
+  const std::string file =
+      write("long.yaml", smallLoop() +
+                             "disturbance: {source: pattern, pattern: {channels: "
+                             "{q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}}\n");
+  const Overrides years{{"sampling.duration_h", "9000000"}};
+  expectWords(errorOf([&] { readLoop(file, years); }),
+              {"sampling.duration_h", "at most 10000000 samples"});
+}
+
 TEST_F(LoopErrors, AnEndlessRunNeedsConstantDisturbances) {
   const std::string file = write("loop.yaml", smallLoop());
   EXPECT_EQ(readLoop(file, {{"sampling.duration_h", "0"}}).simulation.samples, 0U);
