@@ -39,6 +39,7 @@ TEST(ResultsPage, ComparesNumbersByTheirSizeAndWordsByLetters) {
 
 TEST(ResultsPage, IsWhatTheCommandPrints) {
   if (!std::getenv("FMBPC_LONG_TESTS")) GTEST_SKIP() << "FMBPC_LONG_TESTS is not set";
+  if (!std::getenv("FMBPC_DATA")) GTEST_SKIP() << "FMBPC_DATA is not set";
   std::ifstream stream(sourceDir() + "/docs/results.md");
   std::stringstream text;
   text << stream.rdbuf();

@@ -150,7 +150,12 @@ Rows rowsOf(const Experiment& experiment) {
 }
 
 bool isTableOrFigure(const Experiment& experiment) {
-  return experiment.item.rfind("table", 0) == 0 || experiment.item.rfind("figure", 0) == 0;
+  for (const std::string kind : {"table ", "figure "}) {
+    if (experiment.item.rfind(kind, 0) != 0) continue;
+    const auto first = static_cast<unsigned char>(experiment.item[kind.size()]);
+    return std::isdigit(first) || std::isupper(first);  // "table 3", "table A1"
+  }
+  return false;
 }
 
 }  // namespace fpc::tool

@@ -80,7 +80,7 @@ bool registerExperiments(std::vector<Experiment> some);
 std::vector<Experiment> experiments();
 /// Its rows with `behind` filled in. What throws becomes one row without a result.
 Rows rowsOf(const Experiment& experiment);
-/// A table or figure of a paper, not an equation, a section or an addition of ours.
+/// A numbered table or figure of a paper, not an equation, a section or an addition of ours.
 bool isTableOrFigure(const Experiment& experiment);
 
 }  // namespace fpc::tool
