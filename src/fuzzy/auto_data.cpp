@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kLimitRun = 4;           // equal extreme values in a row mean a sensor at its limit
-constexpr double kNearZero = 0.05;     // of the span
+constexpr int kLimitRun = 4;        // equal extreme values in a row mean a sensor at its limit
+constexpr double kNearZero = 0.05;  // of the span
 constexpr Index kShortestStretch = 12;
 
 double meanOf(const Eigen::Ref<const Vector>& values) {
@@ -116,15 +116,15 @@ AutoData prepareAuto(const DataSet& data, int output, int blocks, Index most, In
     p.shift[j] = meanOf(data.values.col(j));
     p.scale[j] = deviationOf(data.values.col(j), p.shift[j]);
   }
-  p.scaled = (data.values.rowwise() - p.shift.transpose()).array().rowwise() /
-             p.scale.transpose().array();
+  p.scaled =
+      (data.values.rowwise() - p.shift.transpose()).array().rowwise() / p.scale.transpose().array();
   findLimits(p);
   findRate(p);
   const Index length = std::max<Index>(1, (std::min(rows, most) + blocks - 1) / blocks);
   const auto known = stretchesOf(data);
   p.windows = cut(spread(rows, blocks, rows <= most ? rows : length), known);
-  p.all = rows <= most_last ? known
-                            : cut(spread(rows, 2 * blocks, most_last / (2 * blocks)), known);
+  p.all =
+      rows <= most_last ? known : cut(spread(rows, 2 * blocks, most_last / (2 * blocks)), known);
   return p;
 }
 

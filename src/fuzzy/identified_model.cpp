@@ -13,6 +13,8 @@ namespace {
 using Eigen::Index;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr Index kMostStarts =
+    5000;  // of predictions n samples ahead: of longer records every so many
 
 void clipToSensors(const IdentifiedModel& model, Matrix& predicted) {
   for (std::size_t i = 0; i < model.outputs.size(); ++i) {
@@ -38,7 +40,8 @@ Matrix stepsAhead(const TsModel& model, const DataSet& data, int steps) {
     for (const auto* list : {&s.antecedents, &s.regressors})
       for (const auto& r : *list) longest = std::max<Index>(longest, r.lag);
   DataSet part = data;
-  for (Index k = longest; k + steps < data.rows(); ++k) {
+  const Index stride = std::max<Index>(1, data.rows() / kMostStarts);
+  for (Index k = longest; k + steps < data.rows(); k += stride) {
     part.values = data.values.middleRows(k - longest, longest + steps + 1);
     const Matrix run = predictFreeRun(model, part);
     predicted.row(k + steps) = run.row(longest + steps);

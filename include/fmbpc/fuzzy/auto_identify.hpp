@@ -17,14 +17,14 @@ enum class ModelKind { kLinear, kRegressors, kState };
 const std::string& name(ModelKind kind);
 
 struct AutoParams {
-  double budget_s{45.0};           ///< wall time after which no new fit begins
-  int blocks{4};                   ///< of the cross-validation, >= 2
-  Eigen::Index most_rows{2000};    ///< that the search uses
-  Eigen::Index most_last{8000};    ///< that the last fit uses
-  int window{5};                   ///< measured samples that start a free run
-  int longest_delay{10};           ///< [samples]
-  bool states{true};               ///< search models with a state of their own as well
-  int threads{0};                  ///< 0: all cores
+  double budget_s{45.0};         ///< wall time after which no new fit begins
+  int blocks{4};                 ///< of the cross-validation, >= 2
+  Eigen::Index most_rows{2000};  ///< that the search uses
+  Eigen::Index most_last{8000};  ///< that the last fit uses
+  int window{5};                 ///< measured samples that start a free run
+  int longest_delay{10};         ///< [samples]
+  bool states{true};             ///< search models with a state of their own as well
+  int threads{0};                ///< 0: all cores
   std::uint64_t seed{1};
 };
 
