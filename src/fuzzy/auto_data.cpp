@@ -185,8 +185,9 @@ double oneStepError(const AutoData& p, const std::vector<int>& delay) {
 }  // namespace
 
 DelayGuess guessDelays(const AutoData& p, int longest) {
-  constexpr double kWorth = 0.97;   // a delay must lower the error by this
   constexpr double kAlike = 1.005;  // two delays within it are not told apart
+  // a delay must lower the error by more than chance does
+  const double worth = 1.0 - std::max(0.03, 10.0 / static_cast<double>(p.scaled.rows()));
   const std::size_t m = p.data->inputs.size() + p.data->disturbances.size();
   DelayGuess guess{std::vector<int>(m, 0), std::vector<bool>(m, false)};
   double best = oneStepError(p, guess.delay);
@@ -196,7 +197,7 @@ DelayGuess guessDelays(const AutoData& p, int longest) {
       auto trial = guess.delay;
       for (trial[j] = 0; trial[j] <= longest; ++trial[j]) errors.push_back(oneStepError(p, trial));
       const auto lowest = std::min_element(errors.begin(), errors.end());
-      if (*lowest < kWorth * best) {
+      if (*lowest < worth * best) {
         guess.delay[j] = static_cast<int>(lowest - errors.begin());
         best = *lowest;
       }

@@ -83,7 +83,7 @@ bool IdentifiedModel::has(ModelKind kind) const {
 IdentifiedModel toIdentified(const AutoIdentification& found) {
   IdentifiedModel m{found.model, found.linear.submodels, found.state, {}};
   for (const auto& o : found.outputs) {
-    const AutoFigures& f = o.regressors.blocks.empty() ? o.linear : o.regressors;
+    const AutoFigures& f = o.fuzzy_model ? o.regressors : o.linear;
     m.outputs.push_back({o.best, o.sensor_lower, o.sensor_upper, f.width, f.one_step_width});
   }
   return m;
@@ -126,7 +126,7 @@ KindPrediction predictBest(const IdentifiedModel& model, const DataSet& data) {
       const auto c = static_cast<Index>(i);
       best.one_step.col(c) = other.one_step.col(c);
       best.free_run.col(c) = other.free_run.col(c);
-      if (kind == ModelKind::kLinear) continue;  // the file's model is the linear one: its widths
+      if (kind == ModelKind::kLinear) continue;  // the file's model is linear then: its widths
       best.one_step_width[c] = other.one_step_width[c];
       best.free_run_width[c] = other.free_run_width[c];
     }

@@ -51,8 +51,9 @@ struct AutoFigures {
 struct AutoOutput {
   std::string output;
   AutoFigures linear, regressors, state;  ///< of the best of each kind; no blocks: not searched
-  ModelKind best{ModelKind::kLinear};     ///< lowest cross-validated error, beyond the spread
+  ModelKind best{ModelKind::kLinear};  ///< lowest held-out error of those that beat linear, if any
   bool beats_linear{false};  ///< the best fuzzy model is better than linear beyond the spread
+  bool fuzzy_model{false};   ///< `model` is fuzzy here, else linear
   std::string verdict;       ///< the same in words
   std::vector<int> delay;    ///< of inputs, then disturbances [samples]; 0: acts on the next output
   double sensor_lower{}, sensor_upper{};  ///< limits seen in the data; equal: none
