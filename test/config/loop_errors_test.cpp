@@ -197,9 +197,9 @@ TEST_F(LoopErrors, AnEndlessRunNeedsConstantDisturbances) {
   expectWords(error, {"asp_case1", "sampling.duration_h", "constant"});
 }
 
-TEST_F(LoopErrors, UnknownLoopsListTheKnownOnes) {
+TEST_F(LoopErrors, UnknownLoopsNameTheNearest) {
   expectWords(errorOf([] { readLoop("asp_case_one"); }),
-              {"'asp_case_one'", "asp_case1,", "asp_clp_1a"});
+              {"'asp_case_one'", "near:", "asp_case1_own"});
   expectWords(errorOf([&] { readLoop(path("absent.yaml")); }),
               {"absent.yaml", "an existing loop file"});
 }
