@@ -14,7 +14,7 @@ class Replay : public ::testing::TestWithParam<NamedTarget> {};
 
 TEST_P(Replay, HoldsWhatItPromises) {
   int files = 0;
-  const std::string corpus = sourceDir() + "/test/fuzz/corpus/";
+  const std::string corpus = fpc::sourceDir() + "/test/fuzz/corpus/";
   for (const auto& entry : std::filesystem::directory_iterator(corpus + GetParam().name)) {
     std::ifstream stream(entry.path(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
