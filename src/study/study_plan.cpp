@@ -82,8 +82,8 @@ StudyPlan::StudyPlan(StudyFile study) : study_(std::move(study)) {
   for (const auto& one : cases_) all += one.name;
   for (const auto& [key, value] : study_.set) all += key + value;
   fingerprint_ = textHash(all);
-  for (std::size_t run = 0; run < runs(); run += cases_.size())
-    checkFitness(study_.fitness, loop(run));
+  for (std::size_t i = 0; i < prepared_.size(); ++i)  // drawn numbers may fail later, in their run
+    checkFitness(study_.fitness, parseLoop(prepared_[i].front().text, study_.loops[i].name));
 }
 
 StudyPlan::Prepared StudyPlan::prepare(const StudyLoop& loop,
