@@ -37,15 +37,26 @@ class Ours {
   std::size_t turn_{};
 };
 
-/// Largest violation of a limit and distance from our answer, both relative to 1 + |x|.
+double costOf(const QpProblem& p, const Vector& x) { return 0.5 * x.dot(p.H * x) + p.g.dot(x); }
+
+/// Largest violation of a limit, relative to 1 + |x|, and how far the cost is from ours. (Where the
+/// Hessian is semidefinite there may be many answers.)
 double errorOf(const QpProblem& p, const Vector& x, const Vector& ours) {
-  double error = (x - ours).lpNorm<Eigen::Infinity>();
+  double violation = 0.0;
   const Vector Ax = p.A * x;
   for (Eigen::Index i = 0; i < x.size(); ++i)
-    error = std::max({error, p.x_lower(i) - x(i), x(i) - p.x_upper(i)});
+    violation = std::max({violation, p.x_lower(i) - x(i), x(i) - p.x_upper(i)});
   for (Eigen::Index i = 0; i < Ax.size(); ++i)
-    error = std::max({error, p.a_lower(i) - Ax(i), Ax(i) - p.a_upper(i)});
-  return error / (1.0 + ours.lpNorm<Eigen::Infinity>());
+    violation = std::max({violation, p.a_lower(i) - Ax(i), Ax(i) - p.a_upper(i)});
+  const double cost = costOf(p, ours);
+  return std::max(violation / (1.0 + ours.lpNorm<Eigen::Infinity>()),
+                  std::abs(costOf(p, x) - cost) / (1.0 + std::abs(cost)));
+}
+
+std::string text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.0e", value);
+  return buffer;
 }
 
 void compare(const Family& family, const RivalType& type, bool warm) {
@@ -68,7 +79,7 @@ void compare(const Family& family, const RivalType& type, bool warm) {
   const std::string path = "QP " + family.name + (warm ? ", warm" : ", cold") + " (" +
                            std::to_string(solved) + " of " + count + " solved)";
   const std::string rival = type.name + " (" + std::to_string(solved_by_rival) + " of " + count +
-                            ", error " + std::to_string(worst) + ")";
+                            ", error " + text(worst) + ")";
   printPairs(
       path, rival, family.aim,
       [&] {

@@ -24,14 +24,14 @@ _fmbpc() {
       run | resolve) words=$("$tool" loops --names 2>/dev/null) ;;
       stability) words="$("$tool" loops --names 2>/dev/null) $(_fmbpc_names model)" ;;
       tune) words="$("$tool" loops --names 2>/dev/null) $(_fmbpc_names tuning)" ;;
-      model) words=$(_fmbpc_names model) ;;
+      model | validate) words=$(_fmbpc_names model) ;;
       identify) words=$(_fmbpc_names structure) ;;
       reproduce) words=$("$tool" reproduce --list 2>/dev/null | awk '{print $1; print $2}' | sort -u) ;;
       *) words= ;;
     esac
   fi
   mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
-  case $command in identify | table | run) mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$word") ;; esac
+  case $command in identify | validate | table | run) mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$word") ;; esac
 }
 
 _fmbpc_config=$(cd "$(dirname "${BASH_SOURCE[0]}")/../config" 2>/dev/null && pwd)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws what `fmbpc identify --plots DIR` wrote: fuzzy sets, predictions against data, correlation of the residuals.
+"""Draws what `fmbpc identify --plots DIR` or `fmbpc validate --plots DIR` wrote: fuzzy sets, predictions against data, correlation of the residuals.
 
     plot_model.py DIR
 
@@ -99,6 +99,12 @@ def draw_prediction(plt, report, folder):
         axis.plot(time, columns[output + "_one_step"][::step], color=COLOURS[2], linewidth=0.9, linestyle="--",
                   label="one step")
         axis.plot(time, columns[output + "_free_run"][::step], color=COLOURS[0], linewidth=1.1, label="free run")
+        band = report[part][output].get("interval", {}).get("free_run", {})
+        if band.get("half_width"):
+            run = columns[output + "_free_run"][::step]
+            axis.fill_between(time, [v - band["half_width"] for v in run], [v + band["half_width"] for v in run],
+                              color=COLOURS[0], alpha=0.15, linewidth=0,
+                              label="95 %% interval, holds %.0f %%" % (band["coverage"] or 0.0))
         axis.plot(time, columns[output + "_linear_free_run"][::step], color=COLOURS[1], linewidth=0.8,
                   label="linear, free run")
         known = sorted(v for v in columns[output] if v == v)
@@ -109,7 +115,7 @@ def draw_prediction(plt, report, folder):
         figures = report[part][output]
         axis.set_title("%s: free-run VAF %s %% (linear %s %%), one step %s %%" % (
             part, *["-" if f["vaf"] is None else "%.1f" % f["vaf"]
-                    for f in (figures["free_run"], figures["linear"]["free_run"], figures["one_step"])]),
+                    for f in (figures["free_run"], figures.get("linear", figures)["free_run"], figures["one_step"])]),
             fontsize=9, loc="left")
         tidy(axis)
     figure.suptitle(report["name"], fontsize=11)

@@ -5,6 +5,8 @@
 namespace fpc {
 namespace {
 
+constexpr std::uint32_t kMostSamples = 10'000'000;  // of a record that is held as a whole
+
 std::vector<std::string> disturbanceNames(const LoopFile& loop) {
   std::vector<std::string> names;
   const auto plant = makePlant(loop.simulation);
@@ -27,6 +29,8 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
   require(
       sim.samples > 0, loop.name + ": sampling.duration_h",
       "a time > 0 with disturbance.source " + params.source + " (an endless run needs constant)");
+  require(sim.samples <= kMostSamples, loop.name + ": sampling.duration_h",
+          "at most 10000000 samples with disturbance.source " + params.source);
   const auto names = disturbanceNames(loop);
   if (params.source == "pattern")
     return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,

@@ -38,7 +38,8 @@ void requireInRange(const YamlSection& section, const std::string& key, double v
 void requireInRange(const YamlSection& section, const std::string& key, const Vector& values,
                     const PlantInfo& plant) {
   for (std::size_t i = 0; i < plant.outputs.size(); ++i)
-    requireInRange(section, key, values[static_cast<Eigen::Index>(i)], plant.outputs[i]);
+    requireInRange(section, key + "." + plant.outputs[i].name, values[static_cast<Eigen::Index>(i)],
+                   plant.outputs[i]);
 }
 
 SetpointStep readSetpointStep(YamlSection& item, const std::vector<std::string>& outputs) {

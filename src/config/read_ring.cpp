@@ -32,11 +32,11 @@ std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& l
   const Names law{controller};
   const Names answers = loop.has_clp ? Names{"clp_optimizer", controller} : law;
   const Names model{"fuzzy_identifier"};
-  return {{"plant_info", plant},     {"measurement", plant},   {"plant_state", plant},
-          {"base_action", law},      {"tracking", law},        {"predictive_action", law},
+  return {{"plant_info", plant},       {"measurement", plant},     {"plant_state", plant},
+          {"base_action", law},        {"tracking", law},          {"predictive_action", law},
           {"control_action", answers}, {"solver_report", answers}, {"fuzzy_model", model},
-          {"identified", model},     {"setpoint", {}},         {"disturbance", {}},
-          {"operator_kept", plant},  {"model_kept", plant}};
+          {"identified", model},       {"setpoint", {}},           {"disturbance", {}},
+          {"operator_kept", plant},    {"model_kept", plant}};
 }
 
 void readPublishers(YamlSection& section, RingParams& ring) {

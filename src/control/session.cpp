@@ -208,8 +208,8 @@ bool ControllerSession::retune(const Settings& settings) {
 }
 
 OperatorWishes ControllerSession::wishes() const {
-  return {manual_,   manual_given_, manual_input_,        setpoint_.recipe(), adapt_,
-          settings_, setpoint_.standing()};
+  return {manual_, manual_given_, manual_input_,       setpoint_.recipe(),
+          adapt_,  settings_,     setpoint_.standing()};
 }
 
 void ControllerSession::restore(const OperatorWishes& wishes) {

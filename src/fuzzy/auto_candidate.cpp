@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kUnit = 0.05;        // error that counts as one, in deviations of the output
+constexpr double kUnit = 0.05;  // error that counts as one, in deviations of the output
 constexpr double kOneStepWeight = 0.1;
 constexpr int kRandomStarts = 16;
-constexpr int kProbe = 8;             // iterations that tell a good start from a bad one
-constexpr double kBeyond = 0.5;       // of the states' span: how far a run may leave them
+constexpr int kProbe = 8;        // iterations that tell a good start from a bad one
+constexpr double kBeyond = 0.5;  // of the states' span: how far a run may leave them
 
 std::string number(double value) {
   std::string text = std::to_string(value);
@@ -223,16 +223,15 @@ class CandidateFit {
 };
 
 Vector inOwnUnit(const AutoData& data, const Fitted& fitted, Vector y) {
-  if (!fitted.shape.absolute)
-    y.array() += data.shift[data.output] / data.scale[data.output];
+  if (!fitted.shape.absolute) y.array() += data.shift[data.output] / data.scale[data.output];
   return y * data.scale[data.output];
 }
 
 }  // namespace
 
 std::string Candidate::text() const {
-  static const char* const on[] = {"y",           "all past y",           "inputs",
-                                   "y and inputs", "the state", "state and inputs"};
+  static const char* const on[] = {"y",         "all past y",      "inputs", "y and inputs",
+                                   "the state", "state and inputs"};
   std::string words = hidden ? "hidden state " + std::to_string(order)
                              : "y " + std::to_string(order) + ", u " + std::to_string(input_terms);
   if (absolute) words += ", size of";
@@ -254,9 +253,9 @@ Fitted fitCandidate(const AutoData& data, const Candidate& candidate,
 
 Vector freeRunOf(const AutoData& data, const Fitted& fitted, Stretch stretch, int window) {
   const RecurrentData record = recurrentData(data, fitted.exogenous, fitted.shape.absolute);
-  return inOwnUnit(data, fitted,
-                   runRecurrent(fitted.shape, record, stretch, fitted.parameters, fitted.prior,
-                                window));
+  return inOwnUnit(
+      data, fitted,
+      runRecurrent(fitted.shape, record, stretch, fitted.parameters, fitted.prior, window));
 }
 
 Vector oneStepOf(const AutoData& data, const Fitted& fitted, Stretch stretch) {

@@ -9,21 +9,28 @@
 
 namespace fpc {
 
-enum class AntecedentChoice { kOutput, kOutputs, kInputs, kOutputAndInputs, kState, kStateAndInputs };
+enum class AntecedentChoice {
+  kOutput,
+  kOutputs,
+  kInputs,
+  kOutputAndInputs,
+  kState,
+  kStateAndInputs
+};
 
 /// Enough to fit it again on other rows.
 struct Candidate {
-  bool hidden{false};        ///< own state, or the output's past
-  int order{2};              ///< states
-  int input_terms{2};        ///< past values of each input, not hidden
-  std::vector<int> delay;    ///< of each input and disturbance
+  bool hidden{false};      ///< own state, or the output's past
+  int order{2};            ///< states
+  int input_terms{2};      ///< past values of each input, not hidden
+  std::vector<int> delay;  ///< of each input and disturbance
   int rules{1};
   AntecedentChoice antecedents{AntecedentChoice::kOutput};
-  double ridge{10.0};        ///< of the rules towards the linear model
-  double linear_ridge{1e-3}; ///< of the linear model towards its one-step fit
-  bool free_run{true};       ///< false: one-step least squares only (linear, not hidden)
-  bool chain{false};         ///< hidden: starts as a chain of lags, else as the one-step fit
-  bool absolute{false};      ///< hidden: the output is the size of the first state
+  double ridge{10.0};         ///< of the rules towards the linear model
+  double linear_ridge{1e-3};  ///< of the linear model towards its one-step fit
+  bool free_run{true};        ///< false: one-step least squares only (linear, not hidden)
+  bool chain{false};          ///< hidden: starts as a chain of lags, else as the one-step fit
+  bool absolute{false};       ///< hidden: the output is the size of the first state
   int iterations{100};
   std::uint64_t seed{1};
 

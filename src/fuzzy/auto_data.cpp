@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kLimitRun = 4;           // equal extreme values in a row mean a sensor at its limit
-constexpr double kNearZero = 0.05;     // of the span
+constexpr int kLimitRun = 4;        // equal extreme values in a row mean a sensor at its limit
+constexpr double kNearZero = 0.05;  // of the span
 constexpr Index kShortestStretch = 12;
 
 double meanOf(const Eigen::Ref<const Vector>& values) {
@@ -116,15 +116,15 @@ AutoData prepareAuto(const DataSet& data, int output, int blocks, Index most, In
     p.shift[j] = meanOf(data.values.col(j));
     p.scale[j] = deviationOf(data.values.col(j), p.shift[j]);
   }
-  p.scaled = (data.values.rowwise() - p.shift.transpose()).array().rowwise() /
-             p.scale.transpose().array();
+  p.scaled =
+      (data.values.rowwise() - p.shift.transpose()).array().rowwise() / p.scale.transpose().array();
   findLimits(p);
   findRate(p);
   const Index length = std::max<Index>(1, (std::min(rows, most) + blocks - 1) / blocks);
   const auto known = stretchesOf(data);
   p.windows = cut(spread(rows, blocks, rows <= most ? rows : length), known);
-  p.all = rows <= most_last ? known
-                            : cut(spread(rows, 2 * blocks, most_last / (2 * blocks)), known);
+  p.all =
+      rows <= most_last ? known : cut(spread(rows, 2 * blocks, most_last / (2 * blocks)), known);
   return p;
 }
 
@@ -185,8 +185,9 @@ double oneStepError(const AutoData& p, const std::vector<int>& delay) {
 }  // namespace
 
 DelayGuess guessDelays(const AutoData& p, int longest) {
-  constexpr double kWorth = 0.97;   // a delay must lower the error by this
   constexpr double kAlike = 1.005;  // two delays within it are not told apart
+  // a delay must lower the error by more than chance does
+  const double worth = 1.0 - std::max(0.03, 10.0 / static_cast<double>(p.scaled.rows()));
   const std::size_t m = p.data->inputs.size() + p.data->disturbances.size();
   DelayGuess guess{std::vector<int>(m, 0), std::vector<bool>(m, false)};
   double best = oneStepError(p, guess.delay);
@@ -196,7 +197,7 @@ DelayGuess guessDelays(const AutoData& p, int longest) {
       auto trial = guess.delay;
       for (trial[j] = 0; trial[j] <= longest; ++trial[j]) errors.push_back(oneStepError(p, trial));
       const auto lowest = std::min_element(errors.begin(), errors.end());
-      if (*lowest < kWorth * best) {
+      if (*lowest < worth * best) {
         guess.delay[j] = static_cast<int>(lowest - errors.begin());
         best = *lowest;
       }

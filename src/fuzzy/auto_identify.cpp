@@ -55,11 +55,11 @@ AutoIdentification autoIdentify(const DataSet& full, const AutoParams& params,
   const bool thinned = full.rows() > params.most_last;
   const DataSet data = thinned ? subsample(full, params.most_last, windows) : full;
   if (thinned || full.rows() > params.most_rows)
-    result.remarks.push_back(
-        "long record: the search uses " + std::to_string(std::min(full.rows(), params.most_rows)) +
-        " rows in " + std::to_string(params.blocks) + " windows, the last fit " +
-        std::to_string(std::min(full.rows(), params.most_last)) + " of " +
-        std::to_string(full.rows()) + " rows");
+    result.remarks.push_back("long record: the search uses " +
+                             std::to_string(std::min(full.rows(), params.most_rows)) + " rows in " +
+                             std::to_string(params.blocks) + " windows, the last fit " +
+                             std::to_string(std::min(full.rows(), params.most_last)) + " of " +
+                             std::to_string(full.rows()) + " rows");
   result.model = emptyModel(data);
   result.model.outputs = full.outputs;
   result.linear = result.model;

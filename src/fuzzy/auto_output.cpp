@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/parallel.hpp"
@@ -106,7 +107,8 @@ class OutputSearch {
     if (rules >= 0) {
       const Judgement& r = searched_.regressors[static_cast<std::size_t>(rules)];
       found_.regressors = figuresOf(data_, r.free_run, r.one_step);
-      fuzzy_chosen_ = found_.regressors.free_run < kWorth * found_.linear.free_run;
+      fuzzy_chosen_ = found_.regressors.free_run < kWorth * found_.linear.free_run &&
+                      beyondSpread(found_.regressors, found_.linear);
       fuzzy_text_ = r.candidate.text();
     }
     result_.model.submodels.push_back(fuzzy_chosen_ ? fuzzy : linear);
@@ -139,34 +141,52 @@ class OutputSearch {
     result_.state.outputs.push_back(std::move(state));
   }
 
+  /// A fuzzy model is taken where it beats linear beyond the spread; otherwise linear is safer.
   void decide() {
     const AutoFigures& line = found_.linear;
     const AutoFigures* best = &line;
-    if (!found_.state.blocks.empty() && found_.state.free_run < kWorth * best->free_run) {
-      best = &found_.state;
-      found_.best = ModelKind::kState;
-    }
-    if (!found_.regressors.blocks.empty() && fuzzy_chosen_ &&
-        found_.regressors.free_run < best->free_run) {
+    if (fuzzy_chosen_) {
       best = &found_.regressors;
       found_.best = ModelKind::kRegressors;
     }
-    found_.beats_linear = best != &line && beyondSpread(*best, line);
-    const std::string figures = "free run over held-out blocks " + shortNumber(best->free_run) +
-                                " beside " + shortNumber(line.free_run) + " of the best linear one";
-    if (best == &line)
-      found_.verdict = "no fuzzy model beats the best linear one (rmse " +
-                       shortNumber(line.free_run) + "): the linear model is written";
-    else if (!found_.beats_linear)
-      found_.verdict = "the fuzzy model does not beat linear beyond the spread over the blocks (" +
-                       figures + "): consider the linear model, --kind linear";
-    else
-      found_.verdict = "the fuzzy model beats linear beyond the spread over the blocks: " + figures;
+    const AutoFigures& own = found_.state;
+    if (!own.blocks.empty() && own.free_run < kWorth * best->free_run && beyondSpread(own, line)) {
+      best = &own;
+      found_.best = ModelKind::kState;
+    }
+    found_.beats_linear = best != &line;
+    found_.fuzzy_model = fuzzy_chosen_;
+    found_.verdict = verdictOf(*best);
+    if (!(best->fit > 0.0))
+      remark(
+          "no model says more than the mean of the record in free run over held-out blocks: do "
+          "not trust any of them there");
+  }
+
+  std::string verdictOf(const AutoFigures& best) const {
+    const AutoFigures& line = found_.linear;
+    if (!found_.beats_linear)
+      return "no fuzzy model beats the best linear one beyond the spread over held-out blocks "
+             "(free run " +
+             shortNumber(lowestFuzzy()) + " beside " + shortNumber(line.free_run) +
+             "): the linear model is written";
+    std::string words =
+        "the fuzzy model beats linear beyond the spread over held-out blocks: free "
+        "run " +
+        shortNumber(best.free_run) + " beside " + shortNumber(line.free_run) +
+        " of the best linear one";
     if (found_.best == ModelKind::kState)
-      found_.verdict +=
-          "; this is the model with a state of its own, for simulation; what control "
-          "laws take reaches " +
-          shortNumber(fuzzy_chosen_ ? found_.regressors.free_run : line.free_run);
+      words += "; it has a state of its own, for simulation; what control laws take reaches " +
+               shortNumber(fuzzy_chosen_ ? found_.regressors.free_run : line.free_run) +
+               (fuzzy_chosen_ ? "" : " (linear)");
+    return words;
+  }
+
+  double lowestFuzzy() const {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const auto* f : {&found_.regressors, &found_.state})
+      if (!f->blocks.empty()) lowest = std::min(lowest, f->free_run);
+    return lowest;
   }
 
   void keepTrials() {

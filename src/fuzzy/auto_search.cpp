@@ -14,6 +14,7 @@ using Eigen::Index;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kOneStepShare = 0.15;  // of the score of models of the output's past
 constexpr std::uint64_t kFirstSeeds = 3, kMoreSeeds = 4;
 
 double squaredError(const AutoData& data, const Vector& predicted, Stretch s, double& n) {
@@ -181,7 +182,10 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
     }
     j.rmse = complete ? rmseOf(data_, j.free_run) : kInfinite;
     j.blocks = blockErrors(data_, j.free_run);
-    j.score = j.rmse * penalty(j.parameters, rows());
+    const double one_step = rmseOf(data_, j.one_step);
+    const double weight = std::isfinite(one_step) && one_step > 0.0 ? kOneStepShare : 0.0;
+    j.score = std::pow(j.rmse, 1.0 - weight) * (weight > 0.0 ? std::pow(one_step, weight) : 1.0) *
+              penalty(j.parameters, rows());
   }
   return judged;
 }

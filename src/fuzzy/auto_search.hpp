@@ -15,7 +15,7 @@ struct Judgement {
   Vector free_run, one_step;   ///< rows of the record, NaN outside the blocks' judged rows
   std::vector<double> blocks;  ///< free-run rmse of each
   double rmse{};               ///< of all judged rows
-  double score{};              ///< rmse with a penalty for the number of parameters
+  double score{};  ///< rmse, blended with that one step ahead, times a penalty for parameters
   Eigen::Index parameters{};
 };
 

@@ -117,12 +117,11 @@ Vector ruleStart(const RecurrentShape& shape, const Matrix& z, const Vector& lin
   Vector spread = ((z.colwise() - mean).array().square().rowwise().mean()).sqrt();
   spread = spread.cwiseMax(1e-6);
   const Matrix centres = kMeans(z, spread, shape.rules, seed);
-  const double width = kSetWidth / std::pow(static_cast<double>(shape.rules),
-                                            1.0 / static_cast<double>(n_z));
+  const double width =
+      kSetWidth / std::pow(static_cast<double>(shape.rules), 1.0 / static_cast<double>(n_z));
   Vector p(shape.parameterCount());
   for (Index r = 0; r < shape.rules; ++r) {
-    for (Index i = 0; i < each; ++i)
-      p[r * each + i] = linear[i] + jitter * standardNormal(random);
+    for (Index i = 0; i < each; ++i) p[r * each + i] = linear[i] + jitter * standardNormal(random);
     p.segment(shape.centre(r), n_z) = centres.col(r);
     p.segment(shape.logWidth(r), n_z) = (width * spread.array()).log().matrix();
   }

@@ -5,7 +5,8 @@
 
 namespace fpc {
 
-/// Linear parameters of `shape` (one rule): one-step least squares for a model of the output's past.
+/// Linear parameters of `shape` (one rule): one-step least squares for a model of the output's
+/// past.
 Vector arxStart(const RecurrentShape& shape, const RecurrentData& data,
                 const std::vector<Stretch>& stretches);
 /// The same least squares as a hidden state in observer form. `v` holds one value per input.

@@ -1,7 +1,9 @@
 #include "fuzzy/auto_structures.hpp"
 
 #include <algorithm>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace fpc {
 namespace {
@@ -9,14 +11,26 @@ namespace {
 constexpr int kSearchIterations = 60;  // models of the output's past
 constexpr int kStateIterations = 100;
 
+/// Leaves out what was judged before; `known` are texts.
+Candidates fresh(const Candidates& list, std::vector<std::string> known) {
+  Candidates kept;
+  for (const auto& c : list) {
+    const std::string text = c.text();
+    if (std::find(known.begin(), known.end(), text) != known.end()) continue;
+    known.push_back(text);
+    kept.push_back(c);
+  }
+  return kept;
+}
+
 }  // namespace
 
 Candidates linearCandidates(const Candidate& base, bool states) {
   Candidates list;
   Candidate c = base;
   c.iterations = kSearchIterations;
-  const std::vector<std::pair<int, int>> orders{{1, 1}, {1, 2}, {2, 1}, {2, 2}, {3, 2}, {3, 3},
-                                                {4, 4}};
+  const std::vector<std::pair<int, int>> orders{{1, 1}, {1, 2}, {2, 1}, {2, 2},
+                                                {3, 2}, {3, 3}, {4, 4}};
   for (const auto& [n, m] : orders)
     for (const bool free : {false, true})
       for (const double ridge : {1e-3, 1.0, 100.0}) {
@@ -87,7 +101,9 @@ Candidates refinedRules(const std::vector<Judgement>& regressors) {
       list.push_back(other);
     }
   }
-  return list;
+  std::vector<std::string> known;
+  for (const auto& j : regressors) known.push_back(j.candidate.text());
+  return fresh(list, std::move(known));
 }
 
 Candidates stateCandidates(const Candidate& base, bool absolute) {
@@ -97,8 +113,8 @@ Candidates stateCandidates(const Candidate& base, bool absolute) {
     bool chain, absolute;
     A on;
   };
-  std::vector<Form> forms{{2, true, false, A::kState},  {2, true, false, A::kStateAndInputs},
-                          {2, true, false, A::kOutput}, {2, false, false, A::kState},
+  std::vector<Form> forms{{2, true, false, A::kState},   {2, true, false, A::kStateAndInputs},
+                          {2, true, false, A::kOutput},  {2, false, false, A::kState},
                           {2, false, false, A::kOutput}, {3, true, false, A::kState},
                           {3, false, false, A::kState}};
   if (absolute)
@@ -136,7 +152,9 @@ Candidates refinedStates(const std::vector<Group>& state) {
     other.rules += 1;
     list.push_back(other);
   }
-  return list;
+  std::vector<std::string> known;
+  for (const auto& g : state) known.push_back(g.members.front().candidate.text());
+  return fresh(list, std::move(known));
 }
 
 }  // namespace fpc

@@ -13,6 +13,8 @@ namespace {
 using Eigen::Index;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr Index kMostStarts =
+    5000;  // of predictions n samples ahead: of longer records every so many
 
 void clipToSensors(const IdentifiedModel& model, Matrix& predicted) {
   for (std::size_t i = 0; i < model.outputs.size(); ++i) {
@@ -38,7 +40,8 @@ Matrix stepsAhead(const TsModel& model, const DataSet& data, int steps) {
     for (const auto* list : {&s.antecedents, &s.regressors})
       for (const auto& r : *list) longest = std::max<Index>(longest, r.lag);
   DataSet part = data;
-  for (Index k = longest; k + steps < data.rows(); ++k) {
+  const Index stride = std::max<Index>(1, data.rows() / kMostStarts);
+  for (Index k = longest; k + steps < data.rows(); k += stride) {
     part.values = data.values.middleRows(k - longest, longest + steps + 1);
     const Matrix run = predictFreeRun(model, part);
     predicted.row(k + steps) = run.row(longest + steps);
@@ -80,7 +83,7 @@ bool IdentifiedModel::has(ModelKind kind) const {
 IdentifiedModel toIdentified(const AutoIdentification& found) {
   IdentifiedModel m{found.model, found.linear.submodels, found.state, {}};
   for (const auto& o : found.outputs) {
-    const AutoFigures& f = o.regressors.blocks.empty() ? o.linear : o.regressors;
+    const AutoFigures& f = o.fuzzy_model ? o.regressors : o.linear;
     m.outputs.push_back({o.best, o.sensor_lower, o.sensor_upper, f.width, f.one_step_width});
   }
   return m;
@@ -123,7 +126,7 @@ KindPrediction predictBest(const IdentifiedModel& model, const DataSet& data) {
       const auto c = static_cast<Index>(i);
       best.one_step.col(c) = other.one_step.col(c);
       best.free_run.col(c) = other.free_run.col(c);
-      if (kind == ModelKind::kLinear) continue;  // the file's model is the linear one: its widths
+      if (kind == ModelKind::kLinear) continue;  // the file's model is linear then: its widths
       best.one_step_width[c] = other.one_step_width[c];
       best.free_run_width[c] = other.free_run_width[c];
     }

@@ -10,13 +10,13 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kHardly = 0.01;      // share of rows in which an input must move
+constexpr double kHardly = 0.01;  // share of rows in which an input must move
 constexpr Index kFewMoves = 10;
-constexpr double kSpike = 12.0;       // robust deviations of a sample from its neighbours
-constexpr double kSlow = 300.0;       // samples per time constant: too many
-constexpr double kFast = 0.5;         // too few
-constexpr double kLeft = 1.0;         // spans beyond the data: a free run has gone
-constexpr double kFeedback = 2.0;     // bounds
+constexpr double kSpike = 12.0;    // robust deviations of a sample from its neighbours
+constexpr double kSlow = 300.0;    // samples per time constant: too many
+constexpr double kFast = 0.5;      // too few
+constexpr double kLeft = 1.0;      // spans beyond the data: a free run has gone
+constexpr double kFeedback = 2.0;  // bounds
 constexpr Index kFeedbackLags = 10;
 
 std::string shortNumber(double value) {
@@ -141,10 +141,10 @@ void addResidual(const std::string& name, const DataSet& data,
     for (Index ahead = 0; ahead <= kFeedbackLags; ++ahead)
       later = std::max(later, std::abs(laterCorrelation(residual, u, ahead)));
     if (later > kFeedback * c.bound && c.bound > 0.0)
-      remarks.push_back(name + ": " + c.signals[j] + " follows residuals (correlation " +
-                        shortNumber(later) +
-                        "): closed-loop data, whose gains may be biased, or an input that acts within the "
-                        "sample");
+      remarks.push_back(
+          name + ": " + c.signals[j] + " follows residuals (correlation " + shortNumber(later) +
+          "): closed-loop data, whose gains may be biased, or an input that acts within the "
+          "sample");
   }
 }
 

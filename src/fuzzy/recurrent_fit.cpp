@@ -100,7 +100,7 @@ class Objective {
     const Index n = shape_.parameterCount();
     normal.gradient.head(n) += weight * error * row.head(n);
     normal.hessian.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(row.head(n),
-                                                                                 weight);
+                                                                                  weight);
     if (n_starts_ == 0) return;
     const auto own = row.tail(n_starts_);
     normal.gradient.segment(start, n_starts_) += weight * error * own;

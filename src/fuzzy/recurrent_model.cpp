@@ -47,7 +47,8 @@ void RecurrentStep::predict(VectorRef p, VectorRef x, VectorRef v, Eigen::Ref<Ve
   const Index n = shape_.states, q = shape_.terms();
   phi_.head(n) = x;
   phi_.tail(shape_.exogenous) = v;
-  for (Index j = 0; j + 1 < q; ++j) terms_[j] = phi_[shape_.regressors[static_cast<std::size_t>(j)]];
+  for (Index j = 0; j + 1 < q; ++j)
+    terms_[j] = phi_[shape_.regressors[static_cast<std::size_t>(j)]];
   weigh(p);
   for (Index i = 0; i < shape_.rules; ++i)
     for (Index r = 0; r < shape_.rows(); ++r)

@@ -18,8 +18,8 @@ constexpr Index kCorrectionOrder = 4;
 RecurrentData recordOf(const StateOutput& model, const StateMember& member, const DataSet& data,
                        Index output) {
   RecurrentData record;
-  record.y = (data.values.col(output).array() - (member.shape.absolute ? 0.0 : model.shift)) /
-             model.scale;
+  record.y =
+      (data.values.col(output).array() - (member.shape.absolute ? 0.0 : model.shift)) / model.scale;
   record.v.resize(static_cast<Index>(member.exogenous.size()), data.rows());
   const auto n_y = static_cast<Index>(data.outputs.size());
   for (std::size_t j = 0; j < member.exogenous.size(); ++j) {
@@ -155,8 +155,7 @@ Matrix predictOneStep(const StateModel& model, const DataSet& data, int window) 
   Matrix predicted = predictFreeRun(model, data, window);
   for (Index i = 0; i < predicted.cols(); ++i) {
     const StateOutput& output = model.outputs[static_cast<std::size_t>(i)];
-    predicted.col(i) =
-        corrected(data.values.col(i), predicted.col(i), output.correction).eval();
+    predicted.col(i) = corrected(data.values.col(i), predicted.col(i), output.correction).eval();
     double lowest = -std::numeric_limits<double>::infinity(), highest = -lowest;
     const RecurrentShape& shape = output.members.front().shape;
     const double zero = shape.absolute ? 0.0 : output.shift;

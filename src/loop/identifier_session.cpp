@@ -30,8 +30,7 @@ const TsModel& IdentifierSession::restore(const TsModel& model) {
 
 const TsModel& IdentifierSession::use(TsModel matched) {
   model_ = std::move(matched);
-  if (published_++ == 0 && params_.online.enabled)
-    learner_.emplace(model_, plant_, params_.online);
+  if (published_++ == 0 && params_.online.enabled) learner_.emplace(model_, plant_, params_.online);
   return model_;
 }
 
@@ -58,8 +57,7 @@ const TsModel* IdentifierSession::learn(const Measurement& measurement, Arrival 
 
 IdentificationJob IdentifierSession::job(Structure structure, std::size_t newest,
                                          double share) const {
-  require(has_identify_, "model.identify",
-          "that section in the loop file: nothing is collected");
+  require(has_identify_, "model.identify", "that section in the loop file: nothing is collected");
   require(collector_.size() > 0, "identify", "samples: none have come yet");
   IdentificationJob job;
   job.values = collector_.rows(structure, newest);

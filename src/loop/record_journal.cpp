@@ -222,10 +222,10 @@ std::uint32_t RecordJournal::open(const std::string& file, const RecordLayout& l
                      sameLoop(found, mine) && found.run_id == run_id;
   struct stat about {};
   if (known && fstat(file_, &about) == 0)
-    written_ = (static_cast<std::uint64_t>(about.st_size) - kHeaderSize) /
-               (entry_size_ * sizeof(double));
-  const bool fresh = known || (ftruncate(file_, 0) == 0 &&
-                               ::pwrite(file_, &mine, sizeof mine, 0) == sizeof mine);
+    written_ =
+        (static_cast<std::uint64_t>(about.st_size) - kHeaderSize) / (entry_size_ * sizeof(double));
+  const bool fresh =
+      known || (ftruncate(file_, 0) == 0 && ::pwrite(file_, &mine, sizeof mine, 0) == sizeof mine);
   require(fresh, file, std::string("room on the disk (") + strerror(errno) + ")");
   return static_cast<std::uint32_t>(written_);
 }

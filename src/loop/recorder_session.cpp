@@ -159,9 +159,8 @@ void RecorderSession::close() {
 }
 
 std::vector<std::string> RecorderSession::gaps(std::size_t limit) const {
-  std::vector<std::string> lines(gaps_.begin(),
-                                 gaps_.begin() + static_cast<std::ptrdiff_t>(
-                                                     std::min(limit, gaps_.size())));
+  std::vector<std::string> lines(
+      gaps_.begin(), gaps_.begin() + static_cast<std::ptrdiff_t>(std::min(limit, gaps_.size())));
   for (std::size_t i = 0; i < window_.size() && lines.size() < limit; ++i)
     noteGaps(window_[i], next_ + static_cast<std::uint32_t>(i), limit, lines);
   return lines;

@@ -1,4 +1,5 @@
-// Records one after the other, as a benchmark's protocol asks: constant, then one file, then another.
+// Records one after the other, as a benchmark's protocol asks: constant, then one file, then
+// another.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +34,7 @@ DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
   std::uint32_t first = samples - lead;
   if (!params.next_file.empty()) {
     first = wholeSamples(params.next_after_h, sample_time_s, first, "disturbance.csv.next.after_h");
-    require(first > 0, "disturbance.csv.next.after_h", "a time > 0");
+    require(params.next_after_h > 0.0, "disturbance.csv.next.after_h", "a time > 0");
   }
   if (lead == samples) return {nominal.replicate(1, static_cast<Eigen::Index>(samples) + 1), 0};
   DisturbanceRecord result = readDisturbances(params, names, nominal, sample_time_s, first);

@@ -10,10 +10,10 @@ constexpr double kSilence = 1.0;  // [s] without a measurement that is due
 Health ControllerNode::health(double now_s) const {
   if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
   if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {plantName()}};
-  if (!session_.ready())
-    return {LoopMode::kStarting, "waiting for fuzzy_model", {modelName()}};
+  if (!session_.ready()) return {LoopMode::kStarting, "waiting for fuzzy_model", {modelName()}};
   if (parked_ && now_s - parked_since_s_ > kSilence)
-    return {LoopMode::kStalled, "waits for the identifier to be done with the sample before",
+    return {LoopMode::kStalled,
+            "waits for the identifier to be done with the sample before",
             {modelName()}};
   if (session_.counts().accepted == 0)
     return {LoopMode::kStarting, "waiting for the first measurement", {plantName()}};
@@ -21,7 +21,8 @@ Health ControllerNode::health(double now_s) const {
   if (!session_.answer().has_action) return {LoopMode::kFinished, "finished", {}};
   if (session_.unreleased()) return {LoopMode::kHeld, session_.output().remark, {}};
   if (standin_ && standin_->watch().waitsInVain(now_s))
-    return {LoopMode::kStalled, "no answer of " + standin_->optimizer() + " to sample " + step,
+    return {LoopMode::kStalled,
+            "no answer of " + standin_->optimizer() + " to sample " + step,
             {standin_->optimizer()}};
   const double period_s = loop_.ring.pace == Pace::kLockstep
                               ? 0.0
@@ -30,8 +31,9 @@ Health ControllerNode::health(double now_s) const {
   if (now_s - heard_s_ > period_s + kSilence)
     return {LoopMode::kStalled, "no measurement since sample " + step, {plantName()}};
   if (standin_ && standin_->watch().degraded())
-    return {LoopMode::kDegraded, "no answer of " + standin_->optimizer() +
-            ": the base action goes to the plant", {standin_->optimizer()}};
+    return {LoopMode::kDegraded,
+            "no answer of " + standin_->optimizer() + ": the base action goes to the plant",
+            {standin_->optimizer()}};
   if (session_.isManual()) return {LoopMode::kManual, "manual", {}};
   if (session_.answer().base.source == ActionSource::kHeld)
     return {LoopMode::kHeld, session_.output().remark, {}};

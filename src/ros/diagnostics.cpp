@@ -10,8 +10,8 @@ Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& pri
     : updater_(node, private_node) {
   updater_.setHardwareID(hardware_id);
   updater_.add(title, [report = std::move(report)](Status& status) { report(status); });
-  timer_ = node.createSteadyTimer(ros::WallDuration(1.0),
-                                  [this](const ros::SteadyTimerEvent&) { updater_.force_update(); });
+  timer_ = node.createSteadyTimer(
+      ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) { updater_.force_update(); });
 }
 
 void addCounts(Diagnostics::Status& status, const ArrivalCounts& counts) {

@@ -55,22 +55,20 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
       plant_(loop.plant_info),
       session_(loop),
       model_publisher_(node.advertise<fmbpc::FuzzyModel>(topics::kFuzzyModel, 1, true)),
-      identified_(
-          node.advertise<fmbpc::Identified>(topics::kIdentified, topics::kPairQueue, true)),
+      identified_(node.advertise<fmbpc::Identified>(topics::kIdentified, topics::kPairQueue, true)),
       plant_subscriber_(
           subscribe(node, topics::kPlantInfo, 1, &FuzzyIdentifier::onPlantInfo, this)),
-      kept_subscriber_(
-          subscribe(node, topics::kModelKept, 1, &FuzzyIdentifier::onModelKept, this)),
+      kept_subscriber_(subscribe(node, topics::kModelKept, 1, &FuzzyIdentifier::onModelKept, this)),
       server_(
           withoutTimer(private_node), topics::kIdentify,
           [this](Server::GoalHandle goal) { onGoal(std::move(goal)); },
           [this](Server::GoalHandle goal) { onCancel(std::move(goal)); }, false),
       poll_timer_(node.createSteadyTimer(ros::WallDuration(kPollPeriod),
                                          [this](const ros::SteadyTimerEvent&) { poll(); })),
-      health_(node, private_node, "model", loop.name, false,
-              {[this](double now_s) { return health(now_s); },
-               [this] { return session_.present(); },
-               [this](Diagnostics::Status& status) { report(status); }}) {
+      health_(
+          node, private_node, "model", loop.name, false,
+          {[this](double now_s) { return health(now_s); }, [this] { return session_.present(); },
+           [this](Diagnostics::Status& status) { report(status); }}) {
   if (loop.has_identify)  // otherwise nobody needs the samples
     measurement_subscriber_ = subscribe(node, topics::kMeasurement, topics::kRingQueue,
                                         &FuzzyIdentifier::onMeasurement, this);
@@ -136,8 +134,7 @@ void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
                measurement.header.step, session_.lastRefusal().c_str());
     if (due.model != nullptr) publish(*due.model, measurement.header);
     if (due.job) waiting_ = std::move(due.job);
-    if (waiting_ && !worker_.busy())
-      begin(std::move(*std::exchange(waiting_, std::nullopt)), true);
+    if (waiting_ && !worker_.busy()) begin(std::move(*std::exchange(waiting_, std::nullopt)), true);
     const bool wait = loop_.ring.pace == Pace::kLockstep && worker_.busy();
     done_ = !wait;
     sayDone();

@@ -134,8 +134,8 @@ void PlantSimulator::waitForOthers() {
   const std::vector<std::string> names = missing();
   if (names.empty()) return start();
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
-  failure_ = "not ready within loop.ready_timeout_s = " +
-             exactText(loop_.ring.ready_timeout_s) + " s: " + join(names);
+  failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
+             " s: " + join(names);
   failed_s_ = steadyNow();
   end_.say(failure_);
   health_.look();
@@ -174,8 +174,8 @@ void PlantSimulator::publishSample() {
     ROS_WARN("plant_simulator: %s", simulation.trouble().c_str());
   if (session_.phase() == PlantPhase::kFinished) {
     ROS_INFO("plant_simulator: final sample %u sent", simulation.measurement().header.step);
-    tracking_subscriber_ = subscribe(node_, topics::kTracking, topics::kPairQueue,
-                                     &PlantSimulator::onTracking, this);
+    tracking_subscriber_ =
+        subscribe(node_, topics::kTracking, topics::kPairQueue, &PlantSimulator::onTracking, this);
   } else {
     armTimer();
   }
@@ -212,9 +212,9 @@ bool PlantSimulator::onPause(std_srvs::SetBool::Request& request,
 
 bool PlantSimulator::onStep(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
   response.success = session_.step();
-  response.message = response.success      ? "one sample"
-                     : !session_.paused()  ? "pause first"
-                                           : "there is no run under way";
+  response.message = response.success     ? "one sample"
+                     : !session_.paused() ? "pause first"
+                                          : "there is no run under way";
   if (response.success) tryAdvance();
   return true;
 }
@@ -236,10 +236,11 @@ Health PlantSimulator::health(double now_s) const {
   if (!session_.simulation().trouble().empty())
     return {LoopMode::kFailed, session_.simulation().trouble(), {}};
   if (session_.phase() == PlantPhase::kFinished)
-    return session_.acknowledged()
-               ? Health{LoopMode::kFinished, "finished", {}}
-               : Health{LoopMode::kFinished, "finished; the final sample is sent again until it is "
-                                             "tracked", watch_.silent(now_s)};
+    return session_.acknowledged() ? Health{LoopMode::kFinished, "finished", {}}
+                                   : Health{LoopMode::kFinished,
+                                            "finished; the final sample is sent again until it is "
+                                            "tracked",
+                                            watch_.silent(now_s)};
   if (session_.paused()) return {LoopMode::kHeld, "paused", {}};
   return runningHealth(now_s);
 }

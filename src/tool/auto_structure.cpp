@@ -19,7 +19,9 @@ std::vector<StructureSignal> signalsOf(const CsvTable& table,
   std::vector<StructureSignal> signals;
   for (const auto& column : columns) {
     const auto index = static_cast<std::size_t>(table.column(column));
-    signals.push_back({{signalName(column), table.units[index], -infinite, infinite}, column});
+    StructureSignal& signal = signals.emplace_back();
+    signal.info = SignalInfo{signalName(column), table.units[index], -infinite, infinite};
+    signal.column = column;
   }
   return signals;
 }

@@ -11,8 +11,8 @@ namespace fpc::tool {
 
 struct AutoColumns {
   std::vector<std::string> outputs, inputs, disturbances;  ///< columns of the record
-  std::string time;         ///< column, empty: found by its name
-  double sample_time_s{};   ///< 0: from the time column
+  std::string time;                                        ///< column, empty: found by its name
+  double sample_time_s{};                                  ///< 0: from the time column
 };
 
 /// Signals by column, missing cells stepped over, inputs that never move allowed. A remark tells a

@@ -41,9 +41,9 @@ AutoRecords readAll(const IdentifyArguments& a) {
   r.joined = joinRecords(r.each);
   if (a.validate.empty() && a.validate_rows.empty()) return r;
   std::error_code ignored;
-  const bool same =
-      a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  r.validation = makeData(same ? first : readRecord(a.validate, csvFormat(a.format)), structure, a.validate_rows);
+  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
+  r.validation = makeData(same ? first : readRecord(a.validate, csvFormat(a.format)), structure,
+                          a.validate_rows);
   if (same && rowsOverlap(a.rows, a.validate_rows))
     r.remarks.push_back("validation rows are among the identification rows: not held out");
   return r;
@@ -113,8 +113,10 @@ Json toJson(const AutoFigures& f) {
   if (f.blocks.empty()) return nullptr;
   Json blocks = Json::array();
   for (const double b : f.blocks) blocks.push_back(finiteJson(b));
-  return {{"free_run", finiteJson(f.free_run)},     {"fit", finiteJson(f.fit)},
-          {"one_step", finiteJson(f.one_step)},     {"blocks", blocks},
+  return {{"free_run", finiteJson(f.free_run)},
+          {"fit", finiteJson(f.fit)},
+          {"one_step", finiteJson(f.one_step)},
+          {"blocks", blocks},
           {"half_width", finiteJson(f.width)}};
 }
 
@@ -154,8 +156,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
 
 std::vector<RecordJudgement> judgeAll(const AutoRecords& records, const IdentifiedModel& model) {
   constexpr int kSteps = 10;
-  std::vector<RecordJudgement> parts{
-      judgeRecord("identification", records.joined, model, kSteps)};
+  std::vector<RecordJudgement> parts{judgeRecord("identification", records.joined, model, kSteps)};
   for (std::size_t i = 0; records.each.size() > 1 && i < records.each.size(); ++i)
     parts.push_back(judgeRecord(records.each[i].source, records.each[i], model, kSteps));
   if (records.validation)

@@ -5,6 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/record_remarks.hpp"
+#include "tool/auto_structure.hpp"
 #include "tool/commands.hpp"
 #include "tool/judgement.hpp"
 #include "tool/read_record.hpp"
@@ -38,13 +39,11 @@ Structure structureOf(const TsModel& model, const CsvTable& table,
       const auto given = columns.find(info.name);
       std::string column = given == columns.end() ? info.name : given->second;
       if (given == columns.end())
-        for (const auto& name : table.names) {
-          std::string plain = name;
-          for (char& c : plain)
-            if (c == ' ' || c == '\t' || c == '(' || c == ')') c = '_';
-          if (plain == info.name) column = name;
-        }
-      list.push_back({info, column});
+        for (const auto& name : table.names)
+          if (signalName(name) == info.name) column = name;
+      StructureSignal& signal = list.emplace_back();
+      signal.info = info;
+      signal.column = column;
     }
     return list;
   };

@@ -32,19 +32,19 @@ struct RecordFormat {
 
 struct IdentifyArguments {
   std::vector<std::string> data;  ///< CSV or bag; more than one with `automatic` only
-  std::string structure;      ///< name of config/structure, or path; none with `automatic`
-  std::string rows;           ///< "FIRST:LAST", empty: all
-  std::string validate;       ///< another record, empty: the same
-  std::string validate_rows;  ///< of it; both empty: nothing is held out
-  std::string out;            ///< model file, empty: none
-  std::string plots;          ///< folder, empty: none
+  std::string structure;          ///< name of config/structure, or path; none with `automatic`
+  std::string rows;               ///< "FIRST:LAST", empty: all
+  std::string validate;           ///< another record, empty: the same
+  std::string validate_rows;      ///< of it; both empty: nothing is held out
+  std::string out;                ///< model file, empty: none
+  std::string plots;              ///< folder, empty: none
   bool json{false};
   bool automatic{false};  ///< search over structures; the rest is for it
   std::vector<std::string> inputs, outputs, disturbances;  ///< columns
   std::string time;                                        ///< column, empty: found
   RecordFormat format;
-  double sample_time_s{};                                  ///< 0: from the time column
-  std::string kind{"best"};                                ///< best, linear, regressors, state
+  double sample_time_s{};    ///< 0: from the time column
+  std::string kind{"best"};  ///< best, linear, regressors, state
   double budget_s{45.0};
   int blocks{4}, window{5};
   std::uint64_t seed{1};

@@ -102,8 +102,8 @@ RecordJudgement judgeRecord(const std::string& title, DataSet data, const Identi
     part.outputs[i].residual =
         residualCorrelation(part.data, measured - part.best.one_step.col(c), params);
   }
-  part.remarks = predictionRemarks(model.model, part.data, part.best.one_step, part.best.free_run,
-                                   params);
+  part.remarks =
+      predictionRemarks(model.model, part.data, part.best.one_step, part.best.free_run, params);
   return part;
 }
 
@@ -130,8 +130,8 @@ std::string toTable(const std::vector<RecordJudgement>& parts) {
   std::vector<Row> residuals{{"residuals of", "rows", "correlations outside %", "bound"}};
   for (const auto& part : parts)
     for (const auto& o : part.outputs)
-      residuals.push_back({o.output, part.title, fixed(100.0 * o.residual.outside),
-                           shortText(o.residual.bound)});
+      residuals.push_back(
+          {o.output, part.title, fixed(100.0 * o.residual.outside), shortText(o.residual.bound)});
   return text + alignedTable(residuals);
 }
 

@@ -65,9 +65,10 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   CLI::App* identify = app.add_subcommand(
       "identify", "Identifies a fuzzy model from a record and validates it beside a linear one");
   identify
-      ->add_option("DATA", a.data,
-                   "CSV, or bag recorded by loop.launch; then STRUCTURE, a name of config/structure "
-                   "or a path. With --auto: one or more records, no structure")
+      ->add_option(
+          "DATA", a.data,
+          "CSV, or bag recorded by loop.launch; then STRUCTURE, a name of config/structure "
+          "or a path. With --auto: one or more records, no structure")
       ->required();
   identify->add_option("--out", a.out, "model file to write");
   identify->add_option("--rows", a.rows,
@@ -98,8 +99,8 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
 }
 
 void addValidate(CLI::App& app, fpc::tool::ValidateArguments& a) {
-  CLI::App* validate =
-      app.add_subcommand("validate", "Judges a model file on a record: one step, n steps, free run");
+  CLI::App* validate = app.add_subcommand(
+      "validate", "Judges a model file on a record: one step, n steps, free run");
   validate->add_option("MODEL", a.model, "name of config/model, or path")->required();
   validate->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
   validate->add_option("--rows", a.rows, "FIRST:LAST data rows, from 1");

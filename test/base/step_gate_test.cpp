@@ -114,7 +114,8 @@ TEST(StepGate, OnlyLostOrNewRunsNeedAReset) {
   for (const auto arrival : {Arrival::kFirst, Arrival::kGap, Arrival::kNewRun, Arrival::kResync})
     EXPECT_TRUE(needsReset(arrival) && isNew(arrival));
   EXPECT_TRUE(isNew(Arrival::kNext) && !needsReset(Arrival::kNext));
-  for (const auto arrival : {Arrival::kRepeat, Arrival::kOld, Arrival::kSuspect, Arrival::kOtherRun})
+  for (const auto arrival :
+       {Arrival::kRepeat, Arrival::kOld, Arrival::kSuspect, Arrival::kOtherRun})
     EXPECT_FALSE(isNew(arrival) || needsReset(arrival));
 }
 

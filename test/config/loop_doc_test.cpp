@@ -53,7 +53,7 @@ std::string general(std::string path) {
       R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
-  const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(s|x|T|Tw)$)");
+  const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(?!\w+_(?:s|min|h)$)\w+$)");
   return std::regex_replace(path, outputs, "setpoint.$1[].NAME");
 }
 

@@ -76,7 +76,7 @@ const Mistake kMistakes[] = {
     {"SetpointOutOfRange",
      "",
      "setpoint.initial.x=99999",
-     {"--set setpoint.initial: expected a setpoint of x", "the range of the plant, got 99999"}},
+     {"--set setpoint.initial.x: expected a setpoint of x", "the range of the plant, got 99999"}},
     {"SetpointOutOfRangeLater",
      "",
      "setpoint.schedule=[{time_h: 1, x: -5}]",
@@ -89,7 +89,7 @@ const Mistake kMistakes[] = {
     {"TimeOfACommand",
      "",
      "disturbance.commands=[{time_h: 2e6, name: q_i, value: 1500}]",
-     {"--set disturbance.commands[0].time_h", "<= 1000000"}},
+     {"--set disturbance.commands[0].time_h", "<= 1e+06"}},
     {"NegativeTime", "", "sampling.sample_time_s=-1", {"--set sampling.sample_time_s", "got '-1'"}},
     {"PartOfASample",
      "",
@@ -180,6 +180,16 @@ std::string nameOf(const ::testing::TestParamInfo<Mistake>& info) { return info.
 
 INSTANTIATE_TEST_SUITE_P(Loop, EveryMistake, ::testing::ValuesIn(kMistakes), nameOf);
 
+TEST_F(LoopErrors, ARecordForYearsOfSamplesIsRefusedBeforeItIsMade) {
+  const std::string file =
+      write("long.yaml", smallLoop() +
+                             "disturbance: {source: pattern, pattern: {channels: "
+                             "{q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}}\n");
+  const Overrides years{{"sampling.duration_h", "9000000"}};
+  expectWords(errorOf([&] { readLoop(file, years); }),
+              {"sampling.duration_h", "at most 10000000 samples"});
+}
+
 TEST_F(LoopErrors, AnEndlessRunNeedsConstantDisturbances) {
   const std::string file = write("loop.yaml", smallLoop());
   EXPECT_EQ(readLoop(file, {{"sampling.duration_h", "0"}}).simulation.samples, 0U);
@@ -187,9 +197,9 @@ TEST_F(LoopErrors, AnEndlessRunNeedsConstantDisturbances) {
   expectWords(error, {"asp_case1", "sampling.duration_h", "constant"});
 }
 
-TEST_F(LoopErrors, UnknownLoopsListTheKnownOnes) {
+TEST_F(LoopErrors, UnknownLoopsNameTheNearest) {
   expectWords(errorOf([] { readLoop("asp_case_one"); }),
-              {"'asp_case_one'", "asp_case1,", "asp_clp_1a"});
+              {"'asp_case_one'", "near:", "asp_case1_own"});
   expectWords(errorOf([&] { readLoop(path("absent.yaml")); }),
               {"absent.yaml", "an existing loop file"});
 }

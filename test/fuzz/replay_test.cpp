@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "fuzz/targets.hpp"
+#include "paths.hpp"
 
 namespace fpc::fuzz {
 namespace {
@@ -13,7 +14,7 @@ class Replay : public ::testing::TestWithParam<NamedTarget> {};
 
 TEST_P(Replay, HoldsWhatItPromises) {
   int files = 0;
-  const std::string corpus = std::string(FMBPC_SOURCE_DIR) + "/test/fuzz/corpus/";
+  const std::string corpus = sourceDir() + "/test/fuzz/corpus/";
   for (const auto& entry : std::filesystem::directory_iterator(corpus + GetParam().name)) {
     std::ifstream stream(entry.path(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(stream)), {});

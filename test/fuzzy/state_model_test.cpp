@@ -76,7 +76,8 @@ TEST(StateModel, RefusesWhatDoesNotFit) {
 
 TEST(Records, AreJoinedAndThinnedWithGaps) {
   Matrix values(100, 2);
-  for (Index k = 0; k < 100; ++k) values.row(k) << static_cast<double>(k), 1.0 - 0.1 * static_cast<double>(k);
+  for (Index k = 0; k < 100; ++k)
+    values.row(k) << static_cast<double>(k), 1.0 - 0.1 * static_cast<double>(k);
   const DataSet one = recordOf(values);
   DataSet two = one;
   two.values *= 2.0;
@@ -128,7 +129,8 @@ TEST(Remarks, TellWherePredictionsLeaveTheData) {
   const auto remarks = predictionRemarks(model, data, one, run, {});
   ASSERT_EQ(remarks.size(), 3U);
   EXPECT_EQ(remarks[0], "y: unstable in free run: it leaves the data at sample 78");
-  EXPECT_NE(remarks[1].find("residual correlated with u at lag 3"), std::string::npos) << remarks[1];
+  EXPECT_NE(remarks[1].find("residual correlated with u at lag 3"), std::string::npos)
+      << remarks[1];
   EXPECT_NE(remarks[2].find("the model extrapolates: u is outside"), std::string::npos);
 }
 

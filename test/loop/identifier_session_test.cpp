@@ -25,8 +25,8 @@ Told run(const LoopFile& loop) {
 }
 
 TEST(IdentifierSession, SaysWhenToIdentifyAndThatOnce) {
-  const LoopFile loop = readLoop("asp_identify", {{"sampling.duration_h", "30"},
-                                                  {"model.identify.after", "100"}});
+  const LoopFile loop =
+      readLoop("asp_identify", {{"sampling.duration_h", "30"}, {"model.identify.after", "100"}});
   LoopFile plain = loop;
   plain.has_identify = false;
   const RunRecord record = runLoop(plain);
@@ -43,8 +43,8 @@ TEST(IdentifierSession, SaysWhenToIdentifyAndThatOnce) {
 }
 
 TEST(IdentifierSession, AModelThatIsUnstableWhereThePlantIsIsRefusedAndTheOldOneStays) {
-  const LoopFile loop = readLoop("asp_case1", {{"model.identify.online.every", "40"},
-                                               {"sampling.duration_h", "4"}});
+  const LoopFile loop =
+      readLoop("asp_case1", {{"model.identify.online.every", "40"}, {"sampling.duration_h", "4"}});
   LoopFile plain = loop;
   plain.has_identify = false;
   const RunRecord record = runLoop(plain);
@@ -75,8 +75,8 @@ TEST(Run, OnlineLearningChangesTheModelAtItsStatedSamples) {
 }
 
 TEST(Run, IdentifiesByItselfAndHandsTheModelOver) {
-  const LoopFile loop = readLoop(
-      "asp_identify", {{"sampling.duration_h", "90"}, {"model.identify.after", "400"}});
+  const LoopFile loop =
+      readLoop("asp_identify", {{"sampling.duration_h", "90"}, {"model.identify.after", "400"}});
   const Told told = run(loop);
   ASSERT_EQ(told.models.size(), 1U) << (told.remarks.empty() ? "" : told.remarks.front());
   expectWords(told.models[0].source, {"samples up to 399"});

@@ -104,15 +104,14 @@ TEST(PlantSession, PacedGoesOnWithoutAnActionAfterTheStatedTimeAndReturns) {
 
 TEST(PlantSession, WithoutActionsTheActuatorHoldsAndThenFallsBackInPacedAndRealtime) {
   for (const Pace pace : {Pace::kPaced, Pace::kRealtime}) {
-    PlantSession plant = session(
-        pace, {{"actuator.hold_samples", "2"}, {"actuator.fallback", "{q_r: 300}"}});
+    PlantSession plant =
+        session(pace, {{"actuator.hold_samples", "2"}, {"actuator.fallback", "{q_r: 300}"}});
     plant.start(0.0);
     plant.receive(action(0, 900.0));
     double now = 0.2 + 1e-9;
     std::vector<double> applied;
     for (; plant.phase() == PlantPhase::kRunning; now += 5.0)
-      if (plant.advance(now))
-        applied.push_back(plant.simulation().measurement().input_applied[0]);
+      if (plant.advance(now)) applied.push_back(plant.simulation().measurement().input_applied[0]);
     EXPECT_EQ(applied, (std::vector<double>{900, 900, 900, 300, 300}));
   }
 }

@@ -114,7 +114,7 @@ TEST(Run, AMatrixOfTheLoopFileIsThePlantEverywhere) {
   ASSERT_TRUE(record.complete);
   EXPECT_NEAR(record.samples.back().measurement.outputs[0], 50.0, 0.05);
   EXPECT_EQ(record.samples.back().state.disturbances,
-            (Vector(3) << 8.0, 1.0, 1.0).finished());  // T_in and the two gains
+            (Vector(3) << 8.0, 2.5, 0.8).finished());  // T_in and the two gains
 }
 
 TEST(Run, EndlessAndExternalLoopsAreRefused) {

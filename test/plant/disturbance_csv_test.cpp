@@ -142,18 +142,18 @@ TEST(DisturbanceCsv, OtherSeparatorsDecimalsAndMissingValues) {
 }
 
 TEST(DisturbanceCsv, ImplausibleCellsAreErrorsClippedHeldOrInterpolatedAndCounted) {
-  CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,9999\n2,300\n3,-5\n4,\n5,500\n");
+  CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,9999\n2,300\n3,-5\n4,\n5,600\n");
   params.missing = "hold";
   params.channels[0].lower = 0.0;
   params.channels[0].upper = 1000.0;
   expectWords(errorOf(params, 4), ":3: column 'q': expected a value from 0 to 1000");
   expectWords(errorOf(params, 4), "disturbance.csv.channels.q_i.implausible");
   params.channels[0].implausible = Implausible::kClip;
-  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 1000, 300, 0, 0, 500}));
+  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 1000, 300, 0, 0, 600}));
   params.channels[0].implausible = Implausible::kHold;
-  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 100, 300, 300, 300, 500}));
+  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 100, 300, 300, 300, 600}));
   params.channels[0].implausible = Implausible::kInterpolate;
-  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 200, 300, 300 + 200.0 / 3.0, 300, 500}));
+  EXPECT_EQ(flows(params, 5, 3600.0), (Values{100, 200, 300, 400, 300, 600}));
   const DisturbanceRecord record = readDisturbances(params, kNames, kNominal, 3600.0, 5);
   EXPECT_EQ(record.implausible, 2U);
   EXPECT_EQ(record.repaired, 1U);

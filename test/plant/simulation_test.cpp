@@ -246,7 +246,7 @@ TEST(Simulation, BadParamsAreErrorsThatNameTheField) {
   names(errorOf([](P& p) { p.outputs = {"y"}; }), "plant.outputs: 'y'");
   names(errorOf([](P& p) { p.outputs = {"x", "x"}; }), "only once");
   names(errorOf([](P& p) { p.measured_disturbances = {"x"}; }), "plant.measured_disturbances");
-  names(errorOf([](P& p) { p.output_delay_s = {1.0}; }), "plant.output_delay_s");
+  names(errorOf([](P& p) { p.output_delay_s = {1.0}; }), "tf.sample_lines");
   names(errorOf([](P& p) { p.output_delay_s = {1.0, -1.0}; }), "delay_s");
   names(errorOf([](P& p) { p.noise_std = Vector::Ones(3); }), "noise.std");
   names(errorOf([](P& p) { p.noise_std[1] = -1.0; }), "noise.std");

@@ -9,6 +9,7 @@
 #include "fmbpc/fuzzy/data_set.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
+#include "paths.hpp"
 #include "random/damage.hpp"
 #include "random/random_loop.hpp"
 
@@ -43,7 +44,7 @@ class DamagedFiles : public LoopFolder {
   template <typename Read>
   void each(const std::string& folder, std::uint64_t each_file, Read read) {
     for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(FMBPC_SOURCE_DIR) + "/config/" + folder)) {
+         std::filesystem::directory_iterator(sourceDir() + "/config/" + folder)) {
       if (!entry.is_regular_file() || entry.file_size() > 20000) continue;
       std::ifstream stream(entry.path());
       const std::string text((std::istreambuf_iterator<char>(stream)), {});

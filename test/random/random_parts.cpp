@@ -158,7 +158,8 @@ std::string randomDisturbance(Dice& dice, const RandomFrame& frame, RandomLoop& 
   const auto loads = loadsOf(frame.plant);
   std::string text;
   const double source = dice.between(0.0, 1.0);
-  if (!loads.empty() && source < 0.3)
+  const bool daily = frame.sample_time_s >= 5.0;  // a day's pattern is made at every sample time
+  if (!loads.empty() && daily && source < 0.3)
     text += "  source: pattern\n" + pattern(dice, loads);
   else if (!loads.empty() && source < 0.6)
     text += "  source: csv\n" + record(dice, loads, frame, loop);

@@ -1,5 +1,6 @@
 // Model files of `identify --auto`: a plain model file that every loop takes, with a section
-// `identified` that holds the linear model, the model with a state of its own, limits and intervals.
+// `identified` that holds the linear model, the model with a state of its own, limits and
+// intervals.
 #pragma once
 
 #include <string>

@@ -17,14 +17,14 @@ enum class ModelKind { kLinear, kRegressors, kState };
 const std::string& name(ModelKind kind);
 
 struct AutoParams {
-  double budget_s{45.0};           ///< wall time after which no new fit begins
-  int blocks{4};                   ///< of the cross-validation, >= 2
-  Eigen::Index most_rows{2000};    ///< that the search uses
-  Eigen::Index most_last{8000};    ///< that the last fit uses
-  int window{5};                   ///< measured samples that start a free run
-  int longest_delay{10};           ///< [samples]
-  bool states{true};               ///< search models with a state of their own as well
-  int threads{0};                  ///< 0: all cores
+  double budget_s{45.0};         ///< wall time after which no new fit begins
+  int blocks{4};                 ///< of the cross-validation, >= 2
+  Eigen::Index most_rows{2000};  ///< that the search uses
+  Eigen::Index most_last{8000};  ///< that the last fit uses
+  int window{5};                 ///< measured samples that start a free run
+  int longest_delay{10};         ///< [samples]
+  bool states{true};             ///< search models with a state of their own as well
+  int threads{0};                ///< 0: all cores
   std::uint64_t seed{1};
 };
 
@@ -51,8 +51,9 @@ struct AutoFigures {
 struct AutoOutput {
   std::string output;
   AutoFigures linear, regressors, state;  ///< of the best of each kind; no blocks: not searched
-  ModelKind best{ModelKind::kLinear};     ///< lowest cross-validated error, beyond the spread
+  ModelKind best{ModelKind::kLinear};  ///< lowest held-out error of those that beat linear, if any
   bool beats_linear{false};  ///< the best fuzzy model is better than linear beyond the spread
+  bool fuzzy_model{false};   ///< `model` is fuzzy here, else linear
   std::string verdict;       ///< the same in words
   std::vector<int> delay;    ///< of inputs, then disturbances [samples]; 0: acts on the next output
   double sensor_lower{}, sensor_upper{};  ///< limits seen in the data; equal: none

@@ -10,7 +10,7 @@ namespace fpc {
 /// What is known of one output beside the models.
 struct IdentifiedOutput {
   ModelKind best{ModelKind::kRegressors};
-  double sensor_lower{}, sensor_upper{};  ///< predictions stay inside; equal: no limits
+  double sensor_lower{}, sensor_upper{};      ///< predictions stay inside; equal: no limits
   double free_run_width{}, one_step_width{};  ///< of the regressor model's 95 % intervals; 0: none
 };
 
@@ -35,7 +35,7 @@ struct KindPrediction {
 KindPrediction predictKind(const IdentifiedModel& model, ModelKind kind, const DataSet& data);
 /// By the best kind of each output.
 KindPrediction predictBest(const IdentifiedModel& model, const DataSet& data);
-/// n samples ahead from measured pasts; rows below n are NaN.
+/// n samples ahead from measured pasts, from at most some 5000 of them; other rows are NaN.
 Matrix predictSteps(const IdentifiedModel& model, const DataSet& data, int steps);
 
 /// Share [%] of measured values inside prediction +- width; NaN without width.

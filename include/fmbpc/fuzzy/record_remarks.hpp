@@ -13,7 +13,8 @@ namespace fpc {
 std::vector<std::string> recordRemarks(const DataSet& data, const TsModel* linear);
 
 /// Of a judgement: free runs that leave the data (with the sample), rows outside the ranges of the
-/// model's own data, residuals that past inputs explain, feedback from the residual to later inputs.
+/// model's own data, residuals that past inputs explain, feedback from the residual to later
+/// inputs.
 std::vector<std::string> predictionRemarks(const TsModel& model, const DataSet& data,
                                            const Matrix& one_step, const Matrix& free_run,
                                            const ValidationParams& params);

@@ -16,18 +16,18 @@ struct Stretch {
 
 struct RecurrentFitParams {
   int iterations{60};
-  double ridge{1.0};        ///< pulls consequents to `anchor`, in squared errors of unit `noise`
-  double set_ridge{0.3};    ///< the same for centres and log widths, towards their start
-  double one_step_weight{}; ///< companion only: of one-step errors, each in its own unit
-  double free_unit{1.0};    ///< error that counts as 1 in free run
-  double step_unit{1.0};    ///< and one step ahead
-  double start_ridge{0.1};  ///< hidden state: pull of a stretch's start towards its guess
-  double settle{1e-4};      ///< relative fall of the objective below which the fit has settled
+  double ridge{1.0};         ///< pulls consequents to `anchor`, in squared errors of unit `noise`
+  double set_ridge{0.3};     ///< the same for centres and log widths, towards their start
+  double one_step_weight{};  ///< companion only: of one-step errors, each in its own unit
+  double free_unit{1.0};     ///< error that counts as 1 in free run
+  double step_unit{1.0};     ///< and one step ahead
+  double start_ridge{0.1};   ///< hidden state: pull of a stretch's start towards its guess
+  double settle{1e-4};       ///< relative fall of the objective below which the fit has settled
 };
 
 struct RecurrentFitResult {
   Vector parameters;
-  Matrix starts;       ///< states x stretches, hidden state only
+  Matrix starts;  ///< states x stretches, hidden state only
   double objective{};
   int iterations{};
   bool finite{false};
@@ -46,8 +46,8 @@ RecurrentFitResult fitRecurrent(const RecurrentShape& shape, const RecurrentData
 struct StartPrior {
   Vector mean;
   Matrix covariance;
-  double noise{};        ///< std of the measured output
-  Vector lower, upper;   ///< a run's states are held inside; empty: far away only
+  double noise{};       ///< std of the measured output
+  Vector lower, upper;  ///< a run's states are held inside; empty: far away only
 };
 
 /// Outputs of a free run over a stretch (NaN before its start): companion states start with the

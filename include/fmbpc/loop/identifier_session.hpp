@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/fuzzy/ts_model.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
 #include "fmbpc/fuzzy/record_identification.hpp"
 #include "fmbpc/fuzzy/sample_collector.hpp"
+#include "fmbpc/fuzzy/ts_model.hpp"
 
 namespace fpc {
 

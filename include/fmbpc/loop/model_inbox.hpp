@@ -32,8 +32,8 @@ class ModelInbox {
   void hear(const IdentifierWord& word);
   /// Whether `next` may be answered: nothing that belongs before it is still under way.
   bool complete(const StepHeader& next) const;
-  /// Models to be used before `next` is answered, in their order. They are taken out; `next` of run 0
-  /// stands for a controller that has answered nothing yet.
+  /// Models to be used before `next` is answered, in their order. They are taken out; `next` of run
+  /// 0 stands for a controller that has answered nothing yet.
   std::vector<TsModel> take(const StepHeader& next);
 
  private:
@@ -46,9 +46,9 @@ class ModelInbox {
   bool in_step_;
   std::uint64_t run_id_{};
   std::deque<Item> items_;
-  std::optional<StepHeader> word_;   // the latest
-  std::optional<StepHeader> used_;   // the model taken last
-  std::optional<StepHeader> owed_;   // a model that was announced and has not come
+  std::optional<StepHeader> word_;  // the latest
+  std::optional<StepHeader> used_;  // the model taken last
+  std::optional<StepHeader> owed_;  // a model that was announced and has not come
 };
 
 }  // namespace fpc

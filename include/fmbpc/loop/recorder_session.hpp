@@ -23,7 +23,7 @@ struct RecordLayout {
   bool has_optimizer{};  ///< actions and reports of the optimizer come besides base actions
   bool has_state{};      ///< the plant is simulated
   std::vector<std::string> states, state_units;
-  std::size_t true_disturbances{};  ///< of the simulated plant
+  std::size_t true_disturbances{};             ///< of the simulated plant
   std::vector<Eigen::Index> without_setpoint;  ///< outputs: setpoint and reference become NaN
 
   bool fits(const Measurement& m) const;
@@ -66,7 +66,7 @@ class RecorderSession {
   /// "sample 17: no control_action" for the first holes, those of waiting samples included.
   std::vector<std::string> gaps(std::size_t limit = 10) const;
   std::uint64_t gapCount() const { return gap_count_; }
-  std::uint32_t passedOn() const { return next_; }   ///< samples
+  std::uint32_t passedOn() const { return next_; }  ///< samples
   std::size_t waiting() const { return window_.size(); }
   const StepHeader& latest() const { return latest_; }  ///< of the measurements
   std::uint64_t strays() const { return strays_; }      ///< other runs, or too far from now
@@ -85,7 +85,7 @@ class RecorderSession {
   RecordLayout layout_;
   Sink sink_;
   std::optional<std::uint64_t> run_id_;
-  StepGate gate_;  // of the measurements
+  StepGate gate_;         // of the measurements
   std::uint32_t next_{};  // step of the front of the window
   std::deque<SampleRecord> window_;
   std::vector<std::function<void()>> early_;  // before any run was announced

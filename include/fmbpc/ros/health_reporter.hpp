@@ -17,7 +17,7 @@ class HealthReporter {
  public:
   struct Source {
     std::function<Health(double now_s)> health;
-    std::function<StepHeader()> sample;                  ///< the latest
+    std::function<StepHeader()> sample;                ///< the latest
     std::function<void(Diagnostics::Status&)> values;  ///< counters
   };
   /// `summary`: it speaks for the whole loop (the plant).

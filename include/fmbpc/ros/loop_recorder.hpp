@@ -25,9 +25,9 @@ namespace fpc {
 /// Ready when every publisher of the ring is connected. What it records is on disk at once (see
 /// RecordStore) and becomes the run's files at its end, at Ctrl-C, and in the next run if the
 /// process was killed. Ends with the run: exit code 0 when it is complete and written (then
-/// `recorded`, latched, names the folder); otherwise 1, naming the gaps. Parameters: ~out, folder of
-/// the files (nothing is written without it); ~keep, do not end with the run; ~plot, draw plot.png
-/// (default true).
+/// `recorded`, latched, names the folder); otherwise 1, naming the gaps. Parameters: ~out, folder
+/// of the files (nothing is written without it); ~keep, do not end with the run; ~plot, draw
+/// plot.png (default true).
 class LoopRecorder : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }

@@ -1,0 +1,80 @@
+#!/usr/bin/python3
+"""The figures of `fmbpc identify --auto` on public records, as in docs/identification.md: identified from the first rows of each
+record, judged on the others in free run and one step ahead.
+
+    FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--budget S]
+"""
+import argparse
+import json
+import os
+import pathlib
+import subprocess
+import sys
+
+TOOL = pathlib.Path(__file__).resolve().parent / "fmbpc"
+PLANT_INPUTS = "u1_gas_flow,u2_turbine_valves,u3_superheater_spray,u4_gas_dampers,u5_air_flow"
+PLANT_OUTPUTS = "y1_steam_pressure,y2_main_steam_temp,y3_reheat_steam_temp"
+COLUMN_INPUTS = "u_reboil_ratio_n0,u_reflux_ratio_n0,u_distillate_ratio_n0,u_feed_ethane_n0,u_top_pressure_n0"
+COLUMN_OUTPUTS = "y_top_ethane_n0,y_bottom_ethylene_n0,y_dp_n0"
+# name: file, inputs, outputs, last row to identify from (0: all rows, judged by held-out blocks only)
+RECORDS = {
+    "tanks": ("cascaded_tanks_estimation.csv", "u_V", "y_V", 0),
+    "drives_1": ("coupled_drives_1_estimation.csv", "u_V", "y", 300),
+    "drives_2": ("coupled_drives_2_estimation.csv", "u_V", "y", 300),
+    "cstr": ("daisy_cstr.csv", "q_lpm", "Ca_molL,T_K", 5000),
+    "power_plant": ("daisy_powerplant.csv", PLANT_INPUTS, PLANT_OUTPUTS, 140),
+    "heating": ("daisy_heating_system.csv", "u_voltage_V", "y_temp_C", 530),
+    "gas_furnace": ("box_jenkins_gas_furnace.csv", "u_gas_rate_ft3min", "y_co2_pct", 200),
+    "column": ("daisy_destill.csv", COLUMN_INPUTS, COLUMN_OUTPUTS, 0),
+}
+
+
+def identified(name, budget):
+    file, inputs, outputs, last = RECORDS[name]
+    command = [str(TOOL), "identify", os.path.join(os.environ["FMBPC_DATA"], file), "--auto", "--inputs", inputs,
+               "--outputs", outputs, "--budget", str(budget), "--json"]
+    if last:
+        command += ["--rows", "1:%d" % last, "--validate-rows", "%d:" % (last + 1)]
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+def text(value):
+    return "-" if value is None else "%.4g" % value
+
+
+def rows(name, report):
+    for output, crossed in report["cross_validation"].items():
+        best, held = crossed["best"], (report["validation"] or {}).get(output)
+        cells = ["%s, %s" % (name, output), best]
+        for kind in (best, "linear"):
+            cells.append("%s / %s" % (text(crossed[kind]["free_run"]), text(crossed[kind]["one_step"])))
+        for kind in (best, "linear"):
+            figures = held[kind] if held else None
+            cells.append("%s / %s" % (text(figures["free_run"]["rmse"]), text(figures["one_step"]["rmse"])) if held else "-")
+        cells.append("%.1f / %.1f" % (held[best]["free_run"]["fit"], held["linear"]["free_run"]["fit"]) if held else
+                     "%.1f / %.1f" % (crossed[best]["fit"], crossed["linear"]["fit"]))
+        yield cells
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(RECORDS))
+    parser.add_argument("--budget", type=float, default=45.0, help="[s] per record")
+    arguments = parser.parse_args()
+    if "FMBPC_DATA" not in os.environ:
+        print("identification_table.py: FMBPC_DATA must name the folder of the records", file=sys.stderr)
+        return 1
+    unknown = [name for name in arguments.names if name not in RECORDS]
+    if unknown:
+        print("identification_table.py: unknown record %s; known: %s" % (unknown[0], ", ".join(RECORDS)), file=sys.stderr)
+        return 1
+    print("| record, output | best | blocks: free run / one step | linear | held out: free run / one step | linear | "
+          "fit %, best / linear |\n|---|---|---|---|---|---|---|")
+    for name in arguments.names or RECORDS:
+        for cells in rows(name, identified(name, arguments.budget)):
+            print("| " + " | ".join(cells) + " |", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
