@@ -43,9 +43,11 @@ TEST(ResultsPage, IsWhatTheCommandPrints) {
   std::ifstream stream(sourceDir() + "/docs/results.md");
   std::stringstream text;
   text << stream.rdbuf();
-  const std::string page = text.str(), first = "\n## ";
-  const auto from = page.find(first);
-  ASSERT_NE(from, std::string::npos);
+  const std::string page = text.str(), mark = "<!-- fmbpc reproduce --markdown -->\n";
+  const auto at = page.find(mark);
+  ASSERT_NE(at, std::string::npos);
+  const auto from = at + mark.size();
+  if (wordsOf(page.substr(from)).empty()) GTEST_SKIP() << "no rows yet: scripts/results_page";
   const Outcome outcome = tool("reproduce --markdown");
   EXPECT_EQ(outcome.code, 0);
   const auto written = wordsOf(page.substr(from)), printed = wordsOf(outcome.printed);
