@@ -73,7 +73,8 @@ TEST(AutoIdentify, BeatsLinearWhereTheProcessBends) {
   EXPECT_EQ(y.verdict.rfind("the fuzzy model beats linear", 0), 0U) << y.verdict;
   const DataSet other = simulate(bentLaw, 400, 0.0, 0, 9);
   EXPECT_LT(freeRunError(found.model, other), 0.5 * freeRunError(found.linear, other));
-  EXPECT_NEAR(y.regressors.free_run / freeRunError(found.model, data), 1.0, 0.6);
+  EXPECT_GT(y.regressors.free_run,
+            0.9 * freeRunError(found.model, data));  // held out beside fitted
 }
 
 TEST(AutoIdentify, FindsADelay) {
