@@ -23,7 +23,8 @@ void SensorParams::validate() const {
   require(isTime(interval_s), "interval_s", "a time >= 0");
   require(std::isfinite(noise_std) && noise_std >= 0.0, "noise_std", "a finite number >= 0");
   require(lower < upper, "upper", "a number > lower");
-  require(stuck_from_h >= 0.0 && stuck_from_h <= stuck_to_h, "stuck_to_h", "a time >= stuck_from_h");
+  require(stuck_from_h >= 0.0 && stuck_from_h <= stuck_to_h, "stuck_to_h",
+          "a time >= stuck_from_h");
 }
 
 SensorClass sensorClass(const std::string& name) {
@@ -77,7 +78,9 @@ double Sensor::delayed(double value, double seconds) {
   const double back = params_.delay_s / seconds;
   const auto whole = static_cast<std::size_t>(back);
   const std::size_t n = line_.size();
-  const auto past = [&](std::size_t steps) { return line_[(next_ + n - std::min(steps, n - 1)) % n]; };
+  const auto past = [&](std::size_t steps) {
+    return line_[(next_ + n - std::min(steps, n - 1)) % n];
+  };
   const double part = back - static_cast<double>(whole);
   const double result = past(whole) + part * (past(whole + 1) - past(whole));
   next_ = (next_ + 1) % n;
@@ -101,8 +104,7 @@ void Sensor::show() {
   if (time_s_ < due_s_ - kEarly) return;
   if (params_.interval_s > 0.0)
     due_s_ = (std::floor((time_s_ + kEarly) / params_.interval_s) + 1.0) * params_.interval_s;
-  const double noise =
-      params_.noise_std > 0.0 ? params_.noise_std * standardNormal(engine_) : 0.0;
+  const double noise = params_.noise_std > 0.0 ? params_.noise_std * standardNormal(engine_) : 0.0;
   reading_ = std::clamp(shown_ + noise, params_.lower, params_.upper);
 }
 

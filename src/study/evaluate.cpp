@@ -16,8 +16,8 @@ constexpr double kLayerVolume = 600.0;
 constexpr double kSample_h = 0.25;
 constexpr double kXB = 0.08, kXP = 0.06, kInert = 0.08;  // nitrogen in biomass, in products; f_P
 constexpr double kSolidsPerCod = 0.75;
-const std::array<const char*, 13> kNames = {"S_I",  "S_S",  "X_I",  "X_S",  "X_BH", "X_BA", "X_P",
-                                            "S_O",  "S_NO", "S_NH", "S_ND", "X_ND", "S_ALK"};
+const std::array<const char*, 13> kNames = {"S_I", "S_S",  "X_I",  "X_S",  "X_BH", "X_BA", "X_P",
+                                            "S_O", "S_NO", "S_NH", "S_ND", "X_ND", "S_ALK"};
 enum { kI, kS, kXi, kXs, kBH, kBA, kP, kO, kNO, kNH, kND, kXND, kALK };
 using Water = std::array<double, 13>;
 
@@ -54,9 +54,7 @@ double solidsOf(const Water& w) {
 double kjeldahl(const Water& w) {
   return w[kNH] + w[kND] + w[kXND] + kXB * (w[kBH] + w[kBA]) + kXP * (w[kP] + w[kXi]);
 }
-double codOf(const Water& w) {
-  return w[kI] + w[kS] + w[kXi] + w[kXs] + w[kBH] + w[kBA] + w[kP];
-}
+double codOf(const Water& w) { return w[kI] + w[kS] + w[kXi] + w[kXs] + w[kBH] + w[kBA] + w[kP]; }
 double bodOf(const Water& w, double share) {
   return share * (w[kS] + w[kXs] + (1.0 - kInert) * (w[kBH] + w[kBA]));
 }
@@ -81,8 +79,8 @@ Water effluent(const Record& record, const Water& last, Eigen::Index row) {
 
 /// Pollution units carried by a flow [kg/d].
 double pollution(const Water& w, double tss, double bod_share, double flow, bool old) {
-  const double nitrogen = old ? 20.0 * kjeldahl(w) + 20.0 * w[kNO]
-                              : 30.0 * kjeldahl(w) + 10.0 * w[kNO];
+  const double nitrogen =
+      old ? 20.0 * kjeldahl(w) + 20.0 * w[kNO] : 30.0 * kjeldahl(w) + 10.0 * w[kNO];
   return (2.0 * tss + codOf(w) + nitrogen + 2.0 * bodOf(w, bod_share)) * flow / 1000.0;
 }
 
@@ -201,16 +199,15 @@ EffluentReport evaluateEffluent(const CsvTable& table, const EvaluateParams& par
   const auto n = static_cast<double>(rows.size());
   report.samples = rows.size();
   report.days = n * (table.values(rows[1], time) - table.values(rows[0], time)) / 24.0;
-  for (double* mean : {&report.EQI, &report.IQI, &report.AE, &report.PE, &report.ME, &report.SP,
-                       &report.EC})
+  for (double* mean :
+       {&report.EQI, &report.IQI, &report.AE, &report.PE, &report.ME, &report.SP, &report.EC})
     *mean /= n;
   report.SP += (sums.last_solids - sums.first_solids) / report.days;
   report.OCI = report.AE + report.PE + 5.0 * report.SP + 3.0 * report.EC + report.ME;
   const std::pair<const char*, double> limits[] = {
       {"TN", 18.0}, {"COD", 100.0}, {"NH", 4.0}, {"TSS", 30.0}, {"BOD", 10.0}};
   for (std::size_t i = 0; i < 5; ++i)
-    report.limits.push_back(
-        judge(limits[i].first, limits[i].second, sums.values[i], sums.flow));
+    report.limits.push_back(judge(limits[i].first, limits[i].second, sums.values[i], sums.flow));
   return report;
 }
 

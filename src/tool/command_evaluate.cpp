@@ -37,7 +37,7 @@ CsvTable trajectory(const std::string& run, const Overrides& overrides) {
 }
 
 Json jsonOf(const std::string& run, const EffluentReport& report) {
-  Json json{{"run", run},       {"samples", report.samples}, {"days", report.days},
+  Json json{{"run", run},        {"samples", report.samples}, {"days", report.days},
             {"EQI", report.EQI}, {"IQI", report.IQI},         {"AE", report.AE},
             {"PE", report.PE},   {"SP", report.SP},           {"ME", report.ME},
             {"EC", report.EC},   {"OCI", report.OCI},         {"limits", Json::object()}};

@@ -61,11 +61,6 @@ TEST(Bsm1Balance, ConversionIsTheMatrixTimesTheRates) {
     }
 }
 
-/// What is stored in the tanks of a conserved content, and how fast it should change.
-struct Account {
-  double stored{}, in{};
-};
-
 class Balances : public ::testing::Test {
  protected:
   WorksParams works;
@@ -76,8 +71,8 @@ class Balances : public ::testing::Test {
     const auto plant = makePlant("bsm1");
     const Vector start = nominalOf(plant->description().states);
     unpack(start.data(), x.z, x.settler);
-    drive.in.influent = {30.0, 69.5, 51.2, 202.32, 28.17, 0.0, 0.0,
-                         0.0,  0.0,  31.56, 6.95,  10.59, 7.0};
+    drive.in.influent = {30.0, 69.5, 51.2,  202.32, 28.17, 0.0, 0.0,
+                         0.0,  0.0,  31.56, 6.95,   10.59, 7.0};
     drive.in.Q_intr = 30000.0;
     drive.in.Q_r = 18446.0;
     drive.in.Q_w = 385.0;
@@ -124,8 +119,8 @@ double Balances::inflow(const Components& content, bool nitrogen) const {
   return sum;
 }
 
-// Simpson's rule over pieces of 2 x 1e-4 d, the plant's own steps within them; the settler moves once
-// per call here.
+// Simpson's rule over pieces of 2 x 1e-4 d, the plant's own steps within them; the settler moves
+// once per call here.
 TEST_F(Balances, TanksKeepNitrogenAndCodOverSevenDays) {
   WorksStepper stepper(works, nullptr, 1);
   const Components contents[] = {nitrogenOf(works.asm1), codOf()};

@@ -38,26 +38,38 @@ TEST(Bsm1, OpenLoopRestsWhereTheBenchmarkSays) {
   EXPECT_EQ(plant->description().states.size(), 145U);
   expectPrinted(
       *plant, settled(*plant, 150.0),
-      {{"S_S1", 2.808213},   {"X_I1", 1149.125},     {"X_S1", 82.13491},   {"X_BH1", 2551.766},
-       {"X_BA1", 148.3894},  {"X_P1", 448.8519},     {"S_O1", 0.004298443}, {"S_NO1", 5.369940},
-       {"S_NH1", 7.917884},  {"S_ND1", 1.216640},    {"X_ND1", 5.284889},  {"S_ALK1", 4.927710},
-       {"S_S2", 1.458794},   {"S_O2", 6.313191e-5},  {"S_NO2", 3.661967},  {"S_NH2", 8.344415},
-       {"S_S5", 0.8894928},  {"X_S5", 49.30559},     {"X_BH5", 2559.344},  {"X_BA5", 149.7971},
-       {"X_P5", 452.2111},   {"S_O5", 0.4909435},    {"S_NO5", 10.41522},  {"S_NH5", 1.733331},
-       {"S_ND5", 0.6882800}, {"X_ND5", 3.527175},    {"S_ALK5", 4.125579}, {"TSS_L1", 12.49695},
-       {"TSS_L2", 18.11321}, {"TSS_L3", 29.54023},   {"TSS_L4", 68.97805}, {"TSS_L5", 356.0747},
-       {"TSS_L9", 356.0747}, {"TSS_L10", 6393.984},  {"S_NH_L1", 1.733331}});
+      {{"S_S1", 2.808213},   {"X_I1", 1149.125},    {"X_S1", 82.13491},    {"X_BH1", 2551.766},
+       {"X_BA1", 148.3894},  {"X_P1", 448.8519},    {"S_O1", 0.004298443}, {"S_NO1", 5.369940},
+       {"S_NH1", 7.917884},  {"S_ND1", 1.216640},   {"X_ND1", 5.284889},   {"S_ALK1", 4.927710},
+       {"S_S2", 1.458794},   {"S_O2", 6.313191e-5}, {"S_NO2", 3.661967},   {"S_NH2", 8.344415},
+       {"S_S5", 0.8894928},  {"X_S5", 49.30559},    {"X_BH5", 2559.344},   {"X_BA5", 149.7971},
+       {"X_P5", 452.2111},   {"S_O5", 0.4909435},   {"S_NO5", 10.41522},   {"S_NH5", 1.733331},
+       {"S_ND5", 0.6882800}, {"X_ND5", 3.527175},   {"S_ALK5", 4.125579},  {"TSS_L1", 12.49695},
+       {"TSS_L2", 18.11321}, {"TSS_L3", 29.54023},  {"TSS_L4", 68.97805},  {"TSS_L5", 356.0747},
+       {"TSS_L9", 356.0747}, {"TSS_L10", 6393.984}, {"S_NH_L1", 1.733331}});
 }
 
 TEST(Bsm1, DefaultControlRestsWhereTheBenchmarkSays) {
   const auto plant = makePlant("bsm1_pi");
   expectPrinted(*plant, settled(*plant, 150.0),
-                {{"KLa3", 240.0},       {"KLa4", 240.0},      {"KLa5", 131.6514},
-                 {"Qintr", 16485.61},   {"S_NO2", 1.0},       {"S_NH2", 12.54816},
-                 {"S_O2", 6.027126e-5}, {"S_S5", 0.8080078},  {"X_BH5", 2562.851},
-                 {"X_BA5", 154.1630},   {"S_O5", 2.0},        {"S_NO5", 13.52432},
-                 {"S_NH5", 0.6719269},  {"S_ALK5", 3.827686}, {"TSS_L1", 12.50163},
-                 {"TSS_L4", 69.00149},  {"TSS_L5", 356.2825}, {"TSS_L10", 6399.298}});
+                {{"KLa3", 240.0},
+                 {"KLa4", 240.0},
+                 {"KLa5", 131.6514},
+                 {"Qintr", 16485.61},
+                 {"S_NO2", 1.0},
+                 {"S_NH2", 12.54816},
+                 {"S_O2", 6.027126e-5},
+                 {"S_S5", 0.8080078},
+                 {"X_BH5", 2562.851},
+                 {"X_BA5", 154.1630},
+                 {"S_O5", 2.0},
+                 {"S_NO5", 13.52432},
+                 {"S_NH5", 0.6719269},
+                 {"S_ALK5", 3.827686},
+                 {"TSS_L1", 12.50163},
+                 {"TSS_L4", 69.00149},
+                 {"TSS_L5", 356.2825},
+                 {"TSS_L10", 6399.298}});
 }
 
 // An hour with the influent twice the usual and the valves elsewhere: every form of the plant, its
@@ -103,8 +115,7 @@ TEST(Bsm1, ABlowerAtPartOfItsCapacityCapsTheAeration) {
 
 TEST(Bsm1, LocalNoiseFollowsItsSeed) {
   const auto run = [](double seed) {
-    const auto plant =
-        makePlant("bsm1_pi", {{"local_noise", 0.025}, {"local_noise_seed", seed}});
+    const auto plant = makePlant("bsm1_pi", {{"local_noise", 0.025}, {"local_noise_seed", seed}});
     const auto& about = plant->description();
     Vector x = nominalOf(about.states);
     const Vector u = nominalOf(about.inputs), d = nominalOf(about.disturbances);

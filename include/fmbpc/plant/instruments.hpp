@@ -42,7 +42,8 @@ class Instruments {
   const Vector& drive(VectorRef command);
   /// The measured signals after a step; disturbances were held over it.
   void advance(VectorRef y, VectorRef d);
-  /// What the sensors show in place of the true values, where there are sensors. Call once a sample.
+  /// What the sensors show in place of the true values, where there are sensors. Call once a
+  /// sample.
   void read(Eigen::Ref<Vector> y, Eigen::Ref<Vector> d);
   bool hasSensor(Eigen::Index output) const {
     return !outputs_.empty() && outputs_[static_cast<std::size_t>(output)].has_value();

@@ -1,7 +1,8 @@
-// What an instrument makes of the quantity it measures: lags, a dead time, samples of its own, noise,
-// a range, and the fault of standing still.
+// What an instrument makes of the quantity it measures: lags, a dead time, samples of its own,
+// noise, a range, and the fault of standing still.
 //
-// Source of the classes: Rieger et al. (2003), Alex et al. (2008), Benchmark Simulation Model no. 1.
+// Source of the classes: Rieger et al. (2003), Alex et al. (2008), Benchmark Simulation Model
+// no. 1.
 #pragma once
 
 #include <cstdint>
@@ -16,17 +17,17 @@
 namespace fpc {
 
 struct SensorParams {
-  int lags{0};               ///< equal lags in a row; 0: shows at once
-  double lag_s{0.0};         ///< time constant of each
-  double delay_s{0.0};       ///< dead time behind the lags
-  double interval_s{0.0};    ///< takes a sample so often and shows it until the next; 0: always
-  double noise_std{0.0};     ///< of what it shows
+  int lags{0};             ///< equal lags in a row; 0: shows at once
+  double lag_s{0.0};       ///< time constant of each
+  double delay_s{0.0};     ///< dead time behind the lags
+  double interval_s{0.0};  ///< takes a sample so often and shows it until the next; 0: always
+  double noise_std{0.0};   ///< of what it shows
   double lower{-std::numeric_limits<double>::infinity()};
   double upper{std::numeric_limits<double>::infinity()};
-  bool average{false};       ///< the ring sees the mean of what it showed since the last sample
+  bool average{false};  ///< the ring sees the mean of what it showed since the last sample
   double stuck_from_h{std::numeric_limits<double>::infinity()};  ///< shows its last value ...
   double stuck_to_h{std::numeric_limits<double>::infinity()};    ///< ... until then
-  void validate() const;     ///< @throws InputError naming the field
+  void validate() const;  ///< @throws InputError naming the field
 };
 
 enum class SensorClass { kA, kB0, kB1, kC0, kC1, kD };

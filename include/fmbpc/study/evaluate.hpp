@@ -1,5 +1,5 @@
-// The benchmark's own indices of a recorded run of BSM1: quality of the effluent, cost of operation,
-// violations of the limits.
+// The benchmark's own indices of a recorded run of BSM1: quality of the effluent, cost of
+// operation, violations of the limits.
 //
 // Source: Alex et al. (2008), Benchmark Simulation Model no. 1, chapter on performance assessment;
 // the weights of Copp (2002) on request.
@@ -21,21 +21,21 @@ struct EvaluateParams {
 /// One effluent limit over the judged part.
 struct LimitIndices {
   std::string name;
-  double limit{};           ///< [g/m3]
-  double share_percent{};   ///< of the samples above it
-  int crossings{};          ///< times it was crossed upwards
-  double percentile_95{};   ///< of the samples, nearest rank
-  double mean{};            ///< weighted by the effluent flow
+  double limit{};          ///< [g/m3]
+  double share_percent{};  ///< of the samples above it
+  int crossings{};         ///< times it was crossed upwards
+  double percentile_95{};  ///< of the samples, nearest rank
+  double mean{};           ///< weighted by the effluent flow
 };
 
 struct EffluentReport {
   std::uint64_t samples{};
   double days{};
-  double EQI{}, IQI{};         ///< [kg pollution units/d]
-  double AE{}, PE{}, ME{};     ///< aeration, pumping, mixing [kWh/d]
-  double SP{};                 ///< sludge for disposal [kg/d]
-  double EC{};                 ///< carbon dosed [kg COD/d]
-  double OCI{};                ///< AE + PE + 5 SP + 3 EC + ME
+  double EQI{}, IQI{};               ///< [kg pollution units/d]
+  double AE{}, PE{}, ME{};           ///< aeration, pumping, mixing [kWh/d]
+  double SP{};                       ///< sludge for disposal [kg/d]
+  double EC{};                       ///< carbon dosed [kg COD/d]
+  double OCI{};                      ///< AE + PE + 5 SP + 3 EC + ME
   std::vector<LimitIndices> limits;  ///< TN, COD, S_NH, TSS, BOD
   const LimitIndices& limit(const std::string& name) const;
 };

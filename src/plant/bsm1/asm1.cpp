@@ -35,8 +35,8 @@ std::array<Row, kProcesses> processRates(const Asm1& p, const TankTable& z) {
     const double anoxic = (1.0 - aerobic[t]) * nitrate[t];
     const double growth = p.mu_H * substrate[t] * X_BH[t];
     // k_h q/(K_X + q) X_BH with q = X_S/X_BH is h X_S; the same share of X_ND goes along.
-    const double h = p.k_h * X_BH[t] / (p.K_X * X_BH[t] + X_S[t] + kTiny) *
-                     (aerobic[t] + p.eta_h * anoxic);
+    const double h =
+        p.k_h * X_BH[t] / (p.K_X * X_BH[t] + X_S[t] + kTiny) * (aerobic[t] + p.eta_h * anoxic);
     rho[0][t] = growth * aerobic[t];
     rho[1][t] = growth * anoxic * p.eta_g;
     rho[2][t] = p.mu_A * ammonium[t] * nitrifying[t] * X_BA[t];

@@ -11,13 +11,26 @@ namespace fpc::bsm1 {
 /// Components of a tank and of the influent, in the order of the benchmark's files. [g COD/m3]; S_O
 /// [g O2/m3]; S_NO, S_NH, S_ND, X_ND [g N/m3]; S_ALK [mol/m3].
 enum Component {
-  kSI, kSS, kXI, kXS, kXBH, kXBA, kXP, kSO, kSNO, kSNH, kSND, kXND, kSALK, kComponents  // NOLINT
+  kSI,
+  kSS,
+  kXI,
+  kXS,
+  kXBH,
+  kXBA,
+  kXP,
+  kSO,
+  kSNO,
+  kSNH,
+  kSND,
+  kXND,
+  kSALK,
+  kComponents  // NOLINT
 };
 constexpr std::array<Component, 7> kSolubles{kSI, kSS, kSO, kSNO, kSNH, kSND, kSALK};
 constexpr std::array<Component, 6> kParticulates{kXI, kXS, kXBH, kXBA, kXP, kXND};
 constexpr std::array<const char*, kComponents> kComponentNames{
-    "S_I",  "S_S",  "X_I",  "X_S",  "X_BH", "X_BA", "X_P",
-    "S_O",  "S_NO", "S_NH", "S_ND", "X_ND", "S_ALK"};
+    "S_I", "S_S",  "X_I",  "X_S",  "X_BH", "X_BA", "X_P",
+    "S_O", "S_NO", "S_NH", "S_ND", "X_ND", "S_ALK"};
 
 constexpr int kTanks = 5;
 constexpr int kWidth = 6;  // an even number of places, so that two tanks share a register

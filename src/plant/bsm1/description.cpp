@@ -70,8 +70,8 @@ Quantities inputsOf(Front front) {
 }
 
 Quantities disturbances() {
-  const Components constant{30.0, 69.5, 51.2, 202.32, 28.17, 0.0, 0.0,
-                            0.0,  0.0,  31.56, 6.95,  10.59, 7.0};
+  const Components constant{30.0, 69.5, 51.2,  202.32, 28.17, 0.0, 0.0,
+                            0.0,  0.0,  31.56, 6.95,   10.59, 7.0};
   Quantities all;
   for (int c = 0; c < kComponents; ++c)
     all.push_back({std::string(kComponentNames[c]) + "_in", unitOf(static_cast<Component>(c)),
@@ -88,9 +88,10 @@ void addFrames(PlantDescription& p) {
   p.frames.push_back({"settler", "plant", 140.0, 0.0, 0.0});
   for (int i = 1; i <= kLayers; ++i)
     p.frames.push_back({numbered("layer_", i), "settler", 0.0, 0.0, 4.0 - 0.4 * (i - 0.5)});
-  for (const auto& [name, tank, analyser] :
-       {std::tuple{"S_NO2", 2, "nitrate_analyser"}, {"S_O5", 5, "oxygen_probe"},
-        {"S_NH5", 5, "ammonium_analyser"}, {"S_NO5", 5, "outlet_nitrate_analyser"}}) {
+  for (const auto& [name, tank, analyser] : {std::tuple{"S_NO2", 2, "nitrate_analyser"},
+                                             {"S_O5", 5, "oxygen_probe"},
+                                             {"S_NH5", 5, "ammonium_analyser"},
+                                             {"S_NO5", 5, "outlet_nitrate_analyser"}}) {
     p.frames.push_back({analyser, numbered("tank_", tank), 2.0, 3.0, 1.0});
     p.output_frames[name] = analyser;
   }
@@ -118,15 +119,24 @@ class Listing {
 
 void Listing::works() {
   Asm1& a = p_.works.asm1;
-  for (const auto& [name, unit, place] :
-       {std::tuple{"mu_H", "1/d", &a.mu_H}, {"b_H", "1/d", &a.b_H}, {"mu_A", "1/d", &a.mu_A},
-        {"b_A", "1/d", &a.b_A}, {"k_a", "m3/(g d)", &a.k_a}, {"k_h", "1/d", &a.k_h},
-        {"K_X", "-", &a.K_X}, {"eta_g", "-", &a.eta_g}, {"eta_h", "-", &a.eta_h},
-        {"f_P", "-", &a.f_P}, {"i_XB", "-", &a.i_XB}, {"i_XP", "-", &a.i_XP}})
+  for (const auto& [name, unit, place] : {std::tuple{"mu_H", "1/d", &a.mu_H},
+                                          {"b_H", "1/d", &a.b_H},
+                                          {"mu_A", "1/d", &a.mu_A},
+                                          {"b_A", "1/d", &a.b_A},
+                                          {"k_a", "m3/(g d)", &a.k_a},
+                                          {"k_h", "1/d", &a.k_h},
+                                          {"K_X", "-", &a.K_X},
+                                          {"eta_g", "-", &a.eta_g},
+                                          {"eta_h", "-", &a.eta_h},
+                                          {"f_P", "-", &a.f_P},
+                                          {"i_XB", "-", &a.i_XB},
+                                          {"i_XP", "-", &a.i_XP}})
     add(name, unit, *place, 0.0, 100.0);
-  for (const auto& [name, place] :
-       {std::pair{"K_S", &a.K_S}, {"K_OH", &a.K_OH}, {"K_NO", &a.K_NO}, {"K_NH", &a.K_NH},
-        {"K_OA", &a.K_OA}})
+  for (const auto& [name, place] : {std::pair{"K_S", &a.K_S},
+                                    {"K_OH", &a.K_OH},
+                                    {"K_NO", &a.K_NO},
+                                    {"K_NH", &a.K_NH},
+                                    {"K_OA", &a.K_OA}})
     add(name, "g/m3", *place, 1e-6, 1000.0);
   add("Y_H", "-", a.Y_H, 0.01, 0.99);
   add("Y_A", "-", a.Y_A, 0.01, 4.0);

@@ -6,8 +6,8 @@
 
 namespace fpc::bsm1 {
 
-/// What the ring's inputs are: the valves themselves, setpoints of the local loops, or one degree of
-/// aeration that sets the oxygen setpoints.
+/// What the ring's inputs are: the valves themselves, setpoints of the local loops, or one degree
+/// of aeration that sets the oxygen setpoints.
 enum class Front { kValves, kSetpoints, kAir };
 
 /// Oxygen setpoint of an aerated tank: offset + slope * air, kept within its limits [g/m3].
@@ -19,8 +19,7 @@ struct AirLine {
 struct Parameters {
   WorksParams works;
   LocalLoopParams loops;
-  std::array<AirLine, kAerated> air{AirLine{0.18, 1.87, 0.05, 2.24},
-                                    AirLine{2.5, 2.04, 0.65, 5.34},
+  std::array<AirLine, kAerated> air{AirLine{0.18, 1.87, 0.05, 2.24}, AirLine{2.5, 2.04, 0.65, 5.34},
                                     AirLine{0.42, 1.15, 0.05, 4.3}};
   double lags{1.0};
   double noise_seed{1.0};

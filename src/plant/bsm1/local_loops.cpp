@@ -6,7 +6,7 @@ namespace fpc::bsm1 {
 namespace {
 
 constexpr double kMinute = 1.0 / 1440.0;
-constexpr double kOxygenTau = 1.0 * kMinute / 3.89;      // class A: T90 1 min, two lags
+constexpr double kOxygenTau = 1.0 * kMinute / 3.89;       // class A: T90 1 min, two lags
 constexpr double kNitrateTau = 10.0 * kMinute / 11.7724;  // class B0: T90 10 min, eight lags
 constexpr double kBlowerTau = 4.0 * kMinute / 3.89;       // T90 4 min, two lags
 constexpr double kPumpTau = 1e-4;  // only makes the pump's position a state; no lag that counts

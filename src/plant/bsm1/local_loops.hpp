@@ -1,6 +1,6 @@
-// The benchmark's default control in continuous time, as part of the plant's differential equations:
-// three oxygen loops on the blowers, one nitrate loop on the internal recirculation, with their
-// analysers and the blowers' lags. Private to the room.
+// The benchmark's default control in continuous time, as part of the plant's differential
+// equations: three oxygen loops on the blowers, one nitrate loop on the internal recirculation,
+// with their analysers and the blowers' lags. Private to the room.
 //
 //   u = K e + I + u0,   dI/dt = K/Ti e + (sat(u) - u)/Tt,   e = setpoint - shown
 //
@@ -76,7 +76,6 @@ void localLoops(const LocalLoopParams& p, const LoopSetpoints& setpoints, const 
                 LoopStates& dcdt);
 /// Loops that rest at these tanks, setpoints and positions of blowers and pump.
 LoopStates restingLoops(const LocalLoopParams& p, const LoopSetpoints& setpoints,
-                        const std::array<double, kAerated>& KLa, double Q_intr,
-                        const TankTable& z);
+                        const std::array<double, kAerated>& KLa, double Q_intr, const TankTable& z);
 
 }  // namespace fpc::bsm1

@@ -24,8 +24,7 @@ class Bsm1 final : public Plant {
         description_(describe(front)),
         parameters_(readParameters(description_, parameters)) {}
   const PlantDescription& description() const override { return description_; }
-  void derivatives(VectorRef x, VectorRef u, VectorRef d,
-                   Eigen::Ref<Vector> dxdt) const override;
+  void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override;
   std::unique_ptr<PlantStepper> makeStepper(double sample_time_s) const override;
 
   bool hasLoops() const { return front_ != Front::kValves; }
@@ -130,8 +129,7 @@ bool enlist(Front front) {
   });
 }
 
-const bool kRegistered =
-    enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
+const bool kRegistered = enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
 
 }  // namespace
 }  // namespace fpc::bsm1

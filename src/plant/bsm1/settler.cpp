@@ -12,8 +12,7 @@ void carry(const SettlerParams& p, const SettlerFlows& flows, const Layers& x, d
   const double up = flows.effluent / (p.area * p.layer_height);
   const double down = flows.underflow / (p.area * p.layer_height);
   for (int i = 0; i < kFeedLayer; ++i) dxdt[i] = up * (x[i + 1] - x[i]);
-  dxdt[kFeedLayer] =
-      flows.feed / (p.area * p.layer_height) * feed - (up + down) * x[kFeedLayer];
+  dxdt[kFeedLayer] = flows.feed / (p.area * p.layer_height) * feed - (up + down) * x[kFeedLayer];
   for (int i = kFeedLayer + 1; i < kLayers; ++i) dxdt[i] = down * (x[i - 1] - x[i]);
 }
 

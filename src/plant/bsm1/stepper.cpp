@@ -93,7 +93,8 @@ void WorksStepper::advance(WorksState& x, const Drive& drive, double days) {
   const double chunk = noisy ? std::min(days, kMinute) : days;
   const int chunks = std::max(1, static_cast<int>(std::lround(days / chunk)));
   const double length = days / chunks;
-  const int blocks = std::max(1, static_cast<int>(std::ceil(length / (kFastPerSettler * kFastStep))));
+  const int blocks =
+      std::max(1, static_cast<int>(std::ceil(length / (kFastPerSettler * kFastStep))));
   for (int i = 0; i < chunks; ++i) {
     if (noisy)
       for (double& n : noise_) n = standardNormal(engine_);

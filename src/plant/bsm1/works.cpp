@@ -7,8 +7,8 @@ namespace {
 
 constexpr int kLast = kTanks - 1;
 
-/// What returns from the settler's underflow [g/m3]: solubles of its last layer; each particulate in
-/// proportion to the last tank's present composition.
+/// What returns from the settler's underflow [g/m3]: solubles of its last layer; each particulate
+/// in proportion to the last tank's present composition.
 Components underflow(const WorksParams& p, const TankTable& z, const SettlerState& settler) {
   Components u;
   for (std::size_t s = 0; s < kSolubles.size(); ++s)

@@ -1,5 +1,5 @@
-// The works of BSM1 as differential equations: tanks, settler and the flows between them. Private to
-// the room.
+// The works of BSM1 as differential equations: tanks, settler and the flows between them. Private
+// to the room.
 //
 // Source: Copp (2002), The COST simulation benchmark; Alex et al. (2008). Layout, state order:
 // docs/bsm1.md.

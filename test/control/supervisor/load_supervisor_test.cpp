@@ -31,8 +31,7 @@ LoadSupervisorParams params() {
 }
 
 InputLimits limits() {
-  return {Eigen::Vector2d(-2.0, -1.0), Eigen::Vector2d(4.0, 1.0),
-          Vector::Constant(2, kInfinite)};
+  return {Eigen::Vector2d(-2.0, -1.0), Eigen::Vector2d(4.0, 1.0), Vector::Constant(2, kInfinite)};
 }
 
 Measurement sample(std::uint32_t step, double y, double c, double q, double air) {

@@ -14,12 +14,12 @@ namespace fpc {
 /// u = clip(v),  dI/dt = gain e / Ti + (u - v) / Tt,  |I| <= integral_limit.
 struct LoadSupervisorParams {
   int input{}, output{};
-  int concentration{}, flow{};        ///< measured disturbances whose product is the load
-  double nominal_load{1.0};           ///< their product at the usual load
-  double gain{}, load_gain{};         ///< input per output unit; input per relative load
+  int concentration{}, flow{};  ///< measured disturbances whose product is the load
+  double nominal_load{1.0};     ///< their product at the usual load
+  double gain{}, load_gain{};   ///< input per output unit; input per relative load
   double integral_time_h{1.0}, tracking_time_h{1.0};
-  double integral_limit{1e9};         ///< in units of the input
-  void validate() const;              ///< @throws InputError naming the field
+  double integral_limit{1e9};  ///< in units of the input
+  void validate() const;       ///< @throws InputError naming the field
 };
 
 /// Other inputs stay where they are. A start in the middle of a run gives the integral the value at
