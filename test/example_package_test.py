@@ -30,7 +30,8 @@ class ExamplePackage(unittest.TestCase):
         shutil.copytree(TOP / "examples" / "two_tanks", cls.folder / "source")
         run("cmake", "-S", cls.folder / "source", "-B", cls.folder / "build", "-DCMAKE_BUILD_TYPE=Release",
             f"-DCMAKE_INSTALL_PREFIX={cls.own}", f"-DCATKIN_DEVEL_PREFIX={cls.folder}/devel",
-            f"-DCMAKE_PREFIX_PATH={cls.fmbpc}", "-DPYTHON_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
+            f"-DCMAKE_PREFIX_PATH={cls.fmbpc}", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+            "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
         run("cmake", "--build", cls.folder / "build", "--target", "install")
 
     @classmethod
