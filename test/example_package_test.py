@@ -60,7 +60,7 @@ class ExamplePackage(unittest.TestCase):
         report = json.loads(self.tool("identify", results / "two_tanks_excite" / "trajectory.csv", "two_tanks", "--out", model,
                                       "--json"))
         self.assertEqual(sorted(report["rules"]), ["h1", "h2"])
-        self.tool("run", "two_tanks_fmbpc", "--no-plot", "--out", results, TWO_TANKS_MODEL=model)
+        self.tool("run", "two_tanks_fmbpc", "--no-plot", "--out", results / "two_tanks_fmbpc", TWO_TANKS_MODEL=model)
         predictive = self.summary("two_tanks_fmbpc")
         self.assertTrue(predictive["complete"])
         self.assertEqual((0, 0), (predictive["violations"]["input"], predictive["violations"]["move"]))
