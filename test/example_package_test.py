@@ -30,7 +30,8 @@ class ExamplePackage(unittest.TestCase):
         shutil.copytree(TOP / "examples" / "two_tanks", cls.folder / "source")
         run("cmake", "-S", cls.folder / "source", "-B", cls.folder / "build", "-DCMAKE_BUILD_TYPE=Release",
             f"-DCMAKE_INSTALL_PREFIX={cls.own}", f"-DCATKIN_DEVEL_PREFIX={cls.folder}/devel",
-            f"-DCMAKE_PREFIX_PATH={cls.fmbpc}", "-DPYTHON_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
+            f"-DCMAKE_PREFIX_PATH={cls.fmbpc}", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+            "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
         run("cmake", "--build", cls.folder / "build", "--target", "install")
 
     @classmethod
@@ -59,7 +60,7 @@ class ExamplePackage(unittest.TestCase):
         report = json.loads(self.tool("identify", results / "two_tanks_excite" / "trajectory.csv", "two_tanks", "--out", model,
                                       "--json"))
         self.assertEqual(sorted(report["rules"]), ["h1", "h2"])
-        self.tool("run", "two_tanks_fmbpc", "--no-plot", "--out", results, TWO_TANKS_MODEL=model)
+        self.tool("run", "two_tanks_fmbpc", "--no-plot", "--out", results / "two_tanks_fmbpc", TWO_TANKS_MODEL=model)
         predictive = self.summary("two_tanks_fmbpc")
         self.assertTrue(predictive["complete"])
         self.assertEqual((0, 0), (predictive["violations"]["input"], predictive["violations"]["move"]))

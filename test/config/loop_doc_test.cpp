@@ -1,5 +1,4 @@
-// docs/loop_file.md lists every key the reader knows and no other, with the defaults of the
-// structs.
+// docs/loop_file.md lists every key the reader knows and no other, with the structs' defaults.
 #include <gtest/gtest.h>
 
 #include <fstream>
