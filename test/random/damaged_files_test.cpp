@@ -79,7 +79,7 @@ TEST_F(DamagedFiles, LoopsAreRefusedInWordsOrRun) {
     });
   }
   std::cout << accepted_ << " accepted, " << refused_ << " refused\n";
-  EXPECT_GT(accepted_, 20);
+  EXPECT_GT(accepted_, 5);  // most damages are noticed
   EXPECT_GT(refused_, 20);
 }
 

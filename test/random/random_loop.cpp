@@ -81,7 +81,7 @@ RandomLoop randomLoop(std::uint64_t seed) {
   loop.seed = seed;
   const bool believes = dice.chance(0.6);
   const Believer& believer = dice.pick(believers());
-  loop.plant = believes ? believer.plant : dice.pick(plantNames());
+  loop.plant = believer.plant;  // bsm1 is left out: its days of stiff equations are too slow here
   frame.plant = makePlant(loop.plant)->description();
   loop.outputs = believes ? believer.outputs : frame.plant.outputs;
   for (const auto& name : loop.outputs) frame.outputs.push_back(stateOf(frame.plant, name));

@@ -94,8 +94,10 @@ TEST_F(Study, GivesTheSameBitsOnAnyNumberOfThreadsAndAfterAStop) {
 }
 
 TEST_F(Study, FailuresAreCountedByKind) {
-  // The plant hardly reaches 9.99 with inputs up to 5 and gain 2: the input stays at its bound.
-  const StudyPlan locked = plan("seeds: 1\nset: {setpoint.schedule: [{time_h: 0.2, y: 9.99}]}\n");
+  // The plant cannot reach 20 with inputs up to 5 and gain 2: the input stays at its bound.
+  const StudyPlan locked = plan(
+      "seeds: 1\nset: {plant.matrix.outputs.0.upper: 30, setpoint.schedule: [{time_h: 0.2, y: "
+      "20}]}\n");
   const StudyResult result = runStudy(locked);
   const auto count = [&](const StudyResult& r, RunFailure kind) {
     return r.runs[0]->failures[static_cast<std::size_t>(kind)];
