@@ -45,7 +45,10 @@ TEST_F(Tool, TablesHaveUnitsALegendAndNoSwitchesOfAContinuousValve) {
   EXPECT_NE(printed.find("beyond: samples"), std::string::npos) << printed;
   EXPECT_NE(printed.find("  -  "), std::string::npos) << printed;
   const std::string valves = tool("run batch_fuzzy_eq45 --set sampling.duration_h=1").printed;
-  EXPECT_EQ(valves.find("  -  "), std::string::npos) << valves;
+  const auto valve = valves.find("\n", valves.find("kM"));
+  ASSERT_NE(valve, std::string::npos) << valves;
+  const std::string on_off = valves.substr(valve, valves.find("\n", valve + 1) - valve);
+  EXPECT_EQ(on_off.find("  -  "), std::string::npos) << valves;
 }
 
 TEST_F(Tool, StabilityPrintsNoMinusZero) {
@@ -211,10 +214,10 @@ TEST_F(Tool, StabilitySaysThatItDoesNotAnalyseThePrintedStateSpace) {
 }
 
 TEST_F(Tool, ReproduceJsonIsAListOfRowsWithAVerdictEach) {
-  const auto json = nlohmann::json::parse(
-      tool("reproduce asp2_table_8 asp2_equations cstr_section_2 --json").printed);
+  const auto json =
+      nlohmann::json::parse(tool("reproduce asp2_table_8 asp2_equations --json").printed);
   ASSERT_TRUE(json.is_array());
-  ASSERT_GE(json.size(), 18U);
+  ASSERT_EQ(json.size(), 16U);
   for (const auto& row : json)
     for (const char* key : {"name", "paper_key", "item", "quantity", "kind", "paper", "here",
                             "lowest", "highest", "runs", "unit", "verdict", "note", "behind"})
