@@ -54,7 +54,7 @@ void choose(const std::string& kind, AutoIdentification& found) {
   for (auto& o : found.outputs) {
     if (kind == "linear") o.best = ModelKind::kLinear;
     if (kind == "state" && !found.state.outputs.empty()) o.best = ModelKind::kState;
-    if (kind == "regressors") o.best = ModelKind::kRegressors;
+    if (kind == "regressors") o.best = o.fuzzy_model ? ModelKind::kRegressors : ModelKind::kLinear;
   }
   if (kind == "linear") found.model.submodels = found.linear.submodels;
   if (kind == "linear" || kind == "regressors") found.state.outputs.clear();
