@@ -64,9 +64,17 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                [this] { return session_.answer().tracking.header; },
                [this](Diagnostics::Status& status) { report(status); }}) {
   if (loop.has_clp) standin_.emplace(node, loop);
-  if (!session_.controller().followsSetpoint()) return;
-  for (const SignalInfo& output : loop.plant_info.outputs) signals_.add(output.name + "_setpoint");
-  for (const SignalInfo& output : loop.plant_info.outputs) signals_.add(output.name + "_reference");
+  advertiseSignals();
+}
+
+// Early, so that whoever listens misses nothing; what depends on a model follows with it.
+void ControllerNode::advertiseSignals() {
+  const Controller& controller = session_.controller();
+  if (controller.followsSetpoint())
+    for (const char* of : {"_setpoint", "_reference"})
+      for (const SignalInfo& output : loop_.plant_info.outputs) signals_.add(output.name + of);
+  if (controller.needsModel()) return;
+  for (const auto& signal : controller.signals()) signals_.add(signal.first);
 }
 
 void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {

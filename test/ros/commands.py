@@ -43,7 +43,6 @@ class Commands(unittest.TestCase):
         log, recorded = ring.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator"), ring.Listener("recorded", String)
         effects = {kind: ring.Listener(kind, CommandEffect) for kind in ("setpoint_effect", "disturbance_effect")}
         active = ring.Listener("setpoint_active", Setpoint)
-        for listener in (*effects.values(), active, recorded):
         setpoint = ring.publisher("setpoint", Setpoint, listeners=1)
         disturbance = ring.publisher("disturbance", Disturbance)
         for command in SETPOINTS:

@@ -60,6 +60,7 @@ class ControllerNode : public Node {
   void answerParked();
   void tell();  ///< what the operator asks has changed
   void publish(bool repeated);
+  void advertiseSignals();
   void publishSignals();
   void report(Diagnostics::Status& status) const;
   Health health(double now_s) const;
