@@ -36,7 +36,7 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 TEST_F(IdentifyErrors, MissingCellsAreCounted) {
   expectError(spoilt([](CsvTable& t) { t.values(40, 2) = kMissing; }),
-              {"spoilt.csv", "'u'", "1 are", "row 41"});
+              {"spoilt.csv", "'u'", "1 are", ":42:"});
 }
 
 TEST_F(IdentifyErrors, TheInputOfTheLastRowActsOnNothingAndMayBeMissing) {
@@ -65,7 +65,7 @@ TEST_F(IdentifyErrors, TooFewRows) {
 
 TEST_F(IdentifyErrors, TimesThatAreNotSorted) {
   expectError(spoilt([](CsvTable& t) { std::swap(t.values(10, 0), t.values(11, 0)); }),
-              {"spoilt.csv", "'time'", "increase", "row 12"});
+              {"spoilt.csv", "'time'", "increase", ":13:"});
 }
 
 TEST_F(IdentifyErrors, UnitsThatAreNotThoseOfTheStructure) {
@@ -97,8 +97,8 @@ TEST_F(IdentifyErrors, ABagSaysThatThisProgramReadsNone) {
 }
 #endif
 
-TEST_F(IdentifyErrors, UnknownStructuresAreAnsweredWithTheKnownOnes) {
-  const Outcome outcome = tool("identify " + data_ + " nobody", true);
+TEST_F(IdentifyErrors, UnknownStructuresAreAnsweredWithTheNearest) {
+  const Outcome outcome = tool("identify " + data_ + " asp_cc", true);
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.printed.find("asp_c"), std::string::npos) << outcome.printed;
 }
