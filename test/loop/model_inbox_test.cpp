@@ -32,6 +32,15 @@ TEST(ModelInbox, InStepAModelOfSampleKIsUsedAtSampleKPlusOneWhateverArrivesFirst
   }
 }
 
+TEST(ModelInbox, AModelThatWasUsedBeforeItsWordCameIsNotOwed) {
+  ModelInbox inbox(true);
+  inbox.announce(7);
+  inbox.put(model("a"), header(0));
+  ASSERT_EQ(inbox.take(header(1)).size(), 1U);  // sample 0 was answered already
+  inbox.hear({header(0), true});
+  EXPECT_TRUE(inbox.complete(header(1)));
+}
+
 TEST(ModelInbox, AModelOfNoSampleIsUsedAtOnce) {
   ModelInbox inbox(true);
   inbox.announce(7);
