@@ -146,6 +146,15 @@ void FuzzyIdentifier::sayDone() {
   if (done_) identified_.publish(toMsg(IdentifierWord{session_.present(), made_model_}));
 }
 
+// The word of a job is that of the sample it was made from; another may have come meanwhile.
+void FuzzyIdentifier::sayDone(const StepHeader& made_from) {
+  done_ = true;
+  identified_.publish(toMsg(IdentifierWord{made_from, made_model_}));
+  if (made_from.step == session_.present().step) return;
+  made_model_ = false;
+  sayDone();
+}
+
 void FuzzyIdentifier::publish(const TsModel& matched, const StepHeader& made_from) {
   model_publisher_.publish(toMsg(matched, made_from));
   made_model_ = made_model_ || made_from.run_id != 0;
@@ -166,6 +175,7 @@ void FuzzyIdentifier::write(const TsModel& model) const {
 
 void FuzzyIdentifier::begin(IdentificationJob job, bool publish) {
   publish_ = publish;
+  job_from_ = session_.present();
   ROS_INFO("fuzzy_identifier: identifies %s from %zu rows", job.structure.name.c_str(),
            static_cast<std::size_t>(job.values.rows()));
   worker_.start(std::move(job));
@@ -213,8 +223,7 @@ void FuzzyIdentifier::finishJob(const IdentificationWorker::Outcome& outcome) {
   fmbpc::IdentifyModelResult result;
   conclude(outcome, result);
   last_identification_ = result.message;
-  done_ = true;
-  sayDone();
+  sayDone(job_from_);
   ROS_INFO("fuzzy_identifier: %s", result.message.c_str());
   if (!has_goal_) return;
   has_goal_ = false;
@@ -244,7 +253,7 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   result.ok = 1;
   if (!publish_) return;
   try {
-    publish(session_.accept(model), session_.present());
+    publish(session_.accept(model), job_from_);
     write(session_.model());
   } catch (const InputError& error) {
     result.ok = 0;

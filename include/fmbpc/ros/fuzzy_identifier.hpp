@@ -52,6 +52,7 @@ class FuzzyIdentifier : public Node {
   void conclude(const IdentificationWorker::Outcome& outcome, fmbpc::IdentifyModelResult& result);
   void publish(const TsModel& matched, const StepHeader& made_from);
   void sayDone();
+  void sayDone(const StepHeader& made_from);
   void write(const TsModel& model) const;
   Health health(double now_s) const;
   void report(Diagnostics::Status& status) const;
@@ -71,6 +72,7 @@ class FuzzyIdentifier : public Node {
   std::optional<IdentificationJob> waiting_;  // until the worker is free
   Server::GoalHandle goal_;                   // of the job at work, if a client asked for it
   bool has_goal_{false}, publish_{false};
+  StepHeader job_from_;  // the sample that the job under way is made from
   bool done_{false}, made_model_{false};  // the present sample is done; it gave a model
   std::string progress_;
 
