@@ -24,8 +24,8 @@ void ModelInbox::hear(const IdentifierWord& word) {
   if (!word.model) return;
   const bool used = used_ && same(*used_, word.header);  // it was faster than its word
   const bool here = used || std::any_of(items_.begin(), items_.end(), [&](const Item& item) {
-    return same(item.made_from, word.header);
-  });
+                      return same(item.made_from, word.header);
+                    });
   if (!here) owed_ = word.header;
 }
 

@@ -1,5 +1,5 @@
-// A plant that breaks the contract of plants: test/counting_test.py runs the contract tests over it to see that they
-// notice, and that the count does.
+// A plant that breaks the contract of plants: test/counting_test.py runs the contract tests over it
+// to see that they notice, and that the count does.
 #include <limits>
 
 #include "fmbpc/plant/plant.hpp"

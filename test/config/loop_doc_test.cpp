@@ -75,7 +75,8 @@ std::set<std::string> readerKeys() {
       "disturbance:\n  commands: [{time_h: 0, name: q_i, value: 1}]\n"
       "  pattern: {channels: {q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}\n"
       "  csv: {channels: {q_i: {column: a, plausible: [0, 1]}}}\n"
-      "sensors: {s: {class: A}}\nactuator: {lag: {q_r: {t90_s: 6}}}\ntf:\n  frames: {reactor: {x: 1}}\n"
+      "sensors: {s: {class: A}}\nactuator: {lag: {q_r: {t90_s: 6}}}\ntf:\n  frames: {reactor: {x: "
+      "1}}\n"
       "  sample_lines: [{output: s, from: plant, to: reactor, velocity_m_s: 1}]\n";
   const std::string fmbpc =
       "plant: {type: activated_sludge}\ncontroller: {type: fmbpc}\nmodel: {file: " + sourceDir() +

@@ -48,8 +48,8 @@ class Guard : public testing::Test {
   void make(GuardParams params) {
     auto owned = std::make_unique<Wish>();
     law = owned.get();
-    guard = std::make_unique<GuardedController>(std::move(owned), std::move(params), limits(),
-                                                plant());
+    guard =
+        std::make_unique<GuardedController>(std::move(owned), std::move(params), limits(), plant());
     guard->setModel(model());
     guard->reset(sample(0));
   }

@@ -43,8 +43,8 @@ struct Identify {
 
 struct TimedCommand {
   double time_h{};
-  std::variant<SetpointCommand, DisturbanceCommand, SetManual, SetManualInput, HoldRecipe,
-               SetAdapt, Retune, UseModel, Identify>
+  std::variant<SetpointCommand, DisturbanceCommand, SetManual, SetManualInput, HoldRecipe, SetAdapt,
+               Retune, UseModel, Identify>
       what;
 };
 

@@ -26,7 +26,7 @@ struct RingParams {
   std::vector<std::string>
       wait_for;  ///< nodes that must be ready before sample 0; filled from controller, clp, model
   std::vector<std::string> members;  ///< all nodes of ours but the plant that the loop needs
-  double ready_timeout_s{60.0};  ///< wall time after which missing nodes are named
+  double ready_timeout_s{60.0};      ///< wall time after which missing nodes are named
   bool publish_clock{true};
   double action_timeout_s{5.0};  ///< wall time without an action after which a paced plant goes on
   double optimizer_timeout_s{1.0};  ///< wall time after which the controller answers for it
@@ -76,7 +76,7 @@ struct ReportParams {
       output_upper;  ///< n_y limits for violations.output; infinite if absent
   std::vector<ReportWindow> windows;
   std::vector<Consumption> consumption;
-  double record_from_h{};  ///< rows of trajectory.csv begin here
+  double record_from_h{};                      ///< rows of trajectory.csv begin here
   std::vector<Eigen::Index> without_setpoint;  ///< outputs that nobody asks anything of
 };
 

@@ -95,7 +95,8 @@ class ControllerSession {
   bool retune(const Settings& settings);
 
   OperatorWishes wishes() const;
-  /// Before the first sample. @throws InputError for what the controller refuses; the rest is taken.
+  /// Before the first sample. @throws InputError for what the controller refuses; the rest is
+  /// taken.
   void restore(const OperatorWishes& wishes);
   /// Sends the last applied input, source held, until manual() is called: for a controller that
   /// joins a run and cannot know what its operator has asked.

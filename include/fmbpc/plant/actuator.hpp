@@ -13,8 +13,8 @@ namespace fpc {
 
 struct ActuatorParams {
   InputLimits limits;
-  Vector initial;        ///< n_u, u(-1)
-  Vector fallback;       ///< n_u, applied after `hold_samples` samples without an action
+  Vector initial;                   ///< n_u, u(-1)
+  Vector fallback;                  ///< n_u, applied after `hold_samples` samples without an action
   std::vector<DriveParams> drives;  ///< how late each input follows; empty: at once
   int hold_samples{10};  ///< samples an absent action is replaced by the last input; -1: for ever
   void validate(Eigen::Index n_u) const;  ///< @throws InputError naming the field

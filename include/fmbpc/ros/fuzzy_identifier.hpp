@@ -72,7 +72,7 @@ class FuzzyIdentifier : public Node {
   std::optional<IdentificationJob> waiting_;  // until the worker is free
   Server::GoalHandle goal_;                   // of the job at work, if a client asked for it
   bool has_goal_{false}, publish_{false};
-  StepHeader job_from_;  // the sample that the job under way is made from
+  StepHeader job_from_;                   // the sample that the job under way is made from
   bool done_{false}, made_model_{false};  // the present sample is done; it gave a model
   std::string progress_;
 
