@@ -19,7 +19,7 @@ Regression randomRows(Eigen::Index rows) {
   std::normal_distribution<double> normal;
   Regression data;
   data.regressors.resize(rows, kRegressors);
-  for (double& value : data.regressors.reshaped()) value = normal(generator);
+  for (double& value : flat(data.regressors)) value = normal(generator);
   data.antecedents = data.regressors;
   data.target = data.regressors.rowwise().sum() + data.regressors.col(0).cwiseAbs2();
   return data;

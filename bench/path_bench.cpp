@@ -167,7 +167,7 @@ class Clustering {
   Clustering() : points_(10, 100000) {
     std::mt19937_64 generator(1);
     std::normal_distribution<double> normal;
-    for (double& value : points_.reshaped()) value = normal(generator);
+    for (double& value : flat(points_)) value = normal(generator);
     params_.clusters = 8;
     params_.max_iterations = kIterations;
     params_.tolerance = 1e-14;

@@ -17,7 +17,7 @@ Eigenvalues eigenvalues(MatrixRef A) {
                        {std::numeric_limits<double>::quiet_NaN(), 0.0});
   if (A.rows() == 0) return {};
   const Eigen::VectorXcd found = Eigen::EigenSolver<Matrix>(A, false).eigenvalues();
-  Eigenvalues values(found.begin(), found.end());
+  Eigenvalues values(found.data(), found.data() + found.size());
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) {
     if (std::abs(a) != std::abs(b)) return std::abs(a) > std::abs(b);
     return a.imag() != b.imag() ? a.imag() > b.imag() : a.real() > b.real();

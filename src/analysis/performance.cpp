@@ -1,6 +1,7 @@
 #include "fmbpc/analysis/performance.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -8,6 +9,7 @@ namespace fpc {
 namespace {
 
 constexpr double kMoved = 1e-9;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -35,8 +37,8 @@ InputIndices inputIndices(VectorRef applied, double before) {
   InputIndices result;
   result.min = result.max = before;
   if (applied.size() == 0) return result;
-  result.min = applied.minCoeff<Eigen::PropagateNaN>();
-  result.max = applied.maxCoeff<Eigen::PropagateNaN>();
+  result.min = applied.hasNaN() ? kNan : applied.minCoeff();
+  result.max = applied.hasNaN() ? kNan : applied.maxCoeff();
   for (Eigen::Index k = 0; k < applied.size(); ++k) {
     const double move = std::abs(applied[k] - (k == 0 ? before : applied[k - 1]));
     result.travel += move;

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/number.hpp"
 
 namespace fpc {
 namespace {
@@ -55,18 +55,13 @@ std::string join(const std::vector<std::string>& words, const std::string& separ
 
 std::string exactText(double value) {
   if (std::isnan(value)) return "nan";
-  std::array<char, 32> buffer{};
-  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
-  return {buffer.data(), end};
+  return printNumber(value);
 }
 
 std::optional<double> numberOf(const std::string& text) {
   const std::size_t plus = text.size() > 1 && text[0] == '+' && text[1] != '-' ? 1 : 0;
-  double value = 0.0;
-  const char* last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data() + plus, last, value);
-  if (error != std::errc() || end != last || !std::isfinite(value)) return std::nullopt;
-  return value;
+  const auto value = parseNumber(std::string_view(text).substr(plus));
+  return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::string shortText(double value) {

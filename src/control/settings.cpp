@@ -1,11 +1,11 @@
 #include "fmbpc/control/settings.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/number.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -35,12 +35,9 @@ void readNamed(const std::vector<std::string>& words, const std::vector<SignalIn
 }  // namespace
 
 double settingNumber(const std::string& text, const std::string& where) {
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, value);
-  require(!text.empty() && read.ec == std::errc() && read.ptr == end, where,
-          "numbers, got '" + text + "'");
-  return value;
+  const auto value = parseNumber(text);
+  require(value.has_value(), where, "numbers, got '" + text + "'");
+  return *value;
 }
 
 int settingInteger(const std::string& text, const std::string& where) {

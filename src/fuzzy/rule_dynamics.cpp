@@ -28,7 +28,7 @@ std::vector<std::complex<double>> rulePoles(const OutputModel& model, const Rule
     if (isOwn(model.regressors[j], output))
       companion(0, model.regressors[j].lag) += rule.coefficients[static_cast<Eigen::Index>(j)];
   const Eigen::VectorXcd values = Eigen::EigenSolver<Matrix>(companion, false).eigenvalues();
-  std::vector<std::complex<double>> poles(values.begin(), values.end());
+  std::vector<std::complex<double>> poles(values.data(), values.data() + values.size());
   std::sort(poles.begin(), poles.end(), [](const auto& a, const auto& b) {
     return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
   });

@@ -1,6 +1,6 @@
 // CVODE behind a function call (Hindmarsh et al. 2005, SUNDIALS). The only file that knows
-// SUNDIALS; its interface changed at 6 (contexts) and 7 (error handlers), which the few switches
-// below follow.
+// SUNDIALS; its interface changed at 4 (nonlinear solvers), 6 (contexts) and 7 (error handlers),
+// which the few switches below follow.
 #include "fmbpc/plant/integrator.hpp"
 
 #include <cvode/cvode.h>
@@ -8,7 +8,11 @@
 #include <sundials/sundials_config.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
+#if SUNDIALS_VERSION_MAJOR >= 4
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+#else
+#include <cvode/cvode_direct.h>
+#endif
 
 #include <cmath>
 #include <stdexcept>
@@ -23,6 +27,9 @@ using Real = sunrealtype;
 #else
 using Real = realtype;
 #define FPC_CONTEXT
+#endif
+#if SUNDIALS_VERSION_MAJOR < 4
+using SUNNonlinearSolver = void*;  // CVODE 3 holds its iteration itself
 #endif
 static_assert(sizeof(Real) == sizeof(double), "SUNDIALS must be built with double precision");
 
@@ -43,6 +50,7 @@ struct Integrator::Cvode {
   Cvode& operator=(const Cvode&) = delete;
 
   void create(const IntegratorParams& params);
+  bool chooseSolver(bool stiff);
   void free();
   void silence();
   int integrate(VectorRef x, double t_end);
@@ -106,31 +114,46 @@ void Integrator::Cvode::create(const IntegratorParams& params) {
   if (SUNContext_Create(nullptr, &context) != 0) failCreation();
 #endif
   y = N_VNew_Serial(static_cast<sunindextype>(n) FPC_CONTEXT);
+#if SUNDIALS_VERSION_MAJOR >= 4
   memory = CVodeCreate(stiff ? CV_BDF : CV_ADAMS FPC_CONTEXT);
+#else
+  memory = stiff ? CVodeCreate(CV_BDF, CV_NEWTON) : CVodeCreate(CV_ADAMS, CV_FUNCTIONAL);
+#endif
   if (y == nullptr || memory == nullptr) failCreation();
   silence();
   N_VConst(0.0, y);
-  bool ok = CVodeInit(memory, &Cvode::derivatives, 0.0, y) == CV_SUCCESS &&
-            CVodeSStolerances(memory, params.relative_tolerance, params.absolute_tolerance) ==
-                CV_SUCCESS &&
-            CVodeSetUserData(memory, this) == CV_SUCCESS &&
-            CVodeSetMaxNumSteps(memory, params.max_steps) == CV_SUCCESS &&
-            CVodeSetMaxHnilWarns(memory, -1) == CV_SUCCESS;
+  const bool ok = CVodeInit(memory, &Cvode::derivatives, 0.0, y) == CV_SUCCESS &&
+                  CVodeSStolerances(memory, params.relative_tolerance, params.absolute_tolerance) ==
+                      CV_SUCCESS &&
+                  CVodeSetUserData(memory, this) == CV_SUCCESS &&
+                  CVodeSetMaxNumSteps(memory, params.max_steps) == CV_SUCCESS &&
+                  CVodeSetMaxHnilWarns(memory, -1) == CV_SUCCESS;
+  if (!ok || !chooseSolver(stiff)) failCreation();
+}
+
+/// Newton with a dense matrix for stiff plants, else functional (fixed-point) iteration.
+bool Integrator::Cvode::chooseSolver(bool stiff) {
+  const auto size = static_cast<sunindextype>(n);
+  if (stiff) matrix = SUNDenseMatrix(size, size FPC_CONTEXT);
+#if SUNDIALS_VERSION_MAJOR >= 4
   if (stiff) {
-    const auto size = static_cast<sunindextype>(n);
-    matrix = SUNDenseMatrix(size, size FPC_CONTEXT);
     linear_solver = SUNLinSol_Dense(y, matrix FPC_CONTEXT);
-    ok = ok && CVodeSetLinearSolver(memory, linear_solver, matrix) == CV_SUCCESS;
-  } else {
-    nonlinear_solver = SUNNonlinSol_FixedPoint(y, 0 FPC_CONTEXT);
-    ok = ok && CVodeSetNonlinearSolver(memory, nonlinear_solver) == CV_SUCCESS;
+    return CVodeSetLinearSolver(memory, linear_solver, matrix) == CV_SUCCESS;
   }
-  if (!ok) failCreation();
+  nonlinear_solver = SUNNonlinSol_FixedPoint(y, 0 FPC_CONTEXT);
+  return CVodeSetNonlinearSolver(memory, nonlinear_solver) == CV_SUCCESS;
+#else
+  if (!stiff) return true;
+  linear_solver = SUNDenseLinearSolver(y, matrix);
+  return CVDlsSetLinearSolver(memory, linear_solver, matrix) == CV_SUCCESS;
+#endif
 }
 
 void Integrator::Cvode::free() {
   if (memory != nullptr) CVodeFree(&memory);
+#if SUNDIALS_VERSION_MAJOR >= 4
   if (nonlinear_solver != nullptr) SUNNonlinSolFree(nonlinear_solver);
+#endif
   if (linear_solver != nullptr) SUNLinSolFree(linear_solver);
   if (matrix != nullptr) SUNMatDestroy(matrix);
   if (y != nullptr) N_VDestroy(y);

@@ -77,7 +77,8 @@ fmbpc::OperatorState OperatorDesk::message(const StepHeader& sample) const {
   msg.node = ros::this_node::getName();
   msg.manual = wishes.manual;
   msg.manual_given = wishes.manual_given;
-  msg.manual_input.assign(wishes.manual_input.begin(), wishes.manual_input.end());
+  msg.manual_input.assign(wishes.manual_input.data(),
+                          wishes.manual_input.data() + wishes.manual_input.size());
   msg.recipe_held = wishes.recipe.held;
   msg.recipe_held_at = wishes.recipe.held_at;
   msg.recipe_shift = wishes.recipe.shift;

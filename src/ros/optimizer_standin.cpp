@@ -36,10 +36,10 @@ void OptimizerStandin::asked(const ControllerAnswer& answer, bool repeated) {
 }
 
 void OptimizerStandin::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
-  const bool own =
-      sent_ && msg->run_id == base_.header.run_id && msg->step == base_.header.step &&
-      msg->source == static_cast<std::uint8_t>(base_.source) &&
-      std::equal(msg->input.begin(), msg->input.end(), base_.input.begin(), base_.input.end());
+  const bool own = sent_ && msg->run_id == base_.header.run_id && msg->step == base_.header.step &&
+                   msg->source == static_cast<std::uint8_t>(base_.source) &&
+                   std::equal(msg->input.begin(), msg->input.end(), base_.input.data(),
+                              base_.input.data() + base_.input.size());
   if (!own) guarded(topics::kControlAction, [&] { watch_.answered(fromMsg(*msg).header); });
 }
 

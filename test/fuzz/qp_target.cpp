@@ -40,10 +40,10 @@ QpProblem problemOf(Bytes& bytes) {
               rank = bytes.below(static_cast<int>(n) + 1);
   QpProblem p(n, m);
   Matrix root(n, rank);
-  for (double& value : root.reshaped()) value = finite(bytes);
+  for (double& value : flat(root)) value = finite(bytes);
   p.H = root * root.transpose();
   for (double& value : p.g) value = finite(bytes);
-  for (double& value : p.A.reshaped()) value = finite(bytes);
+  for (double& value : flat(p.A)) value = finite(bytes);
   const auto limits = [&](Vector& lower, Vector& upper) {
     for (Index i = 0; i < lower.size(); ++i) {
       const double a = bytes.number(), b = bytes.number();

@@ -95,7 +95,7 @@ TEST(ChoiceModel, RandomModelsWithLagsAndDisturbancesPredictAsTheIdentifierDoes)
     shape.input_delay = trial % 2;
     const TsModel model = test::randomModel(generator, shape);
     Matrix choices(2, 4);
-    for (double& value : choices.reshaped()) value = unit(generator);
+    for (double& value : flat(choices)) value = unit(generator);
     DataSet data;
     data.source = "random";
     data.sample_time_s = model.sample_time_s;

@@ -35,7 +35,7 @@ TEST(Clustering, TheObjectiveNeverRises) {
     std::mt19937_64 generator(seed);
     std::normal_distribution<double> normal;
     Matrix points(4, 400);
-    for (double& value : points.reshaped()) value = normal(generator);
+    for (double& value : flat(points)) value = normal(generator);
     points.row(3) = points.row(0) + 0.01 * points.row(3);  // nearly flat, as regression data are
     for (const double fuzziness : {1.3, 2.0, 3.0})
       for (const double regularisation : {-1.0, 0.0, 0.05, 0.5}) {
@@ -113,7 +113,7 @@ Matrix flatClouds(Eigen::Index n, Eigen::Index samples) {
   std::mt19937_64 generator(5);
   std::normal_distribution<double> normal;
   Matrix points(n, samples);
-  for (double& value : points.reshaped()) value = normal(generator);
+  for (double& value : flat(points)) value = normal(generator);
   for (Eigen::Index k = 0; k < samples; ++k) {
     points(k % n, k) *= 0.01;
     points.col(k).array() += 3.0 * static_cast<double>(k % 3);

@@ -38,7 +38,7 @@ TEST(LinearModel, PredictsItsElementsExactlyAlsoWithFractionalDeadTimes) {
   std::uniform_real_distribution<double> any(-0.1, 0.1);
   constexpr Eigen::Index kSamples = 120;
   Matrix inputs = Matrix::Zero(2, kSamples), outputs(2, kSamples + 1);
-  for (auto& u : inputs.rightCols(kSamples - 20).reshaped()) u = any(generator);
+  for (double& u : flat(inputs).tail(2 * (kSamples - 20))) u = any(generator);
   outputs.col(0) = rest;
   for (Eigen::Index k = 0; k < kSamples; ++k) {
     outputs.col(k + 1) = rest;

@@ -39,7 +39,7 @@ class Draw {
   }
   Matrix matrix(Eigen::Index rows, Eigen::Index columns) {
     Matrix M(rows, columns);
-    for (double& value : M.reshaped()) value = uniform(-1.0, 1.0);
+    for (double& value : flat(M)) value = uniform(-1.0, 1.0);
     return M;
   }
 

@@ -24,7 +24,7 @@ struct RandomTree final : TreeProblem {
     target = Vector(n_levels).unaryExpr([&](double) { return 2.0 * draw(); });
     charge = Matrix(n + 1, n).unaryExpr([&](double) { return std::max(draw(), 0.0); });
     if (forbidden)
-      for (double& c : charge.reshaped())
+      for (double& c : flat(charge))
         if (unit(generator) > 0.3) c = kInfinite;
   }
   double advance(int level, int before, int choice, Eigen::Ref<Vector> state) override {

@@ -3,11 +3,19 @@
 
 #include <Eigen/Core>
 
+#include "fmbpc/base/eigen_iteration.hpp"
+
 namespace fpc {
 
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 using VectorRef = Eigen::Ref<const Vector>;
 using MatrixRef = Eigen::Ref<const Matrix>;
+
+/// All elements of a matrix as one vector, column by column: the matrix itself, not a copy.
+inline Eigen::Map<Vector> flat(Matrix& matrix) { return {matrix.data(), matrix.size()}; }
+inline Eigen::Map<const Vector> flat(const Matrix& matrix) {
+  return {matrix.data(), matrix.size()};
+}
 
 }  // namespace fpc

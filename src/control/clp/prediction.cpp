@@ -44,8 +44,8 @@ void ClpPrediction::stack(ClpProblem& problem) const {
     X.block(j * n_x, j * n_u, left * n_x, n_u) = X.topLeftCorner(left * n_x, n_u);
     T.block(j * n_u, j * n_u, left * n_u, n_u) = T.topLeftCorner(left * n_u, n_u);
   }
-  problem.state_free = state_free.rightCols(n_c).reshaped();
-  problem.perturbation_free = perturbation_free.reshaped();
+  problem.state_free = flat(state_free).tail(n_x * n_c);
+  problem.perturbation_free = flat(perturbation_free);
 }
 
 }  // namespace fpc

@@ -32,7 +32,7 @@ Matrix inputHessian(const ClpProblem& p, Eigen::Index n) {
 }
 
 double costOf(const ClpProblem& p, const Matrix& U) {
-  const Vector v = U.reshaped().cwiseQuotient(p.input_scale.replicate(U.cols(), 1));
+  const Vector v = flat(U).cwiseQuotient(p.input_scale.replicate(U.cols(), 1));
   const Eigen::Index n = v.size();
   return p.cost_constant +
          2.0 * p.cost_scale * (0.5 * v.dot(p.qp.H.topLeftCorner(n, n) * v) + p.qp.g.head(n).dot(v));
@@ -136,7 +136,8 @@ TEST(ClpAlgebra, HessianAndGradientAreTheTextbooksInThePerturbations) {
     ASSERT_LE((S_c - book.S_c).norm(), 1e-9 * book.S_c.norm());
     const Vector c = draw.vector(n_u * n_c, 10.0);
     const auto inputs = [&](const Vector& perturbation) -> Matrix {
-      return (to_c * (perturbation - p.perturbation_free)).reshaped(n_u, n_c);
+      const Vector u = to_c * (perturbation - p.perturbation_free);
+      return Eigen::Map<const Matrix>(u.data(), n_u, n_c);
     };
     const double change = costOf(p, inputs(c)) - costOf(p, inputs(Vector::Zero(c.size())));
     const double expected = c.dot(book.S_c * c) + 2.0 * c.dot(book.S_cx * now.state);
@@ -238,7 +239,7 @@ TEST(ClpAlgebra, AtTheLqOptimalGainTheHessianIsBlockDiagonalAndThePerturbationZe
     }
     ASSERT_LE(off.norm(), 1e-9 * S_c.norm());
     const Matrix U = plannedInputs(solved.clp, kSteps);
-    const Vector c = p.perturbation_from_input * U.reshaped() + p.perturbation_free;
+    const Vector c = p.perturbation_from_input * flat(U) + p.perturbation_free;
     ASSERT_LE(c.cwiseAbs().maxCoeff(), 1e-9 * std::max(1.0, U.norm()));
   }
 }

@@ -139,8 +139,7 @@ Matrix roll(const PredictiveAction& now, int steps, const Law& input) {
 /// The inputs that the last step decided, n_u n_c.
 inline Matrix plannedInputs(const ClosedLoopParadigm& clp, Eigen::Index n_c) {
   const Vector& unit = clp.problem().input_scale;
-  const Matrix v = clp.solution().x.head(unit.size() * n_c).reshaped(unit.size(), n_c);
-  return unit.asDiagonal() * v;
+  return unit.asDiagonal() * Eigen::Map<const Matrix>(clp.solution().x.data(), unit.size(), n_c);
 }
 
 /// One step of a fresh paradigm.

@@ -79,7 +79,7 @@ TEST(ClosedLoopParadigmProperty, TheProgrammeItselfFindsNoPerturbationWhenInacti
     const Vector free = qp.H.ldlt().solve(-qp.g);
     const Matrix planned = plannedInputs(clp, s.n_c);
     const Vector unit = clp.problem().input_scale.replicate(s.n_c, 1);
-    ASSERT_LE((free.cwiseProduct(unit) - planned.reshaped()).norm(), 1e-8 * planned.norm());
+    ASSERT_LE((free.cwiseProduct(unit) - flat(planned)).norm(), 1e-8 * planned.norm());
   }
 }
 
@@ -199,10 +199,10 @@ TEST(ClosedLoopParadigmProperty, StackedPredictionEqualsSteppingTheModel) {
       return U.col(i);
     });
     const ClpProblem& p = clp.problem();
-    const Vector X = p.state_free + p.state_from_input * U.reshaped();
-    const Vector T_U = p.perturbation_from_input * U.reshaped() + p.perturbation_free;
-    ASSERT_LE((X - stepped.reshaped()).norm(), 1e-10 * stepped.norm());
-    ASSERT_LE((T_U - c.reshaped()).norm(), 1e-10 * c.norm());
+    const Vector X = p.state_free + p.state_from_input * flat(U);
+    const Vector T_U = p.perturbation_from_input * flat(U) + p.perturbation_free;
+    ASSERT_LE((X - flat(stepped)).norm(), 1e-10 * stepped.norm());
+    ASSERT_LE((T_U - flat(c)).norm(), 1e-10 * c.norm());
     ASSERT_TRUE(p.perturbation_from_input.isLowerTriangular(0.0));
     ASSERT_TRUE((p.perturbation_from_input.diagonal().array() == 1.0).all());
   }

@@ -1,0 +1,7 @@
+// Compiled once for all files of the nodes' library.
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/ros.h>
+
+#include "core.hpp"

@@ -1,0 +1,6 @@
+// Compiled once for all test programs.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "core.hpp"

@@ -1,0 +1,6 @@
+// Compiled once for all files of the tool.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "core.hpp"
