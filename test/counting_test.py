@@ -56,6 +56,14 @@ class Counting(unittest.TestCase):
         wrapper = next(path.name for path in self.results.glob("rostest-*.xml"))
         self.assertEqual((1, "0 passed, 1 failed"), self.count(wrapper, "rosunit-broken.xml"))
 
+    @unittest.skipUnless(WITH_ROS, "built without ROS")
+    def test_a_rostest_that_is_run_again_and_again(self):
+        run = subprocess.run([TOP / "scripts/flaky", "-n", "2", "--keep", self.build / "logs", "../broken/broken"],
+                             env=dict(os.environ, ROS_HOSTNAME="localhost"), capture_output=True, text=True)
+        self.assertEqual((1, "0 passed, 2 failed"), (run.returncode, run.stdout.splitlines()[-1]), run.stderr)
+        self.assertIn("FAILED ../broken/broken, run 2", run.stdout)
+        self.assertEqual(2, len(list((self.build / "logs").glob("*.log"))))
+
     def test_the_wrapper_of_a_rostest_adds_no_passes(self):
         (self.results / "rostest-a.xml").write_text(PASSED.format("a"))
         (self.results / "rosunit-a.xml").write_text(PASSED.format("a"))

@@ -50,7 +50,7 @@ class BadModels(unittest.TestCase):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
         recorded, status = ring.Listener("recorded", String), ring.NodeStatus("fmbpc_controller")
         good = ring.Listener("fuzzy_model", FuzzyModel, "/fuzzy_identifier").wait(lambda m: m.name == "FM_1")
-        publisher = ring.publisher("fuzzy_model", FuzzyModel, listeners=2)  # the controller, and this node
+        publisher = ring.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller")
         ring.Listener("measurement", Measurement).wait(lambda m: m.step >= 5)
         for count, (model, words) in enumerate(spoiled(good), 1):
             publisher.publish(model)

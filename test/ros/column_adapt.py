@@ -6,7 +6,7 @@ import unittest
 
 import rospy
 import rostest
-from fmbpc.msg import ControlAction, Disturbance, Measurement, NodeReady, Signal
+from fmbpc.msg import ControlAction, Disturbance, Measurement, Signal
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import SetBool, Trigger
 
@@ -36,11 +36,10 @@ class ColumnAdapt(unittest.TestCase):
         adapt = rospy.ServiceProxy("fmbpc_controller/adapt", SetBool)
         for service in (pause, adapt):
             service.wait_for_service(ring.PATIENCE)
-        disturbance = ring.publisher("disturbance", Disturbance)
+        disturbance = ring.publisher("disturbance", Disturbance, "/plant_simulator")
         self.assertTrue(pause(True).success)
         self.assertEqual("frozen", adapt(False).message)
-        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
-        ready.publish(node=rospy.get_name())
+        ring.begin()
         measurements.wait(lambda m: m.step == 0)
 
         log = ring.Listener("/rosout", Log, "/plant_simulator")

@@ -7,7 +7,7 @@ import unittest
 
 import rospy
 import rostest
-from fmbpc.msg import CommandEffect, Disturbance, NodeReady, Setpoint
+from fmbpc.msg import CommandEffect, Disturbance, Setpoint
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 
@@ -43,8 +43,8 @@ class Commands(unittest.TestCase):
         log, recorded = ring.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator"), ring.Listener("recorded", String)
         effects = {kind: ring.Listener(kind, CommandEffect) for kind in ("setpoint_effect", "disturbance_effect")}
         active = ring.Listener("setpoint_active", Setpoint)
-        setpoint = ring.publisher("setpoint", Setpoint, listeners=1)
-        disturbance = ring.publisher("disturbance", Disturbance)
+        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        disturbance = ring.publisher("disturbance", Disturbance, "/plant_simulator")
         for command in SETPOINTS:
             setpoint.publish(message(Setpoint, *command))
         for command in DISTURBANCES:
@@ -53,8 +53,7 @@ class Commands(unittest.TestCase):
                                    ("/plant_simulator", ": disturbance of", len(DISTURBANCES))):
             ring.wait_until(lambda n=node, w=words, c=count:
                             sum(m.name == n and w in m.msg for m in list(log.messages)) == c, f"{node} to take all")
-        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
-        ready.publish(node=rospy.get_name())
+        ring.begin()
 
         folder = recorded.wait().data
         with tempfile.TemporaryDirectory() as reference:

@@ -23,7 +23,7 @@ class FakePlant(unittest.TestCase):
         # The plant in the other namespace never starts: it is there to introduce itself.
         cls.info = ring.Listener("reference/plant_info", PlantInfo).wait()
         cls.info_pub = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
-        cls.pub = ring.publisher("measurement", Measurement)
+        cls.pub = ring.publisher("measurement", Measurement, "/fmbpc_controller")
         cls.actions = ring.Listener("control_action", ControlAction)
         cls.tracking = ring.Listener("tracking", Tracking)
         cls.log = ring.Listener("/rosout", Log, "/fmbpc_controller")
@@ -176,7 +176,7 @@ class FakePlant(unittest.TestCase):
 
     def test_a_setpoint_without_a_stamp_acts_at_the_next_sample(self):
         effects = ring.Listener("setpoint_effect", CommandEffect)
-        setpoint = ring.publisher("setpoint", Setpoint)
+        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
         self.answer(1)
         setpoint.publish(name=["x"], value=[1950.0], mode=Setpoint.OVERRIDE)
         self.log.wait(lambda m: "setpoint of x from sample 2 on" in m.msg)

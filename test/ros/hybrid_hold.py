@@ -9,7 +9,7 @@ import unittest
 
 import rospy
 import rostest
-from fmbpc.msg import ControlAction, NodeReady
+from fmbpc.msg import ControlAction
 from fmbpc.srv import ManualInput
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
@@ -38,8 +38,7 @@ class HybridHold(unittest.TestCase):
         hold, manual, manual_input = service("hold", SetBool), service("manual", SetBool), service("manual_input",
                                                                                                    ManualInput)
         self.assertEqual("recipe held", hold(True).message)
-        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
-        ready.publish(node=rospy.get_name())
+        ring.begin()
         actions.wait(lambda a: a.step >= 30)
         self.assertEqual("recipe running", hold(False).message)
         actions.wait(lambda a: a.step >= 60)

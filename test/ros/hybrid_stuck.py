@@ -7,7 +7,7 @@ import unittest
 
 import rospy
 import rostest
-from fmbpc.msg import Disturbance, NodeReady
+from fmbpc.msg import Disturbance
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 
@@ -26,12 +26,11 @@ def message(time_h, mode, values):
 class HybridStuck(unittest.TestCase):
     def test_a_stuck_valve_is_survived_and_reported(self):
         recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log, "/fmbpc_controller", "/plant_simulator")
-        disturbance = ring.publisher("disturbance", Disturbance)
+        disturbance = ring.publisher("disturbance", Disturbance, "/plant_simulator")
         disturbance.publish(message(STUCK_H, Disturbance.OVERRIDE, [0.0]))
         disturbance.publish(message(FREE_H, Disturbance.RELEASE, []))
         ring.wait_until(lambda: sum("disturbance of" in m.msg for m in list(log.messages)) == 2, "the plant to take both")
-        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
-        ready.publish(node=rospy.get_name())
+        ring.begin()
         log.wait(lambda m: m.name == "/fmbpc_controller" and m.level == Log.WARN and
                  "kM is not where it was sent" in m.msg)
         folder = recorded.wait().data

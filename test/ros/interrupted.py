@@ -28,16 +28,20 @@ class Interrupted(unittest.TestCase):
         pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
         step = rospy.ServiceProxy("plant_simulator/step", Trigger)
         reset = rospy.ServiceProxy("plant_simulator/reset", Trigger)
+        ring.begin()
         first = measurements.wait(lambda m: m.step == 5).run_id
 
         def interrupt():
-            reset()
-            second = measurements.wait(lambda m: m.run_id > first and m.step == 4).run_id
             pause(True)
-            at = measurements.messages[-1].step
+            reset()
+            second = measurements.wait(lambda m: m.run_id > first).run_id
             for k in range(1, 4):
                 self.assertTrue(step().success)
-                measurements.wait(lambda m, k=k: m.run_id == second and m.step == at + k)
+                measurements.wait(lambda m, k=k: m.run_id == second and m.step == k)
+            pause(False)
+            measurements.wait(lambda m: m.run_id == second and m.step >= 6)
+            pause(True)  # in the middle, wherever it is by now
+            step()
             pause(False)
         self.run_and_compare(recorded, interrupt)
         self.run_and_compare(recorded, reset)  # once more after the final sample

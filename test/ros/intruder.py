@@ -10,7 +10,7 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from fmbpc.msg import (ControlAction, Disturbance, FuzzyModel, Matrix, Measurement, PlantInfo, PlantState,
+from fmbpc.msg import (ControlAction, Disturbance, FuzzyModel, Matrix, Measurement, NodeReady, PlantInfo, PlantState,
                        PredictiveAction, Setpoint, SolverReport, Tracking)
 from std_msgs.msg import String
 
@@ -20,6 +20,11 @@ FAR = 2 ** 63  # a run that no plant has announced
 KINDS = {"control_action": ControlAction, "base_action": ControlAction, "predictive_action": PredictiveAction,
          "measurement": Measurement, "plant_state": PlantState, "tracking": Tracking, "solver_report": SolverReport,
          "setpoint": Setpoint, "disturbance": Disturbance, "fuzzy_model": FuzzyModel, "plant_info": PlantInfo}
+PLANT, CONTROLLER, OPTIMIZER, RECORDER = NODES = ("/plant_simulator", "/fmbpc_controller", "/clp_optimizer", "/loop_recorder")
+RECEIVERS = {"control_action": (PLANT, RECORDER), "base_action": (OPTIMIZER, RECORDER), "predictive_action": (OPTIMIZER,),
+             "measurement": (CONTROLLER, RECORDER), "plant_state": (RECORDER,), "tracking": (RECORDER,),
+             "solver_report": (RECORDER,), "setpoint": (CONTROLLER,), "disturbance": (PLANT,), "fuzzy_model": (CONTROLLER,),
+             "plant_info": (CONTROLLER, OPTIMIZER, RECORDER)}
 
 
 def rubbish(now):
@@ -56,19 +61,24 @@ def rubbish(now):
 class Intruder(unittest.TestCase):
     def test_rubbish_on_every_topic_changes_nothing_and_is_counted(self):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
-        recorded, diagnostics = ring.Listener("recorded", String), ring.Listener("/diagnostics", DiagnosticArray, "/plant_simulator", "/fmbpc_controller",
-                                                                             "/clp_optimizer", "/loop_recorder")
+        recorded, diagnostics = ring.Listener("recorded", String), ring.Listener("/diagnostics", DiagnosticArray, *NODES)
         measurements = ring.Listener("measurement", Measurement)
-        publishers = {topic: rospy.Publisher(topic, kind, queue_size=10000) for topic, kind in KINDS.items()}
-        for topic, publisher in publishers.items():
-            ring.wait_until(lambda p=publisher: p.get_num_connections() > 0, f"a listener of {topic}")
-        run_id = measurements.wait(lambda m: m.run_id not in (0, 1)).run_id
-        for step in itertools.count():
-            now = measurements.wait(lambda m, s=step: m.run_id == run_id and m.step >= s and len(m.outputs) == 2)
-            if now.final:
-                break
+        publishers = {topic: ring.publisher(topic, kind, *RECEIVERS[topic]) for topic, kind in KINDS.items()}
+        ring.Listener("ready", NodeReady, "/fmbpc_controller").wait(lambda m: m.node == "/fmbpc_controller")
+        plant = ring.NodeStatus("plant_simulator")
+
+        def disturb(now):
             for topic, message in rubbish(now):
                 publishers[topic].publish(message)
+        with ring.Frozen("/fmbpc_controller"):  # nobody else answers sample 0
+            ring.begin()
+            disturb(measurements.wait())
+            plant.wait(lambda s: int(ring.values(s).get("actions dropped: wrong size", 0)) > 0)
+        for step in itertools.count(1):
+            now = measurements.wait(lambda m, s=step: m.step >= s)
+            if now.final:
+                break
+            disturb(now)
         folder = recorded.wait().data
         with tempfile.TemporaryDirectory() as reference:
             ring.run_in_process(loop, reference, sets)

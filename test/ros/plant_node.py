@@ -23,7 +23,7 @@ class PlantNode(unittest.TestCase):
         cls.infos = ring.Listener("plant_info", PlantInfo)
         cls.status = ring.NodeStatus("plant_simulator")
         cls.log = ring.Listener("/rosout", Log, "/plant_simulator")
-        cls.pub = ring.publisher("control_action", ControlAction)
+        cls.pub = ring.publisher("control_action", ControlAction, "/plant_simulator")
         cls.pause = rospy.ServiceProxy("plant_simulator/pause", SetBool)
         cls.step = rospy.ServiceProxy("plant_simulator/step", Trigger)
         cls.reset = rospy.ServiceProxy("plant_simulator/reset", Trigger)
@@ -110,7 +110,7 @@ class PlantNode(unittest.TestCase):
 
     def test_a_disturbance_without_a_stamp_acts_at_the_next_sample(self):
         effects = ring.Listener("disturbance_effect", CommandEffect)
-        pub = ring.publisher("disturbance", Disturbance)
+        pub = ring.publisher("disturbance", Disturbance, "/plant_simulator")
         before = self.status.counts().get("refused: disturbance", 0)
         for wrong in (Disturbance(name=["q_i"], value=[1.0], mode=0), Disturbance(name=["nobody"], value=[1.0], mode=1),
                       Disturbance(name=["q_i"], value=[math.nan], mode=1),

@@ -7,7 +7,7 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from fmbpc.msg import ControlAction, Measurement, NodeReady, PlantState
+from fmbpc.msg import ControlAction, Measurement, PlantState
 
 import ring
 
@@ -16,9 +16,8 @@ class RealtimeGaps(unittest.TestCase):
     def test_missing_actions_mean_hold_then_fallback(self):
         measurements, states = ring.Listener("measurement", Measurement), ring.Listener("plant_state", PlantState)
         diagnostics = ring.Listener("/diagnostics", DiagnosticArray, "/plant_simulator")
-        pub = ring.publisher("control_action", ControlAction)
-        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
-        ready.publish(node=rospy.get_name())
+        pub = ring.publisher("control_action", ControlAction, "/plant_simulator")
+        ring.begin()
         run_id = measurements.wait(lambda m: m.step == 8).run_id
         pub.publish(ControlAction(run_id=run_id, step=2, input=[700.0], source=1))  # much too late
         for step in range(20, 40):  # one of these at the latest is in time

@@ -30,8 +30,10 @@ class Respawn(unittest.TestCase):
     def kill_in_the_middle(self, victim):
         """Asks for x = 1900, kills the victim once that acts; returns the step from which it acts."""
         effects, active = ring.Listener("setpoint_effect", CommandEffect), ring.Listener("setpoint_active", Setpoint)
-        ring.Listener("control_action", ControlAction).wait(lambda a: a.step >= 5)
-        setpoint = ring.publisher("setpoint", Setpoint, listeners=1)
+        actions = ring.Listener("control_action", ControlAction)
+        ring.begin()
+        actions.wait(lambda a: a.step >= 5)
+        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
         setpoint.publish(name=["x"], value=[1900.0], mode=Setpoint.OVERRIDE)
         asked = effects.wait().step
         active.wait(lambda m: m.name == ["x"] and list(m.value) == [1900.0])
@@ -51,7 +53,7 @@ class Respawn(unittest.TestCase):
         folder = recorded.wait().data
         summary = ring.summary(folder)
         self.assertEqual((100, True), (summary["steps"], summary["complete"]))
-        self.assertEqual(100, max(m.step for m in measurements.messages))
+        self.assertTrue(measurements.wait(lambda m: m.step == 100).final)
         with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         column = next(name for name in rows[0] if name.startswith("x_setpoint"))

@@ -10,7 +10,7 @@ import unittest
 import dynamic_reconfigure.client
 import rospy
 import rostest
-from fmbpc.msg import ControlAction, Measurement, NodeReady
+from fmbpc.msg import ControlAction, Measurement
 from std_msgs.msg import String
 from std_srvs.srv import SetBool, Trigger
 
@@ -50,8 +50,7 @@ class Retune(unittest.TestCase):
         recorded = ring.Listener("recorded", String)
         rospy.wait_for_service("plant_simulator/pause")
         self.pause(True)
-        ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
-        ready.publish(node=rospy.get_name())  # now the loop may begin
+        ring.begin()  # now the loop may begin
         client = dynamic_reconfigure.client.Client("fmbpc_controller", timeout=ring.PATIENCE)
         shown = client.get_configuration(timeout=ring.PATIENCE)
         self.assertEqual((20, 1, "H=1", "I=1"), tuple(shown[key] for key in (

@@ -1,14 +1,18 @@
 """What the tests over topics share: waiting for messages, the tool, comparing result folders."""
 import json
 import os
+import signal
 import subprocess
 import threading
 import time
+import xmlrpc.client
 
 import actionlib
+import rosgraph
 import roslib.packages
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray
+from fmbpc.msg import NodeReady
 
 PATIENCE = 60.0  # s of wall time for anything that must come
 
@@ -16,9 +20,10 @@ PATIENCE = 60.0  # s of wall time for anything that must come
 class Listener:
     """Keeps every message of a topic; wait() returns the first one that fulfils a condition.
 
-    Connected once it is made: to all nodes in `of` where several publish on a topic, else to whoever publishes. A
-    lockstep loop does thousands of samples while a subscriber is still being connected, so nothing may be stepped
-    before. Only a test that starts the publishers itself says connected=False.
+    What the test publishes itself on the topic is not heard: it may arrive at any time. Connected once it is made: to
+    all nodes in `of` where several publish on a topic, else to whoever publishes. A lockstep loop does thousands of
+    samples while a subscriber is still being connected, so nothing may be stepped before. Only a test that starts the
+    publishers itself says connected=False.
     """
 
     def __init__(self, topic, kind, *of, connected=True):
@@ -33,6 +38,8 @@ class Listener:
         return {connection.callerid_pub for connection in list(self.subscriber.impl.connections)}
 
     def take(self, message):
+        if message._connection_header["callerid"] == rospy.get_name():
+            return
         with self.arrived:
             self.messages.append(message)
             self.arrived.notify_all()
@@ -62,9 +69,37 @@ def wait_until(condition, what, patience=PATIENCE):
         time.sleep(0.01)
 
 
-def publisher(topic, kind, latch=False, listeners=1):
-    pub = rospy.Publisher(topic, kind, queue_size=1000, latch=latch, tcp_nodelay=True)
-    wait_until(lambda: pub.get_num_connections() >= listeners, f"{listeners} listeners of {topic}")
+def begin():
+    """Says that this test is ready: a loop whose loop.wait_for names it starts at sample 0 now, and misses nothing."""
+    ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
+    ready.publish(node=rospy.get_name())
+
+
+def pid(node):
+    uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
+    return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2]
+
+
+class Frozen:
+    """A node that hangs, as long as the block lasts."""
+
+    def __init__(self, node):
+        self.process = pid(node)
+
+    def __enter__(self):
+        os.kill(self.process, signal.SIGSTOP)
+        self.since = time.monotonic()
+        return self
+
+    def __exit__(self, *_):
+        os.kill(self.process, signal.SIGCONT)
+
+
+def publisher(topic, kind, *to, latch=False):
+    """Connected once it is made: to all nodes in `to`, which are those that must hear it."""
+    pub = rospy.Publisher(topic, kind, queue_size=10000, latch=latch, tcp_nodelay=True)
+    wait_until(lambda: {connection.endpoint_id for connection in list(pub.impl.connections)} >= set(to),
+               f"{to} to listen to {topic}")
     return pub
 
 
