@@ -1,9 +1,9 @@
 // The tuning of the fuzzy optimal law as texts that a person can type while the loop runs.
 #include <sstream>
 
-#include "control/optimal/memory.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/control/optimal/law.hpp"
 
 namespace fpc {
 namespace {
@@ -42,18 +42,17 @@ std::string weightText(const FuzzyOptimalTuning& tuning, Weight weight,
 
 Settings FuzzyOptimalLaw::settings() const {
   const FuzzyOptimalTuning& t = tuning();
-  const PlantInfo& plant = memory_->plant;
   return {{"horizon_steps", std::to_string(t.horizon_steps)},
           {"move_steps", std::to_string(t.move_steps)},
-          {"weight_output", weightText(t, &QuadraticWeights::output, plant.outputs)},
-          {"weight_move", weightText(t, &QuadraticWeights::move, plant.inputs)},
-          {"weight_input", weightText(t, &QuadraticWeights::input, plant.inputs)},
-          {"input_target", signalValuesText(t.input_target, plant.inputs)}};
+          {"weight_output", weightText(t, &QuadraticWeights::output, plant().outputs)},
+          {"weight_move", weightText(t, &QuadraticWeights::move, plant().inputs)},
+          {"weight_input", weightText(t, &QuadraticWeights::input, plant().inputs)},
+          {"input_target", signalValuesText(t.input_target, plant().inputs)}};
 }
 
 bool FuzzyOptimalLaw::retune(const Settings& settings) {
   FuzzyOptimalTuning t = tuning();
-  const auto &outputs = memory_->plant.outputs, &inputs = memory_->plant.inputs;
+  const auto &outputs = plant().outputs, &inputs = plant().inputs;
   for (const auto& [key, text] : settings) {
     const std::string where = "controller." + key;
     if (key == "horizon_steps") {
