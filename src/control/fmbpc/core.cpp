@@ -1,5 +1,7 @@
 #include "control/fmbpc/core.hpp"
 
+#include <utility>
+
 namespace fpc {
 
 FmbpcCore::FmbpcCore(const TsModel& model, const FmbpcParams& params, const InputLimits& limits,
@@ -32,6 +34,17 @@ bool FmbpcCore::look(const LawSample& sample) {
 Proposal FmbpcCore::propose(const LawSample& sample, Vector& input) {
   sample.reference.predict(sample.setpoint, sample.now.header.step, future_);
   return law_->propose(*model_, sample, future_, input);
+}
+
+void FmbpcCore::prepareTuning(const FmbpcParams& params) {
+  next_params_ = params;
+  next_future_ = Matrix::Zero(model_->outputs().size(), params.referenceSteps());
+}
+
+void FmbpcCore::adoptTuning() {
+  std::swap(params_, next_params_);
+  future_.swap(next_future_);
+  law_->retune(params_);
 }
 
 void FmbpcCore::predict(PredictiveAction& prediction) const {

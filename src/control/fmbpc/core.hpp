@@ -23,12 +23,17 @@ class FmbpcCore final : public LawCore {
   void predict(PredictiveAction& prediction) const override;
   double signal(Eigen::Index output, std::size_t which) const override;
   const Vector& referencePole() const override { return params_.reference_pole; }
+  /// Settings that adoptTuning() will take; allocates.
+  void prepareTuning(const FmbpcParams& params);
+  void adoptTuning() override;
 
  private:
   FmbpcParams params_;
   std::unique_ptr<InternalModel> model_;
   std::unique_ptr<InputLaw> law_;
   Matrix future_;  ///< col(i) = y_r(k+1+i)
+  FmbpcParams next_params_;
+  Matrix next_future_;
 };
 
 }  // namespace fpc

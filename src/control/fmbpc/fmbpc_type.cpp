@@ -55,6 +55,7 @@ ControllerType describe() {
   ControllerType type{"fmbpc", "fuzzy model-based predictive control: an explicit law"};
   type.needs_model = true;
   type.predicts = true;
+  type.settings = fmbpcSettings().infos();
   return type;
 }
 

@@ -42,4 +42,17 @@ void FmbpcLaw::setModel(const TsModel& model) {
   takeOver(std::make_unique<FmbpcCore>(matchToPlant(model, plant()), params_, limits(), forecast_));
 }
 
+Settings FmbpcLaw::settings() const {
+  return fmbpcSettings().show(params_, {plant().outputs, plant().inputs});
+}
+
+bool FmbpcLaw::retune(const Settings& settings) {
+  FmbpcParams next = params_;
+  fmbpcSettings().take(settings, {plant().outputs, plant().inputs}, next);
+  params_ = valid(next, plant());
+  if (LawCore* core = newest()) static_cast<FmbpcCore*>(core)->prepareTuning(params_);
+  tuningPrepared();
+  return true;
+}
+
 }  // namespace fpc

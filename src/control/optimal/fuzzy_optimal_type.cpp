@@ -56,16 +56,7 @@ ControllerType describe() {
   ControllerType type{"fuzzy_optimal", "a quadratic predictive law for every rule, blended"};
   type.needs_model = true;
   type.predicts = true;
-  type.settings = {
-      {"horizon_steps", SettingKind::kInteger, "prediction horizon P [samples]", 1, 1000},
-      {"move_steps", SettingKind::kInteger, "free moves M [samples], at most P", 1, 1000},
-      {"weight_output", SettingKind::kText,
-       "of squared errors: 'Ca=1 T=2', or '1 2', or one number; rules by ';'"},
-      {"weight_move", SettingKind::kText,
-       "of squared moves: 'q=0.1 qc=2', or '0.1 2', or one number; rules by ';'"},
-      {"weight_input", SettingKind::kText,
-       "of squared distances to input_target; leaves an offset"},
-      {"input_target", SettingKind::kText, "'q=100 qc=103', or '100 103', or one number"}};
+  type.settings = fuzzyOptimalSettings().infos();
   return type;
 }
 

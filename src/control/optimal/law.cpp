@@ -35,9 +35,13 @@ void FuzzyOptimalLaw::check(const FuzzyOptimalParams& params, const TsModel& mod
 }
 
 void FuzzyOptimalLaw::retune(FuzzyOptimalTuning tuning) {
-  tuning.validate(countOf(plant().outputs), countOf(plant().inputs));
   FuzzyOptimalParams params = params_;
   params.tuning = std::move(tuning);
+  retuneTo(std::move(params));
+}
+
+void FuzzyOptimalLaw::retuneTo(FuzzyOptimalParams params) {
+  valid(params, plant());
   std::unique_ptr<LawCore> core;
   if (model_) core = std::make_unique<FuzzyOptimalCore>(*model_, params);
   params_ = std::move(params);

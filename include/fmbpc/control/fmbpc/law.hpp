@@ -7,6 +7,7 @@
 #include "fmbpc/control/disturbance_observer.hpp"
 #include "fmbpc/control/fmbpc/disturbance_forecast.hpp"
 #include "fmbpc/control/predictive_law.hpp"
+#include "fmbpc/control/settings_table.hpp"
 
 namespace fpc {
 
@@ -47,6 +48,8 @@ struct FmbpcParams : PredictiveLawParams {
   Eigen::Index referenceSteps() const;  ///< how far ahead the law reads its references
 };
 
+const SettingsTable<FmbpcParams>& fmbpcSettings();  ///< what may change in a run
+
 /// The law of Vallejo 2019 eqs. 19-37, with past inputs in the state:
 ///   M = C S_H B,  e = y_r(k+H) - y + y_m - C A^H xi - C S_H g,
 ///   published: u = e_x / m2 (row of the last output; one input; the other outputs and their
@@ -71,6 +74,8 @@ class FmbpcLaw final : public PredictiveLaw {
 
   void reset(const Measurement& start) override;
   void setModel(const TsModel& model) override;
+  Settings settings() const override;
+  bool retune(const Settings& settings) override;
 
  private:
   void note(const LawSample& sample) override;

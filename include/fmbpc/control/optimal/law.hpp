@@ -8,6 +8,7 @@
 #include "fmbpc/control/disturbance_observer.hpp"
 #include "fmbpc/control/optimal/quadratic_law.hpp"
 #include "fmbpc/control/predictive_law.hpp"
+#include "fmbpc/control/settings_table.hpp"
 
 namespace fpc {
 
@@ -44,6 +45,8 @@ struct FuzzyOptimalParams : PredictiveLawParams {
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;  ///< @throws InputError naming the field
 };
 
+const SettingsTable<FuzzyOptimalParams>& fuzzyOptimalSettings();  ///< what may change in a run
+
 /// Rule g predicts from measured outputs and applied inputs
 ///   y(k+1) = sum a y + sum b u + c + d_g,   d_g = y(k) - y_hat_g(k|k-1),
 /// with its own d_g inside the recursion ("inside"): at rest every rule then agrees with the plant,
@@ -70,13 +73,15 @@ class FuzzyOptimalLaw final : public PredictiveLaw {
   /// From the next sample on, without a bump. @throws InputError, then nothing changes.
   void retune(FuzzyOptimalTuning tuning);
   const FuzzyOptimalTuning& tuning() const { return params_.tuning; }  ///< the latest
-  /// The tuning under the keys of a loop file. Weights and targets: one number for all, one for
+  /// Tuning and reference poles under the keys of a loop file. Weights and targets: one number for all, one for
   /// each signal, or NAME=number; groups for each rule are separated by semicolons, a single group
   /// is for all rules.
   Settings settings() const override;
   bool retune(const Settings& settings) override;
 
  private:
+  void retuneTo(FuzzyOptimalParams params);
+
   FuzzyOptimalParams params_;     ///< with the latest tuning
   std::optional<TsModel> model_;  ///< matched, for a new tuning
 };
