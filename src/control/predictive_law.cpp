@@ -10,6 +10,7 @@ PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimit
     : limits_(limits),
       plant_(plant),
       feedforward_(params.disturbance_feedforward),
+      preview_(params.preview),
       output_signals_(output_signals.size()),
       reference_(params.reference_pole, params.preview),
       transfer_(countOf(plant_.inputs), params.transfer_decay),
@@ -43,13 +44,20 @@ void PredictiveLaw::adopt() {
     core_->adoptTuning();
   }
   tuning_waits_ = false;
-  reference_.setPole(core_->referencePole());
+  next_reference_->reset(reference_.present());
+  std::swap(reference_, *next_reference_);
+}
+
+/// Outside of a step, as it allocates.
+void PredictiveLaw::prepareReference(const Vector& pole) {
+  next_reference_.emplace(pole, preview_);
 }
 
 /// A core that comes while the loop runs waits for the next step, where both laws are known.
 void PredictiveLaw::takeOver(std::unique_ptr<LawCore> core) {
   retired_.reset();
   successor_ = std::move(core);
+  prepareReference(successor_->referencePole());
   if (inRun()) return;
   adopt();
   retired_.reset();
@@ -57,7 +65,8 @@ void PredictiveLaw::takeOver(std::unique_ptr<LawCore> core) {
   if (running_) transfer_.reset(true);
 }
 
-void PredictiveLaw::tuningPrepared() {
+void PredictiveLaw::tuningPrepared(const Vector& reference_pole) {
+  prepareReference(reference_pole);
   if (successor_) return successor_->adoptTuning();
   tuning_waits_ = core_ != nullptr;
   if (tuning_waits_ && !inRun()) adopt();

@@ -16,8 +16,6 @@ ReferenceTrajectory::ReferenceTrajectory(Vector pole, bool preview)
     require(pole_[i] >= 0.0 && pole_[i] < 1.0, "reference_pole", "numbers >= 0 and < 1");
 }
 
-void ReferenceTrajectory::setPole(VectorRef pole) { pole_ = pole; }
-
 void ReferenceTrajectory::reset(VectorRef outputs) { present_ = outputs; }
 
 const Vector& ReferenceTrajectory::target(const SetpointSource& setpoint,

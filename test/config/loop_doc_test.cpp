@@ -15,7 +15,6 @@
 #include "fmbpc/control/horizon/nmpc.hpp"
 #include "fmbpc/control/horizon/swarm_mpc.hpp"
 #include "fmbpc/control/optimal/law.hpp"
-#include "fmbpc/control/pi/pi.hpp"
 #include "loop/loops_of_type.hpp"
 #include "paths.hpp"
 

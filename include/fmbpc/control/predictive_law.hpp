@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,11 +94,13 @@ class PredictiveLaw : public Controller {
   /// The core that counts next: one that waits, or the present one; may be null.
   LawCore* newest() { return successor_ ? successor_.get() : core_.get(); }
   void takeOver(std::unique_ptr<LawCore> core);
-  void tuningPrepared();  ///< newest() waits for adoptTuning()
+  /// newest() waits for adoptTuning(), the references for these poles.
+  void tuningPrepared(const Vector& reference_pole);
   const PlantInfo& plant() const { return plant_; }
   const InputLimits& limits() const { return limits_; }
 
  private:
+  void prepareReference(const Vector& pole);
   bool inRun() const { return core_ && running_ && !start_pending_; }
   void estimate(const LawSample& sample);
   Proposal propose(const LawSample& sample);
@@ -110,9 +113,10 @@ class PredictiveLaw : public Controller {
 
   InputLimits limits_;
   PlantInfo plant_;
-  bool feedforward_;
+  bool feedforward_, preview_;
   std::size_t output_signals_;  ///< of each output
   ReferenceTrajectory reference_;
+  std::optional<ReferenceTrajectory> next_reference_;  ///< with the poles of what waits
   BumplessTransfer transfer_;
   Vector disturbances_, past_disturbances_;
   Vector proposal_;    ///< u(k), unclipped

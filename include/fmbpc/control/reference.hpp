@@ -15,7 +15,6 @@ class ReferenceTrajectory {
   /// the commands now in force (a command yet to come is not known), otherwise the present one is
   /// held over the horizon.
   ReferenceTrajectory(Vector pole, bool preview);
-  void setPole(VectorRef pole);                       ///< from here on; values as above
   void reset(VectorRef outputs);                      ///< y_r = y
   const Vector& present() const { return present_; }  ///< y_r(k)
   /// future.col(i) = y_r(k+1+i) for the columns given; no memory touched, no allocation.

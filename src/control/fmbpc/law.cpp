@@ -51,7 +51,7 @@ bool FmbpcLaw::retune(const Settings& settings) {
   fmbpcSettings().take(settings, {plant().outputs, plant().inputs}, next);
   params_ = valid(next, plant());
   if (LawCore* core = newest()) static_cast<FmbpcCore*>(core)->prepareTuning(params_);
-  tuningPrepared();
+  tuningPrepared(params_.reference_pole);
   return true;
 }
 

@@ -1,8 +1,8 @@
 // Gains of a running PI controller as texts that a person can type.
 #include <cmath>
 
+#include "control/pi/read_pi.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
 
@@ -24,17 +24,15 @@ const SettingsTable<PiGains>& piSettings() {
   return table;
 }
 
-PiGains PiController::latestGains() const {
-  return {gains(&PiLoop::kp, &LoopState::next_kp),
-          gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h)};
-}
-
 Settings PiController::settings() const {
-  return piSettings().show(latestGains(), {inputs_, inputs_});
+  return piSettings().show({gains(&PiLoop::kp, &LoopState::next_kp),
+                            gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h)},
+                           {inputs_, inputs_});
 }
 
 bool PiController::retune(const Settings& settings) {
-  PiGains next = latestGains();
+  PiGains next{gains(&PiLoop::kp, &LoopState::next_kp),
+               gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h)};
   piSettings().take(settings, {inputs_, inputs_}, next);
   require(next.kp.allFinite(), "controller.kp", "finite numbers");
   require(next.ki_per_h.allFinite(), "controller.ki_per_h", "finite numbers");

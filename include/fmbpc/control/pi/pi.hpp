@@ -10,7 +10,6 @@
 #include "fmbpc/control/controller.hpp"
 #include "fmbpc/control/pi/pi_terms.hpp"
 #include "fmbpc/control/reference.hpp"
-#include "fmbpc/control/settings_table.hpp"
 
 namespace fpc {
 
@@ -47,12 +46,6 @@ struct PiParams {
   void validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d = 0) const;
 };
 
-/// What may change in a run: a value for the input of every loop.
-struct PiGains {
-  Vector kp, ki_per_h;
-};
-const SettingsTable<PiGains>& piSettings();
-
 /// Inputs without a loop stay where they are. The integral uses forward Euler: it is updated after
 /// u(k) is computed. A reset in the middle of a run (manual and back, gap) is always bumpless: the
 /// integral, or without one (ki = 0) a bias that decays by a tenth per sample, makes the first u
@@ -84,7 +77,6 @@ class PiController final : public Controller {
     double aim{};                       // what the error is taken from
     std::optional<PiTermState> terms;   // only where one is on
   };
-  PiGains latestGains() const;
   void takeSettings(PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
                     LoopState& state) const;
   double errorOf(const PiLoop& loop, const Measurement& now, const SetpointSource& setpoint,
