@@ -1,8 +1,11 @@
 """What the tests over topics share: waiting for messages, the tool, comparing result folders."""
+import fcntl
 import json
 import os
 import signal
+import socket
 import subprocess
+import tempfile
 import threading
 import time
 import xmlrpc.client
@@ -101,6 +104,29 @@ def publisher(topic, kind, *to, latch=False):
     wait_until(lambda: {connection.endpoint_id for connection in list(pub.impl.connections)} >= set(to),
                f"{to} to listen to {topic}")
     return pub
+
+
+PORTS, held_ports = range(12000, 30000), []  # below those that the system gives to clients
+
+
+def free_port():
+    """A port for a master of one's own. It stays this process's among all tests (a locked file), and no client's connection
+    can take it by chance before the master listens."""
+    first = os.getpid() * 37
+    for number in range(len(PORTS)):
+        port = PORTS[(first + number) % len(PORTS)]
+        lock = open(os.path.join(tempfile.gettempdir(), f"fmbpc_port_{port}"), "w", encoding="utf-8")
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            with socket.socket() as probe:
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+                probe.bind(("", port))
+        except OSError:
+            lock.close()
+            continue
+        held_ports.append(lock)
+        return str(port)
+    raise AssertionError("no free port")
 
 
 def program(name):
