@@ -29,9 +29,9 @@ std::vector<int> readSigns(YamlSection section, const std::vector<std::string>& 
   return any ? signs : std::vector<int>{};
 }
 
-SteadyState readSteady(YamlSection& section, const std::vector<std::string>& signals,
-                       std::size_t output) {
-  SteadyState state;
+KnownRest readSteady(YamlSection& section, const std::vector<std::string>& signals,
+                     std::size_t output) {
+  KnownRest state;
   state.values = Vector::Constant(static_cast<Index>(signals.size()),
                                   std::numeric_limits<double>::quiet_NaN());
   for (std::size_t j = 0; j < signals.size(); ++j)

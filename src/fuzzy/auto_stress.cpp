@@ -15,7 +15,7 @@ constexpr Index kHeld = 150;      // samples
 constexpr double kAllowed = 1.0;  // ranges of y beyond it
 constexpr double kTimes = 3.0;    // the linear model's excursion
 
-struct Range {
+struct Excursion {
   double lower{std::numeric_limits<double>::infinity()}, upper{-lower};
   void add(double v) {
     if (std::isfinite(v)) lower = std::min(lower, v), upper = std::max(upper, v);
@@ -24,12 +24,12 @@ struct Range {
 };
 
 /// Lowest and highest first state of a run from the mean of the data; infinite if it runs away.
-Range excursion(const Fitted& fitted, const Matrix& inputs, double start) {
+Excursion excursion(const Fitted& fitted, const Matrix& inputs, double start) {
   constexpr double kAway = 1e3;
   const Index n = fitted.shape.states;
   RecurrentStep step(fitted.shape);
   Vector x = fitted.shape.companion ? Vector::Constant(n, start) : Vector::Zero(n), next(n);
-  Range range;
+  Excursion range;
   for (Index k = 0; k < inputs.cols(); ++k) {
     if (!inputs.col(k).allFinite()) continue;
     step.predict(fitted.parameters, x, inputs.col(k), next);
@@ -49,7 +49,7 @@ Matrix stressInputs(const RecurrentData& record, const std::vector<Stretch>& str
   for (const auto& s : stretches) length += s.last - s.first;
   Matrix inputs(m, length + 2 * m * kHeld);
   Vector mean = Vector::Zero(m);
-  std::vector<Range> ranges(static_cast<std::size_t>(m));
+  std::vector<Excursion> ranges(static_cast<std::size_t>(m));
   Index at = 0;
   for (const auto& s : stretches) {
     inputs.middleCols(at, s.last - s.first) = record.v.middleCols(s.first, s.last - s.first);
@@ -69,7 +69,7 @@ Matrix stressInputs(const RecurrentData& record, const std::vector<Stretch>& str
       ((inputs.leftCols(length).colwise() - mean) * kStretch).colwise() + mean;
   for (Index j = 0; j < m; ++j)
     for (const bool above : {false, true}) {
-      const Range& r = ranges[static_cast<std::size_t>(j)];
+      const Excursion& r = ranges[static_cast<std::size_t>(j)];
       auto held = inputs.middleCols(at, kHeld);
       held.colwise() = mean;
       held.row(j).setConstant(above ? r.upper + kBeyond * r.span() : r.lower - kBeyond * r.span());
@@ -82,7 +82,7 @@ Matrix stressInputs(const RecurrentData& record, const std::vector<Stretch>& str
 
 bool endures(const Fitted& fitted, const Fitted& linear, const RecurrentData& record,
              const std::vector<Stretch>& stretches) {
-  Range data;
+  Excursion data;
   double sum = 0.0, count = 0.0;
   for (const auto& s : stretches)
     for (Index k = s.first; k < s.last; ++k) {
@@ -92,7 +92,7 @@ bool endures(const Fitted& fitted, const Fitted& linear, const RecurrentData& re
   if (!(count > 0.0)) return false;
   const Matrix inputs = stressInputs(record, stretches);
   const double mean = sum / count, room = kAllowed * data.span();
-  const Range line = excursion(linear, inputs, mean), run = excursion(fitted, inputs, mean);
+  const Excursion line = excursion(linear, inputs, mean), run = excursion(fitted, inputs, mean);
   const double lowest = std::min(data.lower - room, mean + kTimes * (line.lower - mean));
   const double highest = std::max(data.upper + room, mean + kTimes * (line.upper - mean));
   return run.lower >= lowest && run.upper <= highest && std::isfinite(run.span());

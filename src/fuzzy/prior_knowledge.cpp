@@ -205,7 +205,7 @@ class KnowledgeBuilder {
     }
   }
 
-  double valueOf(const SteadyState& state, const Regressor& r) const {
+  double valueOf(const KnownRest& state, const Regressor& r) const {
     const double value = state.values[data_.column(r.kind, r.index)];
     require(std::isfinite(value), place(), "a value of every signal that the model depends on");
     return value;
@@ -215,7 +215,7 @@ class KnowledgeBuilder {
   }
 
   /// f - y lies within `within` times 1 - (slope along the output's own past).
-  void steady(const SteadyState& state) {
+  void steady(const KnownRest& state) {
     Vector z(static_cast<Index>(model_.antecedents.size())), x(p_);
     for (Index k = 0; k < z.size(); ++k)
       z[k] = valueOf(state, model_.antecedents[static_cast<std::size_t>(k)]);

@@ -13,7 +13,7 @@ namespace fpc {
 struct DataSet;
 
 /// A rest of the process: with these values held, the output stays where it is.
-struct SteadyState {
+struct KnownRest {
   Vector values;    ///< of all outputs, inputs, disturbances in this order; NaN: not stated
   double within{};  ///< the model's output may rest so far from it, unit of the output
 };
@@ -23,7 +23,7 @@ struct PriorKnowledge {
   std::vector<int> gain;      ///< per input, then disturbance: of every rule's steady-state gain
   std::vector<int> monotone;  ///< the same, and of the blended model at every sample of the data
   double max_pole{};          ///< > 0: no pole of a rule lies outside this radius
-  std::vector<SteadyState> steady;
+  std::vector<KnownRest> steady;
 
   bool empty() const;
 };
