@@ -35,6 +35,16 @@ constexpr Entry kIndices[] = {
     {"output_violations", IndexOf::kRun},
     {"violations", IndexOf::kRun},
     {"consumption", IndexOf::kConsumption},
+    {"AE", IndexOf::kEffluent},
+    {"EQI", IndexOf::kEffluent},
+    {"NH_95", IndexOf::kEffluent},
+    {"NH_share", IndexOf::kEffluent},
+    {"OCI", IndexOf::kEffluent},
+    {"PE", IndexOf::kEffluent},
+    {"SP", IndexOf::kEffluent},
+    {"TN_95", IndexOf::kEffluent},
+    {"TN_share", IndexOf::kEffluent},
+    {"TSS_share", IndexOf::kEffluent},
 };
 
 }  // namespace

@@ -84,6 +84,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readClp(root, loop, names);
   readController(root, loop);
   readGuard(root, loop, names);
+  readStandstill(root, loop, names);
   readModelSection(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);

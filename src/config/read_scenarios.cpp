@@ -22,16 +22,19 @@ std::string signalKey(const std::string& index) {
     case IndexOf::kConsumption:
       return "name";
     case IndexOf::kRun:
+    case IndexOf::kEffluent:
       break;
   }
   return "";
 }
 
-FitnessTerm readTerm(YamlSection& item) {
+FitnessTerm readTerm(YamlSection& item, bool of_tuning) {
   FitnessTerm term;
   need(item, "index", "one of " + join(fitnessIndices()));
   item.oneOf("index", term.index, fitnessIndices());
   item.number("weight", term.weight, kFiniteNotNegative);
+  item.number("above", term.above, {-kInfinite, kInfinite, true});
+  if (of_tuning) item.text("scenario", term.scenario);
   const std::string key = signalKey(term.index);
   if (!key.empty()) item.text(key, term.signal);
   item.finish();
@@ -60,7 +63,7 @@ std::string nameOf(const TuningScenario& scenario, std::size_t number) {
 FitnessParams readFitness(YamlSection& root, bool of_tuning) {
   FitnessParams fitness;
   YamlSection section = root.section("fitness");
-  for (auto& item : section.list("terms")) fitness.terms.push_back(readTerm(item));
+  for (auto& item : section.list("terms")) fitness.terms.push_back(readTerm(item, of_tuning));
   if (fitness.terms.empty()) section.fail("terms", "a list of at least one {index, ...}");
   section.number("band", fitness.band, kFinitePositive);
   section.oneOf("time_unit", fitness.time_unit, {"s", "min", "h"});

@@ -14,6 +14,14 @@ std::unique_ptr<Controller> makeGuarded(const LoopFile& loop) {
                                              loop.simulation.actuator.limits, loop.plant_info);
 }
 
+/// The law, and around it what watches its sensors if the loop asks for it.
+std::unique_ptr<Controller> makeController(const LoopFile& loop) {
+  std::unique_ptr<Controller> law = makeGuarded(loop);
+  if (loop.standstill.signals.empty()) return law;
+  return std::make_unique<StandstillWatch>(std::move(law), loop.standstill,
+                                           loop.simulation.actuator.limits, loop.plant_info);
+}
+
 }  // namespace
 
 Simulation makeSimulation(const LoopFile& loop) {
@@ -25,7 +33,7 @@ Simulation makeSimulation(const LoopFile& loop) {
 
 ControllerSession makeControllerSession(const LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
-  return {makeGuarded(loop), loop.setpoint,   actuator.limits,
+  return {makeController(loop), loop.setpoint,   actuator.limits,
           actuator.initial,  loop.plant_info, loop.max_pole};
 }
 

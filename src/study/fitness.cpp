@@ -5,10 +5,13 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/recorder_session.hpp"
 #include "fmbpc/loop/report.hpp"
+#include "fmbpc/study/evaluate.hpp"
 
 namespace fpc {
 namespace {
@@ -17,6 +20,7 @@ using OfOutput = double OutputIndices::*;
 using OfStep = std::function<double(const StepIndices&)>;
 using OfInput = std::function<double(const InputIndices&)>;
 using OfRun = std::function<double(const Summary&)>;
+using OfEffluent = std::function<double(const EffluentReport&)>;
 
 const std::map<std::string, OfOutput>& outputTable() {
   static const std::map<std::string, OfOutput> table{
@@ -59,6 +63,21 @@ const std::map<std::string, OfRun>& runTable() {
       {"output_violations", [](const Summary& s) { return count(s.output_violations); }},
       {"actuator_clips", [](const Summary& s) { return count(s.actuator_clips); }},
       {"clp_infeasible", [](const Summary& s) { return count(s.clp_infeasible); }}};
+  return table;
+}
+
+const std::map<std::string, OfEffluent>& effluentTable() {
+  static const std::map<std::string, OfEffluent> table{
+      {"AE", [](const EffluentReport& r) { return r.AE; }},
+      {"EQI", [](const EffluentReport& r) { return r.EQI; }},
+      {"OCI", [](const EffluentReport& r) { return r.OCI; }},
+      {"PE", [](const EffluentReport& r) { return r.PE; }},
+      {"SP", [](const EffluentReport& r) { return r.SP; }},
+      {"NH_95", [](const EffluentReport& r) { return r.limit("NH").percentile_95; }},
+      {"NH_share", [](const EffluentReport& r) { return r.limit("NH").share_percent; }},
+      {"TN_95", [](const EffluentReport& r) { return r.limit("TN").percentile_95; }},
+      {"TN_share", [](const EffluentReport& r) { return r.limit("TN").share_percent; }},
+      {"TSS_share", [](const EffluentReport& r) { return r.limit("TSS").share_percent; }}};
   return table;
 }
 
@@ -112,6 +131,7 @@ double sumOf(const FitnessParams& fitness, const FitnessTerm& term, const LoopFi
       for (const auto& [name, value] : summary.consumption)
         if (meant(name)) sum += value;
       return sum;
+    case IndexOf::kEffluent:
     case IndexOf::kRun:
       break;
   }
@@ -130,6 +150,17 @@ std::vector<std::string> signalsOf(const FitnessTerm& term, const LoopFile& loop
   return names;
 }
 
+/// The plants of BSM1 are known by what they name.
+bool hasEffluent(const LoopFile& loop) {
+  const auto columns = trajectoryOf(loop, recordLayout(loop).emptyRecord()).names;
+  return std::find(columns.begin(), columns.end(), "TSS_L1") != columns.end();
+}
+
+/// What counts of a term: all of it, or what is above its threshold.
+double counted(const FitnessTerm& term, double value) {
+  return std::isinf(term.above) ? value : std::max(0.0, value - term.above);
+}
+
 }  // namespace
 
 void checkFitness(const FitnessParams& fitness, const LoopFile& loop) {
@@ -139,6 +170,10 @@ void checkFitness(const FitnessParams& fitness, const LoopFile& loop) {
     const auto names = signalsOf(term, loop);
     const bool known = std::find(names.begin(), names.end(), term.signal) != names.end();
     if (kindOf(term.index) == IndexOf::kRun) continue;
+    if (kindOf(term.index) == IndexOf::kEffluent) {
+      require(hasEffluent(loop), where, "a loop with a plant of BSM1: " + loop.name);
+      continue;
+    }
     require(!names.empty(), where, "a loop that has what " + term.index + " is of: " + loop.name);
     require(term.signal.empty() || known, where,
             "one of " + join(names) + " of loop " + loop.name + ", got '" + term.signal + "'");
@@ -148,9 +183,16 @@ void checkFitness(const FitnessParams& fitness, const LoopFile& loop) {
 double fitness(const FitnessParams& fitness, const LoopFile& loop, const RunRecord& record) {
   if (!record.complete) return kInfinity;
   const Summary summary = summarize(loop, record, 0.0);
+  std::optional<EffluentReport> effluent;
   double sum = 0.0;
-  for (const auto& term : fitness.terms)
-    sum += term.weight * sumOf(fitness, term, loop, record, summary);
+  for (const auto& term : fitness.terms) {
+    if (kindOf(term.index) != IndexOf::kEffluent) {
+      sum += term.weight * counted(term, sumOf(fitness, term, loop, record, summary));
+      continue;
+    }
+    if (!effluent) effluent = evaluateEffluent(trajectoryOf(loop, record));
+    sum += term.weight * counted(term, effluentTable().at(term.index)(*effluent));
+  }
   return std::isfinite(sum) ? sum : kInfinity;
 }
 

@@ -46,8 +46,22 @@ std::string contentsOf(const LoopFile& loop) {
   std::string all;
   if (!loop.model_file.empty()) all += contentOf(loop.model_file);
   if (!loop.identify.structure_file.empty()) all += contentOf(loop.identify.structure_file);
-  if (loop.disturbance.source == "csv") all += contentOf(loop.disturbance.csv.file);
+  if (loop.disturbance.source == "csv") {
+    all += contentOf(loop.disturbance.csv.file);
+    if (!loop.disturbance.csv.next_file.empty()) all += contentOf(loop.disturbance.csv.next_file);
+  }
   return all;
+}
+
+/// Without the terms of other scenarios.
+FitnessParams fitnessIn(FitnessParams fitness, const std::string& scenario) {
+  auto& terms = fitness.terms;
+  terms.erase(std::remove_if(terms.begin(), terms.end(),
+                             [&](const FitnessTerm& term) {
+                               return !term.scenario.empty() && term.scenario != scenario;
+                             }),
+              terms.end());
+  return fitness;
 }
 
 double median(std::vector<double> values) {
@@ -69,7 +83,7 @@ TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning, con
   for (const auto* cases : {&cases_, &held_out_})
     for (const auto& scenario : *cases) {
       const LoopFile first = parseLoop(scenario.text, scenario.name, valueOverrides(start_));
-      checkFitness(tuning_.fitness, first);
+      checkFitness(scenario.fitness, first);
       all += scenario.text + contentsOf(first);
     }
   fingerprint_ = textHash(all);
@@ -86,8 +100,8 @@ std::vector<TuningObjective::Case> TuningObjective::casesOf(
     overrides.insert(overrides.end(), scenario.set.begin(), scenario.set.end());
     const Overrides seeds = seedOverrides(name, scenario, overrides);
     overrides.insert(overrides.end(), seeds.begin(), seeds.end());
-    cases.push_back(
-        {std::filesystem::path(findLoop(name)).stem().string(), resolveLoop(name, overrides), 1.0});
+    cases.push_back({std::filesystem::path(findLoop(name)).stem().string(),
+                     resolveLoop(name, overrides), fitnessIn(tuning_.fitness, scenario.name), 1.0});
   }
   return cases;
 }
@@ -144,7 +158,7 @@ TuningObjective::Run TuningObjective::run(const Case& scenario, const Overrides&
   try {
     const LoopFile loop = parseLoop(scenario.text, scenario.name, changes);
     const RunRecord record = runLoop(loop, options);
-    result.cost = fitness(tuning_.fitness, loop, record) / scenario.scale;
+    result.cost = fitness(scenario.fitness, loop, record) / scenario.scale;
     if (!std::isfinite(result.cost))
       result.trouble = scenario.name + ": " +
                        (record.trouble.empty() ? "the cost is not finite" : record.trouble);

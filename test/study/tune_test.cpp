@@ -54,6 +54,38 @@ TEST_F(Tune, ImprovesTheScoreOnScenariosItHasNotSeen) {
   }
 }
 
+TEST_F(Tune, ATermCountsAboveItsThresholdAndInItsScenario) {
+  const auto cost = [&](const std::string& more) {
+    std::string text = lagTuning();
+    const std::string from = "- {index: effort, input: u, weight: 0.1}";
+    const auto score = objective(text.replace(text.find(from), from.size(), more)).untouched();
+    return score.scenarios;
+  };
+  const auto plain = cost("- {index: effort, input: u, weight: 0}");
+  const auto all = cost("- {index: effort, input: u}");
+  const double effort = all[0] - plain[0];
+  ASSERT_GT(effort, 0.0);
+  const std::string half = std::to_string(0.5 * effort);
+  EXPECT_NEAR(cost("- {index: effort, input: u, above: " + half + "}")[0] - plain[0], 0.5 * effort,
+              1e-5 * effort);
+  EXPECT_EQ(cost("- {index: effort, input: u, above: " + std::to_string(2.0 * effort) + "}")[0],
+            plain[0]);
+  const auto second = cost("- {index: effort, input: u, scenario: seed 2}");
+  EXPECT_EQ(second[0], plain[0]);
+  EXPECT_EQ(second[1], all[1]);
+}
+
+TEST_F(Tune, AnEffluentIsAskedOnlyOfAPlantThatHasOne) {
+  std::string text = lagTuning();
+  text.replace(text.find("{index: ise, output: y}"), 23, "{index: EQI}");
+  try {
+    objective(text);
+    FAIL() << "nothing thrown";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("BSM1"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(Tune, APlantThatCannotBeMovedIsAFailureWithItsSample) {
   const std::string stuck = write("stuck.yaml",
                                   "extends: asp_case1_pi_x\nsampling: {duration_h: 4}\n"

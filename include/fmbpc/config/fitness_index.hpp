@@ -7,7 +7,7 @@
 namespace fpc {
 
 /// Of what an index is: that decides which key names its signal.
-enum class IndexOf { kOutput, kStep, kInput, kConsumption, kRun };
+enum class IndexOf { kOutput, kStep, kInput, kConsumption, kRun, kEffluent };
 
 /// The names of all indices.
 std::vector<std::string> fitnessIndices();

@@ -29,6 +29,8 @@ struct FitnessTerm {
   std::string index;   ///< one of fitnessIndices()
   std::string signal;  ///< output, input or name of a consumption; empty: all of them
   double weight{1.0};
+  double above{-std::numeric_limits<double>::infinity()};  ///< only what exceeds this counts
+  std::string scenario;  ///< counts in this one alone; empty: in all
 };
 
 struct FitnessParams {

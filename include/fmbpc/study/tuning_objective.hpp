@@ -51,6 +51,7 @@ class TuningObjective {
   /// A scenario ready to run.
   struct Case {
     std::string name, text;
+    FitnessParams fitness;  ///< the terms that count in it
     double scale{1.0};  ///< cost of the untouched loop if costs are relative
   };
   struct Run {

@@ -6,16 +6,16 @@ namespace fpc::bsm1 {
 namespace {
 
 constexpr double kMinute = 1.0 / 1440.0;
-constexpr double kOxygenTau = 1.0 * kMinute / 3.89;       // class A: T90 1 min, two lags
-constexpr double kNitrateTau = 10.0 * kMinute / 11.7724;  // class B0: T90 10 min, eight lags
-constexpr double kBlowerTau = 4.0 * kMinute / 3.89;       // T90 4 min, two lags
-constexpr double kPumpTau = 1e-4;  // only makes the pump's position a state; no lag that counts
+// Rates of one lag of a chain [1/d].
+constexpr double kOxygenLag = 3.89 / kMinute;              // class A: T90 1 min, two lags
+constexpr double kNitrateLag = 11.7724 / (10.0 * kMinute);  // class B0: T90 10 min, eight lags
+constexpr double kBlowerLag = 3.89 / (4.0 * kMinute);       // T90 4 min, two lags
+constexpr double kPumpLag = 1e4;  // only makes the pump's position a state; no lag that counts
 
-void chain(const double* x, int count, double input, double tau, double* dxdt) {
-  for (int i = 0; i < count; ++i) {
-    dxdt[i] = (input - x[i]) / tau;
-    input = x[i];
-  }
+/// Equal lags in a row, `rate` the inverse of one time constant [1/d].
+void chain(const double* x, int count, double input, double rate, double* dxdt) {
+  dxdt[0] = rate * (input - x[0]);
+  for (int i = 1; i < count; ++i) dxdt[i] = rate * (x[i - 1] - x[i]);
 }
 
 /// One loop's command within its bounds.
@@ -46,8 +46,8 @@ void localLoops(const LocalLoopParams& p, const LoopSetpoints& setpoints, const 
     const double shown = (p.lags ? c[oxygenShown(i)] : S_O) + p.noise * pi.range * noise[i];
     const double u =
         command(pi, setpoints.S_O[i], shown, capacity * pi.upper, c[integral], dcdt[integral]);
-    chain(&c[sensor], kOxygenLags, S_O, p.lags ? kOxygenTau : kPumpTau, &dcdt[sensor]);
-    chain(&c[drive], kBlowerLags, u, p.lags ? kBlowerTau : kPumpTau, &dcdt[drive]);
+    chain(&c[sensor], kOxygenLags, S_O, p.lags ? kOxygenLag : kPumpLag, &dcdt[sensor]);
+    chain(&c[drive], kBlowerLags, u, p.lags ? kBlowerLag : kPumpLag, &dcdt[drive]);
     in.KLa[kFirstAerated + i] = p.lags ? c[blower(i)] : u;
   }
   const double S_NO = z[kSNO][1];
@@ -57,11 +57,11 @@ void localLoops(const LocalLoopParams& p, const LoopSetpoints& setpoints, const 
   const double outlet = (p.lags ? c[kLoopStates - 1] : S_NO5) + noisy * noise[kAerated + 1];
   in.Q_intr = command(p.nitrate, nitrateSetpoint(p.outlet, setpoints.S_NO, outlet), shown,
                       p.nitrate.upper, c[kPump + 1], dcdt[kPump + 1]);
-  chain(&c[kOutletFirst], kNitrateLags, S_NO5, p.lags ? kNitrateTau : kPumpTau,
+  chain(&c[kOutletFirst], kNitrateLags, S_NO5, p.lags ? kNitrateLag : kPumpLag,
         &dcdt[kOutletFirst]);
-  chain(&c[kNitrateFirst], kNitrateLags, S_NO, p.lags ? kNitrateTau : kPumpTau,
+  chain(&c[kNitrateFirst], kNitrateLags, S_NO, p.lags ? kNitrateLag : kPumpLag,
         &dcdt[kNitrateFirst]);
-  dcdt[kPump] = (in.Q_intr - c[kPump]) / kPumpTau;
+  dcdt[kPump] = kPumpLag * (in.Q_intr - c[kPump]);
 }
 
 LoopStates restingLoops(const LocalLoopParams& p, const LoopSetpoints& setpoints,

@@ -44,11 +44,14 @@ void reactors(const WorksParams& p, const Inflow& in, const TankTable& z,
   conversion(p.asm1, z, dzdt);
   const Components returned = underflow(p, z, settler);
   const double Q = in.Q_in + in.Q_r + in.Q_intr;
+  const double from_influent = in.Q_in / Q, from_settler = in.Q_r / Q, from_last = in.Q_intr / Q;
+  std::array<double, kWidth> dilution{};  // [1/d], 0 in the unused place
+  for (int t = 0; t < kTanks; ++t) dilution[t] = Q / p.volume[t];
   for (int c = 0; c < kComponents; ++c) {
-    const double inlet =
-        (in.Q_in * in.influent[c] + in.Q_r * returned[c] + in.Q_intr * z[c][kLast]) / Q;
-    dzdt[c][0] += Q / p.volume[0] * (inlet - z[c][0]);
-    for (int t = 1; t < kTanks; ++t) dzdt[c][t] += Q / p.volume[t] * (z[c][t - 1] - z[c][t]);
+    std::array<double, kWidth> inlet;
+    inlet[0] = from_influent * in.influent[c] + from_settler * returned[c] + from_last * z[c][kLast];
+    for (int t = 1; t < kWidth; ++t) inlet[t] = z[c][t - 1];
+    for (int t = 0; t < kWidth; ++t) dzdt[c][t] += dilution[t] * (inlet[t] - z[c][t]);
     dzdt[c][kTanks] = 0.0;
   }
   for (int t = 0; t < kTanks; ++t) {

@@ -1,0 +1,121 @@
+// A watch over sensors around a law of which everything is known: who stands still, when it is
+// noticed, what is sent meanwhile, and how the law comes back.
+#include "fmbpc/control/standstill.hpp"
+
+#include <cmath>
+
+#include "control/session_fixture.hpp"
+
+namespace fpc::test_session {
+namespace {
+
+constexpr int kWindow = 5;
+
+class Standstill : public testing::Test {
+ protected:
+  void SetUp() override { make(params()); }
+  static StandstillParams params() {
+    StandstillParams p;
+    p.signals = {{"s", true, 0, 0.5}, {"q_i", false, 0, 1.0}};
+    p.window_samples = kWindow;
+    p.usual = of({1300.0});
+    p.fallback = of({800.0});
+    return p;
+  }
+  void make(StandstillParams p, double move = kInf) {
+    auto owned = std::make_unique<FakeLaw>();
+    law = owned.get();
+    watch = std::make_unique<StandstillWatch>(std::move(owned), std::move(p), limits(move), plant());
+    watch->reset(sample(0));
+  }
+  /// One sample with these values; x never moves.
+  const ControllerOutput& see(double s, double q_i) {
+    Measurement m = sample(step++, 1, applied);
+    m.outputs[0] = s;
+    m.disturbances[0] = q_i;
+    SetpointSource source(setpoints(), {"s", "x"}, SampleClock(720.0, 1234.5));
+    watch->step(m, source, output);
+    applied = output.input[0];
+    return output;
+  }
+  std::string remark() const { return output.remark; }
+
+  FakeLaw* law{};
+  std::unique_ptr<StandstillWatch> watch;
+  ControllerOutput output;
+  std::uint32_t step{};
+  double applied{570.0};
+};
+
+TEST_F(Standstill, WhatMovesPassesUntouched) {
+  for (int k = 0; k < 40; ++k) {
+    const double before = applied;
+    see(56.0 + std::sin(0.5 * k), 1300.0 + 200.0 * std::sin(0.3 * k));
+    EXPECT_EQ(output.input[0], before + 1.0);
+    EXPECT_TRUE(output.predictive);
+    EXPECT_EQ(remark(), "");
+  }
+}
+
+TEST_F(Standstill, APlantAtRestIsNoFault) {
+  for (int k = 0; k < 40; ++k) see(56.0, 1300.0);
+  EXPECT_EQ(law->steps.size(), 40U);
+  EXPECT_EQ(remark(), "");
+}
+
+TEST_F(Standstill, AnOutputThatStandsWhileTheLoadMovesBringsTheFallback) {
+  for (int k = 0; k < 3; ++k) see(56.0 + k, 1300.0 + 200.0 * std::sin(k));
+  for (int k = 0; k < kWindow - 1; ++k) see(58.0, 1300.0 + 200.0 * std::sin(k));
+  EXPECT_EQ(output.source, ActionSource::kFallback);
+  EXPECT_EQ(output.input[0], 800.0);
+  EXPECT_FALSE(output.predictive);
+  EXPECT_EQ(remark(), "s stands still: the fallback acts");
+  const std::size_t steps = law->steps.size();
+  for (int k = 0; k < 100; ++k) see(58.0, 1300.0);  // nothing moves: no reason to trust it again
+  EXPECT_EQ(law->steps.size(), steps);
+  see(58.6, 1300.0);
+  EXPECT_EQ(output.source, ActionSource::kBase);
+  EXPECT_EQ(output.input[0], 801.0) << "goes on from the applied input";
+  EXPECT_EQ(law->resets.back(), step - 1);
+  EXPECT_EQ(remark(), "");
+}
+
+TEST_F(Standstill, ADisturbanceThatStandsIsReplacedByItsUsualValue) {
+  double seen = 0.0;
+  law->spoil = [&](ControllerOutput&) { seen += 1.0; };
+  for (int k = 0; k < 20; ++k) see(56.0 + 10.0 * std::sin(k), 0.0);
+  EXPECT_EQ(seen, 20.0) << "the law goes on";
+  EXPECT_EQ(output.source, ActionSource::kBase);
+  EXPECT_EQ(remark(), "q_i stands still: its usual value is used");
+}
+
+TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsItsPlan) {
+  StandstillParams p = params();
+  p.fallback_plan = {{0, {}, {0}, 1300.0, 5000.0, 0.0}};
+  make(p, 100.0);
+  const auto q_i = [](int k) { return k % 2 == 0 ? 1300.0 : 1560.0; };
+  for (int k = 0; k < kWindow; ++k) see(58.0, q_i(k));
+  double before = applied;
+  for (int k = 0; k < 40; ++k) {
+    see(58.0, q_i(k));
+    EXPECT_LE(std::abs(output.input[0] - before), 100.0 + 1e-9);
+    EXPECT_LE(output.input[0], 1600.0);
+    before = output.input[0];
+  }
+  EXPECT_EQ(output.source, ActionSource::kFallback);
+  make(p);
+  for (int k = 0; k < kWindow + 1; ++k) see(58.0, q_i(k));
+  EXPECT_NEAR(output.input[0], 1600.0, 1e-9) << "800 + 5000 * 0.2 at the bound";
+}
+
+TEST_F(Standstill, MistakesAreNamed) {
+  StandstillParams p = params();
+  p.fallback = of({1.0, 2.0});
+  EXPECT_THROW(make(p), InputError);
+  p = params();
+  p.signals[0].least_change = 0.0;
+  EXPECT_THROW(make(p), InputError);
+}
+
+}  // namespace
+}  // namespace fpc::test_session
