@@ -51,6 +51,8 @@ CASES = {
     "observer_nmpc": ("surge_tank_steps_nmpc", 300, ["sampling.duration_h=0.008333333333333333", "noise.std.H=0.001"],
                       "lockstep", 3600),
     "pi_best": ("asp_case1_pi_x_best", 200, ["sampling.duration_h=40"], "lockstep", 3600),
+    "bsm1_sampled_pi": ("bsm1_default_sampled", 240, ["disturbance={}", "sampling.duration_h=4", "report.record_from_h=0"],
+                        "lockstep", 3600),
     "load_supervisor": ("bsm1_supervisor", 60, ["disturbance={}", "sampling.duration_h=5"], "lockstep", 3600),
     "plugin": ("two_tanks_outflow", 360, [], "lockstep", 3600),
 }

@@ -25,9 +25,11 @@ void StandstillParams::validate(Index n_y, Index n_u, Index n_d) const {
   }
 }
 
-void SignalWindow::add(VectorRef outputs, VectorRef disturbances) {
-  values_.col(next_).head(outputs.size()) = outputs;
-  values_.col(next_).tail(disturbances.size()) = disturbances;
+void SignalWindow::add(const Measurement& now) {
+  const Index n_y = now.outputs.size(), n_d = now.disturbances.size();
+  values_.col(next_).head(n_y) = now.outputs;
+  values_.col(next_).segment(n_y, n_d) = now.disturbances;
+  values_.col(next_).tail(now.input_applied.size()) = now.input_applied;
   next_ = (next_ + 1) % values_.cols();
   known_ = std::min(known_ + 1, values_.cols());
 }
@@ -52,7 +54,7 @@ StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillP
   const auto n_d = static_cast<Index>(plant.disturbances.size());
   params_.validate(n_y_, n_u, n_d);
   limits_.validate(n_u);
-  window_ = SignalWindow(n_y_ + n_d, params_.window_samples);
+  window_ = SignalWindow(n_y_ + n_d + n_u, params_.window_samples);
   plan_ = SetpointPlan(params_.fallback_plan, n_u, plant.sample_time_s / 3600.0);
   for (const WatchedSignal& signal : params_.signals)
     remarks_.push_back(signal.name + (signal.is_output ? " stands still: the fallback acts"
@@ -75,11 +77,12 @@ double StandstillWatch::valueOf(const Measurement& now, const WatchedSignal& sig
   return signal.is_output ? now.outputs[signal.place] : now.disturbances[signal.place];
 }
 
-/// Whether a signal that is not known to stand still has moved, another one than this.
-bool StandstillWatch::othersMove(Index row) const {
-  const Index signals = seen_.outputs.size() + seen_.disturbances.size();
-  for (Index other = 0; other < signals; ++other) {
-    bool trusted = other != row;
+/// Whether something else that drives the plant, and is not known to stand still, has moved.
+bool StandstillWatch::othersMove(const WatchedSignal& signal) const {
+  const Index last = n_y_ + seen_.disturbances.size();
+  const Index end = signal.is_output ? last + seen_.input_applied.size() : last;
+  for (Index other = n_y_; other < end; ++other) {
+    bool trusted = other != rowOf(signal);
     for (std::size_t i = 0; i < still_.size(); ++i)
       trusted = trusted && !(still_[i] && rowOf(params_.signals[i]) == other);
     if (trusted && window_.span(other) > params_.others_change * std::abs(window_.mean(other)))
@@ -89,13 +92,13 @@ bool StandstillWatch::othersMove(Index row) const {
 }
 
 void StandstillWatch::watch(const Measurement& now) {
-  window_.add(now.outputs, now.disturbances);
+  window_.add(now);
   for (std::size_t i = 0; i < still_.size(); ++i) {
     const WatchedSignal& signal = params_.signals[i];
-    const Index row = rowOf(signal);
     if (still_[i]) {
       still_[i] = std::abs(valueOf(now, signal) - stood_at_[i]) < signal.least_change;
-    } else if (window_.full() && window_.span(row) < signal.least_change && othersMove(row)) {
+    } else if (window_.full() && window_.span(rowOf(signal)) < signal.least_change &&
+               othersMove(signal)) {
       still_[i] = true;
       stood_at_[i] = valueOf(now, signal);
     }

@@ -64,6 +64,23 @@ Overrides noiseOf(const StudyFile& study, const LoopFile& loop) {
   return noise;
 }
 
+/// The keys of a loop that take a study's seed: of its influent's pattern, and of noise wherever it
+/// has any.
+std::vector<std::string> seededKeys(const LoopFile& loop, bool noise_added) {
+  std::vector<std::string> keys;
+  if (loop.disturbance.source == "pattern") keys.emplace_back("disturbance.pattern.seed");
+  if (noise_added || loop.simulation.noise_std.any()) keys.emplace_back("noise.seed");
+  const auto& sensors = loop.simulation.instruments.sensors;
+  if (std::any_of(sensors.begin(), sensors.end(),
+                  [](const auto& sensor) { return sensor.second.noise_std > 0.0; }))
+    keys.emplace_back("sensors.seed");
+  const auto& parameters = loop.simulation.parameters;
+  const auto local = parameters.find("local_noise");
+  if (local != parameters.end() && local->second > 0.0)
+    keys.emplace_back("plant.parameters.local_noise_seed");
+  return keys;
+}
+
 }  // namespace
 
 StudyPlan::StudyPlan(StudyFile study) : study_(std::move(study)) {
@@ -98,10 +115,7 @@ StudyPlan::Prepared StudyPlan::prepare(const StudyLoop& loop,
   prepared.noise = noiseOf(study_, read);
   for (const auto& variation : study_.vary)
     prepared.numbers.push_back(variation.factor ? numberAt(read, variation.key) : 1.0);
-  const bool noisy = !prepared.noise.empty() || read.simulation.noise_std.any();
-  if (read.disturbance.source == "pattern")
-    prepared.seeded.emplace_back("disturbance.pattern.seed");
-  if (noisy) prepared.seeded.emplace_back("noise.seed");
+  prepared.seeded = seededKeys(read, !prepared.noise.empty());
   require(study_.seeds.empty() || !prepared.seeded.empty() || !study_.vary.empty(), "seeds",
           "a disturbance pattern, noise or vary in loop " + read.name);
   return prepared;

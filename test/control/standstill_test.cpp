@@ -18,21 +18,23 @@ class Standstill : public testing::Test {
     StandstillParams p;
     p.signals = {{"s", true, 0, 0.5}, {"q_i", false, 0, 1.0}};
     p.window_samples = kWindow;
-    p.usual = of({1300.0});
+    p.usual = of({1300.0, 40.0});
     p.fallback = of({800.0});
     return p;
   }
   void make(StandstillParams p, double move = kInf) {
     auto owned = std::make_unique<FakeLaw>();
     law = owned.get();
-    watch = std::make_unique<StandstillWatch>(std::move(owned), std::move(p), limits(move), plant());
+    PlantInfo info = plant();
+    info.disturbances.push_back({"s_i", "mg/l", 0, 100});
+    watch = std::make_unique<StandstillWatch>(std::move(owned), std::move(p), limits(move), info);
     watch->reset(sample(0));
   }
   /// One sample with these values; x never moves.
-  const ControllerOutput& see(double s, double q_i) {
+  const ControllerOutput& see(double s, double q_i, double s_i = 40.0) {
     Measurement m = sample(step++, 1, applied);
     m.outputs[0] = s;
-    m.disturbances[0] = q_i;
+    m.disturbances = of({q_i, s_i});
     SetpointSource source(setpoints(), {"s", "x"}, SampleClock(720.0, 1234.5));
     watch->step(m, source, output);
     applied = output.input[0];
@@ -58,7 +60,7 @@ TEST_F(Standstill, WhatMovesPassesUntouched) {
 }
 
 TEST_F(Standstill, APlantAtRestIsNoFault) {
-  for (int k = 0; k < 40; ++k) see(56.0, 1300.0);
+  for (int k = 0; k < 40; ++k) see(56.0 + 20.0 * std::exp(-k), 1300.0);  // a start under constant load
   EXPECT_EQ(law->steps.size(), 40U);
   EXPECT_EQ(remark(), "");
 }
@@ -83,7 +85,7 @@ TEST_F(Standstill, AnOutputThatStandsWhileTheLoadMovesBringsTheFallback) {
 TEST_F(Standstill, ADisturbanceThatStandsIsReplacedByItsUsualValue) {
   double seen = 0.0;
   law->spoil = [&](ControllerOutput&) { seen += 1.0; };
-  for (int k = 0; k < 20; ++k) see(56.0 + 10.0 * std::sin(k), 0.0);
+  for (int k = 0; k < 20; ++k) see(56.0 + 10.0 * std::sin(k), 0.0, 40.0 + 10.0 * std::sin(k));
   EXPECT_EQ(seen, 20.0) << "the law goes on";
   EXPECT_EQ(output.source, ActionSource::kBase);
   EXPECT_EQ(remark(), "q_i stands still: its usual value is used");

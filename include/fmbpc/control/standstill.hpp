@@ -24,7 +24,7 @@ struct WatchedSignal {
 struct StandstillParams {
   std::vector<WatchedSignal> signals;  ///< empty: nothing is watched
   int window_samples{24};
-  double others_change{0.1};  ///< some other signal must have moved by this part of its mean
+  double others_change{0.1};  ///< what drives the plant must have moved by this part of its mean
   Vector usual;               ///< n_d, the law's value of a disturbance that stands still
   Vector fallback;            ///< n_u, the input while an output stands still ...
   std::vector<SetpointPlanTerm> fallback_plan;  ///< ... and what the other signals add to it
@@ -38,7 +38,7 @@ class SignalWindow {
   SignalWindow() = default;
   SignalWindow(Eigen::Index signals, int samples) : values_(signals, samples) {}
   void clear() { known_ = next_ = 0; }
-  void add(VectorRef outputs, VectorRef disturbances);
+  void add(const Measurement& now);  ///< outputs, disturbances, applied inputs
   bool full() const { return known_ == values_.cols(); }
   double span(Eigen::Index signal) const;
   double mean(Eigen::Index signal) const;
@@ -49,8 +49,9 @@ class SignalWindow {
 };
 
 /// A watched signal stands still from the sample at which it has changed by less than
-/// `least_change` over the window while some other signal, not standing still itself, has moved;
-/// until it has moved by that much. Meanwhile
+/// `least_change` over the window while what drives the plant has moved: another measured
+/// disturbance that does not stand still itself, for outputs also an applied input; until it has
+/// moved by that much. Meanwhile
 /// - a disturbance has its usual value for the law, which goes on;
 /// - an output makes the fallback act (source fallback, no prediction) inside the limits; the law is
 ///   reset, bumplessly, when the output is back.
@@ -78,7 +79,7 @@ class StandstillWatch final : public Controller {
  private:
   Eigen::Index rowOf(const WatchedSignal& signal) const;
   double valueOf(const Measurement& now, const WatchedSignal& signal) const;
-  bool othersMove(Eigen::Index row) const;
+  bool othersMove(const WatchedSignal& signal) const;
   void watch(const Measurement& now);
   void fallBack(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
 

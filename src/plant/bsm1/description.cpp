@@ -174,6 +174,8 @@ void Listing::air() {
     add(S_O + "_lower", "g/m3", line.lower, 0.0, 10.0);
     add(S_O + "_upper", "g/m3", line.upper, 0.0, 10.0);
   }
+  add("NO2_per_DO4", "-", p_.nitrate_lean.slope, -10.0, 10.0);
+  add("NO2_about_DO4", "g/m3", p_.nitrate_lean.about, 0.0, 10.0);
 }
 
 Listing listing(Front front, Parameters& p) {

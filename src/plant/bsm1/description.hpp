@@ -15,12 +15,19 @@ struct AirLine {
   double offset{}, slope{}, lower{}, upper{};
 };
 
+/// How the nitrate setpoint leans on the oxygen setpoint of tank 4: less recirculation, which mixes
+/// the tanks, while much air is asked for. Setpoint + slope (DO4 - about) [g/m3].
+struct NitrateLean {
+  double slope{0.0}, about{2.6};
+};
+
 /// All that a loop file may change.
 struct Parameters {
   WorksParams works;
   LocalLoopParams loops;
   std::array<AirLine, kAerated> air{AirLine{0.18, 1.87, 0.05, 2.24}, AirLine{2.5, 2.04, 0.65, 5.34},
                                     AirLine{0.42, 1.15, 0.05, 4.3}};
+  NitrateLean nitrate_lean;
   double lags{1.0};
   double noise_seed{1.0};
 };

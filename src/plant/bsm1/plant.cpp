@@ -68,7 +68,9 @@ void Bsm1::readFront(VectorRef u, Drive& drive) const {
       drive.setpoints.S_O[i] =
           std::min(std::max(line.offset + line.slope * u[0], line.lower), line.upper);
     }
-    drive.setpoints.S_NO = u[1];
+    const NitrateLean& lean = parameters_.nitrate_lean;
+    drive.setpoints.S_NO =
+        std::max(u[1] + lean.slope * (drive.setpoints.S_O[1] - lean.about), 0.0);
   }
 }
 

@@ -1,5 +1,5 @@
 // The benchmark simulation model no. 1: indices of open loop and default control as users of the
-// benchmark know them, and what a supervisor reaches. Reference figures by an independent simulator
+// benchmark know them. Reference figures by an independent simulator
 // of the same equations; those that are printed agree with them to 0.05 %.
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/report.hpp"
@@ -79,37 +79,6 @@ Rows ideal() {
 }
 Rows linear() { return all(kLinear, kLinearInfluent, "rows joined, S_I diluted"); }
 
-/// The rival, and ours beside it: what is claimed of class A.
-Rows classA() {
-  Rows rows;
-  const struct {
-    const char *suffix, *of;
-    double EQI, OCI, default_EQI, default_OCI, least, TN, NH;
-  } cases[] = {{"", "dry", 5851.0, 16256.0, 6121.3, 16391.5, 3.0, 12.0, 16.0},
-               {"_rain", "rain", 8110.0, 15992.0, 8350.9, 15993.1, 2.3, 6.5, 23.0}};
-  for (const auto& c : cases) {
-    const std::string of = std::string(c.of) + ", ";
-    const EffluentReport rival = evaluated(std::string("bsm1_supervisor") + c.suffix, {});
-    rows.push_back(figure(of + "supervisor, EQI", c.EQI, rival.EQI, "kg/d", {0.003}));
-    rows.push_back(figure(of + "supervisor, OCI", c.OCI, rival.OCI, "-", {0.003}));
-    for (const char* law : {"bsm1_fmbpc", "bsm1_fmbpc_linear"}) {
-      const EffluentReport ours = evaluated(std::string(law) + c.suffix, {});
-      const std::string what = of + law + ", ";
-      rows.push_back(check(what + "EQI below the default's",
-                           100.0 * (1.0 - ours.EQI / c.default_EQI), Direction::kHigher, c.least,
-                           "%", "ours"));
-      rows.push_back(check(what + "OCI over the default's",
-                           100.0 * (ours.OCI / c.default_OCI - 1.0), Direction::kLower, 0.0, "%",
-                           "ours"));
-      rows.push_back(check(what + "time above TN 18", ours.limit("TN").share_percent,
-                           Direction::kLower, c.TN, "%", "ours"));
-      rows.push_back(check(what + "time above NH 4", ours.limit("NH").share_percent,
-                           Direction::kLower, c.NH, "%", "ours"));
-    }
-  }
-  return rows;
-}
-
 const bool kRegistered = registerExperiments(
     {{"bsm1_open_loop", "bsm1", "table of the open loop", "indices of 14 days, last 7 judged",
       "10 numbers each", "bsm1_open, bsm1_open_rain", open},
@@ -121,9 +90,7 @@ const bool kRegistered = registerExperiments(
       ideal},
      {"bsm1_default_linear", "bsm1", "table of the default control, influent of the MATLAB files",
       "indices of 14 days, last 7 judged", "10 numbers each", "bsm1_default, bsm1_default_rain",
-      linear},
-     {"bsm1_class_a", "bsm1", "beyond the paper", "supervisor and predictive control, class A", "-",
-      "bsm1_supervisor, bsm1_fmbpc, bsm1_fmbpc_linear", classA}});
+      linear}});
 
 }  // namespace
 }  // namespace fpc::tool

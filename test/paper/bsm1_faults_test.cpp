@@ -1,0 +1,82 @@
+// BSM1 with faults of sensors, influent and blowers on a short protocol (2 days of constant influent, 14 of our own, the last 7 judged):
+// limits hold, the fault is said, and the effluent is no worse than the default control's under the same fault.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "fmbpc/loop/report.hpp"
+#include "fmbpc/loop/run.hpp"
+#include "fmbpc/study/evaluate.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+/// From 8 days before the end to the end.
+const std::string kFrom = "192", kTo = "384";
+
+struct Outcome {
+  EffluentReport effluent;
+  Summary summary;
+  std::vector<RunRemark> remarks;
+  bool says(const std::string& words) const {
+    return std::any_of(remarks.begin(), remarks.end(), [&](const RunRemark& remark) {
+      return remark.words.find(words) != std::string::npos;
+    });
+  }
+};
+
+Outcome run(const std::string& name, const Overrides& fault) {
+  Overrides overrides{{"disturbance.csv.lead_in_h", "48"},
+                      {"sampling.duration_h", kTo},
+                      {"report.record_from_h", "216"}};
+  overrides.insert(overrides.end(), fault.begin(), fault.end());
+  const LoopFile loop = readLoop(name, overrides);
+  const RunRecord record = runLoop(loop);
+  EXPECT_TRUE(record.complete) << record.trouble;
+  return {evaluateEffluent(trajectoryOf(loop, record)), summarize(loop, record, 0.0),
+          record.remarks};
+}
+
+Overrides stuck(const std::string& sensor) {
+  return {{"sensors." + sensor + ".stuck_from_h", kFrom}, {"sensors." + sensor + ".stuck_to_h", kTo}};
+}
+
+void expectNoWorse(const Overrides& fault, const std::string& words) {
+  const Outcome is = run("bsm1_own_default", fault), ours = run("bsm1_own_fmbpc", fault);
+  EXPECT_EQ(ours.summary.input_violations, 0U);
+  EXPECT_EQ(ours.summary.move_violations, 0U);
+  EXPECT_LE(ours.effluent.EQI, is.effluent.EQI);
+  EXPECT_TRUE(words.empty() || ours.says(words)) << words;
+}
+
+TEST(Bsm1Faults, AnAmmoniumAnalyserThatSticksForEightDays) {
+  expectNoWorse(stuck("S_NH5"), "S_NH5 stands still: the fallback acts");
+}
+
+TEST(Bsm1Faults, AFlowMeterThatIsLost) {
+  Overrides lost = stuck("Q_in");
+  lost.emplace_back("sensors.Q_in.stuck_at", "0");
+  expectNoWorse(lost, "Q_in stands still: its usual value is used");
+}
+
+TEST(Bsm1Faults, TwiceTheFlowForADay) {
+  expectNoWorse({{"disturbance.commands",
+                  "[{time_h: 240, name: Q_in, value: 18446, mode: offset}, {time_h: 264, name: "
+                  "Q_in, mode: release}]"}},
+                "");
+}
+
+TEST(Bsm1Faults, BlowersAtSixtyPercent) {
+  expectNoWorse({{"disturbance.commands", "[{time_h: " + kFrom + ", name: blower, value: 0.6}]"}},
+                "");
+}
+
+TEST(Bsm1Faults, AHealthyPlantIsNotAccused) {
+  const Outcome ours = run("bsm1_own_fmbpc", {});
+  EXPECT_FALSE(ours.says("stands still"));
+  EXPECT_LE(ours.effluent.EQI, run("bsm1_own_default", {}).effluent.EQI);
+}
+
+}  // namespace
+}  // namespace fpc
