@@ -7,6 +7,7 @@
 #include "config/read.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/plugins.hpp"
+#include "fmbpc/config/standstill_section.hpp"
 
 namespace fpc {
 namespace {
@@ -84,7 +85,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readClp(root, loop, names);
   readController(root, loop);
   readGuard(root, loop, names);
-  readStandstill(root, loop, names);
+  readStandstill(root, loop);
   readModelSection(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);

@@ -46,12 +46,6 @@ void readCsvFormat(YamlSection& section, CsvFormat& format);
 void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
                     const std::vector<std::string>& names);
 void readModelSection(YamlSection& root, LoopFile& loop);
-/// A term of an affine law; `key` names its target.
-SetpointPlanTerm readPlanTerm(YamlSection& item, const std::string& key,
-                              const std::vector<std::string>& targets,
-                              const std::vector<std::string>& outputs,
-                              const std::vector<std::string>& disturbances);
-void readStandstill(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);

@@ -130,9 +130,6 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   for (const SetpointStep& entry : recipe)
     requireInRange(section, "recipe", entry.value, loop.plant_info);
   if (!recipe.empty()) params.schedule = recipe;
-  for (auto& item : section.list("plan")) 
-    params.plan.push_back(
-        readPlanTerm(item, "output", names.outputs, names.outputs, names.seen_disturbances));
   section.byName("lower", params.lower, names.outputs);
   section.byName("upper", params.upper, names.outputs);
   section.byName("rate_per_h", params.rate_per_h, names.outputs, Range{0.0, kInfinite, true});

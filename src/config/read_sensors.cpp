@@ -38,7 +38,6 @@ SensorParams readSensor(YamlSection& section) {
   section.boolean("average", params.average);
   section.number("stuck_from_h", params.stuck_from_h, Range{0.0, kInfinite});
   section.number("stuck_to_h", params.stuck_to_h, Range{0.0, kInfinite});
-  section.number("stuck_at", params.stuck_at, kFinite);
   checked(section, [&] { params.validate(); });
   section.finish();
   return params;

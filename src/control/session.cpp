@@ -89,7 +89,6 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   answer_.base.header = answer_.tracking.header = m.header;
   answer_.has_action = !m.final;
   answer_.has_prediction = false;
-  setpoint_.follow(m.outputs, m.disturbances, step);
   answer_.tracking.setpoint = setpoint_.advance(step);
   if (!controller_->followsSetpoint()) answer_.tracking.setpoint.setConstant(std::nan(""));
   answer_.effects = setpoint_.effects();

@@ -68,8 +68,6 @@ SetpointSource::SetpointSource(SetpointParams params, std::vector<std::string> o
   params_.upper = filled(params_.upper, n_y, kHuge).cwiseMin(kHuge);
   params_.rate_per_h = filled(params_.rate_per_h, n_y, std::numeric_limits<double>::infinity());
   fillSchedule(params_);
-  plan_ = SetpointPlan(params_.plan, n_y, clock_.hoursAt(1));
-  planned_ = Vector::Zero(n_y);
   for (const SetpointStep& entry : params_.schedule)
     schedule_steps_.push_back(clock_.firstStepAtHours(entry.time_h));
   asked_ = params_.initial.cwiseMax(params_.lower).cwiseMin(params_.upper);
@@ -96,12 +94,7 @@ void SetpointSource::playParams() {
 
 void SetpointSource::reset() { fresh_ = true; }
 
-void SetpointSource::follow(VectorRef outputs, VectorRef disturbances, std::uint32_t step) {
-  if (!plan_.empty()) planned_ = plan_.follow(outputs, disturbances, step);
-}
-
 void SetpointSource::restart() {
-  plan_.reset();
   commands_.clear();
   waiting_.clear();
   effects_.clear();
@@ -194,7 +187,6 @@ void SetpointSource::scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) co
 
 void SetpointSource::scheduled(std::uint32_t step, Eigen::Ref<Vector> value) const {
   scheduleAt(step, value);
-  value += planned_;
   commands_.apply(value);
   value = value.cwiseMax(params_.lower).cwiseMin(params_.upper);
 }

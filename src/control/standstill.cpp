@@ -55,7 +55,7 @@ StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillP
   params_.validate(n_y_, n_u, n_d);
   limits_.validate(n_u);
   window_ = SignalWindow(n_y_ + n_d + n_u, params_.window_samples);
-  plan_ = SetpointPlan(params_.fallback_plan, n_u, plant.sample_time_s / 3600.0);
+  plan_ = AffineLaw(params_.fallback_plan, n_u, plant.sample_time_s / 3600.0);
   for (const WatchedSignal& signal : params_.signals)
     remarks_.push_back(signal.name + (signal.is_output ? " stands still: the fallback acts"
                                                        : " stands still: its usual value is used"));

@@ -2,6 +2,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
+#include "fmbpc/config/standstill_section.hpp"
 
 namespace fpc {
 namespace {
@@ -17,8 +18,9 @@ std::unique_ptr<Controller> makeGuarded(const LoopFile& loop) {
 /// The law, and around it what watches its sensors if the loop asks for it.
 std::unique_ptr<Controller> makeController(const LoopFile& loop) {
   std::unique_ptr<Controller> law = makeGuarded(loop);
-  if (loop.standstill.signals.empty()) return law;
-  return std::make_unique<StandstillWatch>(std::move(law), loop.standstill,
+  StandstillParams standstill = standstillOf(loop);
+  if (standstill.signals.empty()) return law;
+  return std::make_unique<StandstillWatch>(std::move(law), std::move(standstill),
                                            loop.simulation.actuator.limits, loop.plant_info);
 }
 
@@ -34,7 +36,7 @@ Simulation makeSimulation(const LoopFile& loop) {
 ControllerSession makeControllerSession(const LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
   return {makeController(loop), loop.setpoint,   actuator.limits,
-          actuator.initial,  loop.plant_info, loop.max_pole};
+          actuator.initial,     loop.plant_info, loop.max_pole};
 }
 
 OptimizerSession makeOptimizerSession(const LoopFile& loop) {

@@ -25,7 +25,6 @@ void SensorParams::validate() const {
   require(lower < upper, "upper", "a number > lower");
   require(stuck_from_h >= 0.0 && stuck_from_h <= stuck_to_h, "stuck_to_h",
           "a time >= stuck_from_h");
-  require(!std::isinf(stuck_at), "stuck_at", "a finite number");
 }
 
 SensorClass sensorClass(const std::string& name) {
@@ -96,7 +95,6 @@ void Sensor::advance(double from, double to, double seconds) {
                      time_s_ < 3600.0 * params_.stuck_to_h - kEarly;
   if (!stuck) shown_ = value;
   if (!stuck) show();
-  if (stuck && !std::isnan(params_.stuck_at)) reading_ = params_.stuck_at;
   sum_ += reading_;
   ++count_;
 }

@@ -60,7 +60,8 @@ TEST_F(Standstill, WhatMovesPassesUntouched) {
 }
 
 TEST_F(Standstill, APlantAtRestIsNoFault) {
-  for (int k = 0; k < 40; ++k) see(56.0 + 20.0 * std::exp(-k), 1300.0);  // a start under constant load
+  for (int k = 0; k < 40; ++k)
+    see(56.0 + 20.0 * std::exp(-k), 1300.0);  // a start under constant load
   EXPECT_EQ(law->steps.size(), 40U);
   EXPECT_EQ(remark(), "");
 }

@@ -97,19 +97,6 @@ TEST(Sensor, ItsRangeBoundsWhatItShows) {
   EXPECT_GT(at_top, 40);
 }
 
-TEST(Sensor, ALostSignalReadsWhatItIsSaidToRead) {
-  SensorParams p;
-  p.stuck_from_h = 1.0;
-  p.stuck_to_h = 2.0;
-  p.stuck_at = 0.0;
-  Sensor sensor(p, 60.0, 1, 0);
-  sensor.reset(5.0);
-  for (int minute = 1; minute <= 180; ++minute) {
-    sensor.advance(5.0, 5.0, 60.0);
-    EXPECT_EQ(sensor.take(), minute < 60 || minute >= 120 ? 5.0 : 0.0) << minute;
-  }
-}
-
 TEST(Sensor, AStuckSensorStaysAndComesBack) {
   SensorParams p;
   p.stuck_from_h = 1.0;

@@ -10,7 +10,6 @@
 #include "fmbpc/control/guard.hpp"
 #include "fmbpc/control/registry.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
-#include "fmbpc/control/standstill.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
 #include "fmbpc/fuzzy/structure.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
@@ -109,7 +108,6 @@ struct LoopFile {
   std::shared_ptr<const ControllerConfig> controller;  ///< never null in a loop that was read
   Vector disturbance_nominal;                          ///< n_d, of the measured disturbances
   GuardParams guard;                                   ///< around a law with a model
-  StandstillParams standstill;  ///< around any law
   bool has_clp{false};
   ClpParams clp;
   RingParams ring;

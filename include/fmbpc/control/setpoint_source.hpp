@@ -9,7 +9,6 @@
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/base/types.hpp"
-#include "fmbpc/control/setpoint_plan.hpp"
 
 namespace fpc {
 
@@ -26,7 +25,6 @@ struct SetpointParams {
   std::vector<SetpointStep> schedule;  ///< times not decreasing, ramps end before the next entry
   Vector lower, upper;                 ///< n_y, clamp (infinite if absent)
   Vector rate_per_h;                   ///< n_y, largest change per hour (infinite if absent)
-  std::vector<SetpointPlanTerm> plan;  ///< added to the schedule by what is measured
   std::vector<Command> commands;       ///< played like a person's, with time_ns = absolute stamps
   /// @throws InputError naming the field.
   void validate(Eigen::Index n_y) const;
@@ -52,9 +50,7 @@ class SetpointSource {
   /// Tells the time that the plant gives to a sample, in case its t0 is not the clock's: the stamps
   /// of people's commands are then the plant's. The schedule goes by step.
   void anchor(const StepHeader& sample);
-  /// What is measured at `step`, for the plan; before advance(step).
-  void follow(VectorRef outputs, VectorRef disturbances, std::uint32_t step);
-  /// The setpoint at `step`: schedule, plan, commands, clamp, rate limit. Call once per sample, steps
+  /// The setpoint at `step`: schedule, commands, clamp, rate limit. Call once per sample, steps
   /// increasing; over skipped steps everything catches up. The first value is not rate-limited.
   const Vector& advance(std::uint32_t step);
   const Vector& present() const { return present_; }
@@ -97,8 +93,6 @@ class SetpointSource {
   SetpointParams params_;
   SampleClock clock_;
   CommandTable commands_;
-  SetpointPlan plan_;
-  Vector planned_;  // n_y, what the plan adds at present
   std::vector<std::uint32_t> schedule_steps_;
   std::vector<Command> waiting_;  // people's commands before the first sample: its step is unknown
   std::vector<CommandEffect> effects_;

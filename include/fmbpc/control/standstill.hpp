@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "fmbpc/control/affine_law.hpp"
 #include "fmbpc/control/controller.hpp"
-#include "fmbpc/control/setpoint_plan.hpp"
 
 namespace fpc {
 
@@ -16,8 +16,8 @@ namespace fpc {
 struct WatchedSignal {
   std::string name;
   bool is_output{true};
-  Eigen::Index place{};    ///< among outputs or measured disturbances
-  double least_change{};   ///< largest minus smallest value over the window is usually more
+  Eigen::Index place{};   ///< among outputs or measured disturbances
+  double least_change{};  ///< largest minus smallest value over the window is usually more
 };
 
 /// Section `standstill` of a loop file.
@@ -27,7 +27,7 @@ struct StandstillParams {
   double others_change{0.1};  ///< what drives the plant must have moved by this part of its mean
   Vector usual;               ///< n_d, the law's value of a disturbance that stands still
   Vector fallback;            ///< n_u, the input while an output stands still ...
-  std::vector<SetpointPlanTerm> fallback_plan;  ///< ... and what the other signals add to it
+  std::vector<AffineTerm> fallback_plan;  ///< ... and what the other signals add to it
   /// @throws InputError naming standstill.KEY.
   void validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d) const;
 };
@@ -53,7 +53,8 @@ class SignalWindow {
 /// disturbance that does not stand still itself, for outputs also an applied input; until it has
 /// moved by that much. Meanwhile
 /// - a disturbance has its usual value for the law, which goes on;
-/// - an output makes the fallback act (source fallback, no prediction) inside the limits; the law is
+/// - an output makes the fallback act (source fallback, no prediction) inside the limits; the law
+/// is
 ///   reset, bumplessly, when the output is back.
 /// remark says which signal. Otherwise the law's answers pass untouched.
 class StandstillWatch final : public Controller {
@@ -88,12 +89,12 @@ class StandstillWatch final : public Controller {
   InputLimits limits_;
   Eigen::Index n_y_;
   SignalWindow window_;
-  SetpointPlan plan_;
+  AffineLaw plan_;
   Measurement seen_;
-  std::vector<bool> still_;            // by watched signal
-  std::vector<double> stood_at_;       // the value at which each stands
-  std::vector<std::string> remarks_;   // by watched signal
-  bool away_{false};                   // the fallback acted at the last sample
+  std::vector<bool> still_;           // by watched signal
+  std::vector<double> stood_at_;      // the value at which each stands
+  std::vector<std::string> remarks_;  // by watched signal
+  bool away_{false};                  // the fallback acted at the last sample
 };
 
 }  // namespace fpc

@@ -27,7 +27,6 @@ struct SensorParams {
   bool average{false};  ///< the ring sees the mean of what it showed since the last sample
   double stuck_from_h{std::numeric_limits<double>::infinity()};  ///< shows its last value ...
   double stuck_to_h{std::numeric_limits<double>::infinity()};    ///< ... until then
-  double stuck_at{std::numeric_limits<double>::quiet_NaN()};     ///< ... or this: a lost signal
   void validate() const;  ///< @throws InputError naming the field
 };
 

@@ -52,7 +52,7 @@ class TuningObjective {
   struct Case {
     std::string name, text;
     FitnessParams fitness;  ///< the terms that count in it
-    double scale{1.0};  ///< cost of the untouched loop if costs are relative
+    double scale{1.0};      ///< cost of the untouched loop if costs are relative
   };
   struct Run {
     double cost{};

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kMinute = 1.0 / 1440.0;
 // Rates of one lag of a chain [1/d].
-constexpr double kOxygenLag = 3.89 / kMinute;              // class A: T90 1 min, two lags
+constexpr double kOxygenLag = 3.89 / kMinute;               // class A: T90 1 min, two lags
 constexpr double kNitrateLag = 11.7724 / (10.0 * kMinute);  // class B0: T90 10 min, eight lags
 constexpr double kBlowerLag = 3.89 / (4.0 * kMinute);       // T90 4 min, two lags
 constexpr double kPumpLag = 1e4;  // only makes the pump's position a state; no lag that counts

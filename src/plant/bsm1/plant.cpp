@@ -69,8 +69,7 @@ void Bsm1::readFront(VectorRef u, Drive& drive) const {
           std::min(std::max(line.offset + line.slope * u[0], line.lower), line.upper);
     }
     const NitrateLean& lean = parameters_.nitrate_lean;
-    drive.setpoints.S_NO =
-        std::max(u[1] + lean.slope * (drive.setpoints.S_O[1] - lean.about), 0.0);
+    drive.setpoints.S_NO = std::max(u[1] + lean.slope * (drive.setpoints.S_O[1] - lean.about), 0.0);
   }
 }
 

@@ -49,7 +49,8 @@ void reactors(const WorksParams& p, const Inflow& in, const TankTable& z,
   for (int t = 0; t < kTanks; ++t) dilution[t] = Q / p.volume[t];
   for (int c = 0; c < kComponents; ++c) {
     std::array<double, kWidth> inlet;
-    inlet[0] = from_influent * in.influent[c] + from_settler * returned[c] + from_last * z[c][kLast];
+    inlet[0] =
+        from_influent * in.influent[c] + from_settler * returned[c] + from_last * z[c][kLast];
     for (int t = 1; t < kWidth; ++t) inlet[t] = z[c][t - 1];
     for (int t = 0; t < kWidth; ++t) dzdt[c][t] += dilution[t] * (inlet[t] - z[c][t]);
     dzdt[c][kTanks] = 0.0;

@@ -1,4 +1,4 @@
-#include "fmbpc/control/setpoint_plan.hpp"
+#include "fmbpc/control/affine_law.hpp"
 
 #include <cmath>
 #include <utility>
@@ -8,15 +8,15 @@
 namespace fpc {
 namespace {
 
-void validate(const SetpointPlanTerm& term, const std::string& key, Eigen::Index n_y) {
-  require(term.output >= 0 && term.output < n_y, key + "output", "an output");
+void validate(const AffineTerm& term, const std::string& key, Eigen::Index targets) {
+  require(term.target >= 0 && term.target < targets, key + "target", "one of the targets");
   require(!term.outputs.empty() || !term.disturbances.empty(), key + "of", "at least one signal");
   require(std::isfinite(term.about) && term.about != 0.0, key + "about", "a number other than 0");
   require(std::isfinite(term.gain), key + "gain", "a finite number");
   require(std::isfinite(term.lag_h) && term.lag_h >= 0.0, key + "lag_h", "a time >= 0 h");
 }
 
-double product(const SetpointPlanTerm& term, VectorRef outputs, VectorRef disturbances) {
+double product(const AffineTerm& term, VectorRef outputs, VectorRef disturbances) {
   double value = 1.0;
   for (const Eigen::Index i : term.outputs) value *= outputs[i];
   for (const Eigen::Index i : term.disturbances) value *= disturbances[i];
@@ -25,27 +25,26 @@ double product(const SetpointPlanTerm& term, VectorRef outputs, VectorRef distur
 
 }  // namespace
 
-SetpointPlan::SetpointPlan(std::vector<SetpointPlanTerm> terms, Eigen::Index n_y,
-                           double sample_time_h)
+AffineLaw::AffineLaw(std::vector<AffineTerm> terms, Eigen::Index targets, double sample_time_h)
     : terms_(std::move(terms)),
       value_(terms_.size(), 0.0),
-      sum_(Vector::Zero(n_y)),
+      sum_(Vector::Zero(targets)),
       sample_time_h_(sample_time_h) {
   for (std::size_t i = 0; i < terms_.size(); ++i)
-    validate(terms_[i], "setpoint.plan[" + std::to_string(i) + "].", n_y);
+    validate(terms_[i], "term[" + std::to_string(i) + "].", targets);
 }
 
-void SetpointPlan::reset() { fresh_ = true; }
+void AffineLaw::reset() { fresh_ = true; }
 
-const Vector& SetpointPlan::follow(VectorRef outputs, VectorRef disturbances, std::uint32_t step) {
+const Vector& AffineLaw::follow(VectorRef outputs, VectorRef disturbances, std::uint32_t step) {
   const double hours = sample_time_h_ * static_cast<double>(step - last_step_);
   sum_.setZero();
   for (std::size_t i = 0; i < terms_.size(); ++i) {
-    const SetpointPlanTerm& term = terms_[i];
+    const AffineTerm& term = terms_[i];
     const double aim = term.gain * (product(term, outputs, disturbances) / term.about - 1.0);
     const double kept = fresh_ || term.lag_h == 0.0 ? 0.0 : std::exp(-hours / term.lag_h);
     if (std::isfinite(aim)) value_[i] = aim + kept * (value_[i] - aim);
-    sum_[term.output] += value_[i];
+    sum_[term.target] += value_[i];
   }
   last_step_ = step;
   fresh_ = false;

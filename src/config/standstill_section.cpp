@@ -1,0 +1,93 @@
+#include "fmbpc/config/standstill_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/base/text.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+struct Names {
+  std::vector<std::string> outputs, inputs, disturbances;
+};
+
+std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
+  std::vector<std::string> names;
+  for (const SignalInfo& signal : signals) names.push_back(signal.name);
+  return names;
+}
+
+void readWatched(YamlSection& section, const std::vector<std::string>& names, bool outputs,
+                 std::vector<WatchedSignal>& signals) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    section.markRead(names[i]);
+    if (!section.has(names[i])) continue;
+    WatchedSignal signal{names[i], outputs, static_cast<Index>(i), 0.0};
+    section.number(names[i], signal.least_change, kFinitePositive);
+    signals.push_back(signal);
+  }
+}
+
+/// A term of the fallback: what is measured adds to an input.
+AffineTerm readTerm(YamlSection& item, const Names& names) {
+  AffineTerm term;
+  term.target = indexByName(item, "input", names.inputs);
+  std::vector<std::string> of, known = names.outputs;
+  known.insert(known.end(), names.disturbances.begin(), names.disturbances.end());
+  item.subset("of", of, known);
+  if (of.empty()) item.fail("of", "a list of " + join(known));
+  for (const auto& name : of) {
+    const Index place = std::find(known.begin(), known.end(), name) - known.begin();
+    const auto n_y = static_cast<Index>(names.outputs.size());
+    if (place < n_y)
+      term.outputs.push_back(place);
+    else
+      term.disturbances.push_back(place - n_y);
+  }
+  for (const char* number : {"about", "gain"}) need(item, number, "a number");
+  item.number("about", term.about, kFinite);
+  if (term.about == 0.0) item.fail("about", "a number other than 0");
+  item.number("gain", term.gain, kFinite);
+  item.number("lag_h", term.lag_h, kFiniteNotNegative);
+  item.finish();
+  return term;
+}
+
+}  // namespace
+
+StandstillParams readStandstill(YamlSection& root, const LoopFile& loop) {
+  YamlSection section = root.section("standstill");
+  const PlantInfo& plant = loop.plant_info;
+  const Names names{namesOf(plant.outputs), namesOf(plant.inputs), namesOf(plant.disturbances)};
+  StandstillParams params;
+  bool enabled = true;
+  double window_h = 6.0;
+  section.boolean("enabled", enabled);
+  section.number("window_h", window_h, kFinitePositive);
+  section.number("others_change", params.others_change, kFinitePositive);
+  params.window_samples =
+      std::max(2, static_cast<int>(std::lround(window_h * 3600.0 / plant.sample_time_s)));
+  YamlSection signals = section.section("signals");
+  readWatched(signals, names.outputs, true, params.signals);
+  readWatched(signals, names.disturbances, false, params.signals);
+  signals.finish();
+  params.usual = loop.disturbance_nominal;
+  section.byName("usual", params.usual, names.disturbances, kFinite);
+  params.fallback = loop.simulation.actuator.initial;
+  section.byName("fallback", params.fallback, names.inputs, kFinite);
+  for (auto& item : section.list("fallback_plan"))
+    params.fallback_plan.push_back(readTerm(item, names));
+  if (!enabled) params.signals.clear();
+  section.finish();
+  return params;
+}
+
+StandstillParams standstillOf(const LoopFile& loop) {
+  YamlSection root = YamlSection::parse(loop.resolved, loop.name);
+  return readStandstill(root, loop);
+}
+
+}  // namespace fpc
