@@ -9,11 +9,11 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kStretch = 1.4;  // of the inputs' moves
-constexpr double kBeyond = 0.3;   // of an input's range, below and above it
+constexpr double kStretch = 1.2;  // of the inputs' moves
+constexpr double kBeyond = 0.15;  // of an input's range, below and above it
 constexpr Index kHeld = 150;      // samples
-constexpr double kAllowed = 1.0;  // ranges of y beyond it
-constexpr double kTimes = 3.0;    // the linear model's excursion
+constexpr double kAllowed = 3.0;  // ranges of y beyond it
+constexpr double kTimes = 5.0;    // the linear model's excursion
 
 struct Excursion {
   double lower{std::numeric_limits<double>::infinity()}, upper{-lower};
