@@ -93,6 +93,14 @@ class House(unittest.TestCase):
         text = "namespace a {\nnamespace {\nstruct X {\n};\n}  // namespace\nstruct Y final : Z {\n};\nstruct F;\n}\nstruct X {\n};\n"
         self.assertEqual(types_of(text), ["a::Y", "X"])
 
+    def test_words_are_those_of_the_field(self):
+        """Innovation, observer, baseline, unclipped, missing: not what a program thinks, believes or wants."""
+        words = re.compile(r"\b(think\w*|lacking|wanted|belie[fv]\w*)\b|_wanted|wanted_|(?<!ar)rival", re.IGNORECASE)
+        paths = list(sources("include", "src", "test", "bench")) + sorted((TOP / "docs").glob("*.md"))
+        for path in paths:
+            self.assertIsNone(words.search(path.read_text()), f"{path}: {words.findall(path.read_text())}")
+            self.assertIsNone(words.search(path.name), path)
+
     def test_files_are_small(self):
         for path in list(sources("include", "src", "test", "bench")) + sorted((TOP / "test").rglob("*.py")):
             self.assertLessEqual(len(path.read_text().splitlines()), 300, path)

@@ -36,7 +36,7 @@ HorizonMpc::HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo
   signals_.emplace_back("plan_effort", 0.0);
 }
 
-void HorizonMpc::believe(std::unique_ptr<SampleModel> model) {
+void HorizonMpc::predictWith(std::unique_ptr<SampleModel> model) {
   cost_ = std::make_unique<PlanCost>(*model, params_);
   model_ = std::move(model);
   state_ = next_ = moved_ = Vector::Zero(model_->stateSize());

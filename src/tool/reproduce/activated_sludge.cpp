@@ -1,4 +1,4 @@
-// The stability tables of the activated-sludge thesis (Vallejo Llamas 2021, article 2).
+// The stability tables of the activated-sludge thesis (vallejo2021a).
 #include <algorithm>
 #include <cmath>
 

@@ -79,7 +79,7 @@ Rows ideal() {
 }
 Rows linear() { return all(kLinear, kLinearInfluent, "rows joined, S_I diluted"); }
 
-/// The rival, and ours beside it: what is claimed of class A.
+/// The baseline, and ours beside it: what is claimed of class A.
 Rows classA() {
   Rows rows;
   const struct {
@@ -89,9 +89,9 @@ Rows classA() {
                {"_rain", "rain", 8110.0, 15992.0, 8350.9, 15993.1, 2.3, 6.5, 23.0}};
   for (const auto& c : cases) {
     const std::string of = std::string(c.of) + ", ";
-    const EffluentReport rival = evaluated(std::string("bsm1_supervisor") + c.suffix, {});
-    rows.push_back(figure(of + "supervisor, EQI", c.EQI, rival.EQI, "kg/d", {0.003}));
-    rows.push_back(figure(of + "supervisor, OCI", c.OCI, rival.OCI, "-", {0.003}));
+    const EffluentReport baseline = evaluated(std::string("bsm1_supervisor") + c.suffix, {});
+    rows.push_back(figure(of + "supervisor, EQI", c.EQI, baseline.EQI, "kg/d", {0.003}));
+    rows.push_back(figure(of + "supervisor, OCI", c.OCI, baseline.OCI, "-", {0.003}));
     for (const char* law : {"bsm1_fmbpc", "bsm1_fmbpc_linear"}) {
       const EffluentReport ours = evaluated(std::string(law) + c.suffix, {});
       const std::string what = of + law + ", ";
