@@ -5,7 +5,7 @@ import re
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
-ROS_INCLUDE = re.compile(r'#include *[<"](ros/|tf2|std_msgs|std_srvs|rosgraph|geometry_msgs|diagnostic|actionlib|dynamic_reconfigure|fmbpc/[A-Z])')
+ROS_INCLUDE = re.compile(r'#include *[<"](ros/\w+\.h[>"]|tf2|std_msgs|std_srvs|rosgraph|geometry_msgs|diagnostic|actionlib|dynamic_reconfigure|fmbpc/[A-Z])')
 ROS_CLOCK = re.compile(r"ros::Time::now|createTimer|ros::Timer\b|ros::Rate|ros::Duration\([^)]*\)\.sleep|rospy\.(Rate|sleep|Timer|get_rostime|Time\.now)")
 RANKS = {"base": 0, "optim": 1, "plant": 1, "fuzzy": 2, "control": 3, "analysis": 4, "config": 5, "loop": 6, "study": 7, "ros": 7}
 FORBIDDEN = {("optim", "plant"), ("plant", "optim"), ("fuzzy", "plant"), ("control", "plant"), ("analysis", "plant")}
@@ -47,6 +47,10 @@ class House(unittest.TestCase):
         self.assertGreater(len(core), 20)
         for path in core:
             self.assertIsNone(ROS_INCLUDE.search(path.read_text()), path)
+
+    def test_public_headers_are_free_of_ros(self):
+        """Classes of nodes are private: src/ros."""
+        self.assertEqual([], [p for p in sources("include") if room_of(p) == "ros"])
 
     def test_rooms_include_only_rooms_below_them(self):
         for path in sources("include", "src"):

@@ -1,4 +1,4 @@
-#include "fmbpc/ros/listener_gate.hpp"
+#include "ros/listener_gate.hpp"
 
 #include <ros/master.h>
 
@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "fmbpc/ros/wall_throttle.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {
