@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/analysis/closed_loop.hpp"
+#include "analysis/paper_loop.hpp"
 #include "tool/reproduce/experiment.hpp"
 
 namespace fpc::tool {
