@@ -105,6 +105,11 @@ class House(unittest.TestCase):
             self.assertIsNone(words.search(path.read_text()), f"{path}: {words.findall(path.read_text())}")
             self.assertIsNone(words.search(path.name), path)
 
+    def test_small_questions_about_signals_are_answered_once(self):
+        again = re.compile(r"\b(?:countOf|signalCount|namesOf|allFinite)\(const (?:std::vector<(?:SignalInfo|std::string|Quantity)>|Measurement)& \w+\) *\{")
+        places = [p for p in sources("include", "src") if again.search(p.read_text())]
+        self.assertEqual([TOP / "include/fmbpc/base/signals.hpp"], places)
+
     def test_files_are_small(self):
         for path in list(sources("include", "src", "test", "bench")) + sorted((TOP / "test").rglob("*.py")):
             self.assertLessEqual(len(path.read_text().splitlines()), 300, path)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 
 namespace fpc {
 namespace {
@@ -11,8 +12,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double kDifference = 1e-5;  // relative, of finite differences
-
-Index countOf(const std::vector<SignalInfo>& signals) { return static_cast<Index>(signals.size()); }
 
 }  // namespace
 
