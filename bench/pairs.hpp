@@ -46,24 +46,24 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// Prints one line of JSON: the median, least and most of time(rival) / time(ours), a rate above 1
-/// being in our favour, and the median times of both.
-template <class Ours, class Rival>
-void printPairs(const std::string& path, const std::string& rival_name, const std::string& aim,
-                const Ours& ours, const Rival& rival) {
+/// Prints one line of JSON: the median, least and most of time(baseline) / time(ours), a rate above
+/// 1 being in our favour, and the median times of both.
+template <class Ours, class Baseline>
+void printPairs(const std::string& path, const std::string& baseline_name, const std::string& aim,
+                const Ours& ours, const Baseline& baseline) {
   const Effort effort = Effort::fromEnvironment();
-  std::vector<double> ours_us, rival_us, ratios;
+  std::vector<double> ours_us, baseline_us, ratios;
   for (int i = 0; i < effort.pairs; ++i) {
     ours_us.push_back(microseconds(ours, effort.seconds));
-    rival_us.push_back(microseconds(rival, effort.seconds));
-    ratios.push_back(rival_us.back() / ours_us.back());
+    baseline_us.push_back(microseconds(baseline, effort.seconds));
+    ratios.push_back(baseline_us.back() / ours_us.back());
   }
   std::printf(
-      "{\"path\": \"%s\", \"rival\": \"%s\", \"aim\": \"%s\", \"ratio\": %.4g, \"least\": %.4g, "
-      "\"most\": %.4g, \"ours_us\": %.5g, \"rival_us\": %.5g, \"pairs\": %d}\n",
-      path.c_str(), rival_name.c_str(), aim.c_str(), median(ratios),
+      "{\"path\": \"%s\", \"baseline\": \"%s\", \"aim\": \"%s\", \"ratio\": %.4g, \"least\": %.4g, "
+      "\"most\": %.4g, \"ours_us\": %.5g, \"baseline_us\": %.5g, \"pairs\": %d}\n",
+      path.c_str(), baseline_name.c_str(), aim.c_str(), median(ratios),
       *std::min_element(ratios.begin(), ratios.end()),
-      *std::max_element(ratios.begin(), ratios.end()), median(ours_us), median(rival_us),
+      *std::max_element(ratios.begin(), ratios.end()), median(ours_us), median(baseline_us),
       effort.pairs);
   std::fflush(stdout);
 }

@@ -23,9 +23,9 @@ def listens_to_all(master):
     publishers, subscribers, _ = master.getSystemState()
     name = rospy.resolve_name(RECORDER)
     heard = {topic for topic, nodes in subscribers if name in nodes}
-    wanted = {topic for topic, nodes in publishers if nodes != [name] and nodes != [rospy.get_name()]}
+    all_of_them = {topic for topic, nodes in publishers if nodes != [name] and nodes != [rospy.get_name()]}
     needed = {rospy.resolve_name(topic) for topic in ("measurement", "tracking", "control_action")}
-    return needed <= heard and wanted <= heard
+    return needed <= heard and all_of_them <= heard
 
 
 def bag_file(arguments):

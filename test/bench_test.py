@@ -12,8 +12,8 @@ BUILD = pathlib.Path(os.environ.get("FMBPC_BUILD", TOP / "build"))
 
 class Bench(unittest.TestCase):
     def test_every_benchmark_runs_and_our_qps_are_solved(self):
-        if not (BUILD / "bench/path_bench").exists() or not (BUILD / "bench/qp_rivals").exists():
-            self.skipTest("no path_bench and qp_rivals in the build folder")
+        if not (BUILD / "bench/path_bench").exists() or not (BUILD / "bench/qp_baselines").exists():
+            self.skipTest("no path_bench and qp_baselines in the build folder")
         page = subprocess.run([TOP / "scripts/bench", "--build", BUILD, "--quick", "--no-build"], check=True,
                               capture_output=True, text=True, timeout=300, env=dict(os.environ)).stdout
         rows = [line for line in page.splitlines() if re.search(r"\| (yes|\*\*no\*\*) \|", line)]

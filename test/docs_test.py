@@ -8,7 +8,8 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parent.parent
 PAGES = [TOP / "README.md", TOP / "CONTRIBUTING.md", *sorted((TOP / "docs").glob("*.md")), *sorted((TOP / "examples").rglob("*.md"))]
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-KEY = re.compile(r"\b([a-z]{3,}(?:19|20)\d\d[a-z]?|vallejo2021thesis)\b(?=[\])};,. ]|$)", re.MULTILINE)
+KEY = re.compile(r"\b([a-z]{3,}(?:19|20)\d\d[a-z]?|vallejo2021thesis|mekki)\b(?=[\])};:,. ]|$)", re.MULTILINE)
+FREE = re.compile(r"\b(?!COST|Debian|Ubuntu|Eigen|SUNDIALS)[A-Z][a-z']+(?: et al\.|(?:, [A-Z][a-z]+)* and(?: [A-Z]\w+)+)?,? \(?(?:19|20)\d\d\b")
 FENCED = re.compile(r"^```.*?^```|^    .*?$", re.MULTILINE | re.DOTALL)
 
 
@@ -47,6 +48,18 @@ class Docs(unittest.TestCase):
         unknown = {key: str(path) for key, path in cited.items() if key not in known}
         self.assertEqual({}, unknown)
         self.assertGreater(len(cited), 10)
+
+    def test_code_cites_by_key(self):
+        """Not by names and years, which nobody can look up; a comment's lines are read as one text."""
+        for folder in ("include", "src", "test"):
+            for path in sorted((TOP / folder).rglob("*.?pp")):
+                words = " ".join(line.partition("//")[2].strip("/ ") for line in path.read_text().splitlines())
+                self.assertIsNone(FREE.search(words), f"{path}: {FREE.findall(words)}")
+
+    def test_articles_have_a_doi_or_no_year(self):
+        entries = re.findall(r"^@article\{(\w+),(.*?)(?=^@|\Z)", (TOP / "docs/references.bib").read_text(), re.MULTILINE | re.DOTALL)
+        without = {key for key, text in entries if "doi" not in text and "year" in text}
+        self.assertLessEqual(without, {"rieger2003", "vallejo2026"})
 
     def test_the_readme_is_a_page(self):
         self.assertLessEqual(len((TOP / "README.md").read_text().splitlines()), 120)

@@ -5,7 +5,7 @@ import re
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
-ROS_INCLUDE = re.compile(r'#include *[<"](ros/|tf2|std_msgs|std_srvs|rosgraph|geometry_msgs|diagnostic|actionlib|dynamic_reconfigure|fmbpc/[A-Z])')
+ROS_INCLUDE = re.compile(r'#include *[<"](ros/\w+\.h[>"]|tf2|std_msgs|std_srvs|rosgraph|geometry_msgs|diagnostic|actionlib|dynamic_reconfigure|fmbpc/[A-Z])')
 ROS_CLOCK = re.compile(r"ros::Time::now|createTimer|ros::Timer\b|ros::Rate|ros::Duration\([^)]*\)\.sleep|rospy\.(Rate|sleep|Timer|get_rostime|Time\.now)")
 RANKS = {"base": 0, "optim": 1, "plant": 1, "fuzzy": 2, "control": 3, "analysis": 4, "config": 5, "loop": 6, "study": 7, "ros": 7}
 FORBIDDEN = {("optim", "plant"), ("plant", "optim"), ("fuzzy", "plant"), ("control", "plant"), ("analysis", "plant")}
@@ -43,10 +43,14 @@ def room_of(path):
 
 class House(unittest.TestCase):
     def test_the_core_includes_no_ros_header(self):
-        core = [p for p in sources("include", "src") if room_of(p) not in ("ros", "nodes")]
+        core = [p for p in sources("include", "src") if room_of(p) not in ("ros", "nodes") and p != TOP / "src/precompiled/ros.hpp"]
         self.assertGreater(len(core), 20)
         for path in core:
             self.assertIsNone(ROS_INCLUDE.search(path.read_text()), path)
+
+    def test_public_headers_are_free_of_ros(self):
+        """Classes of nodes are private: src/ros."""
+        self.assertEqual([], [p for p in sources("include") if room_of(p) == "ros"])
 
     def test_rooms_include_only_rooms_below_them(self):
         for path in sources("include", "src"):
@@ -92,6 +96,19 @@ class House(unittest.TestCase):
     def test_types_are_told_by_their_namespace(self):
         text = "namespace a {\nnamespace {\nstruct X {\n};\n}  // namespace\nstruct Y final : Z {\n};\nstruct F;\n}\nstruct X {\n};\n"
         self.assertEqual(types_of(text), ["a::Y", "X"])
+
+    def test_words_are_those_of_the_field(self):
+        """Innovation, observer, baseline, unclipped, missing: not what a program thinks, believes or wants."""
+        words = re.compile(r"\b(think\w*|lacking|wanted|belie[fv]\w*)\b|_wanted|wanted_|(?<!ar)rival", re.IGNORECASE)
+        paths = list(sources("include", "src", "test", "bench")) + sorted((TOP / "docs").glob("*.md"))
+        for path in paths:
+            self.assertIsNone(words.search(path.read_text()), f"{path}: {words.findall(path.read_text())}")
+            self.assertIsNone(words.search(path.name), path)
+
+    def test_small_questions_about_signals_are_answered_once(self):
+        again = re.compile(r"\b(?:countOf|signalCount|namesOf|allFinite)\(const (?:std::vector<(?:SignalInfo|std::string|Quantity)>|Measurement)& \w+\) *\{")
+        places = [p for p in sources("include", "src") if again.search(p.read_text())]
+        self.assertEqual([TOP / "include/fmbpc/base/signals.hpp"], places)
 
     def test_files_are_small(self):
         for path in list(sources("include", "src", "test", "bench")) + sorted((TOP / "test").rglob("*.py")):

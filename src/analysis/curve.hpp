@@ -1,6 +1,6 @@
 // The curve f(x, p) = 0 in scaled coordinates z = (x / size, p / size): tangents, correction, what
-// lies at a point. Keller (1977), Numerical solution of bifurcation and nonlinear eigenvalue
-// problems.
+// lies at a point. Source:
+// keller1977.
 #pragma once
 
 #include "fmbpc/analysis/continuation.hpp"

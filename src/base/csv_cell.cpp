@@ -32,7 +32,7 @@ int daysIn(int month, int year) {
   return month == 4 || month == 6 || month == 9 || month == 11 ? 30 : 31;
 }
 
-/// Days since 1970-01-01 of a civil date (Hinnant 2013, days_from_civil).
+/// Days since 1970-01-01 of a civil date (hinnant2013, days_from_civil).
 double dayNumber(int y, int m, int d) {
   y -= m <= 2;
   const int era = (y >= 0 ? y : y - 399) / 400;

@@ -14,7 +14,7 @@ int coreCount() { return std::max(1, static_cast<int>(std::thread::hardware_conc
 
 void parallelFor(std::size_t n, int threads, const std::function<void(std::size_t)>& work) {
   require(threads >= 0, "threads", "an integer >= 0 (0: all cores)");
-  const auto wanted = static_cast<std::size_t>(threads == 0 ? coreCount() : threads);
+  const auto asked = static_cast<std::size_t>(threads == 0 ? coreCount() : threads);
   std::atomic<std::size_t> next{0};
   std::vector<std::exception_ptr> errors(n);
   const auto serve = [&] {
@@ -27,7 +27,7 @@ void parallelFor(std::size_t n, int threads, const std::function<void(std::size_
     }
   };
   std::vector<std::thread> others;
-  for (std::size_t t = 1; t < std::min(wanted, n); ++t) others.emplace_back(serve);
+  for (std::size_t t = 1; t < std::min(asked, n); ++t) others.emplace_back(serve);
   serve();
   for (auto& other : others) other.join();
   for (const auto& error : errors)

@@ -1,6 +1,6 @@
 // Random numbers whose values do not depend on the standard library: only the engine and its seed
 // sequence, std::mt19937_64 and std::seed_seq, are fixed by the C++ standard, its distributions are
-// not. Normal numbers after Box and Muller (1958).
+// not. Normal numbers after boxmuller1958.
 #pragma once
 
 #include <cmath>

@@ -3,7 +3,7 @@
 namespace fpc {
 namespace {
 
-constexpr int kStreak = 3;  // old steps in a row that are believed
+constexpr int kStreak = 3;  // old steps in a row after which they count
 
 bool follows(std::uint32_t step, std::uint32_t before) {
   return step == before || step == before + 1;

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "config/read.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
 #include "fmbpc/config/model_file.hpp"
@@ -14,12 +15,6 @@ namespace {
 
 const char* const kKinds[] = {"setpoint", "disturbance", "manual", "manual_input", "hold",
                               "adapt",    "settings",    "model",  "identify"};
-
-std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const SignalInfo& signal : signals) names.push_back(signal.name);
-  return names;
-}
 
 std::vector<std::string> disturbanceNames(const LoopFile& loop) {
   requireSimulated(loop);

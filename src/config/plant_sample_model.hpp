@@ -1,4 +1,4 @@
-// The plant's own equations as a controller's model: for a rival that is told the truth.
+// The plant's own equations as a controller's model: for a baseline that is told the truth.
 #pragma once
 
 #include <memory>

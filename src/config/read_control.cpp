@@ -5,19 +5,16 @@
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
 
-Eigen::Index count(const std::vector<std::string>& names) {
-  return static_cast<Eigen::Index>(names.size());
-}
-
 /// Setpoints are asked from the present state on, unless the file says more; an external plant has
 /// no such state.
 Vector defaultSetpoint(const LoopFile& loop, const LoopNames& names) {
-  Vector value = Vector::Constant(count(names.outputs), std::nan(""));
+  Vector value = Vector::Constant(countOf(names.outputs), std::nan(""));
   for (std::size_t i = 0; i < names.outputs.size(); ++i)
     for (std::size_t s = 0; s < names.plant.states.size(); ++s)
       if (names.plant.states[s].name == names.outputs[i])
@@ -47,7 +44,7 @@ SetpointStep readSetpointStep(YamlSection& item, const std::vector<std::string>&
   need(item, "time_h", "a time >= 0");
   item.number("time_h", step.time_h, {0.0, 1e7});
   item.number("ramp_h", step.ramp_h, {0.0, 1e7});
-  step.value = Vector::Constant(count(outputs), std::nan(""));
+  step.value = Vector::Constant(countOf(outputs), std::nan(""));
   for (Eigen::Index i = 0; i < step.value.size(); ++i)
     item.number(outputs[static_cast<std::size_t>(i)], step.value[i], kFinite);
   item.finish();
@@ -105,7 +102,7 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
 void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("setpoint");
   SetpointParams& params = loop.setpoint;
-  const Eigen::Index n_y = count(names.outputs);
+  const Eigen::Index n_y = countOf(names.outputs);
   params.initial = defaultSetpoint(loop, names);
   params.lower = Vector::Constant(n_y, -kInfinite);
   params.upper = Vector::Constant(n_y, kInfinite);
@@ -160,7 +157,7 @@ void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   bool enabled = there;
   section.boolean("enabled", enabled);
   loop.has_clp = there && enabled;
-  const Eigen::Index n_y = count(names.outputs), n_u = count(names.inputs);
+  const Eigen::Index n_y = countOf(names.outputs), n_u = countOf(names.inputs);
   defaultClp(loop.clp, n_y, n_u);
   readClpParams(section, loop.clp, names);
   if (loop.has_clp) checked(section, [&] { loop.clp.validate(n_y, n_u); });

@@ -3,18 +3,15 @@
 
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
 
-Eigen::Index count(const std::vector<std::string>& names) {
-  return static_cast<Eigen::Index>(names.size());
-}
-
 /// The plant's usual values and ranges of its inputs; for an external plant the declared ranges.
 void defaultActuator(const LoopFile& loop, const LoopNames& names, ActuatorParams& actuator) {
-  const Eigen::Index n_u = count(names.inputs);
+  const Eigen::Index n_u = countOf(names.inputs);
   actuator.limits = {Vector(n_u), Vector(n_u), Vector::Constant(n_u, kInfinite)};
   actuator.initial = Vector::Zero(n_u);
   for (Eigen::Index i = 0; i < n_u; ++i) {
@@ -91,13 +88,13 @@ void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.byName("fallback", actuator.fallback, names.inputs, kFinite);
   section.integer("hold_samples", actuator.hold_samples, -1);
   readLag(section, actuator, names.inputs);
-  checked(section, [&] { actuator.validate(count(names.inputs)); });
+  checked(section, [&] { actuator.validate(countOf(names.inputs)); });
   section.finish();
 }
 
 void readNoise(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("noise");
-  loop.simulation.noise_std = Vector::Zero(count(names.outputs));
+  loop.simulation.noise_std = Vector::Zero(countOf(names.outputs));
   section.seed("seed", loop.simulation.noise_seed);
   section.byName("std", loop.simulation.noise_std, names.outputs, kFiniteNotNegative);
   section.finish();
@@ -107,7 +104,7 @@ void readDisturbance(YamlSection& root, LoopFile& loop, const LoopNames& names) 
   YamlSection section = root.section("disturbance");
   DisturbanceParams& params = loop.disturbance;
   Vector& nominal = loop.simulation.disturbance_nominal;
-  nominal = Vector::Zero(count(names.disturbances));
+  nominal = Vector::Zero(countOf(names.disturbances));
   for (std::size_t i = 0; i < names.plant.disturbances.size(); ++i)
     nominal[static_cast<Eigen::Index>(i)] = names.plant.disturbances[i].nominal;
   section.byName("nominal", nominal, names.disturbances, kFinite);

@@ -2,18 +2,13 @@
 
 #include <limits>
 
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/config/structure_file.hpp"
 
 namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const auto& signal : signals) names.push_back(signal.name);
-  return names;
-}
 
 std::vector<int> readSigns(YamlSection section, const std::vector<std::string>& causes) {
   std::vector<int> signs(causes.size(), 0);

@@ -1,4 +1,4 @@
-// Section `model`: what the controller believes at the start, and how it may be told better on the
+// Section `model`: what the controller predicts with at the start, and how that may change on the
 // way.
 #include "config/read.hpp"
 #include "fmbpc/config/model_file.hpp"

@@ -4,18 +4,13 @@
 
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
 
 constexpr char kExternal[] = "external";
-
-std::vector<std::string> namesOf(const std::vector<Quantity>& quantities) {
-  std::vector<std::string> names;
-  for (const auto& quantity : quantities) names.push_back(quantity.name);
-  return names;
-}
 
 Range rangeOf(const Quantity& quantity) {
   return {std::max(quantity.lower, -kLargest), std::min(quantity.upper, kLargest)};

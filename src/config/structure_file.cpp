@@ -8,6 +8,7 @@
 #include "config/read.hpp"
 #include "config/read_known.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/structure_file.hpp"
 #include "fuzzy/regressor_text.hpp"
@@ -52,12 +53,6 @@ std::vector<StructureSignal> readSignals(YamlSection& top, const std::string& ke
   }
   section.finish();
   return signals;
-}
-
-std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const auto& signal : signals) names.push_back(signal.name);
-  return names;
 }
 
 std::vector<int> readOrders(YamlSection& section, const std::string& key,

@@ -61,9 +61,9 @@ void DisturbanceObserver::reset() {
   }
 }
 
-void DisturbanceObserver::startFrom(VectorRef lacking) {
+void DisturbanceObserver::startFrom(VectorRef shortfall) {
   for (Index i = 0; i < n_y_; ++i) {
-    const double d = lacking[rows_[static_cast<std::size_t>(i)]];
+    const double d = shortfall[rows_[static_cast<std::size_t>(i)]];
     disturbance_[i] = std::isfinite(d) ? d : 0.0;
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
@@ -15,8 +16,6 @@ constexpr const char* kOutside = "outside the model: moves shrink";
 constexpr const char* kFallback = "outside the model: the fallback acts";
 constexpr const char* kOutsideOnly = "outside the model";
 constexpr const char* kLocked = "locked up: the input's bound is drawn in";
-
-Index countOf(const std::vector<SignalInfo>& signals) { return static_cast<Index>(signals.size()); }
 
 bool isLaws(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kClipped;

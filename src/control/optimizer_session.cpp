@@ -81,7 +81,7 @@ bool OptimizerSession::receive(const PredictiveAction& prediction) {
   return tryAnswer();
 }
 
-// What cannot be used must not open a sample: its header is not to be believed before a base action
+// What cannot be used must not open a sample: its header does not count before a base action
 // says the same.
 bool OptimizerSession::refuse(const StepHeader& header, bool fits) {
   if (fits)

@@ -1,4 +1,4 @@
-// First-order reference trajectories. Source: Vallejo 2019 eqs. 29, 30, 37.
+// First-order reference trajectories. Source: vallejo2019, eqs. 29, 30, 37.
 #include "fmbpc/control/reference.hpp"
 
 #include <utility>

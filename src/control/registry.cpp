@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -28,12 +29,6 @@ const Entry& entryOf(const std::string& name) {
   require(found != registry().end(), "controller.type '" + name + "'",
           "one of " + join(controllerNames()));
   return found->second;
-}
-
-std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const SignalInfo& signal : signals) names.push_back(signal.name);
-  return names;
 }
 
 }  // namespace

@@ -5,24 +5,15 @@
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/fuzzy/model_check.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 namespace {
 
-std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const SignalInfo& signal : signals) names.push_back(signal.name);
-  return names;
-}
-
 SampleClock clockOf(const PlantInfo& plant) {
   return SampleClock(plant.sample_time_s, static_cast<double>(plant.header.time_ns) / 1e9);
-}
-
-bool allFinite(const Measurement& m) {
-  return m.outputs.allFinite() && m.disturbances.allFinite() && m.input_applied.allFinite();
 }
 
 std::string missingSamples(std::uint32_t first, std::uint32_t last) {

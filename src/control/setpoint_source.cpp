@@ -100,7 +100,7 @@ void SetpointSource::restart() {
   effects_.clear();
   playParams();
   next_step_ = shift_ = 0;
-  started_ = hold_wanted_ = held_ = false;
+  started_ = hold_asked_ = held_ = false;
   fresh_ = true;
 }
 
@@ -156,12 +156,12 @@ const Vector& SetpointSource::advance(std::uint32_t step) {
 }
 
 void SetpointSource::settleHold(std::uint32_t step) {
-  if (hold_wanted_ == held_) return;
-  if (hold_wanted_)
+  if (hold_asked_ == held_) return;
+  if (hold_asked_)
     held_at_ = recipeStep(step);
   else
     shift_ = step - held_at_;
-  held_ = hold_wanted_;
+  held_ = hold_asked_;
 }
 
 std::uint32_t SetpointSource::recipeStep(std::uint32_t step) const {
@@ -216,7 +216,7 @@ std::vector<Command> SetpointSource::standing() const {
 }
 
 void SetpointSource::restore(const Recipe& recipe) {
-  hold_wanted_ = held_ = recipe.held;
+  hold_asked_ = held_ = recipe.held;
   held_at_ = recipe.held_at;
   shift_ = recipe.shift;
 }

@@ -101,7 +101,7 @@ class Iteration {
 
  private:
   /// Far from each other: each new centre is drawn with the squared distance to the nearest one as
-  /// its chance (Arthur and Vassilvitskii 2007).
+  /// its chance (arthur2007).
   void spreadCenters(std::mt19937_64& generator) {
     const Index samples = points_.cols();
     clusters_.centers.resize(points_.rows(), params_.clusters);

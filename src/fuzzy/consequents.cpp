@@ -1,4 +1,4 @@
-// Source: Babuska, Fuzzy Modeling for Control (1998), sec. 4.5 (local and global weighted least
+// Source: babuska1998, sec. 4.5 (local and global weighted least
 // squares).
 #include "fmbpc/fuzzy/consequents.hpp"
 

@@ -71,19 +71,19 @@ TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& stru
   const Index column = table.column(structure.time_column);
   const auto index = static_cast<std::size_t>(column);
   const bool dates = index < table.is_date.size() && table.is_date[index];
-  const std::string unit_wanted = dates ? "d" : structure.time_unit;
+  const std::string unit_expected = dates ? "d" : structure.time_unit;
   const std::string& unit = table.units[index];
   const auto where = [&](Index row) { return table.at(first + row, column); };
-  require(unit.empty() || unit == unit_wanted,
+  require(unit.empty() || unit == unit_expected,
           table.file + ": column '" + structure.time_column + "'",
-          "the unit [" + unit_wanted + "] of the structure, got [" + unit + "]");
+          "the unit [" + unit_expected + "] of the structure, got [" + unit + "]");
   const std::string text = index < table.texts.size() ? table.texts[index] : "";
   require(text.empty(), where(0), "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
   const Vector time = table.values.col(column).segment(first, count);
   Index moved = 0;
   const auto order = timeOrder(time, where, structure.repair.sort_time, moved);
   const auto numbers =
-      sampleNumbers(time, order, structure.sample_time_s / secondsPer(unit_wanted), where);
+      sampleNumbers(time, order, structure.sample_time_s / secondsPer(unit_expected), where);
   const Index holes = numbers.back() + 1 - count;
   TableRows rows(static_cast<std::size_t>(numbers.back()) + 1, -1);
   Matrix placed = Matrix::Constant(numbers.back() + 1, data.values.cols(), kMissing);

@@ -1,4 +1,4 @@
-// Blends the rules into the matrices of one sample. Source: Vallejo 2019 eqs. 10-17, rewritten for
+// Blends the rules into the matrices of one sample. Source: vallejo2019, eqs. 10-17, rewritten for
 // any lags.
 #include "fmbpc/fuzzy/local_model.hpp"
 

@@ -1,5 +1,5 @@
 // Membership functions in the log domain. Source of the exponential shape: the tables A1 and A2 of
-// Vallejo 2021, read as left foot, left shoulder, right shoulder, right foot.
+// vallejo2021thesis, read as left foot, left shoulder, right shoulder, right foot.
 #include "fmbpc/fuzzy/membership.hpp"
 
 #include <algorithm>

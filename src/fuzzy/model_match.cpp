@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 
@@ -17,20 +18,15 @@ int indexOf(const std::vector<SignalInfo>& signals, const std::string& name) {
   return found == signals.end() ? -1 : static_cast<int>(found - signals.begin());
 }
 
-std::string namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const auto& signal : signals) names.push_back(signal.name);
-  return signals.empty() ? "nothing" : join(names);
-}
-
 /// Where each of the model's signals is in the plant.
 std::vector<int> places(const std::string& where, const std::vector<SignalInfo>& model,
                         const std::vector<SignalInfo>& plant) {
   std::vector<int> to;
   for (const auto& signal : model) {
     const int place = indexOf(plant, signal.name);
-    require(place >= 0, where + "." + signal.name,
-            "a signal of the plant, which has " + namesOf(plant));
+    require(
+        place >= 0, where + "." + signal.name,
+        "a signal of the plant, which has " + (plant.empty() ? "nothing" : join(namesOf(plant))));
     const std::string& unit = plant[static_cast<std::size_t>(place)].unit;
     require(signal.unit == unit, where + "." + signal.name,
             "the plant's unit '" + unit + "', got '" + signal.unit + "'");

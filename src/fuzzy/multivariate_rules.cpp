@@ -1,4 +1,4 @@
-// Clusters as sets on all antecedents at once. Source: Babuska, Fuzzy Modeling for Control (1998),
+// Clusters as sets on all antecedents at once. Source: babuska1998,
 // sec. 4.4.
 #include <Eigen/Eigenvalues>
 #include <algorithm>

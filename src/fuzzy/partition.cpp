@@ -1,5 +1,5 @@
-// Projection of clusters on single variables, and grids. Source: Babuska, Fuzzy Modeling for
-// Control (1998), sec. 4.4.
+// Projection of clusters on single variables, and grids. Source:
+// babuska1998, sec. 4.4.
 #include "fmbpc/fuzzy/partition.hpp"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -15,12 +16,6 @@ constexpr std::uint64_t kLongestBreak =
     1000;  // rows that are kept; rows() shortens breaks to the longest lag
 
 double finiteOrMissing(double value) { return std::isfinite(value) ? value : kMissing; }
-
-std::string namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const auto& signal : signals) names.push_back(signal.name);
-  return join(names);
-}
 
 std::size_t longestLag(const Structure& structure) {
   int longest = 0;
@@ -108,7 +103,7 @@ std::size_t SampleCollector::placeOf(const StructureSignal& signal,
             "the plant's unit '" + of[i].unit + "', got '" + signal.info.unit + "'");
     return offset + i;
   }
-  throw InputError(where + ": expected one of the plant's " + kind + " " + namesOf(of));
+  throw InputError(where + ": expected one of the plant's " + kind + " " + join(namesOf(of)));
 }
 
 Matrix SampleCollector::rows(const Structure& structure, std::size_t newest) const {

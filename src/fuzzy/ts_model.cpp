@@ -1,5 +1,5 @@
-// Checks of a Takagi-Sugeno model and its firing weights: products of degrees, normalised (Vallejo
-// 2019 eqs. 3-9).
+// Checks of a Takagi-Sugeno model and its firing weights: products of degrees, normalised
+// (vallejo2019, eqs. 3-9).
 #include "fmbpc/fuzzy/ts_model.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Source: Blazic and Skrjanc 2007, eq. 17, for any lags.
+// Source: blazic2007, eq. 17, for any lags.
 #include "fmbpc/fuzzy/undelayed.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "fmbpc/ros/controller_node.hpp"
+#include "ros/controller_node.hpp"
 
 int main(int argc, char** argv) {
   return fpc::runNode<fpc::ControllerNode>(argc, argv, "fmbpc_controller");

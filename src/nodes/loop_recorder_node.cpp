@@ -1,4 +1,4 @@
-#include "fmbpc/ros/loop_recorder.hpp"
+#include "ros/loop_recorder.hpp"
 
 int main(int argc, char** argv) {
   return fpc::runNode<fpc::LoopRecorder>(argc, argv, "loop_recorder");

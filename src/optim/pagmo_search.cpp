@@ -26,7 +26,7 @@ struct Book {
   std::size_t next{};
 };
 
-/// The problem that pagmo believes to minimise, over the unit box.
+/// The problem that pagmo is given to minimise, over the unit box.
 class BookProblem {
  public:
   BookProblem() = default;

@@ -1,4 +1,4 @@
-// Differential evolution and CMA-ES of pagmo2 (Biscani and Izzo 2020). Only programs that tune link
+// Differential evolution and CMA-ES of pagmo2 (biscani2020). Only programs that tune link
 // them (target fmbpc_pagmo: pagmo_search.cpp, which registers itself): nodes do not map pagmo2.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The dual active-set method of Goldfarb and Idnani (1983, section 3) for bounds and two-sided
+// The dual active-set method (goldfarb1983, section 3) for bounds and two-sided
 // rows: starting from the minimum on a working set whose multipliers have their signs, violated
 // constraints enter one at a time. Bounds enter before rows, because they are cheap to look at.
 #include <algorithm>

@@ -1,5 +1,5 @@
-// The factors of the dual active-set method: J and R with J'N = [R; 0] and J'H J = I (Goldfarb and
-// Idnani 1983, section 4). A bound's normal is a unit vector, so its transform is a row of J.
+// The factors of the dual active-set method: J and R with J'N = [R; 0] and J'H J = I (goldfarb1983,
+// section 4). A bound's normal is a unit vector, so its transform is a row of J.
 // Constraints enter by a Householder reflection of the null-space columns (the step z is half of
 // the product that it needs) and leave by Givens rotations.
 #include <cmath>

@@ -1,7 +1,7 @@
 // The KKT system of one working set. With the unknowns at a bound removed, v = L'x_f solves a
 // least-squares problem:
-//   v = w + Q (R^-T b - Q'w),  R y = R^-T b - Q'w,  w = L^-1 r_f   (null-space form of Goldfarb and
-//   Idnani 1983, 3).
+//   v = w + Q (R^-T b - Q'w),  R y = R^-T b - Q'w,  w = L^-1 r_f   (null-space form of
+//   goldfarb1983, 3).
 // Answers are refined on the original data, so they do not depend on how the working set was found.
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// Semidefinite Hessians: the proximal-point method (Rockafellar 1976). Each step minimises the cost
+// Semidefinite Hessians: the proximal-point method (rockafellar1976). Each step minimises the cost
 // plus 1/2 (x - c)'D(x - c) around the last point c by the dual method, warm in its factors, D
 // being small against H. As soon as the working set is right, the polish, whose factors hold H + D
 // and whose residuals are those of the problem as given, ends it.

@@ -1,5 +1,5 @@
 // The shift that makes a semidefinite Hessian definite: a multiple of diag(s)^-2, s the column
-// scales that equilibrate the matrix [H A'; A 0] (Ruiz 2001), so that units do not matter.
+// scales that equilibrate the matrix [H A'; A 0] (ruiz2001), so that units do not matter.
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Private parts of the QP solver: the equality-constrained KKT system of one working set (used to
-// try a working set and to polish the answer), the dual active-set method (Goldfarb and Idnani
-// 1983, section 4) that finds the set, and the proximal-point method around both for Hessians that
+// try a working set and to polish the answer), the dual active-set method (goldfarb1983,
+// section 4) that finds the set, and the proximal-point method around both for Hessians that
 // are only semidefinite.
 #pragma once
 

@@ -1,4 +1,4 @@
-// Potter's square-root form of recursive least squares (Bierman 1977, sec. V.3) with forgetting.
+// Potter's square-root form of recursive least squares (bierman1977, sec. V.3) with forgetting.
 #include "fmbpc/optim/rls.hpp"
 
 #include <cmath>

@@ -8,7 +8,7 @@
 //   z) A l_b dx_b/dt = q x - q_out x_b - q_2 x_b + A v(x_d) - A v(x_b) A l_r dx_r/dt = q_2 (x_b -
 //   x_r) + A v(x_b) q = q_i + q_r,  q_out = q_i - q_p,  q_2 = q_r + q_p
 //
-// Source: T. M. Vallejo Llamas, thesis (2021), article 1, appendix D, eqs. D.1-D.3 and table 12.
+// Source: vallejo2021thesis, article 1, appendix D, eqs. D.1-D.3 and table 12.
 // Not as printed: the oxygen equation has the growth term g (printed: x^2/(K_s + s)); q_p and f_k
 // are not printed and were chosen so that the nominal point is x = 2000, c = 2 mg/l; nothing reacts
 // in the settler, so s_r = s; v is a flux [g/(m2 h)]. No purge can exceed the inflow (q_out >= 0),

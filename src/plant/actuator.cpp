@@ -33,7 +33,7 @@ Actuator::Actuator(ActuatorParams params) : params_(std::move(params)) {
 
 void Actuator::reset() {
   applied_ = params_.initial;
-  wanted_ = params_.initial;
+  commanded_ = params_.initial;
   previous_ = params_.initial;
   missed_ = 0;
   clips_ = 0;
@@ -48,7 +48,7 @@ void Actuator::moveTo(VectorRef target) {
 void Actuator::apply(VectorRef commanded) {
   if (commanded.size() != applied_.size() || !commanded.allFinite()) return miss();
   moveTo(commanded);
-  wanted_ = applied_;
+  commanded_ = applied_;
   missed_ = 0;
   const auto range = (params_.limits.upper - params_.limits.lower).array();
   const auto beyond = (commanded - applied_).array().abs();
@@ -59,7 +59,7 @@ void Actuator::miss() {
   if (missed_ < std::numeric_limits<int>::max()) ++missed_;
   clips_ = 0;
   const bool hold = params_.hold_samples < 0 || missed_ <= params_.hold_samples;
-  moveTo(hold ? wanted_ : params_.fallback);
+  moveTo(hold ? commanded_ : params_.fallback);
 }
 
 void Actuator::disturb(Eigen::Index i, double position) {

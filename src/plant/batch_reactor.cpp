@@ -6,7 +6,7 @@
 //   m_w c_w dTw/dt = phi c_w kM k (Tin - Tw) + lambda_S (T - Tw) + ambient (T_0 - Tw)
 //   k = min(1, kC + kH),  Tin = (kC T_C + kH T_H) / (kC + kH)
 //
-// Source: Karer, Music, Skrjanc, Zupancic (2007), section 5. The paper prints no physical
+// Source: karer2007, section 5. The paper prints no physical
 // parameters: those below were chosen so that the plant agrees with the models identified there
 // (eqs. 35, 40, 41), so that their agreement with it proves little.
 #include <algorithm>

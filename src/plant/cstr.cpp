@@ -9,8 +9,7 @@
 // A local loop on the reactor's temperature, sampled with the loop, widens the stable range:
 //   q_c(k) = u(k) + K [T(k) - T(k-1)],  T as it is now, without noise or delay.
 //
-// Source: S. Blazic, I. Skrjanc, Design and stability analysis of fuzzy model-based predictive
-// control - a case study, J. Intell. Robot. Syst. 49 (2007) 279-292, eqs. 1, 2, 10 and table 1.
+// Source: blazic2007, eqs. 1, 2, 10 and table 1.
 // There K = 3; here the plain reactor (K = 0) is the default.
 #include <algorithm>
 #include <cmath>

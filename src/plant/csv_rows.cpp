@@ -63,13 +63,13 @@ CsvRows csvRows(const CsvTable& table, const std::string& time_column,
   CsvRows rows;
   for (std::size_t r = 0; r < times.size(); ++r) {
     const double hole = r == 0 ? 0.0 : times[r] - times[r - 1];
-    const double lacking = hole > kHole * interval ? std::round(hole / interval) - 1.0 : 0.0;
+    const double missing = hole > kHole * interval ? std::round(hole / interval) - 1.0 : 0.0;
     const auto row = static_cast<Eigen::Index>(r);
-    require(static_cast<double>(rows.absent) + lacking <= kMostAbsent,
+    require(static_cast<double>(rows.absent) + missing <= kMostAbsent,
             table.at(row, table.column(time_column)),
-            "times without a hole of " + exactText(lacking) + " rows (another unit?)");
-    for (double i = 1.0; i <= lacking; ++i, ++rows.absent) {
-      rows.times.push_back(times[r - 1] + i * hole / (lacking + 1.0));
+            "times without a hole of " + exactText(missing) + " rows (another unit?)");
+    for (double i = 1.0; i <= missing; ++i, ++rows.absent) {
+      rows.times.push_back(times[r - 1] + i * hole / (missing + 1.0));
       rows.of_table.push_back(-1);
       rows.before.push_back(row - 1);
     }

@@ -1,4 +1,4 @@
-// The rows of a record in time, with those that are lacking. Private to the room.
+// The rows of a record in time, with those that are missing. Private to the room.
 #pragma once
 
 #include <cstdint>

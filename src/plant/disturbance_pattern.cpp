@@ -1,4 +1,4 @@
-// Seeded stand-in for the influent records of the thesis (Vallejo Llamas 2021, article 1), which
+// Seeded stand-in for the influent records (vallejo2021thesis, article 1), which
 // were never published: a daily cycle with its harmonic, a slow wave and hourly noise. t in hours,
 // N standard normal, phi uniform in 0..6:
 //   flow: sin(2 pi (t-9)/24)  + 0.45 sin(4 pi (t-4)/24) + 0.4 sin(2 pi t/168 + phi) + 0.25 N

@@ -1,4 +1,4 @@
-// CVODE behind a function call (Hindmarsh et al. 2005, SUNDIALS). The only file that knows
+// CVODE behind a function call (hindmarsh2005, SUNDIALS). The only file that knows
 // SUNDIALS; its interface changed at 4 (nonlinear solvers), 6 (contexts) and 7 (error handlers),
 // which the few switches below follow.
 #include "fmbpc/plant/integrator.hpp"

@@ -8,7 +8,7 @@
 // is held: the transfer matrix of these four lags, moved exactly by its stepper, is the printed
 // difference equation at sample times of Te = 1 s, to rounding.
 //
-// Source: N. Hadj Taieb, M. A. Soltani, A. Chaari (2017), eq. 4.
+// Source: taieb2017, eq. 4.
 #include <cmath>
 
 #include "fmbpc/plant/transfer_matrix.hpp"

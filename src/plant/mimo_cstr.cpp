@@ -5,7 +5,7 @@
 //   dT/dt  = q/V (Tf - T) + k1 Ca exp(-(E/R)/T) + k2 qc (1 - exp(-k3/qc)) (Tcf - T)
 //   k1 = -dH k0 / (rho Cp),  k2 = rho_c Cpc / (rho Cp V),  k3 = hA / (rho_c Cpc)
 //
-// Source: N. Hadj Taieb, M. A. Soltani, A. Chaari (2017), eq. 26 and table 4, where the sign of dH
+// Source: taieb2017, eq. 26 and table 4, where the sign of dH
 // would make the reaction cool: it is negative here. CVODE in place of their Euler step of 0.01
 // min. With qc = 103.4066 and q = 100 it rests where the single-input reactor of cstr.cpp does.
 #include <cmath>

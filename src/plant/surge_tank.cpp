@@ -8,7 +8,7 @@
 // moves the level only after two samples (b1 = 0), which no continuous tank does; so the Euler step
 // is what moves this plant unless difference_step is 0, which hands the equations to CVODE.
 //
-// Source: N. Hadj Taieb, M. A. Soltani, A. Chaari (2017), eqs. 21, 22, table 2; eq. 22 with the
+// Source: taieb2017, eqs. 21, 22, table 2; eq. 22 with the
 // area A that it lacks. The rest at 0.15 m needs Q = 9.765e-5 m3/s, not the Q0 of table 2.
 #include <algorithm>
 #include <cmath>

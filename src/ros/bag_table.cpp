@@ -1,4 +1,4 @@
-#include "fmbpc/ros/bag_table.hpp"
+#include "ros/bag_table.hpp"
 
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
@@ -13,7 +13,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 
 namespace fpc {
 namespace {

@@ -1,8 +1,8 @@
-#include "fmbpc/ros/clp_optimizer.hpp"
+#include "ros/clp_optimizer.hpp"
 
 #include "fmbpc/loop/factory.hpp"
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 namespace {

@@ -1,5 +1,5 @@
 // How a controller over topics is, and what it counts.
-#include "fmbpc/ros/controller_node.hpp"
+#include "ros/controller_node.hpp"
 
 namespace fpc {
 namespace {

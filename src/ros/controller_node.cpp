@@ -1,12 +1,12 @@
-#include "fmbpc/ros/controller_node.hpp"
+#include "ros/controller_node.hpp"
 
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 namespace {

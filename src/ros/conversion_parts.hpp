@@ -7,7 +7,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/types.hpp"
-#include "fmbpc/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 
 namespace fpc::conversion {
 

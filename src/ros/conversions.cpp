@@ -1,4 +1,4 @@
-#include "fmbpc/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 
 #include <limits>
 

@@ -1,4 +1,4 @@
-#include "fmbpc/ros/diagnostics.hpp"
+#include "ros/diagnostics.hpp"
 
 #include <utility>
 

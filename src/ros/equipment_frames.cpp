@@ -1,11 +1,11 @@
-#include "fmbpc/ros/equipment_frames.hpp"
+#include "ros/equipment_frames.hpp"
 
 #include <geometry_msgs/TransformStamped.h>
 #include <tf2/exceptions.h>
 
 #include <cmath>
 
-#include "fmbpc/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 
 namespace fpc {
 namespace {

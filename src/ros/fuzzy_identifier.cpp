@@ -1,4 +1,4 @@
-#include "fmbpc/ros/fuzzy_identifier.hpp"
+#include "ros/fuzzy_identifier.hpp"
 
 #include <filesystem>
 #include <fstream>
@@ -7,9 +7,9 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/identify_messages.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/conversions.hpp"
+#include "ros/identify_messages.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 namespace {

@@ -1,12 +1,12 @@
-#include "fmbpc/ros/health_reporter.hpp"
+#include "ros/health_reporter.hpp"
 
 #include <fmbpc/LoopState.h>
 
 #include <utility>
 
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
-#include "fmbpc/ros/wall_throttle.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {

@@ -1,4 +1,4 @@
-#include "fmbpc/ros/identification_worker.hpp"
+#include "ros/identification_worker.hpp"
 
 #include <utility>
 

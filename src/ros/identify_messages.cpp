@@ -1,4 +1,4 @@
-#include "fmbpc/ros/identify_messages.hpp"
+#include "ros/identify_messages.hpp"
 
 #include <algorithm>
 

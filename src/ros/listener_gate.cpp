@@ -1,4 +1,4 @@
-#include "fmbpc/ros/listener_gate.hpp"
+#include "ros/listener_gate.hpp"
 
 #include <ros/master.h>
 
@@ -6,7 +6,7 @@
 #include <map>
 #include <string>
 
-#include "fmbpc/ros/wall_throttle.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {
@@ -28,9 +28,9 @@ std::map<std::string, std::uint32_t> listeners() {
 }  // namespace
 
 bool ListenerGate::allConnected() const {
-  auto wanted = listeners();
+  auto needed = listeners();
   return std::all_of(publishers_.begin(), publishers_.end(), [&](const ros::Publisher& p) {
-    return p.getNumSubscribers() >= wanted[p.getTopic()];
+    return p.getNumSubscribers() >= needed[p.getTopic()];
   });
 }
 

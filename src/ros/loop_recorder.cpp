@@ -1,4 +1,4 @@
-#include "fmbpc/ros/loop_recorder.hpp"
+#include "ros/loop_recorder.hpp"
 
 #include <std_msgs/String.h>
 
@@ -6,9 +6,9 @@
 
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/plot.hpp"
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
-#include "fmbpc/ros/wall_throttle.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {

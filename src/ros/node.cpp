@@ -1,10 +1,10 @@
-#include "fmbpc/ros/node.hpp"
+#include "ros/node.hpp"
 
 #include <filesystem>
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 

@@ -1,9 +1,9 @@
-#include "fmbpc/ros/operator_desk.hpp"
+#include "ros/operator_desk.hpp"
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
-#include "fmbpc/ros/wall_throttle.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {

@@ -1,6 +1,6 @@
-#include "fmbpc/ros/operator_keeper.hpp"
+#include "ros/operator_keeper.hpp"
 
-#include "fmbpc/ros/topics.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 

@@ -1,10 +1,10 @@
-#include "fmbpc/ros/optimizer_standin.hpp"
+#include "ros/optimizer_standin.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 

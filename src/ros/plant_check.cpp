@@ -1,4 +1,4 @@
-#include "fmbpc/ros/plant_check.hpp"
+#include "ros/plant_check.hpp"
 
 #include <vector>
 

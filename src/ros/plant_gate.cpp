@@ -1,9 +1,9 @@
-#include "fmbpc/ros/plant_gate.hpp"
+#include "ros/plant_gate.hpp"
 
 #include <ros/ros.h>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/ros/plant_check.hpp"
+#include "ros/plant_check.hpp"
 
 namespace fpc {
 

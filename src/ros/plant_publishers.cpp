@@ -1,9 +1,9 @@
-#include "fmbpc/ros/plant_publishers.hpp"
+#include "ros/plant_publishers.hpp"
 
 #include <rosgraph_msgs/Clock.h>
 
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,4 @@
-#include "fmbpc/ros/plant_simulator.hpp"
+#include "ros/plant_simulator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/factory.hpp"
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 namespace {

@@ -1,7 +1,7 @@
-#include "fmbpc/ros/ready.hpp"
+#include "ros/ready.hpp"
 
-#include "fmbpc/ros/node.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/node.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 

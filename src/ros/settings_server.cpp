@@ -1,4 +1,4 @@
-#include "fmbpc/ros/settings_server.hpp"
+#include "ros/settings_server.hpp"
 
 #include <dynamic_reconfigure/ConfigDescription.h>
 

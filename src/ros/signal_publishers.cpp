@@ -1,7 +1,7 @@
-#include "fmbpc/ros/signal_publishers.hpp"
+#include "ros/signal_publishers.hpp"
 
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,4 @@
-// Source of the principle: Pontryagin et al. (1962), time-optimal control with one bounded input.
+// Source of the principle: pontryagin1962, time-optimal control with one bounded input.
 #include "fmbpc/study/shortest_step.hpp"
 
 #include <algorithm>

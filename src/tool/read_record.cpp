@@ -6,7 +6,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #ifdef FMBPC_WITH_BAGS
-#include "fmbpc/ros/bag_table.hpp"
+#include "ros/bag_table.hpp"
 #endif
 
 namespace fpc::tool {

@@ -69,9 +69,9 @@ Vector pointOf(const StabilitySubject& subject, SignalKind kind,
 void settleOn(StabilitySubject& subject) {
   subject.equilibria = fuzzyEquilibria(subject.model, subject.input, subject.disturbances);
   double nearest = std::numeric_limits<double>::infinity();
-  const Vector wanted = subject.outputs;
+  const Vector asked = subject.outputs;
   for (const auto& rest : subject.equilibria) {
-    const double distance = (rest.outputs - wanted).norm();
+    const double distance = (rest.outputs - asked).norm();
     if (distance >= nearest) continue;
     nearest = distance;
     subject.outputs = rest.outputs;

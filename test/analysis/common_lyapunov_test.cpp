@@ -18,7 +18,7 @@ Matrix of(double a, double b, double c, double d) {
 
 double radius(const Matrix& A) { return spectralRadius(eigenvalues(A)); }
 
-/// The rules of Tanaka and Sugeno (1992), example 4.2: each stable, no common P.
+/// The rules of tanaka1992, example 4.2: each stable, no common P.
 const std::vector<Matrix> kTanakaSugeno = {of(1.0, -0.5, 1.0, 0.0), of(-1.0, -0.5, 1.0, 0.0)};
 
 void expectDecrease(const CommonLyapunov& found, const std::vector<Matrix>& maps) {

@@ -1,4 +1,4 @@
-// Zeros, relative degree and the three propositions of Blazic and Skrjanc 2007 for all their rules.
+// Zeros, relative degree and the three propositions of blazic2007 for all their rules.
 #include "fmbpc/analysis/transfer.hpp"
 
 #include <gtest/gtest.h>

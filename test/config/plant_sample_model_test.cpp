@@ -80,7 +80,7 @@ TEST(PlantSampleModel, AnExternalPlantHasNoEquationsToPredictWith) {
 }
 
 /// With the true equations and no disturbance nothing is left between prediction and measurement.
-TEST(PlantSampleModel, TheRivalReachesItsSetpointsOnThePlantItKnows) {
+TEST(PlantSampleModel, TheBaselineReachesItsSetpointsOnThePlantItKnows) {
   const LoopFile loop =
       readLoop("surge_tank_up", {{"controller", "{type: nmpc, horizon_steps: 20}"}});
   const RunRecord record = runLoop(loop);

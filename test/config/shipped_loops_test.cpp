@@ -1,4 +1,4 @@
-// Every loop file that ships can be read, and rivals run under the same conditions.
+// Every loop file that ships can be read, and baselines run under the same conditions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,33 +24,33 @@ TEST_P(ShippedLoop, IsRead) {
   EXPECT_GT(loop.simulation.samples, 0U);
 }
 
-TEST_P(ShippedLoop, HasRivalsUnderTheSameDisturbances) {
+TEST_P(ShippedLoop, HasBaselinesUnderTheSameDisturbances) {
   const std::string name = GetParam();
   const auto cut = std::min(name.find("_pi"), name.find("_gspi"));
   if (cut == std::string::npos) return;
   if (needsRecords(name) && !hasRecords()) GTEST_SKIP() << "FMBPC_DATA is not set";
-  const LoopFile rival = readLoop(name), base = readLoop(name.substr(0, cut));
-  EXPECT_EQ(makeDisturbance(rival).values, makeDisturbance(base).values);
-  EXPECT_EQ(rival.setpoint.initial, base.setpoint.initial);
-  ASSERT_EQ(rival.setpoint.schedule.size(), base.setpoint.schedule.size());
+  const LoopFile baseline = readLoop(name), base = readLoop(name.substr(0, cut));
+  EXPECT_EQ(makeDisturbance(baseline).values, makeDisturbance(base).values);
+  EXPECT_EQ(baseline.setpoint.initial, base.setpoint.initial);
+  ASSERT_EQ(baseline.setpoint.schedule.size(), base.setpoint.schedule.size());
   for (std::size_t i = 0; i < base.setpoint.schedule.size(); ++i) {
-    EXPECT_EQ(rival.setpoint.schedule[i].time_h, base.setpoint.schedule[i].time_h);
-    const Vector &ours = rival.setpoint.schedule[i].value,
+    EXPECT_EQ(baseline.setpoint.schedule[i].time_h, base.setpoint.schedule[i].time_h);
+    const Vector &ours = baseline.setpoint.schedule[i].value,
                  &theirs = base.setpoint.schedule[i].value;
     EXPECT_TRUE((ours.array() == theirs.array() || ours.array().isNaN()).all());
   }
-  const auto &commands = rival.simulation.disturbance_commands,
+  const auto &commands = baseline.simulation.disturbance_commands,
              &of_base = base.simulation.disturbance_commands;
   ASSERT_EQ(commands.size(), of_base.size());
   for (std::size_t i = 0; i < commands.size(); ++i) {
     EXPECT_EQ(commands[i].time_h, of_base[i].time_h);
     EXPECT_EQ(commands[i].command.value, of_base[i].command.value);
   }
-  EXPECT_EQ(rival.simulation.output_delay_s, base.simulation.output_delay_s);
-  EXPECT_EQ(rival.simulation.parameters, base.simulation.parameters);
-  EXPECT_EQ(rival.simulation.actuator.limits.upper, base.simulation.actuator.limits.upper);
-  EXPECT_EQ(rival.controllerType().name, "pi");
-  EXPECT_FALSE(rival.has_clp);
+  EXPECT_EQ(baseline.simulation.output_delay_s, base.simulation.output_delay_s);
+  EXPECT_EQ(baseline.simulation.parameters, base.simulation.parameters);
+  EXPECT_EQ(baseline.simulation.actuator.limits.upper, base.simulation.actuator.limits.upper);
+  EXPECT_EQ(baseline.controllerType().name, "pi");
+  EXPECT_FALSE(baseline.has_clp);
 }
 
 std::string nameOf(const ::testing::TestParamInfo<std::string>& loop) { return loop.param; }

@@ -34,7 +34,7 @@ std::vector<std::string> texts(const Structure& structure,
 }
 
 TEST(StructureFile, OrdersAndDelaysGiveTheRegressorsOfTheThesis) {
-  // Vallejo 2021, table 4, row 1: y1(k+1) from y1(k), y2(k), u1(k), u2(k), u3(k), u3(k-1).
+  // vallejo2021thesis, table 4, row 1: y1(k+1) from y1(k), y2(k), u1(k), u2(k), u3(k), u3(k-1).
   const Structure s = structureOf(
       "submodels:\n  y: {N_y: {y: 1, z: 1}, N_u: {u: 2, d: 1}, N_d: {u: 1, d: 3}}\n  z: {N_y: [0, "
       "2]}\n");

@@ -1,4 +1,4 @@
-// Known on paper: a shift register of maximal length (Golomb 1967) with n bits repeats after
+// Known on paper: a shift register of maximal length (golomb1967) with n bits repeats after
 // N = 2^n - 1, holds (N + 1) / 2 ones, and the autocorrelation of its signs is -1 / N at every
 // shift but 0.
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 """The loop takes messages of the ring from anyone (loop.publishers: []), and gets wrong ones: steps far ahead, other runs,
-NaN, wrong sizes, rival answers, bursts. What the plant keeps sending wins."""
+NaN, wrong sizes, answers of an impostor, bursts. What the plant keeps sending wins."""
 import math
 
 from fault import Fault
@@ -54,7 +54,7 @@ def other_units(message, _):
     message.outputs[0].unit = "furlong"
 
 
-def rival(loop):
+def impostor(loop):
     """Answers every sample before the loop does, with the valves open: the plant keeps its move limits."""
     for _ in range(10):
         message = latest(loop, "control_action")
@@ -87,7 +87,7 @@ FAULTS = [
     fault("control_action", "no inputs", sized("input", 0)),
     fault("control_action", "another run", next_run, counted=(PLANT, "actions dropped: other run")),
     fault("control_action", "burst of 3000", stale, times=3000, counted=(PLANT, "actions dropped: old step")),
-    Fault("rubbish: control_action, a rival that is first ten times", rival, lasts=1.0),
+    Fault("rubbish: control_action, an impostor that is first ten times", impostor, lasts=1.0),
     fault("tracking", "far ahead", far, counted=(RECORDER, "dropped: other run")),
     fault("tracking", "wrong size", sized("setpoint", 7), counted=(RECORDER, "dropped: wrong size")),
     fault("solver_report", "wrong size", sized("perturbation", 0)),

@@ -1,4 +1,4 @@
-// The Wood-Berry column as controllers may believe in it: numbers of eq. 27 of Mekki and Saad.
+// The Wood-Berry column as a model of controllers: numbers of eq. 27 of mekki.
 #pragma once
 
 #include <limits>

@@ -12,7 +12,7 @@
 namespace fpc::testing {
 namespace {
 
-/// A pointer that the compiler must believe to be used, so that it keeps the allocation.
+/// A pointer that the compiler must take for used, so that it keeps the allocation.
 void keep(void* pointer) { asm volatile("" : : "g"(pointer) : "memory"); }
 
 TEST(AllocationCounter, CountsNewMallocAndEigen) {

@@ -1,4 +1,4 @@
-// The QP solver beside an unrelated one: NLopt's sequential quadratic programming (Kraft 1994) on
+// The QP solver beside an unrelated one: NLopt's sequential quadratic programming (kraft1994) on
 // scaled problems.
 #include <nlopt.h>
 

@@ -1,7 +1,7 @@
 // The shipped experiments give records from which the shipped structures are identified, as files
 // and without a hand in between: `fmbpc run asp_excite --out DIR`, then identification from
-// DIR/trajectory.csv. Figures: free-run VAF [%] of Vallejo 2021, article 1, section 3 (99 and 87 on
-// its identification data, 95 and 66 held out).
+// DIR/trajectory.csv. Figures: free-run VAF [%] of vallejo2021thesis, article 1, section 3 (99 and
+// 87 on its identification data, 95 and 66 held out).
 #include <gtest/gtest.h>
 
 #include <cstdio>

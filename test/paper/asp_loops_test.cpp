@@ -1,4 +1,4 @@
-// The activated-sludge experiments of articles 1 and 2 (Vallejo Llamas 2021), run in process over
+// The activated-sludge experiments of articles 1 and 2 (vallejo2021thesis), run in process over
 // eight weeks of the seeded influent. Only ratios between controllers on the same influent mean
 // anything: the thesis' records were never published. Every figure is printed; the bounds are those
 // the project promises.
@@ -76,9 +76,9 @@ TEST(AspCase1, TheMarginsHoldInEveryWeekAndWithEveryVariant) {
 TEST(AspCases2And3, BiomassErrorIsBelowPiOnBiomassInEveryWeek) {
   for (const auto& [name, seed] :
        {std::pair<std::string, int>{"asp_case2", 101}, {"asp_case3", 1}}) {
-    const Weeks law = runWeeks(name, seed), rival = runWeeks(name + "_pi_x", seed);
+    const Weeks law = runWeeks(name, seed), baseline = runWeeks(name + "_pi_x", seed);
     for (std::size_t week = 0; week < kWeeks; ++week)
-      EXPECT_LT(law.rmse_x[week], rival.rmse_x[week]) << name << week;
+      EXPECT_LT(law.rmse_x[week], baseline.rmse_x[week]) << name << week;
   }
 }
 
@@ -116,9 +116,9 @@ TEST(AspRealInfluent, RunsToTheEndInsideItsLimits) {
   for (const char* name : {"asp_bsm1_dry", "asp_uci_daily"}) {
     const Overrides part{{"sampling.duration_h", std::getenv("FMBPC_LONG_TESTS") ? "336" : "200"}};
     const Summary law = runOnce(name, part);
-    for (const char* rival : {"", "_pi_best", "_pi_x"})
-      std::printf("%-22s rmse x %.4g\n", (std::string(name) + rival).c_str(),
-                  runOnce(std::string(name) + rival, part).outputs.back().rmse);
+    for (const char* baseline : {"", "_pi_best", "_pi_x"})
+      std::printf("%-22s rmse x %.4g\n", (std::string(name) + baseline).c_str(),
+                  runOnce(std::string(name) + baseline, part).outputs.back().rmse);
     EXPECT_EQ(law.input_violations + law.move_violations, 0U) << name;
     EXPECT_GE(law.inputs[0].min, 0.0) << name;
     EXPECT_LE(law.inputs[0].max, 1600.0) << name;

@@ -1,4 +1,4 @@
-// The activated-sludge loops with models of our own (Vallejo Llamas 2021, articles 1 and 2), and
+// The activated-sludge loops with models of our own (vallejo2021thesis, articles 1 and 2), and
 // what these models come from: the shipped files are what identification gives from the record of
 // the shipped experiment.
 #include <gtest/gtest.h>
@@ -49,11 +49,11 @@ Weeks runWeeks(const std::string& name, int first, int last) {
   return weeks;
 }
 
-/// Biomass ISE against both rivals, median of seeds 1-8.
-void expectBelow(const std::string& loop, const std::string& rival, double of_pi_s,
+/// Biomass ISE against both baselines, median of seeds 1-8.
+void expectBelow(const std::string& loop, const std::string& baseline, double of_pi_s,
                  double of_pi_x) {
-  const Weeks own = runWeeks(loop, 1, 8), pi_s = runWeeks(rival + "_pi_s", 1, 8),
-              pi_x = runWeeks(rival + "_pi_x", 1, 8);
+  const Weeks own = runWeeks(loop, 1, 8), pi_s = runWeeks(baseline + "_pi_s", 1, 8),
+              pi_x = runWeeks(baseline + "_pi_x", 1, 8);
   EXPECT_LE(median(own.ise_x), of_pi_s * median(pi_s.ise_x)) << loop;
   EXPECT_LE(median(own.ise_x), of_pi_x * median(pi_x.ise_x)) << loop;
   const double ratio_s = median(own.ise_s) / median(pi_s.ise_s);
@@ -86,9 +86,9 @@ TEST(AspOwnModel, CasesAAndBFollowTheBiomassBetterThanPi) {
 
 // Settings were chosen on seeds 1-4.
 TEST(AspBest, BeatsTheTunedPiByAQuarterAtNoMoreMoveOnSeeds5To8) {
-  const Weeks best = runWeeks("asp_best", 5, 8), rival = runWeeks("asp_case1_pi_x_tuned", 5, 8);
-  EXPECT_LE(median(best.ise_x), 0.75 * median(rival.ise_x));
-  EXPECT_LE(median(best.move), median(rival.move));
+  const Weeks best = runWeeks("asp_best", 5, 8), baseline = runWeeks("asp_case1_pi_x_tuned", 5, 8);
+  EXPECT_LE(median(best.ise_x), 0.75 * median(baseline.ise_x));
+  EXPECT_LE(median(best.move), median(baseline.move));
   EXPECT_EQ(best.violations, 0U);
 }
 

@@ -1,4 +1,4 @@
-// The batch reactor's experiment (Karer et al. 2007, section 6) from four initial states, pooled:
+// The batch reactor's experiment (karer2007, section 6) from four initial states, pooled:
 // rms of the core's temperature in the steady windows, switches of the on/off valves, water. The
 // bounds are those the project promises; every figure is printed.
 #include <gtest/gtest.h>

@@ -76,7 +76,7 @@ TEST_F(Bsm1Loops, SensorNoiseMovesTheDefaultBelowAFifthOfAPercent) {
   }
 }
 
-TEST_F(Bsm1Loops, TheSupervisorIsTheRivalOfTheFigures) {
+TEST_F(Bsm1Loops, TheSupervisorIsTheBaselineOfTheFigures) {
   if (isShort()) GTEST_SKIP() << "long run: scripts/test --long";
   const struct {
     const char* loop;

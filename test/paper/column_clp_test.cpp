@@ -83,17 +83,17 @@ TEST(ColumnClp, DoesAsWellAsAPlainConstrainedLinearController) {
   for (const double weight : {0.1, 10.0, 1000.0}) {
     test::PlainMpcSettings settings;
     settings.move_weight = weight;
-    test::PlainMpc rival(settings);
+    test::PlainMpc baseline(settings);
     double top = 1.0, bottom = 0.25, excess = 0.0;  // of sample 0
     for (int k = 0; k < 150; ++k) {
-      const Vector y = rival.step();
+      const Vector y = baseline.step();
       top += (1.0 - y[0]) * (1.0 - y[0]);
       bottom += (-0.5 - y[1]) * (-0.5 - y[1]);
       excess = std::max(
           {excess, (y - settings.output_upper).maxCoeff(), (settings.output_lower - y).maxCoeff()});
-      EXPECT_LE(rival.input().cwiseAbs().maxCoeff(), 0.25 + 1e-9);
+      EXPECT_LE(baseline.input().cwiseAbs().maxCoeff(), 0.25 + 1e-9);
     }
-    EXPECT_FALSE(rival.failed());
+    EXPECT_FALSE(baseline.failed());
     std::printf("plain MPC, move weight %-8g ISE y_D %.3f, x_B %.3f, largest excess %.4f\n", weight,
                 top, bottom, excess);
     EXPECT_LT(tracking.top + tracking.bottom, 1.03 * (top + bottom));

@@ -1,4 +1,4 @@
-// Tables 3, 4 and 5 of Mekki and Saad on the Wood-Berry column, and their adaptation made
+// Tables 3, 4 and 5 of mekki on the Wood-Berry column, and their adaptation made
 // measurable. Every figure is printed beside the paper's.
 #include <algorithm>
 #include <cstdio>

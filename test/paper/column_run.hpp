@@ -1,4 +1,4 @@
-// Runs of the distillation column and the indices of Mekki and Saad: minutes and mol%.
+// Runs of the distillation column and the indices of mekki: minutes and mol%.
 #pragma once
 
 #include <gtest/gtest.h>

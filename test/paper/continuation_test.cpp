@@ -1,5 +1,5 @@
 // What continuation finds on the shipped plants without being told where: the folds and the Hopf
-// point of the stirred tank (Blazic and Skrjanc 2007, section 2) with and without its sampled
+// point of the stirred tank (blazic2007, section 2) with and without its sampled
 // compensator, the hump of the biomass in the activated-sludge plant.
 #include "fmbpc/analysis/continuation.hpp"
 

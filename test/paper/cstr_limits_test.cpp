@@ -1,4 +1,4 @@
-// The reactor with bounds that bite: rivals with and without anti-windup, and the law, whose two
+// The reactor with bounds that bite: baselines with and without anti-windup, and the law, whose two
 // models take what was applied and therefore cannot wind up.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
-// The reactor's experiments of Blazic and Skrjanc (2007), run in process: sums of (y_r - y)^2 over
+// The reactor's experiments of blazic2007, run in process: sums of (y_r - y)^2 over
 // 401 samples. What the paper prints, what an independent reference reaches where the paper is
-// silent, and the rivals that the paper did not try. Every figure is printed.
+// silent, and the baselines that the paper did not try. Every figure is printed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,16 +42,16 @@ TEST(CstrScore, TakesTheReferenceBeforeItsUpdateFromTheStateAtRest) {
     y_r = 0.96 * y_r + 0.04 * setpoint;
   }
   EXPECT_NEAR(score("cstr_tracking"), sum, 1e-12);
-  const RunRecord rival = recordOf("cstr_tracking_pi");
+  const RunRecord baseline = recordOf("cstr_tracking_pi");
   for (std::size_t k = 0; k <= 400; ++k)
-    ASSERT_EQ(rival.samples[k].tracking.reference, record.samples[k].tracking.reference);
+    ASSERT_EQ(baseline.samples[k].tracking.reference, record.samples[k].tracking.reference);
 }
 
 TEST(CstrScore, TheDisturbanceComesAndGoesOnTime) {
   const RunRecord record = recordOf("cstr_disturbance");
   for (std::size_t k = 0; k < 400; ++k) {
-    const double wanted = k >= 50 && k < 150 ? 3.0 : k >= 220 && k < 320 ? -3.0 : 0.0;
-    ASSERT_EQ(record.samples[k].state.disturbances[0], wanted) << "sample " << k;
+    const double expected = k >= 50 && k < 150 ? 3.0 : k >= 220 && k < 320 ? -3.0 : 0.0;
+    ASSERT_EQ(record.samples[k].state.disturbances[0], expected) << "sample " << k;
     ASSERT_EQ(record.samples[k].measurement.disturbances.size(), 0) << "unseen";
   }
 }
@@ -81,7 +81,7 @@ TEST(CstrReference, AimingWhereTheEffectIsMeasuredHalvesTheError) {
   EXPECT_NEAR(score("cstr_disturbance_preview"), 0.00263, 1e-5);
 }
 
-TEST(CstrReference, GainScheduledPiIsTheHonestRival) {
+TEST(CstrReference, GainScheduledPiIsTheHonestBaseline) {
   const double tracking = score("cstr_tracking_gspi");
   EXPECT_NEAR(tracking, 0.00457, 0.00457 * 0.01);
   EXPECT_NEAR(score("cstr_disturbance_gspi"), 0.0073, 0.0073 * 0.01);

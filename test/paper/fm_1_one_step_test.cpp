@@ -1,5 +1,5 @@
 // FM_1 against the plant it was identified on: the error of s over one sample, on records of the
-// plant in open loop. Source: Vallejo Llamas 2021, article 2, tables 3, 4 and A1. An independent
+// plant in open loop. Source: vallejo2021a, tables 3, 4 and A1. An independent
 // computation gives 1.7-1.8 mg/l; with the membership columns read as printed (centres and widths)
 // the error is of the order of 1e4.
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The hybrid fuzzy model of the batch reactor identified per rule and operating mode (Karer et al.
-// 2007, eqs. 14-20). The figures are those of an independent numerical reference; every figure is
+// The hybrid fuzzy model of the batch reactor identified per rule and operating mode (karer2007,
+// eqs. 14-20). The figures are those of an independent numerical reference; every figure is
 // printed.
 #include <gtest/gtest.h>
 
@@ -103,7 +103,7 @@ TEST(IdentificationBatch, PerRuleAndModeItPredictsAsTheReferenceDoes) {
   EXPECT_NEAR(one_all, 0.060, 0.02);
 }
 
-/// One rule per mode, that of 40 degC: as the published linear rival.
+/// One rule per mode, that of 40 degC: as the published linear baseline.
 TsModel linearOf(const TsModel& fuzzy) {
   TsModel model = fuzzy;
   OutputModel& Tw = model.submodels[1];

@@ -1,6 +1,6 @@
 // Activated sludge: models identified from an open-loop experiment on the simulated plant predict
-// in free run (Vallejo 2021, article 1, section 3; the thesis reports VAF 99 and 87 % on its data,
-// 95 and 66 % held out).
+// in free run (vallejo2021thesis, article 1, section 3; the thesis reports VAF 99 and 87 % on its
+// data, 95 and 66 % held out).
 #include <gtest/gtest.h>
 
 #include <random>

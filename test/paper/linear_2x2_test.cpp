@@ -1,4 +1,4 @@
-// The linear example of Taieb, Soltani and Chaari 2017 as loops: overshoot, offset, divergence.
+// The linear example of taieb2017 as loops: overshoot, offset, divergence.
 #include <cstdio>
 
 #include "paper/step_response.hpp"

@@ -1,4 +1,4 @@
-// The reactor with two inputs of Taieb, Soltani and Chaari 2017 under the fuzzy optimal law with an
+// The reactor with two inputs of taieb2017 under the fuzzy optimal law with an
 // identified model of four rules, on reachable setpoints. Figures to reach were computed
 // independently: every step of Ca and T, and the bias of the analyser.
 #include <cstdio>

@@ -1,5 +1,5 @@
 // A plain constrained linear predictive controller (dynamic matrix control in moves) on the column:
-// the rival of the closed-loop paradigm. Same model, references, limits and horizon.
+// the baseline of the closed-loop paradigm. Same model, references, limits and horizon.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// How an output follows a step of its setpoint, as Taieb, Soltani and Chaari 2017 judge it: rise
+// How an output follows a step of its setpoint, as taieb2017 judge it: rise
 // from 10 to 90 %, last leaving of a band of 2 %, overshoot and offset in % of the step.
 #pragma once
 

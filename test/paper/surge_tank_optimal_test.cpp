@@ -1,4 +1,4 @@
-// The surge tank of Taieb, Soltani and Chaari 2017 under the fuzzy optimal law with P = 20, M = 1
+// The surge tank of taieb2017 under the fuzzy optimal law with P = 20, M = 1
 // and an identified model. The paper's rise of 0.74 s is out of reach of a pump that cannot
 // reverse; bounds and figures to reach were computed independently.
 #include <cstdio>

@@ -1,4 +1,4 @@
-// Plants of Taieb et al. (2017): models identified from their own records (fuzzy c-means, weighted
+// Plants of taieb2017: models identified from their own records (fuzzy c-means, weighted
 // recursive least squares), and how fast the tank can be at all.
 #include <gtest/gtest.h>
 

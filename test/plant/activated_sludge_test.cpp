@@ -1,4 +1,4 @@
-// Figures of the plant of Vallejo Llamas (2021), article 1, appendix D, as an independent numerical
+// Figures of the plant of vallejo2021thesis, article 1, appendix D, as an independent numerical
 // reference gives them with the corrections listed in src/plant/activated_sludge.cpp.
 #include <gtest/gtest.h>
 

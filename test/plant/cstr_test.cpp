@@ -1,4 +1,4 @@
-// The stirred-tank reactor of Blazic and Skrjanc (2007): rest, branches, compensator, disturbance.
+// The stirred-tank reactor of blazic2007: rest, branches, compensator, disturbance.
 #include <gtest/gtest.h>
 
 #include "fmbpc/analysis/steady_state.hpp"

@@ -120,7 +120,7 @@ TEST(Integrator, AgreesWithRungeKutta) {
 }
 
 // Robertson's problem (1966), rates 0.04, 1e4, 3e7: too stiff for explicit methods; values at t =
-// 40 from the documentation of CVODE (Hindmarsh et al. 2005).
+// 40 from the documentation of CVODE (hindmarsh2005).
 TEST(Integrator, BdfSolvesRobertsonsStiffProblem) {
   const TestPlant plant(3, 1.0, [](VectorRef x, VectorRef, VectorRef, Eigen::Ref<Vector> dxdt) {
     dxdt[0] = -0.04 * x[0] + 1e4 * x[1] * x[2];

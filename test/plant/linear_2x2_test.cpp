@@ -1,4 +1,4 @@
-// The linear example of Taieb et al. (2017) against its printed difference equation.
+// The linear example of taieb2017 against its printed difference equation.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>

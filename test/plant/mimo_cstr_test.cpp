@@ -1,4 +1,4 @@
-// The reactor with two inputs of Taieb et al. (2017): steady inputs, signs, relation to cstr.
+// The reactor with two inputs of taieb2017: steady inputs, signs, relation to cstr.
 #include <gtest/gtest.h>
 
 #include <cmath>

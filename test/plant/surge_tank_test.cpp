@@ -1,4 +1,4 @@
-// The surge tank of Taieb et al. (2017): rest, drainage, the pump that cannot reverse, Euler step.
+// The surge tank of taieb2017: rest, drainage, the pump that cannot reverse, Euler step.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -9,13 +9,13 @@ namespace {
 
 /// What a controller with a model can run: plant and model belong together, as does the sample
 /// time.
-struct Believer {
+struct Modelled {
   std::string plant, model;
   std::vector<std::string> outputs, disturbances, controllers;
 };
 
-const std::vector<Believer>& believers() {
-  static const std::vector<Believer> all{
+const std::vector<Modelled>& modelledPlants() {
+  static const std::vector<Modelled> all{
       {"activated_sludge", "fm_1", {"s", "x"}, {"q_i", "s_i"}, {"fmbpc", "swarm_mpc"}},
       {"activated_sludge", "asp_c", {"s", "x"}, {"q_i", "s_i"}, {"fmbpc", "swarm_mpc"}},
       {"activated_sludge", "asp_xr", {"s", "x_r", "x"}, {"q_i", "s_i"}, {"fmbpc"}},
@@ -79,23 +79,23 @@ RandomLoop randomLoop(std::uint64_t seed) {
   RandomLoop loop;
   RandomFrame frame;
   loop.seed = seed;
-  const bool believes = dice.chance(0.6);
-  const Believer& believer = dice.pick(believers());
-  loop.plant = believer.plant;  // bsm1 is left out: its days of stiff equations are too slow here
+  const bool has_model = dice.chance(0.6);
+  const Modelled& modelled = dice.pick(modelledPlants());
+  loop.plant = modelled.plant;  // bsm1 is left out: its days of stiff equations are too slow here
   frame.plant = makePlant(loop.plant)->description();
-  loop.outputs = believes ? believer.outputs : frame.plant.outputs;
+  loop.outputs = has_model ? modelled.outputs : frame.plant.outputs;
   for (const auto& name : loop.outputs) frame.outputs.push_back(stateOf(frame.plant, name));
   frame.sample_time_s = usualSampleTime(frame.plant);
   frame.samples = dice.whole(10, 40);
-  if (!believes && loop.plant == "surge_tank")  // a difference equation of 0.1 s, or finer
+  if (!has_model && loop.plant == "surge_tank")  // a difference equation of 0.1 s, or finer
     frame.sample_time_s *= dice.pick<double>({1.0, 2.0, 5.0});
-  else if (!believes && loop.plant != "linear_2x2")
+  else if (!has_model && loop.plant != "linear_2x2")
     frame.sample_time_s *= dice.pick<double>({1.0, 1.0, 0.5, 2.0, 1.0 / 3.0});
   const std::string line = sampleLine(dice, frame);
-  loop.controller = believes ? dice.pick(believer.controllers) : controllerFor(dice, frame);
+  loop.controller = has_model ? dice.pick(modelled.controllers) : controllerFor(dice, frame);
   std::string plant =
       "plant:\n  type: " + loop.plant + "\n  outputs: " + listed(loop.outputs) + "\n";
-  if (believes) plant += "  measured_disturbances: " + listed(believer.disturbances) + "\n";
+  if (has_model) plant += "  measured_disturbances: " + listed(modelled.disturbances) + "\n";
   const std::string controller = randomController(loop.controller, dice, frame);
   const bool predicts = loop.controller == "fmbpc" || loop.controller == "fuzzy_optimal";
   loop.text = "title: Random loop " + std::to_string(seed) + "\n" + plant +
@@ -103,7 +103,7 @@ RandomLoop randomLoop(std::uint64_t seed) {
               "\n  duration_h: " + exactText(frame.hours(frame.samples)) + "\n" +
               randomSetpoint(dice, frame) + randomDisturbance(dice, frame, loop) +
               randomNoise(dice, frame) + line +
-              (believes ? "model: {file: " + believer.model + ".yaml}\n" : std::string()) +
+              (has_model ? "model: {file: " + modelled.model + ".yaml}\n" : std::string()) +
               (loop.controller == "hybrid_mpc" ? "actuator: {initial: {kM: 0, kC: 0, kH: 1}}\n"
                                                : randomActuator(dice, frame)) +
               controller + (predicts && dice.chance(0.4) ? randomClp(dice, frame) : std::string());

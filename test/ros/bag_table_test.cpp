@@ -1,5 +1,5 @@
 // A bag is the table that the same run writes.
-#include "fmbpc/ros/bag_table.hpp"
+#include "ros/bag_table.hpp"
 
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
@@ -10,8 +10,8 @@
 
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
-#include "fmbpc/ros/conversions.hpp"
 #include "loop/loop_fixture.hpp"
+#include "ros/conversions.hpp"
 
 namespace fpc {
 namespace {

@@ -1,6 +1,6 @@
 // Structs survive the way through a message bit for bit; what no struct can mean is refused. No
 // master needed.
-#include "fmbpc/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 
 #include <gtest/gtest.h>
 #include <cmath>

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Somebody publishes on every topic of the ring while a loop with optimizer runs: the run stays the same, bit for bit. With
-loop.publishers as they are (~closed) valid answers of a rival, forged plants and steps to come as well as rubbish; in a loop
+loop.publishers as they are (~closed) valid answers of an impostor, forged plants and steps to come as well as rubbish; in a loop
 that listens to anyone rubbish, which every receiver must refuse for what it is."""
 import copy
 import itertools
@@ -60,7 +60,7 @@ def rubbish(now):
     yield "disturbance", Disturbance(name=["q_i"], value=[math.inf], mode=1)
 
 
-def rivals(now, info):
+def impostors(now, info):
     """What would be taken if it came from a node of the loop: answers in time, runs, steps to come, an early end."""
     this = {"run_id": now.run_id, "step": now.step}
     measured = {"run_id": now.run_id, "outputs": now.outputs, "disturbances": now.disturbances,
@@ -108,7 +108,7 @@ class Intruder(unittest.TestCase):
             return message._connection_header["callerid"] == "/plant_simulator"
 
         def disturb(now):
-            for topic, message in itertools.chain(rubbish(now), rivals(now, info) if closed else ()):
+            for topic, message in itertools.chain(rubbish(now), impostors(now, info) if closed else ()):
                 publishers[topic].publish(message)
         with ring.Frozen("/fmbpc_controller"):  # nobody else answers sample 0
             ring.begin()

@@ -102,8 +102,8 @@ class PlantNode(unittest.TestCase):
         self.assertEqual((650.0,), self.next().input_applied)
 
     def test_the_actuator_keeps_its_bounds_whatever_arrives(self):
-        for wanted, applied in ((1e9, 1600.0), (-5.0, 0.0), (1600.0, 1600.0)):
-            self.assertEqual((applied,), self.advance(wanted).input_applied)
+        for asked, applied in ((1e9, 1600.0), (-5.0, 0.0), (1600.0, 1600.0)):
+            self.assertEqual((applied,), self.advance(asked).input_applied)
         self.assertEqual(0, self.state().actuator_clips)
         self.advance(1601.0)
         self.assertEqual(1, self.state().actuator_clips)

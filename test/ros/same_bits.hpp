@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "fmbpc/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 
 namespace fpc {
 

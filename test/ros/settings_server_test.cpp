@@ -1,5 +1,5 @@
 // The table of settings as dynamic_reconfigure's messages, and back.
-#include "fmbpc/ros/settings_server.hpp"
+#include "ros/settings_server.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The linear loop that a predictive law closes around its own model: matrices and eigenvalues for
-// any lags, delays and horizon. Source: Vallejo Llamas 2021, article 2, sections 4 and 5; Blazic
-// and Skrjanc 2007, section 4.
+// any lags, delays and horizon. Source: vallejo2021a, sections 4 and 5;
+// blazic2007, section 4.
 #pragma once
 
 #include <complex>
@@ -38,17 +38,5 @@ struct ClosedLoop {
 ClosedLoop closeLoop(const LinearModel& model, const LoopLaw& law);
 /// g0 of the last output and first input: its forced response after H samples of a unit input.
 double forcedGain(const LinearModel& model, int horizon);
-
-/// The paper's analysis, which takes u(k-1) for an input of its own:
-///   M = A^(H-1) B + (sum_{i<=H-2} A^i) B [1 0; 1 0],   A_CL = A - B M^-1 C A^H, C = I.
-/// M is never inverted: with A = [a b; 0 f], B = [m n; p 0] its second row is [m2 0], so that
-///   u = -f^H x2 / m2,   n a^(H-1) u' = -(A^H x)_1 - m1 u.
-/// Source: Vallejo Llamas 2021, article 2, eqs. 41-48.
-/// @throws InputError unless A and B have that shape, p != 0, n != 0, and horizon >= 1.
-Matrix paperReducedLoop(MatrixRef A, MatrixRef B, int horizon);
-/// Eigenvalue 2 of the paper, eq. 59: f sum_{i<=H-2} f^i / sum_{i<=H-1} f^i.
-double paperSecondEigenvalue(double f, int horizon);
-/// The true loop of the same matrices, u(k-1) as a state: eigenvalues {0, a, eig2}.
-LinearModel paperModel(MatrixRef A, MatrixRef B);
 
 }  // namespace fpc

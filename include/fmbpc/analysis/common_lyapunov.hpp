@@ -28,8 +28,8 @@ struct CommonLyapunov {
 /// semidefinite programmes (largest t with decay^2 P - A_i' P A_i >= t I, 0 <= P <= I, in
 /// coordinates where the mean map is round) go to CSDP; whatever it says, P counts only if its
 /// Cholesky factor L exists and |L' A_i L'^-1| < 1 for every i, which is computed here.
-/// Source: Tanaka and Sugeno 1992, Stability analysis and design of fuzzy control systems, Fuzzy
-/// Sets and Systems 45, theorem 4.1; Borchers 1999 (CSDP).
+/// Source: tanaka1992,
+/// theorem 4.1; borchers1999 (CSDP).
 /// @throws InputError unless all maps are square, of one size and finite.
 CommonLyapunov commonLyapunov(const std::vector<Matrix>& maps);
 

@@ -28,7 +28,7 @@ struct ContinuationParams {
   Vector state_size;                ///< n_x, typical sizes > 0: arc length is counted in them
   double parameter_size{0.0};       ///< 0: a tenth of the range
   Matrix starts;                    ///< n_x n, besides the scanned ones; may be empty
-  int scanned_starts{40};           ///< per parameter value, low-discrepancy (Halton 1960)
+  int scanned_starts{40};           ///< per parameter value, low-discrepancy (halton1960)
   int scanned_parameters{5};        ///< values, ends included
   double step_max{0.05};            ///< arc length per step, in sizes
   double step_min{1e-7};
@@ -66,11 +66,11 @@ struct Branch {
   bool closed{false};                 ///< ends where it began
 };
 
-/// Pseudo-arclength continuation (Keller 1977): tangent predictor, Newton on f = 0 and the
+/// Pseudo-arclength continuation (keller1977): tangent predictor, Newton on f = 0 and the
 /// hyperplane across the tangent, in scaled variables. Folds and turning points are sign changes of
 /// a component of the tangent, Hopf points and flips a change in the number of unstable
 /// eigenvalues; all are refined by bisection of the arc length. Nothing is told where they are.
-/// Source: Kuznetsov 2004, Elements of Applied Bifurcation Theory, sections 10.1-10.2.
+/// Source: kuznetsov2004, sections 10.1-10.2.
 /// @throws InputError if params do not fit.
 std::vector<Branch> continueBranches(const ContinuationProblem& problem,
                                      const ContinuationParams& params,

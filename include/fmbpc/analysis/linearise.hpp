@@ -24,7 +24,7 @@ struct SampledMatrices {
 SampledMatrices sampleAndHold(MatrixRef A, MatrixRef B, double sample_time);
 
 /// The same with a local loop that adds L_now x(k) + L_before x(k-1) to the input, held over the
-/// sample: the matrix of (x(k), x(k-1)). Source: Blazic and Skrjanc 2007, eq. 10, is
+/// sample: the matrix of (x(k), x(k-1)). Source: blazic2007, eq. 10, is
 /// L_now = K e_T', L_before = -K e_T'. It is a map: stability is the unit circle, and the loop
 /// acts on a difference one sample old, which no derivative in continuous time reproduces.
 Matrix sampledLocalLoop(MatrixRef A, MatrixRef B, double sample_time, MatrixRef L_now,

@@ -37,7 +37,7 @@ struct StepIndices {
   double settling{};             ///< z stays within the band from here on; never: the whole step
   double overshoot{};            ///< max z - 1, at least 0 [%]
   double offset{};               ///< mean |z - 1| over the last tenth of the step [%]
-  /// 10 Es + Ov + Ts + Tr: Taieb, Soltani and Chaari (2017), eq. 15.
+  /// 10 Es + Ov + Ts + Tr: taieb2017, eq. 15.
   double cost() const { return 10.0 * offset + overshoot + settling + rise; }
 };
 

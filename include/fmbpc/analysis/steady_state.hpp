@@ -37,7 +37,7 @@ struct SteadyState {
 
 /// Newton with a Jacobian of central differences, damped by the natural monotonicity test: a step
 /// counts when the next Newton step with the same Jacobian is shorter, which does not depend on the
-/// units of f. Source: Deuflhard (2004), Newton Methods for Nonlinear Problems, section 3.3. Finds
+/// units of f. Source: deuflhard2004, section 3.3. Finds
 /// a steady state near `start`, stable or not.
 /// @throws InputError if params are out of range or `start` is empty or not finite.
 SteadyState findSteadyState(const Derivative& f, VectorRef start, VectorRef u, VectorRef d,

@@ -1,5 +1,5 @@
 // Relative degree, poles and zeros of one input-output pair, and what they mean for the horizon:
-// the propositions of Blazic and Skrjanc 2007, sections 3 and 4.
+// the propositions of blazic2007, sections 3 and 4.
 #pragma once
 
 #include <string>

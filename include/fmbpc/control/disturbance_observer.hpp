@@ -25,7 +25,7 @@ struct ObserverParams {
 /// and E adds d to them: covariances and gains; the caller moves the state. Per sample predict()
 /// with the A that led from k-1 to k, then correct(). Without noise the corrected output is the
 /// measurement and d takes all of the error, as from raw differences. Joseph's form; fixed work, no
-/// allocation. Source: Kalman 1960; the disturbance model is Muske and Badgwell 2002.
+/// allocation. Source: kalman1960; the disturbance model is muske2002.
 /// Symbols: P covariance of (x, d), S = C P C' + R of the innovation, K gain.
 class DisturbanceObserver {
  public:
@@ -34,8 +34,8 @@ class DisturbanceObserver {
                       std::vector<Eigen::Index> output_rows);
   /// d = 0; the state is known as well as the measurements are, the disturbance badly.
   void reset();
-  /// After reset(): d = its rows of `lacking`, n_x, what the model lacks to rest.
-  void startFrom(VectorRef lacking);
+  /// After reset(): d = its rows of `shortfall`, n_x, what the model lacks to rest.
+  void startFrom(VectorRef shortfall);
   void predict(const Matrix& A);
   /// state: x(k|k-1), d(k-1) already in it; becomes x(k|k). Not finite: nothing changes, false.
   bool correct(VectorRef outputs, Eigen::Ref<Vector> state);

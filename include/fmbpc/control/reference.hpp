@@ -7,8 +7,8 @@
 namespace fpc {
 
 /// y_r(k+1) = a_r y_r(k) + (1 - a_r) setpoint(k), y_r(0) = y(0). With preview it is setpoint(k+1):
-/// a path without lag (a_r = 0) changes with the setpoint, not a sample after it. Source: Vallejo
-/// 2019 eqs. 29, 30, 37.
+/// a path without lag (a_r = 0) changes with the setpoint, not a sample after it. Source:
+/// vallejo2019, eqs. 29, 30, 37.
 class ReferenceTrajectory {
  public:
   /// pole: n_y values a_r in [0, 1). With preview the future setpoints come from the schedule and

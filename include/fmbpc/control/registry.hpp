@@ -17,8 +17,8 @@ namespace fpc {
 class SampleModel;
 
 /// What a loop tells its controller. A controller that can see the plant is not being tested:
-/// nothing here comes from the plant but what an operator knows, and `plant_model`, for rivals that
-/// are told the truth.
+/// nothing here comes from the plant but what an operator knows, and `plant_model`, for baselines
+/// that are told the truth.
 struct ControllerContext {
   PlantInfo plant;
   InputLimits limits;

@@ -43,8 +43,8 @@ class SetpointSource {
   void reset();
   /// Stops the schedule's time from the next sample on (a recipe waits for its operator), or lets
   /// it go on from where it stopped. Commands act meanwhile.
-  void hold(bool on) { hold_wanted_ = on; }
-  bool held() const { return hold_wanted_; }
+  void hold(bool on) { hold_asked_ = on; }
+  bool held() const { return hold_asked_; }
   /// Releases all commands and any hold, and replays the commands of the params (a new run).
   void restart();
   /// Tells the time that the plant gives to a sample, in case its t0 is not the clock's: the stamps
@@ -75,7 +75,7 @@ class SetpointSource {
     bool held{};
     std::uint32_t held_at{}, shift{};
   };
-  Recipe recipe() const { return {hold_wanted_, held_at_, shift_}; }
+  Recipe recipe() const { return {hold_asked_, held_at_, shift_}; }
   void restore(const Recipe& recipe);
   /// Commands that took effect with the present sample; run_id is left to the caller.
   const std::vector<CommandEffect>& effects() const { return effects_; }
@@ -100,7 +100,7 @@ class SetpointSource {
   std::int64_t clock_shift_ns_{};
   std::uint32_t next_step_{};
   bool started_{false}, fresh_{true};
-  bool hold_wanted_{false}, held_{false};
+  bool hold_asked_{false}, held_{false};
   std::uint32_t held_at_{}, shift_{};  // recipe step while held; samples the recipe is late
 };
 

@@ -11,7 +11,7 @@ namespace fpc {
 ///   C_i = [.. b_i2 b_i1 0],  R_i = [0 .. 0 r_i / sum_j b_ij]'.
 /// C stands one place to the left of where the model's own b would be, so y answers u one sample
 /// later than in the model; and since C changes with the weights, so does the scale of the state.
-/// Source: Blazic and Skrjanc 2007, eqs. 13-16 and 28, as printed.
+/// Source: blazic2007, eqs. 13-16 and 28, as printed.
 class CanonicalForm {
  public:
   /// One output, one input, no disturbances, fewer input lags than output lags, both from lag 0.

@@ -9,7 +9,7 @@
 namespace fpc {
 
 /// A hybrid model is a Takagi-Sugeno model whose rules also hold crisp sets on inputs or states:
-/// the operating modes (Karer et al. 2007, eqs. 3, 4). Unlike a law, a search knows the u(k) it
+/// the operating modes (karer2007, eqs. 3, 4). Unlike a law, a search knows the u(k) it
 /// tries, so that antecedents on u(k) take it as it is. The state stacks, for each output, its lags
 /// 0.., then, for each input and disturbance, the past values that the model uses (often none).
 class ChoiceModel {

@@ -14,7 +14,7 @@ struct ClusterValidity {
   double partition_coefficient{};  ///< mean u^2, 1/c..1; large is crisp
 };
 
-/// Source: Xie and Beni (1991); Gath and Geva (1989), eqs. 17-19; Bezdek (1981).
+/// Source: xie1991; gath1989, eqs. 17-19; bezdek1981.
 ClusterValidity clusterValidity(const Clusters& clusters, MatrixRef points);
 
 }  // namespace fpc

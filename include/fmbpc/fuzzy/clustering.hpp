@@ -45,8 +45,8 @@ using ClusteringProgress = std::function<bool(int iteration, double objective)>;
 /// Clusters columns of `points` (dimensions x samples); scale the dimensions first. Same data and
 /// seed, same bits. Memory: the points, two matrices
 /// c x samples, and blocks. When cancelled, what
-/// there is so far. Source: Bezdek (1981); Gustafson and Kessel (1979); regularised as in Babuska,
-/// van der Veen and Kaymak (2002).
+/// there is so far. Source: bezdek1981; gustafson1979; regularised as in
+/// babuska2002.
 /// @throws InputError naming the field; also when there are fewer points than clusters.
 Clusters findClusters(MatrixRef points, const ClusteringParams& params,
                       const ClusteringProgress& progress = {});

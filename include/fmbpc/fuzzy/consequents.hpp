@@ -35,7 +35,7 @@ OutputModel fitLinear(const Regression& data, const std::vector<Regressor>& regr
 ///              the linearisation of its region, which keeps free runs and laws well-behaved;
 ///   global     sum_k (y - sum_i w_i theta_i' x)^2 + ridge sum_i |...|^2: best one-step
 ///   predictions; recursive  local, sample by sample with forgetting; ridge > 0 weighs the start.
-/// Weights of `local` are the firing weights raised to weight_power (Karer et al. 2007, eqs. 14-20,
+/// Weights of `local` are the firing weights raised to weight_power (karer2007, eqs. 14-20,
 /// with power 2, ridge 0 and a threshold). Scarce rules (see ConsequentParams) take the linear
 /// model (borrow) or the fitted rule nearest to them in the same operating mode, that is with the
 /// same crisp sets (neighbour), or are taken out of `model` (drop). `fits` has one entry per rule

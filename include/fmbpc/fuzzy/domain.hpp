@@ -20,12 +20,12 @@ struct ModelDomain {
   void validate(Eigen::Index n) const;
 };
 
-/// At most `centres` of the data's own rows, each the farthest from those before it (Gonzalez
-/// 1985), and the radius that covers all rows; scales are the ranges. Rows with missing values are
+/// At most `centres` of the data's own rows, each the farthest from those before it (gonzalez1985),
+/// and the radius that covers all rows; scales are the ranges. Rows with missing values are
 /// left out. Works on at most 5000 rows, evenly spaced.
 ModelDomain makeDomain(const DataSet& data, int centres = 60);
 
-/// How far a model is believed at one point, 0..1: 1 inside a ball, then (1 + cos(pi t)) / 2 with t
+/// How far a model is trusted at one point, 0..1: 1 inside a ball, then (1 + cos(pi t)) / 2 with t
 /// from 0 at its surface to 1 at kDomainFade radii further. Without a domain the same of the
 /// distance from the box of the ranges, in parts of each range, over kRangeFade. No allocation.
 /// Points: n, outputs, inputs, disturbances of the model.

@@ -1,6 +1,6 @@
 // Lags with dead times from records, sample by sample: least squares on an over-parametrised
-// numerator, then gain, time constant and a dead time that need not be whole samples. Source: Bai
-// and Zhang (2007); Mekki and Saad, eqs. 5-17, with the sign of y in the regressor as it must be
+// numerator, then gain, time constant and a dead time that need not be whole samples. Source:
+// mekki, eqs. 5-17 (after Bai and Zhang), with the sign of y in the regressor as it must be
 // (+y(k-1) for A = 1 - a/z) and the rounding of the delay replaced by the exact inversion.
 #pragma once
 
@@ -28,7 +28,7 @@ struct MisoParams {
   bool bias{true};  ///< a column of ones, for what no input explains
   RlsParams rls{1.0, 1e6, 1e8};
   /// arx: measured y in the regressor; noise biases it whatever the amount of data. output_error:
-  /// the model's own output there (Landau 1976), unbiased; one input only, as 1/A - 1/2 must be
+  /// the model's own output there (landau1976), unbiased; one input only, as 1/A - 1/2 must be
   /// positive real, which a first-order A always is.
   std::string method{"arx"};
   int warm_up_steps{60};         ///< output_error: so many samples by arx first

@@ -23,7 +23,7 @@ struct FreeRunFit {
 /// improve leaves the start. Uses params.free_run_iterations and .one_step_weight. Sensitivities
 /// follow the recursion of the model, antecedents included. `model` must agree with what is known;
 /// so does every step. `proceed` may be empty; false cancels.
-/// Source: Ljung, System Identification (1999), sec. 10.2-10.3 (output-error models).
+/// Source: ljung1999, sec. 10.2-10.3 (output-error models).
 FreeRunFit fitFreeRun(const DataSet& data, int output, const OutputModel& linear,
                       const ConsequentParams& params, OutputModel& model,
                       const std::function<bool()>& proceed = {}, const PriorKnowledge& known = {});

@@ -11,7 +11,7 @@ namespace fpc {
 /// xi(k+1) = A xi(k) + B u(k) + g,  y_m = C xi.  g = D d(k) + r (+ w_hat, added by the law).
 /// xi stacks, in this order: for each output its lags 0.., for each input u(k-1), u(k-2).., for
 /// each disturbance d(k-1), d(k-2)... Every input has at least u(k-1), so that moves can be weighed
-/// and limited. Source: Vallejo 2019 eqs. 10-17 (there u(k-1) is part of an extended input).
+/// and limited. Source: vallejo2019, eqs. 10-17 (there u(k-1) is part of an extended input).
 class LocalModel {
  public:
   /// `model` must be matched to the plant and validated. Keeps a copy.

@@ -1,5 +1,5 @@
 // A fuzzy set on all antecedent variables at once: an ellipsoid of any direction, evaluated in the
-// log domain. Source: Babuska, Fuzzy Modeling for Control (1998), sec. 4.4.
+// log domain. Source: babuska1998, sec. 4.4.
 #pragma once
 
 #include <string>

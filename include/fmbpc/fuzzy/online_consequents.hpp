@@ -11,7 +11,7 @@ namespace fpc {
 
 /// Updates every rule with the samples in which it fires, weighed by its firing weight; a rule that
 /// does not fire keeps what it knows. Columns are scaled by the model's ranges (by 1 where they are
-/// unknown). Source: Angelov and Filev (2004), eqs. 24-25 (weighted recursive least squares of
+/// unknown). Source: angelov2004, eqs. 24-25 (weighted recursive least squares of
 /// local models).
 class OnlineConsequents {
  public:

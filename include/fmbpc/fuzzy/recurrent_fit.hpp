@@ -39,7 +39,7 @@ struct RecurrentFitResult {
 /// Minimises the errors of free runs over the stretches from `start`; never ends worse than it
 /// began. Errors count as none where the sensor's limit is reached on both sides. `proceed` may be
 /// empty, is asked once an iteration with the present parameters and ends the fit by false.
-/// Source: Ljung (1999), sec. 10.2-10.3; Williams and Zipser (1989) for the derivatives.
+/// Source: ljung1999, sec. 10.2-10.3; williams1989 for the derivatives.
 RecurrentFitResult fitRecurrent(const RecurrentShape& shape, const RecurrentData& data,
                                 const std::vector<Stretch>& stretches, const Vector& anchor,
                                 const Vector& start, const RecurrentFitParams& params,

@@ -1,5 +1,5 @@
 // Takagi-Sugeno models whose outputs share one premise partition: rule g then is one affine model
-// of all outputs. Source: Taieb, Soltani and Chaari 2017, eqs. 7-12.
+// of all outputs. Source: taieb2017, eqs. 7-12.
 #pragma once
 
 #include <vector>

@@ -58,8 +58,8 @@ enum class ScarceRule { kBorrow, kDrop, kError, kNeighbour };
 /// How the consequents are fitted, and what happens to rules without enough data.
 struct ConsequentParams {
   ConsequentMethod method{ConsequentMethod::kLocal};
-  double ridge{0.1};         ///< >= 0: weight of the linear model in each coefficient, in samples
-  double weight_power{1.0};  ///< local: squared errors weigh firing weight ^ power; 2 in Karer 2007
+  double ridge{0.1};          ///< >= 0: weight of the linear model in each coefficient, in samples
+  double weight_power{1.0};   ///< local: squared errors weigh firing weight ^ power; 2 in karer2007
   double weight_threshold{};  ///< local: samples with a lower firing weight are left out (delta)
   double samples_per_coefficient{3.0};  ///< rules with less (sum of firing weights) are scarce
   double max_condition{1e8};  ///< of scaled columns, without ridge; rules beyond it are scarce too
@@ -104,7 +104,7 @@ struct Structure {
 /// Regressors from orders as the field writes them, for output i: N_y, N_u and N_d hold one number
 /// per output, per input and disturbance, per input and disturbance. N_y(j) = n gives
 /// y_j(k)..y_j(k-n+1); N_u(j) = n with transport delay N_d(j) = d >= 1 gives
-/// u_j(k-d+1)..u_j(k-d-n+2). Source: Babuska (1998), eq. 3.38; Vallejo 2021, table 4.
+/// u_j(k-d+1)..u_j(k-d-n+2). Source: babuska1998, eq. 3.38; vallejo2021thesis, table 4.
 std::vector<Regressor> regressorsOf(const std::vector<int>& N_y, const std::vector<int>& N_u,
                                     const std::vector<int>& N_d, int n_inputs);
 

@@ -35,7 +35,7 @@ std::vector<OutputValidation> validateModel(const TsModel& model, const TsModel&
                                             const DataSet& data,
                                             const ValidationParams& params = {});
 
-/// Source: Box and Jenkins (1970), sec. 8.2; bounds z / sqrt(N) of white residuals.
+/// Source: boxjenkins1970, sec. 8.2; bounds z / sqrt(N) of white residuals.
 ResidualCorrelation residualCorrelation(const DataSet& data,
                                         const Eigen::Ref<const Vector>& residual,
                                         const ValidationParams& params);

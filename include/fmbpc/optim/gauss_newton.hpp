@@ -1,5 +1,5 @@
 // Least squares of any smooth function inside linear limits, by sequential quadratic programming:
-// Gauss-Newton steps, damped (Levenberg 1944, Marquardt 1963), each a QP with the limits.
+// Gauss-Newton steps, damped (levenberg1944, marquardt1963), each a QP with the limits.
 #pragma once
 
 #include <functional>

@@ -16,7 +16,7 @@ struct LeastSquaresSolution {
 };
 
 /// Collects rows [x' y] into the triangle R of their QR factorisation (never the normal equations).
-/// Source: Golub and Van Loan, Matrix Computations (2013), sec. 6.5.4 (QR updating by rows).
+/// Source: golub2013, sec. 6.5.4 (QR updating by rows).
 class LeastSquares {
  public:
   explicit LeastSquares(Eigen::Index unknowns);

@@ -1,7 +1,7 @@
 // Particle swarm: minimises any function inside bounds, without derivatives; the same seed gives
-// the same answer. Source: Kennedy and Eberhart (1995); inertia that falls: Shi and Eberhart
-// (1998); inertia w0 - gbest/pbest of each particle: Taieb, Soltani and Chaari (2017), eq. 20. The
-// constant inertia 0.9 with C = 1.8 of Mekki and Saad does not converge.
+// the same answer. Source: kennedy1995; inertia that falls:
+// shi1998; inertia w0 - gbest/pbest of each particle: taieb2017, eq. 20. The
+// constant inertia 0.9 with C = 1.8 of mekki does not converge.
 #pragma once
 
 #include <cstdint>

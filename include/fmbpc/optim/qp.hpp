@@ -1,6 +1,6 @@
 // Dense convex quadratic programmes of the size a controller meets, solved by a dual active-set
-// method (Goldfarb and Idnani 1983) with warm start and no allocation after construction; inside
-// proximal-point iterations (Rockafellar 1976) where the Hessian is only semidefinite.
+// method (goldfarb1983) with warm start and no allocation after construction; inside
+// proximal-point iterations (rockafellar1976) where the Hessian is only semidefinite.
 #pragma once
 
 #include <cstdint>

@@ -19,8 +19,8 @@ struct RlsParams {
 /// Minimises sum_t f^(T-t) w_t (y_t - theta' x_t)^2 + f^T (theta - theta_0)' P(0)^-1 (theta -
 /// theta_0), one sample at a time. P = S S' is kept as its square root S (Potter's form), so it
 /// stays positive semidefinite whatever the rounding. Scale the columns of x to about 1: the bound
-/// is one number for all of them. Source: Astrom and Wittenmark, Adaptive Control (1995), sec. 2.2;
-/// Potter's update: Bierman (1977), sec. V.3.
+/// is one number for all of them. Source: astrom1995, sec. 2.2;
+/// Potter's update: bierman1977, sec. V.3.
 class RecursiveLeastSquares {
  public:
   /// @throws InputError naming the field.

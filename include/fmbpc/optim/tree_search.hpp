@@ -48,7 +48,7 @@ struct TreeResult {
 /// Depth first, children in order of their bound. A node is left out if its bound exceeds the best
 /// cost known, so that the result equals that of enumeration: the lowest cost and, where sequences
 /// cost the same to the last bit, the first of them in lexicographic order.
-/// Source: Karer, Music, Skrjanc, Zupancic (2007), sections 4.1-4.4; the bound by the cost to go is
+/// Source: karer2007, sections 4.1-4.4; the bound by the cost to go is
 /// an addition.
 class TreeSearch {
  public:

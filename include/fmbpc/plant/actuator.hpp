@@ -47,7 +47,7 @@ class Actuator {
   void moveTo(VectorRef target);
 
   ActuatorParams params_;
-  Vector applied_, wanted_, previous_;
+  Vector applied_, commanded_, previous_;
   int missed_{};
   std::uint32_t clips_{};
 };

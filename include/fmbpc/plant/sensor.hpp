@@ -1,8 +1,8 @@
 // What an instrument makes of the quantity it measures: lags, a dead time, samples of its own,
 // noise, a range, and the fault of standing still.
 //
-// Source of the classes: Rieger et al. (2003), Alex et al. (2008), Benchmark Simulation Model
-// no. 1.
+// Source of the classes: rieger2003,
+// alex2008.
 #pragma once
 
 #include <cstdint>

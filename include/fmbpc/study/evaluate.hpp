@@ -1,8 +1,8 @@
 // The benchmark's own indices of a recorded run of BSM1: quality of the effluent, cost of
 // operation, violations of the limits.
 //
-// Source: Alex et al. (2008), Benchmark Simulation Model no. 1, chapter on performance assessment;
-// the weights of Copp (2002) on request.
+// Source: alex2008, chapter on performance assessment;
+// the weights of copp2002 on request.
 #pragma once
 
 #include <string>

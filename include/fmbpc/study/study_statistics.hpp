@@ -26,7 +26,7 @@ struct PairStatistics {
   std::size_t pairs{};
   double wins{};
   double share{};                       ///< wins / pairs
-  double lower{}, upper{};              ///< confidence interval of the share (Wilson 1927)
+  double lower{}, upper{};              ///< confidence interval of the share (wilson1927)
   double median_ratio{};                ///< of cost / cost of the other
   double ratio_lower{}, ratio_upper{};  ///< confidence interval of that median (order statistics)
 };
@@ -38,7 +38,7 @@ struct StudyStatistics {
 
 StudyStatistics statisticsOf(const StudyPlan& plan, const StudyResult& result);
 
-/// Quantile p of sorted values, linear between them (type 7 of Hyndman and Fan 1996).
+/// Quantile p of sorted values, linear between them (type 7 of hyndman1996).
 double quantileOf(const std::vector<double>& sorted, double p);
 struct Interval {
   double lower{}, upper{};

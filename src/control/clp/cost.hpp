@@ -1,4 +1,4 @@
-// Quadratic cost of the closed-loop paradigm in the inputs (Vallejo 2022, eqs. 12-14): Hessian by
+// Quadratic cost of the closed-loop paradigm in the inputs (vallejo2021b, eqs. 12-14): Hessian by
 // the recursion of block Toeplitz matrices, gradient by one backward pass of the adjoint.
 #pragma once
 

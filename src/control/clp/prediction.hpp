@@ -1,4 +1,4 @@
-// The stacked prediction of the closed-loop paradigm (Vallejo 2022, eqs. 4-11, solved for the
+// The stacked prediction of the closed-loop paradigm (vallejo2021b, eqs. 4-11, solved for the
 // inputs): pulse responses of states, outputs and law, and the free response, each by one recursion
 // over the horizon.
 #pragma once

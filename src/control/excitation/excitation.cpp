@@ -183,7 +183,7 @@ ExcitationController::ExcitationController(ExcitationParams params, InputLimits 
     : limits_(std::move(limits)),
       feedback_(params.feedback),
       signal_(std::move(start_input)),
-      wanted_(signal_),
+      unclipped_(signal_),
       no_reference_(Vector::Constant(static_cast<Eigen::Index>(plant.outputs.size()),
                                      std::numeric_limits<double>::quiet_NaN())) {
   const auto n_u = static_cast<Eigen::Index>(plant.inputs.size());
@@ -202,12 +202,12 @@ void ExcitationController::reset(const Measurement& /*start*/) {}
 void ExcitationController::step(const Measurement& now, const SetpointSource& setpoint,
                                 ControllerOutput& output) {
   for (ExcitationStream& stream : streams_) signal_[stream.input()] = stream.at(now.header.step);
-  wanted_ = signal_;
+  unclipped_ = signal_;
   for (const ExcitationFeedback& f : feedback_)
-    wanted_[f.input] += f.gain * (setpoint.present()[f.output] - now.outputs[f.output]);
-  output.input = wanted_;
+    unclipped_[f.input] += f.gain * (setpoint.present()[f.output] - now.outputs[f.output]);
+  output.input = unclipped_;
   limits_.clip(output.input, now.input_applied);
-  output.source = output.input == wanted_ ? ActionSource::kBase : ActionSource::kClipped;
+  output.source = output.input == unclipped_ ? ActionSource::kBase : ActionSource::kClipped;
   output.reference = feedback_.empty() ? no_reference_ : setpoint.present();
   output.predictive = false;
   output.ok = true;

@@ -1,5 +1,5 @@
-// The fuzzy model-based predictive law. Source: Vallejo 2019 eqs. 19-37; the prediction form is
-// Vallejo 2022 eqs. 1-10.
+// The fuzzy model-based predictive law. Source: vallejo2019, eqs. 19-37; the prediction form is
+// vallejo2021b, eqs. 1-10.
 #include "fmbpc/control/fmbpc/law.hpp"
 
 #include <memory>

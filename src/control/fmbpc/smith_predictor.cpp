@@ -1,4 +1,4 @@
-// Source: Blazic and Skrjanc 2007, eqs. 13, 14, 23.
+// Source: blazic2007, eqs. 13, 14, 23.
 #include "control/fmbpc/smith_predictor.hpp"
 
 #include <utility>

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 
 namespace fpc {
 namespace {
@@ -11,8 +12,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double kDifference = 1e-5;  // relative, of finite differences
-
-Index countOf(const std::vector<SignalInfo>& signals) { return static_cast<Index>(signals.size()); }
 
 }  // namespace
 
@@ -36,7 +35,7 @@ HorizonMpc::HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo
   signals_.emplace_back("plan_effort", 0.0);
 }
 
-void HorizonMpc::believe(std::unique_ptr<SampleModel> model) {
+void HorizonMpc::predictWith(std::unique_ptr<SampleModel> model) {
   cost_ = std::make_unique<PlanCost>(*model, params_);
   model_ = std::move(model);
   state_ = next_ = moved_ = Vector::Zero(model_->stateSize());

@@ -28,7 +28,7 @@ Nmpc::Nmpc(const NmpcParams& params, const InputLimits& limits, const PlantInfo&
                   range().size() * params.horizon.move_steps,
               range().size() * (params.horizon.move_steps - 1), params.solver) {
   params.validate(static_cast<Index>(plant.outputs.size()), range().size());
-  believe(std::move(model));
+  predictWith(std::move(model));
   const Index n = cost().planSize(), n_u = range().size();
   scaled_ = trial_ = Vector::Zero(n);
   box_.x_lower = Vector::Zero(n);

@@ -25,7 +25,8 @@ std::unique_ptr<Controller> makeNmpc(const NmpcParams& params, const ControllerC
 }
 
 const bool kRegistered = registerController<NmpcParams>(
-    {{"nmpc", "nonlinear predictive control on the plant's own equations: a rival told the truth"},
+    {{"nmpc",
+      "nonlinear predictive control on the plant's own equations: a baseline told the truth"},
      &readNmpc,
      &makeNmpc});
 

@@ -29,7 +29,7 @@ SwarmMpc::SwarmMpc(const SwarmMpcParams& params, const InputLimits& limits, cons
       swarm_(lower_, upper_, swarm_params_) {}
 
 void SwarmMpc::setModel(const TsModel& model) {
-  believe(std::make_unique<FuzzySampleModel>(model));
+  predictWith(std::make_unique<FuzzySampleModel>(model));
 }
 
 PlanFound SwarmMpc::search(const Measurement& now, Vector& plan) {

@@ -100,10 +100,10 @@ double HybridEvolution::bandCost(Index sample) const {
   double cost = 0.0;
   for (Index i = 0; i < params_.weight_tracking.size(); ++i) {
     if (params_.weight_tracking[i] == 0.0) continue;
-    const double wanted = (*reference_)(i, sample);
+    const double asked = (*reference_)(i, sample);
     double error = 0.0;
-    if (highest_ >= 0) error = std::max(error, wanted - high_[model_.outputState(i)]);
-    if (lowest_ >= 0) error = std::max(error, low_[model_.outputState(i)] - wanted);
+    if (highest_ >= 0) error = std::max(error, asked - high_[model_.outputState(i)]);
+    if (lowest_ >= 0) error = std::max(error, low_[model_.outputState(i)] - asked);
     cost += params_.weight_tracking[i] * error * error;
   }
   return cost;

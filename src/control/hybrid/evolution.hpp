@@ -7,7 +7,7 @@
 
 namespace fpc {
 
-/// A level is a block of Z samples. Costs: Karer 2007, eqs. 27-29, 44, 45.
+/// A level is a block of Z samples. Costs: karer2007, eqs. 27-29, 44, 45.
 class HybridEvolution final : public TreeProblem {
  public:
   HybridEvolution(HybridMpcParams params, InputLimits limits, const TsModel& model);

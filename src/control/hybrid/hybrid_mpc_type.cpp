@@ -2,6 +2,7 @@
 // follow each other, what they cost.
 #include <cmath>
 
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/control/hybrid/hybrid_mpc.hpp"
 #include "fmbpc/control/registry.hpp"
@@ -14,11 +15,9 @@ using Eigen::Index;
 constexpr double kSame = 1e-9;
 constexpr std::size_t kMostInputs = 10000;
 
-Index count(const std::vector<std::string>& names) { return static_cast<Index>(names.size()); }
-
 /// Values by name; NaN where a name is absent: any value.
 Vector readPattern(YamlSection& item, const std::vector<std::string>& names) {
-  Vector values = Vector::Constant(count(names), std::nan(""));
+  Vector values = Vector::Constant(countOf(names), std::nan(""));
   for (Index i = 0; i < values.size(); ++i)
     item.number(names[static_cast<std::size_t>(i)], values[i], kFinite);
   item.finish();
@@ -43,7 +42,7 @@ std::vector<Vector> readList(YamlSection& section, const std::vector<std::string
 /// Every combination of the levels of each input, the last one changing fastest.
 std::vector<Vector> readLevels(YamlSection& section, const std::vector<std::string>& names) {
   YamlSection levels = section.section("levels");
-  std::vector<Vector> inputs(1, Vector::Zero(count(names)));
+  std::vector<Vector> inputs(1, Vector::Zero(countOf(names)));
   for (std::size_t i = 0; i < names.size(); ++i) {
     std::vector<double> values;
     levels.numbers(names[i], values, kFinite);
@@ -70,7 +69,7 @@ Matrix readChoices(YamlSection& section, const std::vector<std::string>& names) 
   if (inputs.empty()) inputs = combined;
   std::vector<Vector> forbidden;
   for (auto& item : section.list("forbidden")) forbidden.push_back(readPattern(item, names));
-  Matrix choices(count(names), static_cast<Index>(inputs.size()));
+  Matrix choices(countOf(names), static_cast<Index>(inputs.size()));
   Index kept = 0;
   for (const Vector& input : inputs) {
     bool allowed = true;
@@ -85,7 +84,7 @@ void readTransitions(YamlSection& section, const std::vector<std::string>& names
                      std::vector<ForbiddenTransition>& transitions) {
   for (auto& item : section.list("forbidden_transitions")) {
     ForbiddenTransition t;
-    t.from = t.to = Vector::Constant(count(names), std::nan(""));
+    t.from = t.to = Vector::Constant(countOf(names), std::nan(""));
     item.byName("from", t.from, names, kFinite);
     item.byName("to", t.to, names, kFinite);
     item.finish();

@@ -1,4 +1,4 @@
-// The fuzzy optimal predictive law. Source: Taieb, Soltani and Chaari 2017, eqs. 7-14, with the
+// The fuzzy optimal predictive law. Source: taieb2017, eqs. 7-14, with the
 // disturbance estimate, horizons and move weights that make it free of offset.
 #include "fmbpc/control/optimal/law.hpp"
 

@@ -47,7 +47,7 @@ struct AdaptivePi::State {
   Gains in_use{};
   std::array<int, 2> refused{};  // samples, of each output
   std::array<bool, 2> learned{};
-  std::array<double, 2> applied{}, wanted{};  // inputs: from rest; absolute, before the limits
+  std::array<double, 2> applied{}, unclipped{};  // inputs: from rest; absolute, before the limits
   bool adapting{true}, transfer{false}, started{false};
   int waiting{};     // samples until anything is learned: the lags do not know the past
   int experience{};  // samples learned since the start
@@ -192,7 +192,8 @@ void AdaptivePi::integrate(const ControllerOutput& output) {
     const double sent = output.input[s.params.loops[i].input];
     State::Loop& loop = s.loops[i];
     const double push = loop.kp * loop.error;
-    const bool held_back = (s.wanted[i] > sent && push > 0.0) || (s.wanted[i] < sent && push < 0.0);
+    const bool held_back =
+        (s.unclipped[i] > sent && push > 0.0) || (s.unclipped[i] < sent && push < 0.0);
     if (!held_back && std::isfinite(loop.next_integral)) loop.integral = loop.next_integral;
   }
 }
@@ -215,21 +216,21 @@ void AdaptivePi::propose(const Measurement& now, const SetpointSource& setpoint)
     const int y = s.params.loops[i].output;
     loop.error = setpoint.present()[y] - now.outputs[y];
     loop.next_integral = loop.integral + loop.error * s.dt;
-    s.wanted[i] = loop.kp * (loop.error + loop.next_integral / loop.ti);
+    s.unclipped[i] = loop.kp * (loop.error + loop.next_integral / loop.ti);
   }
   std::array<double, 2> cross{};
   if (s.decoupling) {
-    s.decoupling->apply(s.wanted);
+    s.decoupling->apply(s.unclipped);
     cross = s.decoupling->cross();
   }
   for (const std::size_t i : kLoops) {
     State::Loop& loop = s.loops[i];
     if (s.transfer) {
-      s.wanted[i] = s.applied[i] + cross[i];
-      if (loop.kp != 0.0) loop.next_integral = (s.wanted[i] / loop.kp - loop.error) * loop.ti;
+      s.unclipped[i] = s.applied[i] + cross[i];
+      if (loop.kp != 0.0) loop.next_integral = (s.unclipped[i] / loop.kp - loop.error) * loop.ti;
       loop.integral = loop.next_integral;
     }
-    s.wanted[i] += loop.rest_input - cross[i];
+    s.unclipped[i] += loop.rest_input - cross[i];
   }
   s.transfer = false;
 }
@@ -238,14 +239,14 @@ void AdaptivePi::send(const Measurement& now, ControllerOutput& output) {
   State& s = *state_;
   output.input = now.input_applied;
   output.predictive = false;
-  output.ok = std::isfinite(s.wanted[0]) && std::isfinite(s.wanted[1]);
+  output.ok = std::isfinite(s.unclipped[0]) && std::isfinite(s.unclipped[1]);
   output.remark = output.ok ? "" : "the control law overflowed: input held";
   for (const std::size_t i : kLoops)
-    if (std::isfinite(s.wanted[i])) output.input[s.params.loops[i].input] = s.wanted[i];
+    if (std::isfinite(s.unclipped[i])) output.input[s.params.loops[i].input] = s.unclipped[i];
   s.limits.clip(output.input, now.input_applied);
   output.source = ActionSource::kBase;
   for (const std::size_t i : kLoops)
-    if (output.input[s.params.loops[i].input] != s.wanted[i])
+    if (output.input[s.params.loops[i].input] != s.unclipped[i])
       output.source = ActionSource::kClipped;
   if (!output.ok) output.source = ActionSource::kHeld;
 }

@@ -93,12 +93,12 @@ void InvertedDecoupling::setGains(const std::array<std::array<double, 2>, 2>& ga
   for (std::size_t i = 0; i < 2; ++i) paths_[i].ratio = gains[i][1 - i] / gains[i][i];
 }
 
-std::array<double, 2> InvertedDecoupling::apply(const std::array<double, 2>& wanted) {
-  std::array<double, 2> input = wanted;
+std::array<double, 2> InvertedDecoupling::apply(const std::array<double, 2>& asked) {
+  std::array<double, 2> input = asked;
   const std::size_t first = paths_[0].whole >= 1 ? 0 : 1;  // the one that does not wait
   for (const std::size_t i : {first, 1 - first}) {
     cross_[i] = paths_[i].ratio * paths_[i].at(input[1 - i]);
-    input[i] = wanted[i] - cross_[i];
+    input[i] = asked[i] - cross_[i];
   }
   return input;
 }

@@ -109,7 +109,7 @@ void PiController::reset(const Measurement& start) {
     if (retuned_) params_.loops[i].kp = states_[i].next_kp;
     if (retuned_) params_.loops[i].ki_per_h = states_[i].next_ki_per_h;
     LoopState& state = states_[i];
-    state.integral = state.error = state.wanted = state.next_kp = state.next_ki_per_h = 0.0;
+    state.integral = state.error = state.unclipped = state.next_kp = state.next_ki_per_h = 0.0;
     if (state.terms) state.terms->reset();
     const bool from_bias = start.header.step == 0 && params_.loops[i].start == "bias";
     states_[i].transfer_pending = !from_bias;
@@ -154,10 +154,10 @@ void PiController::propose(const PiLoop& loop, const Measurement& now,
   const bool curve = !loop.terms.static_input.empty();
   double proportional = (curve ? 0.0 : loop.bias) + loop.kp * state.error;
   if (state.terms) proportional += state.terms->sum(now, loop.reverse ? -1.0 : 1.0);
-  state.wanted = proportional + state.integral;
+  state.unclipped = proportional + state.integral;
   if (!state.transfer_pending || !std::isfinite(proportional)) return;
-  state.wanted = now.input_applied[loop.input];  // not by the sum: free of rounding
-  state.integral = state.wanted - proportional;
+  state.unclipped = now.input_applied[loop.input];  // not by the sum: free of rounding
+  state.integral = state.unclipped - proportional;
   state.transfer_pending = false;
 }
 
@@ -171,13 +171,14 @@ void PiController::integrate(const PiLoop& loop, const Measurement& now, double 
   const double move = limits_.move[loop.input];
   double change = loop.ki_per_h * state.error * sample_time_h_;
   if (loop.anti_windup == "clamp") {
-    const bool above = state.wanted > insideBounds(limits_, loop.input, before + move);
-    const bool below = state.wanted < insideBounds(limits_, loop.input, before - move);
+    const bool above = state.unclipped > insideBounds(limits_, loop.input, before + move);
+    const bool below = state.unclipped < insideBounds(limits_, loop.input, before - move);
     if ((above && change > 0.0) || (below && change < 0.0)) change = 0.0;
   } else if (loop.anti_windup == "tracking") {
     // dt / Tt with Tt = kp / ki; without a proportional part the clipped part comes back at once
     const double rate = std::abs(loop.ki_per_h) * sample_time_h_;
-    change += (sent - state.wanted) * (rate < std::abs(loop.kp) ? rate / std::abs(loop.kp) : 1.0);
+    change +=
+        (sent - state.unclipped) * (rate < std::abs(loop.kp) ? rate / std::abs(loop.kp) : 1.0);
   }
   const double next = state.integral + change;
   if (std::isfinite(next)) state.integral = next;
@@ -202,8 +203,8 @@ void PiController::step(const Measurement& now, const SetpointSource& setpoint,
   running_ = true;
   for (std::size_t i = 0; i < states_.size(); ++i) {
     propose(params_.loops[i], now, setpoint, states_[i]);
-    if (std::isfinite(states_[i].wanted))
-      output.input[params_.loops[i].input] = states_[i].wanted;
+    if (std::isfinite(states_[i].unclipped))
+      output.input[params_.loops[i].input] = states_[i].unclipped;
     else
       output.ok = false;
   }
@@ -212,7 +213,7 @@ void PiController::step(const Measurement& now, const SetpointSource& setpoint,
   for (std::size_t i = 0; i < states_.size(); ++i) {
     const PiLoop& loop = params_.loops[i];
     const double sent = output.input[loop.input];
-    if (sent != states_[i].wanted) output.source = ActionSource::kClipped;
+    if (sent != states_[i].unclipped) output.source = ActionSource::kClipped;
     integrate(loop, now, sent, states_[i]);
     signals_[i].second = states_[i].integral;
   }

@@ -85,8 +85,8 @@ void LoadSupervisor::step(const Measurement& now, const SetpointSource& setpoint
   const double limit = params_.integral_limit;
   if (transfer_pending_ && std::isfinite(direct))
     integral_ = std::clamp(now.input_applied[params_.input] - direct, -limit, limit);
-  const double wanted = direct + integral_;
-  if (!std::isfinite(wanted)) {
+  const double unclipped = direct + integral_;
+  if (!std::isfinite(unclipped)) {
     output.ok = false;
     output.source = ActionSource::kHeld;
     output.remark = "the control law overflowed: input held";
@@ -97,11 +97,11 @@ void LoadSupervisor::step(const Measurement& now, const SetpointSource& setpoint
   const bool handed = transfer_pending_ && std::abs(integral_) < limit;
   transfer_pending_ = false;
   double& u = output.input[params_.input];
-  u = handed ? u : wanted;
+  u = handed ? u : unclipped;
   limits_.clip(output.input, now.input_applied);
-  if (u != wanted && !handed) output.source = ActionSource::kClipped;
+  if (u != unclipped && !handed) output.source = ActionSource::kClipped;
   const double rate =
-      params_.gain * error / params_.integral_time_h + (u - wanted) / params_.tracking_time_h;
+      params_.gain * error / params_.integral_time_h + (u - unclipped) / params_.tracking_time_h;
   integral_ = std::clamp(integral_ + sample_time_h_ * rate, -limit, limit);
   signals_[0].second = integral_;
   signals_[1].second = (direct - params_.gain * error);

@@ -1,6 +1,6 @@
 // Activated sludge model no. 1 in the five tanks of BSM1: rates of conversion. Private to the room.
 //
-// Source: Henze et al. (1987), Activated Sludge Model No. 1; values at 15 C: Alex et al. (2008),
+// Source: henze1987; values at 15 C: alex2008,
 // Benchmark Simulation Model no. 1. Symbols as there.
 #pragma once
 

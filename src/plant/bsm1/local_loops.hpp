@@ -6,7 +6,7 @@
 //
 // The nitrate setpoint may follow the nitrate of the last tank: setpoint + slope (S_NO5 - 12).
 //
-// Source: Alex et al. (2008): class A sensor (oxygen), class B0 (nitrate), tables of the default
+// Source: alex2008: class A sensor (oxygen), class B0 (nitrate), tables of the default
 // controllers.
 #pragma once
 

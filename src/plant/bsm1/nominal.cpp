@@ -1,6 +1,6 @@
 // BSM1 at rest under its constant influent (30, 69.5, 51.2, 202.32, 28.17, 0, 0, 0, 0, 31.56, 6.95,
 // 10.59, 7 at 18446 m3/d), from 1500 days of simulation: valves as in the benchmark's open loop;
-// the default control; air 1 and nitrate 2 g/m3. The first is printed in Alex et al. (2008).
+// the default control; air 1 and nitrate 2 g/m3. The first is printed in alex2008.
 #include "plant/bsm1/description.hpp"
 
 namespace fpc::bsm1 {

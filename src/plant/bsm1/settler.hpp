@@ -1,6 +1,6 @@
 // Secondary settler of BSM1: ten layers in one dimension, nothing reacts. Private to the room.
 //
-// Source: Takacs, Patry and Nolasco (1991), settling velocity; Copp (2002), layers and fluxes.
+// Source: takacs1991, settling velocity; copp2002, layers and fluxes.
 #pragma once
 
 #include <array>

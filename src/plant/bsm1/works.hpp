@@ -1,7 +1,7 @@
 // The works of BSM1 as differential equations: tanks, settler and the flows between them. Private
 // to the room.
 //
-// Source: Copp (2002), The COST simulation benchmark; Alex et al. (2008). Layout, state order:
+// Source: copp2002; alex2008. Layout, state order:
 // docs/bsm1.md.
 #pragma once
 

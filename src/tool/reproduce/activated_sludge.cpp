@@ -1,8 +1,8 @@
-// The stability tables of the activated-sludge thesis (Vallejo Llamas 2021, article 2).
+// The stability tables of the activated-sludge thesis (vallejo2021a).
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/analysis/closed_loop.hpp"
+#include "analysis/paper_loop.hpp"
 #include "tool/reproduce/experiment.hpp"
 
 namespace fpc::tool {

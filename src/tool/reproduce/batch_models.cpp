@@ -1,4 +1,4 @@
-// The identified model of the batch reactor (Karer et al. 2007, section 5): figures 3 to 5 and eqs.
+// The identified model of the batch reactor (karer2007, section 5): figures 3 to 5 and eqs.
 // 35, 40, 41, 46, 47. The plant's parameters are not printed; ours were fitted to the printed
 // models, so that their agreement is partly circular.
 #include <algorithm>

@@ -1,4 +1,4 @@
-// The batch reactor with discrete valves (Karer et al. 2007, section 6): figures 6 to 14. The paper
+// The batch reactor with discrete valves (karer2007, section 6): figures 6 to 14. The paper
 // prints curves, no scores: what it says of them is tested; all figures here are means over four
 // initial states.
 #include <cmath>
@@ -85,16 +85,16 @@ Rows valvesPlain() {
 
 /// Figures 12 to 14: the hybrid fuzzy model against the hybrid linear one.
 Rows compared(std::size_t window, Direction fuzzy) {
-  const Pooled &mine = runs(kPriced), &rival = runs(kLinear);
+  const Pooled &mine = runs(kPriced), &baseline = runs(kLinear);
   const std::string at = std::string(" at ") + kWindows[window];
   return {
-      check("mean error, fuzzy - linear" + at, mine.error[window] - rival.error[window], fuzzy, 0.0,
-            "K",
+      check("mean error, fuzzy - linear" + at, mine.error[window] - baseline.error[window], fuzzy,
+            0.0, "K",
             fuzzy == Direction::kHigher ? "the figure: fuzzy higher" : "the figure: fuzzy lower"),
       check("|mean error|, fuzzy / linear" + at,
-            std::abs(mine.error[window]) / std::abs(rival.error[window]), Direction::kLower, 1.0,
+            std::abs(mine.error[window]) / std::abs(baseline.error[window]), Direction::kLower, 1.0,
             "-", "the paper: nearer to the recipe"),
-      check("rms, fuzzy / linear" + at, mine.rms[window] / rival.rms[window], Direction::kLower,
+      check("rms, fuzzy / linear" + at, mine.rms[window] / baseline.rms[window], Direction::kLower,
             1.0, "-", "the paper: the fuzzy model is the better one")};
 }
 

@@ -1,4 +1,4 @@
-// The Wood-Berry column (Mekki and Saad): the indices of tables 4 and 5, and figures 6 to 8 with
+// The Wood-Berry column (mekki): the indices of tables 4 and 5, and figures 6 to 8 with
 // their changed gains.
 #include <algorithm>
 #include <array>

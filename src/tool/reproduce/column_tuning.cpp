@@ -1,4 +1,4 @@
-// The Wood-Berry column (Mekki and Saad): gains by recursive least squares (table 1), the swarm and
+// The Wood-Berry column (mekki): gains by recursive least squares (table 1), the swarm and
 // its tuning (tables 2 and 3).
 #include <cmath>
 #include <random>

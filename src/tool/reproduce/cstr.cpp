@@ -1,4 +1,4 @@
-// The control experiments of the stirred-tank reactor (Blazic and Skrjanc 2007, section 5): the
+// The control experiments of the stirred-tank reactor (blazic2007, section 5): the
 // four printed sums of (y_r - y)^2, the printed optimum of the PI, and what they leave out.
 #include <cmath>
 #include <functional>
@@ -60,15 +60,15 @@ Rows scores(const std::string& loop, double pi, double fmbpc) {
   other("sum, FMBPC with NARX states, model A", loop, "the same law without the extra sample");
   other("sum, NARX, identified model", loop + "_own", "from our own record");
   other("sum, aiming at y_r(k + H + delay)", loop + "_preview", "an option of ours");
-  const auto against = [&](const char* what, const std::string& mine, const std::string& rival,
+  const auto against = [&](const char* what, const std::string& mine, const std::string& baseline,
                            const char* note) {
-    rows.push_back(check(what, score(mine) / score(rival), Direction::kLower, 1.0, "-", note));
-    rows.back().behind = mine + ", " + rival;
+    rows.push_back(check(what, score(mine) / score(baseline), Direction::kLower, 1.0, "-", note));
+    rows.back().behind = mine + ", " + baseline;
   };
   against("FMBPC as printed, model B / PI", loop + "_literal_b", loop + "_pi",
           "the paper: better than the PI");
   against("NARX, model A / gain-scheduled PI", loop, loop + "_gspi",
-          "the honest rival, not in the paper");
+          "the honest baseline, not in the paper");
   rows.push_back(check("NARX, model A / what the dead time leaves to any law",
                        score(loop) / boundOf(loop), Direction::kHigher, 1.0, "-",
                        "a lower bound without preview, ours"));

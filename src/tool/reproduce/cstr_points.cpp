@@ -1,4 +1,4 @@
-// The stirred-tank reactor (Blazic and Skrjanc 2007), sections 2 to 4: steady states, the sets and
+// The stirred-tank reactor (blazic2007), sections 2 to 4: steady states, the sets and
 // coefficients of the fuzzy model, the propositions on the horizon.
 #include <algorithm>
 #include <cmath>

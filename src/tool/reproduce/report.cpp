@@ -125,7 +125,9 @@ std::string remarkOf(const ReproduceRow& row) {
 }
 
 std::string reasonOf(const Rows& rows) {
-  const auto first = [&](auto&& wanted) { return std::find_if(rows.begin(), rows.end(), wanted); };
+  const auto first = [&](auto&& condition) {
+    return std::find_if(rows.begin(), rows.end(), condition);
+  };
   auto at = first([](const ReproduceRow& row) { return isShort(row.verdict()); });
   if (at != rows.end()) return at->quantity + ": " + remarkOf(*at);
   at = first([](const ReproduceRow& row) { return !row.incomparable.empty(); });

@@ -21,9 +21,9 @@ DataSet dataOf(const RunRecord& run, const Structure& structure) {
   const auto& samples = run.samples;
   const auto rows = static_cast<Eigen::Index>(samples.size()) - 1;
   Matrix values(rows, 0);
-  const auto take = [&](const std::vector<StructureSignal>& wanted,
+  const auto take = [&](const std::vector<StructureSignal>& signals,
                         const std::vector<SignalInfo>& known, auto&& value) {
-    for (const auto& signal : wanted) {
+    for (const auto& signal : signals) {
       const Eigen::Index i = indexOf(known, signal.info.name, run.loop);
       values.conservativeResize(rows, values.cols() + 1);
       for (Eigen::Index k = 0; k < rows; ++k)

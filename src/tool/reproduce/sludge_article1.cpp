@@ -1,4 +1,4 @@
-// The control experiments of article 1 of the activated-sludge thesis (Vallejo Llamas 2021): cases
+// The control experiments of article 1 of the activated-sludge thesis (vallejo2021thesis): cases
 // A to D.
 #include <cmath>
 #include <cstdio>
@@ -28,18 +28,18 @@ std::string strangeData(const std::string& output, double paper, const Values& h
   return text;
 }
 
-Values percentSaved(const Values& mine, const Values& rival) {
-  const Values left = ratio(mine, rival);
+Values percentSaved(const Values& mine, const Values& baseline) {
+  const Values left = ratio(mine, baseline);
   std::vector<double> saved;
   for (const double value : left.all()) saved.push_back(100.0 * (1.0 - value));
   return saved;
 }
 
-/// FMBPC beside the paper's figures; `rival` is the loop without _pi_s.
-Rows table11(const std::string& name, const std::string& loop, const std::string& rival,
+/// FMBPC beside the paper's figures; `baseline` is the loop without _pi_s.
+Rows table11(const std::string& name, const std::string& loop, const std::string& baseline,
              const Printed& paper) {
-  const Values s = iseOver(loop, "s"), x = iseOver(loop, "x"), pi_s = iseOver(rival + "_pi_s", "s"),
-               pi_x = iseOver(rival + "_pi_s", "x");
+  const Values s = iseOver(loop, "s"), x = iseOver(loop, "x"),
+               pi_s = iseOver(baseline + "_pi_s", "s"), pi_x = iseOver(baseline + "_pi_s", "x");
   const std::string no_s = strangeData("s", paper.pi_s, pi_s),
                     no_x = strangeData("x", paper.pi_x, pi_x);
   const Judged equal{0.15}, lower{0.15, Direction::kLower}, higher{0.1, Direction::kHigher};
@@ -48,7 +48,7 @@ Rows table11(const std::string& name, const std::string& loop, const std::string
                        const Judged& judged, const std::string& reason) {
     ReproduceRow row = figure(name + ", " + what, printed, std::move(here), unit, judged);
     row.incomparable = reason;
-    row.behind = loop + ", " + rival + "_pi_s";
+    row.behind = loop + ", " + baseline + "_pi_s";
     rows.push_back(std::move(row));
   };
   add("ISE of s, FMBPC", paper.s, s, "(mg/l)^2", lower, no_s);
@@ -58,7 +58,7 @@ Rows table11(const std::string& name, const std::string& loop, const std::string
   add("ISE of s, FMBPC / PI on s", paper.s / paper.pi_s, ratio(s, pi_s), "-", lower, no_s);
   add("ISE of x saved against PI on s", 100.0 * (1.0 - paper.x / paper.pi_x), percentSaved(x, pi_x),
       "%", higher, no_x);
-  rows.push_back(ahead(loop, rival + "_pi_x", "x", "the honest rival, not in the paper"));
+  rows.push_back(ahead(loop, baseline + "_pi_x", "x", "the honest baseline, not in the paper"));
   return rows;
 }
 
@@ -143,12 +143,12 @@ Rows inputBoth(const std::string& loop) {
                        inputOver(loop + "_pi_s", largestInput), "m3/h", kUnpublished)};
 }
 
-Experiment entry(int number, const char* shows, const std::string& loop, bool rival,
+Experiment entry(int number, const char* shows, const std::string& loop, bool baseline,
                  std::function<Rows()> rows) {
   char name[40];
   std::snprintf(name, sizeof name, "asp1_figure_%02d", number);
   return {name,           kPaper,   "figure " + std::to_string(number),
-          shows,          "curves", rival ? loop + ", " + loop + "_pi_s" : loop,
+          shows,          "curves", baseline ? loop + ", " + loop + "_pi_s" : loop,
           std::move(rows)};
 }
 

@@ -1,4 +1,4 @@
-// The control experiments of articles 2 and 3 of the activated-sludge thesis (Vallejo Llamas 2021):
+// The control experiments of articles 2 and 3 of the activated-sludge thesis (vallejo2021thesis):
 // cases 1 to 3, and FMBPC/CLP.
 #include <cmath>
 
@@ -27,8 +27,8 @@ Rows case3() {
   Rows rows{substrateBeside("asp_case3"), followsReference("asp_case3", 750.0),
             ahead("asp_case3", "asp_case2", "s", "the paper: s higher than in case 2",
                   Direction::kHigher)};
-  for (const char* rival : {"asp_case3_pi_s", "asp_case3_pi_x"})
-    rows.push_back(ahead("asp_case3", rival, "x", "the paper runs no PI in case 3"));
+  for (const char* baseline : {"asp_case3_pi_s", "asp_case3_pi_x"})
+    rows.push_back(ahead("asp_case3", baseline, "x", "the paper runs no PI in case 3"));
   return rows;
 }
 
@@ -59,14 +59,14 @@ Rows case2PiX() {
                 Direction::kLower, 0.0, "m3/h", "the paper: it saturates at zero")};
 }
 
-/// Case 1 with our models and beside rivals that were tuned for what the index counts.
-Rows rivals() {
+/// Case 1 with our models and beside baselines that were tuned for what the index counts.
+Rows baselines() {
   Rows rows;
   for (const char* loop : {"asp_case1", "asp_case1_own", "asp_best"})
     rows.push_back(ahead(loop, "asp_case1_pi_x_tuned", "x",
                          "a PI on x tuned for ISE on seeds 1-4, not in the paper"));
-  for (const char* rival : {"asp_case1_pi_s", "asp_case1_pi_x"})
-    rows.push_back(ahead("asp_case1_own", rival, "x", "with a model of our own"));
+  for (const char* baseline : {"asp_case1_pi_s", "asp_case1_pi_x"})
+    rows.push_back(ahead("asp_case1_own", baseline, "x", "with a model of our own"));
   return rows;
 }
 
@@ -103,8 +103,8 @@ Rows clp(std::size_t group) {
         check(std::string("samples at a bound, ") + loops[wider] + " - " + loops[wider + 1],
               activeOver(loops[wider]).median() - activeOver(loops[wider + 1]).median(),
               Direction::kLower, 0.0, "%", "the paper: the wider the less saturated"));
-  for (const char* rival : {"_pi_s", "_pi_x"})
-    rows.push_back(ahead(loops[0], loops[0] + std::string(rival), "x",
+  for (const char* baseline : {"_pi_s", "_pi_x"})
+    rows.push_back(ahead(loops[0], loops[0] + std::string(baseline), "x",
                          "the paper runs no PI beside FMBPC/CLP"));
   return rows;
 }
@@ -130,9 +130,9 @@ const bool kRegistered =
          entry(10, "case 2, FMBPC and PI on x", "asp_case2, asp_case2_pi_x", case2PiX),
          entry(11, "case 3, FMBPC", "asp_case3", case3)}) &&
     registerExperiments(
-        {{"asp2_rivals", kArticle2, "beyond the paper: case 1, own models and tuned rivals",
+        {{"asp2_baselines", kArticle2, "beyond the paper: case 1, own models and tuned baselines",
           "what a tuned PI and our best loop reach", "none", "asp_case1_pi_x_tuned, asp_best",
-          rivals},
+          baselines},
          {"asp3_table_1", kArticle3, "table 1", "the six experiments: constraints kept", "settings",
           "asp_clp_1a ... asp_clp_2c", kept},
          {"asp3_figure_4", kArticle3, "figure 4", "case 1: bounds of 200, 100 and 5 m3/h", "curves",

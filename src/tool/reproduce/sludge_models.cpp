@@ -1,4 +1,4 @@
-// The identified models of the activated-sludge thesis (Vallejo Llamas 2021, article 1): free-run
+// The identified models of the activated-sludge thesis (vallejo2021thesis, article 1): free-run
 // VAF of cases A to D over many records. Its records were never published; those of asp_excite and
 // asp_excite_validation with other seeds stand for them.
 #include <algorithm>

@@ -5,8 +5,8 @@
 namespace fpc::tool {
 namespace {
 
-std::string of(const std::string& what, const std::string& loop, const std::string& rival) {
-  return what + ", " + loop + " / " + rival;
+std::string of(const std::string& what, const std::string& loop, const std::string& baseline) {
+  return what + ", " + loop + " / " + baseline;
 }
 
 ReproduceRow behind(ReproduceRow row, const std::string& loops) {
@@ -16,22 +16,22 @@ ReproduceRow behind(ReproduceRow row, const std::string& loops) {
 
 }  // namespace
 
-Values iseRatio(const std::string& loop, const std::string& rival, const std::string& output) {
-  return ratio(iseOver(loop, output), iseOver(rival, output));
+Values iseRatio(const std::string& loop, const std::string& baseline, const std::string& output) {
+  return ratio(iseOver(loop, output), iseOver(baseline, output));
 }
 
-ReproduceRow ahead(const std::string& loop, const std::string& rival, const std::string& output,
+ReproduceRow ahead(const std::string& loop, const std::string& baseline, const std::string& output,
                    const std::string& note, Direction side) {
-  return behind(check(of("ISE of " + output, loop, rival), iseRatio(loop, rival, output), side, 1.0,
-                      "-", note),
-                loop + ", " + rival);
+  return behind(check(of("ISE of " + output, loop, baseline), iseRatio(loop, baseline, output),
+                      side, 1.0, "-", note),
+                loop + ", " + baseline);
 }
 
-ReproduceRow alike(const std::string& loop, const std::string& rival, const std::string& output,
+ReproduceRow alike(const std::string& loop, const std::string& baseline, const std::string& output,
                    const std::string& note) {
-  return behind(check(of("ISE of " + output, loop, rival), iseRatio(loop, rival, output),
+  return behind(check(of("ISE of " + output, loop, baseline), iseRatio(loop, baseline, output),
                       Direction::kEqual, 1.0, "-", note + "; within 15 %", 0.15),
-                loop + ", " + rival);
+                loop + ", " + baseline);
 }
 
 Values trackingOver(const std::string& loop, const std::string& output) {

@@ -13,12 +13,12 @@ inline constexpr char kUnpublished[] =
     "curves only; the paper's influent record was never published";
 
 /// ISE of one output, one loop against another, seed by seed.
-Values iseRatio(const std::string& loop, const std::string& rival, const std::string& output);
+Values iseRatio(const std::string& loop, const std::string& baseline, const std::string& output);
 /// Statement: the ratio is at most 1 (or at least, kHigher).
-ReproduceRow ahead(const std::string& loop, const std::string& rival, const std::string& output,
+ReproduceRow ahead(const std::string& loop, const std::string& baseline, const std::string& output,
                    const std::string& note, Direction side = Direction::kLower);
 /// Statement: the ratio is 1 within 15 %.
-ReproduceRow alike(const std::string& loop, const std::string& rival, const std::string& output,
+ReproduceRow alike(const std::string& loop, const std::string& baseline, const std::string& output,
                    const std::string& note);
 /// Root mean square of an output about its reference trajectory [its unit].
 Values trackingOver(const std::string& loop, const std::string& output);

@@ -1,4 +1,4 @@
-// The printed rules of case D of the activated-sludge thesis (Vallejo Llamas 2021, article 1,
+// The printed rules of case D of the activated-sludge thesis (vallejo2021thesis, article 1,
 // tables 5 to 8 and figure 6) beside those of our record. Clusters are matched by their centres
 // first; where ours lie elsewhere, coefficients cannot be compared.
 #include <algorithm>

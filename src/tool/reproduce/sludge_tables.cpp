@@ -1,4 +1,4 @@
-// The printed models FM_1 and FM_2 of the activated-sludge thesis (Vallejo Llamas 2021, article 2,
+// The printed models FM_1 and FM_2 of the activated-sludge thesis (vallejo2021a,
 // tables 3 to 6, A1, A2), as transcribed in config/model, and what they do on our plant.
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// The linear example (Taieb, Soltani and Chaari 2017, eqs. 4-6): how table 1's four columns come
+// The linear example (taieb2017, eqs. 4-6): how table 1's four columns come
 // out with both inputs solved together, and why eq. 6 as printed cannot have given them.
 #include <Eigen/Eigenvalues>
 #include <cmath>

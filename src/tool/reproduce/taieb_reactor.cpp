@@ -1,4 +1,4 @@
-// The reactor with two inputs (Taieb, Soltani and Chaari 2017, eqs. 26-28, tables 5 and 6): what
+// The reactor with two inputs (taieb2017, eqs. 26-28, tables 5 and 6): what
 // the printed setpoints would need, and what three controllers reach on setpoints within reach.
 #include <algorithm>
 #include <cmath>
@@ -126,9 +126,9 @@ Rows table(Eigen::Index output) {
   }
   const double w[2][2] = {{48.94, 47.28}, {48.14, 49.07}};
   const double own = inputEnergy(kAlgorithms[2].loop, kTrueAnalyser);
-  for (const int rival : {0, 1})
-    add(std::string("W: energy of FOMPC-APSO / ") + kAlgorithms[rival].name, w[output][rival],
-        100.0 * own / inputEnergy(kAlgorithms[rival].loop, kTrueAnalyser), "%");
+  for (const int baseline : {0, 1})
+    add(std::string("W: energy of FOMPC-APSO / ") + kAlgorithms[baseline].name, w[output][baseline],
+        100.0 * own / inputEnergy(kAlgorithms[baseline].loop, kTrueAnalyser), "%");
   return rows;
 }
 
@@ -144,10 +144,10 @@ Rows followed(Eigen::Index output) {
                          "on our setpoints; 1 % of a step is ours"));
     rows.back().behind = kAlgorithms[i].loop;
   }
-  for (const std::size_t rival : {0U, 1U})
+  for (const std::size_t baseline : {0U, 1U})
     rows.push_back(
-        check(std::string("10 Es + Ov + Ts + Tr, FOMPC-APSO / ") + kAlgorithms[rival].name,
-              cost[2] / cost[rival], Direction::kLower, 1.0, "-",
+        check(std::string("10 Es + Ov + Ts + Tr, FOMPC-APSO / ") + kAlgorithms[baseline].name,
+              cost[2] / cost[baseline], Direction::kLower, 1.0, "-",
               "the paper: the best of the three; on our setpoints"));
   return rows;
 }
@@ -158,9 +158,9 @@ Rows effort(Eigen::Index input) {
     return summaryOf(a.loop, kTrueAnalyser).inputs.at(static_cast<std::size_t>(input)).energy;
   };
   Rows rows;
-  for (const std::size_t rival : {0U, 1U})
-    rows.push_back(check(std::string("energy, FOMPC-APSO / ") + kAlgorithms[rival].name,
-                         energy(kAlgorithms[2]) / energy(kAlgorithms[rival]), Direction::kLower,
+  for (const std::size_t baseline : {0U, 1U})
+    rows.push_back(check(std::string("energy, FOMPC-APSO / ") + kAlgorithms[baseline].name,
+                         energy(kAlgorithms[2]) / energy(kAlgorithms[baseline]), Direction::kLower,
                          1.0, "-", "the paper: a more acceptable effort; on our setpoints"));
   return rows;
 }
@@ -185,7 +185,7 @@ Rows figure10() {
 }
 
 /// What an independent program reaches on the same setpoints, P = 5, M = 1.
-Rows rivals() {
+Rows baselines() {
   const char* note = "what an independent program reaches, 10 % allowed";
   Rows rows;
   const double reference[] = {0.268, 2.93, 0.269};
@@ -215,8 +215,8 @@ const bool kRegistered = registerExperiments(
      entry("taieb_figure_9", "figure 9", "effort of qc", "curves", [] { return effort(1); }),
      entry("taieb_figure_10", "figure 10", "Ca with a biased analyser", "curves", figure10),
      entry("taieb_equation_28", "eq. 28", "steady inputs of the setpoints", "8 numbers", pairs),
-     entry("taieb_reactor_rivals", "beyond the paper: reactor, independent program",
-           "cost of the steps", "none", rivals)});
+     entry("taieb_reactor_baselines", "beyond the paper: reactor, independent program",
+           "cost of the steps", "none", baselines)});
 
 }  // namespace
 }  // namespace fpc::tool

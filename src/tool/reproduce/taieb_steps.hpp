@@ -1,4 +1,4 @@
-// Step indices of the loops of Taieb, Soltani and Chaari (2017), averaged, for several experiments.
+// Step indices of the loops of taieb2017, averaged, for several experiments.
 #pragma once
 
 #include <string>

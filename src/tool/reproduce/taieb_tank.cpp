@@ -1,4 +1,4 @@
-// The surge tank (Taieb, Soltani and Chaari 2017, eqs. 21-25, table 3): what the printed equations
+// The surge tank (taieb2017, eqs. 21-25, table 3): what the printed equations
 // do, what the pump allows to any controller, and what the three controllers reach here.
 #include <Eigen/Eigenvalues>
 #include <cmath>
@@ -68,9 +68,9 @@ Rows table3() {
   char note[120];
   std::snprintf(note, sizeof note, "Tr >= %.2f s for any controller with this pump", least);
   for (const Algorithm& a : kAlgorithms) {
-    // a rival that is better here than there is no merit of the paper's method
-    const bool rival = &a != &kAlgorithms[2];
-    const Direction side = rival ? Direction::kEqual : Direction::kLower;
+    // a baseline that is better here than there is no merit of the paper's method
+    const bool baseline = &a != &kAlgorithms[2];
+    const Direction side = baseline ? Direction::kEqual : Direction::kLower;
     const Judged lower{0.1, side}, absolute{0.1, side, 0.005};
     const StepIndices up = stepsOf(a.loop, 0, 1.0).front();
     const std::string of = std::string(a.name) + ", ";
@@ -114,10 +114,10 @@ Rows figure4() {
                          "the paper: the level follows; 1 % of a step is ours"));
     rows.back().behind = kAlgorithms[i].loop;
   }
-  for (const std::size_t rival : {0U, 1U})
+  for (const std::size_t baseline : {0U, 1U})
     rows.push_back(check(
-        std::string("10 Es + Ov + Ts + Tr, FOMPC-APSO / ") + kAlgorithms[rival].name,
-        cost[2] / cost[rival], Direction::kLower, 1.0, "-", "the paper: the best of the three"));
+        std::string("10 Es + Ov + Ts + Tr, FOMPC-APSO / ") + kAlgorithms[baseline].name,
+        cost[2] / cost[baseline], Direction::kLower, 1.0, "-", "the paper: the best of the three"));
   return rows;
 }
 

@@ -1,4 +1,4 @@
-// The algebra of the closed-loop paradigm against textbook computations: Vallejo 2022, eqs. 9-14.
+// The algebra of the closed-loop paradigm against textbook computations: vallejo2021b, eqs. 9-14.
 #include "control/clp/fixture.hpp"
 
 #include <gtest/gtest.h>

@@ -20,14 +20,14 @@ FmbpcParams reactorParams(int delay_steps) {
   return params;
 }
 
-/// Inputs of a loop closed on a plant that is `model`, 0.1 -> 0.13 mol/l.
-std::vector<double> inputsOf(const FmbpcParams& params, const TsModel& believed,
+/// Inputs of a loop closed on a plant by the law with `model`, 0.1 -> 0.13 mol/l.
+std::vector<double> inputsOf(const FmbpcParams& params, const TsModel& model,
                              test::ModelPlant plant, std::uint32_t samples,
                              std::vector<double>* outputs = nullptr) {
-  const PlantInfo info = test::infoOf(believed);
+  const PlantInfo info = test::infoOf(model);
   SetpointSource setpoint = test::setpointOf(info, one(0.13));
   FmbpcLaw law(params, test::wideLimits(1), info);
-  law.setModel(believed);
+  law.setModel(model);
   std::vector<double> inputs;
   test::start(law, plant, setpoint, samples, [&](const Measurement& m, const ControllerOutput& o) {
     inputs.push_back(o.input[0]);
@@ -61,7 +61,7 @@ TEST(FmbpcDelay, OnItsOwnModelTheDelayChangesNothingButTheTimeOfTheMeasurement) 
   }
 }
 
-/// Eq. (27) of Blazic and Skrjanc with states [y(k), y(k-1)], written out in plain loops.
+/// blazic2007, eq. 27, with states [y(k), y(k-1)], written out in plain loops.
 class PlainLaw {
  public:
   PlainLaw(const TsModel& model, int horizon, int lead, double y, double u)

@@ -118,8 +118,8 @@ TEST(PublishedLaw, EqualsErrorOverM2AlongARun) {
                                   : now.header.step < 150 ? 1900.0
                                                           : 2080.0;
           const double decay = std::pow(0.96, horizon);
-          const double wanted = decay * reference + (1.0 - decay) * setpoint;
-          const double e = wanted - y + z - power * z - sum * (local.load * q_i + local.rest);
+          const double asked = decay * reference + (1.0 - decay) * setpoint;
+          const double e = asked - y + z - power * z - sum * (local.load * q_i + local.rest);
           const double u = e / (local.p * sum);
           EXPECT_NEAR(output.prediction.input_base_unclipped[0], u,
                       1e-8 * std::max(1.0, std::abs(u)));
@@ -160,7 +160,7 @@ TEST(PublishedLaw, EqualsTheGeneralLawWithOnlyTheLastOutputWeighted) {
 
 /// The extended-input form of the paper with sums in place of (A - I)^-1, in long double: M_a
 /// (u(k), u(k-1))' = rhs.
-double extendedInput(const PredictiveAction& now, const Vector& wanted, int horizon) {
+double extendedInput(const PredictiveAction& now, const Vector& asked, int horizon) {
   using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
   const Long A = now.A.topLeftCorner(2, 2).cast<long double>();
   Long B(2, 2);
@@ -175,7 +175,7 @@ double extendedInput(const PredictiveAction& now, const Vector& wanted, int hori
     power = A * power;
   }
   const Long M_a = before * B + sum_before * B * P;
-  const Long rhs = (wanted - now.offset_output).cast<long double>() -
+  const Long rhs = (asked - now.offset_output).cast<long double>() -
                    power * now.state.head(2).cast<long double>() -
                    sum * now.offset_state.head(2).cast<long double>();
   return static_cast<double>(M_a.fullPivLu().solve(rhs)(0, 0));

@@ -1,5 +1,5 @@
 // The plans of the nonlinear controller beside those of an unrelated solver: NLopt's sequential
-// quadratic programming (Kraft 1994) on the same cost and limits.
+// quadratic programming (kraft1994) on the same cost and limits.
 #include <nlopt.h>
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The two-input example of Taieb, Soltani and Chaari 2017, eqs. 4-5, and its weights of table 1.
+// The two-input example of taieb2017, eqs. 4-5, and its weights of table 1.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// The quadratic law against least squares on the simulated model, and the linear example of Taieb,
-// Soltani and Chaari 2017 (eqs. 4-6, table 1), whose radii were computed independently.
+// The quadratic law against least squares on the simulated model, and the linear example of
+// taieb2017 (eqs. 4-6, table 1), whose radii were computed independently.
 #include "fmbpc/control/optimal/quadratic_law.hpp"
 
 #include <gtest/gtest.h>

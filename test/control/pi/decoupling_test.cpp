@@ -13,14 +13,14 @@ namespace {
 using Pair = std::array<double, 2>;
 
 /// y of the column for c, with what the decoupling gives taken `sign` times (1 is right).
-std::vector<Pair> answer(const FopdtMatrix& m, double dt, const std::vector<Pair>& wanted,
+std::vector<Pair> answer(const FopdtMatrix& m, double dt, const std::vector<Pair>& asked,
                          double sign = 1.0) {
   InvertedDecoupling decoupling(m, dt);
   std::vector<LagResponse> lags;
   for (const auto& row : m)
     for (const auto& element : row) lags.emplace_back(element, dt);
   std::vector<Pair> outputs;
-  for (const Pair& c : wanted) {
+  for (const Pair& c : asked) {
     decoupling.apply(c);
     Pair u = c;
     for (std::size_t i = 0; i < 2; ++i) u[i] -= sign * decoupling.cross()[i];

@@ -1,4 +1,4 @@
-// PI with gains that follow the output, and the path that rivals are scored by.
+// PI with gains that follow the output, and the path that baselines are scored by.
 #include <gtest/gtest.h>
 
 #include <limits>

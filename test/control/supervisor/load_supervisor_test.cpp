@@ -74,7 +74,7 @@ TEST_F(Supervisor, AtABoundTheIntegralIsPulledBack) {
   law.reset(sample(0, 5.0, 20.0, 10.0, 0.0));
   EXPECT_EQ(send(sample(0, 5.0, 20.0, 10.0, 0.0)), 4.0);
   EXPECT_EQ(output.source, ActionSource::kClipped);
-  // wanted 8, sent 4: dI = 0.5 (8/4 + (4-8)/2) = 0
+  // unclipped 8, sent 4: dI = 0.5 (8/4 + (4-8)/2) = 0
   EXPECT_NEAR(law.signals()[0].second, 0.0, 1e-14);
 }
 

@@ -73,8 +73,8 @@ class ClosedLoopParadigm {
   std::unique_ptr<Workspace> work_;
 };
 
-/// P of Phi' P Phi - P + Phi' Q Phi + K' R K = 0, Phi = A - B K, for cost (12) of Vallejo 2022 (the
-/// sum already counts x(k+n_c)). By doubling; returns false if Phi is not stable.
+/// P of Phi' P Phi - P + Phi' Q Phi + K' R K = 0, Phi = A - B K, for cost (12) of vallejo2021b,
+/// (the sum already counts x(k+n_c)). By doubling; returns false if Phi is not stable.
 bool terminalWeight(MatrixRef Phi, MatrixRef Q, MatrixRef KRK, Matrix& P);
 
 }  // namespace fpc

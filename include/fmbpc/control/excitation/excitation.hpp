@@ -1,7 +1,7 @@
 // Experiments for identification: each input follows a signal of its own that does not depend on
 // what the plant does; a plant that is unstable where it is to be known needs feedback beside it
-// (Ljung, System Identification (1999), sec. 13.4). Pseudo-random binary signals from shift
-// registers of maximal length (Golomb 1967), random levels held for random times, given staircases.
+// (ljung1999, sec. 13.4). Pseudo-random binary signals from shift
+// registers of maximal length (golomb1967), random levels held for random times, given staircases.
 #pragma once
 
 #include <cstdint>
@@ -104,7 +104,7 @@ class ExcitationController final : public Controller {
   InputLimits limits_;
   std::vector<ExcitationFeedback> feedback_;
   Vector signal_;  // start input, overwritten by the streams
-  Vector wanted_;
+  Vector unclipped_;
   Vector no_reference_;
   std::vector<ExcitationStream> streams_;
 };

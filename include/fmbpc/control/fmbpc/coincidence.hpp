@@ -13,7 +13,7 @@ namespace fpc {
 ///   u = F e + V u(k-1),           e = what y(k+H) lacks when u = 0.
 /// Rows of outputs without weight stay zero. Row by row, so that a diverging submodel that an
 /// output does not depend on cannot reach it. No allocation after construction; work is fixed by
-/// the sizes and H. Source: Vallejo 2019 eqs. 19-28; Richalet and O'Donovan 2009 for the single
+/// the sizes and H. Source: vallejo2019, eqs. 19-28; richalet2009 for the single
 /// variable. Symbols: P, S n_y n_x, M n_y n_u, F n_u n_y, V n_u n_u
 class CoincidenceGains {
  public:

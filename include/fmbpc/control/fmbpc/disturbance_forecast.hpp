@@ -8,7 +8,7 @@ namespace fpc {
 
 /// d(k+i) = d(k+i-P) + pole^i (d(k) - d(k-P)), from past measurements only; until a period has been
 /// seen, and without one (P = 0), d(k) is held. Source: the seasonal naive forecast with an error
-/// of first order, Box and Jenkins 1976, chapter 9. With a memory the forecast is believed as far
+/// of first order, boxjenkins1970, chapter 9. With a memory the forecast is trusted as far
 /// as it was right lately: d(k) + w (forecast - d(k)), w in [0, 1] of each disturbance the least
 /// squares weight of forecasts made a fifth of the horizon ago, squares fading over memory_steps.
 /// An event that does not come again weighs as much as it was large. No allocation after

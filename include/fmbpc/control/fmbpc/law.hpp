@@ -50,7 +50,7 @@ struct FmbpcParams : PredictiveLawParams {
 
 const SettingsTable<FmbpcParams>& fmbpcSettings();  ///< what may change in a run
 
-/// The law of Vallejo 2019 eqs. 19-37, with past inputs in the state:
+/// The law of vallejo2019, eqs. 19-37, with past inputs in the state:
 ///   M = C S_H B,  e = y_r(k+H) - y + y_m - C A^H xi - C S_H g,
 ///   published: u = e_x / m2 (row of the last output; one input; the other outputs and their
 ///   setpoints play no part); general:   u = (M' W M + L)^-1 (M' W e + L u(k-1)).
@@ -59,7 +59,7 @@ const SettingsTable<FmbpcParams>& fmbpcSettings();  ///< what may change in a ru
 /// InputLimitedIlqr, DisturbanceForecast); the first is applied, the rest is handed to an optimizer
 /// as feedforward. delay_steps takes a transport delay out of the model: xi, A, B, C, g and H are
 /// then those of the undelayed process, and y_m in e is the output of the model with its delay,
-/// which runs beside it on the same applied inputs (Blazic and Skrjanc 2007, eqs. 17-27). With
+/// which runs beside it on the same applied inputs (blazic2007, eqs. 17-27). With
 /// realisation observer the late measurement corrects the state of its own time, and xi is that
 /// state run forward. A start in the middle of a run, a new model and a new tuning come without a
 /// bump (PredictiveLaw). If two models have the same lags, the measured past is handed over as

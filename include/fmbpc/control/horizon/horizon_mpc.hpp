@@ -41,7 +41,7 @@ class HorizonMpc : public Controller {
   /// @throws InputError naming the field.
   HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo& plant);
   /// Takes a model: the next step starts from rest at the measurement.
-  void believe(std::unique_ptr<SampleModel> model);
+  void predictWith(std::unique_ptr<SampleModel> model);
   /// Improves `plan`, which is inside the limits, for cost(). Its size stays.
   virtual PlanFound search(const Measurement& now, Vector& plan) = 0;
 

@@ -1,4 +1,4 @@
-// Nonlinear model predictive control with a model of any kind: a rival to the explicit laws.
+// Nonlinear model predictive control with a model of any kind: a baseline to the explicit laws.
 #pragma once
 
 #include "fmbpc/control/horizon/horizon_mpc.hpp"

@@ -1,4 +1,4 @@
-// What a controller that plans by simulation believes of a process: where it stands one sample
+// What a controller that plans by simulation knows of a process: where it stands one sample
 // later. A fuzzy model (FuzzySampleModel), or equations that the loop hands over.
 #pragma once
 

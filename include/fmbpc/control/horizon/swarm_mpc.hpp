@@ -1,5 +1,5 @@
-// Fuzzy predictive control whose moves a particle swarm finds anew in each sample: a rival to the
-// explicit laws, and a measure of what a search without derivatives costs.
+// Fuzzy predictive control whose moves a particle swarm finds anew in each sample: a baseline to
+// the explicit laws, and a measure of what a search without derivatives costs.
 #pragma once
 
 #include "fmbpc/control/horizon/horizon_mpc.hpp"
@@ -18,7 +18,7 @@ struct SwarmMpcParams {
 /// plans between the bounds, put inside the move limits before they are judged; the first one is
 /// the plan of the sample before, so that no sample is worse than going on. No allocation per
 /// sample. The swarm of sample k starts from a seed of its own, made of `swarm.seed` and k: same
-/// file, same answer. Source: as the rival of Taieb, Soltani and Chaari (2017), there after its
+/// file, same answer. Source: as the baseline of taieb2017, there after its
 /// reference 11.
 class SwarmMpc final : public HorizonMpc {
  public:

@@ -17,7 +17,7 @@ namespace fpc {
 
 class HybridEvolution;
 
-/// weight * u_before(previous block) * u_after(this block), once per block. Karer 2007, w2 of
+/// weight * u_before(previous block) * u_after(this block), once per block. karer2007, w2 of
 /// eq. 45.
 struct SwitchTerm {
   int before{}, after{};  ///< inputs
@@ -66,7 +66,7 @@ struct HybridMpcParams {
 /// one choice raises all outputs most, one lowers them most and both maps grow with the outputs,
 /// the least error that any sequence must make is that of the band between these two trajectories.
 /// Elsewhere the bound is `cost`. The result is the same, with fewer nodes.
-/// Source: Karer, Music, Skrjanc, Zupancic (2007), section 4, eqs. 21-32, 44, 45.
+/// Source: karer2007, section 4, eqs. 21-32, 44, 45.
 /// signals(): choice (index), search_cost, search_nodes of the last decision.
 class HybridMpc final : public Controller {
  public:

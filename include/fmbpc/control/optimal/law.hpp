@@ -53,8 +53,8 @@ const SettingsTable<FuzzyOptimalParams>& fuzzyOptimalSettings();  ///< what may 
 /// so there is no offset, whatever P, M and the move weights are. With `observe` y(k), the past
 /// outputs and d are those of a ModelObserver, which knows how noisy the measurements are. Added to
 /// the outputs of the recursion instead ("outside") it leaves an offset for P > 1, as does any
-/// weight towards an input target that is not the right one. The input is sum_g w_g u_g (Taieb
-/// 2017, eq. 12), w_g the firing weights at the measured antecedents (u(k) replaced by u(k-1)); all
+/// weight towards an input target that is not the right one. The input is sum_g w_g u_g (taieb2017,
+/// eq. 12), w_g the firing weights at the measured antecedents (u(k) replaced by u(k-1)); all
 /// outputs must share one premise partition (see splitRules()). Gains are computed when a model or
 /// a tuning comes; both take over without a bump (PredictiveLaw). The measured past is kept if the
 /// lags are the same. The prediction is that of the blended model and law.
@@ -73,9 +73,9 @@ class FuzzyOptimalLaw final : public PredictiveLaw {
   /// From the next sample on, without a bump. @throws InputError, then nothing changes.
   void retune(FuzzyOptimalTuning tuning);
   const FuzzyOptimalTuning& tuning() const { return params_.tuning; }  ///< the latest
-  /// Tuning and reference poles under the keys of a loop file. Weights and targets: one number for all, one for
-  /// each signal, or NAME=number; groups for each rule are separated by semicolons, a single group
-  /// is for all rules.
+  /// Tuning and reference poles under the keys of a loop file. Weights and targets: one number for
+  /// all, one for each signal, or NAME=number; groups for each rule are separated by semicolons, a
+  /// single group is for all rules.
   Settings settings() const override;
   bool retune(const Settings& settings) override;
 

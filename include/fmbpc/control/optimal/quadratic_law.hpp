@@ -1,5 +1,5 @@
 // The explicit quadratic law of one affine model: the best moves over a prediction horizon without
-// limits, as gains that are computed once. Source: Taieb, Soltani and Chaari 2017, eqs. 1-6 and 13,
+// limits, as gains that are computed once. Source: taieb2017, eqs. 1-6 and 13,
 // there for one step; longer horizons and moves as in dynamic matrix control.
 #pragma once
 

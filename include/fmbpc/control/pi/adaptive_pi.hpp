@@ -1,5 +1,5 @@
 // Two PI loops behind an inverted decoupling, retuned from gains that are learned on line, inside
-// guards. With adaptation off: the decentralised PI of Mekki and Saad, made measurable.
+// guards. With adaptation off: the decentralised PI of mekki, made measurable.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // Inverted decoupling of two loops: what the other input does to an output is taken out before it
-// happens. Sampled, causal, without algebraic loop. Source: Garrido, Vazquez and Morilla (2010);
-// Mekki and Saad, eq. 19, with the sign that decouples: subtracted.
+// happens. Sampled, causal, without algebraic loop. Source: garrido2010;
+// mekki, eq. 19, with the sign that decouples: subtracted.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ class InvertedDecoupling {
   /// Gains of the model from now on; the dynamics stay. No allocation.
   void setGains(const std::array<std::array<double, 2>, 2>& gains);
   /// u(k) for c(k): what is to be subtracted is in cross(). Nothing is remembered but by record().
-  std::array<double, 2> apply(const std::array<double, 2>& wanted);
+  std::array<double, 2> apply(const std::array<double, 2>& asked);
   const std::array<double, 2>& cross() const { return cross_; }  ///< D12 u_2, D21 u_1 at k
 
  private:

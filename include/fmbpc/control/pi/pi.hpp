@@ -1,5 +1,5 @@
-// PI control, one loop per input: the rival that must be beaten honestly.
-// Source: Vallejo 2019 section 5.2.2.
+// PI control, one loop per input: the baseline that must be beaten honestly.
+// Source: vallejo2019, section 5.2.2.
 #pragma once
 
 #include <optional>
@@ -40,7 +40,7 @@ struct PiLoop {
 struct PiParams {
   std::vector<PiLoop> loops;
   /// n_y: the published reference is the first-order path to the setpoint with these poles, so that
-  /// rivals are judged by the same path; e stays setpoint - y. Empty: the setpoint itself.
+  /// baselines are judged by the same path; e stays setpoint - y. Empty: the setpoint itself.
   Vector reference_pole;
   /// @throws InputError naming the field: indices, finite gains, words, two loops on one input.
   void validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d = 0) const;
@@ -69,9 +69,9 @@ class PiController final : public Controller {
 
  private:
   struct LoopState {
-    double integral{};  // ki int e dt, in units of the input
-    double error{};     // of this sample, times the scheduled gain
-    double wanted{};    // u before the limits
+    double integral{};   // ki int e dt, in units of the input
+    double error{};      // of this sample, times the scheduled gain
+    double unclipped{};  // u before the limits
     bool transfer_pending{false};
     double next_kp{}, next_ki_per_h{};  // of the latest retuning
     double aim{};                       // what the error is taken from

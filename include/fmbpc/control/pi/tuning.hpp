@@ -16,7 +16,7 @@ struct PiTuning {
 };
 
 /// kp = (tau + theta/2) / (K (lambda + theta/2)), Ti = tau + theta/2: internal model control with a
-/// first-order Pade dead time (Rivera, Morari and Skogestad 1986). lambda: time constant asked for.
+/// first-order Pade dead time (rivera1986). lambda: time constant asked for.
 /// @throws InputError unless lambda > 0.
 PiTuning imcTuning(const Fopdt& element, double lambda_min);
 
@@ -26,7 +26,7 @@ struct StepQuality {
   double settling_time{};                                                ///< into 2 % for good, min
   double overshoot{};                                                    ///< fraction of the step
   double iae{};                                                          ///< integral of |e|, min
-  double cost() const { return rise_time + settling_time + overshoot; }  ///< J of Mekki and Saad
+  double cost() const { return rise_time + settling_time + overshoot; }  ///< J of mekki
 };
 struct StepTest {
   double duration_min{60.0};

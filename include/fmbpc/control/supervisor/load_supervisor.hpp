@@ -1,5 +1,5 @@
 // A supervisor of one output: PI control with the measured load ahead of it, as good plants run
-// their aeration. The honest rival of the predictive laws on BSM1.
+// their aeration. The honest baseline of the predictive laws on BSM1.
 #pragma once
 
 #include <string>

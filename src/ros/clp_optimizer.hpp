@@ -12,14 +12,14 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
-#include "fmbpc/ros/health_reporter.hpp"
-#include "fmbpc/ros/listener_gate.hpp"
-#include "fmbpc/ros/node.hpp"
-#include "fmbpc/ros/plant_gate.hpp"
-#include "fmbpc/ros/ready.hpp"
-#include "fmbpc/ros/signal_publishers.hpp"
-#include "fmbpc/ros/summary_listener.hpp"
-#include "fmbpc/ros/wall_throttle.hpp"
+#include "ros/health_reporter.hpp"
+#include "ros/listener_gate.hpp"
+#include "ros/node.hpp"
+#include "ros/plant_gate.hpp"
+#include "ros/ready.hpp"
+#include "ros/signal_publishers.hpp"
+#include "ros/summary_listener.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "fmbpc/control/session.hpp"
-#include "fmbpc/ros/node.hpp"
+#include "ros/node.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,5 @@
-// What a sample costs under the fuzzy optimal law and its rivals: the law, nonlinear MPC, a swarm.
+// What a sample costs under the fuzzy optimal law and its baselines: the law, nonlinear MPC, a
+// swarm.
 #include <benchmark/benchmark.h>
 
 #include <string>

@@ -1,5 +1,5 @@
 // Other people's solvers of quadratic programmes behind one interface, each linked if CMake has
-// found it (FMBPC_RIVALS: a folder with include/ and lib/).
+// found it (FMBPC_BASELINES: a folder with include/ and lib/).
 #pragma once
 
 #include <memory>
@@ -10,9 +10,9 @@
 
 namespace fpc::bench {
 
-class RivalQp {
+class BaselineQp {
  public:
-  virtual ~RivalQp() = default;
+  virtual ~BaselineQp() = default;
   /// Converts the problem into the solver's own layout and takes all memory; not timed.
   virtual void prepare(const QpProblem& problem) = 0;
   /// Solves the prepared problem without knowledge of the solve before. @return whether it says so
@@ -23,18 +23,18 @@ class RivalQp {
   virtual Vector x() const = 0;
 };
 
-struct RivalType {
+struct BaselineType {
   std::string name;
-  std::unique_ptr<RivalQp> (*make)();
+  std::unique_ptr<BaselineQp> (*make)();
 };
 
-inline std::vector<RivalType>& rivals() {
-  static std::vector<RivalType> all;
+inline std::vector<BaselineType>& baselines() {
+  static std::vector<BaselineType> all;
   return all;
 }
 
-inline bool registerRival(const std::string& name, std::unique_ptr<RivalQp> (*make)()) {
-  rivals().push_back({name, make});
+inline bool registerBaseline(const std::string& name, std::unique_ptr<BaselineQp> (*make)()) {
+  baselines().push_back({name, make});
   return true;
 }
 

@@ -1,16 +1,16 @@
-// qpOASES (Ferreau et al. 2014): an online active-set method.
+// qpOASES (ferreau2014): an online active-set method.
 #include <qpOASES.hpp>
 
 #include <cmath>
 
-#include "rivals/rival_qp.hpp"
+#include "baselines/baseline_qp.hpp"
 
 namespace fpc::bench {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-class QpOases final : public RivalQp {
+class QpOases final : public BaselineQp {
  public:
   void prepare(const QpProblem& p) override {
     H_ = p.H;
@@ -65,8 +65,8 @@ class QpOases final : public RivalQp {
   bool solved_{};
 };
 
-const bool kRegistered = registerRival(
-    "qpOASES", []() -> std::unique_ptr<RivalQp> { return std::make_unique<QpOases>(); });
+const bool kRegistered = registerBaseline(
+    "qpOASES", []() -> std::unique_ptr<BaselineQp> { return std::make_unique<QpOases>(); });
 
 }  // namespace
 }  // namespace fpc::bench

@@ -15,13 +15,13 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/plant_session.hpp"
-#include "fmbpc/ros/equipment_frames.hpp"
-#include "fmbpc/ros/health_reporter.hpp"
-#include "fmbpc/ros/node.hpp"
-#include "fmbpc/ros/operator_keeper.hpp"
-#include "fmbpc/ros/plant_publishers.hpp"
-#include "fmbpc/ros/ready.hpp"
-#include "fmbpc/ros/wall_throttle.hpp"
+#include "ros/equipment_frames.hpp"
+#include "ros/health_reporter.hpp"
+#include "ros/node.hpp"
+#include "ros/operator_keeper.hpp"
+#include "ros/plant_publishers.hpp"
+#include "ros/ready.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 

@@ -15,10 +15,10 @@
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/record_store.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
-#include "fmbpc/ros/health_reporter.hpp"
-#include "fmbpc/ros/node.hpp"
-#include "fmbpc/ros/plant_gate.hpp"
-#include "fmbpc/ros/ready.hpp"
+#include "ros/health_reporter.hpp"
+#include "ros/node.hpp"
+#include "ros/plant_gate.hpp"
+#include "ros/ready.hpp"
 
 namespace fpc {
 

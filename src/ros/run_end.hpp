@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "fmbpc/ros/topics.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 

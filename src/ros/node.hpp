@@ -11,8 +11,8 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/authority.hpp"
-#include "fmbpc/ros/run_end.hpp"
-#include "fmbpc/ros/wall_throttle.hpp"
+#include "ros/run_end.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 

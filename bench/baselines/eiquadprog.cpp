@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "rivals/rival_qp.hpp"
+#include "baselines/baseline_qp.hpp"
 
 namespace fpc::bench {
 namespace {
 
-class Eiquadprog final : public RivalQp {
+class Eiquadprog final : public BaselineQp {
  public:
   void prepare(const QpProblem& p) override {
     H_ = p.H;
@@ -61,8 +61,8 @@ class Eiquadprog final : public RivalQp {
   eiquadprog::solvers::EiquadprogFast solver_;
 };
 
-const bool kRegistered = registerRival(
-    "eiquadprog", []() -> std::unique_ptr<RivalQp> { return std::make_unique<Eiquadprog>(); });
+const bool kRegistered = registerBaseline(
+    "eiquadprog", []() -> std::unique_ptr<BaselineQp> { return std::make_unique<Eiquadprog>(); });
 
 }  // namespace
 }  // namespace fpc::bench

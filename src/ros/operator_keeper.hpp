@@ -8,7 +8,7 @@
 
 #include <string>
 
-#include "fmbpc/ros/node.hpp"
+#include "ros/node.hpp"
 
 namespace fpc {
 

@@ -9,7 +9,7 @@
 
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/loop/health.hpp"
-#include "fmbpc/ros/diagnostics.hpp"
+#include "ros/diagnostics.hpp"
 
 namespace fpc {
 

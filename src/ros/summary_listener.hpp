@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "fmbpc/loop/health.hpp"
-#include "fmbpc/ros/node.hpp"
-#include "fmbpc/ros/topics.hpp"
+#include "ros/node.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 

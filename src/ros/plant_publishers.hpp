@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "fmbpc/plant/simulation.hpp"
-#include "fmbpc/ros/signal_publishers.hpp"
+#include "ros/signal_publishers.hpp"
 
 namespace fpc {
 

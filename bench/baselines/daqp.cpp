@@ -1,10 +1,10 @@
-// DAQP (Arnstrom, Bemporad, Axehill 2022): a dual active-set method, in C.
+// DAQP (arnstrom2022): a dual active-set method, in C.
 #include <api.h>
 #include <utils.h>
 
 #include <cmath>
 
-#include "rivals/rival_qp.hpp"
+#include "baselines/baseline_qp.hpp"
 
 namespace fpc::bench {
 namespace {
@@ -13,7 +13,7 @@ using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::Ro
 
 constexpr int kEverything = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | DAQP_UPDATE_v | DAQP_UPDATE_d;
 
-class Daqp final : public RivalQp {
+class Daqp final : public BaselineQp {
  public:
   ~Daqp() override { release(); }
 
@@ -85,8 +85,8 @@ class Daqp final : public RivalQp {
   bool ready_{};
 };
 
-const bool kRegistered =
-    registerRival("DAQP", []() -> std::unique_ptr<RivalQp> { return std::make_unique<Daqp>(); });
+const bool kRegistered = registerBaseline(
+    "DAQP", []() -> std::unique_ptr<BaselineQp> { return std::make_unique<Daqp>(); });
 
 }  // namespace
 }  // namespace fpc::bench

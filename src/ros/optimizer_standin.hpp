@@ -9,7 +9,7 @@
 
 #include "fmbpc/control/session.hpp"
 #include "fmbpc/loop/optimizer_watch.hpp"
-#include "fmbpc/ros/node.hpp"
+#include "ros/node.hpp"
 
 namespace fpc {
 

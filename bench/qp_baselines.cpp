@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "baselines/baseline_qp.hpp"
 #include "optim/mpc_qp_set.hpp"
 #include "optim/qp_problems.hpp"
 #include "pairs.hpp"
-#include "rivals/rival_qp.hpp"
 
 namespace fpc::bench {
 namespace {
@@ -59,10 +59,10 @@ std::string text(double value) {
   return buffer;
 }
 
-void compare(const Family& family, const RivalType& type, bool warm) {
+void compare(const Family& family, const BaselineType& type, bool warm) {
   std::vector<Ours> ours;
-  std::vector<std::unique_ptr<RivalQp>> theirs;
-  int solved = 0, solved_by_rival = 0;
+  std::vector<std::unique_ptr<BaselineQp>> theirs;
+  int solved = 0, solved_by_baseline = 0;
   double worst = 0.0;
   for (const QpProblem& p : family.problems) {
     ours.emplace_back(p);
@@ -73,15 +73,15 @@ void compare(const Family& family, const RivalType& type, bool warm) {
     const bool claims = theirs.back()->solve();
     const double error = errorOf(p, theirs.back()->x(), r.x);
     worst = std::max(worst, error);
-    solved_by_rival += claims && error <= 1e-6;
+    solved_by_baseline += claims && error <= 1e-6;
   }
   const auto count = std::to_string(family.problems.size());
   const std::string path = "QP " + family.name + (warm ? ", warm" : ", cold") + " (" +
                            std::to_string(solved) + " of " + count + " solved)";
-  const std::string rival = type.name + " (" + std::to_string(solved_by_rival) + " of " + count +
-                            ", error " + text(worst) + ")";
+  const std::string baseline = type.name + " (" + std::to_string(solved_by_baseline) + " of " +
+                               count + ", error " + text(worst) + ")";
   printPairs(
-      path, rival, family.aim,
+      path, baseline, family.aim,
       [&] {
         for (Ours& one : ours) one.solve(warm);
       },
@@ -124,7 +124,7 @@ std::vector<Family> families() {
 int main() {
   using namespace fpc::bench;
   for (const Family& family : families()) {
-    for (const RivalType& type : rivals()) {
+    for (const BaselineType& type : baselines()) {
       compare(family, type, false);
       if (type.make()->canWarm()) compare(family, type, true);
     }

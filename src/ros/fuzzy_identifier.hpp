@@ -17,11 +17,11 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/identifier_session.hpp"
-#include "fmbpc/ros/health_reporter.hpp"
-#include "fmbpc/ros/identification_worker.hpp"
-#include "fmbpc/ros/node.hpp"
-#include "fmbpc/ros/plant_gate.hpp"
-#include "fmbpc/ros/ready.hpp"
+#include "ros/health_reporter.hpp"
+#include "ros/identification_worker.hpp"
+#include "ros/node.hpp"
+#include "ros/plant_gate.hpp"
+#include "ros/ready.hpp"
 
 namespace fpc {
 
