@@ -3,12 +3,15 @@
 import filecmp
 import os
 import pathlib
-import socket
 import subprocess
+import sys
 import tempfile
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOP / "test" / "ros"))
+import ring  # noqa: E402
+
 LOOPS = {path.stem: path for path in sorted((TOP / "config" / "loop").rglob("*.yaml"))}
 ENVIRONMENT = f". {TOP}/scripts/env.sh; exec "
 
@@ -16,12 +19,6 @@ ENVIRONMENT = f". {TOP}/scripts/env.sh; exec "
 def run(command, **variables):
     return subprocess.run(["bash", "-c", ENVIRONMENT + command], env={**os.environ, **variables},
                           capture_output=True, text=True, timeout=600, check=False)
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("", 0))
-        return probe.getsockname()[1]
 
 
 @unittest.skipUnless(os.environ.get("FMBPC_LONG_TESTS"), "long run: scripts/test --long")
@@ -42,7 +39,7 @@ class EveryLoop(unittest.TestCase):
                         "heated_tank": 30, "bsm1_": 900}
         seconds = next((s for name, s in sample_times.items() if loop.startswith(name)), 720)
         duration = f"sampling.duration_h={480 * seconds / 3600}"
-        port = free_port()
+        port = ring.free_port()
         topics = run(f"roslaunch -p {port} fmbpc loop.launch loop:={loop} pace:=lockstep draw:=false "
                      f"set:='{duration}' out:={folder}/topics", ROS_MASTER_URI=f"http://localhost:{port}")
         process = run(f"rosrun fmbpc fmbpc run {loop} --set {duration} --no-plot --out {folder}/process")

@@ -9,10 +9,10 @@ import unittest
 
 import rospy
 import rostest
-from fmbpc.msg import ControlAction, NodeReady
+from fmbpc.msg import ControlAction, Measurement, NodeReady
 from fmbpc.srv import ManualInput
 from std_msgs.msg import String
-from std_srvs.srv import SetBool
+from std_srvs.srv import SetBool, Trigger
 
 import ring
 
@@ -27,9 +27,9 @@ def column(folder, name):
     return [float(row[key]) for row in rows if row[key]]
 
 
-def service(name, kind):
-    rospy.wait_for_service("/fmbpc_controller/" + name, ring.PATIENCE)
-    return rospy.ServiceProxy("/fmbpc_controller/" + name, kind)
+def service(name, kind, node="fmbpc_controller"):
+    rospy.wait_for_service(f"/{node}/{name}", ring.PATIENCE)
+    return rospy.ServiceProxy(f"/{node}/{name}", kind)
 
 
 class HybridHold(unittest.TestCase):
@@ -37,11 +37,20 @@ class HybridHold(unittest.TestCase):
         recorded, actions = ring.Listener("recorded", String), ring.Listener("control_action", ControlAction)
         hold, manual, manual_input = service("hold", SetBool), service("manual", SetBool), service("manual_input",
                                                                                                    ManualInput)
+        pause, step = service("pause", SetBool, "plant_simulator"), service("step", Trigger, "plant_simulator")
+        measurements = ring.Listener("measurement", Measurement)
+        pause(True)
         self.assertEqual("recipe held", hold(True).message)
         ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
         ready.publish(node=rospy.get_name())
-        actions.wait(lambda a: a.step >= 30)
+        measurements.wait()
+        for k in range(30):  # one by one, so that the recipe is held for 30 samples on any machine
+            actions.wait(lambda a, k=k: a.step == k)
+            self.assertTrue(step().success)
+            measurements.wait(lambda m, k=k: m.step == k + 1)
+        actions.wait(lambda a: a.step == 30)
         self.assertEqual("recipe running", hold(False).message)
+        pause(False)
         actions.wait(lambda a: a.step >= 60)
         manual(True)
         for refused in ([0.5, 0.0, 1.0], [1.0, 1.0, 1.0], [0.0, 1.0, 0.0]):
@@ -62,8 +71,7 @@ class HybridHold(unittest.TestCase):
         self.assertEqual((30.0, 40.0), (planned[0], planned[-1]))
         late = next(k for k, value in enumerate(followed) if value != 30.0) - \
             next(k for k, value in enumerate(planned) if value != 30.0)
-        self.assertGreaterEqual(late, 30)
-        self.assertLess(late, 60)
+        self.assertEqual(31, late)  # samples 0 to 30 were answered while it was held
         self.assertEqual(planned[:361 - late], followed[late:])
 
 

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
-"""Somebody publishes rubbish on every topic of the ring while a loop with optimizer runs: the run stays the same, bit
-for bit. Every message here is one that its receiver must refuse."""
+"""Somebody publishes on every topic of the ring while a loop with optimizer runs: the run stays the same, bit for bit. With
+loop.publishers as they are (~closed) valid answers of a rival, forged plants and steps to come as well as rubbish; in a loop
+that listens to anyone rubbish, which every receiver must refuse for what it is."""
+import copy
 import itertools
 import math
 import sys
@@ -53,12 +55,47 @@ def rubbish(now):
     yield "disturbance", Disturbance(name=["q_i"], value=[math.inf], mode=1)
 
 
+def rivals(now, info):
+    """What would be taken if it came from a node of the loop: answers in time, runs, steps to come, an early end."""
+    this = {"run_id": now.run_id, "step": now.step}
+    measured = {"run_id": now.run_id, "outputs": now.outputs, "disturbances": now.disturbances,
+                "input_applied": now.input_applied}
+    for topic in ("control_action", "base_action"):
+        for step in (now.step, now.step + 1, now.step + 4000000):
+            yield topic, ControlAction(run_id=now.run_id, step=step, input=[700.0], source=1)
+    for step in (now.step + 1, now.step + 2, now.step + 4000000, now.step + 4000001):
+        yield "measurement", Measurement(step=step, **measured)
+    yield "measurement", Measurement(step=now.step + 1, final=True, **measured)
+    forged = copy.deepcopy(info)
+    forged.run_id = FAR
+    yield "plant_info", forged
+    yield "measurement", Measurement(step=now.step, **{**measured, "run_id": FAR})
+    yield "plant_info", info
+    yield "tracking", Tracking(setpoint=[1.0, 1.0], reference=[1.0, 1.0], **this)
+    yield "solver_report", SolverReport(perturbation=[9.0], status=1, **this)
+
+
+OPEN = (("plant_simulator", ("actions dropped: wrong size", "actions dropped: other run", "refused: control_action",
+                             "refused: disturbance")),
+        ("fmbpc_controller", ("dropped: wrong size", "refused: setpoint", "refused: fuzzy_model", "refused: plant_info",
+                              "dropped: run not announced")),
+        ("clp_optimizer", ("refused: base_action", "refused: predictive_action", "dropped: run not announced")),
+        ("loop_recorder", ("dropped: other run", "dropped: wrong size or not finite")))
+CLOSED = (("plant_simulator", ("refused: control_action from /intruder", "refused: disturbance")),
+          ("fmbpc_controller", ("refused: measurement from /intruder", "refused: plant_info from /intruder",
+                                "refused: fuzzy_model from /intruder", "refused: setpoint")),
+          ("clp_optimizer", ("refused: base_action from /intruder", "refused: plant_info from /intruder")),
+          ("loop_recorder", ("refused: measurement from /intruder", "refused: tracking from /intruder",
+                             "refused: solver_report from /intruder", "refused: control_action from /intruder")))
+
+
 class Intruder(unittest.TestCase):
     def test_rubbish_on_every_topic_changes_nothing_and_is_counted(self):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
         recorded, diagnostics = ring.Listener("recorded", String), ring.Listener("/diagnostics", DiagnosticArray, "/plant_simulator", "/fmbpc_controller",
                                                                              "/clp_optimizer", "/loop_recorder")
         measurements = ring.Listener("measurement", Measurement)
+        closed, info = rospy.get_param("~closed"), ring.Listener("plant_info", PlantInfo).wait()
         publishers = {topic: rospy.Publisher(topic, kind, queue_size=10000) for topic, kind in KINDS.items()}
         for topic, publisher in publishers.items():
             ring.wait_until(lambda p=publisher: p.get_num_connections() > 0, f"a listener of {topic}")
@@ -67,20 +104,13 @@ class Intruder(unittest.TestCase):
             now = measurements.wait(lambda m, s=step: m.run_id == run_id and m.step >= s and len(m.outputs) == 2)
             if now.final:
                 break
-            for topic, message in rubbish(now):
+            for topic, message in itertools.chain(rubbish(now), rivals(now, info) if closed else ()):
                 publishers[topic].publish(message)
         folder = recorded.wait().data
         with tempfile.TemporaryDirectory() as reference:
             ring.run_in_process(loop, reference, sets)
             ring.assert_same_run(self, folder, reference)
-        for node, keys in (("plant_simulator", ("actions dropped: wrong size", "actions dropped: other run",
-                                                "refused: control_action", "refused: disturbance")),
-                           ("fmbpc_controller", ("dropped: wrong size", "refused: setpoint",
-                                                 "refused: fuzzy_model", "refused: plant_info",
-                                                 "dropped: run not announced")),
-                           ("clp_optimizer", ("refused: base_action", "refused: predictive_action",
-                                              "dropped: run not announced")),
-                           ("loop_recorder", ("dropped: other run", "dropped: wrong size or not finite"))):
+        for node, keys in CLOSED if closed else OPEN:
             diagnostics.wait(lambda m, n=node, k=keys: ring.diagnostics_of(m, n) is not None and all(
                 int(ring.values(ring.diagnostics_of(m, n)).get(key, 0)) > 0 for key in k))
 

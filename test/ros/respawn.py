@@ -10,7 +10,7 @@ import xmlrpc.client
 import rosgraph
 import rospy
 import rostest
-from fmbpc.msg import CommandEffect, ControlAction, Measurement, Setpoint
+from fmbpc.msg import CommandEffect, ControlAction, Measurement, PlantState, Setpoint, Tracking
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 
@@ -44,10 +44,13 @@ class Respawn(unittest.TestCase):
         victim = rospy.get_param("~victim")
         recorded, log = ring.Listener("recorded", String), ring.Listener("/rosout", Log, victim)
         measurements = ring.Listener("measurement", Measurement)
+        self.states, self.tracking = ring.Listener("plant_state", PlantState), ring.Listener("tracking", Tracking)
         asked = self.kill_in_the_middle(victim)
         if victim == "/fmbpc_controller":
             log.wait(lambda m: m.name == victim and "reset: first sample is" in m.msg and "is 0" not in m.msg)
             log.wait(lambda m: m.name == victim and "setpoint of x restored" in m.msg)
+        if rospy.get_param("~realtime", False):
+            return self.check_realtime(measurements, asked)
         folder = recorded.wait().data
         summary = ring.summary(folder)
         self.assertEqual((100, True), (summary["steps"], summary["complete"]))
@@ -57,6 +60,26 @@ class Respawn(unittest.TestCase):
         column = next(name for name in rows[0] if name.startswith("x_setpoint"))
         self.assertEqual({"1900"}, {row[column] for row in rows[asked:]})
         self.assertEqual({"1800"}, {row[column] for row in rows[:asked]})
+
+
+    def check_realtime(self, measurements, asked):
+        """The plant does not wait: every sample is there, those without an action in time are one gap, which is marked, and
+        from the return of the controller on everything is as the operator asked."""
+        measurements.wait(lambda m: m.final)
+        states, tracking = self.states.messages, {t.step: t for t in self.tracking.messages}
+        self.states.wait(lambda s: s.step == 100)
+        first = min(m.step for m in measurements.messages)
+        self.assertEqual(list(range(first, 101)), sorted({m.step for m in measurements.messages}))
+        missing = sorted({s.step for s in states if s.input_missing and s.step > asked})
+        self.assertTrue(missing)
+        self.assertEqual(list(range(missing[0], missing[-1] + 1)), missing)
+        self.tracking.wait(lambda t: t.step == 100)
+        self.assertLess(missing[-1], 100)
+        for step in range(asked, 101):
+            if step in tracking:
+                self.assertEqual(1900.0, tracking[step].setpoint[1], step)
+        inputs = {m.step: m.input_applied[0] for m in measurements.messages}
+        self.assertTrue(all(inputs[k] == inputs[missing[0] - 1] for k in missing))  # held
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@
 #include "fmbpc/ros/operator_keeper.hpp"
 #include "fmbpc/ros/plant_publishers.hpp"
 #include "fmbpc/ros/ready.hpp"
+#include "fmbpc/ros/run_end.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
 namespace fpc {

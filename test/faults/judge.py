@@ -1,0 +1,161 @@
+"""One fault on a running loop, and the verdict computed from what was recorded meanwhile."""
+import os
+import time
+
+from fault import PATIENCE, RECOVERY, SETTLE, SILENCE, Outcome
+
+HELD = (4, 6)  # ControlAction.HELD, FALLBACK
+
+
+class Limits:
+    """Bounds from plant_info, move limits of the launch."""
+
+    def __init__(self, info, move_share):
+        self.names = [signal.name for signal in info.inputs]
+        self.lower = [signal.lower for signal in info.inputs]
+        self.upper = [signal.upper for signal in info.inputs]
+        self.range = [u - l for l, u in zip(self.lower, self.upper)]
+        self.move = [move_share * r for r in self.range]
+
+
+def forced_steps(loop, start):
+    """{(step, input)} at which somebody put a valve by hand (disturbance input/NAME): what counts is what the loop commands,
+    so the jump of a forced valve, and its way while it is forced, are no moves of the loop."""
+    return {(effect.step, name.split("/", 1)[1]) for _, effect in loop.effects.since(start) for name in effect.name
+            if name.startswith("input/")}
+
+
+def judge_inputs(loop, limits, start, outcome):
+    """Bounds and move limits of what the plant applied, sample by sample, and that no sample is missing."""
+    seen = {}
+    for _, m in loop.logs["measurement"].since(start - 1.0):
+        if len(m.input_applied) == len(limits.names):
+            seen.setdefault(m.run_id, {})[m.step] = m
+    real = {s.run_id for _, s in loop.logs["plant_state"].since(start - 1.0) if s.state}
+    forced = forced_steps(loop, start)
+    for run_id in sorted(set(seen) & real):
+        genuine = {s.step for _, s in loop.logs["plant_state"].since(start - 1.0) if s.run_id == run_id}
+        run = {step: m for step, m in seen[run_id].items() if step in genuine}
+        steps = sorted(run)
+        if steps and steps != list(range(steps[0], steps[-1] + 1)):
+            outcome.problems.append("samples missing")
+        for before, after in zip(steps, steps[1:]):
+            judge_move(run[before], run[after], limits, forced, outcome)
+
+
+def judge_move(before, after, limits, forced, outcome):
+    for i, name in enumerate(limits.names):
+        value, move = after.input_applied[i], abs(after.input_applied[i] - before.input_applied[i])
+        if not limits.lower[i] - 1e-9 <= value <= limits.upper[i] + 1e-9:
+            outcome.problems.append(f"sample {after.step}: {name} = {value:.6g} outside its bounds")
+        if (after.step, name) in forced or (before.step, name) in forced:
+            continue
+        outcome.largest_move = max(outcome.largest_move, 100.0 * move / limits.range[i])
+        if move > limits.move[i] + 1e-9 * limits.range[i]:
+            outcome.problems.append(f"sample {after.step}: {name} moved by {move:.6g}, allowed are {limits.move[i]:.6g}")
+
+
+def judge_stalls(loop, start, end, outcome):
+    """A time without samples must be said while it lasts, by anybody of the loop."""
+    times = [start] + [t for t, _ in loop.logs["plant_state"].since(start)] + [end]
+    words = loop.words(start - 2.0)
+    for before, after in zip(times, times[1:]):
+        if after - before <= SILENCE:
+            continue
+        if not any(before - 0.5 <= t <= before + SILENCE + 0.3 for t, _ in words):
+            outcome.problems.append(f"silent stall of {after - before:.1f} s")
+
+
+def bump_of(loop, limits, start):
+    """The largest first move after the input was held or on its fallback, in % of the range."""
+    state = {s.step: s for _, s in loop.logs["plant_state"].since(start)}
+    inputs = {m.step: m for _, m in loop.logs["measurement"].since(start) if len(m.input_applied) == len(limits.names)}
+    largest = 0.0
+    for step, s in state.items():
+        before = state.get(step - 1)
+        if before is None or not before.input_missing or s.input_missing or not {step, step - 1} <= set(inputs):
+            continue
+        moves = (abs(a - b) / r for a, b, r in zip(inputs[step].input_applied, inputs[step - 1].input_applied, limits.range))
+        largest = max(largest, 100.0 * max(moves))
+    return largest
+
+
+def samples_until_back(loop, fault, undone):
+    """Samples from the end of the fault until the loop is as it should be and stays so for five; None: not in time."""
+    said = loop.wait_for_summary(fault.end, undone, RECOVERY)
+    if said is None:
+        return None
+    end = time.monotonic() + RECOVERY
+    while time.monotonic() < end:
+        states = [s for _, s in loop.logs["plant_state"].since(undone)]
+        good = [i for i, s in enumerate(states) if not s.input_missing]
+        if len(states) >= 5 and good and states[-1].input_missing is False and len(states) - good[0] >= 5:
+            run = len(states) - 1
+            while run > 0 and not states[run - 1].input_missing:
+                run -= 1
+            return run
+        time.sleep(0.05)
+    return None
+
+
+def meet(loop, limits, fault):
+    """Does it, waits for its words, undoes it, waits for the loop, and judges."""
+    outcome = Outcome(fault.name)
+    before = loop.pids()
+    count = loop.counter(*fault.counted) if fault.counted else 0
+    start = time.monotonic()
+    attempt(fault.do, loop, outcome)
+    if fault.said:
+        found = loop.wait_for_words(fault.said, start, PATIENCE)
+        if found:
+            outcome.said_after, outcome.said_words = found
+        if found is None or found[0] > fault.said_within:
+            outcome.problems.append(f"not said within {fault.said_within:.0f} s" + (f" but after {found[0]:.1f} s" if found else ""))
+    time.sleep(fault.lasts)
+    if fault.undo:
+        attempt(fault.undo, loop, outcome)
+    undone = time.monotonic()
+    if fault.touches:
+        time.sleep(SETTLE)
+    outcome.back_after = samples_until_back(loop, fault, undone)
+    if outcome.back_after is None:
+        state = loop.summary()
+        outcome.problems.append(f"not {fault.end} within {RECOVERY:.0f} s: {state.word if state else '?'}: "
+                                f"{state.reason if state else ''}")
+    judge_counter(loop, fault, count, outcome)
+    end = time.monotonic()
+    judge_stalls(loop, start, end, outcome)
+    judge_inputs(loop, limits, start, outcome)
+    outcome.bump = bump_of(loop, limits, start)
+    judge_processes(loop, fault, before, outcome)
+    if fault.after:
+        attempt(fault.after, loop, outcome)
+    return outcome
+
+
+def attempt(action, loop, outcome):
+    """Does it; what it complains of, and what goes wrong in it, is a problem."""
+    try:
+        complaint = action(loop)
+    except Exception as error:  # whatever it is, the matrix goes on
+        complaint = f"{type(error).__name__}: {error}"
+    if isinstance(complaint, str):
+        outcome.problems.append(complaint)
+
+
+def judge_counter(loop, fault, count, outcome):
+    if not fault.counted:
+        return
+    end = time.monotonic() + PATIENCE
+    while loop.counter(*fault.counted) <= count:
+        if time.monotonic() > end:
+            outcome.problems.append(f"{fault.counted[0]} did not count '{fault.counted[1]}'")
+            return
+        time.sleep(0.05)
+
+
+def judge_processes(loop, fault, before, outcome):
+    """Nobody has died but those whom the fault kills."""
+    for node, process in before.items():
+        if process and node.lstrip("/") not in fault.touches and not os.path.exists(f"/proc/{process}"):
+            outcome.problems.append(f"{node} crashed")

@@ -1,0 +1,255 @@
+#!/usr/bin/python3
+"""The fault matrix: every fault on running loops, paced and in realtime. Each group of faults has a launch of its own with
+a master of its own; a loop that does not come back is started anew and counts as not recovered.
+
+    run with scripts/faults; --quick is what belongs to every change
+"""
+import argparse
+import json
+import os
+import pathlib
+import re
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "ros")]
+
+RING = ("plant_info", "measurement", "plant_state", "base_action", "predictive_action", "control_action", "tracking",
+        "solver_report", "fuzzy_model", "identified")
+OPEN = " ".join(f"loop.publishers.{topic}=[]" for topic in RING)
+MOVE = 0.025  # largest move a sample, share of the input's range
+LOOPS = {
+    "asp_case1_clp": dict(
+        sets="sampling.duration_h=0 disturbance.source=constant actuator.move_upper.q_r=40 "
+             "actuator.fallback.q_r=300", sample_time=720.0, has=("optimizer", "model")),
+    "mimo_cstr_steps": dict(
+        sets="sampling.duration_h=0 setpoint.schedule=[] disturbance={} noise.std.T=0.02 actuator.move_upper.q=2.5 "
+             "actuator.move_upper.qc=3.75 actuator.fallback.q=90 actuator.fallback.qc=90",
+        sample_time=0.6, has=("model",)),
+}
+COMMON = "actuator.hold_samples=5 loop.action_timeout_s=1.5"
+PERIOD = {"paced": 0.1, "realtime": 0.2}  # s of wall time a sample
+GROUPS = {"closed": ("processes", "strangers", "by_hand", "instruments", "world"), "open": ("rubbish", "models")}
+QUICK = ("fmbpc_controller killed (-9)", "clp_optimizer frozen for 6 s", "fmbpc_controller frozen for 3 s",
+         "stranger: control_action, valves open, in time", "manual, controller killed", "person: plant paused and resumed",
+         "valve stuck open")
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(("", 0))
+        return probe.getsockname()[1]
+
+
+class Launch:
+    """roscore and roslaunch with their own port and folder; the rospy node of this process talks to that master."""
+
+    def __init__(self, name, pace, group, folder):
+        self.name, self.pace, self.folder = name, pace, folder
+        self.core = self.launch = None
+        self.open = OPEN if group == "open" else ""
+        self.clock = os.path.join(folder, "clock")
+        self.disk = os.path.join(folder, "disk")
+        os.makedirs(self.disk, exist_ok=True)
+        self.small = os.geteuid() == 0 and subprocess.run(
+            ["mount", "-t", "tmpfs", "-o", "size=4m", "tmpfs", self.disk], check=False, stderr=subprocess.DEVNULL).returncode == 0
+        self.library = os.path.join(folder, "clock_shim.so")
+        made = shutil.which("cc") and subprocess.run(
+            ["cc", "-shared", "-fPIC", "-O1", "-o", self.library, str(HERE / "clock_shim.c"), "-ldl"], check=False).returncode == 0
+        self.library = self.library if made else None
+
+    def has(self):
+        about = LOOPS[self.name]["has"]
+        return about + (("disk",) if self.small else ()) + (("clock",) if self.library else ())
+
+    def start_core(self):
+        self.core = subprocess.Popen(["rosmaster", "--core", "-p", os.environ["ROS_MASTER_URI"].rsplit(":", 1)[1]],
+                                     stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
+        wait_for_master()
+
+    def start(self):
+        about = LOOPS[self.name]
+        environment = dict(os.environ)
+        if self.library:
+            pathlib.Path(self.clock).write_text("0", encoding="utf-8")
+            environment.update(LD_PRELOAD=self.library, FMBPC_CLOCK_OFFSET=self.clock)
+        out = open(os.path.join(self.folder, "launch.log"), "a", encoding="utf-8")
+        self.launch = subprocess.Popen(
+            ["roslaunch", "fmbpc", "loop.launch", "loop:=" + self.name, f"pace:={self.pace}", "respawn:=true", "keep:=true",
+             f"set:={about['sets']} {COMMON} {self.open}", f"speedup:={about['sample_time'] / PERIOD[self.pace]}",
+             "out:=" + self.disk, "draw:=false", "sim_time:=false"], env=environment, stdout=out, stderr=out,
+            start_new_session=True)
+        out.close()
+
+    def end(self):
+        for process, seconds in ((self.launch, 20), (self.core, 5)):
+            if process is None:
+                continue
+            if process.poll() is None:
+                process.terminate()
+            try:
+                process.wait(seconds)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+        if self.small:
+            subprocess.run(["umount", "-l", self.disk], check=False)
+
+
+def wait_for_master():
+    import rosgraph
+    end = time.monotonic() + 20
+    while time.monotonic() < end:
+        if rosgraph.is_master_online():
+            return
+        time.sleep(0.05)
+    raise RuntimeError("no master")
+
+
+def faults_of(group):
+    faults = []
+    for family in GROUPS[group]:
+        faults += [(family, fault) for fault in __import__(family).FAULTS]
+    return faults
+
+
+def ready(launch):
+    """The loop under test, automatic."""
+    from loop_under_test import Loop
+    nodes = ["plant_simulator", "fmbpc_controller", "loop_recorder", "fuzzy_identifier"]
+    loop = Loop(nodes + (["clp_optimizer"] if "optimizer" in launch.has() else []))
+    loop.clock, loop.disk, loop.core, loop.start_core = launch.clock, launch.disk, launch.core, None
+
+    def start_core():
+        launch.start_core()
+        loop.core = launch.core
+    loop.start_core = start_core
+
+    def known():
+        end = time.monotonic() + 15
+        while not all(loop.pid(node) for node in loop.nodes):
+            if time.monotonic() > end:
+                raise RuntimeError("nodes unknown to the new master: " + ", ".join(n for n in loop.nodes if not loop.pid(n)))
+            time.sleep(0.1)
+    loop.wait_until_known = known
+    started = time.monotonic()
+    if loop.wait_for_summary("automatic", started, 60.0) is None:
+        raise RuntimeError(f"{launch.name} did not become automatic: see {launch.folder}/launch.log")
+    loop.samples(10)
+    return loop
+
+
+def run_group(launch, faults, report):
+    """One process, one node: called in a child, since rospy starts once a process."""
+    import rospy
+    from judge import Limits, meet
+    launch.start_core()
+    rospy.init_node("fault_matrix", disable_signals=True, disable_rosout=True)
+    launch.start()
+    loop = ready(launch)
+    limits = Limits(loop.info(), MOVE)
+    for family, fault in faults:
+        if not set(fault.needs) <= set(launch.has()) or launch.pace not in fault.paces:
+            continue
+        outcome = meet(loop, limits, fault)
+        loop.thaw()
+        loop.end_children()
+        report({"family": family, **vars(outcome)})
+        if outcome.back_after is None:
+            return False
+    return True
+
+
+def child(arguments):
+    """Runs faults [first, last) of a group in this process and prints a line of JSON for each."""
+    folder = tempfile.mkdtemp(prefix="fmbpc_faults_")
+    os.environ.update(ROS_MASTER_URI=f"http://localhost:{free_port()}", ROS_HOME=os.path.join(folder, "home"))
+    launch = Launch(arguments.loop, arguments.pace, arguments.group, folder)
+    faults = chosen(arguments, arguments.group)[arguments.first:]
+    whole = False
+    try:
+        whole = run_group(launch, faults, lambda result: print("RESULT " + json.dumps(result), flush=True))
+    finally:
+        launch.end()
+        if whole:
+            shutil.rmtree(folder, ignore_errors=True)
+    return 0
+
+
+def chosen(arguments, group):
+    faults = faults_of(group)
+    if arguments.quick:
+        faults = [(family, fault) for family, fault in faults if fault.name in QUICK]
+    if arguments.only:
+        faults = [(family, fault) for family, fault in faults if re.search(arguments.only, fault.name)]
+    return faults
+
+
+def run_config(arguments, name, pace, group):
+    """All faults of a group, with a new launch after each that the loop did not survive."""
+    results, first = [], 0
+    total = len(chosen(arguments, group))
+    while first < total:
+        command = [sys.executable, __file__, "--child", "--loop", name, "--pace", pace, "--group", group, "--first", str(first)]
+        command += ["--quick"] if arguments.quick else []
+        command += ["--only", arguments.only] if arguments.only else []
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+        got = []
+        for line in process.stdout:
+            if line.startswith("RESULT "):
+                got.append(json.loads(line[7:]))
+                tell(name, pace, got[-1])
+        process.wait()
+        results += got
+        if process.returncode == 0 and (not got or got[-1]["back_after"] is not None):
+            break
+        names = [fault.name for _, fault in chosen(arguments, group)]
+        if not got:
+            results.append({"family": group, "fault": names[first], "problems": [f"no result: {name} did not start"],
+                            "back_after": None, "said_after": None, "said_words": "", "largest_move": 0.0, "bump": 0.0})
+            first += 1
+        else:
+            first = names.index(got[-1]["fault"]) + 1
+    return [{"loop": name, "pace": pace, **result} for result in results]
+
+
+def tell(name, pace, result):
+    said = f"said {result['said_after']:.1f} s, " if result["said_after"] is not None else ""
+    back = f"back after {result['back_after']}" if result["back_after"] is not None else "NOT BACK"
+    print(f"{name} {pace}: {result['fault']}: {said}{back}, move {result['largest_move']:.2f} %"
+          + "".join("\n    PROBLEM " + p for p in result["problems"][:5]), flush=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="few faults, one loop, paced")
+    parser.add_argument("--only", default="", help="regular expression for names of faults")
+    parser.add_argument("--loop", action="append", choices=sorted(LOOPS))
+    parser.add_argument("--pace", action="append", choices=sorted(PERIOD))
+    parser.add_argument("--group", action="append", choices=sorted(GROUPS))
+    parser.add_argument("--out", help="JSON of all results")
+    parser.add_argument("--child", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--first", type=int, default=0, help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.child:
+        arguments.loop, arguments.pace, arguments.group = arguments.loop[0], arguments.pace[0], arguments.group[0]
+        return child(arguments)
+    results = []
+    for name in arguments.loop or (["asp_case1_clp"] if arguments.quick else sorted(LOOPS)):
+        for pace in arguments.pace or (["paced"] if arguments.quick else sorted(PERIOD)):
+            for group in arguments.group or (["closed"] if arguments.quick else sorted(GROUPS)):
+                results += run_config(arguments, name, pace, group)
+                if arguments.out:
+                    pathlib.Path(arguments.out).write_text(json.dumps(results, indent=1), encoding="utf-8")
+    bad = [r for r in results if r["problems"]]
+    print(f"{len(results)} faults met, {len(bad)} with problems")
+    return 1 if bad or not results else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
