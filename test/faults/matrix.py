@@ -10,7 +10,7 @@ import os
 import pathlib
 import re
 import shutil
-import socket
+import signal
 import subprocess
 import sys
 import tempfile
@@ -38,12 +38,6 @@ GROUPS = {"closed": ("processes", "strangers", "by_hand", "instruments", "world"
 QUICK = ("fmbpc_controller killed (-9)", "clp_optimizer frozen for 6 s", "fmbpc_controller frozen for 3 s",
          "stranger: control_action, valves open, in time", "manual, controller killed", "person: plant paused and resumed",
          "valve stuck open")
-
-
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("", 0))
-        return probe.getsockname()[1]
 
 
 class Launch:
@@ -165,10 +159,16 @@ def run_group(launch, faults, report):
     return True
 
 
+def end_with_finally(*_):
+    raise SystemExit(1)
+
+
 def child(arguments):
     """Runs faults [first, last) of a group in this process and prints a line of JSON for each."""
+    import ring
     folder = tempfile.mkdtemp(prefix="fmbpc_faults_")
-    os.environ.update(ROS_MASTER_URI=f"http://localhost:{free_port()}", ROS_HOME=os.path.join(folder, "home"))
+    os.environ.update(ROS_MASTER_URI=f"http://localhost:{ring.free_port()}", ROS_HOME=os.path.join(folder, "home"))
+    signal.signal(signal.SIGTERM, end_with_finally)
     launch = Launch(arguments.loop, arguments.pace, arguments.group, folder)
     faults = chosen(arguments, arguments.group)[arguments.first:]
     whole = False
@@ -198,13 +198,16 @@ def run_config(arguments, name, pace, group):
         command = [sys.executable, __file__, "--child", "--loop", name, "--pace", pace, "--group", group, "--first", str(first)]
         command += ["--quick"] if arguments.quick else []
         command += ["--only", arguments.only] if arguments.only else []
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
         got = []
-        for line in process.stdout:
-            if line.startswith("RESULT "):
-                got.append(json.loads(line[7:]))
-                tell(name, pace, got[-1])
-        process.wait()
+        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+            try:
+                for line in process.stdout:
+                    if line.startswith("RESULT "):
+                        got.append(json.loads(line[7:]))
+                        tell(name, pace, got[-1])
+            except BaseException:
+                process.terminate()
+                raise
         results += got
         if process.returncode == 0 and (not got or got[-1]["back_after"] is not None):
             break
@@ -239,6 +242,7 @@ def main():
     if arguments.child:
         arguments.loop, arguments.pace, arguments.group = arguments.loop[0], arguments.pace[0], arguments.group[0]
         return child(arguments)
+    signal.signal(signal.SIGTERM, end_with_finally)
     results = []
     for name in arguments.loop or (["asp_case1_clp"] if arguments.quick else sorted(LOOPS)):
         for pace in arguments.pace or (["paced"] if arguments.quick else sorted(PERIOD)):
