@@ -99,9 +99,10 @@ class Intruder(unittest.TestCase):
         publishers = {topic: rospy.Publisher(topic, kind, queue_size=10000) for topic, kind in KINDS.items()}
         for topic, publisher in publishers.items():
             ring.wait_until(lambda p=publisher: p.get_num_connections() > 0, f"a listener of {topic}")
-        run_id = measurements.wait(lambda m: m.run_id not in (0, 1)).run_id
+        def genuine(message):  # what this test forges comes back to it
+            return message._connection_header["callerid"] == "/plant_simulator"
         for step in itertools.count():
-            now = measurements.wait(lambda m, s=step: m.run_id == run_id and m.step >= s and len(m.outputs) == 2)
+            now = measurements.wait(lambda m, s=step: genuine(m) and m.step >= s)
             if now.final:
                 break
             for topic, message in itertools.chain(rubbish(now), rivals(now, info) if closed else ()):
