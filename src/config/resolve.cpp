@@ -164,6 +164,16 @@ std::pair<std::string, std::string> parseOverride(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+LoopFile parseLoop(const std::string& text, const std::string& name) {
+  MergedLoop merged;
+  merged.root = loadYaml(text, name);
+  findFilesHere(merged);
+  YamlSection root(merged.root, name, "");
+  LoopFile loop = readSections(root, name);
+  loop.resolved = text;
+  return loop;
+}
+
 LoopFile parseLoop(const std::string& text, const std::string& name, const Overrides& overrides) {
   MergedLoop merged;
   merged.root = detached(loadYaml(text, name));

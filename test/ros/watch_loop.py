@@ -2,6 +2,7 @@
 """`fmbpc watch` shows a running loop in a terminal and in a picture; plot:=true writes settings that rqt_plot restores."""
 import ast
 import os
+import subprocess
 import sys
 import tempfile
 import types
@@ -20,12 +21,17 @@ import live_view  # noqa: E402
 import plot_live  # noqa: E402
 
 
+def watch(*arguments, check=True):
+    return subprocess.run(["/usr/bin/python3", os.path.join(SCRIPTS, "watch.py"), *arguments], check=check,
+                          capture_output=True, text=True, timeout=60)
+
+
 class Watch(unittest.TestCase):
     def setUp(self):
         ring.Listener("measurement", Measurement).wait(lambda m: m.step >= 5)
 
     def test_the_terminal_shows_state_and_signals(self):
-        text = ring.tool("watch", "--seconds", "3").stdout
+        text = watch("--seconds", "3").stdout
         line = text.strip().splitlines()[-1]
         for words in ("activated_sludge", "sample ", " h   ", "automatic: running", "s ", "x ", "q_r ", "mg/l", "-> 1800"):
             self.assertIn(words, line)
@@ -36,13 +42,13 @@ class Watch(unittest.TestCase):
     def test_a_picture_is_drawn_again_and_again(self):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "loop.png")
-            ring.tool("watch", "--picture", file, "--seconds", "4")
+            watch("--picture", file, "--seconds", "4")
             with open(file, "rb") as stream:
                 self.assertEqual(b"\x89PNG", stream.read(4))
             self.assertGreater(os.path.getsize(file), 10000)
 
     def test_a_wrong_option_is_refused(self):
-        done = ring.tool("watch", "--rate", "0", check=False)
+        done = watch("--rate", "0", check=False)
         self.assertNotEqual(0, done.returncode)
         self.assertIn("--rate", done.stderr)
 
@@ -72,5 +78,5 @@ class Watch(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    rospy.init_node("watch_test")
-    rostest.rosrun("fmbpc", "watch", Watch, sys.argv)
+    rospy.init_node("watch_loop")
+    rostest.rosrun("fmbpc", "watch_loop", Watch, sys.argv)
