@@ -21,6 +21,7 @@
 #include "fmbpc/ros/operator_keeper.hpp"
 #include "fmbpc/ros/plant_publishers.hpp"
 #include "fmbpc/ros/ready.hpp"
+#include "fmbpc/ros/run_end.hpp"
 #include "fmbpc/ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -65,7 +66,7 @@ class PlantSimulator : public Node {
   RateLimit commands_;
 
   std::uint64_t run_id_{};
-  double begun_s_, introduced_s_{}, failed_s_{-1};
+  double begun_s_, introduced_s_{}, answered_s_{}, failed_s_{-1};
   std::string failure_;
   RunEndPublisher end_;
   WallThrottle trouble_log_{1.0};
