@@ -14,7 +14,7 @@ using Eigen::Index;
 std::vector<Index> followed(const LoopFile& loop, Index n_y) {
   Vector weight = Vector::Ones(n_y);
   if (const auto* law = findParams<FmbpcParams>(*loop.controller)) {
-    if (law->law == "published") return {n_y - 1};
+    if (law->law == FmbpcForm::kPublished) return {n_y - 1};
     weight = law->weight_output;
   } else if (const auto* optimal = findParams<FuzzyOptimalParams>(*loop.controller)) {
     weight = optimal->tuning.weight.output;

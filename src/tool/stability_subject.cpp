@@ -80,13 +80,13 @@ void settleOn(StabilitySubject& subject) {
 
 void takeLaw(StabilitySubject& subject, const LoopFile& loop, const FmbpcParams& law) {
   if (loop.has_model) subject.model = withoutDelay(loop.model, law.delay_steps);
-  require(law.law == "published" || law.law == "general", loop.name + ": controller.law",
+  require(law.law != FmbpcForm::kIterated, loop.name + ": controller.law",
           "published or general: no other law is linear around its model");
   subject.law.coincidence_steps = law.coincidence_steps;
-  subject.law.published = law.law != "general";
+  subject.law.published = law.law == FmbpcForm::kPublished;
   subject.law.weight_output = law.weight_output;
   subject.law.weight_move = law.weight_move;
-  if (loop.has_model && law.realisation == "literal")
+  if (loop.has_model && law.realisation == FmbpcRealisation::kLiteral)
     subject.note =
         "controller.realisation is literal; what follows is of the input-output states (past "
         "outputs and inputs), not of the printed state space, which adds one sample of delay";

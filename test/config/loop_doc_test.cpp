@@ -8,13 +8,13 @@
 
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/control/excitation/excitation.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/control/horizon/nmpc.hpp"
 #include "fmbpc/control/horizon/swarm_mpc.hpp"
 #include "fmbpc/control/optimal/law.hpp"
-#include "fmbpc/control/pi/pi.hpp"
 #include "loop/loops_of_type.hpp"
 #include "paths.hpp"
 
@@ -211,7 +211,7 @@ std::map<std::string, std::string> structDefaults() {
           {"disturbance.csv.end", csv.end},
           {"disturbance.csv.channels.NAME.scale", exactText(CsvChannel{}.scale)},
           {"disturbance.csv.channels.NAME.offset", exactText(CsvChannel{}.offset)},
-          {"controller.law", law.law},
+          {"controller.law", wordOf(law.law)},
           {"controller.coincidence_steps", std::to_string(law.coincidence_steps)},
           {"controller.preview", word(law.preview)},
           {"controller.max_iterations", std::to_string(nmpc.solver.max_iterations)},
@@ -227,16 +227,16 @@ std::map<std::string, std::string> structDefaults() {
           {"controller.horizon_steps", std::to_string(law.horizon_steps)},
           {"controller.iterations", std::to_string(law.iterations)},
           {"controller.forecast_pole", exactText(law.forecast_pole)},
-          {"controller.realisation", law.realisation},
-          {"controller.antecedent", law.antecedent},
+          {"controller.realisation", wordOf(law.realisation)},
+          {"controller.antecedent", wordOf(law.antecedent)},
           {"controller.delay_steps", std::to_string(law.delay_steps)},
           {"controller.reference_lead_steps", std::to_string(law.reference_lead_steps)},
           {"controller.offset_gain", exactText(law.offset_gain)},
           {"controller.disturbance_feedforward", word(law.disturbance_feedforward)},
           {"controller.transfer_decay", exactText(law.transfer_decay)},
           {"controller.move_steps", std::to_string(optimal.tuning.move_steps)},
-          {"controller.solve", optimal.solve},
-          {"controller.disturbance", optimal.disturbance},
+          {"controller.solve", wordOf(optimal.solve)},
+          {"controller.disturbance", wordOf(optimal.disturbance)},
           {"controller.disturbance_gain", exactText(optimal.disturbance_gain)},
           {"controller.loops[].ki_per_h", exactText(pi.ki_per_h)},
           {"controller.loops[].reverse", word(pi.reverse)},

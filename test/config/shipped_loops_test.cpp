@@ -63,7 +63,7 @@ TEST(ShippedLoops, CaseOneIsThatOfThePaper) {
   const LoopFile loop = readLoop("asp_case1");
   EXPECT_EQ(loop.model.name, "FM_1");
   const auto& law = loop.controllerParams<FmbpcParams>();
-  EXPECT_EQ(law.law, "published");
+  EXPECT_EQ(law.law, FmbpcForm::kPublished);
   EXPECT_EQ(law.coincidence_steps, 6);
   EXPECT_EQ(law.reference_pole, (Vector(2) << 0.76, 0.96).finished());
   EXPECT_EQ(loop.simulation.samples, 830U);

@@ -30,13 +30,15 @@ double finalOffset(const FmbpcParams& params, const Vector& constant_loads) {
 }
 
 TEST(Fm1, BiomassEndsWithinHalfAMilligramOfItsSetpoint) {
-  for (const char* realisation : {"parallel", "realigned"})
+  for (const FmbpcRealisation realisation :
+       {FmbpcRealisation::kParallel, FmbpcRealisation::kRealigned})
     for (const Vector& constant_loads : {test::loads(1300.0, 366.67), test::loads(1500.0, 400.0)}) {
       FmbpcParams params = test::publishedParams();
       params.realisation = realisation;
       const double offset = finalOffset(params, constant_loads);
-      EXPECT_LE(std::abs(offset), 0.5) << realisation << ", q_i " << constant_loads[0];
-      std::printf("%s, q_i %.0f: offset of x %.3f mg/l\n", realisation, constant_loads[0], offset);
+      EXPECT_LE(std::abs(offset), 0.5) << wordOf(realisation) << ", q_i " << constant_loads[0];
+      std::printf("%s, q_i %.0f: offset of x %.3f mg/l\n", wordOf(realisation).c_str(),
+                  constant_loads[0], offset);
     }
 }
 

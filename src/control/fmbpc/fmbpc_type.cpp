@@ -1,6 +1,7 @@
 // Controller type fmbpc: its section of a loop file.
 #include <cmath>
 
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/control/read_observer.hpp"
 #include "fmbpc/control/registry.hpp"
@@ -29,27 +30,19 @@ void readForecast(YamlSection& section, const ControllerContext& loop, FmbpcPara
 
 FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
   FmbpcParams params;
-  params.reference_pole = Vector::Constant(loop.outputCount(), 0.9);
-  params.disturbance_nominal = loop.disturbance_nominal;
-  section.oneOf("law", params.law, {"published", "general", "iterated"});
+  readPredictiveLaw(section, loop, params);
+  readOption(section, "law", params.law);
   section.integer("coincidence_steps", params.coincidence_steps, 1, 100000);
-  section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
-  section.boolean("preview", params.preview);
   readWeights(section, loop, params);
   section.integer("horizon_steps", params.horizon_steps, 1, 10000);
   section.integer("iterations", params.iterations, 1, 1000);
   readForecast(section, loop, params);
-  section.oneOf("realisation", params.realisation,
-                {"parallel", "realigned", "literal", "observer"});
+  readOption(section, "realisation", params.realisation);
   section.integer("delay_steps", params.delay_steps, 0, 1000);
   section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
-  section.oneOf("antecedent", params.antecedent, {"model", "measured"});
+  readOption(section, "antecedent", params.antecedent);
   section.number("offset_gain", params.offset_gain, {0.0, 1.0});
   readObserver(section, params.observer, loop);
-  section.boolean("disturbance_feedforward", params.disturbance_feedforward);
-  section.byName("disturbance_nominal", params.disturbance_nominal, loop.disturbances(), kFinite);
-  section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
-  readPredictionSteps(section, loop, params.prediction_steps);
   checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
   return params;
 }
@@ -62,6 +55,7 @@ ControllerType describe() {
   ControllerType type{"fmbpc", "fuzzy model-based predictive control: an explicit law"};
   type.needs_model = true;
   type.predicts = true;
+  type.settings = fmbpcSettings().infos();
   return type;
 }
 

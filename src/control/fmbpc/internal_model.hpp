@@ -1,60 +1,68 @@
-// What the law believes of the process: its model, the model's state, and how far it is from the
-// measurements. Private to the room.
+// Where the process stands by its model, and how far that is from the measurements: one class per
+// realisation. Private to the room.
 #pragma once
 
 #include <memory>
-#include <optional>
 
-#include "control/fmbpc/smith_predictor.hpp"
-#include "fmbpc/control/fmbpc/coincidence.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/control/fmbpc/path_planner.hpp"
-#include "fmbpc/control/model_observer.hpp"
-#include "fmbpc/fuzzy/canonical_form.hpp"
 #include "fmbpc/fuzzy/local_model.hpp"
 
 namespace fpc {
 
-/// Everything whose size depends on the model. Per sample: rest() or advance(), then blend(), then
-/// compare(). No allocation in them.
-struct FmbpcLaw::Belief {
-  /// `model` is matched to the plant. @throws InputError naming delay_steps or realisation if they
-  /// do not suit the model.
-  Belief(const TsModel& model, const FmbpcParams& params, Eigen::Index n_y, Eigen::Index n_u);
-
-  void rest(const Measurement& now, VectorRef disturbances);     ///< starts from here
-  void advance(const Measurement& now, VectorRef disturbances);  ///< d(k-1) as the model took it
-  /// Returns false if no rule fired; then the nearest one is used.
-  bool blend(VectorRef disturbances);
-  void compare(const Measurement& now);
-  /// Takes over the memory of the belief in an older model: the measured past, and the own state if
-  /// only consequents differ. False if there is nothing to take over (other lags, another state
-  /// space): rest() then. No allocation.
-  bool inherit(const Belief& other);
-  /// The model of the undelayed process, as blended last.
-  const AffineModel& affine() const { return canonical ? canonical->affine() : local.affine(); }
-
+/// The model that a law predicts with. Per sample: rest() or advance(), then blend(), then
+/// compare(). No allocation in them, nor in inherit().
+class InternalModel {
+ public:
+  virtual ~InternalModel() = default;
+  virtual void rest(const Measurement& now, VectorRef disturbances);  ///< starts from here
+  /// From k-1, with its u and d, to k.
+  virtual void advance(const Measurement& now, VectorRef disturbances) = 0;
+  virtual bool blend(VectorRef disturbances);  ///< false if no rule fired: the nearest one is used
+  virtual void compare(const Measurement& now) = 0;
+  /// Takes over the memory of an older model of the same realisation: the measured past, and its
+  /// own state if only consequents differ. False if there is nothing to take over: rest() then.
+  virtual bool inherit(const InternalModel& older) = 0;
   /// What is added to the model's output (or, per sample, to its state) to be offset-free.
-  double correctionOf(Eigen::Index output) const;
+  virtual double correctionOf(Eigen::Index output) const { return offset_output_[output]; }
+  /// The model of the undelayed process, as blended last.
+  virtual const AffineModel& affine() const { return local_.affine(); }
 
-  bool realigned, antecedent_measured;
-  double offset_gain;
-  LocalModel local;                        ///< the rules, without the delay
-  std::optional<CanonicalForm> canonical;  ///< literal: the state space instead of local's
-  CoincidenceGains gains;
-  Vector state;                     ///< xi(k): own (parallel, literal) or measured (realigned)
-  Vector measured;                  ///< local's rows filled with measurements
-  Vector next;                      ///< xi(k) as predicted at k-1
-  Vector offset_state;              ///< g
-  Vector offset_output;             ///< y - y_m
-  Vector error_filtered;            ///< w_hat
-  Vector undelayed;                 ///< y_m0, output of the model without delay
-  Vector outputs;                   ///< y_m
-  Vector lacking;                   ///< e, without C A^H xi
-  Vector correction;                ///< w_hat in the rows of the outputs
-  std::optional<DelayedTwin> twin;  ///< with delay_steps > 0, unless observed
-  std::optional<ModelObserver> observer;
-  std::optional<PathPlanner> planner;  ///< of the iterated law
+  /// The rules at x(k) and an input that is known.
+  void blendAt(VectorRef input, VectorRef disturbances);
+  /// The same after compare(), which holds for the new rules as well.
+  void replan(VectorRef input, VectorRef disturbances);
+
+  const LocalModel& local() const { return local_; }             ///< the rules, without the delay
+  const Vector& state() const { return state_; }                 ///< xi(k)
+  const Vector& offsetState() const { return offset_state_; }    ///< g, and what compare() added
+  const Vector& offsetOutput() const { return offset_output_; }  ///< y - y_m
+  const Vector& undelayed() const { return undelayed_; }         ///< y_m0, without the delay
+  const Vector& outputs() const { return outputs_; }             ///< y_m
+  const Vector& correction() const;                              ///< offsetState() - g
+
+ protected:
+  /// What another model's memory is worth here.
+  enum class Kinship { kNone, kSameLags, kSameRules };
+
+  InternalModel(const TsModel& model, const FmbpcParams& params);
+  void resize(Eigen::Index n_x);  ///< of the state, if it is not that of local()
+  Kinship kinshipTo(const InternalModel& older) const;
+  const Vector& antecedents() const { return at_measured_ ? measured_ : state_; }
+  void predict(VectorRef input);  ///< next_ from state_
+  void readUndelayed(const Vector& state);
+
+  bool at_measured_;  ///< antecedents are measured outputs
+  LocalModel local_;
+  Vector measured_;  ///< local_'s rows filled with measurements
+  Vector state_, next_;
+  Vector offset_state_, offset_output_, undelayed_, outputs_;
+
+ private:
+  mutable Vector correction_;
 };
+
+/// `model` is matched to the plant. @throws InputError naming delay_steps or realisation if they do
+/// not suit the model.
+std::unique_ptr<InternalModel> makeInternalModel(const TsModel& model, const FmbpcParams& params);
 
 }  // namespace fpc

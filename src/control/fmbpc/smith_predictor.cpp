@@ -5,7 +5,7 @@
 
 namespace fpc {
 
-DelayedTwin::DelayedTwin(LocalModel local, std::optional<CanonicalForm> canonical, int delay)
+SmithPredictor::SmithPredictor(LocalModel local, std::optional<CanonicalForm> canonical, int delay)
     : local_(std::move(local)),
       canonical_(std::move(canonical)),
       rest_(Vector::Zero(local_.stateSize())),
@@ -15,7 +15,7 @@ DelayedTwin::DelayedTwin(LocalModel local, std::optional<CanonicalForm> canonica
       inputs_(Matrix::Zero(affine().B.cols(), delay)),
       disturbances_(Matrix::Zero(disturbance_.size(), delay)) {}
 
-void DelayedTwin::rest(VectorRef outputs, VectorRef input, VectorRef disturbances) {
+void SmithPredictor::rest(VectorRef outputs, VectorRef input, VectorRef disturbances) {
   inputs_.colwise() = Vector::Map(input.data(), input.size());
   disturbances_.colwise() = Vector::Map(disturbances.data(), disturbances.size());
   local_.restState(outputs, input, disturbances, rest_);
@@ -28,7 +28,7 @@ void DelayedTwin::rest(VectorRef outputs, VectorRef input, VectorRef disturbance
   }
 }
 
-void DelayedTwin::advance(VectorRef input) {
+void SmithPredictor::advance(VectorRef input) {
   next_ = affine().g;
   next_.noalias() += affine().A * state_;
   next_.noalias() += affine().B * inputs_.col(oldest_input_);
@@ -37,7 +37,7 @@ void DelayedTwin::advance(VectorRef input) {
   oldest_input_ = (oldest_input_ + 1) % inputs_.cols();
 }
 
-void DelayedTwin::blend(VectorRef disturbances, const Vector* antecedents) {
+void SmithPredictor::blend(VectorRef disturbances, const Vector* antecedents) {
   disturbance_ = disturbances_.col(oldest_disturbance_);
   disturbances_.col(oldest_disturbance_) = disturbances;
   oldest_disturbance_ = (oldest_disturbance_ + 1) % disturbances_.cols();
@@ -45,7 +45,7 @@ void DelayedTwin::blend(VectorRef disturbances, const Vector* antecedents) {
   if (canonical_) canonical_->blend(local_.firing().front());
 }
 
-void DelayedTwin::output(Eigen::Ref<Vector> y) const {
+void SmithPredictor::output(Eigen::Ref<Vector> y) const {
   if (canonical_) {
     y.noalias() = canonical_->affine().C * state_;
     return;

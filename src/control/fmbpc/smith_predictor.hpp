@@ -1,4 +1,5 @@
-// The model with its transport delay, run beside the undelayed one that the law predicts with.
+// Smith predictor: the model with its transport delay, run beside the undelayed one that the law
+// predicts with.
 // Private to the room.
 #pragma once
 
@@ -9,13 +10,13 @@
 
 namespace fpc {
 
-/// The undelayed model again, fed with inputs and disturbances out of a shift register. A law that
-/// predicts y0(k + H) with the undelayed model compares the delayed measurement with this one's
-/// output. No allocation after construction.
-class DelayedTwin {
+/// Smith predictor: the undelayed model again, fed with inputs and disturbances out of a shift
+/// register. A law that predicts y0(k + H) with the undelayed model compares the delayed
+/// measurement with this one's output. No allocation after construction.
+class SmithPredictor {
  public:
-  /// Copies of the undelayed model, and the samples it lacks (>= 1).
-  DelayedTwin(LocalModel local, std::optional<CanonicalForm> canonical, int delay);
+  /// Copies of the undelayed model, and the samples taken out of it (>= 1).
+  SmithPredictor(LocalModel local, std::optional<CanonicalForm> canonical, int delay);
 
   /// Everything, the register too, has rested at these values.
   void rest(VectorRef outputs, VectorRef input, VectorRef disturbances);

@@ -1,5 +1,6 @@
 // Controller type fuzzy_optimal: its section of a loop file, with horizons, weights of all rules or
 // of each, and what becomes of the disturbance estimate; its settings that may change in a run.
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/optimal/law.hpp"
 #include "fmbpc/control/read_observer.hpp"
 #include "fmbpc/control/registry.hpp"
@@ -31,19 +32,13 @@ void readTuning(YamlSection& section, const ControllerContext& loop, FuzzyOptima
 FuzzyOptimalParams readFuzzyOptimal(YamlSection& section, const ControllerContext& loop) {
   FuzzyOptimalParams params;
   readTuning(section, loop, params.tuning);
-  params.reference_pole = Vector::Constant(loop.outputCount(), 0.9);
-  params.disturbance_nominal = loop.disturbance_nominal;
-  section.oneOf("solve", params.solve, {"together", "each"});
-  section.oneOf("disturbance", params.disturbance, {"inside", "outside", "none"});
+  readPredictiveLaw(section, loop, params);
+  readOption(section, "solve", params.solve);
+  readOption(section, "disturbance", params.disturbance);
   section.number("disturbance_gain", params.disturbance_gain, {0.0, 1.0, true});
-  params.observe = readObserver(section, params.observer, loop) && params.disturbance == "inside" &&
+  params.observe = readObserver(section, params.observer, loop) &&
+                   params.disturbance == FuzzyOptimalDisturbance::kInside &&
                    params.disturbance_gain == 1.0;
-  section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
-  section.boolean("preview", params.preview);
-  section.boolean("disturbance_feedforward", params.disturbance_feedforward);
-  section.byName("disturbance_nominal", params.disturbance_nominal, loop.disturbances(), kFinite);
-  section.number("transfer_decay", params.transfer_decay, {0.0, 1.0});
-  readPredictionSteps(section, loop, params.prediction_steps);
   checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
   return params;
 }
@@ -61,16 +56,7 @@ ControllerType describe() {
   ControllerType type{"fuzzy_optimal", "a quadratic predictive law for every rule, blended"};
   type.needs_model = true;
   type.predicts = true;
-  type.settings = {
-      {"horizon_steps", SettingKind::kInteger, "prediction horizon P [samples]", 1, 1000},
-      {"move_steps", SettingKind::kInteger, "free moves M [samples], at most P", 1, 1000},
-      {"weight_output", SettingKind::kText,
-       "of squared errors: 'Ca=1 T=2', or '1 2', or one number; rules by ';'"},
-      {"weight_move", SettingKind::kText,
-       "of squared moves: 'q=0.1 qc=2', or '0.1 2', or one number; rules by ';'"},
-      {"weight_input", SettingKind::kText,
-       "of squared distances to input_target; leaves an offset"},
-      {"input_target", SettingKind::kText, "'q=100 qc=103', or '100 103', or one number"}};
+  type.settings = fuzzyOptimalSettings().infos();
   return type;
 }
 

@@ -1,5 +1,6 @@
 // Checks of the parameters of the fuzzy optimal law.
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/optimal/law.hpp"
 
 namespace fpc {
@@ -25,22 +26,12 @@ void FuzzyOptimalTuning::validate(Eigen::Index n_y, Eigen::Index n_u) const {
 
 void FuzzyOptimalParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   tuning.validate(n_y, n_u);
-  require(solve == "together" || solve == "each", "controller.solve", "together or each");
-  require(disturbance == "inside" || disturbance == "outside" || disturbance == "none",
-          "controller.disturbance", "one of inside, outside, none, got '" + disturbance + "'");
   require(disturbance_gain > 0.0 && disturbance_gain <= 1.0, "controller.disturbance_gain",
           "a number > 0 and <= 1");
-  require(!observe || disturbance == "inside", "controller.observer",
-          "disturbance inside; got '" + disturbance + "'");
+  require(!observe || disturbance == FuzzyOptimalDisturbance::kInside, "controller.observer",
+          "disturbance inside; got '" + wordOf(disturbance) + "'");
   if (observe) observer.validate(n_y);
-  requireCount(reference_pole, n_y, "controller.reference_pole");
-  require((reference_pole.array() >= 0.0).all() && (reference_pole.array() < 1.0).all(),
-          "controller.reference_pole", "numbers >= 0 and < 1");
-  require(disturbance_nominal.allFinite(), "controller.disturbance_nominal", "finite numbers");
-  require(transfer_decay >= 0.0 && transfer_decay < 1.0, "controller.transfer_decay",
-          "a number >= 0 and < 1");
-  require(prediction_steps >= 1 && prediction_steps <= 100000, "controller.prediction_steps",
-          "an integer from 1 to 100000");
+  PredictiveLawParams::validate(n_y);
 }
 
 }  // namespace fpc

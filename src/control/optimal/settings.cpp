@@ -1,9 +1,10 @@
 // The tuning of the fuzzy optimal law as texts that a person can type while the loop runs.
 #include <sstream>
+#include <utility>
 
-#include "control/optimal/memory.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/control/optimal/law.hpp"
 
 namespace fpc {
 namespace {
@@ -38,40 +39,75 @@ std::string weightText(const FuzzyOptimalTuning& tuning, Weight weight,
   return join(groups, "; ");
 }
 
+SettingsTable<FuzzyOptimalParams>& addWeight(SettingsTable<FuzzyOptimalParams>& table,
+                                             const std::string& key, Weight weight, bool of_inputs,
+                                             const std::string& words) {
+  const auto signalsOf = [of_inputs](const SettingSignals& s) -> const auto& {
+    return of_inputs ? s.inputs : s.outputs;
+  };
+  return table.add(
+      {key, SettingKind::kText, words},
+      [=](const FuzzyOptimalParams& p, const SettingSignals& signals) {
+        return weightText(p.tuning, weight, signalsOf(signals));
+      },
+      [=](const std::string& text, const std::string& where, const SettingSignals& signals,
+          FuzzyOptimalParams& p) {
+        readWeight(text, signalsOf(signals), where, weight, p.tuning);
+      });
+}
+
+SettingsTable<FuzzyOptimalParams>& addSteps(SettingsTable<FuzzyOptimalParams>& table,
+                                            const std::string& key, int FuzzyOptimalTuning::*steps,
+                                            const std::string& words) {
+  return table.add(
+      {key, SettingKind::kInteger, words, 1, 1000},
+      [=](const FuzzyOptimalParams& p, const SettingSignals&) {
+        return std::to_string(p.tuning.*steps);
+      },
+      [=](const std::string& text, const std::string& where, const SettingSignals&,
+          FuzzyOptimalParams& p) { p.tuning.*steps = settingInteger(text, where); });
+}
+
+SettingsTable<FuzzyOptimalParams> makeTable() {
+  using Tuning = FuzzyOptimalTuning;
+  SettingsTable<FuzzyOptimalParams> t;
+  addSteps(t, "horizon_steps", &Tuning::horizon_steps, "prediction horizon P [samples]");
+  addSteps(t, "move_steps", &Tuning::move_steps, "free moves M [samples], at most P");
+  addWeight(t, "weight_output", &QuadraticWeights::output, false,
+            "of squared errors: 'Ca=1 T=2', or '1 2', or one number; rules by ';'");
+  addWeight(t, "weight_move", &QuadraticWeights::move, true,
+            "of squared moves: 'q=0.1 qc=2', or '0.1 2', or one number; rules by ';'");
+  addWeight(t, "weight_input", &QuadraticWeights::input, true,
+            "of squared distances to input_target; leaves an offset");
+  t.add(
+      {"input_target", SettingKind::kText, "'q=100 qc=103', or '100 103', or one number"},
+      [](const FuzzyOptimalParams& p, const SettingSignals& s) {
+        return signalValuesText(p.tuning.input_target, s.inputs);
+      },
+      [](const std::string& text, const std::string& where, const SettingSignals& s,
+         FuzzyOptimalParams& p) {
+        readSignalValues(text, s.inputs, where, p.tuning.input_target);
+      });
+  return t.ofOutputs(
+      "reference_pole", &FuzzyOptimalParams::reference_pole,
+      "how slowly references go to the setpoint, [0, 1): 'Ca=0.9 T=0.8', or one number");
+}
+
 }  // namespace
 
+const SettingsTable<FuzzyOptimalParams>& fuzzyOptimalSettings() {
+  static const SettingsTable<FuzzyOptimalParams> table = makeTable();
+  return table;
+}
+
 Settings FuzzyOptimalLaw::settings() const {
-  const FuzzyOptimalTuning& t = tuning();
-  const PlantInfo& plant = memory_->plant;
-  return {{"horizon_steps", std::to_string(t.horizon_steps)},
-          {"move_steps", std::to_string(t.move_steps)},
-          {"weight_output", weightText(t, &QuadraticWeights::output, plant.outputs)},
-          {"weight_move", weightText(t, &QuadraticWeights::move, plant.inputs)},
-          {"weight_input", weightText(t, &QuadraticWeights::input, plant.inputs)},
-          {"input_target", signalValuesText(t.input_target, plant.inputs)}};
+  return fuzzyOptimalSettings().show(params_, {plant().outputs, plant().inputs});
 }
 
 bool FuzzyOptimalLaw::retune(const Settings& settings) {
-  FuzzyOptimalTuning t = tuning();
-  const auto &outputs = memory_->plant.outputs, &inputs = memory_->plant.inputs;
-  for (const auto& [key, text] : settings) {
-    const std::string where = "controller." + key;
-    if (key == "horizon_steps") {
-      t.horizon_steps = settingInteger(text, where);
-    } else if (key == "move_steps") {
-      t.move_steps = settingInteger(text, where);
-    } else if (key == "weight_output") {
-      readWeight(text, outputs, where, &QuadraticWeights::output, t);
-    } else if (key == "weight_move") {
-      readWeight(text, inputs, where, &QuadraticWeights::move, t);
-    } else if (key == "weight_input") {
-      readWeight(text, inputs, where, &QuadraticWeights::input, t);
-    } else {
-      require(key == "input_target", where, "a setting that may change in a run");
-      readSignalValues(text, inputs, where, t.input_target);
-    }
-  }
-  retune(std::move(t));
+  FuzzyOptimalParams next = params_;
+  fuzzyOptimalSettings().take(settings, {plant().outputs, plant().inputs}, next);
+  retuneTo(std::move(next));
   return true;
 }
 

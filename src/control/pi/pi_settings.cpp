@@ -1,8 +1,8 @@
 // Gains of a running PI controller as texts that a person can type.
 #include <cmath>
 
+#include "control/pi/read_pi.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
 
@@ -14,25 +14,31 @@ Vector PiController::gains(double PiLoop::*gain, double LoopState::*next) const 
   return values;
 }
 
+const SettingsTable<PiGains>& piSettings() {
+  static const SettingsTable<PiGains> table =
+      SettingsTable<PiGains>()
+          .ofInputs("kp", &PiGains::kp,
+                    "input unit per output unit: 'q_r=2 q_w=1', or '2 1', or one")
+          .ofInputs("ki_per_h", &PiGains::ki_per_h,
+                    "input unit per output unit and hour, in the same way");
+  return table;
+}
+
 Settings PiController::settings() const {
-  return {
-      {"kp", signalValuesText(gains(&PiLoop::kp, &LoopState::next_kp), inputs_)},
-      {"ki_per_h", signalValuesText(gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h), inputs_)}};
+  return piSettings().show({gains(&PiLoop::kp, &LoopState::next_kp),
+                            gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h)},
+                           {inputs_, inputs_});
 }
 
 bool PiController::retune(const Settings& settings) {
-  Vector kp = gains(&PiLoop::kp, &LoopState::next_kp);
-  Vector ki = gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h);
-  for (const auto& [key, text] : settings) {
-    const std::string where = "controller." + key;
-    require(key == "kp" || key == "ki_per_h", where, "a setting that may change in a run");
-    Vector& values = key == "kp" ? kp : ki;
-    readSignalValues(text, inputs_, where, values);
-    require(values.allFinite(), where, "finite numbers");
-  }
+  PiGains next{gains(&PiLoop::kp, &LoopState::next_kp),
+               gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h)};
+  piSettings().take(settings, {inputs_, inputs_}, next);
+  require(next.kp.allFinite(), "controller.kp", "finite numbers");
+  require(next.ki_per_h.allFinite(), "controller.ki_per_h", "finite numbers");
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    states_[i].next_kp = kp[static_cast<Eigen::Index>(i)];
-    states_[i].next_ki_per_h = ki[static_cast<Eigen::Index>(i)];
+    states_[i].next_kp = next.kp[static_cast<Eigen::Index>(i)];
+    states_[i].next_ki_per_h = next.ki_per_h[static_cast<Eigen::Index>(i)];
   }
   retuned_ = true;
   return true;

@@ -60,9 +60,7 @@ std::unique_ptr<Controller> makePi(const PiParams& params, const ControllerConte
 
 ControllerType describe() {
   ControllerType type{"pi", "PI control, one loop per input, gains scheduled if asked"};
-  type.settings = {
-      {"kp", SettingKind::kText, "input unit per output unit: 'q_r=2 q_w=1', or '2 1', or one"},
-      {"ki_per_h", SettingKind::kText, "input unit per output unit and hour, in the same way"}};
+  type.settings = piSettings().infos();
   return type;
 }
 

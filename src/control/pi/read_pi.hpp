@@ -2,8 +2,15 @@
 #pragma once
 
 #include "fmbpc/control/pi/pi_reader.hpp"
+#include "fmbpc/control/settings_table.hpp"
 
 namespace fpc {
+
+/// What may change in a run: a value for the input of every loop.
+struct PiGains {
+  Vector kp, ki_per_h;
+};
+const SettingsTable<PiGains>& piSettings();
 
 /// Keys of one loop besides its gains.
 void readPiTerms(YamlSection& section, PiTerms& terms, const ControllerContext& loop);

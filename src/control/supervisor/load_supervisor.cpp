@@ -22,15 +22,43 @@ void LoadSupervisorParams::validate() const {
 
 LoadSupervisor::LoadSupervisor(const LoadSupervisorParams& params, InputLimits limits,
                                const PlantInfo& plant)
-    : params_(params), limits_(std::move(limits)), sample_time_h_(plant.sample_time_s / 3600.0) {
+    : params_(params),
+      next_params_(params),
+      limits_(std::move(limits)),
+      sample_time_h_(plant.sample_time_s / 3600.0) {
   params_.validate();
   limits_.validate(static_cast<Eigen::Index>(plant.inputs.size()));
   const std::string& input = plant.inputs[static_cast<std::size_t>(params_.input)].name;
   signals_ = {{input + "_integral", 0.0}, {"load", 0.0}};
 }
 
+const SettingsTable<LoadSupervisorParams>& loadSupervisorSettings() {
+  using Params = LoadSupervisorParams;
+  static const SettingsTable<Params> table =
+      SettingsTable<Params>()
+          .number("gain", &Params::gain, "input unit per output unit", -1e9, 1e9)
+          .number("integral_time_h", &Params::integral_time_h, "Ti [h]", 1e-6, 1e6)
+          .number("tracking_time_h", &Params::tracking_time_h, "Tt [h]", 1e-6, 1e6)
+          .number("load_gain", &Params::load_gain, "input unit per relative load: load.gain", -1e9,
+                  1e9);
+  return table;
+}
+
+Settings LoadSupervisor::settings() const {
+  return loadSupervisorSettings().show(next_params_, {{}, {}});
+}
+
+bool LoadSupervisor::retune(const Settings& settings) {
+  LoadSupervisorParams next = next_params_;
+  loadSupervisorSettings().take(settings, {{}, {}}, next);
+  next.validate();
+  next_params_ = next;
+  return true;
+}
+
 void LoadSupervisor::reset(const Measurement& start) {
   integral_ = 0.0;
+  running_ = false;
   transfer_pending_ = start.header.step > 0;
 }
 
@@ -49,7 +77,11 @@ void LoadSupervisor::step(const Measurement& now, const SetpointSource& setpoint
   output.remark = "";
   output.source = ActionSource::kBase;
   const double error = now.outputs[params_.output] - setpoint.present()[params_.output];
+  const double before = ahead(now, error);
+  params_ = next_params_;
   const double direct = ahead(now, error);
+  if (running_ && std::isfinite(before - direct)) integral_ += before - direct;
+  running_ = true;
   const double limit = params_.integral_limit;
   if (transfer_pending_ && std::isfinite(direct))
     integral_ = std::clamp(now.input_applied[params_.input] - direct, -limit, limit);

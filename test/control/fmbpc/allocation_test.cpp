@@ -50,7 +50,8 @@ struct Steady {
 TEST(FmbpcLawMemory, StepDoesNotAllocate) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   std::mt19937_64 generator(1);
-  for (const char* realisation : {"parallel", "realigned"})
+  for (const FmbpcRealisation realisation :
+       {FmbpcRealisation::kParallel, FmbpcRealisation::kRealigned})
     for (const bool preview : {false, true}) {
       FmbpcParams published = test::publishedParams();
       published.coincidence_steps = 180;
@@ -73,7 +74,7 @@ TEST(FmbpcLawMemory, PlanningAlongThePathDoesNotAllocate) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   std::mt19937_64 generator(1);
   FmbpcParams params = test::generalParams(2, 2, 20, 0.5, 0.1);
-  params.law = "iterated";
+  params.law = FmbpcForm::kIterated;
   params.horizon_steps = 20;
   params.forecast_period_steps = 30;
   const TsModel model = test::randomModel(generator, {});
@@ -84,9 +85,11 @@ TEST(FmbpcLawMemory, PlanningAlongThePathDoesNotAllocate) {
 
 TEST(FmbpcLawMemory, WithADelayTakenOutNothingIsAllocatedEither) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
-  for (const char* realisation : {"parallel", "literal"})
-    for (const char* antecedent : {"model", "measured"}) {
-      if (std::string(realisation) == "literal" && std::string(antecedent) == "model") continue;
+  for (const FmbpcRealisation realisation :
+       {FmbpcRealisation::kParallel, FmbpcRealisation::kLiteral})
+    for (const FmbpcAntecedent antecedent : {FmbpcAntecedent::kModel, FmbpcAntecedent::kMeasured}) {
+      if (realisation == FmbpcRealisation::kLiteral && antecedent == FmbpcAntecedent::kModel)
+        continue;
       FmbpcParams params;
       params.coincidence_steps = 9;
       params.reference_pole = Vector::Constant(1, 0.96);
@@ -96,7 +99,7 @@ TEST(FmbpcLawMemory, WithADelayTakenOutNothingIsAllocatedEither) {
       params.realisation = realisation;
       params.antecedent = antecedent;
       Steady loop(params, test::shippedModel("cstr_a"));
-      EXPECT_EQ(loop.allocations(200), 0U) << realisation;
+      EXPECT_EQ(loop.allocations(200), 0U) << wordOf(realisation);
       testing::AllocationCounter counter;
       loop.law.reset(loop.now);
       EXPECT_EQ(counter.count(), 0U);
@@ -106,7 +109,8 @@ TEST(FmbpcLawMemory, WithADelayTakenOutNothingIsAllocatedEither) {
 
 TEST(FmbpcLawMemory, TakingOverFromAnotherModelOfThisSizeDoesNotAllocate) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
-  for (const char* realisation : {"parallel", "realigned"}) {
+  for (const FmbpcRealisation realisation :
+       {FmbpcRealisation::kParallel, FmbpcRealisation::kRealigned}) {
     FmbpcParams params = test::generalParams(1, 1, 5, 0.5, 0.0);
     params.realisation = realisation;
     Steady loop(params, test::firstOrder(0.9, 0.1, 0.2));

@@ -160,8 +160,8 @@ TEST(FmbpcLiteral, StatesAsPrintedAnswerOneSampleLaterSoAHorizonOfOneHasNoEffect
   const PlantInfo info = test::infoOf(model);
   for (const int horizon : {1, 2}) {
     FmbpcParams params = reactorParams(5);
-    params.realisation = "literal";
-    params.antecedent = "measured";
+    params.realisation = FmbpcRealisation::kLiteral;
+    params.antecedent = FmbpcAntecedent::kMeasured;
     params.coincidence_steps = horizon;
     test::ModelPlant plant(model, one(0.1), one(103.0), Vector(0));
     SetpointSource setpoint = test::setpointOf(info, one(0.13));
@@ -204,15 +204,19 @@ TEST(FmbpcDelay, WhatDoesNotFitIsRefusedByName) {
             std::string::npos);
   EXPECT_NE(with([](auto& p) { p.delay_steps = -1; }).find("controller.delay_steps"),
             std::string::npos);
-  EXPECT_NE(with([](auto& p) { p.realisation = "realigned"; }).find("controller.delay_steps"),
+  EXPECT_NE(with([](auto& p) {
+              p.realisation = FmbpcRealisation::kRealigned;
+            }).find("controller.delay_steps"),
             std::string::npos);
   EXPECT_NE(with([](auto& p) { p.reference_lead_steps = -1; }).find("reference_lead_steps"),
             std::string::npos);
-  EXPECT_NE(with([](auto& p) { p.realisation = "literal"; }).find("controller.antecedent"),
+  EXPECT_NE(with([](auto& p) {
+              p.realisation = FmbpcRealisation::kLiteral;
+            }).find("controller.antecedent"),
             std::string::npos);
   EXPECT_NE(with([](auto& p) {
-              p.realisation = "literal";
-              p.antecedent = "measured";
+              p.realisation = FmbpcRealisation::kLiteral;
+              p.antecedent = FmbpcAntecedent::kMeasured;
               p.delay_steps = 4;
             }).find("controller.realisation"),
             std::string::npos);

@@ -4,7 +4,9 @@
 #include <functional>
 #include <utility>
 
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/fuzzy/local_model.hpp"
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc::test {
@@ -41,7 +43,7 @@ inline FmbpcParams publishedParams() {
 inline FmbpcParams generalParams(Eigen::Index n_y, Eigen::Index n_u, int horizon, double pole,
                                  double move_weight) {
   FmbpcParams params;
-  params.law = "general";
+  params.law = FmbpcForm::kGeneral;
   params.coincidence_steps = horizon;
   params.reference_pole = Vector::Constant(n_y, pole);
   params.weight_output = Vector::Ones(n_y);

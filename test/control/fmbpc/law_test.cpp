@@ -148,7 +148,7 @@ TEST(PublishedLaw, DoesNotMoveWithTheSubstrateSetpoint) {
 
 TEST(PublishedLaw, EqualsTheGeneralLawWithOnlyTheLastOutputWeighted) {
   FmbpcParams general = test::publishedParams();
-  general.law = "general";
+  general.law = FmbpcForm::kGeneral;
   general.weight_output = pair(0.0, 1.0);
   general.weight_move = Vector::Zero(1);
   const Inputs a = runOnOtherPlant(test::publishedParams(), 55.0, 250),

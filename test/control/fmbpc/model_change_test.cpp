@@ -17,7 +17,7 @@ Vector one(double value) { return Vector::Constant(1, value); }
 
 constexpr double kPole = 0.9, kGain = 0.1;  // of the plant
 
-FmbpcParams params(const std::string& realisation = "parallel", double decay = 0.9) {
+FmbpcParams params(FmbpcRealisation realisation = FmbpcRealisation::kParallel, double decay = 0.9) {
   FmbpcParams p = test::generalParams(1, 1, 5, 0.7, 0.0);
   p.realisation = realisation;
   p.transfer_decay = decay;
@@ -84,7 +84,8 @@ TsModel otherShape() {
 }
 
 TEST(ModelChange, TheFirstInputOfTheNewModelIsWhatTheOldOneWouldHaveSent) {
-  for (const char* realisation : {"parallel", "realigned"})
+  for (const FmbpcRealisation realisation :
+       {FmbpcRealisation::kParallel, FmbpcRealisation::kRealigned})
     for (const TsModel& other :
          {test::firstOrder(0.5, 0.9, 1.0), test::firstOrder(0.85, 0.12, 5.0), otherShape()}) {
       Loop with(params(realisation)), without(params(realisation));
@@ -92,7 +93,7 @@ TEST(ModelChange, TheFirstInputOfTheNewModelIsWhatTheOldOneWouldHaveSent) {
       without.run(18);
       with.session->setModel(other);
       const double expected = without.step();
-      EXPECT_EQ(with.step(), expected) << realisation << " " << other.name;
+      EXPECT_EQ(with.step(), expected) << wordOf(realisation) << " " << other.name;
       EXPECT_EQ(with.session->answer().base.source, ActionSource::kBase);
       EXPECT_TRUE(with.session->answer().has_prediction);
       EXPECT_TRUE(with.session->resetReason().empty());
@@ -120,11 +121,12 @@ TEST(ModelChange, TheBiasDiesOutAndTheLoopEndsWithoutOffset) {
 }
 
 TEST(ModelChange, TheSameModelAgainChangesNothingAtAll) {
-  for (const char* realisation : {"parallel", "realigned"}) {
+  for (const FmbpcRealisation realisation :
+       {FmbpcRealisation::kParallel, FmbpcRealisation::kRealigned}) {
     Loop with(params(realisation)), without(params(realisation));
     for (int i = 0; i < 40; ++i) {
       if (i % 3 == 1) with.session->setModel(test::firstOrder(0.85, 0.12, 0.0));
-      ASSERT_NEAR(with.step(), without.step(), 1e-9) << realisation << " " << i;
+      ASSERT_NEAR(with.step(), without.step(), 1e-9) << wordOf(realisation) << " " << i;
     }
   }
 }

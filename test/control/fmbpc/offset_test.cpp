@@ -31,18 +31,20 @@ double finalError(FmbpcParams params, const TsModel& model, const TsModel& truth
 TEST(OffsetFree, ParallelAndRealignedModelsReachTheSetpointDespiteMismatch) {
   const TsModel model = test::firstOrder(0.85, 0.10, 0.0),
                 truth = test::firstOrder(0.90, 0.12, 0.3);
-  for (const char* law : {"published", "general"})
-    for (const char* realisation : {"parallel", "realigned"}) {
+  for (const FmbpcForm law : {FmbpcForm::kPublished, FmbpcForm::kGeneral})
+    for (const FmbpcRealisation realisation :
+         {FmbpcRealisation::kParallel, FmbpcRealisation::kRealigned}) {
       FmbpcParams params = test::generalParams(1, 1, 5, 0.7, 0.01);
       params.law = law;
       params.realisation = realisation;
-      EXPECT_LT(finalError(params, model, truth, one(2.0)), 1e-9) << law << ", " << realisation;
+      EXPECT_LT(finalError(params, model, truth, one(2.0)), 1e-9)
+          << wordOf(law) << ", " << wordOf(realisation);
     }
 }
 
 TEST(OffsetFree, RealignedWithoutErrorFilterMissesTheSetpoint) {
   FmbpcParams params = test::generalParams(1, 1, 5, 0.7, 0.01);
-  params.realisation = "realigned";
+  params.realisation = FmbpcRealisation::kRealigned;
   params.offset_gain = 0.0;
   EXPECT_GT(finalError(params, test::firstOrder(0.85, 0.10, 0.0), test::firstOrder(0.90, 0.12, 0.3),
                        one(2.0)),
@@ -77,12 +79,13 @@ TsModel crossed(double scale, double offset) {
 
 TEST(OffsetFree, TwoInputsBringTwoOutputsToTheirSetpointsThroughLagsAndDelays) {
   const Vector target = test::pair(1.0, -0.5);
-  for (const char* realisation : {"parallel", "realigned"})
+  for (const FmbpcRealisation realisation :
+       {FmbpcRealisation::kParallel, FmbpcRealisation::kRealigned})
     for (const double move_weight : {0.0, 0.05}) {
       FmbpcParams params = test::generalParams(2, 2, 12, 0.8, move_weight);
       params.realisation = realisation;
       EXPECT_LT(finalError(params, crossed(1.0, 0.0), crossed(1.2, 0.1), target), 1e-8)
-          << realisation << ", L = " << move_weight;
+          << wordOf(realisation) << ", L = " << move_weight;
     }
 }
 

@@ -22,9 +22,6 @@ TEST(FmbpcParams, ValidateNamesTheField) {
     }
   };
   EXPECT_NO_THROW(test::generalParams(2, 1, 6, 0.5, 0.0).validate(2, 1));
-  expect("law", [](FmbpcParams& p) { p.law = "other"; });
-  expect("realisation", [](FmbpcParams& p) { p.realisation = "serial"; });
-  expect("antecedent", [](FmbpcParams& p) { p.antecedent = "plant"; });
   expect("coincidence_steps", [](FmbpcParams& p) { p.coincidence_steps = 0; });
   expect("prediction_steps", [](FmbpcParams& p) { p.prediction_steps = 0; });
   expect("reference_pole", [](FmbpcParams& p) { p.reference_pole = one(0.5); });

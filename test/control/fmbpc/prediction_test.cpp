@@ -41,7 +41,7 @@ std::vector<Case> cases() {
   all.push_back({"the same after a reset in the middle", moves, all.back().model, true});
   moves.preview = true;
   all.push_back({"with preview", moves, all.back().model, false});
-  moves.realisation = "realigned";
+  moves.realisation = FmbpcRealisation::kRealigned;
   moves.offset_gain = 0.0;
   all.push_back({"realigned", moves, all.back().model, true});
   FmbpcParams three = test::generalParams(3, 2, 3, 0.5, 0.1);
@@ -88,7 +88,8 @@ TEST(Prediction, BaseLawOfALinearModelComesTrueInClosedLoop) {
       ++k;
     }
     // From now on the sensors are off: y - y_m is constant because plant and model are the same.
-    if (c.params.realisation == "parallel") plant.output_bias = test::randomVector(generator, n_y);
+    if (c.params.realisation == FmbpcRealisation::kParallel)
+      plant.output_bias = test::randomVector(generator, n_y);
     const std::uint32_t settled =
         c.params.preview || c.bumpless ? k + 2 : 10;  // without preview the setpoint must rest
     test::run(law, plant, setpoint, k, settled);
@@ -112,7 +113,7 @@ TEST(Prediction, FirstInputIsTheBaseActionForNonlinearModels) {
     const TsModel model = test::randomModel(generator, {});
     FmbpcParams params = test::generalParams(2, 2, 5, 0.6, seed % 2 == 0 ? 0.0 : 0.2);
     params.prediction_steps = 4;
-    params.realisation = seed % 3 == 0 ? "realigned" : "parallel";
+    params.realisation = seed % 3 == 0 ? FmbpcRealisation::kRealigned : FmbpcRealisation::kParallel;
     const PlantInfo info = test::infoOf(model);
     test::ModelPlant plant(model, Vector::Zero(2), Vector::Zero(2), Vector::Zero(1));
     SetpointSource setpoint = test::setpointOf(info, test::randomVector(generator, 2));

@@ -48,7 +48,9 @@ TEST(FuzzyOptimalMemory, StepDoesNotAllocate) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   std::mt19937_64 generator(1);
   const TsModel model = test::sharedRandomModel(generator, {3, 3, 2, 5, 3, 1, 3, 3});
-  for (const char* disturbance : {"inside", "outside", "none"})
+  for (const FuzzyOptimalDisturbance disturbance :
+       {FuzzyOptimalDisturbance::kInside, FuzzyOptimalDisturbance::kOutside,
+        FuzzyOptimalDisturbance::kNone})
     for (const bool preview : {false, true}) {
       FuzzyOptimalParams params = test::optimalParams(3, 3, 20, 3, 0.1);
       params.disturbance = disturbance;

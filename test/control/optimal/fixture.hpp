@@ -4,6 +4,7 @@
 #include <random>
 
 #include "control/fmbpc/law_fixture.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/optimal/law.hpp"
 
 namespace fpc::test {

@@ -37,9 +37,9 @@ TEST(FuzzyOptimalLaw, OneStepWithoutWeightIsTheModelInverse) {
   FuzzyOptimalParams params = test::optimalParams(1, 1, 1, 1, 0.0);
   // At rest d = 2 - (0.9 2 + 0.2 1 + 0.1) = -0.1; then 0.9 2 + 0.2 u + 0.1 - 0.1 = 3.
   EXPECT_NEAR(firstInput(params, test::firstOrder(0.9, 0.2, 0.1), now, one(3.0))[0], 6.0, 1e-12);
-  params.disturbance = "none";
+  params.disturbance = FuzzyOptimalDisturbance::kNone;
   EXPECT_NEAR(firstInput(params, test::firstOrder(0.9, 0.2, 0.1), now, one(3.0))[0], 5.5, 1e-12);
-  params.disturbance = "inside";  // (b^2 + L) du = b (y_r - y)
+  params.disturbance = FuzzyOptimalDisturbance::kInside;  // (b^2 + L) du = b (y_r - y)
   params.tuning.weight.move = one(0.06);
   EXPECT_NEAR(firstInput(params, test::firstOrder(0.9, 0.2, 0.1), now, one(3.0))[0], 3.0, 1e-12);
 }
@@ -204,8 +204,6 @@ TEST(FuzzyOptimalParams, EachFieldIsCheckedByName) {
          p.tuning.rules[0].move[0] = std::nan("");
        })},
       {"input_target", refusal([](P& p) { p.tuning.input_target.resize(3); })},
-      {"solve", refusal([](P& p) { p.solve = "both"; })},
-      {"disturbance", refusal([](P& p) { p.disturbance = "aside"; })},
       {"disturbance_gain", refusal([](P& p) { p.disturbance_gain = 0.0; })},
       {"reference_pole", refusal([](P& p) { p.reference_pole[0] = 1.0; })},
       {"disturbance_nominal", refusal([](P& p) { p.disturbance_nominal = one(std::nan("")); })},

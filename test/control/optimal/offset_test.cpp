@@ -76,15 +76,15 @@ TEST(FuzzyOptimalOffset, OutsideTheRecursionOneStepIsFreeOfItAndLongerHorizonsAr
     const TsModel truth = test::dominantModel(generator, 2);
     const TsModel model = test::mistaken(truth, generator, 0.15);
     const Vector target = test::randomVector(generator, 2, 0.8);
-    const auto error = [&](int P, const char* where) {
+    const auto error = [&](int P, FuzzyOptimalDisturbance where) {
       FuzzyOptimalParams params = test::optimalParams(2, 2, P, 1, 0.1);
       params.disturbance = where;
       return finalError(params, model, truth, target, 0.4, 0.3);
     };
-    EXPECT_LT(error(1, "outside"), 1e-8) << "seed " << seed;
-    EXPECT_GT(error(5, "outside"), 1e-2) << "seed " << seed;
-    EXPECT_LT(error(5, "inside"), 1e-8) << "seed " << seed;
-    EXPECT_GT(error(1, "none"), 1e-2) << "seed " << seed;
+    EXPECT_LT(error(1, FuzzyOptimalDisturbance::kOutside), 1e-8) << "seed " << seed;
+    EXPECT_GT(error(5, FuzzyOptimalDisturbance::kOutside), 1e-2) << "seed " << seed;
+    EXPECT_LT(error(5, FuzzyOptimalDisturbance::kInside), 1e-8) << "seed " << seed;
+    EXPECT_GT(error(1, FuzzyOptimalDisturbance::kNone), 1e-2) << "seed " << seed;
   }
 }
 

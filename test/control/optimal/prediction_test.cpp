@@ -14,7 +14,9 @@ TEST(FuzzyOptimalPrediction, BaseActionFollowsFromItsGainStateAndFeedforward) {
     std::mt19937_64 generator(seed);
     const TsModel truth = test::dominantModel(generator, 2);
     const TsModel model = test::mistaken(truth, generator, 0.1);
-    for (const char* disturbance : {"inside", "outside", "none"}) {
+    for (const FuzzyOptimalDisturbance disturbance :
+         {FuzzyOptimalDisturbance::kInside, FuzzyOptimalDisturbance::kOutside,
+          FuzzyOptimalDisturbance::kNone}) {
       FuzzyOptimalParams params = test::optimalParams(2, 2, 6, 2, 0.1);
       params.disturbance = disturbance;
       params.prediction_steps = 10;

@@ -1,14 +1,14 @@
 // Fuzzy optimal predictive control: a quadratic law for every rule, blended by firing weights.
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "fmbpc/control/controller.hpp"
 #include "fmbpc/control/disturbance_observer.hpp"
 #include "fmbpc/control/optimal/quadratic_law.hpp"
+#include "fmbpc/control/predictive_law.hpp"
+#include "fmbpc/control/settings_table.hpp"
 
 namespace fpc {
 
@@ -23,21 +23,29 @@ struct FuzzyOptimalTuning {
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;
 };
 
-struct FuzzyOptimalParams {
+/// How the moves of an input are found: with those of the others, or each by itself. See
+/// QuadraticHorizon.
+enum class FuzzyOptimalSolve { kTogether, kEach };
+/// Where the disturbance estimate acts: inside the recursion, on its outputs (an offset for P > 1),
+/// or nowhere, as printed.
+enum class FuzzyOptimalDisturbance { kInside, kOutside, kNone };
+
+inline std::vector<std::string> wordsOf(FuzzyOptimalSolve) { return {"together", "each"}; }
+inline std::vector<std::string> wordsOf(FuzzyOptimalDisturbance) {
+  return {"inside", "outside", "none"};
+}
+
+struct FuzzyOptimalParams : PredictiveLawParams {
   FuzzyOptimalTuning tuning;
-  std::string solve{"together"};      ///< together, or each: see QuadraticHorizon
-  std::string disturbance{"inside"};  ///< inside, outside (offset for P > 1) or none (as printed)
-  double disturbance_gain{1.0};       ///< (0, 1]: how far d follows the newest error
+  FuzzyOptimalSolve solve{FuzzyOptimalSolve::kTogether};
+  FuzzyOptimalDisturbance disturbance{FuzzyOptimalDisturbance::kInside};
+  double disturbance_gain{1.0};  ///< (0, 1]: how far d follows the newest error
   bool observe{false};      ///< state and d come from an observer with stated noise; inside only
   ObserverParams observer;  ///< used if observe
-  Vector reference_pole;    ///< n_y, a_r
-  bool preview{false};      ///< references follow the setpoint schedule over the horizon
-  bool disturbance_feedforward{true};
-  Vector disturbance_nominal;  ///< n_d, what enters the model instead
-  double transfer_decay{0.9};  ///< how fast the bias of a bumpless start decays per sample, [0, 1)
-  int prediction_steps{1};     ///< n_c of the predictive_action
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;  ///< @throws InputError naming the field
 };
+
+const SettingsTable<FuzzyOptimalParams>& fuzzyOptimalSettings();  ///< what may change in a run
 
 /// Rule g predicts from measured outputs and applied inputs
 ///   y(k+1) = sum a y + sum b u + c + d_g,   d_g = y(k) - y_hat_g(k|k-1),
@@ -48,22 +56,15 @@ struct FuzzyOptimalParams {
 /// weight towards an input target that is not the right one. The input is sum_g w_g u_g (Taieb
 /// 2017, eq. 12), w_g the firing weights at the measured antecedents (u(k) replaced by u(k-1)); all
 /// outputs must share one premise partition (see splitRules()). Gains are computed when a model or
-/// a tuning comes. It takes over in the next step as in FmbpcLaw: the old law still says what u(k)
-/// would have been, and the new one starts with a bias that makes its u(k) the very same and fades
-/// with transfer_decay; at rest there is none. The measured past is kept if the lags are the same.
-/// A start in the middle of a run adds such a bias too. Whatever goes wrong, the last applied input
-/// is held, ok is false and remark says why. The prediction is that of the blended model and law.
+/// a tuning comes; both take over without a bump (PredictiveLaw). The measured past is kept if the
+/// lags are the same. The prediction is that of the blended model and law.
 /// signals(): NAME_error (y - y_hat of the blended rules) of each output and NAME_unclipped of each
 /// input.
-class FuzzyOptimalLaw final : public Controller {
+class FuzzyOptimalLaw final : public PredictiveLaw {
  public:
-  FuzzyOptimalLaw(FuzzyOptimalParams params, InputLimits limits, PlantInfo plant);
-  ~FuzzyOptimalLaw() override;
+  FuzzyOptimalLaw(const FuzzyOptimalParams& params, const InputLimits& limits,
+                  const PlantInfo& plant);
 
-  void reset(const Measurement& start) override;
-  void step(const Measurement& now, const SetpointSource& setpoint,
-            ControllerOutput& output) override;
-  bool needsModel() const override { return true; }
   /// @throws InputError also for outputs with different partitions, another number of rules than
   /// there are weights, or an input without effect within the horizon and without weight.
   void setModel(const TsModel& model) override;
@@ -71,28 +72,18 @@ class FuzzyOptimalLaw final : public Controller {
   static void check(const FuzzyOptimalParams& params, const TsModel& model);
   /// From the next sample on, without a bump. @throws InputError, then nothing changes.
   void retune(FuzzyOptimalTuning tuning);
-  const FuzzyOptimalTuning& tuning() const;  ///< the latest
-  /// The tuning under the keys of a loop file. Weights and targets: one number for all, one for
+  const FuzzyOptimalTuning& tuning() const { return params_.tuning; }  ///< the latest
+  /// Tuning and reference poles under the keys of a loop file. Weights and targets: one number for all, one for
   /// each signal, or NAME=number; groups for each rule are separated by semicolons, a single group
   /// is for all rules.
   Settings settings() const override;
   bool retune(const Settings& settings) override;
-  const std::vector<std::pair<std::string, double>>& signals() const override;
 
  private:
-  struct Bank;  ///< everything whose size depends on model and tuning
-  struct Memory;
+  void retuneTo(FuzzyOptimalParams params);
 
-  void takeOver(std::unique_ptr<Bank> bank);
-  bool think(const Measurement& now, const SetpointSource& setpoint);
-  bool handOver(const Measurement& now, const SetpointSource& setpoint);
-  void transfer(const Measurement& now);
-  void predict(const Measurement& now, const SetpointSource& setpoint,
-               PredictiveAction& prediction) const;
-  void hold(const Measurement& now, const char* reason, ControllerOutput& output);
-  void refreshSignals();
-
-  std::unique_ptr<Memory> memory_;
+  FuzzyOptimalParams params_;     ///< with the latest tuning
+  std::optional<TsModel> model_;  ///< matched, for a new tuning
 };
 
 }  // namespace fpc

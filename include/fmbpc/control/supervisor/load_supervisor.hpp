@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/settings_table.hpp"
 
 namespace fpc {
 
@@ -22,6 +23,8 @@ struct LoadSupervisorParams {
   void validate() const;       ///< @throws InputError naming the field
 };
 
+const SettingsTable<LoadSupervisorParams>& loadSupervisorSettings();  ///< what may change in a run
+
 /// Other inputs stay where they are. A start in the middle of a run gives the integral the value at
 /// which the input stays, as far as its limit allows.
 class LoadSupervisor final : public Controller {
@@ -32,14 +35,17 @@ class LoadSupervisor final : public Controller {
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
+  Settings settings() const override;
+  /// From the next step on: the integral takes up what the other parts gain or lose.
+  bool retune(const Settings& settings) override;
 
  private:
   double ahead(const Measurement& now, double error) const;
 
-  LoadSupervisorParams params_;
+  LoadSupervisorParams params_, next_params_;
   InputLimits limits_;
   double sample_time_h_, integral_{};
-  bool transfer_pending_{false};
+  bool transfer_pending_{false}, running_{false};
   std::vector<std::pair<std::string, double>> signals_;
 };
 

@@ -1,5 +1,5 @@
 // Plans along a fuzzy model against what a quadratic programme says where both must agree.
-#include "fmbpc/control/fmbpc/path_planner.hpp"
+#include "fmbpc/control/fmbpc/input_limited_ilqr.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,8 +54,8 @@ struct Task {
   std::mt19937_64 generator;
   InputLimits limits;
   LocalModel local;
-  PathParams params;
-  PathPlanner planner;
+  IlqrParams params;
+  InputLimitedIlqr planner;
   Vector state, correction, offset, previous;
   Matrix loads, reference;
 };
@@ -105,7 +105,7 @@ TEST_P(PlanOfALinearModel, IsTheSolutionOfTheQuadraticProgramme) {
 
 INSTANTIATE_TEST_SUITE_P(FreeAndBound, PlanOfALinearModel, ::testing::Values(1e6, 2.0, 0.6));
 
-TEST(PathPlanner, KeepsBoundsAndMovesOnEveryModel) {
+TEST(InputLimitedIlqr, KeepsBoundsAndMovesOnEveryModel) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 generator(seed);
@@ -123,7 +123,7 @@ TEST(PathPlanner, KeepsBoundsAndMovesOnEveryModel) {
   }
 }
 
-TEST(PathPlanner, IsNoWorseThanHoldingTheInputOnEveryModel) {
+TEST(InputLimitedIlqr, IsNoWorseThanHoldingTheInputOnEveryModel) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 generator(seed);
@@ -134,7 +134,7 @@ TEST(PathPlanner, IsNoWorseThanHoldingTheInputOnEveryModel) {
   }
 }
 
-TEST(PathPlanner, NotANumberIsReportedAndForgotten) {
+TEST(InputLimitedIlqr, NotANumberIsReportedAndForgotten) {
   std::mt19937_64 generator(1);
   Task task(test::randomModel(generator, {}), test::wideLimits(2, 1.0), 1);
   ASSERT_TRUE(task.plan());

@@ -3,4 +3,4 @@
 
 #include <gtest/gtest.h>
 
-#include "core.hpp"
+#include "base/precompiled.hpp"

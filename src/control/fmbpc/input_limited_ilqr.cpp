@@ -1,4 +1,4 @@
-#include "fmbpc/control/fmbpc/path_planner.hpp"
+#include "fmbpc/control/fmbpc/input_limited_ilqr.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double kStep = 1e-4;      // of finite differences, relative
 
 }  // namespace
 
-PathPlanner::PathPlanner(const LocalModel& model, PathParams params, InputLimits limits)
+InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, InputLimits limits)
     : model_(model),
       params_(std::move(params)),
       limits_(std::move(limits)),
@@ -54,10 +54,16 @@ PathPlanner::PathPlanner(const LocalModel& model, PathParams params, InputLimits
       fixed_(static_cast<std::size_t>(n_u_)),
       factor_(n_u_) {}
 
-void PathPlanner::forget() { warm_ = false; }
+void InputLimitedIlqr::forget() { warm_ = false; }
+
+void InputLimitedIlqr::retune(int iterations, VectorRef weight_output, VectorRef weight_move) {
+  params_.iterations = iterations;
+  params_.weight_output = weight_output;
+  params_.weight_move = weight_move;
+}
 
 /// What sample i+1 and the move of sample i cost.
-double PathPlanner::weigh(Eigen::Index i, const Matrix& states, const Matrix& inputs) const {
+double InputLimitedIlqr::weigh(Eigen::Index i, const Matrix& states, const Matrix& inputs) const {
   double cost = 0.0;
   for (Eigen::Index o = 0; o < n_y_; ++o) {
     if (params_.weight_output[o] == 0.0) continue;
@@ -72,7 +78,7 @@ double PathPlanner::weigh(Eigen::Index i, const Matrix& states, const Matrix& in
 }
 
 /// The model forwards under u + share * step + K (x - x of the plan), clipped.
-double PathPlanner::simulate(double share, Matrix& states, Matrix& inputs) {
+double InputLimitedIlqr::simulate(double share, Matrix& states, Matrix& inputs) {
   double cost = 0.0;
   states.col(0) = states_.col(0);
   for (Eigen::Index i = 0; i < N_; ++i) {
@@ -93,7 +99,7 @@ double PathPlanner::simulate(double share, Matrix& states, Matrix& inputs) {
   return cost;
 }
 
-void PathPlanner::linearise() {
+void InputLimitedIlqr::linearise() {
   for (Eigen::Index i = 0; i < N_; ++i) {
     state_ = states_.col(i);
     input_ = inputs_.col(i);
@@ -105,7 +111,7 @@ void PathPlanner::linearise() {
 }
 
 /// The rules' weights change along the path as well: differences where they depend on something.
-void PathPlanner::slope(Eigen::Index i) {
+void InputLimitedIlqr::slope(Eigen::Index i) {
   auto& A = A_[static_cast<std::size_t>(i)];
   auto& B = B_[static_cast<std::size_t>(i)];
   const auto difference = [&](double& variable, Eigen::Ref<Vector> column) {
@@ -123,7 +129,7 @@ void PathPlanner::slope(Eigen::Index i) {
 }
 
 /// Into wish_ the least of 1/2 x' Quu x + Qu' x with the fixed inputs where wish_ has them.
-bool PathPlanner::solveFree() {
+bool InputLimitedIlqr::solveFree() {
   free_Quu_ = Quu_;
   input_ = -Qu_;
   for (Eigen::Index a = 0; a < n_u_; ++a) {
@@ -143,7 +149,7 @@ bool PathPlanner::solveFree() {
 }
 
 /// Puts every free input that is out of its limits on them. False if there is none.
-bool PathPlanner::fixMore() {
+bool InputLimitedIlqr::fixMore() {
   bool more = false;
   for (Eigen::Index a = 0; a < n_u_; ++a) {
     wish_[a] = std::clamp(input_[a], lower_[a], upper_[a]);
@@ -154,7 +160,7 @@ bool PathPlanner::fixMore() {
 }
 
 /// Frees the fixed input that would gain most by moving inwards. False if none would.
-bool PathPlanner::release() {
+bool InputLimitedIlqr::release() {
   Eigen::Index best = -1;
   double gain = 0.0;
   for (Eigen::Index a = 0; a < n_u_; ++a) {
@@ -170,7 +176,7 @@ bool PathPlanner::release() {
 }
 
 /// The best input of sample i for the cost to go, those at a limit fixed there.
-bool PathPlanner::chooseInput(Eigen::Index i) {
+bool InputLimitedIlqr::chooseInput(Eigen::Index i) {
   for (Eigen::Index a = 0; a < n_u_; ++a) {
     const double before = states_(model_.inputState(a, 1), i);
     lower_[a] = std::max(limits_.lower[a], before - limits_.move[a]) - inputs_(a, i);
@@ -191,7 +197,7 @@ bool PathPlanner::chooseInput(Eigen::Index i) {
   return K.allFinite() && wish_.allFinite();
 }
 
-bool PathPlanner::sweep() {
+bool InputLimitedIlqr::sweep() {
   P_.setZero();
   p_.setZero();
   for (Eigen::Index i = N_ - 1; i >= 0; --i) {
@@ -235,9 +241,9 @@ bool PathPlanner::sweep() {
   return P_.allFinite();
 }
 
-bool PathPlanner::plan(VectorRef state, VectorRef correction, VectorRef offset_output,
-                       const Matrix& disturbances, const Matrix& reference,
-                       VectorRef input_previous) {
+bool InputLimitedIlqr::plan(VectorRef state, VectorRef correction, VectorRef offset_output,
+                            const Matrix& disturbances, const Matrix& reference,
+                            VectorRef input_previous) {
   correction_ = correction;
   offset_ = offset_output;
   disturbances_ = disturbances.leftCols(N_);

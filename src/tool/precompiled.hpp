@@ -3,4 +3,4 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core.hpp"
+#include "base/precompiled.hpp"

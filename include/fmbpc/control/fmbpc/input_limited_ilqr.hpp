@@ -1,4 +1,5 @@
-// Plans the inputs of a whole horizon along the nonlinear path of the fuzzy model.
+// Iterative LQR with input limits: the inputs of a whole horizon along the nonlinear path of the
+// fuzzy model.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -9,7 +10,7 @@
 
 namespace fpc {
 
-struct PathParams {
+struct IlqrParams {
   int horizon_steps{40};  ///< N
   int iterations{8};      ///< most linearisations per sample
   Vector weight_output;   ///< n_y, diagonal W
@@ -20,12 +21,14 @@ struct PathParams {
 /// inside their limits, with the rules blended anew at every predicted sample: Gauss-Newton steps
 /// by a Riccati sweep backwards and a simulation of the model forwards, from the plan of the sample
 /// before. Bounds are kept by clipping the sweep's inputs (the others are found again).
-/// Source: Li and Todorov 2004; bounds after Tassa, Mansard and Todorov 2014. Work is linear in N
+/// Source: li2004; bounds after tassa2014. Work is linear in N
 /// and bounded by `iterations`. No allocation after construction.
-class PathPlanner {
+class InputLimitedIlqr {
  public:
-  PathPlanner(const LocalModel& model, PathParams params, InputLimits limits);
+  InputLimitedIlqr(const LocalModel& model, IlqrParams params, InputLimits limits);
   void forget();  ///< the next plan starts from the input held
+  /// From the next plan on; the horizon stays.
+  void retune(int iterations, VectorRef weight_output, VectorRef weight_move);
   /// state xi(k), correction n_x (added to every prediction), offset_output n_y (y - y_m),
   /// disturbances n_d N, reference n_y N or more columns. Returns false if nothing finite came out.
   bool plan(VectorRef state, VectorRef correction, VectorRef offset_output,
@@ -45,7 +48,7 @@ class PathPlanner {
   double weigh(Eigen::Index i, const Matrix& states, const Matrix& inputs) const;
 
   LocalModel model_;
-  PathParams params_;
+  IlqrParams params_;
   InputLimits limits_;
   Eigen::Index n_x_, n_u_, n_y_, N_;
   bool warm_{false};

@@ -4,4 +4,4 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/ros.h>
 
-#include "core.hpp"
+#include "base/precompiled.hpp"

@@ -1,4 +1,4 @@
-// Compiled once for all files of the core (see fpc_precompile); never included by name.
+// Compiled once for all files of the core (fpc_precompile of CMakeLists.txt); never included by name.
 #pragma once
 
 #include <Eigen/Dense>

@@ -1,0 +1,133 @@
+// What all laws with a fuzzy model share: references, start and hand-over without a bump, holding
+// what was applied when nothing better is known, and the prediction for an optimizer.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fmbpc/control/bumpless_transfer.hpp"
+#include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/reference.hpp"
+
+namespace fpc {
+
+class YamlSection;
+struct ControllerContext;
+
+/// One sample as a law sees it.
+struct LawSample {
+  const Measurement& now;
+  const SetpointSource& setpoint;
+  const ReferenceTrajectory& reference;  ///< y_r(k)
+  const Vector& disturbances;            ///< d(k) as the model takes it
+  const Vector& past_disturbances;       ///< d(k-1)
+};
+
+/// What a law makes of a sample.
+struct Proposal {
+  const char* trouble{nullptr};  ///< why the input is not to be used
+  const char* remark{""};        ///< for diagnostics
+};
+
+/// The part of a law whose size depends on model and tuning: where the process stands, and the
+/// input that follows. Per sample rest() or advance(), then look(), then propose() (again after
+/// adoptTuning()), then predict(). No allocation in them, nor in inherit() and adoptTuning().
+class LawCore {
+ public:
+  virtual ~LawCore() = default;
+  virtual void rest(const LawSample& sample) = 0;  ///< the process has rested at this sample
+  virtual void advance(const LawSample& sample) = 0;
+  /// Goes on with the memory of an older core; false (rest() then) if that means nothing here.
+  virtual bool inherit(const LawCore& older) = 0;
+  /// The rules at this sample. False if none fired: then the nearest one is used.
+  virtual bool look(const LawSample& sample) = 0;
+  virtual Proposal propose(const LawSample& sample, Vector& input) = 0;
+  virtual bool finite() const = 0;  ///< false: what it knows of the process is of no use
+  /// All of it but header, setpoint, input_base_unclipped and input_previous.
+  virtual void predict(PredictiveAction& prediction) const = 0;
+  /// Number `which` of the signals of an output.
+  virtual double signal(Eigen::Index output, std::size_t which) const = 0;
+  virtual const Vector& referencePole() const = 0;  ///< n_y, a_r
+  virtual void adoptTuning() {}  ///< a tuning that was prepared counts from now on
+};
+
+/// What every predictive law is told.
+struct PredictiveLawParams {
+  Vector reference_pole;               ///< n_y, a_r
+  bool preview{false};                 ///< references follow the setpoint schedule over the horizon
+  bool disturbance_feedforward{true};  ///< d(k) in the model; false: the nominal d
+  Vector disturbance_nominal;          ///< n_d, used without feedforward
+  double transfer_decay{0.9};  ///< how fast the bias of a bumpless start decays per sample, [0, 1)
+  int prediction_steps{1};     ///< n_c of the predictive_action
+  /// @throws InputError naming the field ("controller.reference_pole").
+  void validate(Eigen::Index n_y) const;
+};
+
+/// Reads those keys over their defaults. @throws InputError naming file, key and what was expected.
+void readPredictiveLaw(YamlSection& section, const ControllerContext& loop,
+                       PredictiveLawParams& params);
+
+/// A start in the middle of a run adds a bias to u that makes it the applied input and dies out
+/// (BumplessTransfer). A new core or tuning takes over in the next step: the old one still says
+/// what u(k) would have been, and the new one starts with a bias that makes its u(k) the very same.
+/// If anything is not finite, or the core is in trouble, the last applied input is held (clipped),
+/// ok is false, and there is no prediction. signals(): those of the core for each output, and
+/// NAME_unclipped of each input.
+class PredictiveLaw : public Controller {
+ public:
+  void reset(const Measurement& start) override;
+  void step(const Measurement& now, const SetpointSource& setpoint,
+            ControllerOutput& output) override;
+  bool needsModel() const override { return true; }
+  const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
+
+ protected:
+  /// output_signals: "model" for the signal NAME_model of each output. @throws InputError of
+  /// limits, or without a nominal value for each disturbance.
+  PredictiveLaw(const PredictiveLawParams& params, const InputLimits& limits,
+                const PlantInfo& plant, const std::vector<std::string>& output_signals);
+  /// d(k) is known; once a sample.
+  virtual void note(const LawSample& /*sample*/) {}
+  /// The core that counts next: one that waits, or the present one; may be null.
+  LawCore* newest() { return successor_ ? successor_.get() : core_.get(); }
+  void takeOver(std::unique_ptr<LawCore> core);
+  /// newest() waits for adoptTuning(), the references for these poles.
+  void tuningPrepared(const Vector& reference_pole);
+  const PlantInfo& plant() const { return plant_; }
+  const InputLimits& limits() const { return limits_; }
+
+ private:
+  void prepareReference(const Vector& pole);
+  bool inRun() const { return core_ && running_ && !start_pending_; }
+  void estimate(const LawSample& sample);
+  Proposal propose(const LawSample& sample);
+  void handOver(const LawSample& sample, bool& fired, Proposal& proposal);
+  void adopt();
+  void act(const LawSample& sample, ControllerOutput& output);
+  void hold(const Measurement& now, const char* reason, ControllerOutput& output);
+  void refreshSignals();
+  void predict(const LawSample& sample, PredictiveAction& prediction) const;
+
+  InputLimits limits_;
+  PlantInfo plant_;
+  bool feedforward_, preview_;
+  std::size_t output_signals_;  ///< of each output
+  ReferenceTrajectory reference_;
+  std::optional<ReferenceTrajectory> next_reference_;  ///< with the poles of what waits
+  BumplessTransfer transfer_;
+  Vector disturbances_, past_disturbances_;
+  Vector proposal_;    ///< u(k), unclipped
+  Vector last_input_;  ///< the last finite input, applied or sent
+  std::unique_ptr<LawCore> core_;
+  std::unique_ptr<LawCore> successor_;  ///< takes over in the next step
+  std::unique_ptr<LawCore> retired_;    ///< freed when the next one comes, outside of a step
+  std::vector<std::pair<std::string, double>> signals_;
+  bool tuning_waits_{false};
+  bool start_pending_{true};  ///< the state is to be taken from the next measurement
+  bool running_{false};       ///< a step has been asked for since the reset
+};
+
+}  // namespace fpc

@@ -1,0 +1,68 @@
+#include "control/fmbpc/core.hpp"
+
+#include <utility>
+
+namespace fpc {
+
+FmbpcCore::FmbpcCore(const TsModel& model, const FmbpcParams& params, const InputLimits& limits,
+                     DisturbanceForecast& forecast)
+    : params_(params),
+      model_(makeInternalModel(model, params)),
+      law_(makeInputLaw(*model_, params, limits, forecast)),
+      future_(Matrix::Zero(model_->outputs().size(), params.referenceSteps())) {}
+
+void FmbpcCore::rest(const LawSample& sample) {
+  model_->rest(sample.now, sample.disturbances);
+  law_->rest();
+}
+
+void FmbpcCore::advance(const LawSample& sample) {
+  law_->follow(*model_, sample);
+  model_->advance(sample.now, sample.past_disturbances);  // matrices still of sample k-1
+}
+
+bool FmbpcCore::inherit(const LawCore& older) {
+  return model_->inherit(*static_cast<const FmbpcCore&>(older).model_);
+}
+
+bool FmbpcCore::look(const LawSample& sample) {
+  const bool fired = model_->blend(sample.disturbances);
+  model_->compare(sample.now);
+  return fired;
+}
+
+Proposal FmbpcCore::propose(const LawSample& sample, Vector& input) {
+  sample.reference.predict(sample.setpoint, sample.now.header.step, future_);
+  return law_->propose(*model_, sample, future_, input);
+}
+
+void FmbpcCore::prepareTuning(const FmbpcParams& params) {
+  next_params_ = params;
+  next_future_ = Matrix::Zero(model_->outputs().size(), params.referenceSteps());
+}
+
+void FmbpcCore::adoptTuning() {
+  std::swap(params_, next_params_);
+  future_.swap(next_future_);
+  law_->retune(params_);
+}
+
+void FmbpcCore::predict(PredictiveAction& prediction) const {
+  prediction.state = model_->state();
+  prediction.A = model_->affine().A;
+  prediction.B = model_->affine().B;
+  prediction.C = model_->affine().C;
+  prediction.offset_state = model_->offsetState();
+  prediction.offset_output = model_->offsetOutput();
+  prediction.feedforward.resize(prediction.B.cols(), params_.prediction_steps);
+  law_->predict(*model_, future_, prediction);
+  prediction.reference = future_.middleCols(params_.reference_lead_steps, params_.prediction_steps);
+}
+
+double FmbpcCore::signal(Eigen::Index output, std::size_t which) const {
+  if (which == 0) return model_->outputs()[output];
+  if (which == 1) return model_->correctionOf(output);
+  return model_->undelayed()[output] + model_->offsetOutput()[output];
+}
+
+}  // namespace fpc

@@ -1,0 +1,99 @@
+// How u(k) follows from the internal model: one class per law. Private to the room.
+#pragma once
+
+#include <memory>
+
+#include "control/fmbpc/internal_model.hpp"
+#include "fmbpc/control/fmbpc/coincidence.hpp"
+#include "fmbpc/control/fmbpc/disturbance_forecast.hpp"
+#include "fmbpc/control/fmbpc/input_limited_ilqr.hpp"
+#include "fmbpc/control/predictive_law.hpp"
+
+namespace fpc {
+
+/// Per sample: follow(), propose(), predict(). No allocation in them, nor in retune().
+class InputLaw {
+ public:
+  virtual ~InputLaw() = default;
+  virtual void rest() {}  ///< the process has rested: no plan goes on
+  /// Before the model goes on from k-1: what is known by now of the input that it got.
+  virtual void follow(InternalModel& /*model*/, const LawSample& /*sample*/) {}
+  /// After the model's compare(). future.col(i) = y_r(k+1+i).
+  virtual Proposal propose(InternalModel& model, const LawSample& sample, const Matrix& future,
+                           Vector& input) = 0;
+  /// K and feedforward (n_u n_c, sized) of the prediction.
+  virtual void predict(const InternalModel& model, const Matrix& future,
+                       PredictiveAction& prediction) const = 0;
+  virtual void retune(const FmbpcParams& params) = 0;
+};
+
+/// The outputs meet their references at one sample ahead: see CoincidenceGains. u = F e + V u(k-1).
+class CoincidenceLaw : public InputLaw {
+ public:
+  CoincidenceLaw(const InternalModel& model, const FmbpcParams& params, Eigen::Index n_u);
+  Proposal propose(InternalModel& model, const LawSample& sample, const Matrix& future,
+                   Vector& input) override;
+  void predict(const InternalModel& model, const Matrix& future,
+               PredictiveAction& prediction) const override;
+  void retune(const FmbpcParams& params) override;
+
+ protected:
+  virtual bool computeGains(const AffineModel& model) = 0;
+
+  CoincidenceGains gains_;
+  int coincidence_steps_;
+
+ private:
+  /// What y(k+H) lacks of the reference in this column without input and state.
+  const Vector& shortfall(const InternalModel& model, const Matrix& future,
+                          Eigen::Index column) const;
+
+  Eigen::Index aim_;  ///< column of the references that u(k) aims at
+  mutable Vector shortfall_;
+};
+
+class PublishedLaw final : public CoincidenceLaw {
+ public:
+  using CoincidenceLaw::CoincidenceLaw;
+
+ private:
+  bool computeGains(const AffineModel& model) override;
+};
+
+class GeneralLaw final : public CoincidenceLaw {
+ public:
+  GeneralLaw(const InternalModel& model, const FmbpcParams& params, Eigen::Index n_u);
+  void predict(const InternalModel& model, const Matrix& future,
+               PredictiveAction& prediction) const override;
+  void retune(const FmbpcParams& params) override;
+
+ private:
+  bool computeGains(const AffineModel& model) override;
+
+  Vector weight_output_, weight_move_;
+};
+
+/// The first input of the best path over the horizon; the local model is then that of its first
+/// sample, and the rest of the path is handed over as feedforward.
+class IteratedLaw final : public InputLaw {
+ public:
+  /// forecast: what is expected of the disturbances; outlives the law.
+  IteratedLaw(const InternalModel& model, const FmbpcParams& params, const InputLimits& limits,
+              DisturbanceForecast& forecast);
+  void rest() override { solver_.forget(); }
+  void follow(InternalModel& model, const LawSample& sample) override;
+  Proposal propose(InternalModel& model, const LawSample& sample, const Matrix& future,
+                   Vector& input) override;
+  void predict(const InternalModel& model, const Matrix& future,
+               PredictiveAction& prediction) const override;
+  void retune(const FmbpcParams& params) override;
+
+ private:
+  InputLimitedIlqr solver_;
+  DisturbanceForecast& forecast_;
+};
+
+std::unique_ptr<InputLaw> makeInputLaw(const InternalModel& model, const FmbpcParams& params,
+                                       const InputLimits& limits, DisturbanceForecast& forecast);
+
+}  // namespace fpc

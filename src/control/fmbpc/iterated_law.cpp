@@ -1,0 +1,45 @@
+#include <algorithm>
+
+#include "control/fmbpc/input_law.hpp"
+
+namespace fpc {
+namespace {
+
+IlqrParams solverParams(const FmbpcParams& params) {
+  return {params.horizon_steps, params.iterations, params.weight_output, params.weight_move};
+}
+
+}  // namespace
+
+IteratedLaw::IteratedLaw(const InternalModel& model, const FmbpcParams& params,
+                         const InputLimits& limits, DisturbanceForecast& forecast)
+    : solver_(model.local(), solverParams(params), limits), forecast_(forecast) {}
+
+void IteratedLaw::follow(InternalModel& model, const LawSample& sample) {
+  model.blendAt(sample.now.input_applied, sample.past_disturbances);
+}
+
+Proposal IteratedLaw::propose(InternalModel& model, const LawSample& sample, const Matrix& future,
+                              Vector& input) {
+  if (!solver_.plan(model.state(), model.correction(), model.offsetOutput(), forecast_.predict(),
+                    future, sample.now.input_applied))
+    return {"the law gave no finite input"};
+  input = solver_.inputs().col(0);
+  model.replan(input, sample.disturbances);
+  return {};
+}
+
+/// The plan is handed over as it is: K = 0.
+void IteratedLaw::predict(const InternalModel& model, const Matrix& /*future*/,
+                          PredictiveAction& prediction) const {
+  const Matrix& plan = solver_.inputs();
+  prediction.K.setZero(plan.rows(), model.state().size());
+  for (Eigen::Index i = 0; i < prediction.feedforward.cols(); ++i)
+    prediction.feedforward.col(i) = plan.col(std::min(i, plan.cols() - 1));
+}
+
+void IteratedLaw::retune(const FmbpcParams& params) {
+  solver_.retune(params.iterations, params.weight_output, params.weight_move);
+}
+
+}  // namespace fpc

@@ -1,0 +1,171 @@
+#include "fmbpc/control/predictive_law.hpp"
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
+
+namespace fpc {
+
+PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimits& limits,
+                             const PlantInfo& plant, const std::vector<std::string>& output_signals)
+    : limits_(limits),
+      plant_(plant),
+      feedforward_(params.disturbance_feedforward),
+      preview_(params.preview),
+      output_signals_(output_signals.size()),
+      reference_(params.reference_pole, params.preview),
+      transfer_(countOf(plant_.inputs), params.transfer_decay),
+      disturbances_(feedforward_ ? Vector(Vector::Zero(countOf(plant_.disturbances)))
+                                 : params.disturbance_nominal),
+      past_disturbances_(disturbances_),
+      proposal_(Vector::Zero(countOf(plant_.inputs))),
+      last_input_(limits_.lower) {
+  limits_.validate(countOf(plant_.inputs));
+  require(disturbances_.size() == countOf(plant_.disturbances), "controller.disturbance_nominal",
+          std::to_string(plant_.disturbances.size()) + " numbers");
+  for (const auto& output : plant_.outputs)
+    for (const auto& name : output_signals) signals_.emplace_back(output.name + "_" + name, 0.0);
+  for (const auto& input : plant_.inputs) signals_.emplace_back(input.name + "_unclipped", 0.0);
+}
+
+void PredictiveLaw::reset(const Measurement& start) {
+  if (successor_ || tuning_waits_) adopt();
+  reference_.reset(start.outputs);
+  transfer_.reset(start.header.step > 0);
+  start_pending_ = true;
+  running_ = false;
+}
+
+/// What waits counts. The core before is freed later, not in a step.
+void PredictiveLaw::adopt() {
+  if (successor_) {
+    core_.swap(successor_);
+    retired_ = std::move(successor_);
+  } else {
+    core_->adoptTuning();
+  }
+  tuning_waits_ = false;
+  next_reference_->reset(reference_.present());
+  std::swap(reference_, *next_reference_);
+}
+
+/// Outside of a step, as it allocates.
+void PredictiveLaw::prepareReference(const Vector& pole) {
+  next_reference_.emplace(pole, preview_);
+}
+
+/// A core that comes while the loop runs waits for the next step, where both laws are known.
+void PredictiveLaw::takeOver(std::unique_ptr<LawCore> core) {
+  retired_.reset();
+  successor_ = std::move(core);
+  prepareReference(successor_->referencePole());
+  if (inRun()) return;
+  adopt();
+  retired_.reset();
+  start_pending_ = true;
+  if (running_) transfer_.reset(true);
+}
+
+void PredictiveLaw::tuningPrepared(const Vector& reference_pole) {
+  prepareReference(reference_pole);
+  if (successor_) return successor_->adoptTuning();
+  tuning_waits_ = core_ != nullptr;
+  if (tuning_waits_ && !inRun()) adopt();
+}
+
+void PredictiveLaw::estimate(const LawSample& sample) {
+  past_disturbances_ = disturbances_;
+  if (feedforward_) disturbances_ = sample.now.disturbances;
+  if (start_pending_) {
+    past_disturbances_ = disturbances_;
+    core_->rest(sample);
+  } else {
+    core_->advance(sample);
+  }
+  start_pending_ = false;
+  note(sample);
+}
+
+Proposal PredictiveLaw::propose(const LawSample& sample) {
+  const Proposal proposal = core_->propose(sample, proposal_);
+  transfer_.apply(sample.now.input_applied, proposal_);
+  return proposal;
+}
+
+/// The old law has just proposed an input; the new one goes on from there: its bias is what it
+/// would have done otherwise. If the old one had nothing to propose, the new one goes on from the
+/// applied input.
+void PredictiveLaw::handOver(const LawSample& sample, bool& fired, Proposal& proposal) {
+  if (proposal.trouble || !proposal_.allFinite()) proposal_ = sample.now.input_applied;
+  transfer_.begin(proposal_);
+  const bool other_core = successor_ != nullptr;
+  adopt();
+  if (other_core) {
+    if (!core_->inherit(*retired_)) core_->rest(sample);
+    fired = core_->look(sample);
+  }
+  proposal = propose(sample);
+  transfer_.finish(proposal_);
+}
+
+void PredictiveLaw::hold(const Measurement& now, const char* reason, ControllerOutput& output) {
+  if (now.input_applied.allFinite()) last_input_ = now.input_applied;
+  limits_.clip(last_input_, last_input_);
+  output.input = last_input_;
+  output.source = ActionSource::kHeld;
+  output.ok = false;
+  output.remark = reason;
+  transfer_.reset(true);
+}
+
+void PredictiveLaw::refreshSignals() {
+  std::size_t place = 0;
+  for (Eigen::Index i = 0; i < countOf(plant_.outputs); ++i)
+    for (std::size_t which = 0; which < output_signals_; ++which)
+      signals_[place++].second = core_->signal(i, which);
+  for (Eigen::Index i = 0; i < proposal_.size(); ++i) signals_[place++].second = proposal_[i];
+}
+
+void PredictiveLaw::predict(const LawSample& sample, PredictiveAction& prediction) const {
+  prediction.header = sample.now.header;
+  core_->predict(prediction);
+  transfer_.addTo(prediction.feedforward);
+  prediction.setpoint = sample.setpoint.present();
+  prediction.input_base_unclipped = proposal_;
+  prediction.input_previous = sample.now.input_applied;
+}
+
+void PredictiveLaw::act(const LawSample& sample, ControllerOutput& output) {
+  const Measurement& now = sample.now;
+  if (!core_ || !allFinite(now)) {
+    start_pending_ = true;
+    return hold(now, core_ ? "the measurement is not finite" : "no model", output);
+  }
+  estimate(sample);
+  bool fired = core_->look(sample);
+  Proposal proposal = propose(sample);
+  if (successor_ || tuning_waits_) handOver(sample, fired, proposal);
+  refreshSignals();
+  if (!core_->finite()) start_pending_ = true;
+  if (proposal.trouble) return hold(now, proposal.trouble, output);
+  if (!proposal_.allFinite()) return hold(now, "the law gave no finite input", output);
+  limits_.clip(output.input = proposal_, now.input_applied);
+  last_input_ = output.input;
+  output.source = output.input == proposal_ ? ActionSource::kBase : ActionSource::kClipped;
+  output.remark = fired ? proposal.remark : "no rule fired: the nearest one was used";
+  predict(sample, output.prediction);
+  output.predictive = true;
+  transfer_.fade();
+}
+
+void PredictiveLaw::step(const Measurement& now, const SetpointSource& setpoint,
+                         ControllerOutput& output) {
+  output.reference = reference_.present();
+  output.predictive = false;
+  output.ok = true;
+  output.remark = "";
+  running_ = true;
+  act({now, setpoint, reference_, disturbances_, past_disturbances_}, output);
+  reference_.advance(setpoint, now.header.step);
+}
+
+}  // namespace fpc
