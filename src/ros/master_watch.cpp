@@ -73,14 +73,15 @@ void MasterWatch::lookAtMaster() {
     master_gone_ = false;
     return;
   }
-  if (!ask("getPid", "")) {
+  const bool answers = ask("getPid", "");
+  if (!ros::ok() || ros::isShuttingDown()) return;
+  if (!answers) {
     if (!master_gone_)
       ROS_ERROR("%s: the master does not answer: the loop goes on, but nobody can join it",
                 name.c_str());
     master_gone_ = true;
     return;
   }
-  if (!ros::ok() || ros::isShuttingDown()) return;
   master_gone_ = false;
   const bool lost = parameters_.putBack();
   const int count = registerAgain();
