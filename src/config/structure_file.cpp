@@ -6,6 +6,7 @@
 
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
+#include "config/read_known.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/structure_file.hpp"
@@ -139,8 +140,19 @@ void readSets(YamlSection& section, const TsModel& model, OutputStructure& struc
   sets.finish();
 }
 
+void readSubmodelKnown(YamlSection& section, const TsModel& model, const std::string& output,
+                       std::vector<PriorKnowledge>* known) {
+  std::size_t own = 0;
+  while (model.outputs[own].name != output) ++own;
+  const PriorKnowledge stated = readKnown(section.section("known"), model, own);
+  if (known != nullptr)
+    known->push_back(stated);
+  else if (!stated.empty())
+    section.fail("known", "nothing here; only `fmbpc identify` keeps such statements");
+}
+
 OutputStructure readSubmodel(YamlSection& submodels, const TsModel& model,
-                             const std::string& output) {
+                             const std::string& output, std::vector<PriorKnowledge>* known) {
   if (!submodels.has(output))
     submodels.fail(output, "what this output depends on (the key is missing)");
   YamlSection section = submodels.section(output);
@@ -151,6 +163,7 @@ OutputStructure readSubmodel(YamlSection& submodels, const TsModel& model,
     structure.antecedents = readRegressors(section, "antecedents", model);
   readClusters(section, structure);
   readSets(section, model, structure);
+  readSubmodelKnown(section, model, output, known);
   section.finish();
   return structure;
 }
@@ -207,7 +220,7 @@ void readValidation(YamlSection section, ValidationParams& v) {
   section.finish();
 }
 
-Structure readSections(YamlSection& top) {
+Structure readSections(YamlSection& top, std::vector<PriorKnowledge>* known) {
   Structure structure;
   top.text("name", structure.name);
   if (!top.has("sample_time_s")) top.fail("sample_time_s", "a number > 0 (the key is missing)");
@@ -226,7 +239,7 @@ Structure readSections(YamlSection& top) {
   const TsModel model = structure.emptyModel();
   YamlSection submodels = top.section("submodels");
   for (const auto& output : structure.outputs)
-    structure.submodels.push_back(readSubmodel(submodels, model, output.info.name));
+    structure.submodels.push_back(readSubmodel(submodels, model, output.info.name, known));
   submodels.finish();
   top.finish();
   try {
@@ -239,14 +252,15 @@ Structure readSections(YamlSection& top) {
 
 }  // namespace
 
-Structure readStructure(const std::string& file) {
+Structure readStructure(const std::string& file, std::vector<PriorKnowledge>* known) {
   YamlSection top = YamlSection::load(file);
-  return readSections(top);
+  return readSections(top, known);
 }
 
-Structure parseStructure(const std::string& text, const std::string& name) {
+Structure parseStructure(const std::string& text, const std::string& name,
+                         std::vector<PriorKnowledge>* known) {
   YamlSection top = YamlSection::parse(text, name);
-  return readSections(top);
+  return readSections(top, known);
 }
 
 }  // namespace fpc

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "fuzzy/auto_knowledge.hpp"
 #include "fuzzy/auto_start.hpp"
+#include "fuzzy/auto_stress.hpp"
 
 namespace fpc {
 namespace {
@@ -85,12 +87,22 @@ class CandidateFit {
   }
 
   Fitted run() {
+    if (c_.absolute && !data_.known.empty()) return std::move(fitted_);  // its gains have no sign
     const RecurrentFitResult line = fitLinear();
     RecurrentFitResult best = line;
     if (c_.rules > 1 && line.finite) best = fitRules(line);
     fitted_.parameters = best.parameters;
     fitted_.finite = best.finite;
-    if (c_.hidden && best.finite) settlePrior(best);
+    if (c_.rules > 1 && best.finite) {
+      Fitted straight = fitted_;
+      straight.shape = linear_;
+      straight.parameters = line.parameters;
+      fitted_.finite = endures(fitted_, straight, record_, stretches_);
+    }
+    if (c_.hidden && best.finite) {
+      settlePrior(best);
+      fitted_.finite = restsAsKnown(data_, fitted_);
+    }
     return std::move(fitted_);
   }
 
@@ -100,6 +112,9 @@ class CandidateFit {
     RecurrentFitParams params = params_;
     params.ridge = ridge;
     params.iterations = iterations;
+    Fitted form = fitted_;
+    form.shape = shape;
+    params.admit = admission(data_, form);
     return fitRecurrent(shape, record_, stretches_, anchor, start, params, proceed_);
   }
 

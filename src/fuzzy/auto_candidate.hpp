@@ -50,6 +50,9 @@ Fitted fitCandidate(const AutoData& data, const Candidate& candidate,
                     const std::vector<Stretch>& stretches,
                     const std::function<bool()>& proceed = {});
 
+/// A model of the output's past as a submodel with Gaussian sets, in the signals' own units.
+OutputModel toSubmodel(const AutoData& data, const Fitted& fitted);
+
 /// Free run over a stretch in the output's own unit (NaN before its start), from `window` samples.
 Vector freeRunOf(const AutoData& data, const Fitted& fitted, Stretch stretch, int window);
 /// One step ahead of a model of the output's past, in its own unit; NaN elsewhere.

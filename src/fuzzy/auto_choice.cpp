@@ -17,6 +17,9 @@ constexpr std::size_t kMostGroups = 4;     // of structures in it
 constexpr int kLastIterations = 150;
 constexpr double kSuspicious = 1.3;  // fitted error over held-out error: another minimum
 constexpr double kCoverage = 0.95;
+constexpr double kSure = 1.5;           // standard errors of the mean ratio of errors
+constexpr Eigen::Index kPieces = 12;    // parts of the blocks that models are compared on
+constexpr Eigen::Index kShortest = 20;  // rows of a part
 
 /// Half width that holds the stated share of the errors.
 double widthOf(const Vector& errors) {
@@ -42,6 +45,25 @@ double trainedError(const AutoData& data, const Fitted& fitted, int window) {
     }
   }
   return n > 0.0 ? std::sqrt(sum / n) : std::numeric_limits<double>::infinity();
+}
+
+/// rmse over about kPieces parts of the blocks, none across two of them.
+std::vector<double> pieceErrors(const AutoData& data, const Vector& predicted) {
+  std::vector<double> errors;
+  const auto windows = static_cast<Index>(data.windows.size());
+  const Vector error = data.data->values.col(data.output) - predicted;
+  for (const auto& w : data.windows) {
+    const Index length = w.last - w.first;
+    const Index parts = std::clamp<Index>((kPieces + windows - 1) / windows, 1,
+                                          std::max<Index>(1, length / kShortest));
+    for (Index i = 0; i < parts; ++i) {
+      double sum = 0.0, n = 0.0;
+      for (Index k = w.first + length * i / parts; k < w.first + length * (i + 1) / parts; ++k)
+        if (std::isfinite(error[k])) sum += error[k] * error[k], n += 1.0;
+      errors.push_back(n > 0.0 ? std::sqrt(sum / n) : kMissing);
+    }
+  }
+  return errors;
 }
 
 }  // namespace
@@ -90,46 +112,10 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
   f.fit = free.fit;
   f.one_step = one.samples > 0 ? one.rmse : kMissing;
   f.blocks = blockErrors(data, free_run);
+  f.pieces = pieceErrors(data, free_run);
   f.width = widthOf(measured - free_run);
   f.one_step_width = widthOf(measured - one_step);
   return f;
-}
-
-OutputModel toSubmodel(const AutoData& data, const Fitted& fitted) {
-  const RecurrentShape& shape = fitted.shape;
-  OutputModel model;
-  std::vector<Regressor> phi;
-  for (Index i = 0; i < shape.states; ++i)
-    phi.push_back({SignalKind::kOutput, data.output, static_cast<int>(i)});
-  phi.insert(phi.end(), fitted.exogenous.begin(), fitted.exogenous.end());
-  const auto columnOf = [&](const Regressor& r) { return data.data->column(r.kind, r.index); };
-  for (const Index i : shape.regressors)
-    model.regressors.push_back(phi[static_cast<std::size_t>(i)]);
-  if (shape.rules > 1)
-    for (const Index i : shape.antecedents)
-      model.antecedents.push_back(phi[static_cast<std::size_t>(i)]);
-  const double y_scale = data.scale[data.output];
-  for (Index r = 0; r < shape.rules; ++r) {
-    Rule rule;
-    const Index at = shape.at(r, 0), p = shape.terms() - 1;
-    rule.coefficients.resize(p);
-    rule.offset = data.shift[data.output] + y_scale * fitted.parameters[at + p];
-    for (Index j = 0; j < p; ++j) {
-      const Index column = columnOf(model.regressors[static_cast<std::size_t>(j)]);
-      rule.coefficients[j] = fitted.parameters[at + j] * y_scale / data.scale[column];
-      rule.offset -= rule.coefficients[j] * data.shift[column];
-    }
-    for (std::size_t j = 0; j < model.antecedents.size(); ++j) {
-      const Index column = columnOf(model.antecedents[j]), z = static_cast<Index>(j);
-      const double centre = fitted.parameters[shape.centre(r) + z];
-      const double width = std::exp(fitted.parameters[shape.logWidth(r) + z]);
-      rule.antecedents.push_back(
-          {MembershipShape::kGaussian,
-           {data.shift[column] + data.scale[column] * centre, data.scale[column] * width}});
-    }
-    model.rules.push_back(std::move(rule));
-  }
-  return model;
 }
 
 Fitted fitWhole(const AutoData& data, const Judgement& judged, int window) {
@@ -155,8 +141,8 @@ Fitted fitWhole(const AutoData& data, const Judgement& judged, int window) {
 bool beyondSpread(const AutoFigures& other, const AutoFigures& linear) {
   if (!(other.free_run < linear.free_run)) return false;
   std::vector<double> ratios;
-  for (std::size_t b = 0; b < std::min(other.blocks.size(), linear.blocks.size()); ++b) {
-    const double ratio = std::log(other.blocks[b] / linear.blocks[b]);
+  for (std::size_t b = 0; b < std::min(other.pieces.size(), linear.pieces.size()); ++b) {
+    const double ratio = std::log(other.pieces[b] / linear.pieces[b]);
     if (std::isfinite(ratio)) ratios.push_back(ratio);
   }
   if (ratios.size() < 2) return false;
@@ -164,7 +150,7 @@ bool beyondSpread(const AutoFigures& other, const AutoFigures& linear) {
   for (const double r : ratios) mean += r / static_cast<double>(ratios.size());
   for (const double r : ratios) spread += (r - mean) * (r - mean);
   const double n = static_cast<double>(ratios.size());
-  return mean + std::sqrt(spread / (n - 1.0) / n) < 0.0;
+  return mean + kSure * std::sqrt(spread / (n - 1.0) / n) < 0.0;
 }
 
 }  // namespace fpc

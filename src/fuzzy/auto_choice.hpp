@@ -16,14 +16,11 @@ Committee chooseCommittee(const AutoData& data, const StructureSearch& found);
 /// Figures of held-out predictions.
 AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step);
 
-/// A model of the output's past as a submodel with Gaussian sets, in the signals' own units.
-OutputModel toSubmodel(const AutoData& data, const Fitted& fitted);
-
 /// Fits a candidate to all rows; from other seeds where that fails by the measure of its held-out
 /// error. Not finite: none came near.
 Fitted fitWhole(const AutoData& data, const Judgement& judged, int window);
 
-/// `other` is better than `linear` by more than the spread of their ratio over the blocks.
+/// `other` is better than `linear` by more than the spread of their ratio over parts of the blocks.
 bool beyondSpread(const AutoFigures& other, const AutoFigures& linear);
 
 }  // namespace fpc

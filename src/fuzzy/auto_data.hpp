@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fmbpc/fuzzy/data_set.hpp"
+#include "fmbpc/fuzzy/prior_knowledge.hpp"
 #include "fmbpc/fuzzy/recurrent_fit.hpp"
 
 namespace fpc {
@@ -13,6 +14,7 @@ namespace fpc {
 struct AutoData {
   const DataSet* data{};
   int output{};
+  PriorKnowledge known;          ///< of this output
   Matrix scaled;                 ///< rows x columns, (value - shift) / scale
   Vector shift, scale;           ///< of each column
   double lower{}, upper{};       ///< limits of the sensor in scaled units; equal: none seen

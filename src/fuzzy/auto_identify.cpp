@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/record_remarks.hpp"
 #include "fuzzy/auto_output.hpp"
 
 namespace fpc {
@@ -18,6 +19,7 @@ void checkParams(const DataSet& data, const AutoParams& p) {
   require(p.budget_s > 0.0, "budget_s", "a number > 0");
   require(p.blocks >= 2, "blocks", "at least 2");
   require(p.window >= 1, "window", "at least 1");
+  require(p.known.empty() || p.known.size() == data.outputs.size(), "known", "one for each output");
   require(p.most_rows >= 200 && p.most_last >= p.most_rows, "most_rows", "200 <= it <= most_last");
   require(data.rows() >= kFewestRows, data.source,
           "at least " + std::to_string(kFewestRows) + " rows for --auto, got " +
@@ -53,7 +55,7 @@ AutoIdentification autoIdentify(const DataSet& full, const AutoParams& params,
   result.remarks = full.repairs;
   const int windows = 2 * params.blocks;
   const bool thinned = full.rows() > params.most_last;
-  const DataSet data = thinned ? subsample(full, params.most_last, windows) : full;
+  const DataSet data = withoutOutliers(thinned ? subsample(full, params.most_last, windows) : full);
   if (thinned || full.rows() > params.most_rows)
     result.remarks.push_back("long record: the search uses " +
                              std::to_string(std::min(full.rows(), params.most_rows)) + " rows in " +

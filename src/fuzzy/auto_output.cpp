@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kWorth = 0.98;    // a fuzzy model must lower the held-out error by this
+constexpr double kWorth = 0.97;    // a fuzzy model must lower the held-out error by this
 constexpr std::size_t kShown = 5;  // trials of each kind in the report
 
 std::string shortNumber(double value) {
@@ -31,7 +31,9 @@ class OutputSearch {
       : data_(prepareAuto(data, output, params.blocks, params.most_rows, params.most_last)),
         params_(params),
         limits_(limits),
-        result_(result) {}
+        result_(result) {
+    if (!params.known.empty()) data_.known = params.known[static_cast<std::size_t>(output)];
+  }
 
   void run() {
     found_.output = name();
@@ -50,6 +52,10 @@ class OutputSearch {
     chooseState();
     decide();
     keepTrials();
+    for (const auto* model : {&result_.linear, &result_.model})
+      for (const auto& key :
+           brokenKnowledge(model->submodels.back(), data_.output, *data_.data, data_.known))
+        remark("the model breaks what is known of it: " + key);
     if (data_.lower < data_.upper) {
       found_.sensor_lower = inUnit(data_.lower);
       found_.sensor_upper = inUnit(data_.upper);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "fmbpc/fuzzy/partition.hpp"
 #include "fmbpc/optim/least_squares.hpp"
+#include "fuzzy/knowledge_map.hpp"
 
 namespace fpc {
 namespace {
@@ -163,8 +165,10 @@ double Simulator::run(const Vector& theta, bool free, double unit, double weight
 /// The objective and its Gauss-Newton steps.
 class Fit {
  public:
-  Fit(Simulator& simulator, const ConsequentParams& params, const Vector& linear)
-      : simulator_(simulator), params_(params), linear_(linear) {
+  using Admit = std::function<bool(const Matrix& metric, Vector& theta)>;
+
+  Fit(Simulator& simulator, const ConsequentParams& params, const Vector& linear, Admit admit)
+      : simulator_(simulator), params_(params), linear_(linear), admit_(std::move(admit)) {
     const double free = simulator.run(linear, true, 1.0, 1.0, nullptr);
     const double rows = static_cast<double>(std::max<Index>(simulator.rows(), 1));
     free_unit_ = unitOf(free, rows);
@@ -200,7 +204,8 @@ class Fit {
     LeastSquares squares = linearise(theta);
     const double rows = static_cast<double>(squares.rows());
     for (; damping_ < kMostDamping; damping_ *= 8.0) {
-      const Vector next = theta + squares.solve(damping_ * rows).theta;
+      Vector next = theta + squares.solve(damping_ * rows).theta;
+      if (admit_ && !admit_(squares.metric(), next)) continue;
       const double reached = objective(next);
       if (!(reached < best)) continue;
       const bool settled = reached > (1.0 - kEnough) * best;
@@ -224,18 +229,39 @@ class Fit {
   Simulator& simulator_;
   const ConsequentParams& params_;
   Vector linear_;
+  Admit admit_;
   double free_unit_{1.0}, step_unit_{1.0}, damping_{kFirstDamping};
 };
+
+/// Moves coefficients to the nearest that agree with what is known; empty if nothing is.
+Fit::Admit admission(const DataSet& data, int output, const OutputModel& model,
+                     const Simulator& simulator, const PriorKnowledge& known) {
+  if (known.empty()) return {};
+  const auto consequents = [&simulator, own = model](const Vector& theta) mutable {
+    simulator.write(theta, own.rules);
+    return stackedConsequents(own.rules);
+  };
+  const KnowledgeRows rows =
+      inParameters(knowledgeRows(model, output, data, known), simulator.unknowns(), consequents);
+  return
+      [&simulator, &known, rows, own = model, output](const Matrix& metric, Vector& theta) mutable {
+        const double little = 1e-9 * metric.trace() + 1e-300;
+        const Matrix H = metric + little * Matrix::Identity(metric.rows(), metric.cols());
+        if (!nearestInside(rows, H, theta)) return false;
+        simulator.write(theta, own.rules);
+        return keepsPoles(own, output, known);
+      };
+}
 
 }  // namespace
 
 FreeRunFit fitFreeRun(const DataSet& data, int output, const OutputModel& linear,
                       const ConsequentParams& params, OutputModel& model,
-                      const std::function<bool()>& proceed) {
+                      const std::function<bool()>& proceed, const PriorKnowledge& known) {
   Simulator simulator(data, output, model);
   const std::vector<Rule> same(model.rules.size(), linear.rules.front());
   const Vector start = simulator.scaled(same);
-  Fit fit(simulator, params, start);
+  Fit fit(simulator, params, start, admission(data, output, model, simulator, known));
   const auto rms = [&](const Vector& theta) {
     const double sum = simulator.run(theta, true, 1.0, 1.0, nullptr);
     return std::sqrt(sum / static_cast<double>(std::max<Index>(simulator.rows(), 1)));

@@ -84,7 +84,8 @@ IdentifyProgress freeRunProgress() {
 
 /// The model of output i; false when cancelled.
 bool identifyOutput(const DataSet& data, const Structure& structure, std::size_t i,
-                    const IdentifyCallback& callback, Identification& result) {
+                    const IdentifyCallback& callback, const PriorKnowledge& known,
+                    Identification& result) {
   OutputStructure s = structure.submodels[i];
   s.regressors = moving(s.regressors, data);
   if (structure.partition.method != PartitionMethod::kGrid)
@@ -108,12 +109,21 @@ bool identifyOutput(const DataSet& data, const Structure& structure, std::size_t
     return !callback || callback(progress);
   };
   OutputModel submodel;
+  if (s.clusters_min < s.clusters_max && !s.antecedents.empty() &&
+      structure.partition.method != PartitionMethod::kGrid) {
+    s.clusters_max =
+        chooseClusterNumber(data, static_cast<int>(i), s, structure, report, found.trials);
+    s.clusters_min = s.clusters_max;
+    if (s.clusters_max == 0) return false;
+  }
   bool completed =
       findRules(rows, s, structure, result.linear.submodels.back(), report, found, submodel);
+  imposeKnowledge(data, static_cast<int>(i), known, result.linear.submodels.back());
+  if (completed) imposeKnowledge(data, static_cast<int>(i), known, submodel);
   if (completed && structure.consequents.free_run_iterations > 0) {
-    found.free_run =
-        fitFreeRun(data, static_cast<int>(i), result.linear.submodels.back(), structure.consequents,
-                   submodel, [&] { return report(freeRunProgress()); });
+    found.free_run = fitFreeRun(
+        data, static_cast<int>(i), result.linear.submodels.back(), structure.consequents, submodel,
+        [&] { return report(freeRunProgress()); }, known);
     completed = !found.free_run.cancelled;
   }
   result.model.submodels.push_back(submodel);
@@ -125,8 +135,11 @@ bool identifyOutput(const DataSet& data, const Structure& structure, std::size_t
 }  // namespace
 
 Identification identify(const DataSet& data, const Structure& structure,
-                        const IdentifyCallback& callback) {
+                        const IdentifyCallback& callback,
+                        const std::vector<PriorKnowledge>& known) {
   structure.validate();
+  require(known.empty() || known.size() == structure.submodels.size(), "known",
+          "one for each output");
   Identification result;
   result.remarks = data.repairs;
   result.model.name = structure.name;
@@ -138,7 +151,8 @@ Identification identify(const DataSet& data, const Structure& structure,
   result.linear = result.model;
   result.linear.name += "_linear";
   for (std::size_t i = 0; i < structure.submodels.size() && !result.cancelled; ++i)
-    result.cancelled = !identifyOutput(data, structure, i, callback, result);
+    result.cancelled = !identifyOutput(data, structure, i, callback,
+                                       known.empty() ? PriorKnowledge{} : known[i], result);
   if (result.cancelled) return result;
   result.model.domain = result.linear.domain = makeDomain(data);
   result.model.validate();

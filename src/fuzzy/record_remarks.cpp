@@ -18,6 +18,7 @@ constexpr double kFast = 0.5;      // too few
 constexpr double kLeft = 1.0;      // spans beyond the data: a free run has gone
 constexpr double kFeedback = 2.0;  // bounds
 constexpr Index kFeedbackLags = 10;
+constexpr double kMatters = 0.05;  // a correlation below it is true of a long record and no trouble
 
 std::string shortNumber(double value) {
   char text[32];
@@ -43,23 +44,6 @@ Index movesOf(const Eigen::Ref<const Vector>& u) {
   for (Index k = 1; k < u.size(); ++k)
     if (std::isfinite(u[k] - u[k - 1]) && u[k] != u[k - 1]) ++moves;
   return moves;
-}
-
-/// Samples far from both neighbours, where these agree: first of them (-1: none) and their number.
-std::pair<Index, int> outliersOf(const Eigen::Ref<const Vector>& y) {
-  std::vector<double> bends;
-  const auto bend = [&](Index k) { return y[k] - 0.5 * (y[k - 1] + y[k + 1]); };
-  for (Index k = 1; k + 1 < y.size(); ++k)
-    if (std::isfinite(bend(k)) && bend(k) != 0.0) bends.push_back(std::abs(bend(k)));
-  const double usual = 1.4826 * medianOf(bends);
-  std::pair<Index, int> found{-1, 0};
-  for (Index k = 1; usual > 0.0 && k + 1 < y.size(); ++k) {
-    if (!(std::abs(bend(k)) > kSpike * usual)) continue;
-    if (std::abs(y[k + 1] - y[k - 1]) > 0.3 * std::abs(bend(k))) continue;
-    if (found.first < 0) found.first = k;
-    ++found.second;
-  }
-  return found;
 }
 
 void addSampleTime(const DataSet& data, const TsModel& linear, std::vector<std::string>& remarks) {
@@ -132,7 +116,7 @@ void addResidual(const std::string& name, const DataSet& data,
     const auto row = c.cross.row(static_cast<Index>(j));
     Index lag = 0;
     const double largest = row.cwiseAbs().maxCoeff(&lag);
-    if (largest > 1.5 * c.bound)
+    if (largest > std::max(1.5 * c.bound, kMatters))
       remarks.push_back(name + ": residual correlated with " + c.signals[j] + " at lag " +
                         std::to_string(lag + 1) + " (" + shortNumber(row[lag]) + ", bound " +
                         shortNumber(c.bound) + "): a lag or delay is missing");
@@ -140,7 +124,7 @@ void addResidual(const std::string& name, const DataSet& data,
     const auto u = data.values.col(static_cast<Index>(data.outputs.size() + j));
     for (Index ahead = 0; ahead <= kFeedbackLags; ++ahead)
       later = std::max(later, std::abs(laterCorrelation(residual, u, ahead)));
-    if (later > kFeedback * c.bound && c.bound > 0.0)
+    if (later > std::max(kFeedback * c.bound, kMatters) && c.bound > 0.0)
       remarks.push_back(
           name + ": " + c.signals[j] + " follows residuals (correlation " + shortNumber(later) +
           "): closed-loop data, whose gains may be biased, or an input that acts within the "
@@ -149,6 +133,35 @@ void addResidual(const std::string& name, const DataSet& data,
 }
 
 }  // namespace
+
+std::vector<Index> outliersOf(const Eigen::Ref<const Vector>& y) {
+  const auto bend = [&](Index k) { return y[k] - 0.5 * (y[k - 1] + y[k + 1]); };
+  std::vector<double> bends;
+  for (Index k = 1; k + 1 < y.size(); ++k)
+    if (std::isfinite(bend(k)) && bend(k) != 0.0) bends.push_back(std::abs(bend(k)));
+  const double usual = 1.4826 * medianOf(bends);
+  // a neighbour of a spike bends the other way; those of a corner hardly bend
+  const auto bendsBack = [&](Index k, double size) {
+    if (k < 1 || k + 1 >= y.size() || !std::isfinite(bend(k))) return true;
+    return bend(k) * size < 0.0 && std::abs(bend(k)) > 0.3 * std::abs(size);
+  };
+  std::vector<Index> found;
+  for (Index k = 1; usual > 0.0 && k + 1 < y.size(); ++k) {
+    const double size = bend(k);
+    if (!(std::abs(size) > kSpike * usual)) continue;
+    if (std::abs(y[k + 1] - y[k - 1]) > 0.3 * std::abs(size)) continue;
+    if (bendsBack(k - 1, size) && bendsBack(k + 1, size)) found.push_back(k);
+  }
+  return found;
+}
+
+DataSet withoutOutliers(const DataSet& data) {
+  DataSet clean = data;
+  for (Index i = 0; i < static_cast<Index>(data.outputs.size()); ++i)
+    for (const Index k : outliersOf(data.values.col(i)))
+      clean.values(k, i) = std::numeric_limits<double>::quiet_NaN();
+  return clean;
+}
 
 std::vector<std::string> recordRemarks(const DataSet& data, const TsModel* linear) {
   std::vector<std::string> remarks;
@@ -162,11 +175,11 @@ std::vector<std::string> recordRemarks(const DataSet& data, const TsModel* linea
                         std::to_string(data.rows()) + " rows");
   }
   for (Index i = 0; i < n_y; ++i) {
-    const auto [first, count] = outliersOf(data.values.col(i));
-    if (count > 0)
+    const auto found = outliersOf(data.values.col(i));
+    if (!found.empty())
       remarks.push_back(data.outputs[static_cast<std::size_t>(i)].name + ": " +
-                        std::to_string(count) + " outliers, the first in row " +
-                        std::to_string(first + 1));
+                        std::to_string(found.size()) + " outliers, the first in row " +
+                        std::to_string(found.front() + 1));
   }
   if (linear != nullptr) addSampleTime(data, *linear, remarks);
   return remarks;

@@ -179,6 +179,18 @@ double Objective::oneStep(const Vector& p, const Stretch& stretch, Normal* norma
   return sum;
 }
 
+/// Moves the start to where prior knowledge admits it; its objective there.
+double admitted(Objective& objective, const RecurrentFitParams& params, double value, Vector& p,
+                Normal& normal) {
+  Matrix metric = Matrix::Identity(p.size(), p.size());
+  if (std::isfinite(value)) {
+    metric = normal.hessian.selfadjointView<Eigen::Lower>();
+    metric.diagonal() += 1e-6 * metric.diagonal() + Vector::Constant(p.size(), 1e-9);
+  }
+  if (!params.admit(metric, p)) return kInfinite;
+  return objective(p, &normal);
+}
+
 }  // namespace
 
 RecurrentFitResult fitRecurrent(const RecurrentShape& shape, const RecurrentData& data,
@@ -190,6 +202,7 @@ RecurrentFitResult fitRecurrent(const RecurrentShape& shape, const RecurrentData
   Normal normal;
   RecurrentFitResult result;
   double best = objective(p, &normal), damping = 1e-2;
+  if (params.admit) best = admitted(objective, params, best, p, normal);
   result.finite = std::isfinite(best);
   for (; result.finite && result.iterations < params.iterations; ++result.iterations) {
     bool improved = false, settled = false;
@@ -198,7 +211,8 @@ RecurrentFitResult fitRecurrent(const RecurrentShape& shape, const RecurrentData
       damped.diagonal() *= 1.0 + damping;
       damped.diagonal().array() += 1e-9;
       trial = p + damped.selfadjointView<Eigen::Lower>().ldlt().solve(normal.gradient);
-      const double reached = trial.allFinite() ? objective(trial, nullptr) : kInfinite;
+      const bool admissible = trial.allFinite() && (!params.admit || params.admit(damped, trial));
+      const double reached = admissible ? objective(trial, nullptr) : kInfinite;
       improved = reached < best;
       if (!improved) continue;
       settled = reached > (1.0 - params.settle) * best;

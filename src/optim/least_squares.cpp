@@ -75,6 +75,11 @@ void LeastSquares::fold() {
   filled_ = 0;
 }
 
+Matrix LeastSquares::metric() const {
+  const auto known = stack_.topLeftCorner(n_ + 1 + filled_, n_);
+  return known.transpose() * known;
+}
+
 LeastSquaresSolution LeastSquares::solve(double ridge) {
   fold();
   const Matrix triangle = stack_.topLeftCorner(n_ + 1, n_);

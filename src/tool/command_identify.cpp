@@ -41,12 +41,14 @@ Records readRecords(const IdentifyArguments& a, const Structure& structure) {
   return records;
 }
 
-Identification identifyWithBar(const DataSet& data, const Structure& structure) {
+Identification identifyWithBar(const DataSet& data, const Structure& structure,
+                               const std::vector<PriorKnowledge>& known) {
   ProgressBar bar(structure.name);
-  return identify(data, structure, [&bar](const IdentifyProgress& progress) {
+  const auto show = [&bar](const IdentifyProgress& progress) {
     bar.show(progress.share, progress.output + ": " + progress.stage);
     return !interruption();
-  });
+  };
+  return identify(data, structure, show, known);
 }
 
 JudgedRecord judge(const std::string& title, DataSet data, const Identification& found,
@@ -71,13 +73,15 @@ void addRemarks(const Records& records, IdentifyReport& report) {
 }  // namespace
 
 int identifyStructure(const IdentifyArguments& a) {
-  const Structure structure = readStructure(findStructure(a.structure));
+  std::vector<PriorKnowledge> known;
+  const Structure structure = readStructure(findStructure(a.structure), &known);
+  if (!a.known.empty()) known = readKnown(a.known, structure);
   checkTarget(a.out);
   const Records records = readRecords(a, structure);
   catchInterrupts();
   const auto start = std::chrono::steady_clock::now();
   IdentifyReport report;
-  report.found = identifyWithBar(records.identification, structure);
+  report.found = identifyWithBar(records.identification, structure, known);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   report.seconds = wall.count();
   if (!report.found.cancelled) {

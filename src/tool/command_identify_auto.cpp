@@ -7,6 +7,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/record_remarks.hpp"
 #include "tool/auto_structure.hpp"
 #include "tool/figures_json.hpp"
@@ -27,6 +28,7 @@ struct AutoRecords {
   std::vector<DataSet> each;
   DataSet joined;
   std::optional<DataSet> validation;
+  std::vector<PriorKnowledge> known;
   std::vector<std::string> remarks;
 };
 
@@ -35,6 +37,7 @@ AutoRecords readAll(const IdentifyArguments& a) {
   const CsvTable first = readRecord(a.data.front(), csvFormat(a.format));
   const AutoColumns columns{a.outputs, a.inputs, a.disturbances, a.time, a.sample_time_s};
   const Structure structure = autoStructure(first, columns, r.remarks);
+  if (!a.known.empty()) r.known = readKnown(a.known, structure);
   r.each.push_back(makeData(first, structure, a.rows));
   for (std::size_t i = 1; i < a.data.size(); ++i)
     r.each.push_back(makeData(readRecord(a.data[i], csvFormat(a.format)), structure, a.rows));
@@ -60,18 +63,20 @@ void choose(const std::string& kind, AutoIdentification& found) {
   if (kind == "linear" || kind == "regressors") found.state.outputs.clear();
 }
 
-AutoIdentification search(const IdentifyArguments& a, const DataSet& data) {
+AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records) {
   AutoParams params;
   params.budget_s = a.budget_s;
   params.blocks = a.blocks;
   params.window = a.window;
   params.seed = a.seed;
+  params.known = records.known;
   params.states = a.kind == "best" || a.kind == "state";
   ProgressBar bar("auto");
-  AutoIdentification found = autoIdentify(data, params, [&bar](const AutoProgress& progress) {
-    bar.show(progress.share, progress.stage);
-    return !interruption();
-  });
+  AutoIdentification found =
+      autoIdentify(records.joined, params, [&bar](const AutoProgress& progress) {
+        bar.show(progress.share, progress.stage);
+        return !interruption();
+      });
   choose(a.kind, found);
   return found;
 }
@@ -178,7 +183,7 @@ int identifyAuto(const IdentifyArguments& a) {
   const AutoRecords records = readAll(a);
   catchInterrupts();
   const auto start = std::chrono::steady_clock::now();
-  AutoIdentification found = search(a, records.joined);
+  AutoIdentification found = search(a, records);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (!a.out.empty()) found.model.name = fs::path(a.out).stem().string();
   const IdentifiedModel model = toIdentified(found);

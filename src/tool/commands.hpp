@@ -47,6 +47,7 @@ struct IdentifyArguments {
   std::string kind{"best"};  ///< best, linear, regressors, state
   double budget_s{45.0};
   int blocks{4}, window{5};
+  std::string known;  ///< of the outputs: file or text, empty: nothing
   std::uint64_t seed{1};
 };
 

@@ -40,7 +40,8 @@ Json trialsOf(const OutputIdentification& found) {
                       {"partition_density", finite(t.validity.partition_density)},
                       {"partition_coefficient", finite(t.validity.partition_coefficient)},
                       {"one_step_rmse", finite(t.one_step_rmse)},
-                      {"votes", t.votes}});
+                      {"free_run_rmse", finite(t.free_run_rmse)},
+                      {"spread", finite(t.spread)}});
   return trials;
 }
 

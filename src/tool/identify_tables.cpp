@@ -49,12 +49,13 @@ std::string figuresTable(const IdentifyReport& report) {
 
 std::string trialsTable(const Identification& found) {
   std::vector<Row> rows{{"clusters of", "number", "Xie-Beni", "partition density",
-                         "held-out 1-step RMSE", "votes", ""}};
+                         "held-out 1-step RMSE", "free-run RMSE", "+-", ""}};
   for (std::size_t i = 0; i < found.outputs.size(); ++i)
     for (const auto& t : found.outputs[i].trials)
       rows.push_back(
           {found.outputs[i].output, std::to_string(t.clusters), shortText(t.validity.xie_beni),
-           shortText(t.validity.partition_density), shortText(t.one_step_rmse), shortText(t.votes),
+           shortText(t.validity.partition_density), shortText(t.one_step_rmse),
+           shortText(t.free_run_rmse), shortText(t.spread),
            static_cast<std::size_t>(t.clusters) == found.outputs[i].rules.size() ? "chosen" : ""});
   return rows.size() > 1 ? "\n" + alignedTable(rows) : "";
 }

@@ -121,17 +121,19 @@ TEST(Identify, WeightsAreSharesOfOneFarOutsideTheData) {
   }
 }
 
-TEST(Identify, TheNumberOfClustersIsChosenByVotesOnHeldOutRows) {
+TEST(Identify, TheNumberOfClustersIsChosenByFreeRunsOverHeldOutBlocks) {
   const Structure structure = knownStructure("antecedents: [u(k)]\n    clusters: [2, 5]");
   const auto found = identify(dataOf(knownRecord(1000, 5, 0.02), structure), structure);
   const auto& trials = found.outputs[0].trials;
   ASSERT_EQ(trials.size(), 4U);
-  double fewest = 1e9;
-  for (const auto& trial : trials) fewest = std::min(fewest, trial.votes);
+  double lowest = 1e9;
+  for (const auto& trial : trials) lowest = std::min(lowest, trial.score);
   const auto chosen = static_cast<int>(found.outputs[0].rules.size());
   for (const auto& trial : trials) {
+    EXPECT_GE(trial.score, trial.free_run_rmse);
+    EXPECT_GT(trial.free_run_rmse, 0.0);
     if (trial.clusters == chosen) {
-      EXPECT_EQ(trial.votes, fewest);
+      EXPECT_EQ(trial.score, lowest);
     }
   }
   EXPECT_GE(chosen, 2);

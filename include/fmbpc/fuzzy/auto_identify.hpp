@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fmbpc/fuzzy/data_set.hpp"
+#include "fmbpc/fuzzy/prior_knowledge.hpp"
 #include "fmbpc/fuzzy/state_model.hpp"
 
 namespace fpc {
@@ -26,6 +27,7 @@ struct AutoParams {
   bool states{true};             ///< search models with a state of their own as well
   int threads{0};                ///< 0: all cores
   std::uint64_t seed{1};
+  std::vector<PriorKnowledge> known;  ///< one per output, or none
 };
 
 /// What one structure did on the blocks that it was not fitted to.
@@ -44,6 +46,7 @@ struct AutoFigures {
   double free_run{}, one_step{};  ///< rmse over all held-out rows, unit of the output
   double fit{};                   ///< [%] of the free run
   std::vector<double> blocks;     ///< free-run rmse of each
+  std::vector<double> pieces;     ///< the same of shorter parts, by which models are compared
   double width{};                 ///< half width of the 95 % interval of the free run
   double one_step_width{};
 };

@@ -1,5 +1,4 @@
-// How well a number of clusters suits data: indices that a user may compare and identification
-// takes votes from.
+// How well a number of clusters suits data: indices that a user may compare.
 #pragma once
 
 #include "fmbpc/fuzzy/clustering.hpp"

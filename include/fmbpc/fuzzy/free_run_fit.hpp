@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fmbpc/fuzzy/data_set.hpp"
+#include "fmbpc/fuzzy/prior_knowledge.hpp"
 #include "fmbpc/fuzzy/structure.hpp"
 
 namespace fpc {
@@ -20,10 +21,11 @@ struct FreeRunFit {
 /// `linear` reaches. In the free run the other outputs are measured. Starts from `model`, or from
 /// the linear model where that runs better; the objective never rises, so that a fit that cannot
 /// improve leaves the start. Uses params.free_run_iterations and .one_step_weight. Sensitivities
-/// follow the recursion of the model, antecedents included. `proceed` may be empty; false cancels.
+/// follow the recursion of the model, antecedents included. `model` must agree with what is known;
+/// so does every step. `proceed` may be empty; false cancels.
 /// Source: Ljung, System Identification (1999), sec. 10.2-10.3 (output-error models).
 FreeRunFit fitFreeRun(const DataSet& data, int output, const OutputModel& linear,
                       const ConsequentParams& params, OutputModel& model,
-                      const std::function<bool()>& proceed = {});
+                      const std::function<bool()>& proceed = {}, const PriorKnowledge& known = {});
 
 }  // namespace fpc

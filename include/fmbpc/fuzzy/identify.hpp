@@ -25,13 +25,14 @@ struct IdentifyProgress {
 /// May be empty; false cancels.
 using IdentifyCallback = std::function<bool(const IdentifyProgress&)>;
 
-/// One number of clusters that was tried. Judged on held-out rows.
+/// One number of clusters that was tried. Judged on blocks of rows held out in turn.
 struct ClusterTrial {
   int clusters{};
-  ClusterValidity validity;
-  double one_step_rmse{};  ///< of the model with these clusters, in the unit of the output
-  double votes{};  ///< sum of the ranks in Xie-Beni, partition density and one_step_rmse; the
-                   ///< lowest wins
+  ClusterValidity validity;  ///< on the last block
+  double one_step_rmse{};    ///< of the models with these clusters, in the unit of the output
+  double free_run_rmse{};    ///< the same in free run; infinite if a run left the data
+  double spread{};           ///< std of the blocks' free_run_rmse
+  double score{};            ///< free_run_rmse times a factor for the parameters; the lowest wins
 };
 
 /// What happened to one output.
@@ -56,9 +57,10 @@ struct Identification {
 };
 
 /// Identifies one submodel per output. Same data and structure, same bits. Memory: a few times the
-/// data, times one number per cluster. @throws InputError naming the structure's key or the data's
-/// column.
+/// data, times one number per cluster. `known`: constraints, one per output or none. @throws
+/// InputError naming the structure's key or the data's column.
 Identification identify(const DataSet& data, const Structure& structure,
-                        const IdentifyCallback& callback = {});
+                        const IdentifyCallback& callback = {},
+                        const std::vector<PriorKnowledge>& known = {});
 
 }  // namespace fpc

@@ -8,6 +8,11 @@
 
 namespace fpc {
 
+/// Rows of samples far from both neighbours, where these agree: 12 times what is usual (by median).
+std::vector<Eigen::Index> outliersOf(const Eigen::Ref<const Vector>& y);
+/// The record with the outliers of its outputs missing; no fit sees them.
+DataSet withoutOutliers(const DataSet& data);
+
 /// Inputs that hardly moved, outliers, a sample time far from the process' time constants (by the
 /// linear model; null: not judged).
 std::vector<std::string> recordRemarks(const DataSet& data, const TsModel* linear);

@@ -27,6 +27,7 @@ class LeastSquares {
   /// that neither the data nor the ridge determine get 0. May be called at any time; more rows may
   /// follow.
   LeastSquaresSolution solve(double ridge = 0.0);
+  Matrix metric() const;  ///< sum weight x x' (n x n)
 
  private:
   void fold();

@@ -15,8 +15,6 @@ const SettingsTable<FmbpcParams>& fmbpcSettings() {
                 "of squared errors (general, iterated): 'x=1 s=2', or '1 2', or one number");
     t.ofInputs("weight_move", &FmbpcParams::weight_move,
                "of squared moves (general, iterated), in the same way");
-    t.integer("reference_lead_steps", &FmbpcParams::reference_lead_steps,
-              "the law aims at y_r(k + H + this)", 0, 100000);
     t.integer("iterations", &FmbpcParams::iterations, "most linearisations per sample (iterated)",
               1, 1000);
     return t;

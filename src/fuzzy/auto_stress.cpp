@@ -1,0 +1,101 @@
+#include "fuzzy/auto_stress.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kStretch = 1.4;  // of the inputs' moves
+constexpr double kBeyond = 0.3;   // of an input's range, below and above it
+constexpr Index kHeld = 150;      // samples
+constexpr double kAllowed = 1.0;  // ranges of y beyond it
+constexpr double kTimes = 3.0;    // the linear model's excursion
+
+struct Excursion {
+  double lower{std::numeric_limits<double>::infinity()}, upper{-lower};
+  void add(double v) {
+    if (std::isfinite(v)) lower = std::min(lower, v), upper = std::max(upper, v);
+  }
+  double span() const { return upper - lower; }
+};
+
+/// Lowest and highest first state of a run from the mean of the data; infinite if it runs away.
+Excursion excursion(const Fitted& fitted, const Matrix& inputs, double start) {
+  constexpr double kAway = 1e3;
+  const Index n = fitted.shape.states;
+  RecurrentStep step(fitted.shape);
+  Vector x = fitted.shape.companion ? Vector::Constant(n, start) : Vector::Zero(n), next(n);
+  Excursion range;
+  for (Index k = 0; k < inputs.cols(); ++k) {
+    if (!inputs.col(k).allFinite()) continue;
+    step.predict(fitted.parameters, x, inputs.col(k), next);
+    x = next;
+    const double y = fitted.shape.absolute ? std::abs(x[0]) : x[0];
+    range.add(y);
+    if (!(std::abs(y) < kAway))
+      return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  }
+  return range;
+}
+
+/// The stretches' inputs made larger, then each input at its edges.
+Matrix stressInputs(const RecurrentData& record, const std::vector<Stretch>& stretches) {
+  const Index m = record.v.rows();
+  Index length = 0;
+  for (const auto& s : stretches) length += s.last - s.first;
+  Matrix inputs(m, length + 2 * m * kHeld);
+  Vector mean = Vector::Zero(m);
+  std::vector<Excursion> ranges(static_cast<std::size_t>(m));
+  Index at = 0;
+  for (const auto& s : stretches) {
+    inputs.middleCols(at, s.last - s.first) = record.v.middleCols(s.first, s.last - s.first);
+    at += s.last - s.first;
+  }
+  for (Index j = 0; j < m; ++j) {
+    double count = 0.0;
+    for (Index k = 0; k < length; ++k)
+      if (std::isfinite(inputs(j, k))) {
+        mean[j] += inputs(j, k);
+        count += 1.0;
+        ranges[static_cast<std::size_t>(j)].add(inputs(j, k));
+      }
+    mean[j] /= std::max(count, 1.0);
+  }
+  inputs.leftCols(length) =
+      ((inputs.leftCols(length).colwise() - mean) * kStretch).colwise() + mean;
+  for (Index j = 0; j < m; ++j)
+    for (const bool above : {false, true}) {
+      const Excursion& r = ranges[static_cast<std::size_t>(j)];
+      auto held = inputs.middleCols(at, kHeld);
+      held.colwise() = mean;
+      held.row(j).setConstant(above ? r.upper + kBeyond * r.span() : r.lower - kBeyond * r.span());
+      at += kHeld;
+    }
+  return inputs;
+}
+
+}  // namespace
+
+bool endures(const Fitted& fitted, const Fitted& linear, const RecurrentData& record,
+             const std::vector<Stretch>& stretches) {
+  Excursion data;
+  double sum = 0.0, count = 0.0;
+  for (const auto& s : stretches)
+    for (Index k = s.first; k < s.last; ++k) {
+      data.add(record.y[k]);
+      if (std::isfinite(record.y[k])) sum += record.y[k], count += 1.0;
+    }
+  if (!(count > 0.0)) return false;
+  const Matrix inputs = stressInputs(record, stretches);
+  const double mean = sum / count, room = kAllowed * data.span();
+  const Excursion line = excursion(linear, inputs, mean), run = excursion(fitted, inputs, mean);
+  const double lowest = std::min(data.lower - room, mean + kTimes * (line.lower - mean));
+  const double highest = std::max(data.upper + room, mean + kTimes * (line.upper - mean));
+  return run.lower >= lowest && run.upper <= highest && std::isfinite(run.span());
+}
+
+}  // namespace fpc
