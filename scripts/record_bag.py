@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Node bag_recorder: records every topic with rosbag and says `ready` when rosbag listens to all of them, so that
+"""Node bag_recorder: records every topic (in a namespace: of it) with rosbag and says `ready` when rosbag listens to all of them, so that
 the bag begins with sample 0. Usage: record_bag.py FILE.bag"""
 import os
 import signal
@@ -14,6 +14,7 @@ if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
 import rosgraph
 import rospy
 from fmbpc.msg import NodeReady
+from std_msgs.msg import String
 
 RECORDER = "rosbag_record"
 
@@ -23,7 +24,9 @@ def listens_to_all(master):
     publishers, subscribers, _ = master.getSystemState()
     name = rospy.resolve_name(RECORDER)
     heard = {topic for topic, nodes in subscribers if name in nodes}
-    all_of_them = {topic for topic, nodes in publishers if nodes != [name] and nodes != [rospy.get_name()]}
+    text = rospy.resolve_name("loop_text")
+    all_of_them = {topic for topic, nodes in publishers if topic.startswith(rospy.get_namespace()) and
+              (topic == text or nodes not in ([name], [rospy.get_name()]))}
     needed = {rospy.resolve_name(topic) for topic in ("measurement", "tracking", "control_action")}
     return needed <= heard and all_of_them <= heard
 
@@ -40,10 +43,14 @@ def main():
     bag = bag_file(rospy.myargv()[1:])
     os.makedirs(os.path.dirname(bag), exist_ok=True)
     ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
+    text = rospy.Publisher("loop_text", String, queue_size=1, latch=True)  # `fmbpc replay` needs it
+    text.publish(rospy.get_param(rospy.search_param("loop_text") or "loop_text", ""))
     stop = threading.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: stop.set())
-    rosbag = subprocess.Popen(["rosbag", "record", "--all", "--buffsize=0", "--tcpnodelay", "--output-name", bag,
+    space = rospy.get_namespace()
+    what = ["--all"] if space == "/" else ["--regex", space + ".*"]  # of several loops ours
+    rosbag = subprocess.Popen(["rosbag", "record", *what, "--buffsize=0", "--tcpnodelay", "--output-name", bag,
                                "__name:=" + RECORDER], start_new_session=True)
     master, said, quiet = rosgraph.Master(rospy.get_name()), False, 0
     while rosbag.poll() is None and not stop.wait(0.1):

@@ -93,13 +93,6 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   return loop;
 }
 
-LoopFile parseLoop(const std::string& text, const std::string& name) {
-  YamlSection root = YamlSection::parse(text, name);
-  LoopFile loop = readSections(root, name);
-  loop.resolved = text;
-  return loop;
-}
-
 LoopFile readLoop(const std::string& name_or_path, const Overrides& overrides) {
   const std::string file = findLoop(name_or_path);
   LoopFile loop =

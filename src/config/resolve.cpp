@@ -1,5 +1,6 @@
-// From a loop's name to the one text that tool and nodes read: merged, with absolute file names,
-// checked.
+// From a loop's name to the one text that tool and nodes read: merged, checked, with names of files
+// that other machines can find too.
+#include <cstdlib>
 #include <filesystem>
 
 #include "base/yaml_load.hpp"
@@ -74,14 +75,73 @@ void makePluginsAbsolute(MergedLoop& loop) {
   }
 }
 
-void makeFilesAbsolute(MergedLoop& loop) {
-  makePluginsAbsolute(loop);
-  makeAbsolute(loop, {"model", "file"}, "model");
-  makeAbsolute(loop, {"model", "identify", "structure"}, "structure");
+/// Calls use(keys, folder) for each key that names a file.
+template <typename Use>
+void eachFile(const MergedLoop& loop, Use use) {
+  use({"model", "file"}, "model");
+  use({"model", "identify", "structure"}, "structure");
   const YAML::Node source = scalarAt(loop.root, {"disturbance", "source"});
   if (!source.IsDefined() || !source.IsScalar() || source.Scalar() != "csv") return;
-  makeAbsolute(loop, {"disturbance", "csv", "file"}, "data");
-  makeAbsolute(loop, {"disturbance", "csv", "next", "file"}, "data");
+  use({"disturbance", "csv", "file"}, "data");
+  use({"disturbance", "csv", "next", "file"}, "data");
+}
+
+void makeFilesAbsolute(MergedLoop& loop) {
+  makePluginsAbsolute(loop);
+  eachFile(loop, [&](const std::vector<std::string>& keys, const char* folder) {
+    makeAbsolute(loop, keys, folder);
+  });
+}
+
+/// The first file of this name in the config folders; empty if there is none.
+std::string inConfigFolders(const std::string& name, const std::string& folder) {
+  for (const auto& config : configFolders()) {
+    const fs::path candidate = fs::path(config) / folder / name;
+    if (fs::is_regular_file(candidate)) return fs::absolute(candidate).lexically_normal().string();
+  }
+  return "";
+}
+
+/// `path` seen from `base`; empty if it is not below it.
+std::string below(const fs::path& path, const fs::path& base) {
+  const std::string name =
+      path.lexically_relative(fs::absolute(base).lexically_normal()).generic_string();
+  return name.empty() || name == "." || name.rfind("..", 0) == 0 ? "" : name;
+}
+
+/// A name that means the same file on another machine, where there is one: below the config folders
+/// or ${FMBPC_DATA}.
+std::string portableName(const std::string& path, const std::string& folder) {
+  for (const auto& config : configFolders()) {
+    const std::string name = below(path, fs::path(config) / folder);
+    if (!name.empty() && inConfigFolders(name, folder) == path) return name;
+  }
+  const char* data = std::getenv("FMBPC_DATA");
+  const std::string name = data == nullptr || *data == '\0' ? "" : below(path, data);
+  return name.empty() ? path : "${FMBPC_DATA}/" + name;
+}
+
+/// So that the text can be read on another machine.
+void makeFilesPortable(MergedLoop& loop) {
+  eachFile(loop, [&](const std::vector<std::string>& keys, const char* folder) {
+    YAML::Node file = scalarAt(loop.root, keys);
+    if (file.IsDefined() && file.IsScalar() && !file.Scalar().empty())
+      file = portableName(file.Scalar(), folder);
+  });
+}
+
+/// The same back: where these files are on this machine.
+void findFilesHere(MergedLoop& loop) {
+  eachFile(loop, [&](const std::vector<std::string>& keys, const char* folder) {
+    YAML::Node file = scalarAt(loop.root, keys);
+    if (!file.IsDefined() || !file.IsScalar() || file.Scalar().empty()) return;
+    std::string name = expandEnvironment(file.Scalar(), loop.whereIs(join(keys, ".")));
+    if (fs::path(name).is_relative() && !fs::is_regular_file(name)) {
+      const std::string found = inConfigFolders(name, folder);
+      if (!found.empty()) name = found;
+    }
+    file = name;
+  });
 }
 
 /// Reads everything once, so that errors name the line that a person wrote.
@@ -104,14 +164,25 @@ std::pair<std::string, std::string> parseOverride(const std::string& text) {
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+LoopFile parseLoop(const std::string& text, const std::string& name) {
+  MergedLoop merged;
+  merged.root = loadYaml(text, name);
+  findFilesHere(merged);
+  YamlSection root(merged.root, name, "");
+  LoopFile loop = readSections(root, name);
+  loop.resolved = text;
+  return loop;
+}
+
 LoopFile parseLoop(const std::string& text, const std::string& name, const Overrides& overrides) {
   MergedLoop merged;
   merged.root = detached(loadYaml(text, name));
   applyOverrides(merged, overrides);
-  YamlSection root(merged.root, name, "", merged.trace());
-  LoopFile loop = readSections(root, name);
   YAML::Emitter emitted;
   emitted << merged.root;
+  findFilesHere(merged);
+  YamlSection root(merged.root, name, "", merged.trace());
+  LoopFile loop = readSections(root, name);
   loop.resolved = std::string(emitted.c_str()) + "\n";
   return loop;
 }
@@ -122,6 +193,7 @@ std::string resolveLoop(const std::string& name_or_path, const Overrides& overri
   applyOverrides(merged, overrides);
   makeFilesAbsolute(merged);
   validate(merged, file);
+  makeFilesPortable(merged);
   YAML::Emitter text;
   text << merged.root;
   return std::string(text.c_str()) + "\n";

@@ -24,10 +24,10 @@ void PlantSession::start(double now_s) {
   table_since_s_ = sent_s_ = now_s;
 }
 
+// What an action is wrong in does not depend on when it comes.
 bool PlantSession::receive(const ControlAction& action) {
-  const bool awaited = phase_ == PlantPhase::kRunning && !have_action_;
-  if (!awaited || !simulation_.answers(action.header)) {
-    countStray(action.header);
+  if (action.header.run_id != runId()) {
+    ++counts_.other_run;
     return false;
   }
   if (action.input.size() != static_cast<Eigen::Index>(simulation_.info().inputs.size())) {
@@ -38,6 +38,11 @@ bool PlantSession::receive(const ControlAction& action) {
     ++counts_.not_finite;
     return false;
   }
+  const bool awaited = phase_ == PlantPhase::kRunning && !have_action_;
+  if (!awaited || !simulation_.answers(action.header)) {
+    countStray(action.header);
+    return false;
+  }
   ++counts_.accepted;
   action_ = action.input;
   have_action_ = true;
@@ -45,13 +50,11 @@ bool PlantSession::receive(const ControlAction& action) {
   return true;
 }
 
-// Dropped, each kind apart: of another run, for a later sample, the last answer again, older.
+// Dropped, each kind apart: for a later sample, the last answer again, older.
 void PlantSession::countStray(const StepHeader& header) {
   const std::uint32_t now = simulation_.measurement().header.step;
   const std::uint32_t answered = have_action_ ? now + 1 : now;  // samples answered so far
-  if (header.run_id != runId())
-    ++counts_.other_run;
-  else if (header.step >= answered)
+  if (header.step >= answered)
     ++counts_.later;
   else if (header.step + 1 == answered)
     ++counts_.repeated;

@@ -13,9 +13,9 @@ namespace fpc {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr char kPython[] = "/usr/bin/python3";
 
-/// The script stands beside the config folders, in the source tree as in an installed package.
+}  // namespace
+
 std::string findScript(const std::string& name) {
   for (const auto& folder : configFolders()) {
     const fs::path script = fs::path(folder).lexically_normal() / ".." / "scripts" / name;
@@ -23,6 +23,8 @@ std::string findScript(const std::string& name) {
   }
   return {};
 }
+
+namespace {
 
 /// Runs the script with its standard output on our standard error; true if it succeeded.
 bool runScript(const std::string& script, const std::string& folder) {

@@ -17,8 +17,8 @@ namespace fpc {
 namespace {
 
 constexpr std::size_t kHeaderSize = 64;
-constexpr std::size_t kText = 16;  // doubles whose bytes hold a reason in words
-constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '2'};
+constexpr std::size_t kTrouble = 16, kRemark = 32;  // doubles whose bytes hold words
+constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '3'};
 
 /// What must agree before entries are read as those of a loop.
 struct FileHeader {
@@ -39,7 +39,8 @@ struct Sizes {
         n_true(layout.true_disturbances) {}
   /// Doubles of one sample: marks, times, measurement, state, tracking, base, action, report.
   std::size_t entry() const {
-    return 4 + n_y + n_d + n_u + 1 + n_x + n_y + n_true + 2 + 2 * n_y + 2 * n_u + 5 + n_u + kText;
+    return 4 + n_y + n_d + n_u + 1 + n_x + n_y + n_true + 2 + 2 * n_y + 2 * n_u + 5 + n_u +
+           kTrouble + kRemark;
   }
 };
 
@@ -65,12 +66,12 @@ class Packer {
     std::memcpy(&carrier, &value, sizeof value);
     values_.push_back(carrier);
   }
-  void text(const std::string& words) {
-    char letters[kText * sizeof(double)] = {};
-    words.copy(letters, sizeof letters - 1);
-    for (std::size_t i = 0; i < kText; ++i) {
+  void text(const std::string& words, std::size_t doubles) {
+    std::string letters = words.substr(0, doubles * sizeof(double) - 1);
+    letters.resize(doubles * sizeof(double));
+    for (std::size_t i = 0; i < doubles; ++i) {
       std::uint64_t part;
-      std::memcpy(&part, letters + i * sizeof part, sizeof part);
+      std::memcpy(&part, letters.data() + i * sizeof part, sizeof part);
       bits(part);
     }
   }
@@ -95,11 +96,11 @@ class Unpacker {
     std::memcpy(&value, at_++, sizeof value);
     return value;
   }
-  std::string text() {
-    char letters[kText * sizeof(double)];
-    std::memcpy(letters, at_, sizeof letters);
-    at_ += kText;
-    return letters;
+  std::string text(std::size_t doubles) {
+    std::string letters(doubles * sizeof(double), '\0');
+    std::memcpy(letters.data(), at_, letters.size());
+    at_ += doubles;
+    return letters.c_str();  // up to the first zero
   }
   Vector vector(std::size_t n) {
     const Vector v = Eigen::Map<const Vector>(at_, static_cast<Eigen::Index>(n));
@@ -143,7 +144,8 @@ std::vector<double> pack(const SampleRecord& s, const Sizes& n) {
   p.number(s.report.seconds);
   p.bits(s.report.active_rows);
   p.vector(s.report.perturbation, n.n_u);
-  p.text(s.state.trouble);
+  p.text(s.state.trouble, kTrouble);
+  p.text(s.remark, kRemark);
   return p.take();
 }
 
@@ -185,7 +187,8 @@ SampleRecord unpack(const double* at, const Sizes& n) {
   s.report.seconds = u.number();
   s.report.active_rows = static_cast<std::uint32_t>(u.bits());
   s.report.perturbation = u.vector(n.n_u);
-  s.state.trouble = u.text();
+  s.state.trouble = u.text(kTrouble);
+  s.remark = u.text(kRemark);
   return s;
 }
 

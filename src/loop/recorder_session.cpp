@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostGaps = 100;  // that are named
+constexpr std::uint32_t kBelieved = 5;  // measurements far ahead that follow each other
 
 }  // namespace
 
@@ -68,8 +69,28 @@ void RecorderSession::collect(const Item& item, bool SampleRecord::*has, Place p
   passOn();
 }
 
+// A stray far ahead would fill the disk with holes: it is believed only when others follow it and
+// nothing near comes between (the recorder was away for long).
+bool RecorderSession::farAhead(std::uint32_t step) {
+  const std::uint32_t now = std::max(next_, latest_.step);
+  if (step < now || step - now < kWindow) {
+    far_streak_ = 0;
+    return false;
+  }
+  if (far_streak_ == 0 || step != far_step_ + 1)
+    far_streak_ = far_streak_ > 0 && step == far_step_ ? far_streak_ : 1;
+  else
+    ++far_streak_;
+  far_step_ = step;
+  return far_streak_ < kBelieved;
+}
+
 void RecorderSession::receive(const Measurement& m) {
   if (run_id_ == m.header.run_id && layout_.fits(m)) {
+    if (farAhead(m.header.step)) {
+      ++strays_;
+      return;
+    }
     const Arrival arrival = gate_.pass(m.header);
     if (arrival == Arrival::kSuspect) {
       ++strays_;
@@ -91,12 +112,14 @@ void RecorderSession::receive(const PlantState& s) {
           [](SampleRecord& sample, const PlantState& item) { sample.state = item; });
 }
 
-void RecorderSession::receive(const Tracking& t) {
-  collect(t, &SampleRecord::has_tracking, [this](SampleRecord& sample, const Tracking& item) {
+void RecorderSession::receive(const Tracking& t, const std::string& remark) {
+  const auto place = [this, remark](SampleRecord& sample, const Tracking& item) {
     sample.tracking = item;
+    sample.remark = remark;
     for (const Eigen::Index i : layout_.without_setpoint)
       sample.tracking.setpoint[i] = sample.tracking.reference[i] = kMissing;
-  });
+  };
+  collect(t, &SampleRecord::has_tracking, place);
 }
 
 void RecorderSession::receiveBase(const ControlAction& a) {

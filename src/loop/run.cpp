@@ -14,7 +14,6 @@ namespace fpc {
 namespace {
 
 constexpr std::uint64_t kRunId = 1;
-constexpr std::size_t kMostRemarks = 20;
 
 /// The members of the ring, called in the order in which messages would travel.
 class Ring {
@@ -54,9 +53,7 @@ class Ring {
     recorder_.receive(plant_.simulation().state());
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    if (!now.final && *controller_.output().remark != '\0')
-      keep(controller_.output().remark, now.header.step);
-    recorder_.receive(answer.tracking);
+    recorder_.receive(answer.tracking, now.final ? "" : controller_.output().remark);
     if (!now.final) {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimizer_ ? optimize(answer) : answer.base);
@@ -108,16 +105,6 @@ class Ring {
     } catch (const InputError& error) {
       remark(error.what());
     }
-  }
-
-  void keep(const char* words, std::uint32_t step) {
-    auto& remarks = record_.remarks;
-    const auto known = std::find_if(remarks.begin(), remarks.end(),
-                                    [&](const RunRemark& r) { return r.words == words; });
-    if (known != remarks.end())
-      ++known->samples;
-    else if (remarks.size() < kMostRemarks)
-      remarks.push_back({words, 1, step});
   }
 
   void remark(const std::string& words) const {

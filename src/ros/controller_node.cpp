@@ -162,8 +162,10 @@ void ControllerNode::answerParked() {
 void ControllerNode::answer(const Measurement& measurement) {
   heard_s_ = steadyNow();
   useModels(measurement.header);
+  const bool first = session_.counts().accepted == 0;
   switch (session_.receive(measurement)) {
     case Receipt::kAnswered:
+      if (first) settings_.publish();  // those that were restored
       return publish(false);
     case Receipt::kRepeated:
       return publish(true);
@@ -232,7 +234,11 @@ void ControllerNode::publish(bool repeated) {
     prediction_.publish(toMsg(answer.prediction));
   if (answer.has_action) base_.publish(toMsg(answer.base));
   if (standin_) standin_->asked(answer, repeated);
-  if (tracking_.getNumSubscribers() > 0) tracking_.publish(toMsg(answer.tracking));
+  if (tracking_.getNumSubscribers() > 0) {
+    fmbpc::Tracking tracking = toMsg(answer.tracking);
+    if (answer.has_action) tracking.remark = session_.output().remark;
+    tracking_.publish(tracking);
+  }
   if (repeated) return;
   for (const CommandEffect& effect : answer.effects) effect_.publish(toMsg(effect));
   if (!answer.effects.empty() || answer.tracking.header.step == 0) desk_.changed();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ros/conversions.hpp"
+#include "ros/master_watch.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
 
@@ -15,6 +16,16 @@ constexpr double kLook = 0.25;  // [s] of wall time
 
 bool same(const Health& a, const Health& b) {
   return a.mode == b.mode && a.words == b.words && a.missing == b.missing;
+}
+
+/// A node that cannot be reached, or cannot reach others, is not in order, whatever it does.
+Health withNetwork(Health health) {
+  const std::string problem = networkProblem();
+  if (problem.empty() || health.mode == LoopMode::kFinished) return health;
+  if (health.mode == LoopMode::kAutomatic || health.mode == LoopMode::kManual)
+    return {LoopMode::kDegraded, health.words + "; " + problem, health.missing};
+  health.words += "; " + problem;
+  return health;
 }
 
 }  // namespace
@@ -33,7 +44,7 @@ HealthReporter::HealthReporter(ros::NodeHandle node, const ros::NodeHandle& priv
 void HealthReporter::look() {
   const double now_s = steadyNow();
   const Health before = shown_;
-  shown_ = hysteresis_.show(source_.health(now_s), now_s);
+  shown_ = hysteresis_.show(withNetwork(source_.health(now_s)), now_s);
   const bool changed = before.mode != shown_.mode || before.missing != shown_.missing;
   if (same(before, shown_) && now_s - published_s_ < RingWatch::kBeat - 0.5 * kLook) return;
   published_s_ = now_s;

@@ -27,6 +27,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       loop_(loop),
       keep_(private_node.param("keep", false)),
       plot_(private_node.param("plot", true)),
+      stay_(private_node.param("stay", false)),
       store_(loop, private_node.param<std::string>("out", "")),
       session_(recordLayout(loop), [this](const SampleRecord& sample) { store_.append(sample); }),
       ready_(node),
@@ -53,7 +54,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
 
 void LoopRecorder::poll() {
   if (!ready_.announced()) announceIfConnected();
-  if (ending_s_ >= 0 && steadyNow() - ending_s_ > kLastWords)
+  if (!stay_ && ending_s_ >= 0 && steadyNow() - ending_s_ > kLastWords)
     return problem_.empty() ? done() : fail(problem_);
   store_.flush();
   if (written_) return;
@@ -115,7 +116,7 @@ void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
 
 void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
   guarded(topics::kTracking, [&] {
-    session_.receive(fromMsg(*msg));
+    session_.receive(fromMsg(*msg), msg->remark);
     checkComplete();
   });
 }
@@ -185,7 +186,7 @@ bool LoopRecorder::tryWrite() {
 }
 
 int LoopRecorder::finish() {
-  const int code = Node::finish();
+  const int code = written_ && !problem_.empty() ? 1 : Node::finish();
   if (code != 0 || written_ || !session_.running()) {
     if (code == 0 && !written_) ROS_WARN("loop_recorder: stopped before the first sample");
     return code == 0 && !written_ ? 1 : code;

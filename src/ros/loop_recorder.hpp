@@ -19,6 +19,7 @@
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
+#include "ros/run_end.hpp"
 
 namespace fpc {
 
@@ -26,8 +27,9 @@ namespace fpc {
 /// RecordStore) and becomes the run's files at its end, at Ctrl-C, and in the next run if the
 /// process was killed. Ends with the run: exit code 0 when it is complete and written (then
 /// `recorded`, latched, names the folder); otherwise 1, naming the gaps. Parameters: ~out, folder
-/// of the files (nothing is written without it); ~keep, do not end with the run; ~plot, draw
-/// plot.png (default true).
+/// of the files (nothing is written without it); ~keep, the launch goes on after the run (run_end
+/// is not said); ~stay, this node goes on until it is stopped, as in a launch, which ends by
+/// run_end; ~plot, draw plot.png (default true).
 class LoopRecorder : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }
@@ -55,7 +57,7 @@ class LoopRecorder : public Node {
   void report(Diagnostics::Status& status) const;
 
   LoopFile loop_;
-  bool keep_, plot_;
+  bool keep_, plot_, stay_;
   RecordStore store_;
   RecorderSession session_;
   ReadyPublisher ready_;

@@ -11,7 +11,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/authority.hpp"
-#include "ros/run_end.hpp"
+#include "ros/master_watch.hpp"
 #include "ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -59,6 +59,21 @@ class Node {
                                ros::TransportHints().tcpNoDelay());
   }
 
+  /// The same for a handler that is told who has published.
+  template <typename Msg, typename Class>
+  ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
+                            void (Class::*handler)(const boost::shared_ptr<const Msg>&,
+                                                   const std::string& publisher),
+                            Class* object) {
+    const boost::function<void(const ros::MessageEvent<const Msg>&)> guard =
+        [this, topic, handler, object](const ros::MessageEvent<const Msg>& event) {
+          const std::string& publisher = event.getPublisherName();
+          if (mayPass(topic, publisher)) (object->*handler)(event.getMessage(), publisher);
+        };
+    return node.subscribe<Msg>(topic, queue, guard, ros::VoidConstPtr(),
+                               ros::TransportHints().tcpNoDelay());
+  }
+
  private:
   bool mayPass(const char* topic, const std::string& publisher);
 
@@ -84,10 +99,10 @@ int runNode(int argc, char** argv, const std::string& name) {
   const ros::NodeHandle node,
       private_node("~");  // outlives the catch: without a node nothing is logged
   try {
-    const RunEndListener end(node, private_node);
     const LoopFile loop = loopParameter(node);
     const std::string idle = Class::idleReason(loop);
     if (!idle.empty()) return stayIdle(private_node, idle);
+    const MasterWatch watch(node, private_node, loop);
     Class instance{node, private_node, loop};
     ros::spin();
     return instance.finish();

@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kPatience = 1.0;  // [s] of wall time
 
+}  // namespace
+
 OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
   OperatorWishes wishes;
   wishes.manual = msg.manual != 0;
@@ -23,8 +25,6 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
   for (const auto& setpoint : msg.setpoint) wishes.setpoints.push_back(fromMsg(setpoint));
   return wishes;
 }
-
-}  // namespace
 
 OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, ControllerSession& session)
     : Node(node, loop),

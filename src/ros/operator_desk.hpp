@@ -13,6 +13,10 @@
 
 namespace fpc {
 
+/// What the message says, as a controller's session takes it. @throws InputError for a setpoint of
+/// unknown mode.
+OperatorWishes wishesOf(const fmbpc::OperatorState& msg);
+
 class OperatorDesk : public Node {
  public:
   OperatorDesk(ros::NodeHandle node, const LoopFile& loop, ControllerSession& session);

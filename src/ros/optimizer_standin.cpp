@@ -24,23 +24,41 @@ OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop)
 void OptimizerStandin::asked(const ControllerAnswer& answer, bool repeated) {
   if (!answer.has_action) return;
   if (repeated) {
-    if (sent_) action_.publish(toMsg(base_));  // the plant has missed it
+    if (sent_) send();  // the plant has missed it
     return;
   }
   base_ = answer.base;
   sent_ = false;
+  unheard_ = 0;
   if (watch_.asked(base_.header, steadyNow()))
     takeOver();
   else
     arm();
 }
 
-void OptimizerStandin::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
-  const bool own = sent_ && msg->run_id == base_.header.run_id && msg->step == base_.header.step &&
-                   msg->source == static_cast<std::uint8_t>(base_.source) &&
-                   std::equal(msg->input.begin(), msg->input.end(), base_.input.data(),
-                              base_.input.data() + base_.input.size());
-  if (!own) guarded(topics::kControlAction, [&] { watch_.answered(fromMsg(*msg).header); });
+void OptimizerStandin::onAction(const fmbpc::ControlAction::ConstPtr& msg,
+                                const std::string& publisher) {
+  if (isOwn(*msg, publisher)) return;
+  guarded(topics::kControlAction, [&] { watch_.answered(fromMsg(*msg).header); });
+}
+
+// What this node has sent comes back to it. An optimizer without anything to constrain answers the
+// very same, so only the publisher tells; in a nodelet manager all have one name, and whatever
+// comes more often than it was sent is the optimizer's.
+bool OptimizerStandin::isOwn(const fmbpc::ControlAction& msg, const std::string& publisher) {
+  if (publisher != ros::this_node::getName() || unheard_ == 0) return false;
+  const bool same =
+      msg.run_id == base_.header.run_id && msg.step == base_.header.step &&
+      msg.source == static_cast<std::uint8_t>(base_.source) &&
+      std::equal(msg.input.begin(), msg.input.end(), base_.input.data(),
+                 base_.input.data() + base_.input.size());
+  if (same) --unheard_;
+  return same;
+}
+
+void OptimizerStandin::send() {
+  ++unheard_;
+  action_.publish(toMsg(base_));
 }
 
 void OptimizerStandin::arm() {
@@ -60,7 +78,7 @@ void OptimizerStandin::onTimer() {
 
 void OptimizerStandin::takeOver() {
   sent_ = true;
-  action_.publish(toMsg(base_));
+  send();
   SolverReport report;
   report.header = base_.header;
   report.perturbation = Vector::Zero(base_.input.size());

@@ -22,7 +22,9 @@ class OptimizerStandin : public Node {
   const std::string& optimizer() const { return optimizer_; }  ///< its full name
 
  private:
-  void onAction(const fmbpc::ControlAction::ConstPtr& msg);
+  void onAction(const fmbpc::ControlAction::ConstPtr& msg, const std::string& publisher);
+  bool isOwn(const fmbpc::ControlAction& msg, const std::string& publisher);
+  void send();
   void onTimer();
   void arm();
   void takeOver();
@@ -31,6 +33,7 @@ class OptimizerStandin : public Node {
   std::string optimizer_;
   ControlAction base_;
   bool sent_{false};  // base_ went to the plant
+  int unheard_{};     // times that it was sent and has not come back on the topic
   WallThrottle log_{1.0};
   ros::Publisher action_, report_;
   ros::Subscriber subscriber_;

@@ -13,7 +13,7 @@ namespace fpc {
 namespace {
 
 constexpr double kPoll = 0.05;         // [s] of wall time
-constexpr double kIntroduceAgain = 1;  // [s], while nobody answers
+constexpr double kIntroduceAgain = 1;  // [s], while nobody answers (in realtime samples go on)
 constexpr double kPatience = 1.0;      // [s] without an action before that is said
 constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
 constexpr double kBurst = 200;         // commands at once
@@ -105,8 +105,7 @@ void PlantSimulator::onPoll() {
   if (!session_.mustResend(now_s)) return;
   session_.resent(now_s);
   publishers_.resend();
-  if (session_.unansweredFor(now_s) < kIntroduceAgain || now_s - introduced_s_ < kIntroduceAgain)
-    return;
+  if (now_s - answered_s_ < kIntroduceAgain || now_s - introduced_s_ < kIntroduceAgain) return;
   introduced_s_ = now_s;  // somebody may have been told of another run
   publishers_.introduce(session_.simulation());
 }
@@ -143,7 +142,9 @@ void PlantSimulator::waitForOthers() {
 
 void PlantSimulator::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
   guarded(topics::kControlAction, [&] {
-    if (session_.receive(fromMsg(*msg))) tryAdvance();
+    if (!session_.receive(fromMsg(*msg))) return;
+    answered_s_ = steadyNow();
+    tryAdvance();
   });
 }
 

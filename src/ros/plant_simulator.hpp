@@ -21,6 +21,7 @@
 #include "ros/operator_keeper.hpp"
 #include "ros/plant_publishers.hpp"
 #include "ros/ready.hpp"
+#include "ros/run_end.hpp"
 #include "ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -65,7 +66,7 @@ class PlantSimulator : public Node {
   RateLimit commands_;
 
   std::uint64_t run_id_{};
-  double begun_s_, introduced_s_{}, failed_s_{-1};
+  double begun_s_, introduced_s_{}, answered_s_{}, failed_s_{-1};
   std::string failure_;
   RunEndPublisher end_;
   WallThrottle trouble_log_{1.0};

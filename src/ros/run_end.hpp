@@ -1,4 +1,5 @@
-// How a launch ends by itself: when the run is recorded, or cannot begin, every node of it ends.
+// How a launch ends by itself: who knows that the run is over says so, and scripts/end_launch.py
+// ends the launch.
 #pragma once
 
 #include <ros/ros.h>
@@ -10,21 +11,7 @@
 
 namespace fpc {
 
-/// Parameter ~end_with_run (default false): the process ends when somebody says `run_end`.
-class RunEndListener {
- public:
-  RunEndListener(ros::NodeHandle node, const ros::NodeHandle& private_node) {
-    if (!private_node.param("end_with_run", false)) return;
-    const boost::function<void(const std_msgs::String::ConstPtr&)> end =
-        [](const std_msgs::String::ConstPtr&) { ros::shutdown(); };
-    subscriber_ = node.subscribe<std_msgs::String>(topics::kRunEnd, 1, end);
-  }
-
- private:
-  ros::Subscriber subscriber_;
-};
-
-/// Says it, latched; stay alive for a moment after it.
+/// Says it, latched, with the reason; stay alive for a moment after it.
 class RunEndPublisher {
  public:
   explicit RunEndPublisher(ros::NodeHandle node)

@@ -159,7 +159,9 @@ SettingsServer::SettingsServer(ros::NodeHandle private_node, std::vector<Setting
   set_ = private_node.advertiseService("set_parameters", &SettingsServer::onSet, this);
 }
 
-void SettingsServer::publish() { updates_.publish(settingsMessage(table_, current_())); }
+void SettingsServer::publish() {
+  if (!table_.empty()) updates_.publish(settingsMessage(table_, current_()));
+}
 
 bool SettingsServer::onSet(dynamic_reconfigure::Reconfigure::Request& request,
                            dynamic_reconfigure::Reconfigure::Response& response) {

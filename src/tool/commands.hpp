@@ -122,6 +122,13 @@ struct EvaluateArguments {
   bool json{false};
 };
 
+struct ReplayArguments {
+  std::string bag;
+  std::string loop;              ///< empty: the one in the bag
+  std::vector<std::string> set;  ///< "path=value"
+  bool json{false};
+};
+
 int evaluate(const EvaluateArguments& arguments);
 int identify(const IdentifyArguments& arguments);
 int validate(const ValidateArguments& arguments);
@@ -140,5 +147,8 @@ int reproduce(const ReproduceArguments& arguments);
 int tune(const TuneArguments& arguments);
 int study(const StudyArguments& arguments);
 int table(const std::vector<std::string>& folders);
+int replay(const ReplayArguments& arguments);
+/// Becomes another program: returns only by throwing.
+int watch(const std::vector<std::string>& words);
 
 }  // namespace fpc::tool

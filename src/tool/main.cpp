@@ -8,6 +8,7 @@
 
 #include "fmbpc/base/text.hpp"
 #include "tool/commands.hpp"
+#include "tool/topic_options.hpp"
 
 namespace {
 
@@ -278,6 +279,10 @@ int main(int argc, char** argv) {
   addTune(app, tune);
   fpc::tool::StudyArguments study;
   addStudy(app, study);
+  fpc::tool::ReplayArguments replay;
+  fpc::tool::addReplay(app, replay, chosen);
+  std::vector<std::string> watch_words;
+  fpc::tool::addWatch(app, watch_words, chosen);
   try {
     app.parse(argc, argv);
     return chosen();

@@ -134,6 +134,22 @@ TEST_F(Resolve, NumbersStayAsTheyWereWritten) {
   EXPECT_EQ(text.find("extends"), std::string::npos);
 }
 
+TEST_F(Resolve, TheTextNamesFilesSoThatAnotherMachineFindsThem) {
+  const std::string text = resolveLoop(
+      "asp_case1", {{"model.identify.structure", "asp_d.yaml"}, {"model.identify.after", "200"}});
+  EXPECT_NE(text.find("file: fm_1.yaml\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("structure: asp_d.yaml\n"), std::string::npos) << text;
+  EXPECT_TRUE(std::filesystem::path(parseLoop(text, "here").model_file).is_absolute());
+}
+
+TEST_F(Resolve, AFileOfAPersonKeepsItsPlace) {
+  const std::string model = path("mine.yaml");
+  std::filesystem::copy(readLoop("asp_case1").model_file, model);
+  const std::string text = resolveLoop("asp_case1", {{"model.file", model}});
+  EXPECT_NE(text.find("file: " + model + "\n"), std::string::npos) << text;
+  EXPECT_EQ(parseLoop(text, "here").model_file, model);
+}
+
 TEST_F(Resolve, TheTextReadsBackToItself) {
   const LoopFile loop = readLoop("asp_clp_1c");
   const std::string file = write("again.yaml", loop.resolved);

@@ -35,7 +35,7 @@ LOOPS = {
 COMMON = "actuator.hold_samples=5 loop.action_timeout_s=1.5"
 PERIOD = {"paced": 0.1, "realtime": 0.2}  # s of wall time a sample
 GROUPS = {"closed": ("processes", "strangers", "by_hand", "instruments", "world"), "open": ("rubbish", "models")}
-QUICK = ("fmbpc_controller killed (-9)", "clp_optimizer frozen for 3 s", "fmbpc_controller frozen for 3 s",
+QUICK = ("fmbpc_controller killed (-9)", "clp_optimizer frozen for 6 s", "fmbpc_controller frozen for 3 s",
          "stranger: control_action, valves open, in time", "manual, controller killed", "person: plant paused and resumed",
          "valve stuck open")
 
@@ -205,6 +205,7 @@ def run_config(arguments, name, pace, group):
                     if line.startswith("RESULT "):
                         got.append(json.loads(line[7:]))
                         tell(name, pace, got[-1])
+                        keep(arguments.out, {"loop": name, "pace": pace, **got[-1]})
             except BaseException:
                 process.terminate()
                 raise
@@ -219,6 +220,13 @@ def run_config(arguments, name, pace, group):
         else:
             first = names.index(got[-1]["fault"]) + 1
     return [{"loop": name, "pace": pace, **result} for result in results]
+
+
+def keep(file, result):
+    """Beside the results of before, so that a matrix that is cut short leaves what it has seen."""
+    if file:
+        with open(file + ".part", "a", encoding="utf-8") as stream:
+            stream.write(json.dumps(result) + "\n")
 
 
 def tell(name, pace, result):

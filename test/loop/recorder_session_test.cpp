@@ -128,6 +128,44 @@ TEST_F(RecorderSessionTest, AStrayStepNumberDoesNotFillTheMemory) {
   EXPECT_EQ(r.passedOn(), 2U);
 }
 
+TEST_F(RecorderSessionTest, RepeatedStraysFarAheadLeaveNoHolesOnTheDisk) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  for (std::uint32_t k = 0; k < 50; ++k) {
+    addSample(r, k);
+    for (int times = 0; times < 3; ++times) r.receive(measurement(4000000U + k));
+  }
+  EXPECT_EQ(passed_.size(), 50U);
+  EXPECT_EQ(r.gapCount(), 0U);
+  EXPECT_EQ(r.strays(), 150U);
+}
+
+TEST_F(RecorderSessionTest, ARecorderThatWasAwayForLongGoesOn) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  const std::uint32_t later = 3 * RecorderSession::kWindow;
+  for (std::uint32_t k = later; k < later + 20; ++k) addSample(r, k);
+  EXPECT_EQ(r.latest().step, later + 19);
+  EXPECT_GT(r.gapCount(), RecorderSession::kWindow);
+}
+
+TEST_F(RecorderSessionTest, RemarksOfTheLawBelongToTheirSamples) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  r.receive(tracking(0), "outside the data of the model");
+  r.receive(measurement(0));
+  r.receiveBase(action(0));
+  addSample(r, 1, true);
+  RunRecord record;
+  record.samples = passed_;
+  conclude(record, true);
+  ASSERT_EQ(record.remarks.size(), 1U);
+  EXPECT_EQ(record.remarks[0].words, "outside the data of the model");
+  EXPECT_EQ(record.remarks[0].samples, 1U);
+  EXPECT_EQ(record.remarks[0].first, 0U);
+}
+
 TEST_F(RecorderSessionTest, WhatIsMissingForLongIsGivenUpAndNamed) {
   RecorderSession r = recorder();
   r.announce(7);

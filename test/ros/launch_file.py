@@ -52,10 +52,14 @@ class LaunchFile(unittest.TestCase):
         for part in ("identification", "rule_details", "rules"):
             self.assertEqual(there[part], here[part])
         self.assertIn("there is no screen", text)
+        self.assertNotIn("REQUIRED", text)
         for topic, steps_wanted in (("/signal/x_reference", 51), ("/signal/x_setpoint", 51), ("/signal/x", 51),
                                     ("/signal/q_r", 50), ("/signal/q_r_perturbation", 50)):
             with rosbag.Bag(os.path.join(self.out, "loop.bag")) as bag:
                 self.assertEqual(steps_wanted, len({m.header.stamp for _, m, _ in bag.read_messages(topic)}), topic)
+        replayed = json.loads(ring.tool("replay", os.path.join(self.out, "loop.bag"), "--json").stdout)
+        self.assertEqual((True, 51, 50, 50), (replayed["equal"], replayed["measurements"],
+                                              replayed["base_action"]["equal"], replayed["control_action"]["equal"]))
 
     def test_the_arguments_are_listed_without_a_loop(self):
         done = subprocess.run(["roslaunch", "--ros-args", "fmbpc", "loop.launch"], text=True, stdout=subprocess.PIPE,

@@ -158,7 +158,6 @@ def summary(folder):
     with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
         data = json.load(file)
     assert data.pop("wall_s") > 0.0
-    data.pop("remarks", None)  # the law's own words do not travel over topics
     for key in ("median_us", "p99_us"):
         data.get("clp", {}).pop(key, None)
     return data

@@ -10,6 +10,11 @@ struct PlotResult {
   std::string warning;  ///< why not, in words
 };
 
+inline constexpr char kPython[] = "/usr/bin/python3";
+/// A script of ours: it stands beside the config folders, in the source tree as in an installed
+/// package. Empty if it is not there.
+std::string findScript(const std::string& name);
+
 /// Draws plot.png in a folder written by writeRun(). A missing script or matplotlib is a warning,
 /// never a failure.
 PlotResult drawPlot(const std::string& folder);

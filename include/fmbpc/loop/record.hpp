@@ -19,6 +19,7 @@ struct SampleRecord {
   ControlAction base;
   ControlAction action;  ///< what the plant was told (equals base without an optimizer)
   SolverReport report;
+  std::string remark;  ///< the law's own words at this sample, empty if it has none
   bool has_measurement{}, has_state{}, has_tracking{}, has_base{}, has_action{}, has_report{};
 };
 
@@ -39,10 +40,11 @@ struct RunRecord {
       false};  ///< the final sample came, nothing is missing, and the plant moved as asked
   std::uint32_t failed_samples{};  ///< samples over which the plant could not be moved and was held
   std::string trouble;             ///< of the first of them: "sample 17: REASON"
-  std::vector<RunRemark> remarks;  ///< of the controller, in one process only
+  std::vector<RunRemark> remarks;  ///< of the controller, by words
 };
 
-/// Counts failed samples and says whether the run is complete: nothing missing, nothing failed.
+/// Counts failed samples, gathers remarks, and says whether the run is complete: nothing missing,
+/// nothing failed.
 void conclude(RunRecord& record, bool nothing_missing);
 
 }  // namespace fpc

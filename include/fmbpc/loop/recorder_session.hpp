@@ -52,7 +52,7 @@ class RecorderSession {
   void resume(std::uint64_t run_id, std::uint32_t next_step);
   void receive(const Measurement& m);
   void receive(const PlantState& s);
-  void receive(const Tracking& t);
+  void receive(const Tracking& t, const std::string& remark = {});
   void receiveBase(const ControlAction& a);
   void receiveAction(const ControlAction& a);
   void receive(const SolverReport& r);
@@ -76,6 +76,7 @@ class RecorderSession {
  private:
   template <typename Item, typename Place>
   void collect(const Item& item, bool SampleRecord::*has, Place place);
+  bool farAhead(std::uint32_t step);
   SampleRecord* at(std::uint32_t step);
   void passOn();
   void noteGaps(const SampleRecord& sample, std::uint32_t step, std::size_t limit,
@@ -93,6 +94,7 @@ class RecorderSession {
   std::optional<std::uint32_t> final_;
   std::vector<std::string> gaps_;
   std::uint64_t gap_count_{}, strays_{}, wrong_size_{};
+  std::uint32_t far_step_{}, far_streak_{};  // of measurements far ahead that follow each other
 };
 
 }  // namespace fpc

@@ -52,7 +52,7 @@ struct Summary {
   std::uint64_t implausible_cells{};  ///< of that record, clipped or filled
   std::uint32_t failed_samples{};     ///< samples over which the plant could not be moved
   std::string trouble;                ///< of the first of them, with its number
-  std::vector<RunRemark> remarks;     ///< of the controller; none over topics
+  std::vector<RunRemark> remarks;     ///< of the controller
   std::vector<LockUp> locked;         ///< of at least a tenth of the run and ten samples
   InputLimits limits;                 ///< of the inputs
   std::vector<double> output_lower, output_upper;  ///< limits behind output_violations

@@ -1,0 +1,145 @@
+#include "ros/bag_run.hpp"
+
+#include <fmbpc/CommandEffect.h>
+#include <fmbpc/ControlAction.h>
+#include <fmbpc/FuzzyModel.h>
+#include <fmbpc/Measurement.h>
+#include <fmbpc/OperatorState.h>
+#include <rosbag/bag.h>
+#include <rosbag/query.h>
+#include <rosbag/view.h>
+#include <std_msgs/String.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
+#include "ros/conversions.hpp"
+#include "ros/operator_desk.hpp"
+#include "ros/topics.hpp"
+
+namespace fpc {
+namespace {
+
+template <typename Function>
+auto withBag(const std::string& file, Function function) {
+  try {
+    const rosbag::Bag bag(file, rosbag::bagmode::Read);
+    return function(bag);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw InputError(file + ": expected a bag that was closed (rosbag reindex mends it)");
+  } catch (const rosbag::BagException& e) {
+    throw InputError(file + ": expected a readable bag (" + e.what() + ")");
+  }
+}
+
+/// "/ns/" of the one loop in the bag: whatever is before a topic of this name.
+std::string spaceOf(const rosbag::Bag& bag, const std::string& file, const std::string& topic) {
+  rosbag::View view(bag);
+  std::set<std::string> spaces;
+  for (const auto* connection : view.getConnections()) {
+    const std::string& name = connection->topic;
+    const bool ends = name.size() > topic.size() &&
+                      name.compare(name.size() - topic.size(), topic.size(), topic) == 0 &&
+                      name[name.size() - topic.size() - 1] == '/';
+    if (ends) spaces.insert(name.substr(0, name.size() - topic.size()));
+  }
+  require(!spaces.empty(), file, "a bag of loop.launch record:=true: there is no topic " + topic);
+  require(spaces.size() == 1, file,
+          "one loop, got " + topic + " below " + join({spaces.begin(), spaces.end()}));
+  return *spaces.begin();
+}
+
+/// Collects the messages of one run in the order of the bag.
+class Reader {
+ public:
+  Reader(const LoopFile& loop, std::string file) : loop_(loop), file_(std::move(file)) {}
+
+  RecordedRun read(const rosbag::Bag& bag) {
+    const std::string space = spaceOf(bag, file_, topics::kMeasurement);
+    const auto topic = [&](const char* name) { return space + name; };
+    rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{
+                               topic(topics::kMeasurement), topic(topics::kBaseAction),
+                               topic(topics::kControlAction), topic(topics::kSetpointEffect),
+                               topic(topics::kOperatorState), topic(topics::kFuzzyModel)}));
+    for (const rosbag::MessageInstance& item : view) {
+      const std::string name = item.getTopic().substr(space.size());
+      if (const auto msg = item.instantiate<fmbpc::Measurement>()) take(*msg);
+      if (const auto msg = item.instantiate<fmbpc::ControlAction>())
+        take(*msg, name == topics::kBaseAction);
+      if (const auto msg = item.instantiate<fmbpc::CommandEffect>()) take(*msg);
+      if (const auto msg = item.instantiate<fmbpc::OperatorState>()) take(*msg);
+      if (const auto msg = item.instantiate<fmbpc::FuzzyModel>()) take(*msg);
+    }
+    require(!run_.measurements.empty(), file_, "measurements of this version's messages");
+    return std::move(run_);
+  }
+
+ private:
+  void take(const fmbpc::Measurement& msg) {
+    require(
+        run_.measurements.empty() || run_.measurements.begin()->second.header.run_id == msg.run_id,
+        file_, "one run: the plant was started or reset while recording");
+    run_.measurements.emplace(msg.step, fromMsg(msg));
+    newest_ = run_.measurements.rbegin()->first + 1;
+  }
+
+  void take(const fmbpc::ControlAction& msg, bool base) {
+    if (base)
+      run_.base.emplace(msg.step, fromMsg(msg));
+    else
+      run_.control.emplace(msg.step, fromMsg(msg));
+  }
+
+  void take(const fmbpc::CommandEffect& msg) {
+    CommandEffect effect = fromMsg(msg);
+    effect.command.time_ns = 0;
+    run_.setpoints.emplace(msg.step, std::move(effect.command));
+  }
+
+  /// What was asked after sample k acts from k + 1 on; what was asked before the first, from it on.
+  void take(const fmbpc::OperatorState& msg) {
+    const std::int64_t t = fromStamp(msg.header.stamp);
+    const auto answered = std::find_if(run_.measurements.begin(), run_.measurements.end(),
+                                       [t](const auto& m) { return m.second.header.time_ns >= t; });
+    const bool first = run_.wishes.empty();
+    const std::uint32_t step = answered == run_.measurements.end() ? newest_ : answered->first + 1;
+    run_.wishes.emplace(first ? 0 : step, wishesOf(msg));
+  }
+
+  /// In lockstep from the sample after the one it was made from, else when it came.
+  void take(const fmbpc::FuzzyModel& msg) {
+    const std::uint32_t made = msg.run_id == 0 ? 0 : msg.step + 1;
+    const bool exact = msg.run_id != 0 && loop_.ring.pace == Pace::kLockstep;
+    run_.models.emplace(exact ? made : std::max(made, newest_),
+                        matchToPlant(fromMsg(msg), loop_.plant_info));
+  }
+
+  const LoopFile& loop_;
+  std::string file_;
+  RecordedRun run_;
+  std::uint32_t newest_{};  // the step after the newest measurement so far
+};
+
+}  // namespace
+
+std::string loopTextOf(const std::string& bag) {
+  return withBag(bag, [&](const rosbag::Bag& open) {
+    const std::string topic = spaceOf(open, bag, topics::kLoopText) + topics::kLoopText;
+    rosbag::View view(open, rosbag::TopicQuery(topic));
+    std::set<std::string> texts;
+    for (const rosbag::MessageInstance& item : view)
+      if (const auto msg = item.instantiate<std_msgs::String>()) texts.insert(msg->data);
+    require(texts.size() == 1, bag, "the text of one loop");
+    return *texts.begin();
+  });
+}
+
+RecordedRun readBagRun(const std::string& bag, const LoopFile& loop) {
+  return withBag(bag, [&](const rosbag::Bag& open) { return Reader(loop, bag).read(open); });
+}
+
+}  // namespace fpc

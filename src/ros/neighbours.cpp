@@ -1,0 +1,112 @@
+#include "ros/neighbours.hpp"
+
+#include <fcntl.h>
+#include <ifaddrs.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <ros/network.h>
+#include <ros/ros.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <memory>
+
+namespace fpc {
+namespace {
+
+constexpr double kPatience = 1.0;  // [s] for a connection
+
+using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
+
+Addresses resolve(const std::string& host, const std::string& port) {
+  addrinfo hints{}, *found = nullptr;
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_STREAM;
+  const char* service = port.empty() ? nullptr : port.c_str();
+  if (getaddrinfo(host.c_str(), service, &hints, &found) != 0) found = nullptr;
+  return {found, &freeaddrinfo};
+}
+
+std::uint32_t numberOf(const sockaddr* address) {
+  sockaddr_in in{};
+  std::memcpy(&in, address, sizeof in);
+  return ntohl(in.sin_addr.s_addr);
+}
+
+bool isLoopback(std::uint32_t number) { return number >> 24 == 127; }
+
+bool isOurs(std::uint32_t number) {
+  if (isLoopback(number)) return true;
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return true;  // nothing can be said
+  bool ours = false;
+  for (const ifaddrs* at = first; at != nullptr; at = at->ifa_next)
+    if (at->ifa_addr != nullptr && at->ifa_addr->sa_family == AF_INET)
+      ours = ours || numberOf(at->ifa_addr) == number;
+  freeifaddrs(first);
+  return ours;
+}
+
+bool connects(const addrinfo& to, double patience_s) {
+  const int s = socket(to.ai_family, to.ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (s < 0) return true;  // nothing can be said
+  bool done = connect(s, to.ai_addr, to.ai_addrlen) == 0;
+  if (!done && errno == EINPROGRESS) {
+    pollfd wait{s, POLLOUT, 0};
+    int error = 1;
+    socklen_t size = sizeof error;
+    done = poll(&wait, 1, static_cast<int>(1e3 * patience_s)) == 1 &&
+           getsockopt(s, SOL_SOCKET, SO_ERROR, &error, &size) == 0 && error == 0;
+  }
+  close(s);
+  return done;
+}
+
+std::string uriOf(const std::string& node) {
+  XmlRpc::XmlRpcValue request, response, uri;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  if (!ros::master::execute("lookupNode", request, response, uri, false)) return "";
+  return uri.getType() == XmlRpc::XmlRpcValue::TypeString ? std::string(uri) : "";
+}
+
+}  // namespace
+
+std::string ownAddressProblem(const std::string& own_host, const std::string& master_host) {
+  const Addresses own = resolve(own_host, ""), master = resolve(master_host, "");
+  if (!own)
+    return "this node calls itself " + own_host +
+           ", which does not resolve here: set ROS_IP to this machine's address";
+  const std::uint32_t mine = numberOf(own->ai_addr);
+  if (!isOurs(mine))
+    return "this node calls itself " + own_host +
+           ", which is no address of this machine: ROS_IP or ROS_HOSTNAME is wrong here";
+  if (master && isLoopback(mine) && !isOurs(numberOf(master->ai_addr)))
+    return "this node calls itself " + own_host + ", but its master is on " + master_host +
+           ": others look for it on their own machines; set ROS_IP to this machine's address "
+           "(and unset ROS_HOSTNAME)";
+  return "";
+}
+
+bool answersAt(const std::string& uri, double patience_s) {
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(uri, host, port)) return false;
+  const Addresses to = resolve(host, std::to_string(port));
+  return to && connects(*to, patience_s);
+}
+
+std::string unreachable(const std::vector<std::string>& nodes) {
+  for (const std::string& node : nodes) {
+    if (node == ros::this_node::getName()) continue;
+    const std::string uri = uriOf(node);
+    if (!uri.empty() && !answersAt(uri, kPatience))
+      return node + " is registered at " + uri +
+             ", where nobody answers: it is dead, its ROS_IP is wrong, or a firewall is between";
+  }
+  return "";
+}
+
+}  // namespace fpc

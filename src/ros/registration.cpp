@@ -1,0 +1,94 @@
+#include "ros/registration.hpp"
+
+#include <ros/connection_manager.h>
+#include <ros/network.h>
+#include <ros/publication.h>
+#include <ros/service_manager.h>
+#include <ros/service_publication.h>
+#include <ros/topic_manager.h>
+#include <ros/xmlrpc_manager.h>
+
+#include <vector>
+
+#include "ros/topics.hpp"
+
+namespace fpc {
+namespace {
+
+/// One call of the master's interface, the caller's name first.
+bool tell(const std::string& method, const std::vector<std::string>& arguments) {
+  XmlRpc::XmlRpcValue request, response, payload;
+  request[0] = ros::this_node::getName();
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    request[static_cast<int>(i) + 1] = arguments[i];
+  return ros::master::execute(method, request, response, payload, false);
+}
+
+int publishers(const std::string& uri) {
+  int count = 0;
+  std::vector<std::string> names;
+  ros::TopicManager::instance()->getAdvertisedTopics(names);
+  for (const std::string& topic : names)
+    if (const auto publication = ros::TopicManager::instance()->lookupPublication(topic))
+      count += tell("registerPublisher", {topic, publication->getDataType(), uri}) ? 1 : 0;
+  return count;
+}
+
+int subscribers(const std::string& uri) {
+  int count = 0;
+  std::vector<std::string> names;
+  ros::TopicManager::instance()->getSubscribedTopics(names);
+  for (const std::string& topic : names)
+    count += tell("registerSubscriber", {topic, "*", uri}) ? 1 : 0;
+  return count;
+}
+
+/// roscpp tells nobody which services a node has: all names that a node of ours may have are tried.
+int services(const std::string& uri) {
+  const std::string address = "rosrpc://" + ros::network::getHost() + ":" +
+                              std::to_string(ros::ConnectionManager::instance()->getTCPPort());
+  int count = 0;
+  for (const char* name :
+       {topics::kPause, topics::kStep, topics::kReset, topics::kManual, topics::kAdapt,
+        topics::kManualInput, topics::kHold, "set_parameters", "get_loggers", "set_logger_level"}) {
+    const std::string service = ros::names::resolve(std::string("~") + name);
+    if (ros::ServiceManager::instance()->lookupServicePublication(service))
+      count += tell("registerService", {service, address, uri}) ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace
+
+KeptParameters::KeptParameters(const ros::NodeHandle& private_node) {
+  std::vector<std::string> names;
+  ros::param::getParamNames(names);
+  const std::string space = private_node.getNamespace() + "/";
+  for (const std::string& name : names) {
+    if (name.compare(0, space.size(), space) != 0) continue;
+    XmlRpc::XmlRpcValue value;
+    if (ros::param::get(name, value)) values_[name] = value;
+  }
+  for (const char* name : {topics::kLoopText, topics::kLoopName, "/use_sim_time"}) {
+    std::string key;
+    XmlRpc::XmlRpcValue value;
+    if (private_node.searchParam(name, key) && ros::param::get(key, value)) values_[key] = value;
+  }
+}
+
+bool KeptParameters::putBack() const {
+  bool any = false;
+  for (const auto& [name, value] : values_) {
+    if (ros::param::has(name)) continue;
+    ros::param::set(name, value);
+    any = true;
+  }
+  return any;
+}
+
+int registerAgain() {
+  const std::string uri = ros::XMLRPCManager::instance()->getServerURI();
+  return publishers(uri) + subscribers(uri) + services(uri);
+}
+
+}  // namespace fpc

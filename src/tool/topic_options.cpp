@@ -1,0 +1,30 @@
+#include "tool/topic_options.hpp"
+
+namespace fpc::tool {
+
+void addReplay(CLI::App& app, ReplayArguments& a, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "replay", "Plays a recorded run through controller and optimizer and compares their actions");
+  command->add_option("BAG", a.bag, "bag of loop.launch record:=true")->required();
+  command->add_option("LOOP", a.loop, "name or path, instead of the loop in the bag");
+  command->add_option("--set", a.set, "KEY.PATH=VALUE over LOOP, may be repeated")
+      ->allow_extra_args(false);
+  command->add_flag("--json", a.json, "print one JSON object and nothing else");
+  command->footer("Example: fmbpc replay ~/.ros/fmbpc/asp_case1_clp/loop.bag\n");
+  command->callback([&a, &chosen] { chosen = [&a] { return fpc::tool::replay(a); }; });
+}
+
+void addWatch(CLI::App& app, std::vector<std::string>& words, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "watch", "Shows a running loop from its topics: in the terminal, or --window");
+  command->add_option("WORDS", words, "options of scripts/watch.py; --help lists them");
+  command->prefix_command();
+  command->set_help_flag();
+  command->footer("Example: fmbpc watch --window\n");
+  command->callback([&words, &chosen, command] {
+    words = command->remaining();
+    chosen = [&words] { return fpc::tool::watch(words); };
+  });
+}
+
+}  // namespace fpc::tool
