@@ -3,7 +3,8 @@
 namespace fpc::fuzz {
 
 const std::vector<NamedTarget>& targets() {
-  static const std::vector<NamedTarget> all{{"message", message}, {"ring", ring}, {"bag", bag}};
+  static const std::vector<NamedTarget> all{
+      {"message", message, true}, {"ring", ring, true}, {"bag", bag, true}};
   return all;
 }
 

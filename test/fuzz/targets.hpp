@@ -25,6 +25,7 @@ void bag(const std::string& bytes);   ///< read as a table
 struct NamedTarget {
   const char* name;  ///< folder of its corpus
   Target run;
+  bool decisions{};  ///< any bytes mean something, so that random ones find something too
 };
 const std::vector<NamedTarget>& targets();  ///< of targets.cpp or ros_targets.cpp
 
