@@ -14,8 +14,12 @@ if(NOT TARGET SUNDIALS::cvode)
       list(APPEND libraries ${FMBPC_SUNDIALS_${library}})
     endif()
   endforeach()
+  #catkin_lint: ignore_once order_violation
+  #catkin_lint: ignore_once catkin_order_violation
   add_library(SUNDIALS::cvode INTERFACE IMPORTED)
   set_target_properties(SUNDIALS::cvode PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${FMBPC_SUNDIALS_INCLUDE}"
     INTERFACE_LINK_LIBRARIES "${FMBPC_SUNDIALS_cvode};${libraries}")
+  #catkin_lint: ignore_once order_violation
+  #catkin_lint: ignore_once catkin_order_violation
   add_library(SUNDIALS::nvecserial INTERFACE IMPORTED)
 endif()

@@ -1,5 +1,10 @@
 #include "base/yaml_load.hpp"
 
+#include <yaml-cpp/eventhandler.h>
+
+#include <optional>
+#include <sstream>
+
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -7,6 +12,7 @@ namespace {
 
 constexpr int kDeepest = 100;
 constexpr int kMostNodes = 1'000'000;
+constexpr int kMostDocuments = 10;
 
 std::string lineOf(const std::string& name, const YAML::Mark& mark) {
   return name + (mark.line >= 0 ? ":" + std::to_string(mark.line + 1) : "");
@@ -25,15 +31,54 @@ void checkSize(const YAML::Node& node, const std::string& name, int depth, int& 
   }
 }
 
+/// Where the first thing is said after the first document.
+class LaterDocuments : public YAML::EventHandler {
+ public:
+  std::optional<YAML::Mark> said;
+
+  void OnDocumentStart(const YAML::Mark&) override { ++documents_; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { note(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string&) override {
+    note(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    note(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    note(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void note(const YAML::Mark& mark) {
+    if (documents_ > 1 && !said) said = mark;
+  }
+  int documents_{};
+};
+
+/// The parser makes documents of nothing without end from some stray commas: few are enough.
+void requireOneDocument(const std::string& text, const std::string& name) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  LaterDocuments later;
+  int documents = 0;
+  while (documents <= kMostDocuments && parser.HandleNextDocument(later)) ++documents;
+  require(!later.said && documents <= kMostDocuments, later.said ? lineOf(name, *later.said) : name,
+          "one YAML document, not a second one");
+}
+
 }  // namespace
 
 YAML::Node loadYaml(const std::string& text, const std::string& name) {
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    for (std::size_t i = 1; i < documents.size(); ++i)
-      require(documents[i].IsNull(), lineOf(name, documents[i].Mark()),
-              "one YAML document, not a second one");
-    YAML::Node root = documents.empty() ? YAML::Node() : documents.front();
+    requireOneDocument(text, name);
+    YAML::Node root = YAML::Load(text);
     int nodes = 0;
     checkSize(root, name, 0, nodes);
     return root;

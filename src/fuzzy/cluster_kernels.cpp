@@ -9,7 +9,10 @@ namespace fpc::clusters {
 namespace {
 
 // Four samples, wherever they lie in memory.
-using Lanes = double __attribute__((vector_size(32), aligned(8), may_alias));
+// For clang: an alias (using) would lose the alignment, and so would a reference to it.
+// NOLINTNEXTLINE(modernize-use-using)
+typedef double Lanes __attribute__((vector_size(32), aligned(8), may_alias));
+static_assert(alignof(Lanes) == alignof(double));
 constexpr std::size_t kLanes = 4;
 
 inline const Lanes* lanes(const double* p) { return reinterpret_cast<const Lanes*>(p); }

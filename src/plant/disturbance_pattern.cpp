@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kPi = 3.141592653589793;
 constexpr double kShortestRecordH = 24.0;
+constexpr Eigen::Index kMostValues = 10'000'000;
 constexpr double kNear = 1e-9;  // in log p: farther from the root than this, the side is certain
 constexpr double kLogPowerLimit = 7.0;  // powers e^-7..e^7 reach any mean a usable shape can have
 
@@ -127,6 +128,9 @@ DisturbanceRecord makePattern(const PatternParams& params, const std::vector<std
   const auto columns = static_cast<Eigen::Index>(samples) + 1;
   const auto day = static_cast<Eigen::Index>(std::ceil(kShortestRecordH / sample_time_h)) + 1;
   const Eigen::Index count = std::max(columns, day);
+  require(count <= kMostValues, "sampling.sample_time_s",
+          "a time with which a pattern of " + shortText(kShortestRecordH) + " h has at most " +
+              std::to_string(kMostValues) + " samples");
   const auto hours =
       static_cast<Eigen::Index>(std::ceil(static_cast<double>(count - 1) * sample_time_h));
   DisturbanceRecord record;

@@ -1,15 +1,18 @@
 // fmbpc validate MODEL DATA: a saved model on another record.
+#include <algorithm>
 #include <iostream>
 #include <limits>
 #include <map>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/record_remarks.hpp"
 #include "tool/auto_structure.hpp"
 #include "tool/commands.hpp"
 #include "tool/judgement.hpp"
 #include "tool/read_record.hpp"
 #include "tool/record_files.hpp"
+#include "tool/time_column.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -22,9 +25,38 @@ std::map<std::string, std::string> columnsOf(const std::vector<std::string>& pai
     const auto at = pair.find('=');
     require(at != std::string::npos && at > 0 && at + 1 < pair.size(), "--columns '" + pair + "'",
             "SIGNAL=COLUMN");
-    columns[pair.substr(0, at)] = pair.substr(at + 1);
+    require(columns.emplace(pair.substr(0, at), pair.substr(at + 1)).second,
+            "--columns '" + pair + "'", "every signal only once");
   }
   return columns;
+}
+
+void requireSignals(const std::map<std::string, std::string>& columns, const TsModel& model) {
+  std::vector<std::string> names;
+  for (const auto* signals : {&model.outputs, &model.inputs, &model.disturbances})
+    for (const SignalInfo& signal : *signals) names.push_back(signal.name);
+  for (const auto& [name, column] : columns)
+    require(std::find(names.begin(), names.end(), name) != names.end(),
+            "--columns '" + name + "=" + column + "'", "a signal of the model: " + join(names));
+}
+
+/// Rows are samples only where the times say so.
+void setTimes(const CsvTable& table, Structure& structure, std::vector<std::string>& remarks) {
+  std::vector<std::string> used;
+  for (const auto* signals : {&structure.outputs, &structure.inputs, &structure.disturbances})
+    for (const StructureSignal& signal : *signals) used.push_back(signal.column);
+  TimeColumn time = timeColumn(table, "", used);
+  if (time.name.empty()) {
+    remarks.push_back("no time column found: rows are taken as samples");
+    return;
+  }
+  const bool told = !time.unit.empty();
+  time.fitTo(structure.sample_time_s);
+  if (!told)
+    remarks.push_back("'" + time.name + "' is taken to be in " +
+                      (time.unit.empty() ? "s" : time.unit));
+  structure.time_column = time.name;
+  structure.time_unit = time.unit.empty() ? "s" : time.unit;
 }
 
 /// The model's signals as a structure; anything may be missing or rest while a model is judged.
@@ -70,10 +102,13 @@ int validate(const ValidateArguments& a) {
   const IdentifiedModel model = readIdentified(findModel(a.model));
   const CsvTable table = readRecord(a.data, csvFormat(a.format));
   const auto columns = columnsOf(a.columns);
-  const Structure structure = structureOf(model.model, table, columns);
+  requireSignals(columns, model.model);
+  Structure structure = structureOf(model.model, table, columns);
+  std::vector<std::string> remarks;
+  if (!a.no_time) setTimes(table, structure, remarks);
   const DataSet data = makeData(table, structure, a.rows);
   const RecordJudgement part = judgeRecord("validation", data, model, a.steps);
-  std::vector<std::string> remarks = data.repairs;
+  remarks.insert(remarks.end(), data.repairs.begin(), data.repairs.end());
   for (const auto& remark : recordRemarks(data, nullptr)) remarks.push_back(remark);
   remarks.insert(remarks.end(), part.remarks.begin(), part.remarks.end());
   Json json{{"name", model.model.name}, {"data", data.source}, {"validation", toJson(part)}};

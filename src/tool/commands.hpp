@@ -55,6 +55,7 @@ struct ValidateArguments {
   std::string model, data;
   std::string rows;
   std::vector<std::string> columns;  ///< "signal=column"
+  bool no_time{false};               ///< rows are samples, whatever the times say
   RecordFormat format;
   int steps{10};
   std::string plots;

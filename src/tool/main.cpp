@@ -109,6 +109,7 @@ void addValidate(CLI::App& app, fpc::tool::ValidateArguments& a) {
   validate->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
   validate->add_option("--rows", a.rows, "FIRST:LAST data rows, from 1");
   validate->add_option("--columns", a.columns, "SIGNAL=COLUMN where names differ")->delimiter(',');
+  validate->add_flag("--no-time", a.no_time, "rows are samples, whatever the times say");
   validate->add_option("--steps", a.steps, "samples ahead of the n-step prediction")
       ->check(CLI::Range(1, 100000));
   addFormat(*validate, a.format);

@@ -26,7 +26,8 @@ std::map<std::string, double> parsePoint(const std::string& at) {
     require(equal != std::string::npos, "--at", "NAME=VALUE,..., not \"" + part + "\"");
     const auto value = numberOf(part.substr(equal + 1));
     require(value.has_value(), "--at", "a finite number after " + part.substr(0, equal + 1));
-    values[part.substr(0, equal)] = *value;
+    require(values.emplace(part.substr(0, equal), *value).second, "--at " + part.substr(0, equal),
+            "every name only once");
   }
   return values;
 }

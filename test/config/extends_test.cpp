@@ -66,6 +66,8 @@ TEST_F(Extends, ASecondDocumentIsAnError) {
   const std::string file = write("two.yaml", smallLoop() + "---\nnoise: {std: {s: 1}}\n");
   expectWords(errorOf([&] { readLoop(file); }), {"two.yaml:1", "one YAML document"});
   EXPECT_EQ(readLoop(write("end.yaml", smallLoop() + "...\n")).name, "end");
+  const std::string stray = write("stray.yaml", "plant: {type: cstr}\n---\n,  type: cstr}\n");
+  expectWords(errorOf([&] { readLoop(stray); }), {"stray.yaml", "one YAML document"});
 }
 
 TEST_F(Extends, AliasesWithoutEndAreErrors) {

@@ -5,7 +5,7 @@ namespace fpc::fuzz {
 const std::vector<NamedTarget>& targets() {
   static const std::vector<NamedTarget> all{
       {"loop", loopFile},     {"model", modelFile}, {"structure", structureFile},
-      {"tuning", tuningFile}, {"csv", csvTable},    {"qp", qp}};
+      {"tuning", tuningFile}, {"csv", csvTable},    {"qp", qp, true}};
   return all;
 }
 

@@ -17,11 +17,16 @@ void structureFile(const std::string& bytes);  ///< read
 void tuningFile(const std::string& bytes);     ///< read
 void csvTable(const std::string& bytes);       ///< read in three formats; resampled
 void qp(const std::string& bytes);             ///< solved, or infeasible with a certificate
+// With ROS:
+void message(const std::string& bytes);  ///< read; if it can be, it comes back the same
+void ring(const std::string& bytes);  ///< a run with messages lost, late and changed: it ends well
+void bag(const std::string& bytes);   ///< read as a table
 
 struct NamedTarget {
   const char* name;  ///< folder of its corpus
   Target run;
+  bool decisions{};  ///< any bytes mean something, so that random ones find something too
 };
-const std::vector<NamedTarget>& targets();
+const std::vector<NamedTarget>& targets();  ///< of targets.cpp or ros_targets.cpp
 
 }  // namespace fpc::fuzz

@@ -1,8 +1,5 @@
 // Targets whose bytes are a text that a person could have written.
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <stdexcept>
 
@@ -13,7 +10,9 @@
 #include "fmbpc/config/tuning_file.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/plant/disturbance.hpp"
+#include "fuzz/scratch_file.hpp"
 #include "fuzz/targets.hpp"
+#include "fuzz/tolerant.hpp"
 
 namespace fpc::fuzz {
 namespace {
@@ -22,22 +21,11 @@ constexpr std::uint32_t kSamples = 30;
 
 [[noreturn]] void fail(const std::string& what) { throw std::logic_error(what); }
 
-/// Runs `read`; an InputError must have words.
-template <typename Read>
-void tolerant(Read read) {
-  try {
-    read();
-  } catch (const InputError& e) {
-    if (std::string(e.what()).empty()) fail("an error without words");
-  }
-}
-
 /// A file of this process with these bytes.
 std::string fileWith(const std::string& bytes, const char* ending) {
-  const auto file =
-      std::filesystem::temp_directory_path() / ("fmbpc_fuzz_" + std::to_string(getpid()) + ending);
+  const std::string file = scratchFile(ending);
   std::ofstream(file, std::ios::binary) << bytes;
-  return file.string();
+  return file;
 }
 
 void runBriefly(const LoopFile& loop) {

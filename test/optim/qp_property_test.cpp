@@ -221,9 +221,12 @@ TEST(QpProperty, TwentyThousandWarmStepsDoNotDrift) {
       ASSERT_EQ(reference.status, SolveStatus::kSolved) << "step " << k;
       ASSERT_LE(distance(r.x, reference.x), 1e-9) << "step " << k;
       ASSERT_LE(distance(r.y_x, reference.y_x), 1e-9) << "step " << k;
-      // Gradients and multipliers reach 3e6, where one unit of rounding is 5e-10.
+      // A' y_a = H x + g is solved twice, each with backward errors of rounding size: the two
+      // differ by at most 2 (n + m) eps size / sigma_min(A), 1.3e-7 where the multipliers
+      // reach 2.5e6 and sigma_min is 1. Here 22 eps size; seen are 2.3e-9, five units in the last
+      // place.
       const double size = p.g.lpNorm<Eigen::Infinity>() + r.y_a.cwiseAbs().sum();
-      ASSERT_LE(distance(r.y_a, reference.y_a), 1e-14 * (1.0 + size)) << "step " << k;
+      ASSERT_LE(distance(r.y_a, reference.y_a), 5e-15 * (1.0 + size)) << "step " << k;
       ASSERT_LE(kktResidual(p, r.x, r.y_x, r.y_a), 1e-12) << "step " << k;
     }
     EXPECT_GT(changes, steps / 500);   // the drift did change the active set

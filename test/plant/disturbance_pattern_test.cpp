@@ -134,5 +134,14 @@ TEST(DisturbancePattern, ErrorsNameChannelAndField) {
   expectWords(errorOf([](P&) {}, 0), "duration");
 }
 
+TEST(DisturbancePattern, ADayOfTinySamplesIsRefusedBeforeItIsMade) {
+  try {
+    makePattern(pattern(1), {"q_i", "s_i"}, Vector::Zero(2), 1e-4, 36);
+    FAIL() << "864 million samples";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("sampling.sample_time_s"), std::string::npos) << e.what();
+  }
+}
+
 }  // namespace
 }  // namespace fpc

@@ -11,7 +11,7 @@ import actionlib
 import rospy
 import rostest
 from actionlib_msgs.msg import GoalStatus
-from fmbpc.msg import FuzzyModel, IdentifyModelAction, IdentifyModelGoal, Measurement
+from fmbpc.msg import FuzzyModel, IdentifyModelAction, IdentifyModelActionFeedback, IdentifyModelGoal, Measurement
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
@@ -35,11 +35,12 @@ class HotSwap(unittest.TestCase):
         ring.Listener("experiment/measurement", Measurement).wait(lambda m: m.final)
         client = actionlib.SimpleActionClient("experiment/fuzzy_identifier/identify", IdentifyModelAction)
         client.wait_for_server()
-        models, feedback = ring.Listener("experiment/fuzzy_model", FuzzyModel), []
-        client.send_goal(IdentifyModelGoal(publish=True), feedback_cb=feedback.append)
+        models = ring.Listener("experiment/fuzzy_model", FuzzyModel)
+        progress = ring.Listener("experiment/fuzzy_identifier/identify/feedback", IdentifyModelActionFeedback)
+        client.send_goal(IdentifyModelGoal(publish=True))
         state, result = ring.action_end(client, patience=180)
         self.assertEqual((GoalStatus.SUCCEEDED, True), (state, result.ok), result.message)
-        ring.wait_until(lambda: "done" in [f.stage for f in feedback], "the last feedback")
+        progress.wait(lambda m: m.feedback.stage == "done")
         print("held out, free run:", dict(zip(result.outputs, result.free_run_vaf)), "linear", result.linear_free_run_vaf)
         return models.wait()
 

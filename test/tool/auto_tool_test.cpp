@@ -12,6 +12,12 @@ class AutoTool : public IdentifyTool {
   std::string search(const std::string& rest) const {
     return "identify " + data_ + " --auto --inputs u --outputs y --kind regressors " + rest;
   }
+  /// The one line that a command ends with.
+  static std::string refusal(const std::string& command) {
+    const Outcome outcome = tool(command, true);
+    EXPECT_EQ(outcome.code, 1) << command;
+    return outcome.printed.substr(0, outcome.printed.find_last_not_of('\n') + 1);
+  }
 };
 
 TEST_F(AutoTool, FindsTheProcessAndJudgesItsFileAlike) {
@@ -60,6 +66,60 @@ TEST_F(AutoTool, SaysWhatIsMissing) {
   EXPECT_NE(tool("identify " + data_ + " --auto --outputs y").code, 0);
   EXPECT_NE(tool("identify " + data_ + " --auto --inputs nothing --outputs y").code, 0);
   EXPECT_NE(tool("identify " + data_).code, 0);
+}
+
+/// Rows `first` to `last` of a record are not there, their times neither.
+CsvTable without(const CsvTable& table, Eigen::Index first, Eigen::Index last) {
+  CsvTable part = table;
+  const Eigen::Index after = table.rows() - last - 1;
+  part.values.resize(first + after, table.values.cols());
+  part.values << table.values.topRows(first), table.values.bottomRows(after);
+  return part;
+}
+
+TEST_F(AutoTool, RowsThatTheTimesLackKeepThePastsOnBothSidesApart) {
+  const std::string holed = writeRecord("holed.csv", without(record(), 100, 149));
+  const Outcome found =
+      tool("identify " + holed + " --auto --inputs u --outputs y --kind linear --json");
+  ASSERT_EQ(found.code, 0);
+  EXPECT_NE(found.printed.find("50 rows absent from the times"), std::string::npos)
+      << found.printed;
+  const std::string model = path("plain.yaml");
+  ASSERT_EQ(tool(onRecord("--out " + model)).code, 0);
+  const Outcome judged = tool("validate " + model + " " + holed + " --json");
+  ASSERT_EQ(judged.code, 0);
+  EXPECT_NE(judged.printed.find("50 rows absent from the times"), std::string::npos);
+  EXPECT_EQ(tool("validate " + model + " " + holed + " --json --no-time").printed.find("absent"),
+            std::string::npos);
+}
+
+TEST_F(AutoTool, TimesThatDoNotRiseOrHaveAnotherSpacingAreRefused) {
+  const std::string model = path("plain.yaml"), by_name = " --auto --inputs u --outputs y";
+  ASSERT_EQ(tool(onRecord("--out " + model)).code, 0);
+  CsvTable table = record();
+  table.values(50, 0) = table.values(49, 0);
+  const std::string twice = writeRecord("twice.csv", table);
+  expectWords(refusal("identify " + twice + by_name), {"twice.csv:52", "'time'", "increase"});
+  expectWords(refusal("validate " + model + " " + twice), {"twice.csv:52", "increase"});
+  table = record();
+  table.units[0] = "min";
+  const std::string slow = writeRecord("slow.csv", table);
+  expectWords(refusal("validate " + model + " " + slow), {"slow.csv", "apart"});
+  EXPECT_EQ(tool("validate " + model + " " + slow + " --no-time").code, 0);
+  table.units[0] = "ms";
+  const std::string fast = writeRecord("fast.csv", table);
+  expectWords(refusal("identify " + fast + by_name), {"fast.csv", "[ms]"});
+  for (Eigen::Index k = 0; k < table.rows(); k += 2) table.values(k, 0) += 0.3;
+  table.units[0] = "s";
+  const std::string uneven = writeRecord("uneven.csv", table);
+  expectWords(refusal("identify " + uneven + by_name), {"uneven.csv", "'time'", "evenly"});
+}
+
+TEST_F(AutoTool, ValidateKnowsTheSignalsOfTheModelOnly) {
+  const std::string model = path("plain.yaml"), judge = "validate " + model + " " + data_;
+  ASSERT_EQ(tool(onRecord("--out " + model)).code, 0);
+  expectWords(refusal(judge + " --columns q=u"), {"'q=u'", "y, u"});
+  expectWords(refusal(judge + " --columns u=u,u=y"), {"'u=y'", "once"});
 }
 
 }  // namespace

@@ -1,0 +1,11 @@
+#include "fuzz/targets.hpp"
+
+namespace fpc::fuzz {
+
+const std::vector<NamedTarget>& targets() {
+  static const std::vector<NamedTarget> all{
+      {"message", message, true}, {"ring", ring, true}, {"bag", bag, true}};
+  return all;
+}
+
+}  // namespace fpc::fuzz
