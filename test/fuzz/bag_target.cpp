@@ -10,8 +10,8 @@
 #include <stdexcept>
 
 #include "fmbpc/loop/run.hpp"
-#include "fmbpc/ros/bag_table.hpp"
-#include "fmbpc/ros/conversions.hpp"
+#include "ros/bag_table.hpp"
+#include "ros/conversions.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/scratch_file.hpp"
 #include "fuzz/targets.hpp"

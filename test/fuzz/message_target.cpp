@@ -4,8 +4,8 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
-#include "fmbpc/ros/conversions.hpp"
-#include "fmbpc/ros/plant_check.hpp"
+#include "ros/conversions.hpp"
+#include "ros/plant_check.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"

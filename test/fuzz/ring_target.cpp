@@ -15,7 +15,7 @@
 #include "fmbpc/loop/identifier_session.hpp"
 #include "fmbpc/loop/plant_session.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
-#include "fmbpc/ros/conversions.hpp"
+#include "ros/conversions.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"
