@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -13,12 +14,6 @@ using Eigen::Index;
 struct Names {
   std::vector<std::string> outputs, inputs, disturbances;
 };
-
-std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const SignalInfo& signal : signals) names.push_back(signal.name);
-  return names;
-}
 
 void readWatched(YamlSection& section, const std::vector<std::string>& names, bool outputs,
                  std::vector<WatchedSignal>& signals) {

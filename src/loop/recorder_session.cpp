@@ -69,7 +69,7 @@ void RecorderSession::collect(const Item& item, bool SampleRecord::*has, Place p
   passOn();
 }
 
-// A stray far ahead would fill the disk with holes: it is believed only when others follow it and
+// A stray far ahead would fill the disk with holes: it counts only when others follow it and
 // nothing near comes between (the recorder was away for long).
 bool RecorderSession::farAhead(std::uint32_t step) {
   const std::uint32_t now = std::max(next_, latest_.step);
