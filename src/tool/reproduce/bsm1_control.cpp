@@ -1,4 +1,4 @@
-// The benchmark simulation model no. 1 under its rival and under ours: what is claimed of class A
+// The benchmark simulation model no. 1 under its baseline and under ours: what is claimed of class A
 // (Qr, Qw and blowers as in the benchmark), of larger blowers, of class B (less sludge wasted),
 // with noise and on an influent that nothing was tuned on. Classes are never mixed.
 #include <map>
@@ -54,7 +54,7 @@ Rows compared(const std::vector<Claim>& claims, const Overrides& of_default = {}
 
 const std::string kDry = "bsm1_default", kRain = "bsm1_default_rain";
 
-Rows rival() {
+Rows baseline() {
   Rows rows;
   const struct {
     const char* loop;
@@ -80,7 +80,7 @@ Rows classA() {
                    {"bsm1_fmbpc_clp_rain", kRain, 2.3, 0.0, 6.5, 23.0}});
 }
 
-/// Past the rival.
+/// Past the baseline.
 Rows aim() {
   return compared({{"bsm1_fmbpc", kDry, 4.5, 0.0, 12.0, 16.0},
                    {"bsm1_fmbpc_rain", kRain, 3.0, 0.0, 6.5, 23.0},
@@ -128,11 +128,11 @@ Rows unseen() {
 }
 
 const bool kRegistered = registerExperiments(
-    {{"bsm1_rival", "bsm1", "beyond the paper", "supervisor of ammonium, class A", "8 numbers",
-      "bsm1_supervisor, bsm1_supervisor_rain", rival},
+    {{"bsm1_baseline", "bsm1", "beyond the paper", "supervisor of ammonium, class A", "8 numbers",
+      "bsm1_supervisor, bsm1_supervisor_rain", baseline},
      {"bsm1_class_a", "bsm1", "beyond the paper", "predictive control, class A", "-",
       "bsm1_fmbpc, bsm1_fmbpc_clp, dry and rain", classA},
-     {"bsm1_class_a_aim", "bsm1", "beyond the paper", "past the rival, class A", "-",
+     {"bsm1_class_a_aim", "bsm1", "beyond the paper", "past the baseline, class A", "-",
       "bsm1_fmbpc, bsm1_fmbpc_clp, dry and rain", aim},
      {"bsm1_class_a_360", "bsm1", "beyond the paper", "class A with blowers up to 360 1/d", "-",
       "bsm1_fmbpc_360, dry and rain", largerBlowers},
