@@ -92,7 +92,7 @@ TEST_F(Bsm1Loops, TheSupervisorIsTheBaselineOfTheFigures) {
   }
 }
 
-TEST_F(Bsm1Loops, FmbpcPassesTheRivalInClassA) {
+TEST_F(Bsm1Loops, FmbpcPassesTheBaselineInClassA) {
   if (isShort()) GTEST_SKIP() << "long run: scripts/test --long";
   for (const std::string law : {"bsm1_fmbpc", "bsm1_fmbpc_clp"}) {
     const EffluentReport dry = evaluated(law), rain = evaluated(law + "_rain");
