@@ -9,12 +9,6 @@ namespace {
 
 constexpr double kExchange = 0.01;  // [s] between two looks at the field
 
-std::vector<std::string> namesOf(const std::vector<SignalInfo>& signals) {
-  std::vector<std::string> names;
-  for (const SignalInfo& signal : signals) names.push_back(signal.name);
-  return names;
-}
-
 std::unique_ptr<Field> makeField(const ros::NodeHandle& node, const LoopFile& loop) {
   if (gatewayOf(loop).type == GatewayType::kModbus) return makeModbusField(loop);
   return std::make_unique<Float64Field>(node, loop);
