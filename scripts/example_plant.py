@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""A plant of one's own in 40 lines: a tank, area dh/dt = q - c sqrt(h), speaking the ring of config/loop/
-example_external.yaml. Replace level() by whatever reads your sensors and moves your valves."""
+"""A plant of one's own behind plant_gateway: a tank, area dh/dt = q - c sqrt(h), that knows std_msgs/Float64 and nothing
+else. Replace level() by whatever reads your sensors and moves your valves. It lives SPEEDUP times faster than the clock."""
 import math
 import sys
 import time
@@ -10,53 +10,46 @@ if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
     sys.exit(0)
 
 import rospy
-from fmbpc.msg import ControlAction, Measurement, NodeReady, PlantInfo, SignalInfo
+from std_msgs.msg import Float64
 
-SAMPLE_TIME_S, SAMPLES, T0_S = 60.0, 240, 1.0
+PERIOD_S, SPEEDUP = 0.02, 600.0  # of wall time between two looks; as gateway.speedup
 AREA_M2, OUTFLOW = 2.0, 6.0  # m2, m3/h per sqrt(m)
+LOWER, UPPER, SAFE, PATIENCE_S = 0.0, 20.0, 4.0, 3.0  # m3/h; s of wall time without a command
 
 
-def level(h, q):
-    """The level one sample later [m], with inflow q [m3/h]."""
-    for _ in range(60):
-        h = max(0.0, h + (q - OUTFLOW * math.sqrt(h)) / AREA_M2 * SAMPLE_TIME_S / 60 / 3600)
+def level(h, q, seconds):
+    """The level so much later [m], with inflow q [m3/h]."""
+    for _ in range(10):
+        h = max(0.0, h + (q - OUTFLOW * math.sqrt(h)) / AREA_M2 * seconds / 10 / 3600)
     return h
 
 
 class Tank:
-    def __init__(self):
-        self.measurement = Measurement(run_id=time.time_ns(), outputs=[0.5], input_applied=[2.0])
-        self.waiting_for = {rospy.resolve_name(n) for n in ("fmbpc_controller", "loop_recorder")}
-        self.info_pub = rospy.Publisher("plant_info", PlantInfo, queue_size=1, latch=True)
-        self.pub = rospy.Publisher("measurement", Measurement, queue_size=10, latch=True, tcp_nodelay=True)
-        rospy.Subscriber("control_action", ControlAction, self.on_action, tcp_nodelay=True)
-        rospy.Subscriber("ready", NodeReady, lambda msg: self.waiting_for.discard(msg.node))
-        info = PlantInfo(run_id=self.measurement.run_id, name="tank", frame_id="tank", sample_time_s=SAMPLE_TIME_S,
-                         outputs=[SignalInfo("level", "m", 0, 4)], inputs=[SignalInfo("inflow", "m3/h", 0, 20)],
-                         output_frames=["tank"])
-        info.header.stamp = rospy.Time(T0_S)
-        self.info_pub.publish(info)
+    """Keeps itself safe: a command that is no number is ignored, others are clipped, and without any it closes to SAFE."""
 
-    def send(self):
-        m = self.measurement
-        m.header.stamp, m.header.frame_id = rospy.Time(T0_S + m.step * SAMPLE_TIME_S), "tank"
-        m.final = m.step == SAMPLES
-        self.pub.publish(m)
+    def __init__(self, speedup):
+        self.level, self.inflow, self.speedup = 0.5, 2.0, speedup
+        self.told = self.now = time.monotonic()
+        self.level_pub = rospy.Publisher("tank/state", Float64, queue_size=1, tcp_nodelay=True)
+        self.inflow_pub = rospy.Publisher("tank/inflow", Float64, queue_size=1, tcp_nodelay=True)
+        rospy.Subscriber("tank/control_effort", Float64, self.on_effort, tcp_nodelay=True)
 
-    def on_action(self, action):  # anything but the answer to the present sample is old: drop it
-        m = self.measurement
-        if (action.run_id, action.step) != (m.run_id, m.step) or m.final or len(action.input) != 1:
-            return
-        q = min(max(action.input[0], 0.0), 20.0)
-        self.measurement = Measurement(run_id=m.run_id, step=m.step + 1, outputs=[level(m.outputs[0], q)],
-                                       input_applied=[q])
-        self.send()
+    def on_effort(self, message):
+        if math.isfinite(message.data):
+            self.inflow, self.told = min(max(message.data, LOWER), UPPER), time.monotonic()
+
+    def live(self):
+        before, self.now = self.now, time.monotonic()
+        if self.now - self.told > PATIENCE_S:
+            self.inflow = SAFE
+        self.level = level(self.level, self.inflow, self.speedup * (self.now - before))
+        self.level_pub.publish(self.level)
+        self.inflow_pub.publish(self.inflow)
 
 
 if __name__ == "__main__":
     rospy.init_node("example_plant")
-    tank = Tank()
-    while not rospy.is_shutdown():  # until it is answered, the present sample is sent again every 50 ms
-        if not tank.waiting_for:
-            tank.send()
-        time.sleep(0.05)
+    tank = Tank(rospy.get_param("~speedup", SPEEDUP))
+    while not rospy.is_shutdown():
+        tank.live()
+        time.sleep(PERIOD_S)

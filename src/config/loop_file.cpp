@@ -5,6 +5,7 @@
 
 #include "config/plant_sample_model.hpp"
 #include "config/read.hpp"
+#include "config/read_safety.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/plugins.hpp"
 #include "fmbpc/config/standstill_section.hpp"
@@ -85,6 +86,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readClp(root, loop, names);
   readController(root, loop);
   readGuard(root, loop, names);
+  readPlausibility(root, loop);
   readStandstill(root, loop);
   readModelSection(root, loop);
   readRing(root, loop);

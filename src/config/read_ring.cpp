@@ -6,6 +6,7 @@
 #include <set>
 
 #include "config/read.hpp"
+#include "config/read_safety.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -24,11 +25,14 @@ std::vector<std::string> ringNodes(const LoopFile& loop) {
   return nodes;
 }
 
-/// Who speaks on which topic; a plant that is not ours may have any name.
-std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& loop) {
+/// Who speaks on which topic; a plant that is not ours may have any name, unless it is behind our
+/// gateway.
+std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& loop, bool gateway) {
   using Names = std::vector<std::string>;
   const std::string controller = ringNodes(loop)[1];
-  const Names plant = loop.external_plant ? Names{} : Names{"plant_simulator"};
+  const Names plant = gateway               ? Names{"plant_gateway"}
+                      : loop.external_plant ? Names{}
+                                            : Names{"plant_simulator"};
   const Names law{controller};
   const Names answers = loop.has_clp ? Names{"clp_optimizer", controller} : law;
   const Names model{"fuzzy_identifier"};
@@ -147,6 +151,11 @@ void readRing(YamlSection& root, LoopFile& loop) {
   section.oneOf("pace", pace, {"lockstep", "paced", "realtime"});
   loop.ring.pace = paceFrom(pace);
   section.number("speedup", loop.ring.speedup, kFinitePositive);
+  const GatewayParams gateway = readGateway(root, loop);
+  if (gateway.enabled()) {  // a plant that is not ours waits for nobody
+    loop.ring.pace = Pace::kRealtime;
+    loop.ring.speedup = gateway.speedup;
+  }
   loop.ring.wait_for = loop.ring.members = ringNodes(loop);
   section.names("wait_for", loop.ring.wait_for);
   section.number("ready_timeout_s", loop.ring.ready_timeout_s, {0.0, 1e6, true});
@@ -154,7 +163,7 @@ void readRing(YamlSection& root, LoopFile& loop) {
   section.number("action_timeout_s", loop.ring.action_timeout_s, kFinitePositive);
   section.number("optimizer_timeout_s", loop.ring.optimizer_timeout_s, kFinitePositive);
   section.number("commands_per_s", loop.ring.commands_per_s, kFinitePositive);
-  loop.ring.publishers = ringPublishers(loop);
+  loop.ring.publishers = ringPublishers(loop, gateway.enabled());
   readPublishers(section, loop.ring);
   section.finish();
 }

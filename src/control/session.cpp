@@ -6,6 +6,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
+#include "fmbpc/fuzzy/gain_sign.hpp"
 #include "fmbpc/fuzzy/model_check.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 
@@ -14,6 +15,17 @@ namespace {
 
 SampleClock clockOf(const PlantInfo& plant) {
   return SampleClock(plant.sample_time_s, static_cast<double>(plant.header.time_ns) / 1e9);
+}
+
+constexpr const char* kNotFinite = "data before were not finite";
+constexpr const char* kDoubted = "data before were doubtful";
+
+bool isIn(const TsModel& model, SignalKind kind, Eigen::Index index) {
+  for (const auto& submodel : model.submodels)
+    for (const auto* list : {&submodel.antecedents, &submodel.regressors})
+      for (const Regressor& regressor : *list)
+        if (regressor.kind == kind && regressor.index == index) return true;
+  return false;
 }
 
 std::string missingSamples(std::uint32_t first, std::uint32_t last) {
@@ -25,12 +37,14 @@ std::string missingSamples(std::uint32_t first, std::uint32_t last) {
 
 ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
                                      SetpointParams setpoint, InputLimits limits,
-                                     Vector initial_input, PlantInfo plant, double max_pole)
+                                     Vector initial_input, PlantInfo plant, double max_pole,
+                                     PlausibilityParams plausibility)
     : controller_(std::move(controller)),
       setpoint_(std::move(setpoint), namesOf(plant.outputs), clockOf(plant)),
       limits_(std::move(limits)),
       plant_(std::move(plant)),
       last_input_(std::move(initial_input)),
+      plausibility_(std::move(plausibility), plant_),
       max_pole_(max_pole) {
   require(controller_ != nullptr, "controller", "a controller");
   const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
@@ -41,6 +55,20 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
   answer_.base.input = last_input_;
   answer_.tracking.reference = setpoint_.present();
   if (!controller_->followsSetpoint()) answer_.tracking.reference.setConstant(std::nan(""));
+  noteNeeds();
+}
+
+// What is in no model of a law with a model cannot move its input.
+void ControllerSession::noteNeeds() {
+  const std::size_t n_y = plant_.outputs.size();
+  for (std::size_t i = 0; i < n_y + plant_.disturbances.size(); ++i) {
+    const SignalKind kind = i < n_y ? SignalKind::kOutput : SignalKind::kDisturbance;
+    const auto index = static_cast<Eigen::Index>(i < n_y ? i : i - n_y);
+    const bool in_model = kind == SignalKind::kOutput || models_ == 0 ||
+                          !controller_->needsModel() || isIn(model_, kind, index);
+    const auto& needs = plausibility_.params().needs;
+    plausibility_.need(i, in_model && (needs.empty() || needs[i]));
+  }
 }
 
 bool ControllerSession::ready() const { return models_ > 0 || !controller_->needsModel(); }
@@ -69,6 +97,7 @@ Receipt ControllerSession::receive(const Measurement& measurement) {
 // What a sample brings whatever its values are: identity, setpoints, and why memory may be invalid.
 void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepHeader& before) {
   const std::uint32_t step = m.header.step;
+  arrival_ = arrival;
   if (arrival == Arrival::kFirst) arrival_reason_ = "first sample is " + std::to_string(step);
   if (arrival == Arrival::kNewRun) arrival_reason_ = "new run";
   if (arrival == Arrival::kGap) arrival_reason_ = missingSamples(before.step + 1, step - 1);
@@ -88,23 +117,59 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
 }
 
 void ControllerSession::process(const Measurement& m) {
-  if (!allFinite(m)) {
-    gate_.countNotFinite();
-    hold(m, "the measurement is not finite: input held");
-    interruption_ = "data before were not finite";
+  fell_back_ = false;
+  if (needsReset(arrival_)) plausibility_.reset();
+  const Verdict verdict = plausibility_.look(m);
+  const Measurement& accepted = verdict == Verdict::kClean ? m : plausibility_.accepted();
+  const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
+  const bool finite =
+      m.input_applied.allFinite() && m.outputs.allFinite() && m.disturbances.allFinite();
+  if (!finite) gate_.countNotFinite();
+  if (usable) present_ = accepted;
+  if (unreleased_) {
+    hold(m, "joined a run without knowing what its operator asked: held until ~manual is called");
+    interruption_ = "released";
+  } else if (manual_ && m.input_applied.allFinite()) {
+    sendManual(accepted);
+    interruption_ = "back from manual";
+  } else if (!takes_actions_) {
+    hold(m, "the plant takes no actions: its own hand has the input, or its link is lost");
+    interruption_ = "the plant takes actions again";
+  } else if (!m.input_applied.allFinite()) {
+    hold(m, "the applied input is not finite: input held");
+    interruption_ = kNotFinite;
+  } else if (verdict == Verdict::kFallback) {
+    fallBack(m);
+  } else if (!usable) {
+    hold(m, plausibility_.words());
+    interruption_ = finite ? kDoubted : kNotFinite;
   } else {
-    present_ = m;
-    if (unreleased_) {
-      hold(m, "joined a run without knowing what its operator asked: held until ~manual is called");
-      interruption_ = "released";
-    } else if (manual_) {
-      sendManual(m);
-      interruption_ = "back from manual";
-    } else {
-      runLaw(m);
-    }
+    runLaw(accepted);
+    if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
   }
+  expectNext();
   last_input_ = answer_.base.input;
+}
+
+// What the law foresees for the next sample, in case that one is not accepted.
+void ControllerSession::expectNext() {
+  if (!plausibility_.usesModel()) return;
+  if (answer_.has_prediction)
+    plausibility_.expect(answer_.prediction, answer_.base.input);
+  else
+    plausibility_.expectNothing();
+}
+
+void ControllerSession::fallBack(const Measurement& m) {
+  Vector& input = answer_.base.input;
+  input = plausibility_.params().fallback;
+  limits_.clip(input, m.input_applied);
+  controller_->makeSendable(input);
+  answer_.base.source = output_.source = ActionSource::kFallback;
+  output_.ok = output_.predictive = false;
+  output_.remark = plausibility_.words();
+  interruption_ = kDoubted;
+  fell_back_ = true;
 }
 
 void ControllerSession::hold(const Measurement& m, const char* remark) {
@@ -157,10 +222,16 @@ void ControllerSession::runLaw(const Measurement& m) {
 }
 
 void ControllerSession::setModel(const TsModel& model) {
-  if (models_ > 0 && controller_->needsModel() && present_.outputs.size() > 0)
-    requireStable(matchToPlant(model, plant_), present_, max_pole_);
+  const bool matters = controller_->needsModel();
+  TsModel matched = matters ? matchToPlant(model, plant_) : TsModel();
+  if (models_ > 0 && matters && present_.outputs.size() > 0) {
+    requireStable(matched, present_, max_pole_);
+    if (plausibility_.params().gain_sign) requireSameGainSigns(model_, matched, present_);
+  }
   controller_->setModel(model);
+  model_ = std::move(matched);
   ++models_;
+  noteNeeds();
 }
 
 void ControllerSession::manual(bool on) {

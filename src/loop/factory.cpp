@@ -2,6 +2,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
+#include "fmbpc/config/plausibility_file.hpp"
 #include "fmbpc/config/standstill_section.hpp"
 
 namespace fpc {
@@ -35,8 +36,13 @@ Simulation makeSimulation(const LoopFile& loop) {
 
 ControllerSession makeControllerSession(const LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
-  return {makeController(loop), loop.setpoint,   actuator.limits,
-          actuator.initial,     loop.plant_info, loop.max_pole};
+  return {makeController(loop),
+          loop.setpoint,
+          actuator.limits,
+          actuator.initial,
+          loop.plant_info,
+          loop.max_pole,
+          plausibilityOf(loop).signals};
 }
 
 OptimizerSession makeOptimizerSession(const LoopFile& loop) {

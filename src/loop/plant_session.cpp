@@ -8,18 +8,25 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 }
 
+PlantSession::PlantSession(std::unique_ptr<Process> process, const PlantPolicy& policy)
+    : process_(std::move(process)),
+      policy_(policy),
+      pacer_(policy.pace, policy.period_s),
+      stuck_(policy.stuck, process_->actuator().params().limits, process_->info().inputs) {}
+
 PlantSession::PlantSession(Simulation simulation, const PlantPolicy& policy)
-    : simulation_(std::move(simulation)), policy_(policy), pacer_(policy.pace, policy.period_s) {}
+    : PlantSession(std::make_unique<SimulatedProcess>(std::move(simulation)), policy) {}
 
 void PlantSession::begin(std::uint64_t run_id) {
-  simulation_.reset(run_id);
+  process_->reset(run_id);
   phase_ = PlantPhase::kWaiting;
   have_action_ = starving_ = acknowledged_ = false;
   steps_allowed_ = 0;
+  stuck_.reset();
 }
 
 void PlantSession::start(double now_s) {
-  phase_ = simulation_.measurement().final ? PlantPhase::kFinished : PlantPhase::kRunning;
+  phase_ = process_->measurement().final ? PlantPhase::kFinished : PlantPhase::kRunning;
   pacer_.restart(now_s);
   table_since_s_ = sent_s_ = now_s;
 }
@@ -30,7 +37,7 @@ bool PlantSession::receive(const ControlAction& action) {
     ++counts_.other_run;
     return false;
   }
-  if (action.input.size() != static_cast<Eigen::Index>(simulation_.info().inputs.size())) {
+  if (action.input.size() != static_cast<Eigen::Index>(process_->info().inputs.size())) {
     ++counts_.wrong_size;
     return false;
   }
@@ -39,12 +46,13 @@ bool PlantSession::receive(const ControlAction& action) {
     return false;
   }
   const bool awaited = phase_ == PlantPhase::kRunning && !have_action_;
-  if (!awaited || !simulation_.answers(action.header)) {
+  if (!awaited || !process_->answers(action.header)) {
     countStray(action.header);
     return false;
   }
   ++counts_.accepted;
   action_ = action.input;
+  process_->take(action_);
   have_action_ = true;
   starving_ = false;
   return true;
@@ -52,7 +60,7 @@ bool PlantSession::receive(const ControlAction& action) {
 
 // Dropped, each kind apart: for a later sample, the last answer again, older.
 void PlantSession::countStray(const StepHeader& header) {
-  const std::uint32_t now = simulation_.measurement().header.step;
+  const std::uint32_t now = process_->measurement().header.step;
   const std::uint32_t answered = have_action_ ? now + 1 : now;  // samples answered so far
   if (header.step >= answered)
     ++counts_.later;
@@ -72,9 +80,12 @@ bool PlantSession::advance(double now_s) {
   if (phase_ != PlantPhase::kRunning || (paused_ && steps_allowed_ == 0)) return false;
   if (!paused_ && !pacer_.due(now_s)) return false;
   if (have_action_) {
-    simulation_.advance(action_);
+    before_ = process_->measurement().input_applied;
+    process_->advance(action_);
+    if (process_->takesActions())
+      stuck_.look(action_, before_, process_->measurement().input_applied);
   } else if (mayGoWithout(now_s)) {
-    simulation_.advanceWithoutAction();
+    process_->advanceWithoutAction();
     ++missing_inputs_;
     starving_ = policy_.pace == Pace::kPaced;
   } else {
@@ -84,7 +95,7 @@ bool PlantSession::advance(double now_s) {
   have_action_ = false;
   pacer_.sent(now_s);
   table_since_s_ = sent_s_ = now_s;
-  if (simulation_.measurement().final) phase_ = PlantPhase::kFinished;
+  if (process_->measurement().final) phase_ = PlantPhase::kFinished;
   return true;
 }
 

@@ -1,9 +1,11 @@
 #include "fmbpc/loop/run.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/config/plausibility_file.hpp"
 #include "fmbpc/loop/command_player.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/identifier_session.hpp"
@@ -15,20 +17,28 @@ namespace {
 
 constexpr std::uint64_t kRunId = 1;
 
+PlantPolicy policyOf(const LoopFile& loop) {
+  PlantPolicy policy;
+  policy.stuck = plausibilityOf(loop).stuck;
+  return policy;
+}
+
 /// The members of the ring, called in the order in which messages would travel.
 class Ring {
  public:
   Ring(const LoopFile& loop, const RunOptions& options)
       : loop_(loop),
         options_(options),
-        plant_(makeSimulation(loop), PlantPolicy{}),
+        made_(std::make_unique<SimulatedProcess>(makeSimulation(loop))),
+        simulation_(made_->simulation()),
+        plant_(std::move(made_), policyOf(loop)),
         controller_(makeControllerSession(loop)),
-        player_(options.commands, plant_.simulation().clock()),
+        player_(options.commands, simulation_.clock()),
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
         targets_{
-            plant_.simulation(), controller_,
+            simulation_, controller_,
             [this](int window) {
               identify(identifier_->job(loop_.identify.structure, static_cast<std::size_t>(window),
                                         loop_.identify.validation_share));
@@ -47,10 +57,10 @@ class Ring {
 
   /// Answers the present sample; false after the final one.
   bool step() {
-    const Measurement now = plant_.simulation().measurement();
+    const Measurement now = simulation_.measurement();
     player_.advance(now.header.step, targets_);
     recorder_.receive(now);
-    recorder_.receive(plant_.simulation().state());
+    recorder_.receive(simulation_.state());
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
     recorder_.receive(answer.tracking, now.final ? "" : controller_.output().remark);
@@ -58,6 +68,7 @@ class Ring {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimizer_ ? optimize(answer) : answer.base);
       plant_.advance(0.0);
+      if (!plant_.stuck().empty()) remark(plant_.stuck());
     }
     if (loop_.has_identify) learn(now);
     return !now.final;
@@ -113,6 +124,8 @@ class Ring {
 
   const LoopFile& loop_;
   const RunOptions& options_;
+  std::unique_ptr<SimulatedProcess> made_;  // until it is the session's
+  Simulation& simulation_;
   PlantSession plant_;
   ControllerSession controller_;
   std::optional<OptimizerSession> optimizer_;

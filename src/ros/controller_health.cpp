@@ -1,9 +1,15 @@
 // How a controller over topics is, and what it counts.
 #include "ros/controller_node.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 namespace {
 constexpr double kSilence = 1.0;  // [s] without a measurement that is due
+}
+
+std::string ControllerNode::plantName() const {
+  const auto& names = loop_.ring.publishers.at(topics::kMeasurement);
+  return names.empty() ? "the plant" : names.front();
 }
 
 // Nothing that waits is "controlling".
@@ -35,9 +41,11 @@ Health ControllerNode::health(double now_s) const {
             "no answer of " + standin_->optimizer() + ": the base action goes to the plant",
             {standin_->optimizer()}};
   if (session_.isManual()) return {LoopMode::kManual, "manual", {}};
+  if (session_.fellBack()) return {LoopMode::kFallback, session_.output().remark, {}};
   if (session_.answer().base.source == ActionSource::kHeld)
     return {LoopMode::kHeld, session_.output().remark, {}};
   if (*session_.output().remark != '\0') return {LoopMode::kDegraded, session_.output().remark, {}};
+  if (!plant_.remark().empty()) return {LoopMode::kDegraded, "controlling; " + plant_.remark(), {}};
   if (!model_problem_.empty())
     return {LoopMode::kDegraded, "controlling; refused: " + model_problem_, {}};
   return {LoopMode::kAutomatic, "controlling", {}};

@@ -140,6 +140,7 @@ void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   guarded(topics::kMeasurement, [&] {
     const Measurement measurement = fromMsg(*msg);
     if (!plant_.admits(measurement.header.run_id)) return;
+    session_.plantTakesActions(!msg->local);
     parked_.reset();
     if (!listeners_.open() || !session_.ready() || !desk_.mayStart(measurement))
       return;  // the plant will send it again

@@ -64,7 +64,7 @@ class ControllerNode : public Node {
   void publishSignals();
   void report(Diagnostics::Status& status) const;
   Health health(double now_s) const;
-  std::string plantName() const { return loop_.external_plant ? "the plant" : "plant_simulator"; }
+  std::string plantName() const;
   static std::string modelName() { return "fuzzy_identifier"; }
 
   LoopFile loop_;

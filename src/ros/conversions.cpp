@@ -1,5 +1,6 @@
 #include "ros/conversions.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "conversion_parts.hpp"
@@ -115,8 +116,16 @@ fmbpc::Measurement toMsg(const Measurement& measurement) {
 }
 
 Measurement fromMsg(const fmbpc::Measurement& msg) {
-  return {stepHeader(msg), vector(msg.outputs), vector(msg.disturbances), vector(msg.input_applied),
-          msg.final != 0};
+  Measurement m{stepHeader(msg), vector(msg.outputs), vector(msg.disturbances),
+                vector(msg.input_applied), msg.final != 0};
+  const std::size_t n_y = msg.outputs.size();
+  const bool fits = msg.quality.empty() || msg.quality.size() == n_y + msg.disturbances.size();
+  require(fits, "quality", "one per output and disturbance, or none");
+  for (std::size_t i = 0; i < msg.quality.size(); ++i)
+    if (msg.quality[i] != fmbpc::Measurement::GOOD)
+      (i < n_y ? m.outputs[static_cast<Eigen::Index>(i)]
+               : m.disturbances[static_cast<Eigen::Index>(i - n_y)]) = std::nan("");
+  return m;
 }
 
 fmbpc::ControlAction toMsg(const ControlAction& action) {

@@ -1,5 +1,7 @@
 #include "ros/plant_check.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "fmbpc/base/text.hpp"
@@ -20,7 +22,31 @@ std::string difference(const std::string& what, const std::string& expected,
   return "plant_info: " + what + " are " + arrived + ", the loop file expects " + expected;
 }
 
+std::string rangeOf(const SignalInfo& signal) {
+  return shortText(signal.lower) + ".." + shortText(signal.upper);
+}
+
+std::string boundsOf(const std::vector<SignalInfo>& expected,
+                     const std::vector<SignalInfo>& arrived) {
+  for (std::size_t i = 0; i < std::min(expected.size(), arrived.size()); ++i) {
+    const bool lower = std::isfinite(expected[i].lower) && expected[i].lower != arrived[i].lower;
+    const bool upper = std::isfinite(expected[i].upper) && expected[i].upper != arrived[i].upper;
+    if (lower || upper)
+      return "plant_info: " + arrived[i].name + " may be " + rangeOf(arrived[i]) +
+             ", the loop file says " + rangeOf(expected[i]);
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string boundsDifference(const PlantInfo& expected, const PlantInfo& arrived) {
+  for (const std::string& text :
+       {boundsOf(expected.inputs, arrived.inputs), boundsOf(expected.outputs, arrived.outputs),
+        boundsOf(expected.disturbances, arrived.disturbances)})
+    if (!text.empty()) return text;
+  return "";
+}
 
 std::string plantMismatch(const PlantInfo& expected, const PlantInfo& arrived) {
   if (expected.sample_time_s != arrived.sample_time_s)

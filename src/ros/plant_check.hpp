@@ -11,4 +11,8 @@ namespace fpc {
 /// otherwise the first difference in words. Bounds and frames may differ.
 std::string plantMismatch(const PlantInfo& expected, const PlantInfo& arrived);
 
+/// The first signal whose bounds are others than the loop file's, in words; empty if there is none.
+/// Bounds that the loop file leaves open are not compared.
+std::string boundsDifference(const PlantInfo& expected, const PlantInfo& arrived);
+
 }  // namespace fpc

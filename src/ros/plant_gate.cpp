@@ -11,6 +11,8 @@ bool PlantGate::introduce(const PlantInfo& info) {
   const std::string mismatch = plantMismatch(expected_, info);
   if (open_) require(mismatch.empty(), mismatch, "the plant of this run");
   problem_ = mismatch;
+  remark_ = mismatch.empty() ? boundsDifference(expected_, info) : "";
+  if (!remark_.empty()) ROS_WARN("%s: %s", ros::this_node::getName().c_str(), remark_.c_str());
   open_ = problem_.empty();
   if (open_)
     run_id_ = info.header.run_id;

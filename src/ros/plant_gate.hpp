@@ -23,12 +23,15 @@ class PlantGate {
   bool open() const { return open_; }  ///< a plant that fits has introduced itself
   std::uint64_t runId() const { return run_id_; }
   const std::string& problem() const { return problem_; }
+  const std::string& remark() const {
+    return remark_;
+  }  ///< bounds that differ; it serves all the same
   std::uint64_t foreign() const { return foreign_; }  ///< messages of runs that were not announced
 
  private:
   PlantInfo expected_;
   std::uint64_t run_id_{};
-  std::string problem_;
+  std::string problem_, remark_;
   std::uint64_t foreign_{};
   bool open_{false};
 };

@@ -1,34 +1,42 @@
-// Everything that a simulated plant says: who it is, its samples, the clock, signals, effects of
-// disturbances.
+// Everything that any plant says: who it is, its samples, the clock, signals.
 #pragma once
 
 #include <fmbpc/Measurement.h>
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
 
-#include "fmbpc/plant/simulation.hpp"
+#include "fmbpc/base/sample_clock.hpp"
+#include "fmbpc/plant/process.hpp"
 #include "ros/signal_publishers.hpp"
 
 namespace fpc {
 
 class PlantPublishers {
  public:
-  PlantPublishers(ros::NodeHandle node, const Simulation& simulation, bool publish_clock);
+  /// `disturbances`: names of those that have signals.
+  PlantPublishers(ros::NodeHandle node, const PlantInfo& info,
+                  const std::vector<std::string>& disturbances, bool publish_clock);
 
   /// plant_info of the present run, and the clock at its sample 0 (both latched).
-  void introduce(const Simulation& simulation);
-  /// The present sample.
-  void sample(const Simulation& simulation);
+  void introduce(const Process& process);
+  /// The present sample, with values of the disturbances named at construction. `mark` may add to
+  /// the message what no struct has.
+  void sample(const Process& process, VectorRef disturbances,
+              const std::function<void(fmbpc::Measurement&)>& mark);
   /// The measurement once more.
   void resend();
   std::uint64_t resent() const { return resent_; }
 
  private:
   void clock(std::int64_t time_ns);
-  void signals(const Simulation& simulation);
+  void signals(const Measurement& now, VectorRef disturbances);
 
-  ros::Publisher info_, measurement_, state_, effect_, clock_;
+  SampleClock steps_;
+  ros::Publisher info_, measurement_, clock_;
   SignalPublishers signals_;
   fmbpc::Measurement last_;
   std::uint64_t resent_{};

@@ -1,9 +1,8 @@
 #include "ros/plant_simulator.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
 
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
@@ -12,33 +11,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kPoll = 0.05;         // [s] of wall time
-constexpr double kIntroduceAgain = 1;  // [s], while nobody answers (in realtime samples go on)
-constexpr double kPatience = 1.0;      // [s] without an action before that is said
-constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
-constexpr double kBurst = 200;         // commands at once
-
-std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
-  std::vector<std::string> names = loop.ring.wait_for;
-  std::istringstream also(private_node.param<std::string>("also_wait_for", ""));
-  for (std::string name; also >> name;) names.push_back(name);
-  return names;
-}
-
-/// The nodes of ours that beat.
-std::vector<std::string> namesToWatch(const LoopFile& loop, const ros::NodeHandle& node) {
-  std::vector<std::string> names = loop.ring.members;
-  for (std::string& name : names) name = node.resolveName(name);
-  return names;
-}
-
-PlantPolicy policyOf(const LoopFile& loop) {
-  PlantPolicy policy;
-  policy.pace = loop.ring.pace;
-  policy.period_s = loop.simulation.sample_time_s / loop.ring.speedup;
-  policy.action_timeout_s = loop.ring.action_timeout_s;
-  return policy;
-}
+constexpr double kBurst = 200;  // commands at once
 
 }  // namespace
 
@@ -48,246 +21,51 @@ std::string PlantSimulator::idleReason(const LoopFile& loop) {
 
 PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_node,
                                const LoopFile& loop)
-    : Node(node, loop),
-      loop_(loop),
-      session_(makeSimulation(loop), policyOf(loop)),
-      publishers_(node, session_.simulation(), loop.ring.publish_clock),
-      keeper_(node, loop),
-      ready_(node, namesToWaitFor(loop, private_node)),
+    : PlantSimulator(std::move(node), std::move(private_node), loop,
+                     std::make_unique<SimulatedProcess>(makeSimulation(loop))) {}
+
+PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_node,
+                               const LoopFile& loop, std::unique_ptr<SimulatedProcess> simulation)
+    : PlantNode(node, std::move(private_node), loop, std::move(simulation),
+                namesOf(makePlant(loop.simulation)->description().disturbances)),
+      simulation_(static_cast<SimulatedProcess&>(session().process()).simulation()),
       lines_(loop.tf.sample_lines),
-      watch_(namesToWatch(loop, node)),
       commands_(loop.ring.commands_per_s, kBurst),
-      begun_s_(steadyNow()),
-      end_(node),
-      node_(node),
-      action_subscriber_(subscribe(node, topics::kControlAction, topics::kPairQueue,
-                                   &PlantSimulator::onAction, this)),
+      state_(node.advertise<fmbpc::PlantState>(topics::kPlantState, topics::kRingQueue)),
+      effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect, topics::kRingQueue)),
       disturbance_subscriber_(subscribe(node, topics::kDisturbance, topics::kViewQueue,
-                                        &PlantSimulator::onDisturbance, this)),
-      state_subscriber_(subscribe(node, topics::kLoopState, topics::kPairQueue,
-                                  &PlantSimulator::onLoopState, this)),
-      pause_(private_node.advertiseService(topics::kPause, &PlantSimulator::onPause, this)),
-      step_(private_node.advertiseService(topics::kStep, &PlantSimulator::onStep, this)),
-      reset_(private_node.advertiseService(topics::kReset, &PlantSimulator::onReset, this)),
-      poll_timer_(node.createSteadyTimer(ros::WallDuration(kPoll),
-                                         [this](const ros::SteadyTimerEvent&) { onPoll(); })),
-      pace_timer_(node.createSteadyTimer(
-          ros::WallDuration(kPoll), [this](const ros::SteadyTimerEvent&) { tryAdvance(); }, true,
-          false)),
-      health_(node, private_node, "plant", loop.name, true,
-              {[this](double now_s) { return health(now_s); },
-               [this] { return session_.simulation().measurement().header; },
-               [this](Diagnostics::Status& status) { report(status); }}) {
-  beginRun();
-  frames_.broadcast(loop_.tf, session_.simulation().info().header.time_ns);
+                                        &PlantSimulator::onDisturbance, this)) {
+  begin();
 }
 
-// A number that no run had before, also of an earlier process; which one counts is said by
-// plant_info, not by its size.
-void PlantSimulator::beginRun() {
-  run_id_ = std::max(run_id_ + 1, ros::WallTime::now().toNSec());
-  session_.begin(run_id_);
-  keeper_.beginRun(run_id_);
-  publishers_.introduce(session_.simulation());
-  introduced_s_ = steadyNow();
-  tracking_subscriber_.shutdown();
-}
-
-void PlantSimulator::start() {
-  session_.start(steadyNow());
-  ROS_INFO("plant_simulator: run %lu of %s starts", run_id_, loop_.name.c_str());
-  publishSample();
-}
-
-void PlantSimulator::onPoll() {
-  if (session_.phase() == PlantPhase::kWaiting) return waitForOthers();
-  const double now_s = steadyNow();
-  if (!session_.mustResend(now_s)) return;
-  session_.resent(now_s);
-  publishers_.resend();
-  if (now_s - answered_s_ < kIntroduceAgain || now_s - introduced_s_ < kIntroduceAgain) return;
-  introduced_s_ = now_s;  // somebody may have been told of another run
-  publishers_.introduce(session_.simulation());
-}
-
-std::vector<std::string> PlantSimulator::missing() const {
-  std::vector<std::string> names = ready_.missing();
-  const std::vector<std::string> lines = lines_.missing();
-  names.insert(names.end(), lines.begin(), lines.end());
-  return names;
-}
-
-void PlantSimulator::waitForOthers() {
-  if (failed_s_ >= 0) {
-    if (steadyNow() - failed_s_ > kLastWords) fail(failure_);
-    return;
-  }
+std::vector<std::string> PlantSimulator::plantMissing() {
   for (const auto& [output, delay_s] : lines_.poll()) {
-    const auto& outputs = session_.simulation().info().outputs;
+    const auto& outputs = simulation_.info().outputs;
     const auto found =
         std::find_if(outputs.begin(), outputs.end(),
                      [&name = output](const SignalInfo& o) { return o.name == name; });
-    session_.simulation().setOutputDelay(static_cast<std::size_t>(found - outputs.begin()),
-                                         delay_s);
+    simulation_.setOutputDelay(static_cast<std::size_t>(found - outputs.begin()), delay_s);
   }
-  const std::vector<std::string> names = missing();
-  if (names.empty()) return start();
-  if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
-  failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
-             " s: " + join(names);
-  failed_s_ = steadyNow();
-  end_.say(failure_);
-  health_.look();
+  return lines_.missing();
 }
 
-void PlantSimulator::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
-  guarded(topics::kControlAction, [&] {
-    if (!session_.receive(fromMsg(*msg))) return;
-    answered_s_ = steadyNow();
-    tryAdvance();
-  });
-}
-
-void PlantSimulator::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
-  const StepHeader& now = session_.simulation().measurement().header;
-  if (session_.phase() == PlantPhase::kFinished && msg->run_id == now.run_id &&
-      msg->step == now.step)
-    session_.finish();
-}
-
-void PlantSimulator::onLoopState(const fmbpc::LoopState::ConstPtr& msg) {
-  watch_.hear(msg->node, {static_cast<LoopMode>(msg->mode), msg->reason, msg->missing},
-              steadyNow());
-}
-
-void PlantSimulator::tryAdvance() {
-  const std::uint64_t missed = session_.missingInputs();
-  if (!session_.advance(steadyNow())) return armTimer();
-  if (session_.missingInputs() > missed && trouble_log_.pass())
-    ROS_WARN("plant_simulator: no action in time (%lu so far)", session_.missingInputs());
-  publishSample();
-}
-
-void PlantSimulator::publishSample() {
-  const Simulation& simulation = session_.simulation();
-  publishers_.sample(simulation);
-  if (!simulation.trouble().empty() && trouble_log_.pass())
-    ROS_WARN("plant_simulator: %s", simulation.trouble().c_str());
-  if (session_.phase() == PlantPhase::kFinished) {
-    ROS_INFO("plant_simulator: final sample %u sent", simulation.measurement().header.step);
-    tracking_subscriber_ =
-        subscribe(node_, topics::kTracking, topics::kPairQueue, &PlantSimulator::onTracking, this);
-  } else {
-    armTimer();
-  }
-}
-
-void PlantSimulator::armTimer() {
-  if (!session_.pacer().timed()) return;
-  const double due_s = session_.nextDue();
-  pace_timer_.stop();
-  if (!std::isfinite(due_s)) return;
-  pace_timer_.setPeriod(ros::WallDuration(std::max(1e-6, due_s - steadyNow())));
-  pace_timer_.start();
+void PlantSimulator::afterSample() {
+  if (state_.getNumSubscribers() > 0) state_.publish(toMsg(simulation_.state()));
+  for (const CommandEffect& effect : simulation_.effects()) effect_.publish(toMsg(effect));
 }
 
 void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
   if (!commands_.pass(steadyNow())) return;
   guarded(topics::kDisturbance, [&] {
     const Command command = fromMsg(*msg);
-    const std::uint32_t step = session_.simulation().command(command);
+    const std::uint32_t step = simulation_.command(command);
     ROS_INFO("plant_simulator: disturbance of %s from sample %u on", join(command.name).c_str(),
              step);
   });
 }
 
-bool PlantSimulator::onPause(std_srvs::SetBool::Request& request,
-                             std_srvs::SetBool::Response& response) {
-  session_.pause(request.data != 0, steadyNow());
-  if (!session_.paused()) tryAdvance();
-  response.success = true;
-  response.message = session_.paused() ? "paused" : "running";
-  health_.look();
-  return true;
-}
-
-bool PlantSimulator::onStep(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  response.success = session_.step();
-  response.message = response.success     ? "one sample"
-                     : !session_.paused() ? "pause first"
-                                          : "there is no run under way";
-  if (response.success) tryAdvance();
-  return true;
-}
-
-bool PlantSimulator::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
-  response.success = session_.phase() != PlantPhase::kWaiting;
-  response.message = response.success ? "sample 0 of a new run" : "the first run has not begun";
-  if (response.success) {
-    beginRun();
-    start();
-  }
-  return true;
-}
-
-Health PlantSimulator::health(double now_s) const {
-  if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing()};
-  if (session_.phase() == PlantPhase::kWaiting)
-    return {LoopMode::kStarting, "waiting for " + join(missing()), missing()};
-  if (!session_.simulation().trouble().empty())
-    return {LoopMode::kFailed, session_.simulation().trouble(), {}};
-  if (session_.phase() == PlantPhase::kFinished)
-    return session_.acknowledged() ? Health{LoopMode::kFinished, "finished", {}}
-                                   : Health{LoopMode::kFinished,
-                                            "finished; the final sample is sent again until it is "
-                                            "tracked",
-                                            watch_.silent(now_s)};
-  if (session_.paused()) return {LoopMode::kHeld, "paused", {}};
-  return runningHealth(now_s);
-}
-
-// Nothing that stands still is "running".
-Health PlantSimulator::runningHealth(double now_s) const {
-  const std::vector<std::string> silent = watch_.silent(now_s);
-  const Health others = watch_.worst(now_s);
-  std::string who = silent.empty() ? "" : "; no word from " + join(silent);
-  if (who.empty() && !others.words.empty()) who = "; " + others.words;
-  const std::string step = std::to_string(session_.simulation().measurement().header.step);
-  const Actuator& actuator = session_.simulation().actuator();
-  if (actuator.missing()) {
-    const bool fallback = actuator.fellBack();
-    return {fallback ? LoopMode::kFallback : LoopMode::kHeld,
-            std::string("no actions: the input is ") +
-                (fallback ? "the configured fallback" : "held") + " at sample " + step + who,
-            silent};
-  }
-  const double late_s = session_.unansweredFor(now_s);
-  if (late_s > kPatience && loop_.ring.pace != Pace::kRealtime)
-    return {LoopMode::kStalled, "no action for sample " + step + who, silent};
-  if (!silent.empty()) return {LoopMode::kDegraded, "no word from " + join(silent), silent};
-  if (others.mode == LoopMode::kAutomatic) return {LoopMode::kAutomatic, "running", {}};
-  if (others.mode == LoopMode::kManual) return {LoopMode::kManual, others.words, {}};
-  return {others.mode == LoopMode::kHeld ? LoopMode::kHeld : LoopMode::kDegraded, others.words,
-          others.missing};
-}
-
-void PlantSimulator::report(Diagnostics::Status& status) const {
-  const ActionCounts& counts = session_.counts();
-  status.add("run_id", run_id_);
-  status.add("step", session_.simulation().measurement().header.step);
-  status.add("actions accepted", counts.accepted);
-  status.add("actions dropped: repeated", counts.repeated);
-  status.add("actions dropped: old step", counts.old);
-  status.add("actions dropped: later step", counts.later);
-  status.add("actions dropped: other run", counts.other_run);
-  status.add("actions dropped: wrong size", counts.wrong_size);
-  status.add("actions dropped: not finite", counts.not_finite);
-  status.add("measurements sent again", publishers_.resent());
-  status.add("inputs missing", session_.missingInputs());
-  status.add("realtime slips", session_.pacer().slips());
+void PlantSimulator::addValues(Diagnostics::Status& status) const {
   status.add("commands dropped: too many", commands_.dropped());
-  addRefused(status, refused());
-  addRefused(status, authority().refused());
 }
 
 }  // namespace fpc

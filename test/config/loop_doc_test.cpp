@@ -49,7 +49,7 @@ std::string general(std::string path) {
   path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
   const std::regex named(
       R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|actuator\.lag|)"
-      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption)\.[\w/]+)");
+      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption|gateway\.tags|plausibility\.signals)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
   const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(?!\w+_(?:s|min|h)$)\w+$)");
@@ -70,12 +70,11 @@ std::string controlled(const std::string& rest) {
 /// All paths that any kind of loop makes the reader ask for.
 std::set<std::string> readerKeys() {
   const std::string lists =
-      "setpoint:\n  schedule: [{time_h: 0, s: 1, x: 1}]\n  commands: [{time_h: 0, name: s, value: "
-      "1}]\n"
+      "setpoint:\n  schedule: [{time_h: 0, s: 1}]\n  commands: [{time_h: 0, name: s, value: 1}]\n"
       "disturbance:\n  commands: [{time_h: 0, name: q_i, value: 1}]\n"
       "  pattern: {channels: {q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}\n"
       "  csv: {channels: {q_i: {column: a, plausible: [0, 1]}}}\n"
-      "sensors: {s: {class: A}}\nactuator: {lag: {q_r: {t90_s: 6}}}\ntf:\n  frames: {reactor: {x: "
+      "sensors: {s: {class: A}}\nactuator: {lag: {q_r: {t90_s: 6}}}\ntf:\n  frames: {plant: {x: "
       "1}}\n"
       "  sample_lines: [{output: s, from: plant, to: reactor, velocity_m_s: 1}]\n";
   const std::string fmbpc =
@@ -134,6 +133,7 @@ std::set<std::string> readerKeys() {
                                  steps,
                                  batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
                                  batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest};
+  for (const char* loop : {"example_external", "cstr_modbus"}) texts.push_back(resolveLoop(loop));
   for (const auto& type : controllerNames())
     for (const auto& loop : loopsOfType(type))
       texts.push_back(resolveLoop(loop, withoutRecords(loop)));

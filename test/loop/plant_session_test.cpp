@@ -33,7 +33,7 @@ ControlAction action(std::uint32_t step, double input = 600.0, std::uint64_t run
 }
 
 std::uint32_t stepOf(const PlantSession& plant) {
-  return plant.simulation().measurement().header.step;
+  return plant.process().measurement().header.step;
 }
 
 TEST(PlantSession, HoldsSampleZeroUntilItStarts) {
@@ -59,7 +59,7 @@ TEST(PlantSession, CountsEveryActionThatItDoesNotTakeApart) {
   ASSERT_TRUE(plant.receive(action(0)));
   EXPECT_FALSE(plant.receive(action(0, 900.0)));  // the first valid answer wins
   plant.advance(0.0);
-  EXPECT_EQ(plant.simulation().measurement().input_applied[0], 600.0);
+  EXPECT_EQ(plant.process().measurement().input_applied[0], 600.0);
   plant.receive(action(1));
   plant.advance(0.0);
   EXPECT_FALSE(plant.receive(action(0)));
@@ -111,7 +111,7 @@ TEST(PlantSession, WithoutActionsTheActuatorHoldsAndThenFallsBackInPacedAndRealt
     double now = 0.2 + 1e-9;
     std::vector<double> applied;
     for (; plant.phase() == PlantPhase::kRunning; now += 5.0)
-      if (plant.advance(now)) applied.push_back(plant.simulation().measurement().input_applied[0]);
+      if (plant.advance(now)) applied.push_back(plant.process().measurement().input_applied[0]);
     EXPECT_EQ(applied, (std::vector<double>{900, 900, 900, 300, 300}));
   }
 }

@@ -48,6 +48,20 @@ TEST_P(Conversions, MeasurementSurvives) {
   EXPECT_TRUE(r.final);
 }
 
+TEST(MeasurementQuality, WhatIsNotGoodIsNoNumber) {
+  fmbpc::Measurement msg;
+  msg.outputs = {1.0, 2.0};
+  msg.disturbances = {3.0};
+  EXPECT_TRUE(fromMsg(msg).outputs.allFinite());  // nothing is said: all good
+  msg.quality = {fmbpc::Measurement::GOOD, fmbpc::Measurement::STALE, fmbpc::Measurement::BAD};
+  const Measurement m = fromMsg(msg);
+  EXPECT_EQ(m.outputs[0], 1.0);
+  EXPECT_TRUE(std::isnan(m.outputs[1]));
+  EXPECT_TRUE(std::isnan(m.disturbances[0]));
+  msg.quality.pop_back();
+  EXPECT_THROW(fromMsg(msg), InputError);
+}
+
 TEST_P(Conversions, ControlActionSurvivesWithEachSource) {
   for (int source = 1; source <= 6; ++source) {
     const ControlAction a{kHeader, numbers.vector(2), static_cast<ActionSource>(source)};

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace fpc {
 namespace {
 
@@ -19,6 +21,15 @@ TEST(PlantCheck, AcceptsTheSamePlantWithOtherBounds) {
   arrived.outputs[0].upper = 5.0;
   arrived.name = "another tank";
   EXPECT_EQ("", plantMismatch(tank(), arrived));
+  EXPECT_EQ("plant_info: level may be 0..5, the loop file says 0..4",
+            boundsDifference(tank(), arrived));
+  EXPECT_EQ("", boundsDifference(tank(), tank()));
+}
+
+TEST(PlantCheck, BoundsThatTheLoopFileLeavesOpenAreNotCompared) {
+  PlantInfo open = tank();
+  open.inputs[0].upper = std::numeric_limits<double>::infinity();
+  EXPECT_EQ("", boundsDifference(open, tank()));
 }
 
 TEST(PlantCheck, NamesTheFirstDifference) {

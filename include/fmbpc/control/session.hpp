@@ -11,6 +11,7 @@
 #include "fmbpc/base/step_gate.hpp"
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 #include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/plausibility.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 
 namespace fpc {
@@ -47,9 +48,13 @@ enum class Receipt {
 /// Rules, in this order, for each measurement:
 /// - wrong sizes: dropped and counted; no model yet: not ready, the plant will send it again;
 /// - old, of an earlier run, repeated: as StepGate says;
-/// - not finite: answered with the last applied input, source held; the controller skips it and is
-///   reset, bumplessly, at the next finite sample;
 /// - manual: the person's input inside the limits; the controller is reset when auto is back;
+/// - the plant takes no actions: its own input is sent back, source held, and the
+///   controller is reset when it takes them again;
+/// - a signal that the law needs is not accepted (Plausibility: no number, out of range,
+///   ...): answered with the last applied input, source held, or from what is accepted
+///   instead; for longer than hold_samples with the fallback. The controller is reset, bumplessly,
+///   at the next sample that it gets;
 /// - first sample, gap, new run: the controller is reset; otherwise it just steps.
 /// Setpoints advance with every sample. No allocation in receive() after the first answer, but for
 /// the words of a reset and for setpoint commands that take effect.
@@ -58,7 +63,7 @@ class ControllerSession {
   /// @throws InputError naming the field: sizes of limits, setpoint and initial_input (n_u, u(-1)).
   ControllerSession(std::unique_ptr<Controller> controller, SetpointParams setpoint,
                     InputLimits limits, Vector initial_input, PlantInfo plant,
-                    double max_pole = 1.0);
+                    double max_pole = 1.0, PlausibilityParams plausibility = {});
 
   /// From now on only measurements of this run are answered.
   void announce(std::uint64_t run_id) { gate_.announce(run_id); }
@@ -72,8 +77,8 @@ class ControllerSession {
 
   /// Acts from the next sample. @throws InputError if it does not fit the plant, or if it would
   /// replace another one and is unstable at the last finite sample (see largestPole(); beyond
-  /// max_pole): the old model stays. A first model is taken even if it is unstable somewhere, since
-  /// there is no better one.
+  /// max_pole), or turns the sign of a gain there (see requireSameGainSigns()): the old model
+  /// stays. A first model is taken even if it is unstable somewhere, since there is no better one.
   void setModel(const TsModel& model);
   std::uint64_t models() const { return models_; }  ///< taken so far
   /// See SetpointSource: a command of a person, and one that was in force before this object was
@@ -102,6 +107,11 @@ class ControllerSession {
   /// joins a run and cannot know what its operator has asked.
   void holdUntilReleased() { unreleased_ = true; }
   bool unreleased() const { return unreleased_; }
+  /// Of the measurements to come: false while the plant's own hand has the inputs.
+  void plantTakesActions(bool on) { takes_actions_ = on; }
+  /// The last answer is the fallback, because of what is not accepted.
+  bool fellBack() const { return fell_back_; }
+  const Plausibility& plausibility() const { return plausibility_; }
 
   const ArrivalCounts& counts() const { return gate_.counts(); }
   const SetpointSource& setpoint() const { return setpoint_; }
@@ -113,6 +123,9 @@ class ControllerSession {
   void process(const Measurement& m);
   void runLaw(const Measurement& m);
   void hold(const Measurement& m, const char* remark);
+  void fallBack(const Measurement& m);
+  void expectNext();
+  void noteNeeds();
   void sendManual(const Measurement& m);
 
   std::unique_ptr<Controller> controller_;
@@ -123,13 +136,17 @@ class ControllerSession {
   ControllerOutput output_;
   ControllerAnswer answer_;
   std::string reset_reason_;
+  Arrival arrival_{Arrival::kFirst};   // of the present sample
   const char* interruption_{nullptr};  // why the controller did not run at the last sample
   std::string arrival_reason_;         // first sample, gap, new run: in words
   Vector last_input_, manual_input_;
-  Measurement present_;  // the last finite one; empty before the first
+  Plausibility plausibility_;
+  TsModel model_;        // in use, matched to the plant; of a law that needs one
+  Measurement present_;  // the last that was accepted; empty before the first
   double max_pole_{1.0};
   std::uint64_t models_{};
-  bool manual_{false}, manual_given_{false}, unreleased_{false};
+  bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
+  bool takes_actions_{true};
   std::optional<bool> adapt_;
   Settings settings_;
 };

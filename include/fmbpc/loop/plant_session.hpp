@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 
 #include "fmbpc/loop/pacer.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "fmbpc/loop/stuck_watch.hpp"
+#include "fmbpc/plant/process.hpp"
 
 namespace fpc {
 
@@ -15,6 +17,7 @@ struct PlantPolicy {
   double period_s{};           ///< wall time per sample (paced, realtime)
   double action_timeout_s{5};  ///< paced: wall time after which the plant goes on without an action
   double resend_s{0.05};       ///< an unanswered sample is sent again that often
+  StuckParams stuck;
 };
 
 enum class PlantPhase { kWaiting, kRunning, kFinished };
@@ -34,6 +37,7 @@ struct ActionCounts {
 /// - the final sample is sent again until finish() says that it has arrived.
 class PlantSession {
  public:
+  PlantSession(std::unique_ptr<Process> process, const PlantPolicy& policy);
   PlantSession(Simulation simulation, const PlantPolicy& policy);
 
   /// Sample 0 of a new run, held until start().
@@ -56,29 +60,32 @@ class PlantSession {
   bool paused() const { return paused_; }
   bool step();  ///< one sample while paused; false: not paused, or no run under way
 
-  Simulation& simulation() { return simulation_; }
-  const Simulation& simulation() const { return simulation_; }
+  Process& process() { return *process_; }
+  const Process& process() const { return *process_; }
   PlantPhase phase() const { return phase_; }
   bool hasAction() const { return have_action_; }
   bool starving() const { return starving_; }  ///< paced: goes on without actions
   /// How long the sample on the table has been without an answer; 0 if it has one or needs none.
   double unansweredFor(double now_s) const;
   const Pacer& pacer() const { return pacer_; }
+  const std::string& stuck() const { return stuck_.words(); }  ///< see StuckWatch
   const ActionCounts& counts() const { return counts_; }
   std::uint64_t missingInputs() const { return missing_inputs_; }
-  std::uint64_t runId() const { return simulation_.measurement().header.run_id; }
+  std::uint64_t runId() const { return process_->measurement().header.run_id; }
 
  private:
   void countStray(const StepHeader& header);
   bool mayGoWithout(double now_s) const;
 
-  Simulation simulation_;
+  std::unique_ptr<Process> process_;
   PlantPolicy policy_;
   Pacer pacer_;
   PlantPhase phase_{PlantPhase::kWaiting};
   bool paused_{false}, have_action_{false}, starving_{false}, acknowledged_{false};
   std::uint32_t steps_allowed_{};
   Vector action_;  // u(k), waiting for its time
+  Vector before_;  // where the inputs were when it came
+  StuckWatch stuck_;
   double table_since_s_{}, sent_s_{};
   ActionCounts counts_;
   std::uint64_t missing_inputs_{};

@@ -1,0 +1,111 @@
+// Can this measurement be true? Each signal is judged by itself: range, rate, jump, freezing. What
+// its instrument or its link does not vouch for has become NaN before.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "fmbpc/base/ring.hpp"
+
+namespace fpc {
+
+/// Why a value is not accepted.
+enum class Doubt : std::uint8_t { kNone, kNoNumber, kRange, kRate, kJump, kFrozen };
+inline constexpr std::size_t kDoubts = 6;
+
+/// What the law gets instead of it.
+enum class Substitute : std::uint8_t {
+  kHold,      ///< nothing: the input is held
+  kLastGood,  ///< the last value that was accepted
+  kModel,     ///< what the law predicted for this sample; the last good value where it does not
+};
+
+/// What is asked of one signal. The defaults ask nothing.
+struct SignalPlausibility {
+  double lower{-std::numeric_limits<double>::infinity()};
+  double upper{std::numeric_limits<double>::infinity()};
+  double rate_per_h{std::numeric_limits<double>::infinity()};  ///< largest change, from the last
+                                                               ///< value that was accepted
+  double jump{std::numeric_limits<double>::infinity()};        ///< largest change at once ...
+  int jump_samples{3};    ///< ... unless the new level stays for so many samples
+  int frozen_samples{0};  ///< the same bits so often while an input moved; 0: never
+  Substitute substitute{Substitute::kHold};
+};
+
+/// Section `plausibility` of a loop file.
+struct PlausibilityParams {
+  bool enabled{false};   ///< without: only what is no number is doubted
+  int hold_samples{-1};  ///< so long a needed signal may be doubted, then `fallback`; -1: for ever
+  double frozen_input{0.1};  ///< an input has moved by more than this part of its range
+  bool gain_sign{false};     ///< a new model must have the gains' signs of the running one
+  Vector fallback;           ///< n_u; empty: none, the input is held for ever
+  std::vector<bool> needs;   ///< outputs, then disturbances: what the law needs; empty: all
+  std::vector<SignalPlausibility> outputs,
+      disturbances;  ///< in the plant's order; empty: no limits
+  /// @throws InputError naming plausibility.KEY.
+  void validate(std::size_t n_y, std::size_t n_d, Eigen::Index n_u) const;
+};
+
+/// What becomes of a sample.
+enum class Verdict : std::uint8_t {
+  kClean,     ///< every value is accepted
+  kRepaired,  ///< the law gets accepted() instead
+  kHold,
+  kFallback,
+};
+
+/// Signals are numbered: outputs, then disturbances. A signal that the law does not need is
+/// replaced by its last good value and never holds an input. No allocation after the first sample.
+class Plausibility {
+ public:
+  /// @throws InputError naming the field.
+  Plausibility(PlausibilityParams params, const PlantInfo& plant);
+  /// A new run, or samples were lost: rates and jumps are measured from the next sample on.
+  void reset();
+  void need(std::size_t signal, bool needed) { needed_[signal] = needed; }
+  Verdict look(const Measurement& now);
+  /// The sample with every doubted value replaced.
+  const Measurement& accepted() const { return accepted_; }
+  /// The law's forecast y(k+1) out of sample k, for Substitute::kModel.
+  void expect(const PredictiveAction& prediction, VectorRef input);
+  bool usesModel() const { return uses_model_; }  ///< some signal asks for a forecast
+  void expectNothing() { has_expected_ = false; }
+  Doubt doubt(std::size_t signal) const { return signals_[signal].doubt; }
+  /// Of the first doubted signal, with what is done about it; lives as long as this object.
+  const char* words() const { return words_; }
+  const PlausibilityParams& params() const { return params_; }
+
+ private:
+  struct Memory {
+    Doubt doubt{Doubt::kNone};
+    double good{}, raw{}, level{};
+    std::uint64_t since_good{};  // samples
+    int same{}, at_level{};
+    bool has_good{false}, has_raw{false};
+    Vector input_low, input_high;  // while the raw value was the same
+  };
+  Doubt judge(Memory& signal, const SignalPlausibility& asked, double value, VectorRef input);
+  bool isFrozen(Memory& signal, const SignalPlausibility& asked, double value, VectorRef input);
+  bool jumped(Memory& signal, const SignalPlausibility& asked, double value) const;
+  bool replace(std::size_t signal);
+  void say(Verdict verdict);
+  void writeWords(const PlantInfo& plant);
+
+  PlausibilityParams params_;
+  std::size_t n_y_;
+  double sample_time_h_;
+  Vector input_range_;
+  std::vector<SignalPlausibility> asked_;  // outputs, then disturbances
+  std::vector<Memory> signals_;
+  std::vector<bool> needed_;
+  std::vector<std::vector<std::string>> texts_;  // by signal; by doubt and verdict
+  const char* words_{""};
+  Measurement accepted_;
+  Vector state_, expected_;
+  bool has_expected_{false}, uses_model_{false};
+  int doubted_{};  // samples in a row with a doubt about a needed signal
+};
+
+}  // namespace fpc

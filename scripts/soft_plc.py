@@ -1,0 +1,213 @@
+#!/usr/bin/python3
+"""A PLC in software: the stirred-tank reactor of config/loop/cstr behind Modbus/TCP, for demonstrations and tests.
+
+    soft_plc.py [--port 1502] [--speedup 60] [--log FILE]
+
+Input registers 0-1: CA [mol/l], float32. Holding registers: 10 coolant flow asked [0.01 l/min], 12 coolant flow in force,
+20 heartbeat of the PLC, 21 heartbeat of the gateway. Coils: 0 the gateway wants the valve, 1 the PLC lets it.
+
+It trusts nobody: when the gateway's heartbeat stands still for a second, or coil 0 is off, it takes the valve itself,
+moves it to its safe flow and puts what is in force into register 10, so that whoever comes back starts there. It counts
+every write to register 10 that is out of bounds or moves too far at once, and does not follow it."""
+import argparse
+import inspect
+import json
+import logging
+import math
+import signal
+import struct
+import sys
+import threading
+import time
+
+LOWER, UPPER, MOVE, SAFE = 0.0, 200.0, 4.0, 103.41  # l/min
+SCAN_S, PATIENCE_S, SETTLE_S = 0.02, 1.0, 0.3  # of wall time
+SAMPLE_S, DELAY_S = 6.0, 30.0  # of process time: the compensator's sample, the analyser's line
+ASKED, IN_FORCE, BEAT_OUT, BEAT_IN, SIZE = 10, 12, 20, 21, 64
+COILS, INPUTS, HOLDING = 1, 4, 3  # function codes that stand for a table
+SCALE = 100.0  # registers per l/min
+
+
+class Reactor:
+    """dCA/dt, dT/dt of Blazic and Skrjanc (2007), eqs. 1 and 2, with the compensator of eq. 10 inside."""
+
+    def __init__(self):
+        self.concentration, self.temperature = 0.1000001680476245, 438.5443805030675
+        self.before, self.share, self.seconds = self.temperature, 0.0, 0.0
+        self.line = [self.concentration] * int(DELAY_S / SAMPLE_S * 30)
+
+    def derivatives(self, concentration, temperature, flow):
+        rate = 7.2e10 * concentration * math.exp(-1e4 / temperature)
+        cooling = flow * 1e3 * (1.0 - math.exp(-7e5 / (flow * 1e3))) if flow > 0.0 else 0.0
+        return (1.0 - concentration - rate,
+                350.0 - temperature + 200.0 * rate + cooling / 1e5 * (350.0 - temperature))
+
+    def step(self, flow, seconds):
+        """Classical Runge-Kutta over `seconds` of process time, one compensator sample at most."""
+        self.seconds += seconds
+        if self.seconds >= SAMPLE_S:
+            self.seconds -= SAMPLE_S
+            self.share = 3.0 * (self.temperature - self.before)
+            self.before = self.temperature
+        flow = min(max(flow + self.share, 0.0), 500.0)
+        h, state = seconds / 60.0, (self.concentration, self.temperature)
+        k1 = self.derivatives(*state, flow)
+        k2 = self.derivatives(*(s + h / 2 * k for s, k in zip(state, k1)), flow)
+        k3 = self.derivatives(*(s + h / 2 * k for s, k in zip(state, k2)), flow)
+        k4 = self.derivatives(*(s + h * k for s, k in zip(state, k3)), flow)
+        self.concentration, self.temperature = (
+            s + h / 6 * (a + 2 * b + 2 * c + d) for s, a, b, c, d in zip(state, k1, k2, k3, k4))
+        self.line = self.line[1:] + [self.concentration]
+
+    def measured(self):
+        return self.line[0]
+
+
+class Plc:
+    """The scan: what a PLC does every 20 ms. `table` reads and writes registers and coils; `clock` in s."""
+
+    def __init__(self, table, speedup, log):
+        self.table, self.speedup, self.log, self.reactor = table, speedup, log, Reactor()
+        self.flow, self.remote, self.beat, self.scans = SAFE, False, None, 0
+        self.writes, self.refused, self.takeovers = 0, 0, 0
+        self.heard = self.calm = time.monotonic()
+        self.left, self.lock = 0.0, threading.RLock()
+        self.publish()
+
+    def written(self, raw):
+        """The gateway has written register 10. Called by the server, at every write."""
+        with self.lock:
+            asked, self.writes = raw / SCALE, self.writes + 1
+            allowed = LOWER <= asked <= UPPER and abs(asked - self.flow) <= MOVE + 1e-9
+            if self.log:
+                print(json.dumps({"t": time.monotonic(), "asked": asked, "before": round(self.flow, 6), "allowed": allowed,
+                                  "remote": self.remote}), file=self.log, flush=True)
+            self.refused += not allowed and self.remote
+            if self.remote and allowed:
+                self.flow = asked
+
+    def scan(self, seconds):
+        with self.lock:
+            now, beat = time.monotonic(), self.table.get(HOLDING, BEAT_IN)
+            if beat != self.beat:
+                self.beat, self.heard = beat, now
+            asked = self.table.get(COILS, 0) and now - self.heard < PATIENCE_S
+            if not asked:
+                self.calm = now
+            if self.remote and not asked:
+                self.takeovers += 1
+                self.note("the PLC takes the valve")
+            if not self.remote and asked and now - self.calm > SETTLE_S:
+                self.note("the gateway has the valve")
+            self.remote = bool(asked and (self.remote or now - self.calm > SETTLE_S))
+            if not self.remote:
+                self.flow += min(max(SAFE - self.flow, -MOVE * seconds / SAMPLE_S), MOVE * seconds / SAMPLE_S)
+            self.left += seconds
+            slice_s = SAMPLE_S / 30
+            while self.left >= slice_s:
+                self.reactor.step(self.flow, slice_s)
+                self.left -= slice_s
+            self.scans += 1
+            self.publish()
+
+    def note(self, event):
+        if self.log:
+            print(json.dumps({"t": time.monotonic(), "event": event, "flow": round(self.flow, 6)}), file=self.log, flush=True)
+
+    def publish(self):
+        raw = int(round(self.flow * SCALE))
+        if not self.remote:
+            self.table.put(HOLDING, ASKED, [raw])
+        self.table.put(HOLDING, IN_FORCE, [raw])
+        self.table.put(HOLDING, BEAT_OUT, [self.scans & 0xFFFF])
+        self.table.put(INPUTS, 0, list(struct.unpack(">HH", struct.pack(">f", self.reactor.measured()))))
+        self.table.put(COILS, 1, [self.remote])
+
+    def summary(self):
+        return (f"soft_plc: {self.writes} writes, {self.refused} of them out of bounds or too far at once; the PLC took the "
+                f"valve {self.takeovers} times; CA is {self.reactor.concentration:.4f} mol/l")
+
+
+def server_parts():
+    """pymodbus is another one on every Debian: 2.1 on 11, 3.0 on 12, 3.8 on 13; later ones say device, not slave."""
+    from pymodbus import datastore
+    try:
+        from pymodbus.server import StartTcpServer
+    except ImportError:
+        from pymodbus.server.sync import StartTcpServer
+    unit = getattr(datastore, "ModbusSlaveContext", None) or datastore.ModbusDeviceContext
+    return StartTcpServer, datastore.ModbusServerContext, unit, datastore.ModbusSequentialDataBlock
+
+
+def made_table():
+    """Registers and coils as pymodbus holds them, the server's context, and what to call at a write from outside."""
+    _, server_context, unit, block = server_parts()
+
+    class Heard(block):
+        """Tells of writes that are not our own, which come from the server's thread."""
+        heard, ours = None, threading.get_ident()
+
+        def setValues(self, address, values):
+            super().setValues(address, values)
+            if self.heard and threading.get_ident() != self.ours:
+                self.heard(address, values)
+
+    class Table:
+        def __init__(self):
+            self.holding = Heard(0, [0] * SIZE)
+            self.unit = unit(di=block(0, [0] * SIZE), co=block(0, [0] * SIZE), ir=block(0, [0] * SIZE), hr=self.holding)
+            self.shift = 0 if getattr(self.unit, "zero_mode", False) else 1
+            many = "slaves" if "slaves" in inspect.signature(server_context.__init__).parameters else "devices"
+            self.context = server_context(**{many: self.unit, "single": True})
+            self.written = lambda raw: None
+            self.holding.heard = self.listen
+
+        def listen(self, address, values):
+            values = values if isinstance(values, (list, tuple)) else [values]
+            if address - self.shift <= ASKED < address - self.shift + len(values):
+                self.written(values[ASKED - (address - self.shift)])
+
+        def get(self, table, address):
+            return self.unit.getValues(table, address, 1)[0]
+
+        def put(self, table, address, values):
+            self.unit.setValues(table, address, values)
+
+    return Table()
+
+
+def serve(table, port):
+    logging.getLogger("pymodbus").setLevel(logging.CRITICAL)  # who comes and goes is no error
+    start = server_parts()[0]
+    for more in ({"allow_reuse_address": True}, {}):  # newer ones do so anyhow, and do not know the word
+        try:
+            start(context=table.context, address=("127.0.0.1", port), **more)
+            return
+        except TypeError:
+            continue
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--port", type=int, default=1502)
+    parser.add_argument("--speedup", type=float, default=60.0)
+    parser.add_argument("--log", help="one JSON object a line: every write to register 10, every change of hands")
+    options = parser.parse_known_args()[0]  # roslaunch adds some
+    with open(options.log, "w", encoding="utf-8") if options.log else open("/dev/null", "w", encoding="utf-8") as log:
+        table = made_table()
+        plc = Plc(table, options.speedup, log if options.log else None)
+        table.written = plc.written
+        threading.Thread(target=serve, args=(table, options.port), daemon=True).start()
+        ended = threading.Event()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: ended.set())
+        before = time.monotonic()
+        while not ended.wait(SCAN_S):
+            now = time.monotonic()
+            plc.scan(min(now - before, 1.0) * options.speedup)
+            before = now
+        print(plc.summary(), flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,108 @@
+// Section `plausibility`: what a measurement may be, signal by signal.
+#include <cmath>
+
+#include "config/read.hpp"
+#include "config/read_safety.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/control/pi/pi.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kJumpOfRange = 0.5;
+
+/// The plant's range, wider by a part of itself; an endless one asks nothing.
+SignalPlausibility defaultsOf(const SignalInfo& signal, double margin, bool may_step) {
+  SignalPlausibility asked;
+  const double range = signal.upper - signal.lower;
+  if (!std::isfinite(range)) return asked;
+  asked.lower = signal.lower - margin * range;
+  asked.upper = signal.upper + margin * range;
+  if (!may_step && range > 0.0) asked.jump = kJumpOfRange * range;
+  return asked;
+}
+
+void readSignal(YamlSection& section, SignalPlausibility& asked) {
+  section.number("lower", asked.lower, {});
+  section.number("upper", asked.upper, {});
+  if (!(asked.lower <= asked.upper)) section.fail("upper", "a number >= lower");
+  section.number("rate_per_h", asked.rate_per_h, {0.0, kInfinite, true});
+  section.number("jump", asked.jump, {0.0, kInfinite, true});
+  section.integer("jump_samples", asked.jump_samples, 1);
+  section.integer("frozen_samples", asked.frozen_samples, 0);
+  std::string substitute = "hold";
+  section.oneOf("substitute", substitute, {"hold", "last_good", "model"});
+  asked.substitute = substitute == "hold"        ? Substitute::kHold
+                     : substitute == "last_good" ? Substitute::kLastGood
+                                                 : Substitute::kModel;
+  section.finish();
+}
+
+void readSignals(YamlSection& signals, const std::vector<SignalInfo>& infos, double margin,
+                 bool may_step, std::vector<SignalPlausibility>& list) {
+  for (const SignalInfo& info : infos) {
+    SignalPlausibility asked = defaultsOf(info, margin, may_step);
+    YamlSection section = signals.section(info.name);
+    readSignal(section, asked);
+    list.push_back(asked);
+  }
+}
+
+/// A PI needs what its loops take; other laws all outputs, and disturbances while no model says
+/// otherwise (ControllerSession looks into the model).
+std::vector<bool> needsOf(const LoopFile& loop) {
+  const std::size_t n_y = loop.plant_info.outputs.size();
+  const auto* pi = findParams<PiParams>(*loop.controller);
+  std::vector<bool> needs(n_y + loop.plant_info.disturbances.size(), pi == nullptr);
+  if (pi == nullptr) return needs;
+  using Kind = PiScheduleSignal::Kind;
+  for (const PiLoop& control : pi->loops) {
+    const PiScheduleSignal& schedule = control.terms.schedule;
+    const auto index = static_cast<std::size_t>(schedule.index);
+    needs[static_cast<std::size_t>(control.output)] = true;
+    if (schedule.kind == Kind::kOutput) needs[index] = true;
+    if (schedule.kind == Kind::kDisturbance) needs[n_y + index] = true;
+    for (const PiFeedforward& term : control.terms.feedforward)
+      needs[n_y + static_cast<std::size_t>(term.disturbance)] = true;
+  }
+  return needs;
+}
+
+}  // namespace
+
+PlausibilityFile readPlausibility(YamlSection& root, const LoopFile& loop) {
+  YamlSection section = root.section("plausibility");
+  PlausibilityFile file;
+  PlausibilityParams& params = file.signals;
+  const PlantInfo& plant = loop.plant_info;
+  const ActuatorParams& actuator = loop.simulation.actuator;
+  params.enabled = params.gain_sign = true;
+  params.fallback = actuator.fallback;
+  params.hold_samples = actuator.hold_samples;
+  params.needs = needsOf(loop);
+  double margin = 0.1;
+  section.boolean("enabled", params.enabled);
+  section.integer("hold_samples", params.hold_samples, -1);
+  section.number("margin", margin, kFiniteNotNegative);
+  section.number("frozen_input", params.frozen_input, kFiniteNotNegative);
+  section.boolean("gain_sign", params.gain_sign);
+  section.integer("stuck_samples", file.stuck.samples, 0);
+  section.number("stuck_tolerance", file.stuck.tolerance, {0.0, 1.0});
+  YamlSection signals = section.section("signals");
+  readSignals(signals, plant.outputs, margin, false, params.outputs);
+  readSignals(signals, plant.disturbances, margin, true, params.disturbances);
+  signals.finish();
+  checked(section, [&] {
+    params.validate(plant.outputs.size(), plant.disturbances.size(),
+                    static_cast<Eigen::Index>(plant.inputs.size()));
+  });
+  section.finish();
+  return file;
+}
+
+PlausibilityFile plausibilityOf(const LoopFile& loop) {
+  YamlSection root = YamlSection::parse(loop.resolved, loop.name);
+  return readPlausibility(root, loop);
+}
+
+}  // namespace fpc

@@ -1,0 +1,42 @@
+// A plant behind std_msgs/Float64 topics, one per signal, as the `pid` package has them: state,
+// control_effort, setpoint, pid_enable.
+#pragma once
+
+#include <ros/ros.h>
+#include <std_msgs/Bool.h>
+#include <std_msgs/Float64.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ros/field.hpp"
+
+namespace fpc {
+
+/// A command counts as received once it is published: where inputs are not read back, nobody knows
+/// better.
+class Float64Field : public Field {
+ public:
+  Float64Field(ros::NodeHandle node, const LoopFile& loop);
+  void exchange(PlantGateway& gateway, bool automatic, double now_s) override;
+  std::vector<std::pair<std::string, std::uint64_t>> counts() const override;
+
+ private:
+  struct Reading {
+    std::size_t index;
+    double value, at_s;
+  };
+  void listen(ros::NodeHandle& node, const std::string& topic, std::vector<Reading>& to,
+              std::size_t index);
+  void forwardSetpoint(ros::NodeHandle& node, const std::string& topic, const std::string& output);
+
+  std::vector<Reading> signals_, positions_;  // since the last exchange
+  std::optional<bool> enabled_;
+  std::uint64_t told_{}, heard_{};
+  ros::Publisher setpoint_;
+  std::vector<ros::Publisher> efforts_;
+  std::vector<ros::Subscriber> subscribers_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,76 @@
+#include "ros/gateway_node.hpp"
+
+#include <utility>
+
+#include "ros/float64_field.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kExchange = 0.01;  // [s] between two looks at the field
+
+std::unique_ptr<Field> makeField(const ros::NodeHandle& node, const LoopFile& loop) {
+  if (gatewayOf(loop).type == GatewayType::kModbus) return makeModbusField(loop);
+  return std::make_unique<Float64Field>(node, loop);
+}
+
+}  // namespace
+
+std::string GatewayNode::idleReason(const LoopFile& loop) {
+  return gatewayOf(loop).enabled() ? "" : loop.name + " has no gateway";
+}
+
+GatewayNode::GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop)
+    : GatewayNode(node, std::move(private_node), loop, makeField(node, loop)) {}
+
+GatewayNode::GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
+                         std::unique_ptr<Field> field)
+    : PlantNode(node, std::move(private_node), loop,
+                std::make_unique<PlantGateway>(loop, field->rounding()),
+                namesOf(loop.plant_info.disturbances)),
+      field_(std::move(field)),
+      gateway_(static_cast<PlantGateway&>(session().process())),
+      field_timer_(node.createSteadyTimer(ros::WallDuration(kExchange),
+                                          [this](const ros::SteadyTimerEvent&) { exchange(); })) {
+  begin();
+}
+
+void GatewayNode::exchange() {
+  const double now_s = steadyNow();
+  gateway_.tick(now_s);
+  field_->exchange(gateway_, session().phase() == PlantPhase::kRunning, now_s);
+  if (session().phase() == PlantPhase::kWaiting) gateway_.renew();
+}
+
+static_assert(fmbpc::Measurement::STALE == static_cast<std::uint8_t>(Quality::kStale));
+static_assert(fmbpc::Measurement::BAD == static_cast<std::uint8_t>(Quality::kBad));
+static_assert(fmbpc::Measurement::MISSING == static_cast<std::uint8_t>(Quality::kMissing));
+
+void GatewayNode::mark(fmbpc::Measurement& measurement) const {
+  for (const Quality quality : gateway_.quality())
+    measurement.quality.push_back(static_cast<std::uint8_t>(quality));
+  const Vector& age = gateway_.age();
+  measurement.age_s.assign(age.data(), age.data() + age.size());
+  measurement.local = !gateway_.takesActions();
+}
+
+int GatewayNode::finish() {
+  field_->release();
+  return Node::finish();
+}
+
+Health GatewayNode::plantHealth() const {
+  const std::string problem = gateway_.problem(), link = field_->problem();
+  if (problem.empty() && link.empty()) return {LoopMode::kAutomatic, "", {}};
+  const std::string words = problem.empty() ? link : link.empty() ? problem : problem + ": " + link;
+  if (gateway_.field() == FieldState::kLocal) return {LoopMode::kManual, words, {}};
+  return {
+      gateway_.field() == FieldState::kRunning ? LoopMode::kDegraded : LoopMode::kHeld, words, {}};
+}
+
+void GatewayNode::addValues(Diagnostics::Status& status) const {
+  for (const auto& [name, count] : field_->counts()) status.add(name, count);
+  status.add("actions that the plant could not take", gateway_.skipped());
+}
+
+}  // namespace fpc

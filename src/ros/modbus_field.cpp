@@ -1,0 +1,200 @@
+#include "ros/modbus_field.hpp"
+
+#include <chrono>
+
+#include "ros/wall_throttle.hpp"
+
+namespace fpc {
+namespace {
+
+std::chrono::duration<double> seconds(double value) { return std::chrono::duration<double>(value); }
+
+}  // namespace
+
+ModbusField::ModbusField(const LoopFile& loop) : params_(gatewayOf(loop)) {
+  seen_.signals.resize(params_.outputs.size() + params_.disturbances.size());
+  seen_.positions.resize(params_.inputs.size());
+  seen_.problem = "not connected yet";
+  shown_ = seen_;
+  thread_ = std::thread([this] { work(); });
+}
+
+ModbusField::~ModbusField() {
+  release();
+  if (thread_.joinable()) thread_.join();
+}
+
+/// The thread gives the plant its inputs back, and ends.
+void ModbusField::release() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  stop_ = true;
+  wish_.automatic = wish_.commands = false;
+  wake_.notify_all();
+}
+
+PlantGateway::Rounding ModbusField::rounding() const {
+  return [inputs = params_.inputs](Eigen::Index i, double value, double lower, double upper) {
+    return representable(inputs[static_cast<std::size_t>(i)].modbus.format, value, lower, upper);
+  };
+}
+
+void ModbusField::exchange(PlantGateway& gateway, bool automatic, double now_s) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const Seen& seen = shown_;
+  if (seen.drops != handed_drops_) gateway.link(false, seen.at_s);
+  handed_drops_ = seen.drops;
+  gateway.link(seen.up, seen.at_s);
+  if (seen.remote_seen) gateway.remote(seen.remote, seen.at_s);
+  if (seen.beaten) gateway.beat(seen.beat, seen.beat_s);
+  if (seen.failed == gateway.commandNumber() && seen.failed > seen.confirmed)
+    gateway.fail(seen.failed, seen.failed_s);
+  gateway.confirm(seen.confirmed, seen.confirmed_s);
+  for (std::size_t i = 0; i < seen.signals.size(); ++i)
+    if (seen.signals[i].at_s >= 0.0) gateway.sense(i, seen.signals[i].value, seen.signals[i].at_s);
+  for (std::size_t i = 0; i < seen.positions.size(); ++i)
+    if (seen.positions[i].at_s >= 0.0)
+      gateway.readBack(static_cast<Eigen::Index>(i), seen.positions[i].value,
+                       seen.positions[i].at_s);
+  wish_.asked_s = now_s;
+  if (stop_) return;
+  wish_.automatic = automatic;
+  wish_.commands = automatic && gateway.commands();
+  if (wish_.number == gateway.commandNumber()) return;
+  wish_.number = gateway.commandNumber();
+  wish_.drops = seen.drops;
+  wish_.input = gateway.command();
+  wake_.notify_all();
+}
+
+std::string ModbusField::problem() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return shown_.problem;
+}
+
+std::vector<std::pair<std::string, std::uint64_t>> ModbusField::counts() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return {{"rounds of polling", shown_.rounds},
+          {"connections lost", shown_.drops},
+          {"requests failed", shown_.errors},
+          {"requests refused by the plant", shown_.exceptions}};
+}
+
+void ModbusField::work() {
+  std::unique_ptr<ModbusLink> link;
+  std::unique_lock<std::mutex> lock(mutex_);
+  for (bool last = false; !last;) {
+    last = stop_;
+    const Wish wish = wish_;
+    lock.unlock();
+    try {
+      if (!link && !last) {
+        auto fresh = std::make_unique<ModbusLink>(params_.modbus);
+        fresh->connect();
+        link = std::move(fresh);
+        automatic_told_ = -1;
+      }
+      if (link) round(*link, wish);
+    } catch (const std::exception& error) {
+      link.reset();
+      dropped(error.what());
+    }
+    lock.lock();
+    shown_ = seen_;
+    const double pause_s = link ? params_.modbus.poll_s : params_.modbus.reconnect_s;
+    const std::uint64_t told = wish.number;
+    if (!last)
+      wake_.wait_for(lock, seconds(pause_s),
+                     [&] { return stop_ || (link && wish_.commands && wish_.number != told); });
+  }
+}
+
+void ModbusField::dropped(const std::string& why) {
+  ++seen_.errors;
+  if (seen_.up) ++seen_.drops;
+  seen_.up = false;
+  seen_.at_s = steadyNow();
+  seen_.problem = why;
+}
+
+void ModbusField::round(ModbusLink& link, const Wish& wish) {
+  const std::uint64_t refused = seen_.exceptions;
+  readAll(link);
+  tell(link, wish);
+  readPositions(link);
+  ++seen_.rounds;
+  if (!seen_.up) seen_.at_s = steadyNow();
+  seen_.up = true;
+  seen_.problem = seen_.exceptions > refused ? link.refusal() : "";
+}
+
+void ModbusField::readAll(ModbusLink& link) {
+  const ModbusParams& modbus = params_.modbus;
+  for (std::size_t i = 0; i < seen_.signals.size(); ++i) {
+    const std::size_t n_y = params_.outputs.size();
+    const GatewayTag& tag = i < n_y ? params_.outputs[i] : params_.disturbances[i - n_y];
+    const double at_s = steadyNow();
+    if (const auto value = link.read(tag.modbus))
+      seen_.signals[i] = {*value, at_s};
+    else
+      ++seen_.exceptions;
+  }
+  if (modbus.remote.address >= 0) {
+    const auto remote = link.readBit(modbus.remote);
+    if (remote) seen_.remote = *remote;
+    seen_.remote_seen = seen_.remote_seen || remote.has_value();
+    if (!remote) ++seen_.exceptions;
+  }
+  if (modbus.heartbeat_in < 0) return;
+  const double at_s = steadyNow();
+  const auto beat = link.readRegister(modbus.heartbeat_in);
+  if (!beat) ++seen_.exceptions;
+  if (!beat || (seen_.beaten && seen_.beat == *beat)) return;
+  seen_.beat = *beat;
+  seen_.beat_s = at_s;
+  seen_.beaten = true;
+}
+
+void ModbusField::readPositions(ModbusLink& link) {
+  for (std::size_t i = 0; i < seen_.positions.size(); ++i) {
+    const double at_s = steadyNow();
+    if (const auto value = link.read(params_.inputs[i].readback))
+      seen_.positions[i] = {*value, at_s};
+    else
+      ++seen_.exceptions;
+  }
+}
+
+/// A command is written once; one that failed, or was made before the connection was lost, waits
+/// for what is read back.
+void ModbusField::tell(ModbusLink& link, const Wish& wish) {
+  const ModbusParams& modbus = params_.modbus;
+  if (modbus.automatic.address >= 0 && automatic_told_ != (wish.automatic ? 1 : 0)) {
+    if (link.writeCoil(modbus.automatic.address, wish.automatic))
+      automatic_told_ = wish.automatic ? 1 : 0;
+    else
+      ++seen_.exceptions;
+  }
+  if (modbus.heartbeat_out >= 0 && steadyNow() - wish.asked_s < kPatience &&
+      !link.writeRegister(modbus.heartbeat_out, ++heartbeat_))
+    ++seen_.exceptions;
+  if (!wish.commands || wish.number == seen_.confirmed || wish.number == seen_.failed) return;
+  seen_.failed = wish.number;  // unless all of it arrives
+  seen_.failed_s = steadyNow();
+  if (wish.drops != seen_.drops) return;
+  bool done = true;
+  for (std::size_t i = 0; i < params_.inputs.size(); ++i) {
+    seen_.failed_s = steadyNow();
+    done = link.write(params_.inputs[i].modbus, wish.input[static_cast<Eigen::Index>(i)]) && done;
+  }
+  seen_.failed_s = steadyNow();
+  if (!done) ++seen_.exceptions;
+  if (!done) return;
+  seen_.confirmed = wish.number;
+  seen_.confirmed_s = steadyNow();
+}
+
+std::unique_ptr<Field> makeModbusField(const LoopFile& loop) {
+  return std::make_unique<ModbusField>(loop);
+}
+
+}  // namespace fpc

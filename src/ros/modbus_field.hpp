@@ -1,0 +1,77 @@
+// A plant behind Modbus/TCP. All input and output happens in a thread of its own, so that a slow
+// or silent plant never holds up the ring.
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "ros/field.hpp"
+#include "ros/modbus_link.hpp"
+
+namespace fpc {
+
+/// Each round of poll_s, and at once when there is a command: everything is read, then the command
+/// is written, then the inputs are read back. The heartbeat towards the plant counts rounds and
+/// stops when exchange() has not been called for kPatience: a plant that watches it notices a node
+/// that hangs.
+class ModbusField : public Field {
+ public:
+  static constexpr double kPatience = 1.0;  ///< [s]
+
+  explicit ModbusField(const LoopFile& loop);
+  ~ModbusField() override;
+  PlantGateway::Rounding rounding() const override;
+  void exchange(PlantGateway& gateway, bool automatic, double now_s) override;
+  void release() override;
+  std::string problem() const override;
+  std::vector<std::pair<std::string, std::uint64_t>> counts() const override;
+
+ private:
+  struct Reading {
+    double value{}, at_s{-1.0};
+  };
+  /// What the thread has seen; copied whole.
+  struct Seen {
+    bool up{false};
+    std::uint64_t drops{}, rounds{}, errors{}, exceptions{};
+    std::vector<Reading> signals, positions;
+    bool remote{true}, remote_seen{false};
+    std::uint64_t beat{}, confirmed{}, failed{};
+    bool beaten{false};
+    double at_s{}, beat_s{}, confirmed_s{}, failed_s{};
+    std::string problem;
+  };
+  /// What the thread is to tell the plant.
+  struct Wish {
+    Vector input;
+    std::uint64_t number{}, drops{};  ///< made when so many connections had been lost
+    bool commands{false}, automatic{false};
+    double asked_s{};
+  };
+  void work();
+  void round(ModbusLink& link, const Wish& wish);
+  void readAll(ModbusLink& link);
+  void readPositions(ModbusLink& link);
+  void tell(ModbusLink& link, const Wish& wish);
+  void dropped(const std::string& why);
+
+  GatewayParams params_;
+  Seen seen_;  // of the thread
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  Seen shown_;  // guarded by mutex_, as all that follows
+  Wish wish_;
+  bool stop_{false};
+  std::uint64_t handed_drops_{};  // of exchange()
+  std::uint16_t heartbeat_{};
+  int automatic_told_{-1};
+  std::thread thread_;
+};
+
+}  // namespace fpc

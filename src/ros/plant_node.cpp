@@ -1,0 +1,280 @@
+#include "ros/plant_node.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/config/plausibility_file.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kPoll = 0.05;         // [s] of wall time
+constexpr double kIntroduceAgain = 1;  // [s], while nobody answers (in realtime samples go on)
+constexpr double kPatience = 1.0;      // [s] without an action before that is said
+constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+
+std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
+  std::vector<std::string> names = loop.ring.wait_for;
+  std::istringstream also(private_node.param<std::string>("also_wait_for", ""));
+  for (std::string name; also >> name;) names.push_back(name);
+  return names;
+}
+
+/// The nodes of ours that beat.
+std::vector<std::string> namesToWatch(const LoopFile& loop, const ros::NodeHandle& node) {
+  std::vector<std::string> names = loop.ring.members;
+  for (std::string& name : names) name = node.resolveName(name);
+  return names;
+}
+
+PlantPolicy policyOf(const LoopFile& loop) {
+  PlantPolicy policy;
+  policy.pace = loop.ring.pace;
+  policy.period_s = loop.simulation.sample_time_s / loop.ring.speedup;
+  policy.action_timeout_s = loop.ring.action_timeout_s;
+  policy.stuck = plausibilityOf(loop).stuck;
+  return policy;
+}
+
+}  // namespace
+
+PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
+                     std::unique_ptr<Process> process, const std::vector<std::string>& disturbances)
+    : Node(node, loop),
+      loop_(loop),
+      session_(std::move(process), policyOf(loop)),
+      publishers_(node, session_.process().info(), disturbances, loop.ring.publish_clock),
+      keeper_(node, loop),
+      ready_(node, namesToWaitFor(loop, private_node)),
+      watch_(namesToWatch(loop, node)),
+      begun_s_(steadyNow()),
+      end_(node),
+      node_(node),
+      action_subscriber_(
+          subscribe(node, topics::kControlAction, topics::kPairQueue, &PlantNode::onAction, this)),
+      state_subscriber_(
+          subscribe(node, topics::kLoopState, topics::kPairQueue, &PlantNode::onLoopState, this)),
+      pause_(private_node.advertiseService(topics::kPause, &PlantNode::onPause, this)),
+      step_(private_node.advertiseService(topics::kStep, &PlantNode::onStep, this)),
+      reset_(private_node.advertiseService(topics::kReset, &PlantNode::onReset, this)),
+      poll_timer_(node.createSteadyTimer(ros::WallDuration(kPoll),
+                                         [this](const ros::SteadyTimerEvent&) { onPoll(); })),
+      pace_timer_(node.createSteadyTimer(
+          ros::WallDuration(kPoll), [this](const ros::SteadyTimerEvent&) { tryAdvance(); }, true,
+          false)),
+      health_(node, private_node, "plant", loop.name, true,
+              {[this](double now_s) { return health(now_s); },
+               [this] { return session_.process().measurement().header; },
+               [this](Diagnostics::Status& status) { report(status); }}) {}
+
+void PlantNode::begin() {
+  beginRun();
+  frames_.broadcast(loop_.tf, session_.process().info().header.time_ns);
+}
+
+// A number that no run had before, also of an earlier process; which one counts is said by
+// plant_info, not by its size.
+void PlantNode::beginRun() {
+  run_id_ = std::max(run_id_ + 1, ros::WallTime::now().toNSec());
+  session_.begin(run_id_);
+  keeper_.beginRun(run_id_);
+  publishers_.introduce(session_.process());
+  introduced_s_ = steadyNow();
+  tracking_subscriber_.shutdown();
+}
+
+void PlantNode::start() {
+  session_.start(steadyNow());
+  ROS_INFO("%s: run %lu of %s starts", ros::this_node::getName().c_str(), run_id_,
+           loop_.name.c_str());
+  publishSample();
+}
+
+void PlantNode::onPoll() {
+  exchange();
+  if (session_.phase() == PlantPhase::kWaiting) return waitForOthers();
+  const double now_s = steadyNow();
+  if (!session_.mustResend(now_s)) return;
+  session_.resent(now_s);
+  publishers_.resend();
+  if (now_s - answered_s_ < kIntroduceAgain || now_s - introduced_s_ < kIntroduceAgain) return;
+  introduced_s_ = now_s;  // somebody may have been told of another run
+  publishers_.introduce(session_.process());
+}
+
+void PlantNode::waitForOthers() {
+  if (failed_s_ >= 0) {
+    if (steadyNow() - failed_s_ > kLastWords) fail(failure_);
+    return;
+  }
+  missing_ = ready_.missing();
+  const std::vector<std::string> own = plantMissing();
+  missing_.insert(missing_.end(), own.begin(), own.end());
+  if (missing_.empty()) return start();
+  if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
+  failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
+             " s: " + join(missing_);
+  failed_s_ = steadyNow();
+  end_.say(failure_);
+  health_.look();
+}
+
+void PlantNode::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
+  guarded(topics::kControlAction, [&] {
+    exchange();
+    if (!session_.receive(fromMsg(*msg))) return;
+    answered_s_ = steadyNow();
+    exchange();
+    tryAdvance();
+  });
+}
+
+void PlantNode::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
+  const StepHeader& now = session_.process().measurement().header;
+  if (session_.phase() == PlantPhase::kFinished && msg->run_id == now.run_id &&
+      msg->step == now.step)
+    session_.finish();
+}
+
+void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg) {
+  watch_.hear(msg->node, {static_cast<LoopMode>(msg->mode), msg->reason, msg->missing},
+              steadyNow());
+}
+
+void PlantNode::tryAdvance() {
+  exchange();
+  const std::uint64_t missed = session_.missingInputs();
+  if (!session_.advance(steadyNow())) return armTimer();
+  if (session_.missingInputs() > missed && trouble_log_.pass())
+    ROS_WARN("%s: no action in time (%lu so far)", ros::this_node::getName().c_str(),
+             session_.missingInputs());
+  publishSample();
+  exchange();
+}
+
+void PlantNode::publishSample() {
+  const Process& process = session_.process();
+  publishers_.sample(process, shownDisturbances(),
+                     [this](fmbpc::Measurement& measurement) { mark(measurement); });
+  afterSample();
+  if (!process.trouble().empty() && trouble_log_.pass())
+    ROS_WARN("%s: %s", ros::this_node::getName().c_str(), process.trouble().c_str());
+  if (session_.phase() == PlantPhase::kFinished) {
+    ROS_INFO("%s: final sample %u sent", ros::this_node::getName().c_str(),
+             process.measurement().header.step);
+    tracking_subscriber_ =
+        subscribe(node_, topics::kTracking, topics::kPairQueue, &PlantNode::onTracking, this);
+  } else {
+    armTimer();
+  }
+}
+
+void PlantNode::armTimer() {
+  if (!session_.pacer().timed()) return;
+  const double due_s = session_.nextDue();
+  pace_timer_.stop();
+  if (!std::isfinite(due_s)) return;
+  pace_timer_.setPeriod(ros::WallDuration(std::max(1e-6, due_s - steadyNow())));
+  pace_timer_.start();
+}
+
+bool PlantNode::onPause(std_srvs::SetBool::Request& request,
+                        std_srvs::SetBool::Response& response) {
+  session_.pause(request.data != 0, steadyNow());
+  if (!session_.paused()) tryAdvance();
+  response.success = true;
+  response.message = session_.paused() ? "paused" : "running";
+  health_.look();
+  return true;
+}
+
+bool PlantNode::onStep(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.success = session_.step();
+  response.message = response.success     ? "one sample"
+                     : !session_.paused() ? "pause first"
+                                          : "there is no run under way";
+  if (response.success) tryAdvance();
+  return true;
+}
+
+bool PlantNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response& response) {
+  response.success = session_.phase() != PlantPhase::kWaiting;
+  response.message = response.success ? "sample 0 of a new run" : "the first run has not begun";
+  if (response.success) {
+    beginRun();
+    start();
+  }
+  return true;
+}
+
+Health PlantNode::health(double now_s) const {
+  if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
+  if (session_.phase() == PlantPhase::kWaiting)
+    return {LoopMode::kStarting, "waiting for " + join(missing_), missing_};
+  if (!session_.process().trouble().empty())
+    return {LoopMode::kFailed, session_.process().trouble(), {}};
+  if (session_.phase() == PlantPhase::kFinished)
+    return session_.acknowledged() ? Health{LoopMode::kFinished, "finished", {}}
+                                   : Health{LoopMode::kFinished,
+                                            "finished; the final sample is sent again until it is "
+                                            "tracked",
+                                            watch_.silent(now_s)};
+  if (session_.paused()) return {LoopMode::kHeld, "paused", {}};
+  return runningHealth(now_s);
+}
+
+// Nothing that stands still is "running".
+Health PlantNode::runningHealth(double now_s) const {
+  const std::vector<std::string> silent = watch_.silent(now_s);
+  const Health others = watch_.worst(now_s);
+  std::string who = silent.empty() ? "" : "; no word from " + join(silent);
+  if (who.empty() && !others.words.empty()) who = "; " + others.words;
+  const std::string step = std::to_string(session_.process().measurement().header.step);
+  const Actuator& actuator = session_.process().actuator();
+  if (actuator.missing()) {
+    const bool fallback = actuator.fellBack();
+    return {fallback ? LoopMode::kFallback : LoopMode::kHeld,
+            std::string("no actions: the input is ") +
+                (fallback ? "the configured fallback" : "held") + " at sample " + step + who,
+            silent};
+  }
+  const Health plant = plantHealth();
+  const bool its_own_hand = plant.mode == LoopMode::kManual;
+  if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= others.mode))
+    return plant;
+  const double late_s = session_.unansweredFor(now_s);
+  if (late_s > kPatience && loop_.ring.pace != Pace::kRealtime)
+    return {LoopMode::kStalled, "no action for sample " + step + who, silent};
+  if (!silent.empty()) return {LoopMode::kDegraded, "no word from " + join(silent), silent};
+  if (!session_.stuck().empty()) return {LoopMode::kDegraded, session_.stuck(), {}};
+  if (others.mode == LoopMode::kAutomatic) return {LoopMode::kAutomatic, "running", {}};
+  if (others.mode == LoopMode::kManual) return {LoopMode::kManual, others.words, {}};
+  const bool as_it_is = others.mode == LoopMode::kHeld || others.mode == LoopMode::kFallback;
+  return {as_it_is ? others.mode : LoopMode::kDegraded, others.words, others.missing};
+}
+
+void PlantNode::report(Diagnostics::Status& status) const {
+  const ActionCounts& counts = session_.counts();
+  status.add("run_id", run_id_);
+  status.add("step", session_.process().measurement().header.step);
+  status.add("actions accepted", counts.accepted);
+  status.add("actions dropped: repeated", counts.repeated);
+  status.add("actions dropped: old step", counts.old);
+  status.add("actions dropped: later step", counts.later);
+  status.add("actions dropped: other run", counts.other_run);
+  status.add("actions dropped: wrong size", counts.wrong_size);
+  status.add("actions dropped: not finite", counts.not_finite);
+  status.add("measurements sent again", publishers_.resent());
+  status.add("inputs missing", session_.missingInputs());
+  status.add("realtime slips", session_.pacer().slips());
+  addValues(status);
+  addRefused(status, refused());
+  addRefused(status, authority().refused());
+}
+
+}  // namespace fpc

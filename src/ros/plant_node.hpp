@@ -1,0 +1,100 @@
+// The plant's end of the ring as a node, whatever plant it is: converts, asks its session,
+// publishes.
+#pragma once
+
+#include <fmbpc/ControlAction.h>
+#include <fmbpc/LoopState.h>
+#include <fmbpc/Tracking.h>
+#include <ros/ros.h>
+#include <std_srvs/SetBool.h>
+#include <std_srvs/Trigger.h>
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/loop/plant_session.hpp"
+#include "ros/equipment_frames.hpp"
+#include "ros/health_reporter.hpp"
+#include "ros/node.hpp"
+#include "ros/operator_keeper.hpp"
+#include "ros/plant_publishers.hpp"
+#include "ros/ready.hpp"
+#include "ros/run_end.hpp"
+#include "ros/wall_throttle.hpp"
+
+namespace fpc {
+
+/// Parameters: `loop_text`; `~also_wait_for`, names beside those of loop.wait_for, separated by
+/// spaces. Services: ~pause (SetBool), ~step (Trigger, while paused), ~reset (Trigger: sample 0 of
+/// a new run). Its loop_state is the summary of the loop.
+class PlantNode : public Node {
+ protected:
+  /// `disturbances`: names of those that have signals. The constructor of the plant's own class
+  /// calls begin() at its end.
+  PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
+            std::unique_ptr<Process> process, const std::vector<std::string>& disturbances);
+  void begin();
+
+  /// What the plant itself waits for before sample 0.
+  virtual std::vector<std::string> plantMissing() { return {}; }
+  /// Values of the signals named at construction.
+  virtual VectorRef shownDisturbances() const = 0;
+  /// Before anything is decided about time, and after a command may have changed.
+  virtual void exchange() {}
+  /// What a measurement says besides its struct.
+  virtual void mark(fmbpc::Measurement&) const {}
+  /// The sample has been published.
+  virtual void afterSample() {}
+  /// The plant's own trouble; automatic: none.
+  virtual Health plantHealth() const { return {LoopMode::kAutomatic, "", {}}; }
+  virtual void addValues(Diagnostics::Status&) const {}
+
+  PlantSession& session() { return session_; }
+  const PlantSession& session() const { return session_; }
+  const LoopFile& loop() const { return loop_; }
+  ros::NodeHandle& node() { return node_; }
+
+ private:
+  void onAction(const fmbpc::ControlAction::ConstPtr& msg);
+  void onTracking(const fmbpc::Tracking::ConstPtr& msg);
+  void onLoopState(const fmbpc::LoopState::ConstPtr& msg);
+  bool onPause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool onStep(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void onPoll();
+  void waitForOthers();
+  void beginRun();
+  void start();
+  void tryAdvance();
+  void publishSample();
+  void armTimer();
+  Health health(double now_s) const;
+  Health runningHealth(double now_s) const;
+  void report(Diagnostics::Status& status) const;
+
+  LoopFile loop_;
+  PlantSession session_;
+  PlantPublishers publishers_;
+  OperatorKeeper keeper_;
+  ReadyListener ready_;
+  EquipmentFrames frames_;
+  RingWatch watch_;
+
+  std::uint64_t run_id_{};
+  double begun_s_, introduced_s_{}, answered_s_{}, failed_s_{-1};
+  std::string failure_;
+  std::vector<std::string> missing_;
+  RunEndPublisher end_;
+  WallThrottle trouble_log_{1.0};
+
+  ros::NodeHandle node_;
+  ros::Subscriber action_subscriber_, state_subscriber_, tracking_subscriber_;
+  ros::ServiceServer pause_, step_, reset_;
+  ros::SteadyTimer poll_timer_, pace_timer_;
+  HealthReporter health_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,88 @@
+#include "fmbpc/config/gateway_params.hpp"
+
+#include "fmbpc/config/plausibility_file.hpp"
+#include "loop/gateway_fixture.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+std::string errorIn(const std::string& gateway) {
+  return errorOf([&] { gatewayLoop(gateway); });
+}
+
+TEST(GatewayParams, ReadsTheTagMapOfTopics) {
+  const GatewayParams gateway = gatewayOf(topicLoop());
+  EXPECT_EQ(gateway.type, GatewayType::kFloat64);
+  EXPECT_EQ(gateway.outputs[0].topic, "level/state");
+  EXPECT_EQ(gateway.outputs[0].setpoint_topic, "level/setpoint");
+  EXPECT_EQ(gateway.disturbances[0].topic, "rain/state");
+  EXPECT_EQ(gateway.inputs[0].topic, "inflow/control_effort");
+  EXPECT_TRUE(gateway.reads_back);
+  EXPECT_FALSE(gatewayOf(gatewayLoop("  type: float64\n")).reads_back);
+}
+
+TEST(GatewayParams, ReadsTheTagMapOfRegisters) {
+  const GatewayParams gateway = gatewayOf(gatewayLoop(
+      "  type: modbus\n  modbus: {word_order: low_first, remote_coil: 3, remote_table: discrete}\n"
+      "  tags:\n    level: {register: 7, table: input}\n"
+      "    rain: {register: 2, type: int32, word_order: high_first}\n"
+      "    inflow: {register: 4, type: uint16, scale: 0.01, offset: -1, readback: 6}\n"));
+  EXPECT_TRUE(gateway.outputs[0].modbus.input_table);
+  EXPECT_EQ(gateway.outputs[0].modbus.format.order, WordOrder::kLowFirst);
+  EXPECT_EQ(gateway.disturbances[0].modbus.format.order, WordOrder::kHighFirst);
+  EXPECT_EQ(gateway.inputs[0].modbus.address, 4);
+  EXPECT_EQ(gateway.inputs[0].readback.address, 6);
+  EXPECT_EQ(gateway.inputs[0].readback.format.scale, 0.01);
+  EXPECT_TRUE(gateway.modbus.remote.discrete_table);
+  EXPECT_TRUE(gateway.reads_back);  // what a holding register holds can be read
+  EXPECT_EQ(gateway.heartbeat_s, 0.0);
+}
+
+TEST(GatewayParams, RunsInRealtimeWhateverTheLoopSays) {
+  const LoopFile loop = gatewayLoop("  type: float64\n  speedup: 5\nloop: {pace: paced}\n");
+  EXPECT_EQ(loop.ring.pace, Pace::kRealtime);
+  EXPECT_EQ(loop.ring.speedup, 5.0);
+  EXPECT_EQ(loop.ring.publishers.at("measurement"), std::vector<std::string>{"plant_gateway"});
+}
+
+TEST(GatewayParams, ErrorsNameKeyAndWhatWasExpected) {
+  expectWords(errorIn("  type: modbus\n"), {"gateway.tags", "level", "register"});
+  expectWords(errorIn("  type: opc\n"), {"gateway.type", "modbus"});
+  expectWords(errorIn("  type: float64\n  heartbeat_s: 3\n"), {"heartbeat_s", "heartbeat_in"});
+  expectWords(errorIn("  type: float64\n  tags: {pump: {topic: a}}\n"), {"gateway.tags", "pump"});
+  const std::string tags =
+      "  type: modbus\n  tags:\n    level: {register: 0}\n    rain: {register: 2}\n";
+  expectWords(errorIn(tags + "    inflow: {register: 70000}\n"), {"register", "65534"});
+  expectWords(errorIn(tags + "    inflow: {register: 4, scale: 0}\n"), {"scale"});
+}
+
+TEST(GatewayParams, ASimulatedPlantHasNone) {
+  expectWords(errorOf([] { parseLoop(smallLoop() + "gateway: {type: float64}\n", "small"); }),
+              {"gateway.type", "external"});
+}
+
+TEST(PlausibilityFile, TakesItsDefaultsFromThePlantAndTheActuator) {
+  const PlausibilityFile file = plausibilityOf(gatewayLoop("  type: none\n"));
+  EXPECT_TRUE(file.signals.enabled);
+  EXPECT_EQ(file.signals.hold_samples, 3);
+  EXPECT_EQ(file.signals.fallback, one(4.0));
+  EXPECT_NEAR(file.signals.outputs[0].lower, -0.4, 1e-12);
+  EXPECT_NEAR(file.signals.outputs[0].upper, 4.4, 1e-12);
+  EXPECT_EQ(file.signals.outputs[0].jump, 2.0);
+  EXPECT_EQ(file.signals.disturbances[0].jump, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(file.signals.needs, (std::vector<bool>{true, false}));  // a PI without feed-forward
+}
+
+TEST(PlausibilityFile, ErrorsNameKeyAndWhatWasExpected) {
+  const auto error = [](const std::string& text) {
+    return errorOf([&] { gatewayLoop("  type: none\nplausibility: " + text + "\n"); });
+  };
+  expectWords(error("{signals: {level: {lower: 5}}}"), {"plausibility.signals.level.upper"});
+  expectWords(error("{signals: {level: {substitute: guess}}}"), {"substitute", "last_good"});
+  expectWords(error("{signals: {inflow: {lower: 5}}}"), {"plausibility.signals", "inflow"});
+  expectWords(error("{hold_samples: -2}"), {"hold_samples"});
+}
+
+}  // namespace
+}  // namespace fpc

@@ -1,0 +1,151 @@
+#include "fmbpc/control/plausibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+PlantInfo plant() {
+  PlantInfo info;
+  info.sample_time_s = 3600.0;
+  info.outputs = {{"x", "mg/l", 0.0, 100.0}};
+  info.disturbances = {{"q", "m3/h", 0.0, 10.0}};
+  info.inputs = {{"u", "m3/h", 0.0, 10.0}};
+  return info;
+}
+
+PlausibilityParams params(const std::function<void(SignalPlausibility&)>& change = nullptr) {
+  PlausibilityParams p;
+  p.enabled = true;
+  p.hold_samples = 3;
+  p.fallback = Vector::Constant(1, 5.0);
+  p.outputs.resize(1);
+  p.disturbances.resize(1);
+  if (change) change(p.outputs[0]);
+  return p;
+}
+
+struct Watch {
+  explicit Watch(const PlausibilityParams& p) : judge(p, plant()) {}
+  Verdict look(double x, double u = 1.0, double q = 2.0) {
+    Measurement m;
+    m.outputs = Vector::Constant(1, x);
+    m.disturbances = Vector::Constant(1, q);
+    m.input_applied = Vector::Constant(1, u);
+    return judge.look(m);
+  }
+  Plausibility judge;
+};
+
+TEST(Plausibility, AsksNothingByItselfButNumbers) {
+  Watch watch{PlausibilityParams{}};
+  EXPECT_EQ(watch.look(1e9), Verdict::kClean);
+  EXPECT_EQ(watch.look(-1e9), Verdict::kClean);
+  EXPECT_EQ(watch.look(kNan), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x is no number: input held");
+}
+
+TEST(Plausibility, RangeHoldsThenFallsBackAndReturnsAtOnce) {
+  Watch watch(params([](SignalPlausibility& s) { s.upper = 110.0; }));
+  EXPECT_EQ(watch.look(110.0), Verdict::kClean);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(watch.look(110.1), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x is outside [-inf, 110]: input held");
+  EXPECT_EQ(watch.look(110.1), Verdict::kFallback);
+  EXPECT_STREQ(watch.judge.words(), "x is outside [-inf, 110]: the configured fallback");
+  EXPECT_EQ(watch.look(100.0), Verdict::kClean);
+  EXPECT_STREQ(watch.judge.words(), "");
+}
+
+TEST(Plausibility, ASignalThatTheLawDoesNotNeedHoldsNothing) {
+  Watch watch(params());
+  watch.judge.need(1, false);
+  EXPECT_EQ(watch.look(1.0, 1.0, 7.0), Verdict::kClean);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(watch.look(1.0, 1.0, kNan), Verdict::kRepaired);
+  EXPECT_EQ(watch.judge.accepted().disturbances[0], 7.0);
+  EXPECT_STREQ(watch.judge.words(), "q is no number: its last good value is used");
+}
+
+TEST(Plausibility, TheRateIsMeasuredFromTheLastAcceptedValue) {
+  Watch watch(params([](SignalPlausibility& s) { s.rate_per_h = 10.0; }));  // a sample an hour
+  EXPECT_EQ(watch.look(50.0), Verdict::kClean);
+  EXPECT_EQ(watch.look(60.0), Verdict::kClean);
+  EXPECT_EQ(watch.look(75.0), Verdict::kHold);
+  EXPECT_EQ(watch.judge.doubt(0), Doubt::kRate);
+  EXPECT_EQ(watch.look(75.0), Verdict::kClean);  // 15 in two hours can be true
+}
+
+TEST(Plausibility, AJumpIsAcceptedOnceItStays) {
+  Watch watch(params([](SignalPlausibility& s) { s.jump = 20.0; }));
+  EXPECT_EQ(watch.look(50.0), Verdict::kClean);
+  EXPECT_EQ(watch.look(90.0), Verdict::kHold);
+  EXPECT_EQ(watch.look(52.0), Verdict::kClean);  // it was a spike
+  EXPECT_EQ(watch.look(90.0), Verdict::kHold);
+  EXPECT_EQ(watch.look(91.0), Verdict::kHold);
+  EXPECT_EQ(watch.judge.doubt(0), Doubt::kJump);
+  EXPECT_EQ(watch.look(92.0), Verdict::kClean);  // the third sample there
+  EXPECT_EQ(watch.look(93.0), Verdict::kClean);
+}
+
+TEST(Plausibility, FrozenIsWhatDoesNotChangeWhileAnInputMoves) {
+  Watch watch(params([](SignalPlausibility& s) { s.frozen_samples = 4; }));
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(watch.look(50.0, 1.0), Verdict::kClean);  // at rest
+  EXPECT_EQ(watch.look(50.0, 2.5), Verdict::kHold);
+  EXPECT_EQ(watch.judge.doubt(0), Doubt::kFrozen);
+  EXPECT_EQ(watch.look(50.000001, 2.5), Verdict::kClean);
+  EXPECT_EQ(watch.look(50.000001, 5.0), Verdict::kClean);  // the count starts anew
+}
+
+TEST(Plausibility, TheLastGoodValueOrTheModelsTakesItsPlace) {
+  Watch good(params([](SignalPlausibility& s) {
+    s.upper = 100.0;
+    s.substitute = Substitute::kLastGood;
+  }));
+  EXPECT_EQ(good.look(1000.0), Verdict::kHold);  // there is none yet
+  good.look(50.0);
+  EXPECT_EQ(good.look(1000.0), Verdict::kRepaired);
+  EXPECT_EQ(good.judge.accepted().outputs[0], 50.0);
+  EXPECT_STREQ(good.judge.words(), "x is outside [-inf, 100]: its last good value is used");
+
+  Watch model(params([](SignalPlausibility& s) {
+    s.upper = 100.0;
+    s.substitute = Substitute::kModel;
+  }));
+  model.look(50.0);
+  PredictiveAction p;  // x(k+1) = 0.5 x + 2 u + 1, y = 3 x + 4
+  p.state = Vector::Constant(1, 10.0);
+  p.A = Matrix::Constant(1, 1, 0.5);
+  p.B = Matrix::Constant(1, 1, 2.0);
+  p.C = Matrix::Constant(1, 1, 3.0);
+  p.offset_state = Vector::Constant(1, 1.0);
+  p.offset_output = Vector::Constant(1, 4.0);
+  model.judge.expect(p, Vector::Constant(1, 6.0));
+  EXPECT_EQ(model.look(1000.0), Verdict::kRepaired);
+  EXPECT_EQ(model.judge.accepted().outputs[0], 3.0 * 18.0 + 4.0);
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(model.look(1000.0), Verdict::kRepaired);
+  EXPECT_EQ(model.look(1000.0), Verdict::kFallback);  // nor for ever
+}
+
+TEST(Plausibility, ANewRunForgetsThePast) {
+  Watch watch(params([](SignalPlausibility& s) { s.jump = 20.0; }));
+  watch.look(50.0);
+  watch.judge.reset();
+  EXPECT_EQ(watch.look(90.0), Verdict::kClean);
+}
+
+TEST(Plausibility, RefusesWhatMakesNoSense) {
+  EXPECT_THROW(Plausibility(params([](SignalPlausibility& s) { s.jump = 0.0; }), plant()),
+               InputError);
+  PlausibilityParams p = params();
+  p.fallback = Vector::Zero(2);
+  EXPECT_THROW(Plausibility(p, plant()), InputError);
+}
+
+}  // namespace
+}  // namespace fpc

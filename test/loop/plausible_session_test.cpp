@@ -1,0 +1,113 @@
+// A loop whose instruments, actuator or models lie: what the controller's session makes of it.
+#include <cmath>
+#include <functional>
+
+#include "fmbpc/base/text.hpp"
+#include "fmbpc/config/plausibility_file.hpp"
+#include "fmbpc/loop/factory.hpp"
+#include "fmbpc/loop/run.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+/// 120 samples of the activated sludge loop; x may be in [0, 3500] and more.
+LoopFile loopWith(const Overrides& more) {
+  Overrides overrides{{"sampling.duration_h", "24"},
+                      {"plausibility.signals.x.upper", "3000"},
+                      {"plausibility.hold_samples", "4"},
+                      {"actuator.fallback.q_r", "300"}};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return readLoop("asp_case1", overrides);
+}
+
+Overrides fault(const std::string& signal, double value, double to_h) {
+  return {{"disturbance.commands",
+           "[{time_h: 6, name: " + signal + ", value: " + std::to_string(value) +
+               "}, {time_h: " + std::to_string(to_h) + ", name: " + signal + ", mode: release}]"}};
+}
+
+ActionSource sourceAt(const RunRecord& record, double time_h) {
+  return record.samples[static_cast<std::size_t>(std::lround(time_h * 5.0))].base.source;
+}
+
+bool remarks(const RunRecord& record, const std::string& words) {
+  for (const RunRemark& remark : record.remarks)
+    if (remark.words.find(words) != std::string::npos) return true;
+  return false;
+}
+
+TEST(PlausibleSession, ALyingSensorHoldsTheInputThenFallsBackAndReturnsWithoutABump) {
+  const RunRecord record = runLoop(loopWith(fault("output/x", 9000.0, 8.0)));
+  EXPECT_EQ(sourceAt(record, 5.8), ActionSource::kBase);
+  EXPECT_EQ(sourceAt(record, 6.0), ActionSource::kHeld);
+  EXPECT_EQ(sourceAt(record, 6.6), ActionSource::kHeld);
+  EXPECT_EQ(sourceAt(record, 6.8), ActionSource::kFallback);
+  EXPECT_EQ(record.samples[35].base.input[0], 300.0);
+  EXPECT_TRUE(remarks(record, "x is outside"));
+  const std::size_t back = 40;  // 8 h
+  EXPECT_NE(record.samples[back].base.source, ActionSource::kFallback);
+  const RunRecord calm = runLoop(loopWith({}));
+  EXPECT_FALSE(remarks(calm, "x is outside"));
+  const double bump = std::abs(record.samples[back].base.input[0] - 300.0);
+  EXPECT_LT(bump, 160.0);  // a tenth of the range
+}
+
+TEST(PlausibleSession, TheModelsValueKeepsTheLoopClosed) {
+  Overrides overrides = fault("output/x", 9000.0, 6.6);
+  overrides.emplace_back("plausibility.signals.x.substitute", "model");
+  const RunRecord record = runLoop(loopWith(overrides));
+  EXPECT_EQ(sourceAt(record, 6.0), ActionSource::kBase);
+  EXPECT_TRUE(remarks(record, "the model's value is used"));
+  const RunRecord calm = runLoop(loopWith({}));
+  for (std::size_t k = 30; k < 34; ++k)
+    EXPECT_NEAR(record.samples[k].base.input[0], calm.samples[k].base.input[0], 80.0) << k;
+}
+
+TEST(PlausibleSession, AStuckActuatorIsSaid) {
+  EXPECT_TRUE(remarks(runLoop(loopWith(fault("input/q_r", 900.0, 12.0))),
+                      "input q_r does not follow its command"));
+  EXPECT_FALSE(remarks(runLoop(loopWith({})), "does not follow"));
+}
+
+TEST(PlausibleSession, AModelWithNegatedGainsIsRefusedInTheRun) {
+  const LoopFile loop = loopWith({});
+  ControllerSession session = makeControllerSession(loop);
+  session.setModel(loop.model);
+  Measurement m;
+  m.header = loop.plant_info.header;
+  m.outputs = (Vector(2) << 55.0, 1793.0).finished();
+  m.disturbances = loop.disturbance_nominal;
+  m.input_applied = loop.simulation.actuator.initial;
+  ASSERT_EQ(session.receive(m), Receipt::kAnswered);
+  TsModel negated = loop.model;
+  for (OutputModel& output : negated.submodels)
+    for (Rule& rule : output.rules)
+      for (std::size_t i = 0; i < output.regressors.size(); ++i)
+        if (output.regressors[i].kind == SignalKind::kInput)
+          rule.coefficients[static_cast<Eigen::Index>(i)] *= -1.0;
+  expectWords(errorOf([&] { session.setModel(negated); }), {"gain", "q_r", "gain_sign"});
+  EXPECT_EQ(session.models(), 1U);
+  EXPECT_NO_THROW(session.setModel(loop.model));
+}
+
+/// Every fourth loop, 40 samples of it; with FMBPC_LONG_TESTS all of all.
+TEST(PlausibleSession, NoShippedLoopIsDoubted) {
+  const bool all = std::getenv("FMBPC_LONG_TESTS") != nullptr;
+  std::size_t number = 0, seen = 0;
+  for (const std::string& name : loopNames()) {
+    if ((!all && number++ % 4 != 0) || (needsRecords(name) && !hasRecords())) continue;
+    LoopFile loop = readLoop(name);
+    if (loop.external_plant) continue;
+    const std::string hours = exactText(loop.simulation.sample_time_s * 40.0 / 3600.0);
+    const RunRecord record = runLoop(all ? loop : readLoop(name, {{"sampling.duration_h", hours}}));
+    for (const char* words :
+         {"input held", "configured fallback", "value is used", "does not follow its command"})
+      EXPECT_FALSE(remarks(record, words)) << name << ": " << words;
+    ++seen;
+  }
+  EXPECT_GT(seen, 30U);
+}
+
+}  // namespace
+}  // namespace fpc
