@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "fmbpc/base/signals.hpp"
 #include "ros/float64_field.hpp"
 
 namespace fpc {
