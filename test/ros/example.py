@@ -17,7 +17,7 @@ import ring
 class Example(unittest.TestCase):
     def test_the_tank_follows_its_setpoints_inside_its_limits(self):
         efforts = ring.Listener("tank/control_effort", Float64, "/plant_gateway")
-        ring.publisher("tank/state", Float64, listeners=1).publish(math.nan)  # a lie among the truth
+        ring.publisher("tank/state", Float64, "/plant_gateway").publish(math.nan)  # a lie among the truth
         folder = ring.Listener("recorded", String).wait().data
         summary = ring.summary(folder)
         self.assertEqual((240, True), (summary["steps"], summary["complete"]))
