@@ -245,7 +245,7 @@ std::string PlantGateway::problem() const {
     case FieldState::kRunning:
       break;
   }
-  if (unconfirmed()) return "the plant has not confirmed the last command";
+  if (unconfirmed() && !just_told_) return "the plant has not confirmed the last command";
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     const Quality quality = qualityOf(signals_[i]);
     if (quality == Quality::kGood) continue;

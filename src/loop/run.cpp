@@ -68,7 +68,7 @@ class Ring {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimizer_ ? optimize(answer) : answer.base);
       plant_.advance(0.0);
-      if (!plant_.stuck().empty()) remark(plant_.stuck());
+      watchInputs(now.header.step);
     }
     if (loop_.has_identify) learn(now);
     return !now.final;
@@ -77,10 +77,19 @@ class Ring {
   RunRecord take() {
     recorder_.close();
     conclude(record_, recorder_.complete());
+    for (const RunRemark& stuck : stuck_) record_.remarks.push_back(stuck);
     return std::move(record_);
   }
 
  private:
+  /// What the plant says of inputs that do not follow.
+  void watchInputs(std::uint32_t step) {
+    const std::string& words = plant_.stuck();
+    if (words.empty()) return;
+    if (stuck_.empty() || stuck_.back().words != words) stuck_.push_back({words, 0, step});
+    ++stuck_.back().samples;
+  }
+
   const ControlAction& optimize(const ControllerAnswer& answer) {
     if (answer.has_prediction) optimizer_->receive(answer.prediction);
     optimizer_->receive(answer.base);
@@ -124,6 +133,7 @@ class Ring {
 
   const LoopFile& loop_;
   const RunOptions& options_;
+  std::vector<RunRemark> stuck_;
   std::unique_ptr<SimulatedProcess> made_;  // until it is the session's
   Simulation& simulation_;
   PlantSession plant_;
