@@ -48,7 +48,8 @@ class Replay {
     for (const auto& [step, measurement] : run_.measurements) {
       prepare(step);
       require(controller_.ready(), "the record",
-              "the model that the controller worked with (fuzzy_model)");
+              "the model that the controller worked with (fuzzy_model)" +
+                  (result_.refused.empty() ? "" : "; " + result_.refused.front()));
       const Receipt receipt = controller_.receive(measurement);
       require(receipt != Receipt::kDropped, "measurement " + std::to_string(step),
               "the sizes of the loop");

@@ -72,7 +72,8 @@ class Reader {
         take(*msg, name == topics::kBaseAction);
       if (const auto msg = item.instantiate<fmbpc::CommandEffect>()) take(*msg);
       if (const auto msg = item.instantiate<fmbpc::OperatorState>()) take(*msg);
-      if (const auto msg = item.instantiate<fmbpc::FuzzyModel>()) take(*msg);
+      if (const auto msg = item.instantiate<fmbpc::FuzzyModel>())
+        take(*msg, static_cast<std::int64_t>(item.getTime().toNSec()));
     }
     require(!run_.measurements.empty(), file_, "measurements of this version's messages");
     return std::move(run_);
@@ -110,11 +111,14 @@ class Reader {
     run_.wishes.emplace(first ? 0 : step, wishesOf(msg));
   }
 
-  /// In lockstep from the sample after the one it was made from, else when it came.
-  void take(const fmbpc::FuzzyModel& msg) {
+  /// In lockstep from the sample after the one it was made from, else when it came: before sample 0
+  /// if not later than that (the bag has no order within one time of /clock).
+  void take(const fmbpc::FuzzyModel& msg, std::int64_t came_ns) {
+    const bool at_start =
+        run_.measurements.empty() || came_ns <= run_.measurements.begin()->second.header.time_ns;
     const std::uint32_t made = msg.run_id == 0 ? 0 : msg.step + 1;
     const bool exact = msg.run_id != 0 && loop_.ring.pace == Pace::kLockstep;
-    run_.models.emplace(exact ? made : std::max(made, newest_),
+    run_.models.emplace(exact || at_start ? made : std::max(made, newest_),
                         matchToPlant(fromMsg(msg), loop_.plant_info));
   }
 
