@@ -1,4 +1,5 @@
-// Compiled once for all files of the core (fpc_precompile of CMakeLists.txt); never included by name.
+// Compiled once for all files of the core (fpc_precompile of CMakeLists.txt); never included by
+// name.
 #pragma once
 
 #include <Eigen/Dense>

@@ -72,8 +72,8 @@ void PlantGateway::link(bool up, double now_s) {
   link_ = up;
 }
 
-/// Only what is read back from now on says where the inputs are, to the last digit. A command on its
-/// way was made for another place.
+/// Only what is read back from now on says where the inputs are, to the last digit. A command on
+/// its way was made for another place.
 void PlantGateway::doubtPosition(double now_s) {
   told_s_ = now_s;
   if (!params_.reads_back) return;

@@ -47,11 +47,10 @@ void OptimizerStandin::onAction(const fmbpc::ControlAction::ConstPtr& msg,
 // comes more often than it was sent is the optimizer's.
 bool OptimizerStandin::isOwn(const fmbpc::ControlAction& msg, const std::string& publisher) {
   if (publisher != ros::this_node::getName() || unheard_ == 0) return false;
-  const bool same =
-      msg.run_id == base_.header.run_id && msg.step == base_.header.step &&
-      msg.source == static_cast<std::uint8_t>(base_.source) &&
-      std::equal(msg.input.begin(), msg.input.end(), base_.input.data(),
-                 base_.input.data() + base_.input.size());
+  const bool same = msg.run_id == base_.header.run_id && msg.step == base_.header.step &&
+                    msg.source == static_cast<std::uint8_t>(base_.source) &&
+                    std::equal(msg.input.begin(), msg.input.end(), base_.input.data(),
+                               base_.input.data() + base_.input.size());
   if (same) --unheard_;
   return same;
 }

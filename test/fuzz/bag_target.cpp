@@ -10,12 +10,12 @@
 #include <stdexcept>
 
 #include "fmbpc/loop/run.hpp"
-#include "ros/bag_table.hpp"
-#include "ros/conversions.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/scratch_file.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"
+#include "ros/bag_table.hpp"
+#include "ros/conversions.hpp"
 
 namespace fpc::fuzz {
 namespace {

@@ -4,11 +4,11 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
-#include "ros/conversions.hpp"
-#include "ros/plant_check.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"
+#include "ros/conversions.hpp"
+#include "ros/plant_check.hpp"
 
 namespace fpc::fuzz {
 namespace {

@@ -15,10 +15,10 @@
 #include "fmbpc/loop/identifier_session.hpp"
 #include "fmbpc/loop/plant_session.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
-#include "ros/conversions.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"
+#include "ros/conversions.hpp"
 
 namespace fpc::fuzz {
 namespace {

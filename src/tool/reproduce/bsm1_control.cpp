@@ -1,5 +1,5 @@
-// The benchmark simulation model no. 1 under its baseline and under ours: what is claimed of class A
-// (Qr, Qw and blowers as in the benchmark), of larger blowers, of class B (less sludge wasted),
+// The benchmark simulation model no. 1 under its baseline and under ours: what is claimed of class
+// A (Qr, Qw and blowers as in the benchmark), of larger blowers, of class B (less sludge wasted),
 // with noise and on an influent that nothing was tuned on. Classes are never mixed.
 #include <map>
 
