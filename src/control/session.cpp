@@ -222,7 +222,7 @@ void ControllerSession::runLaw(const Measurement& m) {
 }
 
 void ControllerSession::setModel(const TsModel& model) {
-  const bool matters = controller_->needsModel();
+  const bool matters = controller_->needsModel() && !model.submodels.empty();
   TsModel matched = matters ? matchToPlant(model, plant_) : TsModel();
   if (models_ > 0 && matters && present_.outputs.size() > 0) {
     requireStable(matched, present_, max_pole_);

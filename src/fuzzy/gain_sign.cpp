@@ -21,6 +21,26 @@ Matrix scaled(Matrix gains, const TsModel& model) {
   return gains;
 }
 
+struct Turned {
+  Eigen::Index outputs{}, output{-1}, input{-1};  // how many outputs; the first gain
+};
+
+Turned compared(const Matrix& before, const Matrix& after) {
+  Turned turned;
+  for (Eigen::Index i = 0; i < before.rows(); ++i) {
+    bool here = false;
+    for (Eigen::Index j = 0; j < before.cols(); ++j) {
+      const bool counts = std::abs(before(i, j)) >= kCounts * before.row(i).cwiseAbs().maxCoeff() &&
+                          std::abs(after(i, j)) >= kCounts * after.row(i).cwiseAbs().maxCoeff();
+      if (!counts || !(before(i, j) * after(i, j) < 0.0)) continue;
+      if (turned.output < 0) turned.output = i, turned.input = j;
+      here = true;
+    }
+    if (here) ++turned.outputs;
+  }
+  return turned;
+}
+
 }  // namespace
 
 Matrix stepGains(const TsModel& model, const Measurement& at) {
@@ -38,20 +58,15 @@ void requireSameGainSigns(const TsModel& running, const TsModel& fresh, const Me
   const Matrix before = scaled(stepGains(running, at), running);
   const Matrix after = scaled(stepGains(fresh, at), running);
   if (!before.allFinite() || !after.allFinite()) return;
-  for (Eigen::Index i = 0; i < before.rows(); ++i)
-    for (Eigen::Index j = 0; j < before.cols(); ++j) {
-      const bool counts = std::abs(before(i, j)) >= kCounts * before.row(i).cwiseAbs().maxCoeff() &&
-                          std::abs(after(i, j)) >= kCounts * after.row(i).cwiseAbs().maxCoeff();
-      if (!counts || !(before(i, j) * after(i, j) < 0.0)) continue;
-      const auto name = [](const std::vector<SignalInfo>& signals, Eigen::Index k) {
-        return signals[static_cast<std::size_t>(k)].name;
-      };
-      throw InputError("model '" + fresh.name +
-                       "': expected the sign of the running model's gain "
-                       "from " +
-                       name(fresh.inputs, j) + " to " + name(fresh.outputs, i) +
-                       ", got the opposite (plausibility.gain_sign)");
-    }
+  const Turned turned = compared(before, after);
+  if (2 * turned.outputs <= before.rows()) return;
+  const auto name = [](const std::vector<SignalInfo>& signals, Eigen::Index k) {
+    return signals[static_cast<std::size_t>(k)].name;
+  };
+  throw InputError("model '" + fresh.name +
+                   "': expected the sign of the running model's gain from " +
+                   name(fresh.inputs, turned.input) + " to " + name(fresh.outputs, turned.output) +
+                   ", got the opposite (plausibility.gain_sign)");
 }
 
 }  // namespace fpc

@@ -58,7 +58,9 @@ std::string general(std::string path) {
 
 std::set<std::string> asked(const std::string& text) {
   auto trace = std::make_shared<YamlTrace>();
-  YamlSection root(YamlNode(YAML::Load(text)), "text", "", trace);
+  const std::string here = std::regex_replace(text, std::regex(R"(\bfile: (\w+\.yaml))"),
+                                              "file: " + sourceDir() + "/config/model/$1");
+  YamlSection root(YamlNode(YAML::Load(here)), "text", "", trace);
   readSections(root, "text");
   return trace->asked;
 }

@@ -52,7 +52,7 @@ class Standstill : public testing::Test {
 TEST_F(Standstill, WhatMovesPassesUntouched) {
   for (int k = 0; k < 40; ++k) {
     const double before = applied;
-    see(56.0 + std::sin(0.5 * k), 1300.0 + 200.0 * std::sin(0.3 * k));
+    see(56.0 + 3.0 * std::sin(0.5 * k), 1300.0 + 200.0 * std::sin(0.3 * k));
     EXPECT_EQ(output.input[0], before + 1.0);
     EXPECT_TRUE(output.predictive);
     EXPECT_EQ(remark(), "");

@@ -78,7 +78,7 @@ TEST_F(Commands, WhatIsRefusedIsToldAndTheRunGoesOn) {
   ASSERT_EQ(remarks_.size(), 3U);
   expectWords(remarks_[0], {"sample 5", "manual mode"});
   expectWords(remarks_[1], {"sample 10", "adapts"});
-  expectWords(remarks_[2], {"sample 15", "settings"});
+  expectWords(remarks_[2], {"sample 15", "a setting that may change"});
 }
 
 TEST_F(Commands, SettingsAndHoldReachTheController) {

@@ -13,7 +13,9 @@ Matrix stepGains(const TsModel& model, const Measurement& at);
 inline constexpr int kGainSamples = 1024;
 
 /// Gains count where they are at least a third of the largest of their output, in both models and
-/// in parts of the inputs' ranges. Models whose gains are not finite are not judged.
+/// in parts of the inputs' ranges. A model that was learned anew may know better in some of them:
+/// it is refused if more than half of the outputs have one turned round. Models whose gains are not
+/// finite are not judged.
 /// @throws InputError naming the first output and input whose sign is turned round.
 void requireSameGainSigns(const TsModel& running, const TsModel& fresh, const Measurement& at);
 

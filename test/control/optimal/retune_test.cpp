@@ -155,7 +155,7 @@ TEST(FuzzyOptimalSettings, WhatIsNoneIsRefusedByKey) {
       {"weight_move", "z=1"},   {"weight_move", "1 2"},    {"weight_move", ""},
       {"weight_move", "-1"},    {"weight_output", "much"}, {"move_steps", "9"},
       {"horizon_steps", "0"},   {"horizon_steps", "2.5"},  {"input_target", "inf"},
-      {"reference_pole", "0.5"}};
+      {"reference_pole", "much"}};
   const Settings before = loop.law.settings();
   for (const auto& setting : bad) try {
       loop.law.retune({setting});
