@@ -148,6 +148,7 @@ void PlantGateway::tell() {
     command_[i] = value;
     actuator_.disturb(i, value);
   }
+  if (!unconfirmed()) asked_s_ = now_s_;
   ++number_;
   commanded_ = true;
 }
@@ -245,7 +246,8 @@ std::string PlantGateway::problem() const {
     case FieldState::kRunning:
       break;
   }
-  if (unconfirmed() && !just_told_) return "the plant has not confirmed the last command";
+  if (unconfirmed() && now_s_ - asked_s_ > params_.stale_s)  // before that it is on its way
+    return "the plant has not confirmed the last command";
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     const Quality quality = qualityOf(signals_[i]);
     if (quality == Quality::kGood) continue;

@@ -125,6 +125,7 @@ class PlantGateway : public Process {
   Vector age_s_;
   std::vector<Reading> signals_, positions_;  // of outputs and disturbances; of inputs
   Vector command_;                            // as it was rounded
+  double asked_s_{};  // when the oldest command was made that is not confirmed
   std::uint64_t number_{}, confirmed_{}, voided_{}, skipped_{}, beat_{};
   double now_s_{}, told_s_{-1.0}, beat_s_{};
   Vector waiting_;  // an action that came before the command ahead of it was confirmed

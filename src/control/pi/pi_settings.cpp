@@ -34,8 +34,8 @@ bool PiController::retune(const Settings& settings) {
   PiGains next{gains(&PiLoop::kp, &LoopState::next_kp),
                gains(&PiLoop::ki_per_h, &LoopState::next_ki_per_h)};
   piSettings().take(settings, {inputs_, inputs_}, next);
-  require(next.kp.allFinite(), "controller.kp", "finite numbers");
-  require(next.ki_per_h.allFinite(), "controller.ki_per_h", "finite numbers");
+  require(next.kp.allFinite(), "controller.loops.kp", "finite numbers");
+  require(next.ki_per_h.allFinite(), "controller.loops.ki_per_h", "finite numbers");
   for (std::size_t i = 0; i < states_.size(); ++i) {
     states_[i].next_kp = next.kp[static_cast<Eigen::Index>(i)];
     states_[i].next_ki_per_h = next.ki_per_h[static_cast<Eigen::Index>(i)];
