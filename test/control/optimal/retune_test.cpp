@@ -152,9 +152,9 @@ TEST(FuzzyOptimalSettings, AreTextsThatReadBack) {
 TEST(FuzzyOptimalSettings, WhatIsNoneIsRefusedByKey) {
   Loop loop(params());
   const std::pair<std::string, std::string> bad[] = {
-      {"weight_move", "z=1"},   {"weight_move", "1 2"},    {"weight_move", ""},
-      {"weight_move", "-1"},    {"weight_output", "much"}, {"move_steps", "9"},
-      {"horizon_steps", "0"},   {"horizon_steps", "2.5"},  {"input_target", "inf"},
+      {"weight_move", "z=1"},    {"weight_move", "1 2"},    {"weight_move", ""},
+      {"weight_move", "-1"},     {"weight_output", "much"}, {"move_steps", "9"},
+      {"horizon_steps", "0"},    {"horizon_steps", "2.5"},  {"input_target", "inf"},
       {"reference_pole", "much"}};
   const Settings before = loop.law.settings();
   for (const auto& setting : bad) try {
