@@ -57,9 +57,9 @@ std::string general(std::string path) {
 }
 
 std::set<std::string> asked(const std::string& text) {
-  auto trace = std::make_shared<YamlTrace>();
-  const std::string here = std::regex_replace(text, std::regex(R"(\bfile: (\w+\.yaml))"),
-                                              "file: " + sourceDir() + "/config/model/$1");
+  const auto trace = std::make_shared<YamlTrace>();
+  const std::regex model(R"(\bfile: (\w+\.yaml))");
+  const auto here = std::regex_replace(text, model, "file: " + sourceDir() + "/config/model/$1");
   YamlSection root(YamlNode(YAML::Load(here)), "text", "", trace);
   readSections(root, "text");
   return trace->asked;
@@ -139,8 +139,7 @@ std::set<std::string> readerKeys() {
   for (const auto& type : controllerNames())
     for (const auto& loop : loopsOfType(type))
       texts.push_back(resolveLoop(loop, withoutRecords(loop)));
-  std::set<std::string> keys;
-  std::set<std::string> sections;
+  std::set<std::string> keys, sections;
   for (const auto& text : texts)
     for (const auto& path : asked(text)) {
       keys.insert(general(path));
@@ -153,8 +152,7 @@ std::set<std::string> readerKeys() {
     if (section.size() > 2 && section.substr(section.size() - 2) == "[]")
       keys.erase(section.substr(0, section.size() - 2));
   }
-  for (const char* both : {"plant.outputs"})
-    keys.insert(both);  // names, or mappings for an external plant
+  keys.insert("plant.outputs");  // names, or mappings for an external plant
   for (const char* other : {"clp", "disturbance.pattern.channels", "disturbance.csv.channels"})
     keys.erase(other);
   return keys;
@@ -293,8 +291,8 @@ TEST(LoopDocs, DefaultsAreThoseOfTheStructs) {
   for (const auto& [key, value] : structDefaults()) {
     ASSERT_EQ(rows.count(key), 1U) << key;
     const std::string& written = rows.at(key).fallback;
-    const bool same = written == value || asNumber(written) == asNumber(value);
-    EXPECT_TRUE(same) << key << ": documented " << written << ", struct " << value;
+    EXPECT_TRUE(written == value || asNumber(written) == asNumber(value))
+        << key << ": documented " << written << ", struct " << value;
   }
 }
 
