@@ -77,17 +77,15 @@ class Ring {
   RunRecord take() {
     recorder_.close();
     conclude(record_, recorder_.complete());
-    for (const RunRemark& stuck : stuck_) record_.remarks.push_back(stuck);
     return std::move(record_);
   }
 
  private:
-  /// What the plant says of inputs that do not follow.
+  /// What the plant says of inputs that do not follow, once; over topics diagnostics say it.
   void watchInputs(std::uint32_t step) {
-    const std::string& words = plant_.stuck();
-    if (words.empty()) return;
-    if (stuck_.empty() || stuck_.back().words != words) stuck_.push_back({words, 0, step});
-    ++stuck_.back().samples;
+    if (plant_.stuck() == stuck_) return;
+    stuck_ = plant_.stuck();
+    if (!stuck_.empty()) remark("sample " + std::to_string(step) + ": " + stuck_);
   }
 
   const ControlAction& optimize(const ControllerAnswer& answer) {
@@ -133,7 +131,7 @@ class Ring {
 
   const LoopFile& loop_;
   const RunOptions& options_;
-  std::vector<RunRemark> stuck_;
+  std::string stuck_;
   std::unique_ptr<SimulatedProcess> made_;  // until it is the session's
   Simulation& simulation_;
   PlantSession plant_;
