@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """plant_gateway on a wire that breaks: every write keeps its limits at the PLC's side, what is wrong is said, the input
-falls back in the stated time and is taken up again without a bump. A few faults always, all with FMBPC_LONG_TESTS."""
+falls back in the stated time and is taken up again without a bump. A few faults, all with FMBPC_LONG_TESTS."""
 import json
 import os
 import signal
