@@ -122,8 +122,7 @@ void ControllerSession::process(const Measurement& m) {
   const Verdict verdict = plausibility_.look(m);
   const Measurement& accepted = verdict == Verdict::kClean ? m : plausibility_.accepted();
   const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
-  const bool finite =
-      m.input_applied.allFinite() && m.outputs.allFinite() && m.disturbances.allFinite();
+  const bool finite = allFinite(m);
   if (!finite) gate_.countNotFinite();
   if (usable) present_ = accepted;
   if (unreleased_) {

@@ -24,8 +24,8 @@ class Example(unittest.TestCase):
         self.assertEqual({"input": 0, "move": 0, "output": 0}, summary["violations"])
         with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:
             level = [float(row["level[m]"]) for row in csv.DictReader(file)]
-        self.assertAlmostEqual(1.0, level[119], delta=0.05)
-        self.assertAlmostEqual(2.0, level[240], delta=0.05)
+        self.assertAlmostEqual(1.0, level[119], delta=0.02)
+        self.assertAlmostEqual(2.0, level[240], delta=0.02)
         told = [message.data for message in efforts.messages]
         self.assertGreater(len(told), 100)
         self.assertTrue(all(0.0 <= value <= 20.0 for value in told))
