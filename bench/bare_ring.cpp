@@ -1,6 +1,7 @@
 // The floor under the loop over topics: three processes that pass messages of the loop's own types
 // and sizes round, with its other publishers, and compute nothing. Roles: plant, controller,
-// optimizer, listener.
+// optimizer, listener; `all` has them as threads of one process that hand shared messages on, as
+// nodelets do.
 //   bare_ring ROLE SAMPLES
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/Measurement.h>
@@ -9,6 +10,7 @@
 #include <fmbpc/Signal.h>
 #include <fmbpc/SolverReport.h>
 #include <fmbpc/Tracking.h>
+#include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <rosgraph_msgs/Clock.h>
 #include <std_msgs/Float64.h>
@@ -16,7 +18,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <thread>
 #include <vector>
+
+#include "ros/shared.hpp"
 
 namespace {
 
@@ -29,6 +34,11 @@ ros::Subscriber listen(ros::NodeHandle& node, const char* topic,
                        boost::function<void(const boost::shared_ptr<const Msg>&)> handler) {
   return node.subscribe<Msg>(topic, kQueue, handler, ros::VoidConstPtr(),
                              ros::TransportHints().tcpNoDelay());
+}
+
+void spin(const ros::NodeHandle& node) {
+  auto& queue = *static_cast<ros::CallbackQueue*>(node.getCallbackQueue());
+  while (ros::ok()) queue.callAvailable(ros::WallDuration(0.1));
 }
 
 fmbpc::Matrix matrix(int rows, int cols) {
@@ -70,9 +80,9 @@ void runPlant(ros::NodeHandle& node, std::uint32_t samples) {
   truth.disturbances.assign(kDisturbances, 1.0);
   ros::WallTime start;
   const auto send = [&] {
-    measured.publish(sample);
+    measured.publish(fpc::shared(sample));
     clock.publish(rosgraph_msgs::Clock());
-    state.publish(truth);
+    state.publish(fpc::shared(truth));
     signals.publish();
   };
   const auto answer = listen<fmbpc::ControlAction>(
@@ -94,7 +104,7 @@ void runPlant(ros::NodeHandle& node, std::uint32_t samples) {
         start = ros::WallTime::now();
         send();
       });
-  ros::spin();
+  spin(node);
 }
 
 void runController(ros::NodeHandle& node) {
@@ -117,14 +127,14 @@ void runController(ros::NodeHandle& node) {
         fmbpc::ControlAction action;
         action.step = predicted.step = m->step;
         action.input = m->input_applied;
-        prediction.publish(predicted);
-        base.publish(action);
+        prediction.publish(fpc::shared(predicted));
+        base.publish(fpc::shared(action));
         fmbpc::Tracking followed;
         followed.setpoint = followed.reference = m->outputs;
-        tracking.publish(followed);
+        tracking.publish(fpc::shared(followed));
         signals.publish();
       });
-  ros::spin();
+  spin(node);
 }
 
 void runOptimizer(ros::NodeHandle& node) {
@@ -135,13 +145,13 @@ void runOptimizer(ros::NodeHandle& node) {
       node, "predictive_action", [](const fmbpc::PredictiveAction::ConstPtr&) {});
   const auto heard = listen<fmbpc::ControlAction>(node, "base_action",
                                                   [&](const fmbpc::ControlAction::ConstPtr& m) {
-                                                    action.publish(*m);
+                                                    action.publish(m);
                                                     fmbpc::SolverReport solved;
                                                     solved.perturbation = m->input;
-                                                    report.publish(solved);
+                                                    report.publish(fpc::shared(solved));
                                                     signals.publish();
                                                   });
-  ros::spin();
+  spin(node);
 }
 
 void runListener(ros::NodeHandle& node) {
@@ -156,7 +166,30 @@ void runListener(ros::NodeHandle& node) {
   const auto e = listen<fmbpc::Tracking>(node, "tracking", [](const fmbpc::Tracking::ConstPtr&) {});
   const auto f = listen<fmbpc::SolverReport>(node, "solver_report",
                                              [](const fmbpc::SolverReport::ConstPtr&) {});
-  ros::spin();
+  spin(node);
+}
+
+void run(const std::string& role, std::uint32_t samples, ros::NodeHandle& node) {
+  if (role == "plant")
+    runPlant(node, samples);
+  else if (role == "controller")
+    runController(node);
+  else if (role == "optimizer")
+    runOptimizer(node);
+  else
+    runListener(node);
+}
+
+void runAll(std::uint32_t samples) {
+  std::vector<std::thread> threads;
+  for (const char* role : {"listener", "optimizer", "controller", "plant"})
+    threads.emplace_back([role, samples] {
+      ros::CallbackQueue queue;
+      ros::NodeHandle node;
+      node.setCallbackQueue(&queue);
+      run(role, samples, node);
+    });
+  for (std::thread& thread : threads) thread.join();
 }
 
 }  // namespace
@@ -166,13 +199,10 @@ int main(int argc, char** argv) {
   const std::string role = argv[1];
   ros::init(argc, argv, "bare_" + role);
   ros::NodeHandle node;
-  if (role == "plant")
-    runPlant(node, static_cast<std::uint32_t>(std::atoi(argv[2])));
-  else if (role == "controller")
-    runController(node);
-  else if (role == "optimizer")
-    runOptimizer(node);
+  const auto samples = static_cast<std::uint32_t>(std::atoi(argv[2]));
+  if (role == "all")
+    runAll(samples);
   else
-    runListener(node);
+    run(role, samples, node);
   return 0;
 }

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""The loop over topics beside a bare ring of three processes: ring_bench.py [PAIRS] [LOOP]
+"""The loop over topics beside a bare ring of three processes: ring_bench.py [--nodelets] [PAIRS] [LOOP]
+
+With --nodelets both are in one process, whose parts hand shared messages on.
 
 Runs pairs, one after the other (bare, loop, bare, loop, ...), each run with a master of its own, and prints samples
 per second of both and the median of the ratios. Before: make -C build bare_ring, and source scripts/env.sh.
@@ -22,7 +24,7 @@ def free_port():
         return probe.getsockname()[1]
 
 
-def bare_rate(samples):
+def bare_rate(samples, nodelets):
     """Samples per second of the bare ring."""
     port = free_port()
     env = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", ROS_HOSTNAME="localhost")
@@ -31,9 +33,9 @@ def bare_rate(samples):
     nodes = []
     try:
         subprocess.run(["rostopic", "list"], check=False, **quiet)
-        for role in ROLES[:-1]:
+        for role in () if nodelets else ROLES[:-1]:
             nodes.append(subprocess.Popen([BARE, role, str(samples)], **quiet))
-        plant = subprocess.run([BARE, "plant", str(samples)], env=env, check=True,
+        plant = subprocess.run([BARE, "all" if nodelets else "plant", str(samples)], env=env, check=True,
                                capture_output=True, text=True, timeout=300)
         return samples / float(plant.stdout.split()[-1])
     finally:
@@ -43,24 +45,26 @@ def bare_rate(samples):
             node.wait()
 
 
-def loop_rate(loop):
+def loop_rate(loop, nodelets):
     """(samples per second, samples) of the loop over topics, in lockstep."""
     port = free_port()
     env = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", ROS_HOSTNAME="localhost")
     with tempfile.TemporaryDirectory() as out:
         subprocess.run(["roslaunch", "-p", str(port), "fmbpc", "loop.launch", f"loop:={loop}", "pace:=lockstep",
-                        f"out:={out}", "draw:=false", "sim_time:=false"], env=env, check=True, capture_output=True, timeout=300)
+                        f"out:={out}", "draw:=false", "sim_time:=false", f"nodelets:={str(nodelets).lower()}"], env=env, check=True, capture_output=True, timeout=300)
         with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
     return summary["steps"] / summary["wall_s"], summary["steps"]
 
 
-def main(pairs="10", loop="asp_case1_clp"):
-    _, samples = loop_rate(loop)  # warms the file cache and tells the length
+def main(*arguments):
+    nodelets = "--nodelets" in arguments
+    pairs, loop = [*(a for a in arguments if a != "--nodelets"), *("10", "asp_case1_clp")[len(arguments) - nodelets:]]
+    _, samples = loop_rate(loop, nodelets)  # warms the file cache and tells the length
     ratios = []
     for pair in range(int(pairs)):
-        bare = bare_rate(samples)
-        ours, _ = loop_rate(loop)
+        bare = bare_rate(samples, nodelets)
+        ours, _ = loop_rate(loop, nodelets)
         ratios.append(ours / bare)
         print(f"pair {pair + 1}: bare {bare:7.0f}/s  loop {ours:7.0f}/s  ratio {ratios[-1]:.2f}", flush=True)
     print(f"median ratio {statistics.median(ratios):.2f} over {len(ratios)} pairs of {samples} samples"

@@ -35,7 +35,8 @@ def main():
         return 0
     words = queue.Queue()
     rospy.Subscriber("run_end", String, words.put)
-    ours = {rospy.resolve_name(name) for name in ("loop_recorder", "plant_simulator")}
+    names = ["loop_recorder", "plant_simulator", rospy.get_param("~manager", "")]  # nodelets speak with their manager's name
+    ours = {rospy.resolve_name(name) for name in names if name}
     while not rospy.is_shutdown():
         try:
             message = words.get(timeout=0.5)

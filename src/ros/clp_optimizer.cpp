@@ -2,6 +2,7 @@
 
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
+#include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -44,9 +45,9 @@ std::string ClpOptimizer::idleReason(const LoopFile& loop) {
 
 ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_node,
                            const LoopFile& loop)
-    : Node(node, loop),
+    : Node(node, loop, private_node.getNamespace()),
       session_(makeOptimizerSession(loop)),
-      ready_(node),
+      ready_(node, name()),
       signals_(node),
       plant_(loop.plant_info),
       action_(node.advertise<fmbpc::ControlAction>(topics::kControlAction, topics::kRingQueue)),
@@ -57,7 +58,7 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
           subscribe(node, topics::kBaseAction, topics::kRingQueue, &ClpOptimizer::onBase, this)),
       prediction_subscriber_(subscribe(node, topics::kPredictiveAction, topics::kRingQueue,
                                        &ClpOptimizer::onPrediction, this)),
-      summary_(node, loop),
+      summary_(node, loop, name()),
       pace_(loop.ring.pace),
       period_s_(loop.plant_info.sample_time_s / loop.ring.speedup),
       controller_(node.resolveName(kController)),
@@ -93,8 +94,8 @@ void ClpOptimizer::onPrediction(const fmbpc::PredictiveAction::ConstPtr& msg) {
 
 void ClpOptimizer::publish() {
   const SolverReport& report = session_.report();
-  action_.publish(toMsg(session_.action()));
-  if (report_.getNumSubscribers() > 0) report_.publish(toMsg(report));
+  action_.publish(shared(toMsg(session_.action())));
+  if (report_.getNumSubscribers() > 0) report_.publish(shared(toMsg(report)));
   if (report.header.run_id == last_.run_id && report.header.step == last_.step) return;
   last_ = report.header;
   for (Eigen::Index i = 0; i < report.perturbation.size(); ++i)

@@ -6,6 +6,7 @@
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
+#include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -22,12 +23,12 @@ const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_nod
 
 ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_node,
                                const LoopFile& loop)
-    : Node(node, loop),
+    : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(makeControllerSession(loop)),
       inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
-      desk_(node, loop, session_),
-      ready_(node),
+      desk_(node, loop, name(), session_),
+      ready_(node, name()),
       signals_(node),
       plant_(loop.plant_info),
       base_(node.advertise<fmbpc::ControlAction>(actionTopic(loop, private_node),
@@ -57,13 +58,13 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
             session_.retune(settings);
             tell();
           }),
-      summary_(node, loop),
+      summary_(node, loop, name()),
       commands_(loop.ring.commands_per_s, kBurst),
       health_(node, private_node, "controller", loop.name, false,
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.answer().tracking.header; },
                [this](Diagnostics::Status& status) { report(status); }}) {
-  if (loop.has_clp) standin_.emplace(node, loop);
+  if (loop.has_clp) standin_.emplace(node, loop, name());
   advertiseSignals();
 }
 
@@ -123,8 +124,7 @@ void ControllerNode::useModels(const StepHeader& next) {
       session_.setModel(model);
       model_ = model.name;
       model_problem_.clear();
-      ROS_INFO("%s: model %s from the next sample on", ros::this_node::getName().c_str(),
-               model_.c_str());
+      ROS_INFO("%s: model %s from the next sample on", name().c_str(), model_.c_str());
     } catch (const InputError& error) {
       model_problem_ = error.what();
       refuse(topics::kFuzzyModel, error.what());
@@ -181,8 +181,8 @@ void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
   guarded(topics::kSetpoint, [&] {
     const Command command = fromMsg(*msg);
     const std::uint32_t step = session_.command(command);
-    ROS_INFO("%s: setpoint of %s from sample %u on", ros::this_node::getName().c_str(),
-             join(command.name).c_str(), step);
+    ROS_INFO("%s: setpoint of %s from sample %u on", name().c_str(), join(command.name).c_str(),
+             step);
     tell();
   });
 }
@@ -225,20 +225,20 @@ bool ControllerNode::onHold(std_srvs::SetBool::Request& request,
   tell();
   response.success = true;
   response.message = session_.setpoint().held() ? "recipe held" : "recipe running";
-  ROS_INFO("%s: %s", ros::this_node::getName().c_str(), response.message.c_str());
+  ROS_INFO("%s: %s", name().c_str(), response.message.c_str());
   return true;
 }
 
 void ControllerNode::publish(bool repeated) {
   const ControllerAnswer& answer = session_.answer();
   if (answer.has_prediction && prediction_.getNumSubscribers() > 0)
-    prediction_.publish(toMsg(answer.prediction));
-  if (answer.has_action) base_.publish(toMsg(answer.base));
+    prediction_.publish(shared(toMsg(answer.prediction)));
+  if (answer.has_action) base_.publish(shared(toMsg(answer.base)));
   if (standin_) standin_->asked(answer, repeated);
   if (tracking_.getNumSubscribers() > 0) {
     fmbpc::Tracking tracking = toMsg(answer.tracking);
     if (answer.has_action) tracking.remark = session_.output().remark;
-    tracking_.publish(tracking);
+    tracking_.publish(shared(std::move(tracking)));
   }
   if (repeated) return;
   for (const CommandEffect& effect : answer.effects) effect_.publish(toMsg(effect));
@@ -246,11 +246,11 @@ void ControllerNode::publish(bool repeated) {
   desk_.tell(answer.tracking.header);
   publishSignals();
   if (!session_.resetReason().empty())
-    ROS_INFO("%s: reset: %s", ros::this_node::getName().c_str(), session_.resetReason().c_str());
+    ROS_INFO("%s: reset: %s", name().c_str(), session_.resetReason().c_str());
   const bool held = answer.has_action && answer.base.source == ActionSource::kHeld;
   const bool remarkable = *session_.output().remark != '\0';
   if ((held || remarkable) && log_.pass())
-    ROS_WARN("%s: sample %u: %s", ros::this_node::getName().c_str(), answer.tracking.header.step,
+    ROS_WARN("%s: sample %u: %s", name().c_str(), answer.tracking.header.step,
              session_.output().remark);
 }
 

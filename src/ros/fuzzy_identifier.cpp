@@ -48,10 +48,10 @@ std::string FuzzyIdentifier::idleReason(const LoopFile& loop) {
 
 FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& private_node,
                                  const LoopFile& loop)
-    : Node(node, loop),
+    : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       out_(private_node.param<std::string>("out", "")),
-      ready_(node),
+      ready_(node, name()),
       plant_(loop.plant_info),
       session_(loop),
       model_publisher_(node.advertise<fmbpc::FuzzyModel>(topics::kFuzzyModel, 1, true)),

@@ -34,6 +34,7 @@ HealthReporter::HealthReporter(ros::NodeHandle node, const ros::NodeHandle& priv
                                const std::string& title, const std::string& hardware_id,
                                bool summary, Source source)
     : source_(std::move(source)),
+      name_(private_node.getNamespace()),
       summary_(summary),
       publisher_(node.advertise<fmbpc::LoopState>(topics::kLoopState, topics::kPairQueue, true)),
       diagnostics_(node, private_node, title, hardware_id,
@@ -58,7 +59,7 @@ void HealthReporter::publish() {
   msg.header.stamp = toStamp(sample.time_ns);
   msg.run_id = sample.run_id;
   msg.step = sample.step;
-  msg.node = ros::this_node::getName();
+  msg.node = name_;
   msg.summary = summary_;
   msg.mode = static_cast<std::uint8_t>(shown_.mode);
   msg.word = wordOf(shown_.mode);

@@ -32,6 +32,7 @@ class HealthReporter {
   void fill(Diagnostics::Status& status) const;
 
   Source source_;
+  std::string name_;
   bool summary_;
   Health shown_;
   Hysteresis hysteresis_{1.0};

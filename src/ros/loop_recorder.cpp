@@ -23,14 +23,14 @@ constexpr int kPollsConnected = 3;     // a connection is complete at both ends 
 
 LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_node,
                            const LoopFile& loop)
-    : Node(node, loop),
+    : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       keep_(private_node.param("keep", false)),
       plot_(private_node.param("plot", true)),
       stay_(private_node.param("stay", false)),
       store_(loop, private_node.param<std::string>("out", "")),
       session_(recordLayout(loop), [this](const SampleRecord& sample) { store_.append(sample); }),
-      ready_(node),
+      ready_(node, name()),
       plant_(loop.plant_info),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
       end_(node),

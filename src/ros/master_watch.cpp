@@ -37,7 +37,7 @@ std::string networkProblem() {
 
 MasterWatch::MasterWatch(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                          const LoopFile& loop)
-    : parameters_(private_node), members_(loop.ring.members) {
+    : parameters_(private_node), space_(private_node.getNamespace()), members_(loop.ring.members) {
   for (std::string& name : members_) name = node.resolveName(name);
   thread_ = std::thread([this] { run(); });
 }
@@ -84,7 +84,7 @@ void MasterWatch::lookAtMaster() {
   }
   master_gone_ = false;
   const bool lost = parameters_.putBack();
-  const int count = registerAgain();
+  const int count = registerAgain(space_);
   ROS_WARN("%s: the master was started anew: %d topics and services registered again%s",
            name.c_str(), count, lost ? ", parameters put back" : "");
 }

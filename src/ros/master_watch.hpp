@@ -32,6 +32,7 @@ class MasterWatch {
   void lookAtMaster();
 
   const KeptParameters parameters_;
+  const std::string space_;  // of the node
   std::vector<std::string> members_;
   bool master_gone_{false};
   bool stop_{false};

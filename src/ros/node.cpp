@@ -8,24 +8,28 @@
 
 namespace fpc {
 
-Node::Node(const ros::NodeHandle& node, const LoopFile& loop) {
+Node::Node(const ros::NodeHandle& node, const LoopFile& loop, std::string name)
+    : name_(std::move(name)) {
+  const std::string& process = ros::this_node::getName();
   Publishers publishers = loop.ring.publishers;
-  for (auto& [topic, names] : publishers)
-    for (std::string& name : names) name = node.resolveName(name);
+  for (auto& [topic, names] : publishers) {
+    for (std::string& one : names) one = node.resolveName(one);
+    // Nodelets all speak with the name of their manager.
+    if (process != name_ && !names.empty()) names.push_back(process);
+  }
   authority_ = Authority(std::move(publishers));
 }
 
 bool Node::mayPass(const char* topic, const std::string& publisher) {
   if (authority_.admits(topic, publisher)) return true;
   if (refuse_log_.pass())
-    ROS_ERROR("%s: %s of %s dropped: the loop takes it only from %s",
-              ros::this_node::getName().c_str(), topic, publisher.c_str(),
-              join(authority_.publishersOf(topic)).c_str());
+    ROS_ERROR("%s: %s of %s dropped: the loop takes it only from %s", name_.c_str(), topic,
+              publisher.c_str(), join(authority_.publishersOf(topic)).c_str());
   return false;
 }
 
 void Node::fail(const std::string& what) {
-  ROS_FATAL("%s: %s", ros::this_node::getName().c_str(), what.c_str());
+  ROS_FATAL("%s: %s", name_.c_str(), what.c_str());
   exit_code_ = 1;
   ros::shutdown();
 }
@@ -37,14 +41,14 @@ void Node::refuse(const char* topic, const std::string& why) {
 
 void Node::mishap(const char* topic, const std::string& what) {
   ++refused_[topic];
-  ROS_ERROR("%s: %s: %s", ros::this_node::getName().c_str(), topic, what.c_str());
+  ROS_ERROR("%s: %s: %s", name_.c_str(), topic, what.c_str());
 }
 
-LoopFile loopParameter(const ros::NodeHandle& node) {
+LoopFile loopParameter(const ros::NodeHandle& private_node) {
   std::string key, text, name = "loop";
-  require(node.searchParam(topics::kLoopText, key) && node.getParam(key, text),
+  require(private_node.searchParam(topics::kLoopText, key) && private_node.getParam(key, text),
           std::string("parameter ") + topics::kLoopText, "the output of `fmbpc resolve LOOP`");
-  if (node.searchParam(topics::kLoopName, key)) node.getParam(key, name);
+  if (private_node.searchParam(topics::kLoopName, key)) private_node.getParam(key, name);
   return parseLoop(text, std::filesystem::path(name).stem().string());
 }
 

@@ -19,8 +19,9 @@ namespace fpc {
 /// Base of the node classes.
 class Node {
  public:
-  /// Who may say what: loop.publishers, names relative to the namespace of `node`.
-  Node(const ros::NodeHandle& node, const LoopFile& loop);
+  /// Who may say what: loop.publishers, names relative to the namespace of `node`. `name`: of the
+  /// node, or of the nodelet, whose process has another.
+  Node(const ros::NodeHandle& node, const LoopFile& loop, std::string name);
   virtual ~Node() = default;
   /// Called after spinning; the exit code of the process.
   virtual int finish() { return exit_code_; }
@@ -46,6 +47,8 @@ class Node {
   void mishap(const char* topic, const std::string& what);
   const std::map<std::string, std::uint64_t>& refused() const { return refused_; }
   const Authority& authority() const { return authority_; }
+  /// In full.
+  const std::string& name() const { return name_; }
   /// Subscribes without Nagle's delay; only messages of those who may speak reach the handler.
   template <typename Msg, typename Class>
   ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
@@ -77,6 +80,7 @@ class Node {
  private:
   bool mayPass(const char* topic, const std::string& publisher);
 
+  std::string name_;
   Authority authority_;
   int exit_code_{0};
   std::map<std::string, std::uint64_t> refused_;
@@ -85,21 +89,22 @@ class Node {
 
 /// The loop that the launch file gave as text: parameter `loop_text`, searched upwards.
 /// @throws InputError if there is none or it is no loop.
-LoopFile loopParameter(const ros::NodeHandle& node);
+LoopFile loopParameter(const ros::NodeHandle& private_node);
 
 /// For a node that the loop does not need: says why and returns 0; with ~stay true (a launch that
 /// respawns) only after a shutdown.
 int stayIdle(const ros::NodeHandle& private_node, const std::string& reason);
 
-/// Everything a main() does. `Class` has `static std::string idleReason(const LoopFile&)`, empty if
-/// the loop needs the node, and a constructor (NodeHandle, private NodeHandle, const LoopFile&).
+/// Everything a main() does (nodelets: nodes/nodelets.cpp). `Class` has `static std::string
+/// idleReason(const LoopFile&)`, empty if the loop needs the node, and a constructor (NodeHandle,
+/// private NodeHandle, const LoopFile&).
 template <typename Class>
 int runNode(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name);
   const ros::NodeHandle node,
       private_node("~");  // outlives the catch: without a node nothing is logged
   try {
-    const LoopFile loop = loopParameter(node);
+    const LoopFile loop = loopParameter(private_node);
     const std::string idle = Class::idleReason(loop);
     if (!idle.empty()) return stayIdle(private_node, idle);
     const MasterWatch watch(node, private_node, loop);

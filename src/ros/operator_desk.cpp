@@ -1,5 +1,7 @@
 #include "ros/operator_desk.hpp"
 
+#include <utility>
+
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/gateway_params.hpp"
 #include "ros/conversions.hpp"
@@ -27,8 +29,9 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
   return wishes;
 }
 
-OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, ControllerSession& session)
-    : Node(node, loop),
+OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                           ControllerSession& session)
+    : Node(node, loop, std::move(name)),
       session_(session),
       keeper_expected_(!loop.external_plant || gatewayOf(loop).enabled()),
       state_(node.advertise<fmbpc::OperatorState>(topics::kOperatorState, 10, true)),
@@ -56,9 +59,8 @@ bool OperatorDesk::mayStart(const Measurement& first) {
 void OperatorDesk::restore(const fmbpc::OperatorState& msg) {
   const OperatorWishes wishes = wishesOf(msg);
   for (const Command& setpoint : wishes.setpoints)
-    ROS_INFO("%s: setpoint of %s restored", ros::this_node::getName().c_str(),
-             join(setpoint.name).c_str());
-  if (wishes.manual) ROS_INFO("%s: manual restored", ros::this_node::getName().c_str());
+    ROS_INFO("%s: setpoint of %s restored", name().c_str(), join(setpoint.name).c_str());
+  if (wishes.manual) ROS_INFO("%s: manual restored", name().c_str());
   changed_ = true;
   session_.restore(wishes);
 }
@@ -75,7 +77,7 @@ fmbpc::OperatorState OperatorDesk::message(const StepHeader& sample) const {
   fmbpc::OperatorState msg;
   msg.header.stamp = toStamp(sample.time_ns);
   msg.run_id = sample.run_id;
-  msg.node = ros::this_node::getName();
+  msg.node = name();
   msg.manual = wishes.manual;
   msg.manual_given = wishes.manual_given;
   msg.manual_input.assign(wishes.manual_input.data(),

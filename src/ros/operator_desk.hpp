@@ -19,7 +19,9 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg);
 
 class OperatorDesk : public Node {
  public:
-  OperatorDesk(ros::NodeHandle node, const LoopFile& loop, ControllerSession& session);
+  /// `name`: of the controller.
+  OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::string name,
+               ControllerSession& session);
 
   /// False: the first sample is not to be answered yet, since what was asked before is not known;
   /// after a second it is answered, held (see ControllerSession::holdUntilReleased).

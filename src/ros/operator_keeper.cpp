@@ -1,11 +1,13 @@
 #include "ros/operator_keeper.hpp"
 
+#include <utility>
+
 #include "ros/topics.hpp"
 
 namespace fpc {
 
-OperatorKeeper::OperatorKeeper(ros::NodeHandle node, const LoopFile& loop)
-    : Node(node, loop),
+OperatorKeeper::OperatorKeeper(ros::NodeHandle node, const LoopFile& loop, std::string name)
+    : Node(node, loop, std::move(name)),
       kept_(node.advertise<fmbpc::OperatorState>(topics::kOperatorKept, 1, true)),
       model_kept_(node.advertise<fmbpc::FuzzyModel>(topics::kModelKept, 1, true)),
       subscriber_(subscribe(node, topics::kOperatorState, 10, &OperatorKeeper::onState, this)) {

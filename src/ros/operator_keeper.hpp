@@ -14,7 +14,8 @@ namespace fpc {
 
 class OperatorKeeper : public Node {
  public:
-  OperatorKeeper(ros::NodeHandle node, const LoopFile& loop);
+  /// `name`: of the plant.
+  OperatorKeeper(ros::NodeHandle node, const LoopFile& loop, std::string name);
   void beginRun(std::uint64_t run_id);  ///< what was asked in the run before is forgotten
 
  private:

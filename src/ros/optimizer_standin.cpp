@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ros/conversions.hpp"
+#include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
 
-OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop)
-    : Node(node, loop),
+OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, std::string name)
+    : Node(node, loop, std::move(name)),
       watch_(loop.ring.pace, loop.plant_info.sample_time_s / loop.ring.speedup,
              loop.ring.optimizer_timeout_s),
       optimizer_(node.resolveName("clp_optimizer")),
@@ -57,7 +59,7 @@ bool OptimizerStandin::isOwn(const fmbpc::ControlAction& msg, const std::string&
 
 void OptimizerStandin::send() {
   ++unheard_;
-  action_.publish(toMsg(base_));
+  action_.publish(shared(toMsg(base_)));
 }
 
 void OptimizerStandin::arm() {
@@ -82,10 +84,10 @@ void OptimizerStandin::takeOver() {
   report.header = base_.header;
   report.perturbation = Vector::Zero(base_.input.size());
   report.status = SolveStatus::kNotRun;
-  report_.publish(toMsg(report));
+  report_.publish(shared(toMsg(report)));
   if (log_.pass())
-    ROS_WARN("%s: sample %u: no answer of %s, the base action goes to the plant",
-             ros::this_node::getName().c_str(), base_.header.step, optimizer_.c_str());
+    ROS_WARN("%s: sample %u: no answer of %s, the base action goes to the plant", name().c_str(),
+             base_.header.step, optimizer_.c_str());
 }
 
 }  // namespace fpc

@@ -15,7 +15,8 @@ namespace fpc {
 
 class OptimizerStandin : public Node {
  public:
-  OptimizerStandin(ros::NodeHandle node, const LoopFile& loop);
+  /// `name`: of the controller.
+  OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, std::string name);
   /// A base action has been published for the optimizer. `repeated`: not for the first time.
   void asked(const ControllerAnswer& answer, bool repeated);
   const OptimizerWatch& watch() const { return watch_; }

@@ -45,11 +45,11 @@ PlantPolicy policyOf(const LoopFile& loop) {
 
 PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
                      std::unique_ptr<Process> process, const std::vector<std::string>& disturbances)
-    : Node(node, loop),
+    : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(std::move(process), policyOf(loop)),
       publishers_(node, session_.process().info(), disturbances, loop.ring.publish_clock),
-      keeper_(node, loop),
+      keeper_(node, loop, name()),
       ready_(node, namesToWaitFor(loop, private_node)),
       watch_(namesToWatch(loop, node)),
       begun_s_(steadyNow()),
@@ -90,8 +90,7 @@ void PlantNode::beginRun() {
 
 void PlantNode::start() {
   session_.start(steadyNow());
-  ROS_INFO("%s: run %lu of %s starts", ros::this_node::getName().c_str(), run_id_,
-           loop_.name.c_str());
+  ROS_INFO("%s: run %lu of %s starts", name().c_str(), run_id_, loop_.name.c_str());
   publishSample();
 }
 
@@ -151,8 +150,7 @@ void PlantNode::tryAdvance() {
   const std::uint64_t missed = session_.missingInputs();
   if (!session_.advance(steadyNow())) return armTimer();
   if (session_.missingInputs() > missed && trouble_log_.pass())
-    ROS_WARN("%s: no action in time (%lu so far)", ros::this_node::getName().c_str(),
-             session_.missingInputs());
+    ROS_WARN("%s: no action in time (%lu so far)", name().c_str(), session_.missingInputs());
   publishSample();
   exchange();
 }
@@ -163,10 +161,9 @@ void PlantNode::publishSample() {
                      [this](fmbpc::Measurement& measurement) { mark(measurement); });
   afterSample();
   if (!process.trouble().empty() && trouble_log_.pass())
-    ROS_WARN("%s: %s", ros::this_node::getName().c_str(), process.trouble().c_str());
+    ROS_WARN("%s: %s", name().c_str(), process.trouble().c_str());
   if (session_.phase() == PlantPhase::kFinished) {
-    ROS_INFO("%s: final sample %u sent", ros::this_node::getName().c_str(),
-             process.measurement().header.step);
+    ROS_INFO("%s: final sample %u sent", name().c_str(), process.measurement().header.step);
     tracking_subscriber_ =
         subscribe(node_, topics::kTracking, topics::kPairQueue, &PlantNode::onTracking, this);
   } else {

@@ -3,6 +3,7 @@
 #include <rosgraph_msgs/Clock.h>
 
 #include "ros/conversions.hpp"
+#include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -29,9 +30,10 @@ void PlantPublishers::introduce(const Process& process) {
 
 void PlantPublishers::sample(const Process& process, VectorRef disturbances,
                              const std::function<void(fmbpc::Measurement&)>& mark) {
-  last_ = toMsg(process.measurement());
-  last_.header.frame_id = process.info().frame_id;
-  mark(last_);
+  fmbpc::Measurement msg = toMsg(process.measurement());
+  msg.header.frame_id = process.info().frame_id;
+  mark(msg);
+  last_ = shared(std::move(msg));
   measurement_.publish(last_);
   clock(process.measurement().header.time_ns);
   signals(process.measurement(), disturbances);

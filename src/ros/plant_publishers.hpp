@@ -38,7 +38,7 @@ class PlantPublishers {
   SampleClock steps_;
   ros::Publisher info_, measurement_, clock_;
   SignalPublishers signals_;
-  fmbpc::Measurement last_;
+  fmbpc::Measurement::ConstPtr last_;
   std::uint64_t resent_{};
 };
 

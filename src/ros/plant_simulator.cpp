@@ -6,6 +6,7 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
+#include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -50,7 +51,7 @@ std::vector<std::string> PlantSimulator::plantMissing() {
 }
 
 void PlantSimulator::afterSample() {
-  if (state_.getNumSubscribers() > 0) state_.publish(toMsg(simulation_.state()));
+  if (state_.getNumSubscribers() > 0) state_.publish(shared(toMsg(simulation_.state())));
   for (const CommandEffect& effect : simulation_.effects()) effect_.publish(toMsg(effect));
 }
 

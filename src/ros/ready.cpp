@@ -1,18 +1,21 @@
 #include "ros/ready.hpp"
 
+#include <utility>
+
 #include "ros/node.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
 
-ReadyPublisher::ReadyPublisher(ros::NodeHandle node)
-    : publisher_(node.advertise<fmbpc::NodeReady>(topics::kReady, 1, true)) {}
+ReadyPublisher::ReadyPublisher(ros::NodeHandle node, std::string name)
+    : name_(std::move(name)),
+      publisher_(node.advertise<fmbpc::NodeReady>(topics::kReady, 1, true)) {}
 
 void ReadyPublisher::announce() {
   if (announced_) return;
   announced_ = true;
   fmbpc::NodeReady msg;
-  msg.node = ros::this_node::getName();
+  msg.node = name_;
   publisher_.publish(msg);
   ROS_INFO("%s: ready", msg.node.c_str());
 }

@@ -13,11 +13,13 @@ namespace fpc {
 /// Says "ready", once, latched.
 class ReadyPublisher {
  public:
-  explicit ReadyPublisher(ros::NodeHandle node);
+  /// `name`: of the node that is ready.
+  ReadyPublisher(ros::NodeHandle node, std::string name);
   void announce();
   bool announced() const { return announced_; }
 
  private:
+  std::string name_;
   ros::Publisher publisher_;
   bool announced_{false};
 };

@@ -44,14 +44,14 @@ int subscribers(const std::string& uri) {
 }
 
 /// roscpp tells nobody which services a node has: all names that a node of ours may have are tried.
-int services(const std::string& uri) {
+int services(const std::string& uri, const std::string& space) {
   const std::string address = "rosrpc://" + ros::network::getHost() + ":" +
                               std::to_string(ros::ConnectionManager::instance()->getTCPPort());
   int count = 0;
   for (const char* name :
        {topics::kPause, topics::kStep, topics::kReset, topics::kManual, topics::kAdapt,
         topics::kManualInput, topics::kHold, "set_parameters", "get_loggers", "set_logger_level"}) {
-    const std::string service = ros::names::resolve(std::string("~") + name);
+    const std::string service = space + "/" + name;
     if (ros::ServiceManager::instance()->lookupServicePublication(service))
       count += tell("registerService", {service, address, uri}) ? 1 : 0;
   }
@@ -86,9 +86,9 @@ bool KeptParameters::putBack() const {
   return any;
 }
 
-int registerAgain() {
+int registerAgain(const std::string& space) {
   const std::string uri = ros::XMLRPCManager::instance()->getServerURI();
-  return publishers(uri) + subscribers(uri) + services(uri);
+  return publishers(uri) + subscribers(uri) + services(uri, space);
 }
 
 }  // namespace fpc

@@ -19,8 +19,9 @@ class KeptParameters {
   std::map<std::string, XmlRpc::XmlRpcValue> values_;  // by full name
 };
 
-/// Registers all topics and services of this node once more. Connections that live are not touched.
+/// Registers all topics of this process, and the services in the name space of a node, once more.
+/// Connections that live are not touched.
 /// @return how many.
-int registerAgain();
+int registerAgain(const std::string& space);
 
 }  // namespace fpc

@@ -149,7 +149,10 @@ Settings settingsOf(const std::vector<SettingInfo>& table, const Config& config)
 
 SettingsServer::SettingsServer(ros::NodeHandle private_node, std::vector<SettingInfo> table,
                                Current current, Change change)
-    : table_(std::move(table)), current_(std::move(current)), change_(std::move(change)) {
+    : name_(private_node.getNamespace()),
+      table_(std::move(table)),
+      current_(std::move(current)),
+      change_(std::move(change)) {
   if (table_.empty()) return;
   descriptions_ =
       private_node.advertise<ConfigDescription>("parameter_descriptions", 1, /*latch=*/true);
@@ -165,12 +168,11 @@ void SettingsServer::publish() {
 
 bool SettingsServer::onSet(dynamic_reconfigure::Reconfigure::Request& request,
                            dynamic_reconfigure::Reconfigure::Response& response) {
-  const std::string& node = ros::this_node::getName();
   try {
     change_(settingsOf(table_, request.config));
-    ROS_INFO("%s: new settings from the next sample on", node.c_str());
+    ROS_INFO("%s: new settings from the next sample on", name_.c_str());
   } catch (const InputError& error) {
-    ROS_WARN("%s: settings refused: %s", node.c_str(), error.what());
+    ROS_WARN("%s: settings refused: %s", name_.c_str(), error.what());
   }
   response.config = settingsMessage(table_, current_());
   publish();

@@ -30,6 +30,7 @@ class SettingsServer {
   bool onSet(dynamic_reconfigure::Reconfigure::Request& request,
              dynamic_reconfigure::Reconfigure::Response& response);
 
+  std::string name_;  // of the node
   std::vector<SettingInfo> table_;
   Current current_;
   Change change_;

@@ -5,6 +5,8 @@
 #include <ros/ros.h>
 
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "fmbpc/loop/health.hpp"
 #include "ros/node.hpp"
@@ -14,8 +16,9 @@ namespace fpc {
 
 class SummaryListener : public Node {
  public:
-  SummaryListener(ros::NodeHandle node, const LoopFile& loop)
-      : Node(node, loop),
+  /// `name`: of the node that listens.
+  SummaryListener(ros::NodeHandle node, const LoopFile& loop, std::string name)
+      : Node(node, loop, std::move(name)),
         subscriber_(subscribe(node, topics::kLoopState, topics::kPairQueue,
                               &SummaryListener::onState, this)) {}
 

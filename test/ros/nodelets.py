@@ -1,0 +1,45 @@
+#!/usr/bin/python3
+"""All nodes as nodelets of one process give the run in process bit for bit, and nobody else may steer there either."""
+import json
+import os
+import shutil
+import tempfile
+import unittest
+
+import rostest
+
+import ring
+from launch_file import roslaunch
+
+
+class Nodelets(unittest.TestCase):
+    def setUp(self):
+        self.out = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.out)
+
+    def equal(self, loop, *sets):
+        over_topics, in_process = (os.path.join(self.out, name) for name in ("topics", "process"))
+        code, text = roslaunch("loop:=" + loop, "set:=" + " ".join(sets), "pace:=lockstep", "nodelets:=true", "draw:=false",
+                               "out:=" + over_topics)
+        self.assertEqual(0, code, text)
+        self.assertTrue(os.path.isfile(os.path.join(over_topics, "summary.json")), text)
+        ring.run_in_process(loop, in_process, (*sets, "loop.pace=lockstep"))
+        ring.assert_same_run(self, over_topics, in_process)
+        return text
+
+    def test_a_law_with_its_optimizer(self):
+        text = self.equal("asp_case1_clp", "sampling.duration_h=20")
+        self.assertIn("/fmbpc_controller: ready", text)
+
+    def test_a_model_that_is_identified_on_the_way(self):
+        self.equal("asp_identify")
+
+    def test_a_loop_that_is_wrong_ends_the_launch_in_words(self):
+        code, text = roslaunch("loop:=asp_case1", "set:=model.file=nowhere.yaml", "nodelets:=true", "draw:=false",
+                               "out:=" + self.out)
+        self.assertNotEqual(0, code)
+        self.assertIn("nowhere.yaml", text)
+
+
+if __name__ == "__main__":
+    rostest.rosrun("fmbpc", "nodelets", Nodelets)
