@@ -64,7 +64,8 @@ class Signals {
   std::vector<ros::Publisher> publishers_;
 };
 
-void runPlant(ros::NodeHandle& node, std::uint32_t samples) {
+// `listeners`: processes that hear the measurement; those in one process count once.
+void runPlant(ros::NodeHandle& node, std::uint32_t samples, std::uint32_t listeners) {
   auto measured = node.advertise<fmbpc::Measurement>("measurement", kQueue);
   auto state = node.advertise<fmbpc::PlantState>("plant_state", kQueue);
   auto clock = node.advertise<rosgraph_msgs::Clock>("/clock", 1000);
@@ -94,7 +95,7 @@ void runPlant(ros::NodeHandle& node, std::uint32_t samples) {
         ros::shutdown();
       });
   const auto ready = [&] {
-    return measured.getNumSubscribers() >= 2 && state.getNumSubscribers() >= 1 &&
+    return measured.getNumSubscribers() >= listeners && state.getNumSubscribers() >= 1 &&
            answer.getNumPublishers() >= 1;
   };
   // Sent again until it is answered: the others may not have found one another yet.
@@ -169,9 +170,10 @@ void runListener(ros::NodeHandle& node) {
   spin(node);
 }
 
-void run(const std::string& role, std::uint32_t samples, ros::NodeHandle& node) {
+void run(const std::string& role, std::uint32_t samples, std::uint32_t listeners,
+         ros::NodeHandle& node) {
   if (role == "plant")
-    runPlant(node, samples);
+    runPlant(node, samples, listeners);
   else if (role == "controller")
     runController(node);
   else if (role == "optimizer")
@@ -187,7 +189,7 @@ void runAll(std::uint32_t samples) {
       ros::CallbackQueue queue;
       ros::NodeHandle node;
       node.setCallbackQueue(&queue);
-      run(role, samples, node);
+      run(role, samples, 1, node);
     });
   for (std::thread& thread : threads) thread.join();
 }
@@ -203,6 +205,6 @@ int main(int argc, char** argv) {
   if (role == "all")
     runAll(samples);
   else
-    run(role, samples, node);
+    run(role, samples, 2, node);
   return 0;
 }

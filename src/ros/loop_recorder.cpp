@@ -84,7 +84,7 @@ void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
 void LoopRecorder::beginRun(std::uint64_t run_id) {
   if (session_.running() && !written_) session_.close();
   written_ = false;
-  final_seen_s_ = closed_s_ = -1;
+  began_s_ = final_seen_s_ = closed_s_ = -1;
   problem_.clear();
   const std::uint32_t here = store_.begin(run_id);
   if (here > 0) {
@@ -95,9 +95,14 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
   }
 }
 
+// Any message of the first sample may come first.
+void LoopRecorder::noteBegin() {
+  if (began_s_ < 0) began_s_ = steadyNow();
+}
+
 void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   guarded(topics::kMeasurement, [&] {
-    if (!session_.running()) began_s_ = steadyNow();
+    noteBegin();
     session_.receive(fromMsg(*msg));
     if (!session_.finalSeen())
       final_seen_s_ = -1;
@@ -109,6 +114,7 @@ void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
 
 void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
   guarded(topics::kPlantState, [&] {
+    noteBegin();
     session_.receive(fromMsg(*msg));
     checkComplete();
   });
@@ -116,6 +122,7 @@ void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
 
 void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
   guarded(topics::kTracking, [&] {
+    noteBegin();
     session_.receive(fromMsg(*msg), msg->remark);
     checkComplete();
   });
@@ -123,6 +130,7 @@ void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
 
 void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
   guarded(topics::kBaseAction, [&] {
+    noteBegin();
     session_.receiveBase(fromMsg(*msg));
     checkComplete();
   });
@@ -130,6 +138,7 @@ void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
 
 void LoopRecorder::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
   guarded(topics::kControlAction, [&] {
+    noteBegin();
     session_.receiveAction(fromMsg(*msg));
     checkComplete();
   });
@@ -137,6 +146,7 @@ void LoopRecorder::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
 
 void LoopRecorder::onReport(const fmbpc::SolverReport::ConstPtr& msg) {
   guarded(topics::kSolverReport, [&] {
+    noteBegin();
     session_.receive(fromMsg(*msg));
     checkComplete();
   });

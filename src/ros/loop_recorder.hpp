@@ -49,6 +49,7 @@ class LoopRecorder : public Node {
   void poll();
   void announceIfConnected();
   void beginRun(std::uint64_t run_id);
+  void noteBegin();
   void checkComplete();
   void conclude();
   bool tryWrite();
@@ -63,7 +64,7 @@ class LoopRecorder : public Node {
   ReadyPublisher ready_;
   PlantGate plant_;
 
-  double began_s_{}, final_seen_s_{-1}, closed_s_{-1}, ending_s_{-1};
+  double began_s_{-1}, final_seen_s_{-1}, closed_s_{-1}, ending_s_{-1};
   bool written_{false};
   std::string problem_, trouble_;  // of the recorder; of the plant
   int polls_connected_{};
