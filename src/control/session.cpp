@@ -146,6 +146,8 @@ void ControllerSession::process(const Measurement& m) {
     runLaw(accepted);
     if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
   }
+  if (remark_due_ && *output_.remark == '\0') output_.remark = model_remark_.c_str();
+  remark_due_ = false;
   expectNext();
   last_input_ = answer_.base.input;
 }
@@ -226,6 +228,8 @@ void ControllerSession::setModel(const TsModel& model) {
   if (models_ > 0 && matters && present_.outputs.size() > 0) {
     requireStable(matched, present_, max_pole_);
     if (plausibility_.params().gain_sign) requireSameGainSigns(model_, matched, present_);
+    model_remark_ = wordsOf(turnedGains(model_, matched, present_), matched);
+    remark_due_ = !model_remark_.empty();
   }
   controller_->setModel(model);
   model_ = std::move(matched);

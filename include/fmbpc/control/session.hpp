@@ -81,6 +81,9 @@ class ControllerSession {
   /// stays. A first model is taken even if it is unstable somewhere, since there is no better one.
   void setModel(const TsModel& model);
   std::uint64_t models() const { return models_; }  ///< taken so far
+  /// What is to be known of the model in use, in words: gains whose sign it turned when it came.
+  /// Said once among the law's remarks as well. Empty if there is nothing.
+  const std::string& modelRemark() const { return model_remark_; }
   /// See SetpointSource: a command of a person, and one that was in force before this object was
   /// made.
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
@@ -143,6 +146,8 @@ class ControllerSession {
   Plausibility plausibility_;
   TsModel model_;        // in use, matched to the plant; of a law that needs one
   Measurement present_;  // the last that was accepted; empty before the first
+  std::string model_remark_;
+  bool remark_due_{false};  // it has not been said yet
   double max_pole_{1.0};
   std::uint64_t models_{};
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
