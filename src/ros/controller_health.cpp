@@ -60,6 +60,7 @@ void ControllerNode::report(Diagnostics::Status& status) const {
   status.add("dropped: run not announced", plant_.foreign());
   if (session_.controller().needsModel()) {
     status.add("model", model_);
+    status.add("model source", model_source_);
     status.add("models taken", session_.models());
     status.add("gains turned by the model", session_.modelRemark());
   }

@@ -123,6 +123,7 @@ void ControllerNode::useModels(const StepHeader& next) {
     try {
       session_.setModel(model);
       model_ = model.name;
+      model_source_ = model.source;
       model_problem_.clear();
       ROS_INFO("%s: model %s from the next sample on", ros::this_node::getName().c_str(),
                model_.c_str());
