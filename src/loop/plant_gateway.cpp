@@ -266,7 +266,8 @@ std::string PlantGateway::problem() const {
   if (unconfirmed() && now_s_ - asked_s_ > params_.stale_s)  // before that it is on its way
     return "the plant has not confirmed the last command";
   for (Index i = 0; i < command_.size(); ++i)
-    if (strays(i)) return info_.inputs[static_cast<std::size_t>(i)].name + " is not where it was told";
+    if (strays(i))
+      return info_.inputs[static_cast<std::size_t>(i)].name + " is not where it was told";
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     const Quality quality = qualityOf(signals_[i]);
     if (quality == Quality::kGood) continue;

@@ -13,10 +13,10 @@
 namespace fpc {
 namespace {
 
-constexpr double kPeriod = 0.1;   // [s] of wall time per sample
-constexpr double kMove = 4.0;     // [l/min] that the PLC lets through at once
+constexpr double kPeriod = 0.1;  // [s] of wall time per sample
+constexpr double kMove = 4.0;    // [l/min] that the PLC lets through at once
 constexpr double kSetpoint = 0.12;
-constexpr double kBurns = 0.3;    // [mol/l] a reactor with more than this has gone out
+constexpr double kBurns = 0.3;  // [mol/l] a reactor with more than this has gone out
 
 using Lie = std::function<double(double)>;
 double truth(double value) { return value; }

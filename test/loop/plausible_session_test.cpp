@@ -138,9 +138,9 @@ TEST(PlausibleSession, WithoutTheRuleATurnedModelIsTakenAndStillSaid) {
 /// Consequents learned from the true model's samples, starting from one whose first output pushes
 /// the wrong way: what is learned turns that gain back, is taken, and that is said.
 TEST(PlausibleSession, ALearnedModelThatTurnsAGainIsTakenAndSaid) {
-  const LoopFile loop = readLoop(
-      "asp_case1", {{"sampling.duration_h", "60"}, {"model.identify.online.every", "100"},
-                    {"model.identify.online.forgetting", "0.97"}});
+  const LoopFile loop = readLoop("asp_case1", {{"sampling.duration_h", "60"},
+                                               {"model.identify.online.every", "100"},
+                                               {"model.identify.online.forgetting", "0.97"}});
   const RunRecord record = runLoop(readLoop("asp_case1", {{"sampling.duration_h", "60"}}));
   LoopFile wrong = loop;
   wrong.model = negated(loop.model, 1);
