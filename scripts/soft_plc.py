@@ -14,6 +14,7 @@ import inspect
 import json
 import logging
 import math
+import os
 import signal
 import struct
 import sys
@@ -191,9 +192,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--port", type=int, default=1502)
     parser.add_argument("--speedup", type=float, default=60.0)
-    parser.add_argument("--log", help="one JSON object a line: every write to register 10, every change of hands")
+    parser.add_argument("--log", help="one JSON object a line, added to it: every write to register 10, every change of hands")
     options = parser.parse_known_args()[0]  # roslaunch adds some
-    with open(options.log, "w", encoding="utf-8") if options.log else open("/dev/null", "w", encoding="utf-8") as log:
+    with open(options.log or os.devnull, "a", encoding="utf-8") as log:  # of a PLC before this one, too
         table = made_table()
         plc = Plc(table, options.speedup, log if options.log else None)
         table.written = plc.written

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/csv_cell.hpp"
+#include "fmbpc/base/csv_writer.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -197,24 +198,15 @@ CsvTable readCsv(const std::string& file, const CsvFormat& format) {
 }
 
 void writeCsv(const CsvTable& table, const std::string& file) {
-  std::ofstream stream(file);
-  require(stream.good(), file, "a writable file");
-  for (std::size_t i = 0; i < table.names.size(); ++i) {
-    const std::string unit = i < table.units.size() ? table.units[i] : "";
-    stream << (i ? "," : "") << table.names[i] << (unit.empty() ? "" : "[" + unit + "]");
-  }
-  stream << "\n";
-  // A lone empty cell would be an empty line, which readers skip.
-  const std::string missing = table.names.size() == 1 ? "nan" : "";
+  CsvWriter writer(file);
+  writer.header(table.names, table.units);
+  std::vector<double> cells(static_cast<std::size_t>(table.values.cols()));
   for (Eigen::Index r = 0; r < table.values.rows(); ++r) {
-    for (Eigen::Index c = 0; c < table.values.cols(); ++c) {
-      const double value = table.values(r, c);
-      stream << (c ? "," : "") << (std::isnan(value) ? missing : exactText(value));
-    }
-    stream << "\n";
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      cells[c] = table.values(r, static_cast<Eigen::Index>(c));
+    writer.row(cells);
   }
-  stream.close();
-  require(!stream.fail(), file, "room to write the whole table");
+  writer.close();
 }
 
 }  // namespace fpc

@@ -4,6 +4,7 @@
 #include "config/read.hpp"
 #include "config/read_safety.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
@@ -86,6 +87,9 @@ PlausibilityFile readPlausibility(YamlSection& root, const LoopFile& loop) {
   section.number("margin", margin, kFiniteNotNegative);
   section.number("frozen_input", params.frozen_input, kFiniteNotNegative);
   section.boolean("gain_sign", params.gain_sign);
+  section.integer("reaction_samples", params.reaction_samples, 0, 100000);
+  readOption(section, "reaction", params.reaction);
+  readOption(section, "plant_bounds", params.plant_bounds);
   section.integer("stuck_samples", file.stuck.samples, 0);
   section.number("stuck_tolerance", file.stuck.tolerance, {0.0, 1.0});
   YamlSection signals = section.section("signals");

@@ -1,11 +1,11 @@
 #include "fmbpc/control/session.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
+#include "fmbpc/control/reaction_watch.hpp"
 #include "fmbpc/fuzzy/gain_sign.hpp"
 #include "fmbpc/fuzzy/model_check.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
@@ -57,6 +57,9 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
   if (!controller_->followsSetpoint()) answer_.tracking.reference.setConstant(std::nan(""));
   noteNeeds();
 }
+
+ControllerSession::ControllerSession(ControllerSession&&) noexcept = default;
+ControllerSession::~ControllerSession() = default;
 
 // What is in no model of a law with a model cannot move its input.
 void ControllerSession::noteNeeds() {
@@ -119,12 +122,17 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
 void ControllerSession::process(const Measurement& m) {
   fell_back_ = false;
   if (needsReset(arrival_)) plausibility_.reset();
+  if (needsReset(arrival_) && reaction_) reaction_->reset();
   const Verdict verdict = plausibility_.look(m);
   const Measurement& accepted = verdict == Verdict::kClean ? m : plausibility_.accepted();
   const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
   const bool finite = allFinite(m);
   if (!finite) gate_.countNotFinite();
   if (usable) present_ = accepted;
+  if (usable)
+    watchReaction(accepted);
+  else if (reaction_)
+    reaction_->interrupt();
   if (unreleased_) {
     hold(m, "joined a run without knowing what its operator asked: held until ~manual is called");
     interruption_ = "released";
@@ -137,8 +145,13 @@ void ControllerSession::process(const Measurement& m) {
   } else if (!m.input_applied.allFinite()) {
     hold(m, "the applied input is not finite: input held");
     interruption_ = kNotFinite;
+  } else if (const std::string* bad = imposing(DoubtAction::kFallback)) {
+    fallBack(m, bad->c_str());
   } else if (verdict == Verdict::kFallback) {
-    fallBack(m);
+    fallBack(m, plausibility_.words());
+  } else if (const std::string* doubt = imposing(DoubtAction::kHold)) {
+    hold(m, doubt->c_str());
+    interruption_ = kDoubted;
   } else if (!usable) {
     hold(m, plausibility_.words());
     interruption_ = finite ? kDoubted : kNotFinite;
@@ -146,6 +159,9 @@ void ControllerSession::process(const Measurement& m) {
     runLaw(accepted);
     if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
   }
+  if (remark_due_ && *output_.remark == '\0') output_.remark = model_remark_.c_str();
+  if (*output_.remark == '\0') output_.remark = reaction().c_str();
+  remark_due_ = false;
   expectNext();
   last_input_ = answer_.base.input;
 }
@@ -159,14 +175,32 @@ void ControllerSession::expectNext() {
     plausibility_.expectNothing();
 }
 
-void ControllerSession::fallBack(const Measurement& m) {
+void ControllerSession::doubtPlant(const std::string& difference) { plant_doubt_ = difference; }
+
+const std::string& ControllerSession::reaction() const {
+  static const std::string nothing;
+  return reaction_ ? reaction_->words() : nothing;
+}
+
+/// Why the loop file wants this done now; none if it does not.
+const std::string* ControllerSession::imposing(DoubtAction action) const {
+  const PlausibilityParams& params = plausibility_.params();
+  if (params.plant_bounds == action && !plant_doubt_.empty()) return &plant_doubt_;
+  return params.reaction == action && !reaction().empty() ? &reaction() : nullptr;
+}
+
+void ControllerSession::watchReaction(const Measurement& m) {
+  if (reaction_) reaction_->look(m);
+}
+
+void ControllerSession::fallBack(const Measurement& m, const char* remark) {
   Vector& input = answer_.base.input;
   input = plausibility_.params().fallback;
   limits_.clip(input, m.input_applied);
   controller_->makeSendable(input);
   answer_.base.source = output_.source = ActionSource::kFallback;
   output_.ok = output_.predictive = false;
-  output_.remark = plausibility_.words();
+  output_.remark = remark;
   interruption_ = kDoubted;
   fell_back_ = true;
 }
@@ -226,64 +260,15 @@ void ControllerSession::setModel(const TsModel& model) {
   if (models_ > 0 && matters && present_.outputs.size() > 0) {
     requireStable(matched, present_, max_pole_);
     if (plausibility_.params().gain_sign) requireSameGainSigns(model_, matched, present_);
+    model_remark_ = wordsOf(turnedGains(model_, matched, present_), matched);
+    remark_due_ = !model_remark_.empty();
   }
   controller_->setModel(model);
   model_ = std::move(matched);
+  const int window = plausibility_.params().reaction_samples;
+  if (matters && window > 0) reaction_ = std::make_unique<ReactionWatch>(model_, window);
   ++models_;
   noteNeeds();
-}
-
-void ControllerSession::manual(bool on) {
-  if (on && !manual_) manual_given_ = false;
-  manual_ = on;
-  unreleased_ = false;
-}
-
-void ControllerSession::manualInput(VectorRef input) {
-  require(manual_, "manual input", "manual mode: switch to manual first");
-  require(input.size() == last_input_.size(), "manual input",
-          std::to_string(last_input_.size()) + " numbers");
-  require(input.allFinite(), "manual input", "finite numbers");
-  require(controller_->mayBeSent(input), "manual input", "an input that the controller may send");
-  manual_input_ = input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
-  manual_given_ = true;
-}
-
-bool ControllerSession::adapt(bool on) {
-  const bool done = controller_->adapt(on);
-  if (done) adapt_ = on;
-  return done;
-}
-
-bool ControllerSession::retune(const Settings& settings) {
-  if (!controller_->retune(settings)) return false;
-  for (const auto& [key, value] : settings) {
-    const auto known = std::find_if(settings_.begin(), settings_.end(),
-                                    [&name = key](const auto& s) { return s.first == name; });
-    if (known == settings_.end())
-      settings_.emplace_back(key, value);
-    else
-      known->second = value;
-  }
-  return true;
-}
-
-OperatorWishes ControllerSession::wishes() const {
-  return {manual_, manual_given_, manual_input_,       setpoint_.recipe(),
-          adapt_,  settings_,     setpoint_.standing()};
-}
-
-void ControllerSession::restore(const OperatorWishes& wishes) {
-  if (gate_.counts().accepted > 0) return;
-  manual_ = wishes.manual;
-  manual_given_ = wishes.manual_given && wishes.manual_input.size() == last_input_.size() &&
-                  wishes.manual_input.allFinite();
-  if (manual_given_)
-    manual_input_ = wishes.manual_input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
-  setpoint_.restore(wishes.recipe);
-  for (const Command& command : wishes.setpoints) setpoint_.restore(command);
-  if (wishes.adapt) adapt(*wishes.adapt);
-  if (!wishes.settings.empty()) retune(wishes.settings);
 }
 
 }  // namespace fpc

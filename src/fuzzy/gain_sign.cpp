@@ -21,24 +21,16 @@ Matrix scaled(Matrix gains, const TsModel& model) {
   return gains;
 }
 
-struct Turned {
-  Eigen::Index outputs{}, output{-1}, input{-1};  // how many outputs; the first gain
-};
-
-Turned compared(const Matrix& before, const Matrix& after) {
-  Turned turned;
-  for (Eigen::Index i = 0; i < before.rows(); ++i) {
-    bool here = false;
-    for (Eigen::Index j = 0; j < before.cols(); ++j) {
-      const bool counts = std::abs(before(i, j)) >= kCounts * before.row(i).cwiseAbs().maxCoeff() &&
-                          std::abs(after(i, j)) >= kCounts * after.row(i).cwiseAbs().maxCoeff();
-      if (!counts || !(before(i, j) * after(i, j) < 0.0)) continue;
-      if (turned.output < 0) turned.output = i, turned.input = j;
-      here = true;
-    }
-    if (here) ++turned.outputs;
+/// The first large gain of output i that is turned round; -1: none.
+Eigen::Index turnedInput(const Matrix& before, const Matrix& after, Eigen::Index i) {
+  const double large_before = kCounts * before.row(i).cwiseAbs().maxCoeff();
+  const double large_after = kCounts * after.row(i).cwiseAbs().maxCoeff();
+  for (Eigen::Index j = 0; j < before.cols(); ++j) {
+    const bool large =
+        std::abs(before(i, j)) >= large_before && std::abs(after(i, j)) >= large_after;
+    if (large && before(i, j) * after(i, j) < 0.0) return j;
   }
-  return turned;
+  return -1;
 }
 
 }  // namespace
@@ -54,19 +46,38 @@ Matrix stepGains(const TsModel& model, const Measurement& at) {
   return affine.C * powers.sum() * affine.B;
 }
 
-void requireSameGainSigns(const TsModel& running, const TsModel& fresh, const Measurement& at) {
+std::vector<TurnedGain> turnedGains(const TsModel& running, const TsModel& fresh,
+                                    const Measurement& at) {
   const Matrix before = scaled(stepGains(running, at), running);
   const Matrix after = scaled(stepGains(fresh, at), running);
-  if (!before.allFinite() || !after.allFinite()) return;
-  const Turned turned = compared(before, after);
-  if (2 * turned.outputs <= before.rows()) return;
-  const auto name = [](const std::vector<SignalInfo>& signals, Eigen::Index k) {
-    return signals[static_cast<std::size_t>(k)].name;
-  };
+  std::vector<TurnedGain> turned;
+  if (!before.allFinite() || !after.allFinite()) return turned;
+  for (Eigen::Index i = 0; i < before.rows(); ++i) {
+    const Eigen::Index j = turnedInput(before, after, i);
+    if (j < 0) continue;
+    turned.push_back({running.outputs[static_cast<std::size_t>(i)].name,
+                      running.inputs[static_cast<std::size_t>(j)].name});
+  }
+  return turned;
+}
+
+bool tooManyTurned(const std::vector<TurnedGain>& turned, const TsModel& running) {
+  return 2 * turned.size() > running.outputs.size();
+}
+
+std::string wordsOf(const std::vector<TurnedGain>& turned, const TsModel& fresh) {
+  std::string words;
+  for (const TurnedGain& gain : turned)
+    words += (words.empty() ? "" : ", ") + gain.input + " to " + gain.output;
+  return words.empty() ? "" : "model '" + fresh.name + "' turns the sign of the gain from " + words;
+}
+
+void requireSameGainSigns(const TsModel& running, const TsModel& fresh, const Measurement& at) {
+  const std::vector<TurnedGain> turned = turnedGains(running, fresh, at);
+  if (!tooManyTurned(turned, running)) return;
   throw InputError("model '" + fresh.name +
-                   "': expected the sign of the running model's gain from " +
-                   name(fresh.inputs, turned.input) + " to " + name(fresh.outputs, turned.output) +
-                   ", got the opposite (plausibility.gain_sign)");
+                   "': expected the sign of the running model's gain from " + turned[0].input +
+                   " to " + turned[0].output + ", got the opposite (plausibility.gain_sign)");
 }
 
 }  // namespace fpc

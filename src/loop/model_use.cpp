@@ -1,32 +1,33 @@
 // How often a run was where its model has no data.
+#include "loop/model_use.hpp"
+
 #include <algorithm>
 
 #include "fmbpc/fuzzy/domain.hpp"
 #include "fmbpc/loop/report.hpp"
 
 namespace fpc {
-namespace {
 
-bool predicts(const LoopFile& loop) {
-  return loop.has_model && loop.controller && loop.controllerType().needs_model;
+bool hasDomain(const LoopFile& loop) {
+  const bool predicts = loop.has_model && loop.controller && loop.controllerType().needs_model;
+  return predicts && knowsDomain(loop.model);
 }
 
-}  // namespace
+bool isOutsideModel(const LoopFile& loop, const SampleRecord& sample) {
+  if (!sample.has_measurement || !sample.has_action) return false;
+  const Measurement& m = sample.measurement;
+  Vector now(m.outputs.size() + m.input_applied.size() + m.disturbances.size());
+  now << m.outputs, m.input_applied, m.disturbances;
+  Vector next = now;
+  next.segment(m.outputs.size(), m.input_applied.size()) = sample.action.input;
+  return std::min(trustOf(loop.model, now), trustOf(loop.model, next)) < loop.guard.trust_low;
+}
 
 std::uint64_t samplesOutsideModel(const LoopFile& loop, const RunRecord& record) {
-  if (!predicts(loop) || !knowsDomain(loop.model)) return 0;
-  std::uint64_t count = 0;
-  for (const auto& sample : record.samples) {
-    if (!sample.has_measurement || !sample.has_action) continue;
-    const Measurement& m = sample.measurement;
-    Vector now(m.outputs.size() + m.input_applied.size() + m.disturbances.size());
-    now << m.outputs, m.input_applied, m.disturbances;
-    Vector next = now;
-    next.segment(m.outputs.size(), m.input_applied.size()) = sample.action.input;
-    const double trust = std::min(trustOf(loop.model, now), trustOf(loop.model, next));
-    count += trust < loop.guard.trust_low;
-  }
-  return count;
+  if (!hasDomain(loop)) return 0;
+  return static_cast<std::uint64_t>(
+      std::count_if(record.samples.begin(), record.samples.end(),
+                    [&](const SampleRecord& sample) { return isOutsideModel(loop, sample); }));
 }
 
 }  // namespace fpc

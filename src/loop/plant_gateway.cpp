@@ -12,6 +12,8 @@ namespace {
 
 using Index = Eigen::Index;
 
+constexpr double kRounding = 1e-9;
+
 const SignalInfo& signalOf(const PlantInfo& info, std::size_t signal) {
   const std::size_t n_y = info.outputs.size();
   return signal < n_y ? info.outputs[signal] : info.disturbances[signal - n_y];
@@ -116,15 +118,15 @@ void PlantGateway::followReadings() {
     const double range = limits.upper[row] - limits.lower[row];
     const double tolerated = std::isfinite(range) ? params_.readback_tolerance * range : 0.0;
     if (exact) command_[row] = position.value;
-    if (exact || std::abs(position.value - command_[row]) > tolerated)
-      actuator_.disturb(row, position.value);
+    const bool away = exact || std::abs(position.value - command_[row]) > tolerated;
+    actuator_.disturb(row, away ? position.value : command_[row]);
   }
   if (exact) actuator_.apply(Vector(actuator_.applied()));  // held from here on
   if (exact) exact_ = false;
 }
 
-/// What element i may be told: inside the bounds, one move from the last command and, if both can
-/// be, one move from where it is; otherwise the move from the last command that is nearer to there.
+/// What element i may be told: inside the bounds, one move from the last command and one move from
+/// where it is; where both cannot be it is told nothing new.
 PlantGateway::Span PlantGateway::spanOf(Index i) const {
   const InputLimits& limits = actuator_.params().limits;
   const double move = limits.move[i];
@@ -134,9 +136,24 @@ PlantGateway::Span PlantGateway::spanOf(Index i) const {
   const Reading& position = positions_[static_cast<std::size_t>(i)];
   if (!params_.reads_back || !position.come || position.at_s <= told_s_) return span;
   const double from = position.value - move, to = position.value + move;
-  if (from > span.upper) return {span.upper, span.upper};
-  if (to < span.lower) return {span.lower, span.lower};
+  if (from > span.upper || to < span.lower) return {command_[i], command_[i]};
   return {std::max(span.lower, from), std::min(span.upper, to)};
+}
+
+/// Further from its command than a move ahead and a move behind explain: it lies, is stuck, or
+/// somebody else moves it. A command that runs after it would drive the plant by whatever is read.
+bool PlantGateway::strays(Index i) const {
+  const Reading& position = positions_[static_cast<std::size_t>(i)];
+  if (!params_.reads_back || exact_ || !position.come || position.at_s <= told_s_) return false;
+  const double tolerated = 2.0 * actuator_.params().limits.move[i];
+  return std::abs(position.value - command_[i]) > tolerated * (1.0 + kRounding);
+}
+
+/// Whether no input is left that follows.
+bool PlantGateway::allStray() const {
+  Index stray = 0;
+  for (Index i = 0; i < command_.size(); ++i) stray += strays(i) ? 1 : 0;
+  return stray == command_.size();
 }
 
 /// The command as the field can carry it.
@@ -165,7 +182,7 @@ void PlantGateway::take(VectorRef input) {
   if (measurement_.final) return;
   followReadings();
   if (mayCommand()) return command(input);
-  waits_ = field() == FieldState::kRunning;  // for the command ahead of it
+  waits_ = field() == FieldState::kRunning && unconfirmed();  // for the command ahead of it
   if (waits_)
     waiting_ = input;
   else
@@ -219,7 +236,7 @@ void PlantGateway::measure() {
     age_s_[row] = reading.come ? now_s_ - reading.at_s : std::numeric_limits<double>::infinity();
   }
   measurement_.input_applied = actuator_.applied();
-  takes_ = !(field() != FieldState::kRunning || (unconfirmed() && !just_told_));
+  takes_ = field() == FieldState::kRunning && !allStray() && (!unconfirmed() || just_told_);
   measurement_.final = samples_ > 0 && measurement_.header.step == samples_;
 }
 
@@ -248,6 +265,9 @@ std::string PlantGateway::problem() const {
   }
   if (unconfirmed() && now_s_ - asked_s_ > params_.stale_s)  // before that it is on its way
     return "the plant has not confirmed the last command";
+  for (Index i = 0; i < command_.size(); ++i)
+    if (strays(i))
+      return info_.inputs[static_cast<std::size_t>(i)].name + " is not where it was told";
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     const Quality quality = qualityOf(signals_[i]);
     if (quality == Quality::kGood) continue;

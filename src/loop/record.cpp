@@ -1,8 +1,7 @@
 #include "fmbpc/loop/record.hpp"
 
-#include <algorithm>
-
 #include "fmbpc/loop/recorder_session.hpp"
+#include "loop/run_tally.hpp"
 
 namespace fpc {
 namespace {
@@ -10,17 +9,6 @@ namespace {
 template <typename List>
 Eigen::Index count(const List& list) {
   return static_cast<Eigen::Index>(list.size());
-}
-
-constexpr std::size_t kMostRemarks = 20;
-
-void keep(std::vector<RunRemark>& remarks, const std::string& words, std::uint32_t step) {
-  const auto known = std::find_if(remarks.begin(), remarks.end(),
-                                  [&](const RunRemark& r) { return r.words == words; });
-  if (known != remarks.end())
-    ++known->samples;
-  else if (remarks.size() < kMostRemarks)
-    remarks.push_back({words, 1, step});
 }
 
 }  // namespace
@@ -58,14 +46,11 @@ RunRecord RecordLayout::emptyRecord() const {
 }
 
 void conclude(RunRecord& record, bool nothing_missing) {
-  record.failed_samples = 0;
-  record.remarks.clear();
-  for (std::size_t k = 0; k < record.samples.size(); ++k) {
-    const SampleRecord& sample = record.samples[k];
-    if (!sample.remark.empty()) keep(record.remarks, sample.remark, static_cast<std::uint32_t>(k));
-    if (sample.state.trouble.empty()) continue;
-    if (record.failed_samples++ == 0) record.trouble = sample.state.trouble;
-  }
+  RunTally tally;
+  for (const SampleRecord& sample : record.samples) tally.add(sample);
+  record.failed_samples = tally.failed_samples;
+  record.trouble = tally.trouble;
+  record.remarks = tally.remarks;
   record.complete = nothing_missing && record.failed_samples == 0;
 }
 

@@ -4,24 +4,27 @@
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/journal_reader.hpp"
+#include "fmbpc/loop/run_summary.hpp"
+#include "fmbpc/loop/trajectory.hpp"
 
 namespace fpc {
 namespace {
-namespace fs = std::filesystem;
-}
 
-void replaceRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
-                const std::string& folder) {
-  const fs::path beside = fs::path(folder) / "unfinished";
-  writeRun(loop, record, summary, beside.string());
+namespace fs = std::filesystem;
+
+/// Files that were written beside take the place of those of the run before.
+void moveIn(const fs::path& beside, const fs::path& folder) {
   std::error_code error;
-  fs::remove(fs::path(folder) / "plot.png", error);  // of the run before
+  fs::remove(folder / "plot.png", error);  // of the run before
   for (const char* name : {"trajectory.csv", "summary.json"}) {
-    fs::rename(beside / name, fs::path(folder) / name, error);
-    require(!error, (fs::path(folder) / name).string(), "a writable file: " + error.message());
+    fs::rename(beside / name, folder / name, error);
+    require(!error, (folder / name).string(), "a writable file: " + error.message());
   }
   fs::remove_all(beside, error);
 }
+
+}  // namespace
 
 RecordStore::RecordStore(const LoopFile& loop, std::string folder)
     : loop_(loop), folder_(std::move(folder)), layout_(recordLayout(loop)) {
@@ -54,9 +57,21 @@ void RecordStore::append(const SampleRecord& sample) {
 }
 
 Summary RecordStore::write(double wall_s, const std::string& folder) const {
-  const RunRecord record = readJournal(journalFile(), layout_);
-  const Summary summary = summarize(loop_, record, wall_s);
-  replaceRun(loop_, record, summary, folder);
+  const fs::path beside = fs::path(folder) / "unfinished";
+  std::error_code error;
+  fs::create_directories(beside, error);
+  require(!error, beside.string(), "a folder that can be made (" + error.message() + ")");
+  JournalReader reader(journalFile(), layout_);
+  RunSummary sums(loop_);
+  TrajectoryFile file(loop_, layout_, (beside / "trajectory.csv").string());
+  for (SampleRecord sample; reader.next(sample);) {
+    sums.add(sample);
+    file.add(sample);
+  }
+  file.close();
+  const Summary summary = sums.finish(wall_s, reader.complete());
+  writeSummary(summary, (beside / "summary.json").string());
+  moveIn(beside, folder);
   return summary;
 }
 
@@ -76,7 +91,8 @@ Summary RecordStore::finish(double wall_s) {
 
 void RecordStore::setAside() {
   journal_.flush();
-  if (readJournal(journalFile(), layout_).samples.empty()) return;
+  SampleRecord first;
+  if (!JournalReader(journalFile(), layout_).next(first)) return;
   const fs::path aside = fs::path(folder_) / "interrupted";
   std::error_code error;
   fs::create_directories(aside, error);

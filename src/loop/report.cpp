@@ -1,22 +1,28 @@
 #include "fmbpc/loop/report.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 
-#include "fmbpc/base/csv.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/loop/run_summary.hpp"
+#include "fmbpc/loop/trajectory.hpp"
 
 namespace fpc {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+/// As much of a layout as a trajectory needs.
+RecordLayout layoutOf(const RunRecord& record) {
+  RecordLayout layout;
+  layout.info = record.info;
+  layout.states = record.states;
+  layout.state_units = record.state_units;
+  return layout;
+}
+
 constexpr const char* kSourceNames[] = {"",     "base",   "constrained", "clipped",
                                         "held", "manual", "fallback"};
 
@@ -76,124 +82,6 @@ Json limitsOf(const Summary& summary) {
   return {{"inputs", inputs}, {"outputs", outputs}};
 }
 
-/// Columns of a table, filled row by row from the samples of a record.
-class Columns {
- public:
-  using Value = std::function<double(std::size_t)>;
-  void add(const std::string& name, const std::string& unit, Value value) {
-    table_.names.push_back(name);
-    table_.units.push_back(unit);
-    values_.push_back(std::move(value));
-  }
-  CsvTable fill(std::size_t first, std::size_t end) {
-    table_.values.resize(static_cast<Eigen::Index>(end - first),
-                         static_cast<Eigen::Index>(values_.size()));
-    for (std::size_t c = 0; c < values_.size(); ++c)
-      for (std::size_t r = first; r < end; ++r)
-        table_.values(static_cast<Eigen::Index>(r - first), static_cast<Eigen::Index>(c)) =
-            values_[c](r);
-    return table_;
-  }
-
- private:
-  CsvTable table_;
-  std::vector<Value> values_;
-};
-
-void addOutputs(const RunRecord& record, Columns& columns) {
-  const auto& samples = record.samples;
-  for (std::size_t i = 0; i < record.info.outputs.size(); ++i) {
-    const SignalInfo& y = record.info.outputs[i];
-    const auto k = static_cast<Eigen::Index>(i);
-    columns.add(y.name, y.unit, [&samples, k](std::size_t r) {
-      return samples[r].has_measurement ? samples[r].measurement.outputs[k] : kMissing;
-    });
-  }
-}
-
-void addInputs(const RunRecord& record, Columns& columns) {
-  const auto& samples = record.samples;
-  for (std::size_t i = 0; i < record.info.inputs.size(); ++i) {
-    const SignalInfo& u = record.info.inputs[i];
-    const auto k = static_cast<Eigen::Index>(i);
-    columns.add(u.name, u.unit, [&samples, k](std::size_t r) {
-      const bool known = r + 1 < samples.size() && samples[r + 1].has_measurement;
-      return known ? samples[r + 1].measurement.input_applied[k] : kMissing;
-    });
-  }
-}
-
-/// The true disturbances where the simulator tells them, else the measured ones.
-void addDisturbances(const LoopFile& loop, const RunRecord& record, Columns& columns) {
-  const auto& samples = record.samples;
-  if (!record.states.empty()) {
-    const auto all = makePlant(loop.simulation)->description().disturbances;
-    for (std::size_t i = 0; i < all.size(); ++i)
-      columns.add(all[i].name, all[i].unit,
-                  [&samples, k = static_cast<Eigen::Index>(i)](std::size_t r) {
-                    return samples[r].has_state ? samples[r].state.disturbances[k] : kMissing;
-                  });
-    return;
-  }
-  for (std::size_t i = 0; i < record.info.disturbances.size(); ++i)
-    columns.add(record.info.disturbances[i].name, record.info.disturbances[i].unit,
-                [&samples, k = static_cast<Eigen::Index>(i)](std::size_t r) {
-                  return samples[r].has_measurement ? samples[r].measurement.disturbances[k]
-                                                    : kMissing;
-                });
-}
-
-void addTracking(const RunRecord& record, Columns& columns) {
-  const auto& samples = record.samples;
-  for (std::size_t i = 0; i < record.info.outputs.size(); ++i) {
-    const SignalInfo& y = record.info.outputs[i];
-    const auto k = static_cast<Eigen::Index>(i);
-    columns.add(y.name + "_setpoint", y.unit, [&samples, k](std::size_t r) {
-      return samples[r].has_tracking ? samples[r].tracking.setpoint[k] : kMissing;
-    });
-    columns.add(y.name + "_reference", y.unit, [&samples, k](std::size_t r) {
-      return samples[r].has_tracking ? samples[r].tracking.reference[k] : kMissing;
-    });
-    if (record.states.empty()) continue;
-    columns.add(y.name + "_true", y.unit, [&samples, k](std::size_t r) {
-      return samples[r].has_state ? samples[r].state.outputs[k] : kMissing;
-    });
-  }
-}
-
-void addActions(const LoopFile& loop, const RunRecord& record, Columns& columns) {
-  const auto& samples = record.samples;
-  for (std::size_t i = 0; i < record.info.inputs.size(); ++i) {
-    const SignalInfo& u = record.info.inputs[i];
-    const auto k = static_cast<Eigen::Index>(i);
-    columns.add(u.name + "_commanded", u.unit, [&samples, k](std::size_t r) {
-      return samples[r].has_action ? samples[r].action.input[k] : kMissing;
-    });
-    columns.add(u.name + "_base", u.unit, [&samples, k](std::size_t r) {
-      return samples[r].has_base ? samples[r].base.input[k] : kMissing;
-    });
-    if (!loop.has_clp) continue;
-    columns.add(u.name + "_perturbation", u.unit, [&samples, k](std::size_t r) {
-      const Vector& c = samples[r].report.perturbation;
-      return samples[r].has_report && k < c.size() ? c[k] : kMissing;
-    });
-  }
-}
-
-void addOtherStates(const RunRecord& record, Columns& columns) {
-  const auto& samples = record.samples;
-  for (std::size_t i = 0; i < record.states.size(); ++i) {
-    bool is_output = false;
-    for (const auto& output : record.info.outputs)
-      is_output = is_output || output.name == record.states[i];
-    if (is_output) continue;
-    columns.add(record.states[i], record.state_units[i],
-                [&samples, k = static_cast<Eigen::Index>(i)](std::size_t r) {
-                  return samples[r].has_state ? samples[r].state.state[k] : kMissing;
-                });
-  }
-}
-
 }  // namespace
 
 std::string toJson(const Summary& summary) {
@@ -238,21 +126,27 @@ std::string toJson(const Summary& summary) {
 }
 
 CsvTable trajectoryOf(const LoopFile& loop, const RunRecord& record) {
-  Columns columns;
-  const SampleClock clock(loop.plant_info.sample_time_s, loop.simulation.start_time_s);
-  columns.add("time", "h",
-              [&clock](std::size_t r) { return clock.hoursAt(static_cast<std::uint32_t>(r)); });
-  addOutputs(record, columns);
-  addInputs(record, columns);
-  addDisturbances(loop, record, columns);
-  addTracking(record, columns);
-  addActions(loop, record, columns);
-  addOtherStates(record, columns);
-  const double from =
-      std::ceil(loop.report.record_from_h * 3600.0 / loop.plant_info.sample_time_s - 1e-6);
-  const std::size_t last = record.samples.empty() ? 0 : record.samples.size() - 1;
-  return columns.fill(std::min(static_cast<std::size_t>(std::max(from, 0.0)), last),
-                      record.samples.size());
+  std::vector<double> cells;
+  Trajectory rows(loop, layoutOf(record), [&](const std::vector<double>& row) {
+    cells.insert(cells.end(), row.begin(), row.end());
+  });
+  for (const SampleRecord& sample : record.samples) rows.add(sample);
+  rows.close();
+  CsvTable table;
+  table.names = rows.names();
+  table.units = rows.units();
+  const auto columns = static_cast<Eigen::Index>(table.names.size());
+  table.values =
+      Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
+          cells.data(), static_cast<Eigen::Index>(cells.size()) / columns, columns);
+  return table;
+}
+
+void writeSummary(const Summary& summary, const std::string& file) {
+  std::ofstream stream(file);
+  stream << toJson(summary) << "\n";
+  stream.close();
+  require(!stream.fail(), file, "a writable file");
 }
 
 void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
@@ -260,12 +154,11 @@ void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summ
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   require(!error, folder, "a folder that can be made (" + error.message() + ")");
-  writeCsv(trajectoryOf(loop, record), (std::filesystem::path(folder) / "trajectory.csv").string());
-  const std::string file = (std::filesystem::path(folder) / "summary.json").string();
-  std::ofstream stream(file);
-  stream << toJson(summary) << "\n";
-  stream.close();
-  require(!stream.fail(), file, "a writable file");
+  TrajectoryFile file(loop, layoutOf(record),
+                      (std::filesystem::path(folder) / "trajectory.csv").string());
+  for (const SampleRecord& sample : record.samples) file.add(sample);
+  file.close();
+  writeSummary(summary, (std::filesystem::path(folder) / "summary.json").string());
 }
 
 }  // namespace fpc

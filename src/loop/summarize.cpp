@@ -1,164 +1,28 @@
-// Indices of a run from its record. Samples that never came are left out (a complete run has none).
+// Indices of a run from its samples. Samples that never came are left out (a complete run has
+// none).
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
+#include "fmbpc/analysis/running_indices.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
 #include "fmbpc/loop/factory.hpp"
-#include "fmbpc/loop/report.hpp"
+#include "fmbpc/loop/run_summary.hpp"
+#include "loop/model_use.hpp"
+#include "loop/run_tally.hpp"
 
 namespace fpc {
 namespace {
 
+using Index = Eigen::Index;
+
 constexpr double kTolerance = 1e-9;  // of an input's range
 
-Vector toVector(const std::vector<double>& values) {
-  return Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
-}
-
-OutputIndices indicesOfOutput(const RunRecord& record, Eigen::Index i, double sample_time_h) {
-  std::vector<double> y, setpoint, reference;
-  for (const auto& sample : record.samples) {
-    if (!sample.has_measurement || !sample.has_tracking) continue;
-    y.push_back(sample.measurement.outputs[i]);
-    setpoint.push_back(sample.tracking.setpoint[i]);
-    reference.push_back(sample.tracking.reference[i]);
-  }
-  return outputIndices(toVector(y), toVector(setpoint), toVector(reference), sample_time_h);
-}
-
-/// u(k) is known from the measurement that follows it.
-InputIndices indicesOfInput(const RunRecord& record, Eigen::Index i) {
-  std::vector<double> applied;
-  double before = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t k = 0; k < record.samples.size(); ++k) {
-    if (!record.samples[k].has_measurement) continue;
-    const double value = record.samples[k].measurement.input_applied[i];
-    if (k == 0)
-      before = value;
-    else
-      applied.push_back(value);
-  }
-  return inputIndices(toVector(applied), before);
-}
-
-WindowIndices indicesOfWindow(const RunRecord& record, Eigen::Index i, const ReportWindow& window,
-                              double sample_time_h) {
-  WindowIndices indices{window, record.info.outputs[static_cast<std::size_t>(i)].name, 0.0, 0.0, 0};
-  const double rounding = 1e-6 * sample_time_h;
-  for (std::size_t k = 0; k < record.samples.size(); ++k) {
-    const auto& sample = record.samples[k];
-    const double time_h = static_cast<double>(k) * sample_time_h;
-    if (!sample.has_measurement || !sample.has_tracking) continue;
-    if (time_h < window.from_h - rounding || time_h > window.to_h + rounding) continue;
-    const double error = sample.measurement.outputs[i] - sample.tracking.setpoint[i];
-    indices.mean_error += error;
-    indices.rmse += error * error;
-    ++indices.samples;
-  }
-  const auto n = static_cast<double>(indices.samples);
-  indices.rmse = std::sqrt(indices.rmse / n);
-  indices.mean_error /= n;
-  return indices;
-}
-
-/// Of the inputs really applied, each held over its sample.
-double consumed(const RunRecord& record, const Vector& rate, double sample_time_s) {
-  double sum = 0.0;
-  for (std::size_t k = 1; k < record.samples.size(); ++k)
-    if (record.samples[k].has_measurement)
-      sum += rate.dot(record.samples[k].measurement.input_applied) * sample_time_s;
-  return sum;
-}
-
-double toleranceOf(const InputLimits& limits, Eigen::Index i) {
+double toleranceOf(const InputLimits& limits, Index i) {
   const double range = limits.upper[i] - limits.lower[i];
   return kTolerance * (std::isfinite(range) ? range : 1.0);
-}
-
-void countInputViolations(const SampleRecord& sample, Summary& summary) {
-  const InputLimits& limits = summary.limits;
-  for (Eigen::Index i = 0; i < sample.action.input.size(); ++i) {
-    const double u = sample.action.input[i];
-    const double tolerance = toleranceOf(limits, i);
-    const bool inside = u >= limits.lower[i] - tolerance && u <= limits.upper[i] + tolerance;
-    summary.input_violations += !inside;
-    if (!sample.has_measurement) continue;
-    const bool small =
-        std::abs(u - sample.measurement.input_applied[i]) <= limits.move[i] + tolerance;
-    summary.move_violations += !small;
-  }
-}
-
-void countOutputViolations(const SampleRecord& sample, Summary& summary) {
-  for (Eigen::Index i = 0; i < sample.state.outputs.size(); ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const double y = sample.state.outputs[i];
-    summary.output_violations += !(y >= summary.output_lower[k] && y <= summary.output_upper[k]);
-  }
-}
-
-/// The value below which the share `p` of the sorted values lies (nearest rank).
-double quantile(const std::vector<double>& sorted, double p) {
-  if (sorted.empty()) return 0.0;
-  const auto rank = static_cast<std::size_t>(std::ceil(p * static_cast<double>(sorted.size())));
-  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
-}
-
-/// How many samples at the end of the run have the input at this limit.
-std::uint32_t lastAt(const RunRecord& record, Eigen::Index i, double limit, double tolerance) {
-  std::uint32_t samples = 0;
-  for (auto sample = record.samples.rbegin(); sample != record.samples.rend(); ++sample) {
-    if (!sample->has_action) continue;
-    if (!(std::abs(sample->action.input[i] - limit) <= tolerance)) break;
-    ++samples;
-  }
-  return samples;
-}
-
-void findLockUps(const RunRecord& record, Summary& summary) {
-  const std::uint32_t least = std::max<std::uint32_t>(10, summary.steps / 10);
-  const InputLimits& limits = summary.limits;
-  for (Eigen::Index i = 0; i < limits.lower.size(); ++i)
-    for (const bool upper : {false, true}) {
-      const double limit = upper ? limits.upper[i] : limits.lower[i];
-      const std::uint32_t samples = lastAt(record, i, limit, toleranceOf(limits, i));
-      if (samples >= least)
-        summary.locked.push_back(
-            {summary.input_names[static_cast<std::size_t>(i)], upper, samples});
-    }
-}
-
-void summarizeSolves(const RunRecord& record, Summary& summary) {
-  std::vector<double> microseconds;
-  for (const auto& sample : record.samples) {
-    if (!sample.has_report || sample.report.status == SolveStatus::kNotRun) continue;
-    const SolveStatus status = sample.report.status;
-    microseconds.push_back(1e6 * sample.report.seconds);
-    if (status == SolveStatus::kInfeasible)
-      ++summary.clp_infeasible;
-    else if (status != SolveStatus::kSolved && status != SolveStatus::kBoundWins)
-      ++summary.clp_failed;
-  }
-  std::sort(microseconds.begin(), microseconds.end());
-  summary.clp_solves = microseconds.size();
-  summary.clp_median_us = quantile(microseconds, 0.5);
-  summary.clp_p99_us = quantile(microseconds, 0.99);
-}
-
-void countSamples(const RunRecord& record, Summary& summary) {
-  summary.sources.assign(static_cast<std::size_t>(ActionSource::kFallback) + 1, 0);
-  for (const auto& sample : record.samples) {
-    if (sample.has_state) {
-      summary.actuator_clips += sample.state.actuator_clips;
-      countOutputViolations(sample, summary);
-    }
-    if (!sample.has_action) continue;
-    ++summary.steps;
-    ++summary.sources[static_cast<std::size_t>(sample.action.source)];
-    countInputViolations(sample, summary);
-  }
 }
 
 /// Counted again from the record; 0 where the record is not at hand (it is the plant's, maybe of
@@ -173,44 +37,200 @@ void countCells(const LoopFile& loop, Summary& summary) {
   }
 }
 
-}  // namespace
-
-Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) {
+/// What stands in a summary before the first sample.
+Summary blank(const LoopFile& loop) {
   Summary summary;
   summary.loop = loop.name;
   summary.title = loop.report.title;
+  summary.limits = loop.simulation.actuator.limits;
+  summary.output_lower = loop.report.output_lower;
+  summary.output_upper = loop.report.output_upper;
+  summary.has_clp = loop.has_clp;
+  for (const auto& output : loop.plant_info.outputs) {
+    summary.output_names.push_back(output.name);
+    summary.output_units.push_back(output.unit);
+    for (const auto& window : loop.report.windows)
+      if (window.output.empty() || window.output == output.name)
+        summary.windows.push_back({window, output.name, 0.0, 0.0, 0});
+  }
+  for (const auto& input : loop.plant_info.inputs) {
+    summary.input_names.push_back(input.name);
+    summary.input_units.push_back(input.unit);
+  }
+  for (const Consumption& item : loop.report.consumption)
+    summary.consumption.emplace_back(item.name, 0.0);
+  summary.sources.assign(static_cast<std::size_t>(ActionSource::kFallback) + 1, 0);
+  return summary;
+}
+
+}  // namespace
+
+struct RunSummary::Sums {
+  explicit Sums(const LoopFile& of)
+      : loop(of),
+        sample_time_h(of.plant_info.sample_time_s / 3600.0),
+        has_domain(hasDomain(of)),
+        summary(blank(of)),
+        outputs(of.plant_info.outputs.size(), RunningOutput(sample_time_h)),
+        at_lower(of.plant_info.inputs.size()),
+        at_upper(at_lower) {}
+
+  void followOutputs(const SampleRecord& sample);
+  void followWindows(const SampleRecord& sample);
+  void followInputs(const SampleRecord& sample);
+  void countAction(const SampleRecord& sample);
+  void countState(const SampleRecord& sample);
+  void countSolve(const SampleRecord& sample);
+  void findLockUps(Summary& result) const;
+
+  LoopFile loop;
+  double sample_time_h;
+  bool has_domain;
+  Summary summary;
+  std::vector<RunningOutput> outputs;
+  std::vector<RunningInput> inputs;               // from sample 0 on
+  std::vector<std::uint32_t> at_lower, at_upper;  // last actions in a row at a limit
+  LogHistogram solve_us;
+  RunTally tally;
+  std::uint32_t step{};
+};
+
+void RunSummary::Sums::followOutputs(const SampleRecord& sample) {
+  if (!sample.has_measurement || !sample.has_tracking) return;
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const auto k = static_cast<Index>(i);
+    outputs[i].add(sample.measurement.outputs[k], sample.tracking.setpoint[k],
+                   sample.tracking.reference[k]);
+  }
+  followWindows(sample);
+}
+
+void RunSummary::Sums::followWindows(const SampleRecord& sample) {
+  const double time_h = static_cast<double>(step) * sample_time_h;
+  const double rounding = 1e-6 * sample_time_h;
+  for (WindowIndices& sums : summary.windows) {
+    const ReportWindow& window = sums.window;
+    if (time_h < window.from_h - rounding || time_h > window.to_h + rounding) continue;
+    const auto& names = summary.output_names;
+    const Index i = std::find(names.begin(), names.end(), sums.output) - names.begin();
+    const double error = sample.measurement.outputs[i] - sample.tracking.setpoint[i];
+    sums.mean_error += error;
+    sums.rmse += error * error;
+    ++sums.samples;
+  }
+}
+
+/// u(k) is known from the measurement that follows it.
+void RunSummary::Sums::followInputs(const SampleRecord& sample) {
+  const bool known = sample.has_measurement;
+  for (std::size_t i = 0; i < summary.input_names.size(); ++i) {
+    const double value = known ? sample.measurement.input_applied[static_cast<Index>(i)]
+                               : std::numeric_limits<double>::quiet_NaN();
+    if (step == 0)
+      inputs.emplace_back(value);
+    else if (known)
+      inputs[i].add(value);
+  }
+  if (step == 0 || !known) return;
+  for (std::size_t i = 0; i < summary.consumption.size(); ++i)
+    summary.consumption[i].second +=
+        loop.report.consumption[i].rate.dot(sample.measurement.input_applied) *
+        loop.plant_info.sample_time_s;
+}
+
+void RunSummary::Sums::countAction(const SampleRecord& sample) {
+  if (!sample.has_action) return;
+  const InputLimits& limits = summary.limits;
+  ++summary.steps;
+  ++summary.sources[static_cast<std::size_t>(sample.action.source)];
+  for (Index i = 0; i < sample.action.input.size(); ++i) {
+    const double u = sample.action.input[i], tolerance = toleranceOf(limits, i);
+    const auto k = static_cast<std::size_t>(i);
+    const bool inside = u >= limits.lower[i] - tolerance && u <= limits.upper[i] + tolerance;
+    summary.input_violations += !inside;
+    at_lower[k] = std::abs(u - limits.lower[i]) <= tolerance ? at_lower[k] + 1 : 0;
+    at_upper[k] = std::abs(u - limits.upper[i]) <= tolerance ? at_upper[k] + 1 : 0;
+    if (!sample.has_measurement) continue;
+    const double move = std::abs(u - sample.measurement.input_applied[i]);
+    summary.move_violations += !(move <= limits.move[i] + tolerance);
+  }
+}
+
+void RunSummary::Sums::countState(const SampleRecord& sample) {
+  if (!sample.has_state) return;
+  summary.actuator_clips += sample.state.actuator_clips;
+  for (Index i = 0; i < sample.state.outputs.size(); ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double y = sample.state.outputs[i];
+    summary.output_violations += !(y >= summary.output_lower[k] && y <= summary.output_upper[k]);
+  }
+}
+
+void RunSummary::Sums::countSolve(const SampleRecord& sample) {
+  const SolveStatus status = sample.report.status;
+  if (!loop.has_clp || !sample.has_report || status == SolveStatus::kNotRun) return;
+  solve_us.add(1e6 * sample.report.seconds);
+  if (status == SolveStatus::kInfeasible)
+    ++summary.clp_infeasible;
+  else if (status != SolveStatus::kSolved && status != SolveStatus::kBoundWins)
+    ++summary.clp_failed;
+}
+
+void RunSummary::Sums::findLockUps(Summary& result) const {
+  const std::uint32_t least = std::max<std::uint32_t>(10, result.steps / 10);
+  for (std::size_t i = 0; i < at_lower.size(); ++i)
+    for (const bool upper : {false, true}) {
+      const std::uint32_t samples = upper ? at_upper[i] : at_lower[i];
+      if (samples >= least) result.locked.push_back({result.input_names[i], upper, samples});
+    }
+}
+
+RunSummary::RunSummary(const LoopFile& loop) : sums_(std::make_unique<Sums>(loop)) {}
+RunSummary::RunSummary(RunSummary&&) noexcept = default;
+RunSummary::~RunSummary() = default;
+
+void RunSummary::add(const SampleRecord& sample) {
+  sums_->followOutputs(sample);
+  sums_->followInputs(sample);
+  sums_->countState(sample);
+  sums_->countAction(sample);
+  sums_->countSolve(sample);
+  if (sums_->has_domain) sums_->summary.outside_model += isOutsideModel(sums_->loop, sample);
+  sums_->tally.add(sample);
+  ++sums_->step;
+}
+
+Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
+  Summary result = sums_->summary;
+  result.wall_s = wall_s;
+  result.failed_samples = sums_->tally.failed_samples;
+  result.trouble = sums_->tally.trouble;
+  result.remarks = sums_->tally.remarks;
+  result.complete = nothing_missing && result.failed_samples == 0;
+  for (const RunningOutput& output : sums_->outputs) result.outputs.push_back(output.indices());
+  for (const RunningInput& input : sums_->inputs) result.inputs.push_back(input.indices());
+  result.inputs.resize(result.input_names.size());  // of a run without samples
+  for (WindowIndices& window : result.windows) {
+    const auto n = static_cast<double>(window.samples);
+    window.rmse = std::sqrt(window.rmse / n);
+    window.mean_error /= n;
+  }
+  sums_->findLockUps(result);
+  result.clp_solves = sums_->solve_us.count();
+  result.clp_median_us = sums_->solve_us.quantile(0.5);
+  result.clp_p99_us = sums_->solve_us.quantile(0.99);
+  countCells(sums_->loop, result);
+  return result;
+}
+
+Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) {
+  RunSummary sums(loop);
+  for (const SampleRecord& sample : record.samples) sums.add(sample);
+  Summary summary = sums.finish(wall_s, record.complete);
   summary.complete = record.complete;
   summary.failed_samples = record.failed_samples;
   summary.trouble = record.trouble;
   summary.remarks = record.remarks;
-  summary.wall_s = wall_s;
-  summary.limits = loop.simulation.actuator.limits;
-  summary.output_lower = loop.report.output_lower;
-  summary.output_upper = loop.report.output_upper;
-  const double sample_time_h = loop.plant_info.sample_time_s / 3600.0;
-  for (const auto& output : loop.plant_info.outputs) {
-    const auto i = static_cast<Eigen::Index>(summary.output_names.size());
-    summary.output_names.push_back(output.name);
-    summary.output_units.push_back(output.unit);
-    summary.outputs.push_back(indicesOfOutput(record, i, sample_time_h));
-    for (const auto& window : loop.report.windows)
-      if (window.output.empty() || window.output == output.name)
-        summary.windows.push_back(indicesOfWindow(record, i, window, sample_time_h));
-  }
-  for (const auto& input : loop.plant_info.inputs) {
-    summary.inputs.push_back(
-        indicesOfInput(record, static_cast<Eigen::Index>(summary.input_names.size())));
-    summary.input_names.push_back(input.name);
-    summary.input_units.push_back(input.unit);
-  }
-  for (const auto& [name, rate] : loop.report.consumption)
-    summary.consumption.emplace_back(name, consumed(record, rate, loop.plant_info.sample_time_s));
-  countSamples(record, summary);
-  findLockUps(record, summary);
-  summary.outside_model = samplesOutsideModel(loop, record);
-  summary.has_clp = loop.has_clp;
-  if (loop.has_clp) summarizeSolves(record, summary);
-  countCells(loop, summary);
   return summary;
 }
 

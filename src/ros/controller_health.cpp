@@ -48,7 +48,8 @@ Health ControllerNode::health(double now_s) const {
   if (!plant_.remark().empty()) return {LoopMode::kDegraded, "controlling; " + plant_.remark(), {}};
   if (!model_problem_.empty())
     return {LoopMode::kDegraded, "controlling; refused: " + model_problem_, {}};
-  return {LoopMode::kAutomatic, "controlling", {}};
+  const std::string& of_model = session_.modelRemark();
+  return {LoopMode::kAutomatic, of_model.empty() ? "controlling" : "controlling; " + of_model, {}};
 }
 
 void ControllerNode::report(Diagnostics::Status& status) const {
@@ -59,7 +60,9 @@ void ControllerNode::report(Diagnostics::Status& status) const {
   status.add("dropped: run not announced", plant_.foreign());
   if (session_.controller().needsModel()) {
     status.add("model", model_);
+    status.add("model source", model_source_);
     status.add("models taken", session_.models());
+    status.add("gains turned by the model", session_.modelRemark());
   }
   status.add("commands dropped: too many", commands_.dropped());
   if (standin_) status.add("samples without the optimizer", standin_->watch().takenOver());

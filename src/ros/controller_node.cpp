@@ -81,6 +81,7 @@ void ControllerNode::advertiseSignals() {
 void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
     if (!plant_.introduce(fromMsg(*msg))) return;
+    session_.doubtPlant(plant_.remark());
     session_.announce(plant_.runId());
     inbox_.announce(plant_.runId());
     announceIfReady();
@@ -123,6 +124,7 @@ void ControllerNode::useModels(const StepHeader& next) {
     try {
       session_.setModel(model);
       model_ = model.name;
+      model_source_ = model.source;
       model_problem_.clear();
       ROS_INFO("%s: model %s from the next sample on", name().c_str(), model_.c_str());
     } catch (const InputError& error) {

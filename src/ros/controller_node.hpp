@@ -77,7 +77,8 @@ class ControllerNode : public Node {
   ReadyPublisher ready_;
   SignalPublishers signals_;
   PlantGate plant_;
-  std::string model_, model_problem_;  // name of the one in use; why the latest was refused
+  std::string model_, model_source_,
+      model_problem_;  // name of the one in use; why the latest was refused
   WallThrottle log_{1.0};
 
   ros::Publisher base_, prediction_, tracking_, effect_;

@@ -56,5 +56,62 @@ TEST(GainSign, SmallGainsMayTurnAndUnstableModelsAreNotJudged) {
   EXPECT_NO_THROW(requireSameGainSigns(model(2.0, 2.0, 1.0), model(0.5, -2.0, 1.0), rest()));
 }
 
+/// n outputs, y_i(k+1) = 0.5 y_i + b_i u.
+TsModel outputsOf(const std::vector<double>& b) {
+  TsModel m;
+  m.name = "new";
+  m.sample_time_s = 1.0;
+  m.outputs = test::numbered("y", static_cast<int>(b.size()));
+  m.inputs = {test::signal("u")};
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const auto own = static_cast<Eigen::Index>(i);
+    OutputModel y;
+    y.antecedents = {{SignalKind::kOutput, own, 0}};
+    y.regressors = {{SignalKind::kOutput, own, 0}, {SignalKind::kInput, 0, 0}};
+    y.rules = {{{{MembershipShape::kTriangular, {-1e3, 0.0, 1e3}}},
+                (Vector(2) << 0.5, b[i]).finished(),
+                0.0,
+                0}};
+    m.submodels.push_back(y);
+  }
+  return m;
+}
+
+struct Border {
+  int outputs, turned;
+  bool refused;
+};
+
+TEST(GainSign, MoreThanHalfOfTheOutputsAreTooMany) {
+  for (const Border& border : {Border{1, 1, true}, Border{2, 0, false}, Border{2, 1, false},
+                               Border{2, 2, true}, Border{3, 1, false}, Border{3, 2, true}}) {
+    std::vector<double> before(static_cast<std::size_t>(border.outputs), 2.0), after = before;
+    for (int i = 0; i < border.turned; ++i) after[static_cast<std::size_t>(i)] = -1.0;
+    Measurement at;
+    at.outputs = Vector::Zero(border.outputs);
+    at.input_applied = Vector::Zero(1);
+    const TsModel running = outputsOf(before), fresh = outputsOf(after);
+    const auto turned = turnedGains(running, fresh, at);
+    const std::string which =
+        std::to_string(border.turned) + " of " + std::to_string(border.outputs);
+    EXPECT_EQ(turned.size(), static_cast<std::size_t>(border.turned)) << which;
+    EXPECT_EQ(tooManyTurned(turned, running), border.refused) << which;
+    EXPECT_EQ(wordsOf(turned, fresh).empty(), border.turned == 0) << which;
+    if (border.refused)
+      EXPECT_THROW(requireSameGainSigns(running, fresh, at), InputError) << which;
+    else
+      EXPECT_NO_THROW(requireSameGainSigns(running, fresh, at)) << which;
+  }
+}
+
+TEST(GainSign, EveryTurnedOutputIsNamed) {
+  Measurement at;
+  at.outputs = Vector::Zero(3);
+  at.input_applied = Vector::Zero(1);
+  const TsModel fresh = outputsOf({-1.0, 1.0, -1.0});
+  EXPECT_EQ(wordsOf(turnedGains(outputsOf({1.0, 1.0, 1.0}), fresh, at), fresh),
+            "model 'new' turns the sign of the gain from u to y1, u to y3");
+}
+
 }  // namespace
 }  // namespace fpc

@@ -137,6 +137,34 @@ TEST(PlantGateway, ACommandThatMayHaveArrivedIsReadBackBeforeTheNext) {
   EXPECT_EQ(gateway.commandNumber(), 2U);
 }
 
+/// Its own hand, without saying so; or an instrument that lies.
+TEST(PlantGateway, AnInputThatIsElsewhereIsNotRunAfter) {
+  PlantGateway gateway = ready(topicLoop());
+  sample(gateway, 2.5, 0.0);
+  EXPECT_TRUE(gateway.takesActions());
+  const auto number = gateway.commandNumber();
+  for (int k = 1; k <= 4; ++k) {
+    gateway.readBack(0, 9.0, k + 0.1);
+    gateway.tick(k + 0.2);
+    gateway.take(one(3.5));
+    gateway.tick(k + 1.0);
+    gateway.sense(0, 1.0, k + 1.0);
+    gateway.sense(1, 0.0, k + 1.0);
+    gateway.advance(one(3.5));
+    EXPECT_EQ(gateway.commandNumber(), number) << k;
+    EXPECT_FALSE(gateway.takesActions()) << k;
+    EXPECT_EQ(gateway.measurement().input_applied[0], 9.0) << k;
+    EXPECT_EQ(gateway.problem(), "inflow is not where it was told") << k;
+  }
+  gateway.readBack(0, 2.5, 5.5);
+  gateway.tick(6.0);
+  gateway.advance(one(3.5));
+  EXPECT_TRUE(gateway.takesActions());
+  EXPECT_EQ(gateway.measurement().input_applied[0], 2.5);
+  gateway.take(one(3.5));
+  EXPECT_EQ(gateway.command()[0], 3.5);
+}
+
 TEST(PlantGateway, AnActionWaitsForTheCommandAheadOfIt) {
   PlantGateway gateway = ready(topicLoop());
   gateway.take(one(3.0));

@@ -5,6 +5,7 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/plausibility_file.hpp"
 #include "fmbpc/loop/factory.hpp"
+#include "fmbpc/loop/identifier_session.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
 
@@ -74,25 +75,87 @@ TEST(PlausibleSession, AStuckActuatorIsSaid) {
   EXPECT_NE(said.find("input q_r does not follow its command"), std::string::npos) << said;
 }
 
-TEST(PlausibleSession, AModelWithNegatedGainsIsRefusedInTheRun) {
-  const LoopFile loop = loopWith({});
+/// A session that has answered its first sample with the loop's model.
+ControllerSession started(const LoopFile& loop, Measurement& m) {
   ControllerSession session = makeControllerSession(loop);
   session.setModel(loop.model);
-  Measurement m;
   m.header = loop.plant_info.header;
   m.outputs = (Vector(2) << 55.0, 1793.0).finished();
   m.disturbances = loop.disturbance_nominal;
   m.input_applied = loop.simulation.actuator.initial;
-  ASSERT_EQ(session.receive(m), Receipt::kAnswered);
-  TsModel negated = loop.model;
-  for (OutputModel& output : negated.submodels)
-    for (Rule& rule : output.rules)
-      for (std::size_t i = 0; i < output.regressors.size(); ++i)
-        if (output.regressors[i].kind == SignalKind::kInput)
+  EXPECT_EQ(session.receive(m), Receipt::kAnswered);
+  return session;
+}
+
+/// The first `outputs` submodels with their inputs turned round.
+TsModel negated(TsModel model, std::size_t outputs) {
+  for (std::size_t o = 0; o < outputs; ++o)
+    for (Rule& rule : model.submodels[o].rules)
+      for (std::size_t i = 0; i < model.submodels[o].regressors.size(); ++i)
+        if (model.submodels[o].regressors[i].kind == SignalKind::kInput)
           rule.coefficients[static_cast<Eigen::Index>(i)] *= -1.0;
-  expectWords(errorOf([&] { session.setModel(negated); }), {"gain", "q_r", "gain_sign"});
+  return model;
+}
+
+TEST(PlausibleSession, AModelWithNegatedGainsIsRefusedInTheRun) {
+  const LoopFile loop = loopWith({});
+  Measurement m;
+  ControllerSession session = started(loop, m);
+  expectWords(errorOf([&] { session.setModel(negated(loop.model, 2)); }),
+              {"gain", "q_r", "gain_sign"});
   EXPECT_EQ(session.models(), 1U);
   EXPECT_NO_THROW(session.setModel(loop.model));
+  EXPECT_EQ(session.modelRemark(), "");
+}
+
+TEST(PlausibleSession, AModelThatTurnsOneOfTwoOutputsIsTakenAndSaid) {
+  const LoopFile loop = loopWith({});
+  Measurement m;
+  ControllerSession session = started(loop, m);
+  EXPECT_STREQ(session.output().remark, "");
+  session.setModel(negated(loop.model, 1));
+  EXPECT_EQ(session.models(), 2U);
+  expectWords(session.modelRemark(), {"turns the sign of the gain from q_r to s"});
+  for (const bool said : {true, false}) {
+    ++m.header.step;
+    m.header.time_ns += 720'000'000'000;
+    m.input_applied = session.answer().base.input;
+    ASSERT_EQ(session.receive(m), Receipt::kAnswered);
+    EXPECT_EQ(session.output().remark == session.modelRemark(), said);
+  }
+  session.setModel(negated(loop.model, 1));  // the same again turns nothing
+  EXPECT_EQ(session.modelRemark(), "");
+}
+
+TEST(PlausibleSession, WithoutTheRuleATurnedModelIsTakenAndStillSaid) {
+  const LoopFile loop = loopWith({{"plausibility.gain_sign", "false"}});
+  Measurement m;
+  ControllerSession session = started(loop, m);
+  session.setModel(negated(loop.model, 2));
+  expectWords(session.modelRemark(), {"q_r to s", "q_r to x"});
+}
+
+/// Consequents learned from the true model's samples, starting from one whose first output pushes
+/// the wrong way: what is learned turns that gain back, is taken, and that is said.
+TEST(PlausibleSession, ALearnedModelThatTurnsAGainIsTakenAndSaid) {
+  const LoopFile loop = readLoop("asp_case1", {{"sampling.duration_h", "60"},
+                                               {"model.identify.online.every", "100"},
+                                               {"model.identify.online.forgetting", "0.97"}});
+  const RunRecord record = runLoop(readLoop("asp_case1", {{"sampling.duration_h", "60"}}));
+  LoopFile wrong = loop;
+  wrong.model = negated(loop.model, 1);
+  IdentifierSession identifier(wrong);
+  ControllerSession session = makeControllerSession(wrong);
+  session.setModel(*identifier.start());
+  std::string said;
+  for (const SampleRecord& sample : record.samples) {
+    session.receive(sample.measurement);
+    said += session.output().remark;
+    const auto due = identifier.take(sample.measurement);
+    if (due.model != nullptr) session.setModel(*due.model);
+  }
+  EXPECT_GT(session.models(), 1U);
+  expectWords(said, {"turns the sign of the gain from q_r to s"});
 }
 
 /// Every fourth loop, 40 samples of it; with FMBPC_LONG_TESTS all of all.

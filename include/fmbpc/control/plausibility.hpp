@@ -34,14 +34,21 @@ struct SignalPlausibility {
   Substitute substitute{Substitute::kHold};
 };
 
+/// What is done about a doubt that concerns no single signal.
+enum class DoubtAction : std::uint8_t { kSay, kHold, kFallback };
+inline std::vector<std::string> wordsOf(DoubtAction) { return {"say", "hold", "fallback"}; }
+
 /// Section `plausibility` of a loop file.
 struct PlausibilityParams {
   bool enabled{false};   ///< without: only what is no number is doubted
   int hold_samples{-1};  ///< so long a needed signal may be doubted, then `fallback`; -1: for ever
   double frozen_input{0.1};  ///< an input has moved by more than this part of its range
   bool gain_sign{false};     ///< a new model must have the gains' signs of the running one
-  Vector fallback;           ///< n_u; empty: none, the input is held for ever
-  std::vector<bool> needs;   ///< outputs, then disturbances: what the law needs; empty: all
+  int reaction_samples{0};   ///< window in which the outputs must react to the inputs; 0: not asked
+  DoubtAction reaction{DoubtAction::kSay};      ///< of an input that the outputs do not react to
+  DoubtAction plant_bounds{DoubtAction::kSay};  ///< of a plant that announces other bounds
+  Vector fallback;                              ///< n_u; empty: none, the input is held for ever
+  std::vector<bool> needs;  ///< outputs, then disturbances: what the law needs; empty: all
   std::vector<SignalPlausibility> outputs,
       disturbances;  ///< in the plant's order; empty: no limits
   /// @throws InputError naming plausibility.KEY.

@@ -16,6 +16,8 @@
 
 namespace fpc {
 
+class ReactionWatch;
+
 /// What a controller sends back for one measurement.
 struct ControllerAnswer {
   ControlAction base;
@@ -53,8 +55,9 @@ enum class Receipt {
 ///   controller is reset when it takes them again;
 /// - a signal that the law needs is not accepted (Plausibility: no number, out of range,
 ///   ...): answered with the last applied input, source held, or from what is accepted
-///   instead; for longer than hold_samples with the fallback. The controller is reset, bumplessly,
-///   at the next sample that it gets;
+///   instead; for longer than hold_samples with the fallback. The same if the plant, or how its
+///   outputs react, is doubted and the loop file asks for it (DoubtAction). The controller is
+///   reset, bumplessly, at the next sample that it gets;
 /// - first sample, gap, new run: the controller is reset; otherwise it just steps.
 /// Setpoints advance with every sample. No allocation in receive() after the first answer, but for
 /// the words of a reset and for setpoint commands that take effect.
@@ -64,6 +67,9 @@ class ControllerSession {
   ControllerSession(std::unique_ptr<Controller> controller, SetpointParams setpoint,
                     InputLimits limits, Vector initial_input, PlantInfo plant,
                     double max_pole = 1.0, PlausibilityParams plausibility = {});
+
+  ControllerSession(ControllerSession&&) noexcept;
+  ~ControllerSession();
 
   /// From now on only measurements of this run are answered.
   void announce(std::uint64_t run_id) { gate_.announce(run_id); }
@@ -81,6 +87,9 @@ class ControllerSession {
   /// stays. A first model is taken even if it is unstable somewhere, since there is no better one.
   void setModel(const TsModel& model);
   std::uint64_t models() const { return models_; }  ///< taken so far
+  /// What is to be known of the model in use, in words: gains whose sign it turned when it came.
+  /// Said once among the law's remarks as well. Empty if there is nothing.
+  const std::string& modelRemark() const { return model_remark_; }
   /// See SetpointSource: a command of a person, and one that was in force before this object was
   /// made.
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
@@ -109,6 +118,11 @@ class ControllerSession {
   bool unreleased() const { return unreleased_; }
   /// Of the measurements to come: false while the plant's own hand has the inputs.
   void plantTakesActions(bool on) { takes_actions_ = on; }
+  /// In what the plant that announced itself differs from the loop file, in words; empty: in
+  /// nothing. What is done about it is plausibility.plant_bounds.
+  void doubtPlant(const std::string& difference);
+  /// The input that the outputs do not react to as the model says, in words; see ReactionWatch.
+  const std::string& reaction() const;
   /// The last answer is the fallback, because of what is not accepted.
   bool fellBack() const { return fell_back_; }
   const Plausibility& plausibility() const { return plausibility_; }
@@ -123,7 +137,9 @@ class ControllerSession {
   void process(const Measurement& m);
   void runLaw(const Measurement& m);
   void hold(const Measurement& m, const char* remark);
-  void fallBack(const Measurement& m);
+  void fallBack(const Measurement& m, const char* remark);
+  const std::string* imposing(DoubtAction action) const;
+  void watchReaction(const Measurement& m);
   void expectNext();
   void noteNeeds();
   void sendManual(const Measurement& m);
@@ -143,6 +159,9 @@ class ControllerSession {
   Plausibility plausibility_;
   TsModel model_;        // in use, matched to the plant; of a law that needs one
   Measurement present_;  // the last that was accepted; empty before the first
+  std::string model_remark_, plant_doubt_;
+  std::unique_ptr<ReactionWatch> reaction_;  // of a law with a model, if it is asked for
+  bool remark_due_{false};                   // it has not been said yet
   double max_pole_{1.0};
   std::uint64_t models_{};
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};

@@ -1,6 +1,9 @@
 // Does a new model push the plant the same way as the one it replaces?
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
 
@@ -12,11 +15,24 @@ namespace fpc {
 Matrix stepGains(const TsModel& model, const Measurement& at);
 inline constexpr int kGainSamples = 1024;
 
+/// An output, and the first of its large gains that is turned round, by names.
+struct TurnedGain {
+  std::string output, input;
+};
+
 /// Gains count where they are at least a third of the largest of their output, in both models and
-/// in parts of the inputs' ranges. A model that was learned anew may know better in some of them:
-/// it is refused if more than half of the outputs have one turned round. Models whose gains are not
-/// finite are not judged.
-/// @throws InputError naming the first output and input whose sign is turned round.
+/// in parts of the inputs' ranges. One entry per output; none for models whose gains are not
+/// finite, which are not judged.
+std::vector<TurnedGain> turnedGains(const TsModel& running, const TsModel& fresh,
+                                    const Measurement& at);
+/// A model that was learned anew may know better in some outputs: more than half of them are too
+/// many.
+bool tooManyTurned(const std::vector<TurnedGain>& turned, const TsModel& running);
+/// "model 'new' turns the sign of the gain from q_r to x, q_r to s"; empty if there is none.
+std::string wordsOf(const std::vector<TurnedGain>& turned, const TsModel& fresh);
+
+/// @throws InputError naming the first output and input whose sign is turned round, if too many
+/// are.
 void requireSameGainSigns(const TsModel& running, const TsModel& fresh, const Measurement& at);
 
 }  // namespace fpc

@@ -38,9 +38,10 @@ enum class FieldState : std::uint8_t {
 /// - the actuator's rules (bounds, move limit, hold, fallback: class Actuator) make every command;
 ///   it is then rounded to what the field can carry, inside the same limits;
 /// - moves are limited from the last command and from where an input really is: what is read back
-/// of
-///   it counts if it differs by more than gateway.readback_tolerance of the range and was read
+///   of it counts if it differs by more than gateway.readback_tolerance of the range and was read
 ///   after the last write;
+/// - an input that is read further than two moves from its command is told nothing new until it is
+///   back; when no input is left the plant takes no actions;
 /// - commands are made only while the field is running; a command that was not confirmed has to be
 ///   read back (or confirmed late) before the next one. Until then the plant takes no actions,
 ///   which is said with the sample, so that a controller goes on from the true input without a
@@ -102,7 +103,11 @@ class PlantGateway : public Process {
     bool come{false};
   };
   bool unconfirmed() const { return number_ != confirmed_; }
-  bool mayCommand() const { return field() == FieldState::kRunning && !unconfirmed(); }
+  bool mayCommand() const {
+    return field() == FieldState::kRunning && !unconfirmed() && !allStray();
+  }
+  bool strays(Eigen::Index i) const;
+  bool allStray() const;
   void doubtPosition(double now_s);
   void followReadings();
   void command(VectorRef input);

@@ -45,8 +45,4 @@ class RecordStore {
   std::uint64_t samples_{}, actions_{};
 };
 
-/// The files of a run, written beside and moved into place. @throws InputError
-void replaceRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
-                const std::string& folder);
-
 }  // namespace fpc

@@ -1,0 +1,65 @@
+// What an operator asks of a controller: manual, adaptation, settings; kept by others for one that
+// comes back.
+#include <algorithm>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/control/reaction_watch.hpp"
+#include "fmbpc/control/session.hpp"
+
+namespace fpc {
+
+void ControllerSession::manual(bool on) {
+  if (on && !manual_) manual_given_ = false;
+  if (!on && manual_ && reaction_) reaction_->reset();  // a person has seen to it
+  manual_ = on;
+  unreleased_ = false;
+}
+
+void ControllerSession::manualInput(VectorRef input) {
+  require(manual_, "manual input", "manual mode: switch to manual first");
+  require(input.size() == last_input_.size(), "manual input",
+          std::to_string(last_input_.size()) + " numbers");
+  require(input.allFinite(), "manual input", "finite numbers");
+  require(controller_->mayBeSent(input), "manual input", "an input that the controller may send");
+  manual_input_ = input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
+  manual_given_ = true;
+}
+
+bool ControllerSession::adapt(bool on) {
+  const bool done = controller_->adapt(on);
+  if (done) adapt_ = on;
+  return done;
+}
+
+bool ControllerSession::retune(const Settings& settings) {
+  if (!controller_->retune(settings)) return false;
+  for (const auto& [key, value] : settings) {
+    const auto known = std::find_if(settings_.begin(), settings_.end(),
+                                    [&name = key](const auto& s) { return s.first == name; });
+    if (known == settings_.end())
+      settings_.emplace_back(key, value);
+    else
+      known->second = value;
+  }
+  return true;
+}
+
+OperatorWishes ControllerSession::wishes() const {
+  return {manual_, manual_given_, manual_input_,       setpoint_.recipe(),
+          adapt_,  settings_,     setpoint_.standing()};
+}
+
+void ControllerSession::restore(const OperatorWishes& wishes) {
+  if (gate_.counts().accepted > 0) return;
+  manual_ = wishes.manual;
+  manual_given_ = wishes.manual_given && wishes.manual_input.size() == last_input_.size() &&
+                  wishes.manual_input.allFinite();
+  if (manual_given_)
+    manual_input_ = wishes.manual_input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
+  setpoint_.restore(wishes.recipe);
+  for (const Command& command : wishes.setpoints) setpoint_.restore(command);
+  if (wishes.adapt) adapt(*wishes.adapt);
+  if (!wishes.settings.empty()) retune(wishes.settings);
+}
+
+}  // namespace fpc
