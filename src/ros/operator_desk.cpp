@@ -1,7 +1,6 @@
 #include "ros/operator_desk.hpp"
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/gateway_params.hpp"
 #include "ros/conversions.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
@@ -30,7 +29,7 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
 OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, ControllerSession& session)
     : Node(node, loop),
       session_(session),
-      keeper_expected_(!loop.external_plant || gatewayOf(loop).enabled()),
+      keeper_expected_(!loop.external_plant || loop.gateway.enabled()),
       state_(node.advertise<fmbpc::OperatorState>(topics::kOperatorState, 10, true)),
       setpoint_active_(
           node.advertise<fmbpc::Setpoint>(topics::kSetpointActive, topics::kPairQueue, true)),

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/plausibility_file.hpp"
 #include "ros/conversions.hpp"
 #include "ros/topics.hpp"
 
@@ -32,22 +31,13 @@ std::vector<std::string> namesToWatch(const LoopFile& loop, const ros::NodeHandl
   return names;
 }
 
-PlantPolicy policyOf(const LoopFile& loop) {
-  PlantPolicy policy;
-  policy.pace = loop.ring.pace;
-  policy.period_s = loop.simulation.sample_time_s / loop.ring.speedup;
-  policy.action_timeout_s = loop.ring.action_timeout_s;
-  policy.stuck = plausibilityOf(loop).stuck;
-  return policy;
-}
-
 }  // namespace
 
 PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
                      std::unique_ptr<Process> process, const std::vector<std::string>& disturbances)
     : Node(node, loop),
       loop_(loop),
-      session_(std::move(process), policyOf(loop)),
+      session_(std::move(process), ringPolicy(loop)),
       publishers_(node, session_.process().info(), disturbances, loop.ring.publish_clock),
       keeper_(node, loop),
       ready_(node, namesToWaitFor(loop, private_node)),

@@ -1,13 +1,13 @@
 #include "study/tune_state.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "study/replace_file.hpp"
 
 namespace fpc {
 namespace {
@@ -59,13 +59,7 @@ void writeState(const std::string& file, const std::string& identity, const Tune
          {"scenarios", numbers(step.scenarios.data(), step.scenarios.size())},
          {"failures", step.failures}});
   const Json json{{"tuning", identity}, {"seconds", state.seconds}, {"evaluations", steps}};
-  const std::string beside = file + ".new";
-  std::ofstream stream(beside);
-  stream << json.dump() << "\n";
-  stream.close();
-  std::error_code error;
-  if (!stream.fail()) std::filesystem::rename(beside, file, error);
-  require(!stream.fail() && !error, file, "a writable file");
+  replaceFile(file, json.dump() + "\n");
 }
 
 TuneState readState(const std::string& file, const std::string& identity) {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
@@ -126,10 +127,10 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   tuned_score.cost = costAfter(tuned);
   tuned_score.scenarios = result.history[static_cast<std::size_t>(result.best)].scenarios;
   Rows scores{{"cost", "before", "after", "after/before"}};
-  addScores(scores, "tuned on: " + tuning.fitness.across, tuning.scenarios, objective.untouched(),
-            tuned_score);
+  addScores(scores, "tuned on: " + wordOf(tuning.fitness.across), tuning.scenarios,
+            objective.untouched(), tuned_score);
   if (tuned.held_out)
-    addScores(scores, "held out: " + tuning.fitness.across, tuning.held_out,
+    addScores(scores, "held out: " + wordOf(tuning.fitness.across), tuning.held_out,
               objective.untouchedHeldOut(), *tuned.held_out);
   text << alignedTable(scores);
   for (const auto& remark : remarksOf(objective, tuned)) text << "\n" << remark;

@@ -15,6 +15,7 @@
 #include "fmbpc/control/horizon/nmpc.hpp"
 #include "fmbpc/control/horizon/swarm_mpc.hpp"
 #include "fmbpc/control/optimal/law.hpp"
+#include "fmbpc/control/pi/pi.hpp"
 #include "loop/loops_of_type.hpp"
 #include "paths.hpp"
 
@@ -201,14 +202,14 @@ std::map<std::string, std::string> structDefaults() {
   return {{"plant.integrator.relative_tolerance", exactText(integrator.relative_tolerance)},
           {"plant.integrator.absolute_tolerance", exactText(integrator.absolute_tolerance)},
           {"plant.integrator.max_steps", std::to_string(integrator.max_steps)},
-          {"plant.integrator.method", integrator.method},
+          {"plant.integrator.method", wordOf(integrator.method)},
           {"sampling.start_time_s", exactText(loop.simulation.start_time_s)},
-          {"disturbance.source", loop.disturbance.source},
+          {"disturbance.source", wordOf(loop.disturbance.source)},
           {"disturbance.pattern.seed", std::to_string(loop.disturbance.pattern.seed)},
           {"disturbance.csv.time_unit", csv.time_unit},
-          {"disturbance.csv.missing", csv.missing},
-          {"disturbance.csv.interpolation", csv.interpolation},
-          {"disturbance.csv.end", csv.end},
+          {"disturbance.csv.missing", wordOf(csv.missing)},
+          {"disturbance.csv.interpolation", wordOf(csv.interpolation)},
+          {"disturbance.csv.end", wordOf(csv.end)},
           {"disturbance.csv.channels.NAME.scale", exactText(CsvChannel{}.scale)},
           {"disturbance.csv.channels.NAME.offset", exactText(CsvChannel{}.offset)},
           {"controller.law", wordOf(law.law)},
@@ -281,10 +282,7 @@ std::map<std::string, std::string> structDefaults() {
           {"tf.broadcast", word(loop.tf.broadcast)}};
 }
 
-double asNumber(const std::string& text) {
-  double value = 0.0;
-  return YAML::convert<double>::decode(YAML::Load(text), value) ? value : std::nan("");
-}
+double asNumber(const std::string& text) { return YAML::Load(text).as<double>(std::nan("")); }
 
 TEST(LoopDocs, DefaultsAreThoseOfTheStructs) {
   const auto rows = documented();

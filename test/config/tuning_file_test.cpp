@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/yaml_node.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "fmbpc/study/tuning_objective.hpp"
@@ -142,7 +143,7 @@ TEST(TuningDocs, TellTheDefaultsOfTheStructs) {
   const std::map<std::string, std::string> defaults{
       {"fitness.band", exactText(f.band)},
       {"fitness.time_unit", f.time_unit},
-      {"fitness.across", f.across},
+      {"fitness.across", wordOf(f.across)},
       {"fitness.relative", "false"},
       {"fitness.failure", ".inf"},
       {"fitness.terms[].weight", exactText(FitnessTerm{}.weight)},
