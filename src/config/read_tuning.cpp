@@ -33,7 +33,9 @@ TuningParameter readParameter(YamlSection& item) {
 
 void readSearch(YamlSection& root, SearchParams& search) {
   YamlSection section = root.section("search");
-  section.text("method", search.method);
+  std::string method = wordOf(search.method);
+  section.text("method", method);
+  checked(section, [&] { search.method = searchMethod(method); });
   section.integer("population", search.population, 1);
   section.integer("evaluations", search.evaluations, 1);
   section.seed("seed", search.seed);

@@ -16,6 +16,25 @@
 #include "fuzzy/regressor_text.hpp"
 
 namespace fpc {
+
+// The words of a structure file's options, for readOption().
+static std::vector<std::string> wordsOf(PartitionMethod) {
+  return {"gustafson_kessel", "fuzzy_c_means", "grid"};
+}
+static std::vector<std::string> wordsOf(Scaling) { return {"deviation", "range", "none"}; }
+static std::vector<std::string> wordsOf(ConsequentMethod) {
+  return {"local", "global", "recursive"};
+}
+static std::vector<std::string> wordsOf(ScarceRule) {
+  return {"borrow", "drop", "error", "neighbour"};
+}
+static std::vector<std::string> wordsOf(MissingCells) {
+  return {"error", "drop", "interpolate", "hold"};
+}
+static std::vector<std::string> wordsOf(Implausible) {
+  return {"error", "clip", "hold", "interpolate", "drop"};
+}
+
 namespace {
 
 constexpr int kLongestOrder = 1000;

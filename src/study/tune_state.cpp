@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "study/replace_file.hpp"
 
@@ -40,7 +41,7 @@ TuningStep stepOf(const Json& json) {
 }  // namespace
 
 std::string identityOf(const TuningObjective& objective, const SearchParams& search) {
-  std::string text = objective.fingerprint() + " " + search.method + " " +
+  std::string text = objective.fingerprint() + " " + wordOf(search.method) + " " +
                      std::to_string(search.population) + " " + std::to_string(search.evaluations) +
                      " " + std::to_string(search.seed);
   for (const double value : {search.cognitive, search.social, search.speed_upper, search.inertia,

@@ -75,7 +75,7 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned, int thread
   Json json{{"loop", tuned.loop},
             {"tuning", fs::path(tuning.file).stem().string()},
             {"title", tuning.title},
-            {"method", result.search.method},
+            {"method", wordOf(result.search.method)},
             {"seed", result.search.seed},
             {"population", result.search.population},
             {"budget", result.search.evaluations},
@@ -108,8 +108,8 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   const TuningFile& tuning = objective.tuning();
   const TuneResult& result = tuned.result;
   std::ostringstream text;
-  text << tuned.loop << ", " << result.search.method << ", seed " << result.search.seed << ": "
-       << result.history.size() << " evaluations of " << tuning.scenarios.size()
+  text << tuned.loop << ", " << wordOf(result.search.method) << ", seed " << result.search.seed
+       << ": " << result.history.size() << " evaluations of " << tuning.scenarios.size()
        << (tuning.scenarios.size() == 1 ? " run" : " runs") << " in " << shortText(result.seconds)
        << " s\n\n";
   if (result.failures > 0)
@@ -142,11 +142,11 @@ std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tu
   const TuneResult& result = tuned.result;
   const std::string stem = fs::path(findLoop(tuned.loop)).stem().string();
   const TuningStep& best = result.history[static_cast<std::size_t>(result.best)];
-  std::string comment = "Tuned by `fmbpc tune " + stem + " " +
-                        fs::path(objective.tuning().file).stem().string() + "`, " +
-                        result.search.method + ", seed " + std::to_string(result.search.seed) +
-                        ", " + std::to_string(result.history.size()) + " evaluations.\nCost " +
-                        shortText(objective.untouched().cost) + " -> " + shortText(best.cost);
+  std::string comment =
+      "Tuned by `fmbpc tune " + stem + " " + fs::path(objective.tuning().file).stem().string() +
+      "`, " + wordOf(result.search.method) + ", seed " + std::to_string(result.search.seed) + ", " +
+      std::to_string(result.history.size()) + " evaluations.\nCost " +
+      shortText(objective.untouched().cost) + " -> " + shortText(best.cost);
   if (tuned.held_out)
     comment += ", held out " + shortText(objective.untouchedHeldOut().cost) + " -> " +
                shortText(tuned.held_out->cost);

@@ -41,7 +41,7 @@ TEST(TuningFile, IsReadIntoItsStructs) {
   EXPECT_EQ(tuning.scenarios[1].loop, "other");
   EXPECT_EQ(tuning.held_out.size(), 3U);
   EXPECT_EQ(tuning.search.population, 8);
-  EXPECT_EQ(tuning.search.method, "apso");
+  EXPECT_EQ(tuning.search.method, SearchMethod::kApso);
   EXPECT_EQ(tuning.fitness.terms[1].signal, "u");
 }
 
@@ -149,7 +149,7 @@ TEST(TuningDocs, TellTheDefaultsOfTheStructs) {
       {"fitness.terms[].weight", exactText(FitnessTerm{}.weight)},
       {"parameters[].scale", "linear"},
       {"parameters[].integer", "false"},
-      {"search.method", s.method},
+      {"search.method", wordOf(s.method)},
       {"search.population", std::to_string(s.population)},
       {"search.evaluations", std::to_string(s.evaluations)},
       {"search.seed", std::to_string(s.seed)},

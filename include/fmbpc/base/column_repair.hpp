@@ -14,12 +14,6 @@ namespace fpc {
 
 enum class MissingCells { kError, kDrop, kInterpolate, kHold };
 enum class Implausible { kError, kClip, kHold, kInterpolate, kDrop };
-inline std::vector<std::string> wordsOf(MissingCells) {
-  return {"error", "drop", "interpolate", "hold"};
-}
-inline std::vector<std::string> wordsOf(Implausible) {
-  return {"error", "clip", "hold", "interpolate", "drop"};
-}
 
 /// For one column.
 struct ColumnRules {

@@ -31,10 +31,6 @@ struct OutputStructure {
 
 enum class PartitionMethod { kGustafsonKessel, kFuzzyCMeans, kGrid };
 enum class Scaling { kDeviation, kRange, kNone };
-inline std::vector<std::string> wordsOf(PartitionMethod) {
-  return {"gustafson_kessel", "fuzzy_c_means", "grid"};
-}
-inline std::vector<std::string> wordsOf(Scaling) { return {"deviation", "range", "none"}; }
 
 /// Where the rules lie.
 struct PartitionParams {
@@ -58,12 +54,6 @@ struct PartitionParams {
 
 enum class ConsequentMethod { kLocal, kGlobal, kRecursive };
 enum class ScarceRule { kBorrow, kDrop, kError, kNeighbour };
-inline std::vector<std::string> wordsOf(ConsequentMethod) {
-  return {"local", "global", "recursive"};
-}
-inline std::vector<std::string> wordsOf(ScarceRule) {
-  return {"borrow", "drop", "error", "neighbour"};
-}
 
 /// How the consequents are fitted, and what happens to rules without enough data.
 struct ConsequentParams {
