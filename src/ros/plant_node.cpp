@@ -214,7 +214,7 @@ Health PlantNode::health(double now_s) const {
                                             "finished; the final sample is sent again until it is "
                                             "tracked",
                                             watch_.silent(now_s)};
-  if (session_.paused()) return {LoopMode::kHeld, "paused", {}};
+  if (session_.paused()) return {LoopMode::kHeld, topics::kPausedReason, {}};
   return runningHealth(now_s);
 }
 
