@@ -71,10 +71,19 @@ std::string shortText(double value) {
   return buffer.data();
 }
 
-std::string alignedTable(const std::vector<std::vector<std::string>>& rows) {
+namespace {
+
+std::vector<std::size_t> widthsOf(const std::vector<std::vector<std::string>>& rows) {
   std::vector<std::size_t> widths(rows.front().size(), 0);
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  return widths;
+}
+
+}  // namespace
+
+std::string alignedTable(const std::vector<std::vector<std::string>>& rows) {
+  const std::vector<std::size_t> widths = widthsOf(rows);
   std::string text;
   for (const auto& row : rows) {
     std::string line = row[0] + std::string(widths[0] - row[0].size(), ' ');
@@ -86,9 +95,7 @@ std::string alignedTable(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string leftTable(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<std::size_t> widths(rows.front().size(), 0);
-  for (const auto& row : rows)
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  const std::vector<std::size_t> widths = widthsOf(rows);
   std::string text;
   for (const auto& row : rows) {
     std::string line;

@@ -13,9 +13,6 @@
 namespace fpc {
 namespace {
 
-const char* const kKinds[] = {"setpoint", "disturbance", "manual", "manual_input", "hold",
-                              "adapt",    "settings",    "model",  "identify"};
-
 std::vector<std::string> disturbanceNames(const LoopFile& loop) {
   requireSimulated(loop);
   std::vector<std::string> names;
@@ -30,11 +27,7 @@ std::vector<std::string> disturbanceNames(const LoopFile& loop) {
 Command readSignals(YamlSection& entry, const std::string& key,
                     const std::vector<std::string>& known) {
   Command command;
-  std::string mode = "override";
-  entry.oneOf("mode", mode, {"override", "offset", "release"});
-  command.mode = mode == "override" ? CommandMode::kOverride
-                 : mode == "offset" ? CommandMode::kOffset
-                                    : CommandMode::kRelease;
+  readMode(entry, command);
   if (command.mode == CommandMode::kRelease) {
     entry.subset(key, command.name, known);
     if (command.name.empty()) entry.fail(key, "a list of names out of " + join(known));
@@ -60,13 +53,13 @@ bool readOn(YamlSection& entry, const std::string& key) {
   return on;
 }
 
-Settings readSettings(YamlSection& entry) {
+Settings readSettings(YamlSection& entry, const std::string& key) {
   Settings settings;
-  YamlSection section = entry.section("settings");
-  for (const std::string& key : section.keys()) {
+  YamlSection section = entry.section(key);
+  for (const std::string& name : section.keys()) {
     std::string text;
-    section.text(key, text);
-    settings.emplace_back(key, text);
+    section.text(name, text);
+    settings.emplace_back(name, text);
   }
   section.finish();
   return settings;
@@ -83,52 +76,80 @@ std::string findModelFile(const std::string& name, const std::string& named_in) 
   return name;  // readModel() says that it is not there
 }
 
-TsModel readModelOf(YamlSection& entry, const LoopFile& loop) {
+TsModel readModelOf(YamlSection& entry, const std::string& key, const LoopFile& loop) {
   std::string file;
-  entry.text("model", file);
+  entry.text(key, file);
   try {
     return matchToPlant(readModel(findModelFile(file, entry.file())), loop.plant_info);
   } catch (const InputError& error) {
-    throw InputError(entry.where("model") + ": " + error.what());
+    throw InputError(entry.where(key) + ": " + error.what());
   }
 }
 
-std::string kindOf(const YamlSection& entry) {
-  std::vector<std::string> kinds(std::begin(kKinds), std::end(kKinds)), found;
-  for (const std::string& kind : kinds)
-    if (entry.has(kind)) found.push_back(kind);
-  if (found.size() != 1) entry.fail("", "one of " + join(kinds));
-  return found.front();
+using What = decltype(TimedCommand::what);
+using Key = const std::string&;
+
+/// What an entry may be: its key, and how that is read.
+struct Kind {
+  std::string key;
+  What (*read)(YamlSection& entry, Key key, const LoopFile& loop);
+};
+
+const std::vector<Kind>& kinds() {
+  using Entry = YamlSection&;
+  using Loop = const LoopFile&;
+  static const std::vector<Kind> all{
+      {"setpoint",
+       [](Entry entry, Key key, Loop loop) -> What {
+         return SetpointCommand{readSignals(entry, key, namesOf(loop.plant_info.outputs))};
+       }},
+      {"disturbance",
+       [](Entry entry, Key key, Loop loop) -> What {
+         return DisturbanceCommand{readSignals(entry, key, disturbanceNames(loop))};
+       }},
+      {"manual", [](Entry entry, Key key, Loop) -> What { return SetManual{readOn(entry, key)}; }},
+      {"manual_input",
+       [](Entry entry, Key key, Loop loop) -> What {
+         Vector input;
+         entry.byName(key, input, namesOf(loop.plant_info.inputs), kFinite);
+         return SetManualInput{input};
+       }},
+      {"hold", [](Entry entry, Key key, Loop) -> What { return HoldRecipe{readOn(entry, key)}; }},
+      {"adapt", [](Entry entry, Key key, Loop) -> What { return SetAdapt{readOn(entry, key)}; }},
+      {"settings",
+       [](Entry entry, Key key, Loop) -> What { return Retune{readSettings(entry, key)}; }},
+      {"model",
+       [](Entry entry, Key key, Loop loop) -> What {
+         return UseModel{readModelOf(entry, key, loop)};
+       }},
+      {"identify", [](Entry entry, Key key, Loop) -> What {
+         int window = 0;
+         entry.integer(key, window, 0);
+         return Identify{window};
+       }}};
+  return all;
+}
+
+const Kind& kindOf(const YamlSection& entry) {
+  std::vector<std::string> known;
+  const Kind* found = nullptr;
+  int count = 0;
+  for (const Kind& kind : kinds()) {
+    known.push_back(kind.key);
+    if (!entry.has(kind.key)) continue;
+    found = &kind;
+    ++count;
+  }
+  if (count != 1) entry.fail("", "one of " + join(known));
+  return *found;
 }
 
 TimedCommand readEntry(YamlSection& entry, const LoopFile& loop) {
   TimedCommand timed;
-  const std::string kind = kindOf(entry);
+  const Kind& kind = kindOf(entry);
   need(entry, "time_h", "a time >= 0");
   entry.number("time_h", timed.time_h, {0.0, 1e7});
-  if (kind == "setpoint") {
-    timed.what = SetpointCommand{readSignals(entry, kind, namesOf(loop.plant_info.outputs))};
-  } else if (kind == "disturbance") {
-    timed.what = DisturbanceCommand{readSignals(entry, kind, disturbanceNames(loop))};
-  } else if (kind == "manual") {
-    timed.what = SetManual{readOn(entry, kind)};
-  } else if (kind == "manual_input") {
-    Vector input;
-    entry.byName(kind, input, namesOf(loop.plant_info.inputs), kFinite);
-    timed.what = SetManualInput{input};
-  } else if (kind == "hold") {
-    timed.what = HoldRecipe{readOn(entry, kind)};
-  } else if (kind == "adapt") {
-    timed.what = SetAdapt{readOn(entry, kind)};
-  } else if (kind == "settings") {
-    timed.what = Retune{readSettings(entry)};
-  } else if (kind == "model") {
-    timed.what = UseModel{readModelOf(entry, loop)};
-  } else {
-    int window = 0;
-    entry.integer(kind, window, 0);
-    timed.what = Identify{window};
-  }
+  timed.what = kind.read(entry, kind.key, loop);
   entry.finish();
   return timed;
 }

@@ -1,6 +1,7 @@
 #include "fmbpc/config/disturbance_source.hpp"
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 
 namespace fpc {
 namespace {
@@ -25,14 +26,14 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
   requireSimulated(loop);
   const SimulationParams& sim = loop.simulation;
   const DisturbanceParams& params = loop.disturbance;
-  if (params.source == "constant") return {};
-  require(
-      sim.samples > 0, loop.name + ": sampling.duration_h",
-      "a time > 0 with disturbance.source " + params.source + " (an endless run needs constant)");
+  if (params.source == DisturbanceSource::kConstant) return {};
+  require(sim.samples > 0, loop.name + ": sampling.duration_h",
+          "a time > 0 with disturbance.source " + wordOf(params.source) +
+              " (an endless run needs constant)");
   require(sim.samples <= kMostSamples, loop.name + ": sampling.duration_h",
-          "at most 10000000 samples with disturbance.source " + params.source);
+          "at most 10000000 samples with disturbance.source " + wordOf(params.source));
   const auto names = disturbanceNames(loop);
-  if (params.source == "pattern")
+  if (params.source == DisturbanceSource::kPattern)
     return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,
                        sim.samples);
   return readDisturbanceSequence(params.csv, names, sim.disturbance_nominal, sim.sample_time_s,

@@ -8,7 +8,6 @@
 #include "config/read_safety.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/plugins.hpp"
-#include "fmbpc/config/standstill_section.hpp"
 
 namespace fpc {
 namespace {
@@ -89,6 +88,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readPlausibility(root, loop);
   readStandstill(root, loop);
   readModelSection(root, loop);
+  readGateway(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);
   root.finish();

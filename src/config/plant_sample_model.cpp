@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fmbpc/base/input_error.hpp"
+#include "plant/quantity_index.hpp"
 
 namespace fpc {
 namespace {
@@ -13,12 +14,6 @@ using Eigen::Index;
 
 constexpr int kRestSamples = 10000;
 constexpr double kStill = 1e-12;  // relative change of a state that rests
-
-Index indexOf(const std::vector<Quantity>& quantities, const std::string& name) {
-  return std::find_if(quantities.begin(), quantities.end(),
-                      [&](const Quantity& q) { return q.name == name; }) -
-         quantities.begin();
-}
 
 class PlantSampleModel final : public SampleModel {
  public:

@@ -50,6 +50,8 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);
 
+/// Key `mode` of a command.
+void readMode(YamlSection& item, Command& command);
 /// `time_h`, `name`, `value`, `mode` of one scheduled command.
 ScheduledCommand readCommand(YamlSection& item, const std::vector<std::string>& names);
 

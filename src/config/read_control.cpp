@@ -5,6 +5,7 @@
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -77,15 +78,15 @@ void readTargets(YamlSection& section, ClpParams& clp, const std::vector<std::st
 void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names) {
   section.integer("perturbation_steps", clp.perturbation_steps, 1, 1000);
   section.integer("mode2_steps", clp.mode2_steps, 0, 1000);
-  section.oneOf("cost", clp.cost, {"least_perturbation", "lq"});
+  readOption(section, "cost", clp.cost);
   section.byName("weight_perturbation", clp.weight_perturbation, names.inputs, kFinitePositive);
   section.byName("weight_tracking", clp.weight_tracking, names.outputs, kFiniteNotNegative);
   section.byName("weight_state_output", clp.weight_state_output, names.outputs, kFiniteNotNegative);
   section.byName("weight_input", clp.weight_input, names.inputs, kFinitePositive);
-  section.oneOf("bounds", clp.bounds, {"absolute", "incremental"});
+  readOption(section, "bounds", clp.bounds);
   section.byName("increment_lower", clp.increment_lower, names.inputs);
   section.byName("increment_upper", clp.increment_upper, names.inputs);
-  section.oneOf("action", clp.action, {"eq26", "eq27"});
+  readOption(section, "action", clp.action);
   readTargets(section, clp, names.outputs);
   section.byName("output_lower", clp.output_lower, names.outputs);
   section.byName("output_upper", clp.output_upper, names.outputs);

@@ -3,19 +3,20 @@
 
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
+#include "fmbpc/base/time_unit.hpp"
 
 namespace fpc {
 namespace {
 
 void readPlausible(YamlSection& section, CsvChannel& channel) {
   std::vector<double> range;
-  std::string how = "error";
   section.numbers("plausible", range, kFinite);
-  section.oneOf("implausible", how, {"error", "clip", "hold", "interpolate"});
-  channel.implausible = how == "clip"          ? Implausible::kClip
-                        : how == "hold"        ? Implausible::kHold
-                        : how == "interpolate" ? Implausible::kInterpolate
-                                               : Implausible::kError;
+  readOption(section, "implausible", channel.implausible,
+             {{"error", Implausible::kError},
+              {"clip", Implausible::kClip},
+              {"hold", Implausible::kHold},
+              {"interpolate", Implausible::kInterpolate}});
   if (!section.has("plausible")) {
     if (section.has("implausible")) section.fail("implausible", "the key plausible with it");
     return;
@@ -68,10 +69,13 @@ void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
   section.text("file", params.file);
   section.text("time_column", params.time_column);
   readCsvFormat(section, params.format);
-  section.oneOf("time_unit", params.time_unit, {"s", "min", "h", "d"});
-  section.oneOf("missing", params.missing, {"error", "hold", "interpolate"});
-  section.oneOf("interpolation", params.interpolation, {"hold", "linear"});
-  section.oneOf("end", params.end, {"error", "hold", "repeat"});
+  section.oneOf("time_unit", params.time_unit, timeUnits());
+  readOption(section, "missing", params.missing,
+             {{"error", MissingCells::kError},
+              {"hold", MissingCells::kHold},
+              {"interpolate", MissingCells::kInterpolate}});
+  readOption(section, "interpolation", params.interpolation);
+  readOption(section, "end", params.end);
   section.number("lead_in_h", params.lead_in_h, {0.0, 1e7});
   YamlSection next = section.section("next");
   next.text("file", params.next_file);

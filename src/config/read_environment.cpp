@@ -3,6 +3,7 @@
 
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -58,20 +59,23 @@ std::vector<std::string> commandNames(const LoopNames& names) {
 
 }  // namespace
 
+void readMode(YamlSection& item, Command& command) {
+  readOption(item, "mode", command.mode,
+             {{"override", CommandMode::kOverride},
+              {"offset", CommandMode::kOffset},
+              {"release", CommandMode::kRelease}});
+}
+
 ScheduledCommand readCommand(YamlSection& item, const std::vector<std::string>& names) {
   ScheduledCommand scheduled;
-  std::string mode = "override";
   double value = 0.0;
   need(item, "time_h", "a time >= 0");
   item.number("time_h", scheduled.time_h, {0.0, kLatestCommandH});
   scheduled.command.name = {names[static_cast<std::size_t>(indexByName(item, "name", names))]};
-  item.oneOf("mode", mode, {"override", "offset", "release"});
-  if (mode != "release") need(item, "value", "a number");
+  readMode(item, scheduled.command);
+  if (scheduled.command.mode != CommandMode::kRelease) need(item, "value", "a number");
   item.number("value", value, kFinite);
   scheduled.command.value = {value};
-  scheduled.command.mode = mode == "override" ? CommandMode::kOverride
-                           : mode == "offset" ? CommandMode::kOffset
-                                              : CommandMode::kRelease;
   item.finish();
   return scheduled;
 }
@@ -108,14 +112,14 @@ void readDisturbance(YamlSection& root, LoopFile& loop, const LoopNames& names) 
   for (std::size_t i = 0; i < names.plant.disturbances.size(); ++i)
     nominal[static_cast<Eigen::Index>(i)] = names.plant.disturbances[i].nominal;
   section.byName("nominal", nominal, names.disturbances, kFinite);
-  section.oneOf("source", params.source, {"constant", "pattern", "csv"});
+  readOption(section, "source", params.source);
   YamlSection pattern = section.section("pattern");
   readPattern(pattern, params.pattern, names.disturbances);
-  if (params.source == "pattern" && params.pattern.channels.empty())
+  if (params.source == DisturbanceSource::kPattern && params.pattern.channels.empty())
     pattern.fail("channels", "at least one disturbance out of " + join(names.disturbances));
   YamlSection csv = section.section("csv");
   readCsvSection(csv, params.csv, names.disturbances);
-  if (params.source == "csv") {
+  if (params.source == DisturbanceSource::kCsv) {
     need(csv, "file", "the name of a CSV file");
     need(csv, "time_column", "the name of a column");
     if (params.csv.channels.empty())

@@ -4,6 +4,7 @@
 #include "config/read.hpp"
 #include "config/read_safety.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 
 namespace fpc {
@@ -11,24 +12,9 @@ namespace {
 
 constexpr int kLastRegister = 65535;
 
-GatewayType typeFrom(const std::string& name) {
-  return name == "float64"  ? GatewayType::kFloat64
-         : name == "modbus" ? GatewayType::kModbus
-                            : GatewayType::kNone;
-}
-
-RegisterType registerType(const std::string& name) {
-  return name == "int16"    ? RegisterType::kInt16
-         : name == "uint16" ? RegisterType::kUint16
-         : name == "int32"  ? RegisterType::kInt32
-         : name == "uint32" ? RegisterType::kUint32
-                            : RegisterType::kFloat32;
-}
-
-void readOrder(YamlSection& section, WordOrder& order) {
-  std::string name = order == WordOrder::kHighFirst ? "high_first" : "low_first";
-  section.oneOf("word_order", name, {"high_first", "low_first"});
-  order = name == "high_first" ? WordOrder::kHighFirst : WordOrder::kLowFirst;
+/// Of a number that is read: holding registers, or input registers.
+void readTable(YamlSection& section, const std::string& key, ModbusTag& tag) {
+  readOption(section, key, tag.input_table, {{"holding", false}, {"input", true}});
 }
 
 /// Register of the key `key` in the section of a signal, in its format.
@@ -42,13 +28,11 @@ void readRegister(YamlSection& section, const std::string& key, const RegisterFo
 RegisterFormat readFormat(YamlSection& section, WordOrder order) {
   RegisterFormat format;
   format.order = order;
-  std::string type = "float32";
-  section.oneOf("type", type, {"int16", "uint16", "int32", "uint32", "float32"});
-  format.type = registerType(type);
+  readOption(section, "type", format.type);
   section.number("scale", format.scale, kFinite);
   if (format.scale == 0.0) section.fail("scale", "a number that is not 0");
   section.number("offset", format.offset, kFinite);
-  readOrder(section, format.order);
+  readOption(section, "word_order", format.order);
   return format;
 }
 
@@ -56,17 +40,10 @@ void readModbusTag(YamlSection& section, WordOrder order, bool is_input, Gateway
   const RegisterFormat format = readFormat(section, order);
   need(section, "register", "the address of a register, from 0");
   readRegister(section, "register", format, tag.modbus);
-  if (!is_input) {
-    std::string table = "holding";
-    section.oneOf("table", table, {"holding", "input"});
-    tag.modbus.input_table = table == "input";
-    return;
-  }
+  if (!is_input) return readTable(section, "table", tag.modbus);
   tag.readback = tag.modbus;  // what a holding register holds can be read
   readRegister(section, "readback", format, tag.readback);
-  std::string table = "holding";
-  section.oneOf("readback_table", table, {"holding", "input"});
-  tag.readback.input_table = table == "input";
+  readTable(section, "readback_table", tag.readback);
 }
 
 void readTopicTag(YamlSection& section, const std::string& name, bool is_input, bool is_output,
@@ -112,12 +89,11 @@ void readModbus(YamlSection& gateway, ModbusParams& modbus, WordOrder& order) {
   section.number("poll_s", modbus.poll_s, {1e-3, 3600.0});
   section.number("timeout_s", modbus.timeout_s, {1e-3, 3600.0});
   section.number("reconnect_s", modbus.reconnect_s, {1e-3, 3600.0});
-  readOrder(section, order);
+  readOption(section, "word_order", order);
   readBit(section, "automatic_coil", modbus.automatic);
   readBit(section, "remote_coil", modbus.remote);
-  std::string table = "coil";
-  section.oneOf("remote_table", table, {"coil", "discrete"});
-  modbus.remote.discrete_table = table == "discrete";
+  readOption(section, "remote_table", modbus.remote.discrete_table,
+             {{"coil", false}, {"discrete", true}});
   section.integer("heartbeat_in", modbus.heartbeat_in, 0, kLastRegister);
   section.integer("heartbeat_out", modbus.heartbeat_out, 0, kLastRegister);
   section.finish();
@@ -137,15 +113,13 @@ void checkOverlaps(YamlSection& tags, const std::vector<std::string>& names,
 
 }  // namespace
 
-GatewayParams readGateway(YamlSection& root, const LoopFile& loop) {
+void readGateway(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("gateway");
-  GatewayParams gateway;
+  GatewayParams& gateway = loop.gateway;
   const std::vector<std::string> outputs = namesOf(loop.plant_info.outputs),
                                  disturbances = namesOf(loop.plant_info.disturbances),
                                  inputs = namesOf(loop.plant_info.inputs);
-  std::string type = "none";
-  section.oneOf("type", type, {"none", "float64", "modbus"});
-  gateway.type = typeFrom(type);
+  readOption(section, "type", gateway.type);
   if (gateway.enabled() && !loop.external_plant)
     section.fail("type", "none with a simulated plant; a gateway needs plant.type external");
   const bool modbus = gateway.type == GatewayType::kModbus;
@@ -174,12 +148,6 @@ GatewayParams readGateway(YamlSection& root, const LoopFile& loop) {
       gateway.enabled();
   tags.finish();
   section.finish();
-  return gateway;
-}
-
-GatewayParams gatewayOf(const LoopFile& loop) {
-  YamlSection root = YamlSection::parse(loop.resolved, loop.name);
-  return readGateway(root, loop);
 }
 
 }  // namespace fpc

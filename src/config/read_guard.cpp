@@ -48,10 +48,9 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
     for (const auto& output : outputs)
       if (output == names.outputs[i]) guard.lock_outputs.push_back(static_cast<Index>(i));
   const YAML::Node fallback = section.raw("pi");
-  guard.has_pi = fallback.IsDefined() && !fallback.IsNull();
-  if (guard.has_pi) {
+  if (fallback.IsDefined() && !fallback.IsNull()) {
     YamlSection pi = section.section("pi");
-    guard.pi = readPi(pi, controllerContext(loop));
+    guard.pi = std::make_shared<const PiParams>(readPi(pi, controllerContext(loop)));
     pi.finish();
   }
   checked(section, [&] {

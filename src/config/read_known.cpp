@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/config/structure_file.hpp"
 
@@ -15,9 +16,7 @@ std::vector<int> readSigns(YamlSection section, const std::vector<std::string>& 
   bool any = false;
   for (std::size_t j = 0; j < causes.size(); ++j) {
     if (!section.has(causes[j])) continue;
-    std::string word = "positive";
-    section.oneOf(causes[j], word, {"positive", "negative"});
-    signs[j] = word == "positive" ? 1 : -1;
+    readOption(section, causes[j], signs[j], {{"positive", 1}, {"negative", -1}});
     any = true;
   }
   section.finish();

@@ -4,6 +4,7 @@
 
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -21,7 +22,7 @@ void readIntegrator(YamlSection& plant, IntegratorParams& params) {
   section.number("relative_tolerance", params.relative_tolerance, kFinitePositive);
   section.number("absolute_tolerance", params.absolute_tolerance, kFinitePositive);
   section.integer("max_steps", params.max_steps, 1);
-  section.oneOf("method", params.method, {"bdf", "adams"});
+  readOption(section, "method", params.method);
   checked(section, [&] { params.validate(); });
   section.finish();
 }

@@ -31,11 +31,7 @@ void readSignal(YamlSection& section, SignalPlausibility& asked) {
   section.number("jump", asked.jump, {0.0, kInfinite, true});
   section.integer("jump_samples", asked.jump_samples, 1);
   section.integer("frozen_samples", asked.frozen_samples, 0);
-  std::string substitute = "hold";
-  section.oneOf("substitute", substitute, {"hold", "last_good", "model"});
-  asked.substitute = substitute == "hold"        ? Substitute::kHold
-                     : substitute == "last_good" ? Substitute::kLastGood
-                                                 : Substitute::kModel;
+  readOption(section, "substitute", asked.substitute);
   section.finish();
 }
 
@@ -71,10 +67,9 @@ std::vector<bool> needsOf(const LoopFile& loop) {
 
 }  // namespace
 
-PlausibilityFile readPlausibility(YamlSection& root, const LoopFile& loop) {
+void readPlausibility(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("plausibility");
-  PlausibilityFile file;
-  PlausibilityParams& params = file.signals;
+  PlausibilityParams& params = loop.plausibility;
   const PlantInfo& plant = loop.plant_info;
   const ActuatorParams& actuator = loop.simulation.actuator;
   params.enabled = params.gain_sign = true;
@@ -90,8 +85,8 @@ PlausibilityFile readPlausibility(YamlSection& root, const LoopFile& loop) {
   section.integer("reaction_samples", params.reaction_samples, 0, 100000);
   readOption(section, "reaction", params.reaction);
   readOption(section, "plant_bounds", params.plant_bounds);
-  section.integer("stuck_samples", file.stuck.samples, 0);
-  section.number("stuck_tolerance", file.stuck.tolerance, {0.0, 1.0});
+  section.integer("stuck_samples", loop.stuck.samples, 0);
+  section.number("stuck_tolerance", loop.stuck.tolerance, {0.0, 1.0});
   YamlSection signals = section.section("signals");
   readSignals(signals, plant.outputs, margin, false, params.outputs);
   readSignals(signals, plant.disturbances, margin, true, params.disturbances);
@@ -101,12 +96,6 @@ PlausibilityFile readPlausibility(YamlSection& root, const LoopFile& loop) {
                     static_cast<Eigen::Index>(plant.inputs.size()));
   });
   section.finish();
-  return file;
-}
-
-PlausibilityFile plausibilityOf(const LoopFile& loop) {
-  YamlSection root = YamlSection::parse(loop.resolved, loop.name);
-  return readPlausibility(root, loop);
 }
 
 }  // namespace fpc

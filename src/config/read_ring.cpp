@@ -8,14 +8,11 @@
 #include "config/read.hpp"
 #include "config/read_safety.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
-
-Pace paceFrom(const std::string& name) {
-  return name == "paced" ? Pace::kPaced : name == "realtime" ? Pace::kRealtime : Pace::kLockstep;
-}
 
 std::vector<std::string> ringNodes(const LoopFile& loop) {
   std::vector<std::string> nodes{"loop_recorder", "fmbpc_controller"};
@@ -27,12 +24,12 @@ std::vector<std::string> ringNodes(const LoopFile& loop) {
 
 /// Who speaks on which topic; a plant that is not ours may have any name, unless it is behind our
 /// gateway.
-std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& loop, bool gateway) {
+std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& loop) {
   using Names = std::vector<std::string>;
   const std::string controller = ringNodes(loop)[1];
-  const Names plant = gateway               ? Names{"plant_gateway"}
-                      : loop.external_plant ? Names{}
-                                            : Names{"plant_simulator"};
+  const Names plant = loop.gateway.enabled() ? Names{"plant_gateway"}
+                      : loop.external_plant  ? Names{}
+                                             : Names{"plant_simulator"};
   const Names law{controller};
   const Names answers = loop.has_clp ? Names{"clp_optimizer", controller} : law;
   const Names model{"fuzzy_identifier"};
@@ -147,14 +144,11 @@ std::vector<double> toStd(const Vector& v) { return {v.data(), v.data() + v.size
 
 void readRing(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("loop");
-  std::string pace = "lockstep";
-  section.oneOf("pace", pace, {"lockstep", "paced", "realtime"});
-  loop.ring.pace = paceFrom(pace);
+  readOption(section, "pace", loop.ring.pace);
   section.number("speedup", loop.ring.speedup, kFinitePositive);
-  const GatewayParams gateway = readGateway(root, loop);
-  if (gateway.enabled()) {  // a plant that is not ours waits for nobody
+  if (loop.gateway.enabled()) {  // a plant that is not ours waits for nobody
     loop.ring.pace = Pace::kRealtime;
-    loop.ring.speedup = gateway.speedup;
+    loop.ring.speedup = loop.gateway.speedup;
   }
   loop.ring.wait_for = loop.ring.members = ringNodes(loop);
   section.names("wait_for", loop.ring.wait_for);
@@ -163,7 +157,7 @@ void readRing(YamlSection& root, LoopFile& loop) {
   section.number("action_timeout_s", loop.ring.action_timeout_s, kFinitePositive);
   section.number("optimizer_timeout_s", loop.ring.optimizer_timeout_s, kFinitePositive);
   section.number("commands_per_s", loop.ring.commands_per_s, kFinitePositive);
-  loop.ring.publishers = ringPublishers(loop, gateway.enabled());
+  loop.ring.publishers = ringPublishers(loop);
   readPublishers(section, loop.ring);
   section.finish();
 }

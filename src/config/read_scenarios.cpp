@@ -5,6 +5,7 @@
 #include <set>
 
 #include "config/read.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/fitness_index.hpp"
 
@@ -68,7 +69,7 @@ FitnessParams readFitness(YamlSection& root, bool of_tuning) {
   section.number("band", fitness.band, kFinitePositive);
   section.oneOf("time_unit", fitness.time_unit, {"s", "min", "h"});
   if (of_tuning) {
-    section.oneOf("across", fitness.across, {"mean", "median", "worst"});
+    readOption(section, "across", fitness.across);
     section.boolean("relative", fitness.relative);
     section.number("failure", fitness.failure, {0.0, kInfinite, true});
   }

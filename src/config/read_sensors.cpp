@@ -1,25 +1,34 @@
 // Section `sensors` and key `actuator.lag`: instruments and drives that follow late.
 #include <cmath>
+#include <optional>
 
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 
 namespace fpc {
 namespace {
 
 /// A benchmark class; what else the section says goes over it.
 void readClass(YamlSection& section, SensorParams& params) {
-  std::string name;
+  std::optional<SensorClass> kind;
   bool noisy = false;
   section.number("lower", params.lower, {});
   section.number("upper", params.upper, {});
-  section.oneOf("class", name, {"A", "B0", "B1", "C0", "C1", "D"});
+  readOption(section, "class", kind,
+             {{"none", std::nullopt},
+              {"A", SensorClass::kA},
+              {"B0", SensorClass::kB0},
+              {"B1", SensorClass::kB1},
+              {"C0", SensorClass::kC0},
+              {"C1", SensorClass::kC1},
+              {"D", SensorClass::kD}});
   section.boolean("class_noise", noisy);
-  if (noisy && name.empty()) section.fail("class_noise", "a class besides");
-  if (name.empty()) return;
+  if (noisy && !kind) section.fail("class_noise", "a class besides");
+  if (!kind) return;
   if (noisy && !(std::isfinite(params.lower) && std::isfinite(params.upper)))
     section.fail("class_noise", "finite lower and upper: noise is a part of the range");
-  params = sensorOfClass(sensorClass(name), params.lower, params.upper, noisy);
+  params = sensorOfClass(*kind, params.lower, params.upper, noisy);
 }
 
 SensorParams readSensor(YamlSection& section) {

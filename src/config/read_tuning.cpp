@@ -9,6 +9,7 @@
 #include "config/read.hpp"
 #include "config/read_scenarios.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/tuning_file.hpp"
 
@@ -17,11 +18,9 @@ namespace {
 
 TuningParameter readParameter(YamlSection& item) {
   TuningParameter parameter;
-  std::string scale = "linear";
   need(item, "key", "a path in the loop file, as --set takes it");
   item.text("key", parameter.key);
-  item.oneOf("scale", scale, {"linear", "log"});
-  parameter.logarithmic = scale == "log";
+  readOption(item, "scale", parameter.logarithmic, {{"linear", false}, {"log", true}});
   item.boolean("integer", parameter.integer);
   need(item, "lower", "a number");
   need(item, "upper", "a number");
@@ -34,7 +33,9 @@ TuningParameter readParameter(YamlSection& item) {
 
 void readSearch(YamlSection& root, SearchParams& search) {
   YamlSection section = root.section("search");
-  section.text("method", search.method);
+  std::string method = wordOf(search.method);
+  section.text("method", method);
+  checked(section, [&] { search.method = searchMethod(method); });
   section.integer("population", search.population, 1);
   section.integer("evaluations", search.evaluations, 1);
   section.seed("seed", search.seed);

@@ -8,25 +8,37 @@
 #include "config/read.hpp"
 #include "config/read_known.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/base/time_unit.hpp"
 #include "fmbpc/config/structure_file.hpp"
 #include "fuzzy/regressor_text.hpp"
 
 namespace fpc {
+
+// The words of a structure file's options, for readOption().
+static std::vector<std::string> wordsOf(PartitionMethod) {
+  return {"gustafson_kessel", "fuzzy_c_means", "grid"};
+}
+static std::vector<std::string> wordsOf(Scaling) { return {"deviation", "range", "none"}; }
+static std::vector<std::string> wordsOf(ConsequentMethod) {
+  return {"local", "global", "recursive"};
+}
+static std::vector<std::string> wordsOf(ScarceRule) {
+  return {"borrow", "drop", "error", "neighbour"};
+}
+static std::vector<std::string> wordsOf(MissingCells) {
+  return {"error", "drop", "interpolate", "hold"};
+}
+static std::vector<std::string> wordsOf(Implausible) {
+  return {"error", "clip", "hold", "interpolate", "drop"};
+}
+
 namespace {
 
 constexpr int kLongestOrder = 1000;
 const std::string kMultivariate = "multivariate";
-
-/// Reads one of the words into an enum whose values are in the same order.
-template <typename Enum>
-void choice(YamlSection& section, const std::string& key, Enum& value,
-            const std::vector<std::string>& words) {
-  std::string word = words.at(static_cast<std::size_t>(value));
-  section.oneOf(key, word, words);
-  value = static_cast<Enum>(std::find(words.begin(), words.end(), word) - words.begin());
-}
 
 std::vector<StructureSignal> readSignals(YamlSection& top, const std::string& key) {
   YamlSection section = top.section(key);
@@ -46,8 +58,7 @@ std::vector<StructureSignal> readSignals(YamlSection& top, const std::string& ke
     } else if (body.has("implausible")) {
       body.fail("implausible", "the key plausible with it");
     }
-    choice(body, "implausible", signal.implausible,
-           {"error", "clip", "hold", "interpolate", "drop"});
+    readOption(body, "implausible", signal.implausible);
     body.finish();
     signals.push_back(signal);
   }
@@ -164,12 +175,12 @@ OutputStructure readSubmodel(YamlSection& submodels, const TsModel& model,
 }
 
 void readPartition(YamlSection section, PartitionParams& p) {
-  choice(section, "method", p.method, {"gustafson_kessel", "fuzzy_c_means", "grid"});
+  readOption(section, "method", p.method);
   std::string shape = name(p.membership);
   section.oneOf("membership", shape, {"gaussian", "exponential", kMultivariate});
   p.multivariate = shape == kMultivariate;
   if (!p.multivariate) p.membership = membershipShape(shape);
-  choice(section, "scaling", p.scaling, {"deviation", "range", "none"});
+  readOption(section, "scaling", p.scaling);
   section.boolean("with_output", p.with_output);
   section.number("fuzziness", p.fuzziness);
   section.number("regularisation", p.regularisation);
@@ -183,13 +194,13 @@ void readPartition(YamlSection section, PartitionParams& p) {
 }
 
 void readConsequents(YamlSection section, ConsequentParams& c) {
-  choice(section, "method", c.method, {"local", "global", "recursive"});
+  readOption(section, "method", c.method);
   section.number("ridge", c.ridge);
   section.number("weight_power", c.weight_power, Range::positive());
   section.number("weight_threshold", c.weight_threshold, {0.0, 1.0});
   section.number("samples_per_coefficient", c.samples_per_coefficient);
   section.number("max_condition", c.max_condition);
-  choice(section, "scarce", c.scarce, {"borrow", "drop", "error", "neighbour"});
+  readOption(section, "scarce", c.scarce);
   section.number("forgetting", c.forgetting);
   section.integer("free_run_iterations", c.free_run_iterations, 0);
   section.number("one_step_weight", c.one_step_weight, Range::notNegative());
@@ -197,7 +208,7 @@ void readConsequents(YamlSection section, ConsequentParams& c) {
 }
 
 void readRepair(YamlSection section, RepairParams& r) {
-  choice(section, "missing", r.missing, {"error", "drop", "interpolate", "hold"});
+  readOption(section, "missing", r.missing);
   section.boolean("sort_time", r.sort_time);
   section.boolean("drop_constant", r.drop_constant);
   section.finish();
@@ -205,7 +216,7 @@ void readRepair(YamlSection section, RepairParams& r) {
 
 void readTime(YamlSection section, Structure& structure) {
   section.text("column", structure.time_column);
-  section.oneOf("unit", structure.time_unit, {"s", "min", "h", "d"});
+  section.oneOf("unit", structure.time_unit, timeUnits());
   section.finish();
 }
 

@@ -5,6 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
+#include "fmbpc/control/pi/pi.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
@@ -35,21 +36,20 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
   require(lock_release >= 1, "guard.lock_release", "an integer >= 1");
   for (const Index i : lock_outputs)
     require(i >= 0 && i < n_y, "guard.lock_outputs", "outputs of the plant");
-  if (has_pi) pi.validate(n_y, n_u, n_d);
+  if (pi) pi->validate(n_y, n_u, n_d);
 }
 
 GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardParams params,
                                      InputLimits limits, PlantInfo plant)
-    : inside_(std::move(inside)),
+    : ControllerAround(std::move(inside), "guard"),
       params_(std::move(params)),
       limits_(std::move(limits)),
       shrunk_(limits_),
       plant_(std::move(plant)) {
-  require(inside_ != nullptr, "guard", "a law to guard");
   const Index n_y = countOf(plant_.outputs), n_u = countOf(plant_.inputs);
   params_.validate(n_y, n_u, countOf(plant_.disturbances));
   limits_.validate(n_u);
-  if (params_.has_pi) pi_ = std::make_unique<PiController>(params_.pi, limits_, plant_);
+  if (params_.pi) pi_ = std::make_unique<PiController>(*params_.pi, limits_, plant_);
   for (Index i = 0; i < n_u; ++i) locks_.emplace_back(params_, limits_.lower[i], limits_.upper[i]);
   if (params_.lock_outputs.empty())
     for (Index i = 0; i < n_y; ++i) params_.lock_outputs.push_back(i);

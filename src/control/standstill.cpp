@@ -43,13 +43,12 @@ double SignalWindow::mean(Index signal) const { return values_.row(signal).head(
 
 StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillParams params,
                                  InputLimits limits, PlantInfo plant)
-    : inside_(std::move(inside)),
+    : ControllerAround(std::move(inside), "standstill"),
       params_(std::move(params)),
       limits_(std::move(limits)),
       n_y_(static_cast<Index>(plant.outputs.size())),
       still_(params_.signals.size(), false),
       stood_at_(params_.signals.size(), 0.0) {
-  require(inside_ != nullptr, "standstill", "a law to watch over");
   const auto n_u = static_cast<Index>(plant.inputs.size());
   const auto n_d = static_cast<Index>(plant.disturbances.size());
   params_.validate(n_y_, n_u, n_d);

@@ -9,6 +9,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/base/time_unit.hpp"
 
 namespace fpc {
 namespace {
@@ -18,12 +19,6 @@ using Eigen::Index;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSpacingTolerance = 0.02;  // of a sample: files round their times
 constexpr double kLongestGap = 1e6;         // samples in one hole
-
-double secondsPer(const std::string& unit) {
-  static const std::map<std::string, double> seconds{
-      {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}};
-  return seconds.at(unit);
-}
 
 using RowName = std::function<std::string(Index row)>;
 

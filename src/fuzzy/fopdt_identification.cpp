@@ -60,8 +60,7 @@ void MisoParams::validate(int n_u) const {
   require(n_u == 1 || n_u == 2, "inputs", "one or two");
   require(numerator_terms >= n_u && numerator_terms <= 1000, "numerator_terms",
           "an integer >= the number of inputs");
-  require(method == "arx" || method == "output_error", "method", "arx or output_error");
-  require(method == "arx" || n_u == 1, "method", "arx for more than one input");
+  require(method == MisoMethod::kArx || n_u == 1, "method", "arx for more than one input");
   require(warm_up_steps >= 0, "warm_up_steps", "an integer >= 0");
   require(quiet_steps >= 0, "quiet_steps", "an integer >= 0");
   rls.validate();
@@ -104,7 +103,7 @@ bool MisoEstimator::update(VectorRef input, double y) {
   const bool lively = moved(input);
   bool learned = false;
   const bool known = std::isfinite(y);
-  const bool own = params_.method == "output_error" && samples_ >= params_.warm_up_steps;
+  const bool own = params_.method == MisoMethod::kOutputError && samples_ >= params_.warm_up_steps;
   if (samples_ >= n_u_ && lively && known && unknown_ == 0) {
     const double error = y - regressor_.dot(rls_.theta());
     learned = rls_.update(regressor_, y);

@@ -2,8 +2,8 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
-#include "fmbpc/config/plausibility_file.hpp"
-#include "fmbpc/config/standstill_section.hpp"
+#include "fmbpc/control/guard.hpp"
+#include "fmbpc/control/standstill.hpp"
 
 namespace fpc {
 namespace {
@@ -19,9 +19,8 @@ std::unique_ptr<Controller> makeGuarded(const LoopFile& loop) {
 /// The law, and around it what watches its sensors if the loop asks for it.
 std::unique_ptr<Controller> makeController(const LoopFile& loop) {
   std::unique_ptr<Controller> law = makeGuarded(loop);
-  StandstillParams standstill = standstillOf(loop);
-  if (standstill.signals.empty()) return law;
-  return std::make_unique<StandstillWatch>(std::move(law), std::move(standstill),
+  if (loop.standstill.signals.empty()) return law;
+  return std::make_unique<StandstillWatch>(std::move(law), loop.standstill,
                                            loop.simulation.actuator.limits, loop.plant_info);
 }
 
@@ -36,13 +35,8 @@ Simulation makeSimulation(const LoopFile& loop) {
 
 ControllerSession makeControllerSession(const LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
-  return {makeController(loop),
-          loop.setpoint,
-          actuator.limits,
-          actuator.initial,
-          loop.plant_info,
-          loop.max_pole,
-          plausibilityOf(loop).signals};
+  return {makeController(loop), loop.setpoint, actuator.limits,  actuator.initial,
+          loop.plant_info,      loop.max_pole, loop.plausibility};
 }
 
 OptimizerSession makeOptimizerSession(const LoopFile& loop) {

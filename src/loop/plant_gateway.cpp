@@ -22,7 +22,7 @@ const SignalInfo& signalOf(const PlantInfo& info, std::size_t signal) {
 }  // namespace
 
 PlantGateway::PlantGateway(const LoopFile& loop, Rounding rounding)
-    : params_(gatewayOf(loop)),
+    : params_(loop.gateway),
       info_(loop.plant_info),
       clock_(info_.sample_time_s, loop.simulation.start_time_s),
       actuator_(loop.simulation.actuator),

@@ -8,6 +8,20 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 }
 
+PlantPolicy lockstepPolicy(const LoopFile& loop) {
+  PlantPolicy policy;
+  policy.stuck = loop.stuck;
+  return policy;
+}
+
+PlantPolicy ringPolicy(const LoopFile& loop) {
+  PlantPolicy policy = lockstepPolicy(loop);
+  policy.pace = loop.ring.pace;
+  policy.period_s = loop.simulation.sample_time_s / loop.ring.speedup;
+  policy.action_timeout_s = loop.ring.action_timeout_s;
+  return policy;
+}
+
 PlantSession::PlantSession(std::unique_ptr<Process> process, const PlantPolicy& policy)
     : process_(std::move(process)),
       policy_(policy),

@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/plausibility_file.hpp"
 #include "fmbpc/loop/command_player.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/identifier_session.hpp"
@@ -17,12 +16,6 @@ namespace {
 
 constexpr std::uint64_t kRunId = 1;
 
-PlantPolicy policyOf(const LoopFile& loop) {
-  PlantPolicy policy;
-  policy.stuck = plausibilityOf(loop).stuck;
-  return policy;
-}
-
 /// The members of the ring, called in the order in which messages would travel.
 class Ring {
  public:
@@ -31,7 +24,7 @@ class Ring {
         options_(options),
         made_(std::make_unique<SimulatedProcess>(makeSimulation(loop))),
         simulation_(made_->simulation()),
-        plant_(std::move(made_), policyOf(loop)),
+        plant_(std::move(made_), lockstepPolicy(loop)),
         controller_(makeControllerSession(loop)),
         player_(options.commands, simulation_.clock()),
         record_(recordLayout(loop).emptyRecord()),

@@ -28,7 +28,7 @@ double toleranceOf(const InputLimits& limits, Index i) {
 /// Counted again from the record; 0 where the record is not at hand (it is the plant's, maybe of
 /// another machine).
 void countCells(const LoopFile& loop, Summary& summary) {
-  if (loop.external_plant || loop.disturbance.source != "csv") return;
+  if (loop.external_plant || loop.disturbance.source != DisturbanceSource::kCsv) return;
   try {
     const DisturbanceRecord record = makeDisturbance(loop);
     summary.repaired_cells = record.repaired;

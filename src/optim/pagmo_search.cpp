@@ -54,7 +54,7 @@ class BookProblem {
 
 pagmo::algorithm algorithmOf(const SearchParams& params) {
   const auto seed = static_cast<unsigned>(params.seed ^ (params.seed >> 32U));
-  if (params.method == "de")
+  if (params.method == SearchMethod::kDe)
     return pagmo::algorithm(pagmo::de(1, params.differential_weight, params.crossover,
                                       static_cast<unsigned>(params.variant), 0.0, 0.0, seed));
   return pagmo::algorithm(pagmo::cmaes(1, -1, -1, -1, -1, params.step, 0.0, 0.0, true, true, seed));

@@ -6,6 +6,7 @@
 
 #include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/optim/particle_swarm.hpp"
 #include "optim/pagmo_search.hpp"
@@ -36,6 +37,13 @@ class RandomSearch : public PopulationSearch {
   std::mt19937_64 engine_;
 };
 
+constexpr SearchMethod kMethods[] = {SearchMethod::kApso, SearchMethod::kPso, SearchMethod::kRandom,
+                                     SearchMethod::kDe, SearchMethod::kCmaes};
+
+bool needsPagmo(SearchMethod method) {
+  return method == SearchMethod::kDe || method == SearchMethod::kCmaes;
+}
+
 int generationsOf(const SearchParams& params) {
   return (params.evaluations + params.population - 1) / params.population;
 }
@@ -50,7 +58,7 @@ SwarmParams swarmOf(const SearchParams& params) {
   swarm.social = params.social;
   swarm.speed_upper = params.speed_upper;
   swarm.seed = params.seed;
-  swarm.adaptive = params.method == "apso";
+  swarm.adaptive = params.method == SearchMethod::kApso;
   swarm.adaptive_inertia = params.inertia;
   return swarm;
 }
@@ -58,9 +66,20 @@ SwarmParams swarmOf(const SearchParams& params) {
 }  // namespace
 
 std::vector<std::string> searchMethods() {
-  std::vector<std::string> methods{"apso", "pso", "random"};
-  if (hasPagmo()) methods.insert(methods.end(), {"de", "cmaes"});
+  std::vector<std::string> methods;
+  for (const SearchMethod method : kMethods)
+    if (hasPagmo() || !needsPagmo(method)) methods.push_back(wordOf(method));
   return methods;
+}
+
+SearchMethod searchMethod(const std::string& word) {
+  const auto methods = searchMethods();
+  const std::string missing = missingMethods();
+  require(std::find(methods.begin(), methods.end(), word) != methods.end(), "search.method",
+          "one of " + join(methods) + (missing.empty() ? "" : " (" + missing + ")") + ", got '" +
+              word + "'");
+  return *std::find_if(std::begin(kMethods), std::end(kMethods),
+                       [&](SearchMethod method) { return wordOf(method) == word; });
 }
 
 std::string missingMethods() {
@@ -70,14 +89,10 @@ std::string missingMethods() {
 }
 
 void SearchParams::validate() const {
-  const auto methods = searchMethods();
-  const std::string missing = missingMethods();
-  require(std::find(methods.begin(), methods.end(), method) != methods.end(), "search.method",
-          "one of " + join(methods) + (missing.empty() ? "" : " (" + missing + ")") + ", got '" +
-              method + "'");
-  const int least = method == "de" || method == "cmaes" ? kPagmoPopulation : 1;
+  searchMethod(wordOf(method));  // one that this build has
+  const int least = needsPagmo(method) ? kPagmoPopulation : 1;
   require(population >= least, "search.population",
-          "an integer >= " + std::to_string(least) + " for method " + method);
+          "an integer >= " + std::to_string(least) + " for method " + wordOf(method));
   require(evaluations >= 1, "search.evaluations", "an integer >= 1");
   require(differential_weight >= 0.0 && differential_weight <= 1.0, "search.differential_weight",
           "a number in [0, 1]");
@@ -91,9 +106,9 @@ std::unique_ptr<PopulationSearch> makeSearch(const SearchParams& params, const V
                                              const Vector& upper, const Vector& start) {
   params.validate();
   auto swarm = std::make_unique<Swarm>(lower, upper, swarmOf(params), start);
-  if (params.method == "apso" || params.method == "pso") return swarm;
+  if (params.method == SearchMethod::kApso || params.method == SearchMethod::kPso) return swarm;
   const Matrix first = swarm->ask();
-  if (params.method == "random")
+  if (params.method == SearchMethod::kRandom)
     return std::make_unique<RandomSearch>(first, lower, upper, params.seed);
   return makePagmoSearch(params, first, lower, upper);
 }

@@ -2,22 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/base/time_unit.hpp"
 
 namespace fpc {
 namespace {
-
-double secondsOf(const std::string& unit) {
-  static const std::map<std::string, double> units = {
-      {"s", 1.0}, {"min", 60.0}, {"h", 3600.0}, {"d", 86400.0}};
-  const auto found = units.find(unit);
-  require(found != units.end(), "disturbance.csv.time_unit",
-          "one of s, min, h, d, got '" + unit + "'");
-  return found->second;
-}
 
 constexpr double kHole = 1.5;        // intervals: longer ones have rows missing
 constexpr double kMostAbsent = 1e6;  // rows that are missing
@@ -27,7 +18,9 @@ std::vector<double> timesOf(const CsvTable& table, const std::string& time_colum
                             const std::string& time_unit) {
   const Eigen::Index column = table.column(time_column);
   const auto index = static_cast<std::size_t>(column);
-  const double unit_s = secondsOf(table.is_date[index] ? "d" : time_unit);
+  const double unit_s = secondsPer(table.is_date[index] ? "d" : time_unit);
+  require(unit_s > 0.0, "disturbance.csv.time_unit",
+          "one of " + join(timeUnits()) + ", got '" + time_unit + "'");
   const auto& cells = table.values.col(column);
   const std::string& text = table.texts[index];
   std::vector<double> times;

@@ -7,6 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/plant/disturbance.hpp"
+#include "plant/channel_rows.hpp"
 #include "plant/csv_rows.hpp"
 
 namespace fpc {
@@ -15,12 +16,6 @@ namespace {
 /// Files round their times (0.010416667 d for 900 s): a row counts from this part of an interval
 /// before its time.
 constexpr double kEarly = 1e-4;
-
-void requireOneOf(const std::string& value, const std::vector<std::string>& choices,
-                  const std::string& key) {
-  require(std::find(choices.begin(), choices.end(), value) != choices.end(), key,
-          "one of " + join(choices) + ", got '" + value + "'");
-}
 
 /// Of the cells that the file measured, after their repair.
 double meanMeasured(const CsvTable& table, const CsvRows& rows, Eigen::Index column,
@@ -35,11 +30,9 @@ double meanMeasured(const CsvTable& table, const CsvRows& rows, Eigen::Index col
   return sum / count;
 }
 
-ColumnRules rulesOf(const CsvChannel& channel, const std::string& missing) {
+ColumnRules rulesOf(const CsvChannel& channel, MissingCells missing) {
   ColumnRules rules;
-  rules.missing = missing == "hold"          ? MissingCells::kHold
-                  : missing == "interpolate" ? MissingCells::kInterpolate
-                                             : MissingCells::kError;
+  rules.missing = missing;
   rules.lower = channel.lower;
   rules.upper = channel.upper;
   rules.implausible = channel.implausible;
@@ -50,7 +43,7 @@ ColumnRules rulesOf(const CsvChannel& channel, const std::string& missing) {
 
 /// One channel on the completed rows.
 Vector channelValues(const CsvTable& table, const CsvRows& rows, const CsvChannel& channel,
-                     const std::string& missing, DisturbanceRecord& result) {
+                     MissingCells missing, DisturbanceRecord& result) {
   const Eigen::Index column = table.column(channel.column);
   const std::string whole = table.file + ": column '" + channel.column + "'";
   require(!table.is_date[static_cast<std::size_t>(column)], whole, "numbers, not dates");
@@ -115,20 +108,19 @@ Matrix resampled(const Record& record, const CsvDisturbanceParams& params, doubl
   for (Eigen::Index k = 0; k < columns; ++k) {
     double t = static_cast<double>(k) * sample_time_s - passed;
     const double slack = kEarly * sample_time_s;
-    while (params.end == "repeat" && t >= record.length() - slack) {
+    while (params.end == RecordEnd::kRepeat && t >= record.length() - slack) {
       passed += record.length();
       t -= record.length();
       row = 0;
     }
-    values.col(k) = valuesAt(record, t, params.interpolation == "linear", row);
+    values.col(k) = valuesAt(record, t, params.interpolation == Interpolation::kLinear, row);
   }
   return values;
 }
 
 void validate(const CsvDisturbanceParams& params, std::uint32_t samples, double sample_time_s) {
-  requireOneOf(params.missing, {"error", "hold", "interpolate"}, "disturbance.csv.missing");
-  requireOneOf(params.interpolation, {"hold", "linear"}, "disturbance.csv.interpolation");
-  requireOneOf(params.end, {"error", "hold", "repeat"}, "disturbance.csv.end");
+  require(params.missing != MissingCells::kDrop, "disturbance.csv.missing",
+          "an error, or cells held or interpolated");
   params.format.validate();
   require(samples > 0, "disturbance: csv", "a run with a duration");
   require(sample_time_s > 0.0 && std::isfinite(sample_time_s), "sampling.sample_time_s",
@@ -136,10 +128,10 @@ void validate(const CsvDisturbanceParams& params, std::uint32_t samples, double 
   for (const auto& channel : params.channels)
     require(std::isfinite(channel.scale) && std::isfinite(channel.offset) &&
                 std::isfinite(channel.mean),
-            "disturbance: channel '" + channel.name + "'", "finite scale, offset and mean");
+            channelName(channel.name), "finite scale, offset and mean");
   for (const auto& channel : params.channels)
     require(channel.lower <= channel.upper && channel.implausible != Implausible::kDrop,
-            "disturbance: channel '" + channel.name + "'",
+            channelName(channel.name),
             "plausible cells from lower to upper, others an error, clipped, held or interpolated");
 }
 
@@ -155,20 +147,15 @@ DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
   const CsvRows rows = csvRows(table, params.time_column, params.time_unit);
   DisturbanceRecord result;
   Record record{rows.times, nominal.replicate(1, static_cast<Eigen::Index>(rows.times.size()))};
-  std::vector<bool> taken(names.size(), false);
+  ChannelRows places(names);
   for (const auto& channel : params.channels) {
-    const std::string where = "disturbance: channel '" + channel.name + "'";
-    const auto found = std::find(names.begin(), names.end(), channel.name);
-    require(found != names.end(), where, "one of " + join(names));
-    const auto row = found - names.begin();
-    require(!taken[static_cast<std::size_t>(row)], where, "every channel only once");
-    taken[static_cast<std::size_t>(row)] = true;
+    const Eigen::Index row = places.take(channel.name);
     record.values.row(row) =
         channelValues(table, rows, channel, params.missing, result).transpose();
   }
-  close(record, params.end == "repeat");
+  close(record, params.end == RecordEnd::kRepeat);
   const double needed = samples * sample_time_s;
-  require(params.end != "error" || needed <= record.length() * (1.0 + kEarly), table.file,
+  require(params.end != RecordEnd::kError || needed <= record.length() * (1.0 + kEarly), table.file,
           "a record of at least " + exactText(needed / 3600.0) +
               " h, or disturbance.csv.end hold or " + "repeat; it has " +
               exactText(record.length() / 3600.0) + " h");

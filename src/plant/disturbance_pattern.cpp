@@ -12,6 +12,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/plant/disturbance.hpp"
+#include "plant/channel_rows.hpp"
 
 namespace fpc {
 namespace {
@@ -136,14 +137,10 @@ DisturbanceRecord makePattern(const PatternParams& params, const std::vector<std
   DisturbanceRecord record;
   record.values = nominal.replicate(1, columns);
   std::map<std::string, std::uint64_t> seen;
-  std::vector<bool> taken(names.size(), false);
+  ChannelRows rows(names);
   for (const auto& channel : params.channels) {
-    const std::string where = "disturbance: channel '" + channel.name + "'";
-    const auto found = std::find(names.begin(), names.end(), channel.name);
-    require(found != names.end(), where, "one of " + join(names));
-    const auto row = found - names.begin();
-    require(!taken[static_cast<std::size_t>(row)], where, "every channel only once");
-    taken[static_cast<std::size_t>(row)] = true;
+    const std::string where = channelName(channel.name);
+    const Eigen::Index row = rows.take(channel.name);
     validate(channel, where);
     const Shape& shape = shapes().at(channel.shape);
     const auto engine = seededEngine(params.seed, {shape.stream, seen[channel.shape]++});

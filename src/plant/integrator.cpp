@@ -39,7 +39,6 @@ void IntegratorParams::validate() const {
   require(absolute_tolerance > 0.0 && std::isfinite(absolute_tolerance),
           "integrator.absolute_tolerance", "a finite number > 0");
   require(max_steps >= 1, "integrator.max_steps", "an integer >= 1");
-  require(method == "bdf" || method == "adams", "integrator.method", "bdf or adams");
 }
 
 /// Owns all SUNDIALS objects and what the C callbacks see; never moves in memory.
@@ -107,7 +106,7 @@ Integrator::Cvode::Cvode(const Plant& p, const IntegratorParams& params)
 Integrator::Cvode::~Cvode() { free(); }
 
 void Integrator::Cvode::create(const IntegratorParams& params) {
-  const bool stiff = params.method == "bdf";
+  const bool stiff = params.method == IntegrationMethod::kBdf;
 #if SUNDIALS_VERSION_MAJOR >= 7
   if (SUNContext_Create(SUN_COMM_NULL, &context) != 0) failCreation();
 #elif SUNDIALS_VERSION_MAJOR == 6

@@ -27,13 +27,6 @@ void SensorParams::validate() const {
           "a time >= stuck_from_h");
 }
 
-SensorClass sensorClass(const std::string& name) {
-  static const char* const names[] = {"A", "B0", "B1", "C0", "C1", "D"};
-  for (int i = 0; i < 6; ++i)
-    if (name == names[i]) return static_cast<SensorClass>(i);
-  throw InputError("class: expected one of A, B0, B1, C0, C1, D, got '" + name + "'");
-}
-
 SensorParams sensorOfClass(SensorClass kind, double lower, double upper, bool noisy) {
   SensorParams p;
   p.lower = lower;

@@ -9,6 +9,7 @@
 #include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "plant/quantity_index.hpp"
 
 namespace fpc {
 namespace {
@@ -20,12 +21,6 @@ std::vector<std::string> namesForCommands(const SimulationParams& params,
   for (const auto& q : description.inputs) names.push_back("input/" + q.name);
   for (const auto& name : params.outputs) names.push_back("output/" + name);
   return names;
-}
-
-Eigen::Index indexOf(const std::vector<Quantity>& quantities, const std::string& name) {
-  return std::find_if(quantities.begin(), quantities.end(),
-                      [&](const Quantity& q) { return q.name == name; }) -
-         quantities.begin();
 }
 
 }  // namespace

@@ -9,7 +9,7 @@ namespace fpc {
 
 Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
     : setpoint_(node.advertise<fmbpc::Setpoint>(topics::kSetpoint, topics::kViewQueue)) {
-  const GatewayParams gateway = gatewayOf(loop);
+  const GatewayParams& gateway = loop.gateway;
   const std::size_t n_y = gateway.outputs.size();
   for (std::size_t i = 0; i < n_y; ++i) {
     listen(node, gateway.outputs[i].topic, signals_, i);

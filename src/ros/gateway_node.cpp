@@ -11,14 +11,14 @@ namespace {
 constexpr double kExchange = 0.01;  // [s] between two looks at the field
 
 std::unique_ptr<Field> makeField(const ros::NodeHandle& node, const LoopFile& loop) {
-  if (gatewayOf(loop).type == GatewayType::kModbus) return makeModbusField(loop);
+  if (loop.gateway.type == GatewayType::kModbus) return makeModbusField(loop);
   return std::make_unique<Float64Field>(node, loop);
 }
 
 }  // namespace
 
 std::string GatewayNode::idleReason(const LoopFile& loop) {
-  return gatewayOf(loop).enabled() ? "" : loop.name + " has no gateway";
+  return loop.gateway.enabled() ? "" : loop.name + " has no gateway";
 }
 
 GatewayNode::GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop)

@@ -11,7 +11,7 @@ std::chrono::duration<double> seconds(double value) { return std::chrono::durati
 
 }  // namespace
 
-ModbusField::ModbusField(const LoopFile& loop) : params_(gatewayOf(loop)) {
+ModbusField::ModbusField(const LoopFile& loop) : params_(loop.gateway) {
   seen_.signals.resize(params_.outputs.size() + params_.disturbances.size());
   seen_.positions.resize(params_.inputs.size());
   seen_.problem = "not connected yet";

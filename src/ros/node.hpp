@@ -54,31 +54,35 @@ class Node {
   ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
                             void (Class::*handler)(const boost::shared_ptr<const Msg>&),
                             Class* object) {
-    const boost::function<void(const ros::MessageEvent<const Msg>&)> guard =
-        [this, topic, handler, object](const ros::MessageEvent<const Msg>& event) {
-          if (mayPass(topic, event.getPublisherName())) (object->*handler)(event.getMessage());
-        };
-    return node.subscribe<Msg>(topic, queue, guard, ros::VoidConstPtr(),
-                               ros::TransportHints().tcpNoDelay());
+    return subscribeGuarded<Msg>(node, topic, queue,
+                                 [handler, object](const ros::MessageEvent<const Msg>& event) {
+                                   (object->*handler)(event.getMessage());
+                                 });
   }
-
   /// The same for a handler that is told who has published.
   template <typename Msg, typename Class>
   ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
                             void (Class::*handler)(const boost::shared_ptr<const Msg>&,
                                                    const std::string& publisher),
                             Class* object) {
-    const boost::function<void(const ros::MessageEvent<const Msg>&)> guard =
-        [this, topic, handler, object](const ros::MessageEvent<const Msg>& event) {
-          const std::string& publisher = event.getPublisherName();
-          if (mayPass(topic, publisher)) (object->*handler)(event.getMessage(), publisher);
-        };
-    return node.subscribe<Msg>(topic, queue, guard, ros::VoidConstPtr(),
-                               ros::TransportHints().tcpNoDelay());
+    return subscribeGuarded<Msg>(node, topic, queue,
+                                 [handler, object](const ros::MessageEvent<const Msg>& event) {
+                                   (object->*handler)(event.getMessage(), event.getPublisherName());
+                                 });
   }
 
  private:
   bool mayPass(const char* topic, const std::string& publisher);
+  template <typename Msg, typename Handler>
+  ros::Subscriber subscribeGuarded(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
+                                   Handler handler) {
+    const boost::function<void(const ros::MessageEvent<const Msg>&)> guard =
+        [this, topic, handler](const ros::MessageEvent<const Msg>& event) {
+          if (mayPass(topic, event.getPublisherName())) handler(event);
+        };
+    return node.subscribe<Msg>(topic, queue, guard, ros::VoidConstPtr(),
+                               ros::TransportHints().tcpNoDelay());
+  }
 
   std::string name_;
   Authority authority_;

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/gateway_params.hpp"
 #include "ros/conversions.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
@@ -33,7 +32,7 @@ OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::stri
                            ControllerSession& session)
     : Node(node, loop, std::move(name)),
       session_(session),
-      keeper_expected_(!loop.external_plant || gatewayOf(loop).enabled()),
+      keeper_expected_(!loop.external_plant || loop.gateway.enabled()),
       state_(node.advertise<fmbpc::OperatorState>(topics::kOperatorState, 10, true)),
       setpoint_active_(
           node.advertise<fmbpc::Setpoint>(topics::kSetpointActive, topics::kPairQueue, true)),

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/plausibility_file.hpp"
 #include "ros/conversions.hpp"
 #include "ros/topics.hpp"
 
@@ -32,22 +31,13 @@ std::vector<std::string> namesToWatch(const LoopFile& loop, const ros::NodeHandl
   return names;
 }
 
-PlantPolicy policyOf(const LoopFile& loop) {
-  PlantPolicy policy;
-  policy.pace = loop.ring.pace;
-  policy.period_s = loop.simulation.sample_time_s / loop.ring.speedup;
-  policy.action_timeout_s = loop.ring.action_timeout_s;
-  policy.stuck = plausibilityOf(loop).stuck;
-  return policy;
-}
-
 }  // namespace
 
 PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
                      std::unique_ptr<Process> process, const std::vector<std::string>& disturbances)
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
-      session_(std::move(process), policyOf(loop)),
+      session_(std::move(process), ringPolicy(loop)),
       publishers_(node, session_.process().info(), disturbances, loop.ring.publish_clock),
       keeper_(node, loop, name()),
       ready_(node, namesToWaitFor(loop, private_node)),
@@ -221,7 +211,7 @@ Health PlantNode::health(double now_s) const {
                                             "finished; the final sample is sent again until it is "
                                             "tracked",
                                             watch_.silent(now_s)};
-  if (session_.paused()) return {LoopMode::kHeld, "paused", {}};
+  if (session_.paused()) return {LoopMode::kHeld, topics::kPausedReason, {}};
   return runningHealth(now_s);
 }
 

@@ -33,7 +33,7 @@ class SummaryListener : public Node {
   void onState(const fmbpc::LoopState::ConstPtr& msg) {
     if (!msg->summary) return;
     mode_ = static_cast<LoopMode>(msg->mode);
-    paused_ = mode_ == LoopMode::kHeld && msg->reason == "paused";
+    paused_ = mode_ == LoopMode::kHeld && msg->reason == topics::kPausedReason;
   }
 
   LoopMode mode_{LoopMode::kStarting};

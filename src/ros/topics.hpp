@@ -52,4 +52,7 @@ inline constexpr unsigned kPairQueue = 100;
 /// Queues of everything that only people look at.
 inline constexpr unsigned kViewQueue = 1000;
 
+/// The reason in loop_state of a plant that is paused.
+inline constexpr char kPausedReason[] = "paused";
+
 }  // namespace fpc::topics

@@ -9,6 +9,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/base/time_unit.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/study/evaluate.hpp"
@@ -83,11 +84,6 @@ const std::map<std::string, OfEffluent>& effluentTable() {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double unitInSeconds(const std::string& unit) {
-  if (unit == "s") return 1.0;
-  return unit == "min" ? 60.0 : 3600.0;
-}
-
 /// All steps of output i.
 std::vector<StepIndices> stepsOf(const FitnessParams& fitness, const LoopFile& loop,
                                  const RunRecord& record, Eigen::Index i) {
@@ -98,7 +94,7 @@ std::vector<StepIndices> stepsOf(const FitnessParams& fitness, const LoopFile& l
     y[k] = sample.measurement.outputs[i];
     setpoint[k] = sample.tracking.setpoint[i];
   }
-  return stepIndices(y, setpoint, loop.plant_info.sample_time_s / unitInSeconds(fitness.time_unit),
+  return stepIndices(y, setpoint, loop.plant_info.sample_time_s / secondsPer(fitness.time_unit),
                      fitness.band);
 }
 

@@ -36,6 +36,16 @@ double meanError(const RunRecord& record, Index output, std::size_t first, std::
   return sum / static_cast<double>(last - first);
 }
 
+bool everMoved(const RunRecord& record, Index i) {
+  const SampleRecord* first = nullptr;
+  for (const SampleRecord& sample : record.samples) {
+    if (!sample.has_measurement) continue;
+    if (!first) first = &sample;
+    if (sample.measurement.input_applied[i] != first->measurement.input_applied[i]) return true;
+  }
+  return false;
+}
+
 bool lockedOver(const RunRecord& record, std::size_t first, std::size_t last) {
   const std::size_t quarter = std::max<std::size_t>(1, (last - first) / 4);
   const auto& setpoint = record.samples[last - 1].tracking.setpoint;
@@ -108,6 +118,7 @@ std::uint64_t lockedSamples(const LoopFile& loop, const RunRecord& record, int l
                                                 : std::max<std::size_t>(20, n / 10);
   std::size_t longest = 0;
   for (Index i = 0; i < limits.lower.size(); ++i) {
+    if (!everMoved(record, i)) continue;
     std::size_t first = 0;
     int bound = 0;
     for (std::size_t k = 0; k <= n; ++k) {

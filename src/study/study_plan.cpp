@@ -68,7 +68,8 @@ Overrides noiseOf(const StudyFile& study, const LoopFile& loop) {
 /// has any.
 std::vector<std::string> seededKeys(const LoopFile& loop, bool noise_added) {
   std::vector<std::string> keys;
-  if (loop.disturbance.source == "pattern") keys.emplace_back("disturbance.pattern.seed");
+  if (loop.disturbance.source == DisturbanceSource::kPattern)
+    keys.emplace_back("disturbance.pattern.seed");
   if (noise_added || loop.simulation.noise_std.any()) keys.emplace_back("noise.seed");
   const auto& sensors = loop.simulation.instruments.sensors;
   if (std::any_of(sensors.begin(), sensors.end(),

@@ -1,12 +1,12 @@
 #include "study/study_state.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/input_error.hpp"
+#include "study/replace_file.hpp"
 
 namespace fpc {
 namespace {
@@ -45,13 +45,7 @@ void writeStudyState(const std::string& file, const std::string& fingerprint,
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (runs[i]) done[std::to_string(i)] = toJson(*runs[i]);
   const Json json{{"study", fingerprint}, {"runs", done}};
-  const std::string beside = file + ".new";
-  std::ofstream stream(beside);
-  stream << json.dump() << "\n";
-  stream.close();
-  std::error_code error;
-  if (!stream.fail()) std::filesystem::rename(beside, file, error);
-  require(!stream.fail() && !error, file, "a writable file");
+  replaceFile(file, json.dump() + "\n");
 }
 
 std::vector<std::optional<RunJudgement>> readStudyState(const std::string& file,

@@ -1,13 +1,14 @@
 #include "study/tune_state.hpp"
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
+#include "study/replace_file.hpp"
 
 namespace fpc {
 namespace {
@@ -40,7 +41,7 @@ TuningStep stepOf(const Json& json) {
 }  // namespace
 
 std::string identityOf(const TuningObjective& objective, const SearchParams& search) {
-  std::string text = objective.fingerprint() + " " + search.method + " " +
+  std::string text = objective.fingerprint() + " " + wordOf(search.method) + " " +
                      std::to_string(search.population) + " " + std::to_string(search.evaluations) +
                      " " + std::to_string(search.seed);
   for (const double value : {search.cognitive, search.social, search.speed_upper, search.inertia,
@@ -59,13 +60,7 @@ void writeState(const std::string& file, const std::string& identity, const Tune
          {"scenarios", numbers(step.scenarios.data(), step.scenarios.size())},
          {"failures", step.failures}});
   const Json json{{"tuning", identity}, {"seconds", state.seconds}, {"evaluations", steps}};
-  const std::string beside = file + ".new";
-  std::ofstream stream(beside);
-  stream << json.dump() << "\n";
-  stream.close();
-  std::error_code error;
-  if (!stream.fail()) std::filesystem::rename(beside, file, error);
-  require(!stream.fail() && !error, file, "a writable file");
+  replaceFile(file, json.dump() + "\n");
 }
 
 TuneState readState(const std::string& file, const std::string& identity) {

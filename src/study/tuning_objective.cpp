@@ -28,7 +28,8 @@ Overrides seedOverrides(const std::string& loop, const TuningScenario& scenario,
   const LoopFile read = readLoop(loop, set);
   Overrides seeds;
   const std::string seed = std::to_string(scenario.seed);
-  if (read.disturbance.source == "pattern") seeds.emplace_back("disturbance.pattern.seed", seed);
+  if (read.disturbance.source == DisturbanceSource::kPattern)
+    seeds.emplace_back("disturbance.pattern.seed", seed);
   if (!scalarOf(read.resolved, "noise.seed").empty() || read.simulation.noise_std.any())
     seeds.emplace_back("noise.seed", seed);
   require(!seeds.empty(), "scenario " + scenario.name + ": seed",
@@ -46,7 +47,7 @@ std::string contentsOf(const LoopFile& loop) {
   std::string all;
   if (!loop.model_file.empty()) all += contentOf(loop.model_file);
   if (!loop.identify.structure_file.empty()) all += contentOf(loop.identify.structure_file);
-  if (loop.disturbance.source == "csv") {
+  if (loop.disturbance.source == DisturbanceSource::kCsv) {
     all += contentOf(loop.disturbance.csv.file);
     if (!loop.disturbance.csv.next_file.empty()) all += contentOf(loop.disturbance.csv.next_file);
   }
@@ -179,10 +180,10 @@ TuningScore TuningObjective::scoreOf(const std::vector<Run>& runs, std::size_t f
     score.failures += !runs[i].trouble.empty();
     if (score.trouble.empty()) score.trouble = runs[i].trouble;
   }
-  const std::string& across = tuning_.fitness.across;
-  if (across == "worst")
+  const AcrossScenarios across = tuning_.fitness.across;
+  if (across == AcrossScenarios::kWorst)
     score.cost = *std::max_element(score.scenarios.begin(), score.scenarios.end());
-  else if (across == "median")
+  else if (across == AcrossScenarios::kMedian)
     score.cost = median(score.scenarios);
   else
     score.cost = sum / static_cast<double>(count);

@@ -10,7 +10,7 @@
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/evaluate.hpp"
 #include "tool/commands.hpp"
-#include "tool/progress_bar.hpp"
+#include "tool/watched_run.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -26,12 +26,7 @@ CsvTable trajectory(const std::string& run, const Overrides& overrides) {
   if (fs::is_regular_file(folder) && folder.extension() == ".csv") return readCsv(run);
   const LoopFile loop = readLoop(run, overrides);
   ProgressBar bar(loop.name);
-  RunOptions options;
-  options.progress = [&bar](std::uint32_t step, std::uint32_t samples) {
-    bar.show(static_cast<double>(step) / samples);
-  };
-  options.stop = [] { return interruption().load(); };
-  CsvTable table = trajectoryOf(loop, runLoop(loop, options));
+  CsvTable table = trajectoryOf(loop, runLoop(loop, watchedBy(bar)));
   table.file = loop.name;
   return table;
 }

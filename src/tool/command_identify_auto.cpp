@@ -52,15 +52,24 @@ AutoRecords readAll(const IdentifyArguments& a) {
   return r;
 }
 
+/// Of --kind; none: the best.
+std::optional<ModelKind> kindOf(const std::string& word) {
+  for (const auto kind : {ModelKind::kLinear, ModelKind::kRegressors, ModelKind::kState})
+    if (name(kind) == word) return kind;
+  return std::nullopt;
+}
+
 /// Keeps what --kind asks for.
-void choose(const std::string& kind, AutoIdentification& found) {
+void choose(std::optional<ModelKind> kind, AutoIdentification& found) {
+  if (!kind) return;
   for (auto& o : found.outputs) {
-    if (kind == "linear") o.best = ModelKind::kLinear;
-    if (kind == "state" && !found.state.outputs.empty()) o.best = ModelKind::kState;
-    if (kind == "regressors") o.best = o.fuzzy_model ? ModelKind::kRegressors : ModelKind::kLinear;
+    if (kind == ModelKind::kLinear) o.best = ModelKind::kLinear;
+    if (kind == ModelKind::kState && !found.state.outputs.empty()) o.best = ModelKind::kState;
+    if (kind == ModelKind::kRegressors)
+      o.best = o.fuzzy_model ? ModelKind::kRegressors : ModelKind::kLinear;
   }
-  if (kind == "linear") found.model.submodels = found.linear.submodels;
-  if (kind == "linear" || kind == "regressors") found.state.outputs.clear();
+  if (kind == ModelKind::kLinear) found.model.submodels = found.linear.submodels;
+  if (kind != ModelKind::kState) found.state.outputs.clear();
 }
 
 AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records) {
@@ -70,14 +79,15 @@ AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records
   params.window = a.window;
   params.seed = a.seed;
   params.known = records.known;
-  params.states = a.kind == "best" || a.kind == "state";
+  const std::optional<ModelKind> kind = kindOf(a.kind);
+  params.states = !kind || kind == ModelKind::kState;
   ProgressBar bar("auto");
   AutoIdentification found =
       autoIdentify(records.joined, params, [&bar](const AutoProgress& progress) {
         bar.show(progress.share, progress.stage);
         return !interruption();
       });
-  choose(a.kind, found);
+  choose(kind, found);
   return found;
 }
 

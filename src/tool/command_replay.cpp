@@ -6,14 +6,10 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
-#include "tool/commands.hpp"
-#ifdef FMBPC_WITH_BAGS
 #include "ros/bag_run.hpp"
-#endif
+#include "tool/commands.hpp"
 
 namespace fpc::tool {
-
-#ifdef FMBPC_WITH_BAGS
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -72,11 +68,5 @@ int replay(const ReplayArguments& arguments) {
     print(result);
   return result.equal() ? 0 : 1;
 }
-#else
-int replay(const ReplayArguments& arguments) {
-  throw InputError(arguments.bag +
-                   ": expected a program built with ROS; this one is not and reads no bags");
-}
-#endif
 
 }  // namespace fpc::tool

@@ -13,7 +13,7 @@
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "tool/commands.hpp"
-#include "tool/progress_bar.hpp"
+#include "tool/watched_run.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -32,11 +32,7 @@ void writeModelFile(const TsModel& model, const std::string& folder) {
 
 Summary runOne(const LoopFile& loop, const std::string& folder, const std::string& commands) {
   ProgressBar bar(loop.name);
-  RunOptions options;
-  options.progress = [&bar](std::uint32_t step, std::uint32_t samples) {
-    bar.show(static_cast<double>(step) / samples);
-  };
-  options.stop = [] { return interruption().load(); };
+  RunOptions options = watchedBy(bar);
   if (!commands.empty()) options.commands = readCommands(commands, loop);
   options.identified = [&folder](const TsModel& model) { writeModelFile(model, folder); };
   options.remark = [&loop](const std::string& words) {

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/plot.hpp"
 #include "tool/commands.hpp"
@@ -19,7 +20,7 @@ using Json = nlohmann::ordered_json;
 
 SearchParams searchOf(const TuneArguments& arguments, const TuningFile& tuning) {
   SearchParams search = tuning.search;
-  if (!arguments.method.empty()) search.method = arguments.method;
+  if (!arguments.method.empty()) search.method = searchMethod(arguments.method);
   if (arguments.population != -1) search.population = arguments.population;
   if (arguments.evaluations != -1) search.evaluations = arguments.evaluations;
   if (arguments.seed != -1) {
@@ -73,7 +74,7 @@ int compare(const TuneArguments& arguments, const TuningObjective& objective,
   }
   for (const auto& method : options.methods) {
     SearchParams tried = search;
-    tried.method = method;
+    tried.method = searchMethod(method);
     tried.validate();
   }
   const Json comparison = compareMethods(objective, options);
@@ -96,7 +97,7 @@ int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
   options.stop = [] { return interruption().load(); };
   TunedLoop tuned{arguments.loop, {}, {}};
   {
-    ProgressBar bar(search.method);
+    ProgressBar bar(wordOf(search.method));
     options.progress = [&](int n, double best) {
       bar.show(static_cast<double>(n) / search.evaluations, "cost " + shortText(best));
     };

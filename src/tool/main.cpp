@@ -284,6 +284,7 @@ int main(int argc, char** argv) {
   fpc::tool::addReplay(app, replay, chosen);
   std::vector<std::string> watch_words;
   fpc::tool::addWatch(app, watch_words, chosen);
+  fpc::tool::refuseEmptyNames(app);
   try {
     app.parse(argc, argv);
     return chosen();

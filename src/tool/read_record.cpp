@@ -5,9 +5,7 @@
 #include <fstream>
 
 #include "fmbpc/base/input_error.hpp"
-#ifdef FMBPC_WITH_BAGS
 #include "ros/bag_table.hpp"
-#endif
 
 namespace fpc::tool {
 namespace {
@@ -25,12 +23,7 @@ bool isBag(const std::string& file) {
 
 CsvTable readRecord(const std::string& file, const CsvFormat& format) {
   require(std::filesystem::is_regular_file(file), file, "an existing CSV or bag");
-  if (!isBag(file)) return readCsv(file, format);
-#ifdef FMBPC_WITH_BAGS
-  return readBag(file);
-#else
-  throw InputError(file + ": expected a CSV; this program is built without ROS and reads no bags");
-#endif
+  return isBag(file) ? readBag(file) : readCsv(file, format);
 }
 
 }  // namespace fpc::tool

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/time_unit.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -15,7 +16,7 @@ constexpr double kEven = 0.02;  // of the spacing: steps that count as equal, si
 /// s, min, h or d by the unit in the header, or the ending of the name; empty: neither tells.
 std::string timeUnit(const CsvTable& table, Index column) {
   const auto i = static_cast<std::size_t>(column);
-  for (const std::string unit : {"s", "min", "h", "d"}) {
+  for (const std::string& unit : timeUnits()) {
     const std::string ending = "_" + unit, &name = table.names[i];
     if (table.units[i] == unit) return unit;
     if (name.size() > ending.size() &&
@@ -24,10 +25,6 @@ std::string timeUnit(const CsvTable& table, Index column) {
   }
   if (i < table.is_date.size() && table.is_date[i]) return "d";
   return "";
-}
-
-double secondsOf(const std::string& unit) {
-  return unit == "min" ? 60.0 : unit == "h" ? 3600.0 : unit == "d" ? 86400.0 : 1.0;
 }
 
 /// The usual step of a rising column; 0 if it does not rise evenly.
@@ -64,8 +61,8 @@ std::string found(const CsvTable& table, const std::vector<std::string>& used) {
 
 void TimeColumn::fitTo(double sample_time_s) {
   if (!unit.empty()) return;
-  for (const char* guess : {"s", "min", "h", "d"})
-    if (std::abs(step_s * secondsOf(guess) - sample_time_s) < kEven * sample_time_s) unit = guess;
+  for (const std::string& guess : timeUnits())
+    if (std::abs(step_s * secondsPer(guess) - sample_time_s) < kEven * sample_time_s) unit = guess;
 }
 
 TimeColumn timeColumn(const CsvTable& table, const std::string& named,
@@ -80,7 +77,7 @@ TimeColumn timeColumn(const CsvTable& table, const std::string& named,
   const std::string& given = table.units[static_cast<std::size_t>(column)];
   require(!time.unit.empty() || given.empty(), table.file + ": column '" + time.name + "'",
           "a unit [s], [min], [h] or [d], got [" + given + "]");
-  time.step_s = step * secondsOf(time.unit);
+  time.step_s = step * (time.unit.empty() ? 1.0 : secondsPer(time.unit));
   return time;
 }
 

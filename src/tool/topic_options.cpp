@@ -27,4 +27,12 @@ void addWatch(CLI::App& app, std::vector<std::string>& words, std::function<int(
   });
 }
 
+void refuseEmptyNames(CLI::App& app) {
+  const CLI::Validator named(
+      [](const std::string& text) { return text.empty() ? "expected a name, got none" : ""; }, "");
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; }))
+    for (const char* name : {"--out", "--plots", "--commands", "--validate"})
+      if (CLI::Option* option = command->get_option_no_throw(name)) option->check(named);
+}
+
 }  // namespace fpc::tool

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
 #include "tool/progress_bar.hpp"
@@ -47,11 +48,11 @@ bool addRun(const TuningObjective& objective, const CompareOptions& options,
   one.stop = [] { return interruption().load(); };
   if (!options.out.empty()) {
     one.state = (fs::path(options.out) /
-                 (search.method + "_" + std::to_string(search.seed) + ".state.json"))
+                 (wordOf(search.method) + "_" + std::to_string(search.seed) + ".state.json"))
                     .string();
     one.resume = options.resume && fs::exists(one.state);
   }
-  ProgressBar bar(search.method + " " + std::to_string(search.seed));
+  ProgressBar bar(wordOf(search.method) + " " + std::to_string(search.seed));
   one.progress = [&](int n, double best) {
     bar.show(static_cast<double>(n) / search.evaluations, "cost " + shortText(best));
   };
@@ -99,7 +100,7 @@ Json compareMethods(const TuningObjective& objective, const CompareOptions& opti
   for (const auto& name : options.methods) {
     Json method{{"method", name}};
     SearchParams search = options.search;
-    search.method = name;
+    search.method = searchMethod(name);
     for (int i = 0; i < options.seeds; ++i, ++search.seed)
       if (!addRun(objective, options, search, method)) return comparison;
     method["cost"] = summaryOf(method["costs"]);

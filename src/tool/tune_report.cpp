@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
@@ -74,7 +75,7 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned, int thread
   Json json{{"loop", tuned.loop},
             {"tuning", fs::path(tuning.file).stem().string()},
             {"title", tuning.title},
-            {"method", result.search.method},
+            {"method", wordOf(result.search.method)},
             {"seed", result.search.seed},
             {"population", result.search.population},
             {"budget", result.search.evaluations},
@@ -107,8 +108,8 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   const TuningFile& tuning = objective.tuning();
   const TuneResult& result = tuned.result;
   std::ostringstream text;
-  text << tuned.loop << ", " << result.search.method << ", seed " << result.search.seed << ": "
-       << result.history.size() << " evaluations of " << tuning.scenarios.size()
+  text << tuned.loop << ", " << wordOf(result.search.method) << ", seed " << result.search.seed
+       << ": " << result.history.size() << " evaluations of " << tuning.scenarios.size()
        << (tuning.scenarios.size() == 1 ? " run" : " runs") << " in " << shortText(result.seconds)
        << " s\n\n";
   if (result.failures > 0)
@@ -126,10 +127,10 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   tuned_score.cost = costAfter(tuned);
   tuned_score.scenarios = result.history[static_cast<std::size_t>(result.best)].scenarios;
   Rows scores{{"cost", "before", "after", "after/before"}};
-  addScores(scores, "tuned on: " + tuning.fitness.across, tuning.scenarios, objective.untouched(),
-            tuned_score);
+  addScores(scores, "tuned on: " + wordOf(tuning.fitness.across), tuning.scenarios,
+            objective.untouched(), tuned_score);
   if (tuned.held_out)
-    addScores(scores, "held out: " + tuning.fitness.across, tuning.held_out,
+    addScores(scores, "held out: " + wordOf(tuning.fitness.across), tuning.held_out,
               objective.untouchedHeldOut(), *tuned.held_out);
   text << alignedTable(scores);
   for (const auto& remark : remarksOf(objective, tuned)) text << "\n" << remark;
@@ -141,11 +142,11 @@ std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tu
   const TuneResult& result = tuned.result;
   const std::string stem = fs::path(findLoop(tuned.loop)).stem().string();
   const TuningStep& best = result.history[static_cast<std::size_t>(result.best)];
-  std::string comment = "Tuned by `fmbpc tune " + stem + " " +
-                        fs::path(objective.tuning().file).stem().string() + "`, " +
-                        result.search.method + ", seed " + std::to_string(result.search.seed) +
-                        ", " + std::to_string(result.history.size()) + " evaluations.\nCost " +
-                        shortText(objective.untouched().cost) + " -> " + shortText(best.cost);
+  std::string comment =
+      "Tuned by `fmbpc tune " + stem + " " + fs::path(objective.tuning().file).stem().string() +
+      "`, " + wordOf(result.search.method) + ", seed " + std::to_string(result.search.seed) + ", " +
+      std::to_string(result.history.size()) + " evaluations.\nCost " +
+      shortText(objective.untouched().cost) + " -> " + shortText(best.cost);
   if (tuned.held_out)
     comment += ", held out " + shortText(objective.untouchedHeldOut().cost) + " -> " +
                shortText(tuned.held_out->cost);

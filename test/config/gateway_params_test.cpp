@@ -1,6 +1,5 @@
 #include "fmbpc/config/gateway_params.hpp"
 
-#include "fmbpc/config/plausibility_file.hpp"
 #include "loop/gateway_fixture.hpp"
 #include "loop/loop_fixture.hpp"
 
@@ -12,22 +11,25 @@ std::string errorIn(const std::string& gateway) {
 }
 
 TEST(GatewayParams, ReadsTheTagMapOfTopics) {
-  const GatewayParams gateway = gatewayOf(topicLoop());
+  const GatewayParams gateway = topicLoop().gateway;
   EXPECT_EQ(gateway.type, GatewayType::kFloat64);
   EXPECT_EQ(gateway.outputs[0].topic, "level/state");
   EXPECT_EQ(gateway.outputs[0].setpoint_topic, "level/setpoint");
   EXPECT_EQ(gateway.disturbances[0].topic, "rain/state");
   EXPECT_EQ(gateway.inputs[0].topic, "inflow/control_effort");
   EXPECT_TRUE(gateway.reads_back);
-  EXPECT_FALSE(gatewayOf(gatewayLoop("  type: float64\n")).reads_back);
+  EXPECT_FALSE(gatewayLoop("  type: float64\n").gateway.reads_back);
 }
 
 TEST(GatewayParams, ReadsTheTagMapOfRegisters) {
-  const GatewayParams gateway = gatewayOf(gatewayLoop(
-      "  type: modbus\n  modbus: {word_order: low_first, remote_coil: 3, remote_table: discrete}\n"
-      "  tags:\n    level: {register: 7, table: input}\n"
-      "    rain: {register: 2, type: int32, word_order: high_first}\n"
-      "    inflow: {register: 4, type: uint16, scale: 0.01, offset: -1, readback: 6}\n"));
+  const GatewayParams gateway =
+      gatewayLoop(
+          "  type: modbus\n  modbus: {word_order: low_first, remote_coil: 3, remote_table: "
+          "discrete}\n"
+          "  tags:\n    level: {register: 7, table: input}\n"
+          "    rain: {register: 2, type: int32, word_order: high_first}\n"
+          "    inflow: {register: 4, type: uint16, scale: 0.01, offset: -1, readback: 6}\n")
+          .gateway;
   EXPECT_TRUE(gateway.outputs[0].modbus.input_table);
   EXPECT_EQ(gateway.outputs[0].modbus.format.order, WordOrder::kLowFirst);
   EXPECT_EQ(gateway.disturbances[0].modbus.format.order, WordOrder::kHighFirst);
@@ -63,15 +65,15 @@ TEST(GatewayParams, ASimulatedPlantHasNone) {
 }
 
 TEST(PlausibilityFile, TakesItsDefaultsFromThePlantAndTheActuator) {
-  const PlausibilityFile file = plausibilityOf(gatewayLoop("  type: none\n"));
-  EXPECT_TRUE(file.signals.enabled);
-  EXPECT_EQ(file.signals.hold_samples, 3);
-  EXPECT_EQ(file.signals.fallback, one(4.0));
-  EXPECT_NEAR(file.signals.outputs[0].lower, -0.4, 1e-12);
-  EXPECT_NEAR(file.signals.outputs[0].upper, 4.4, 1e-12);
-  EXPECT_EQ(file.signals.outputs[0].jump, 2.0);
-  EXPECT_EQ(file.signals.disturbances[0].jump, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(file.signals.needs, (std::vector<bool>{true, false}));  // a PI without feed-forward
+  const PlausibilityParams params = gatewayLoop("  type: none\n").plausibility;
+  EXPECT_TRUE(params.enabled);
+  EXPECT_EQ(params.hold_samples, 3);
+  EXPECT_EQ(params.fallback, one(4.0));
+  EXPECT_NEAR(params.outputs[0].lower, -0.4, 1e-12);
+  EXPECT_NEAR(params.outputs[0].upper, 4.4, 1e-12);
+  EXPECT_EQ(params.outputs[0].jump, 2.0);
+  EXPECT_EQ(params.disturbances[0].jump, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(params.needs, (std::vector<bool>{true, false}));  // a PI without feed-forward
 }
 
 TEST(PlausibilityFile, ErrorsNameKeyAndWhatWasExpected) {

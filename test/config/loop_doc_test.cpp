@@ -15,6 +15,7 @@
 #include "fmbpc/control/horizon/nmpc.hpp"
 #include "fmbpc/control/horizon/swarm_mpc.hpp"
 #include "fmbpc/control/optimal/law.hpp"
+#include "fmbpc/control/pi/pi.hpp"
 #include "loop/loops_of_type.hpp"
 #include "paths.hpp"
 
@@ -201,14 +202,14 @@ std::map<std::string, std::string> structDefaults() {
   return {{"plant.integrator.relative_tolerance", exactText(integrator.relative_tolerance)},
           {"plant.integrator.absolute_tolerance", exactText(integrator.absolute_tolerance)},
           {"plant.integrator.max_steps", std::to_string(integrator.max_steps)},
-          {"plant.integrator.method", integrator.method},
+          {"plant.integrator.method", wordOf(integrator.method)},
           {"sampling.start_time_s", exactText(loop.simulation.start_time_s)},
-          {"disturbance.source", loop.disturbance.source},
+          {"disturbance.source", wordOf(loop.disturbance.source)},
           {"disturbance.pattern.seed", std::to_string(loop.disturbance.pattern.seed)},
           {"disturbance.csv.time_unit", csv.time_unit},
-          {"disturbance.csv.missing", csv.missing},
-          {"disturbance.csv.interpolation", csv.interpolation},
-          {"disturbance.csv.end", csv.end},
+          {"disturbance.csv.missing", wordOf(csv.missing)},
+          {"disturbance.csv.interpolation", wordOf(csv.interpolation)},
+          {"disturbance.csv.end", wordOf(csv.end)},
           {"disturbance.csv.channels.NAME.scale", exactText(CsvChannel{}.scale)},
           {"disturbance.csv.channels.NAME.offset", exactText(CsvChannel{}.offset)},
           {"controller.law", wordOf(law.law)},
@@ -249,8 +250,8 @@ std::map<std::string, std::string> structDefaults() {
           {"guard.lock_error", exactText(loop.guard.lock_error)},
           {"guard.lock_step", exactText(loop.guard.lock_step)},
           {"guard.lock_release", std::to_string(loop.guard.lock_release)},
-          {"controller.loops[].anti_windup", pi.anti_windup},
-          {"controller.loops[].start", pi.start},
+          {"controller.loops[].anti_windup", wordOf(pi.anti_windup)},
+          {"controller.loops[].start", wordOf(pi.start)},
           {"controller.seed", std::to_string(ExcitationParams{}.seed)},
           {"controller.signals[].register_bits", std::to_string(ExcitationSignal{}.register_bits)},
           {"controller.signals[].clock_steps", std::to_string(ExcitationSignal{}.clock_steps)},
@@ -267,9 +268,9 @@ std::map<std::string, std::string> structDefaults() {
            exactText(loop.identify.online.rls.covariance_bound)},
           {"clp.perturbation_steps", std::to_string(clp.perturbation_steps)},
           {"clp.mode2_steps", std::to_string(clp.mode2_steps)},
-          {"clp.cost", clp.cost},
-          {"clp.bounds", clp.bounds},
-          {"clp.action", clp.action},
+          {"clp.cost", wordOf(clp.cost)},
+          {"clp.bounds", wordOf(clp.bounds)},
+          {"clp.action", wordOf(clp.action)},
           {"clp.output_penalty", exactText(clp.output_penalty)},
           {"clp.qp.max_iterations", std::to_string(clp.qp.max_iterations)},
           {"clp.qp.feasibility_tolerance", exactText(clp.qp.feasibility_tolerance)},
@@ -281,10 +282,7 @@ std::map<std::string, std::string> structDefaults() {
           {"tf.broadcast", word(loop.tf.broadcast)}};
 }
 
-double asNumber(const std::string& text) {
-  double value = 0.0;
-  return YAML::convert<double>::decode(YAML::Load(text), value) ? value : std::nan("");
-}
+double asNumber(const std::string& text) { return YAML::Load(text).as<double>(std::nan("")); }
 
 TEST(LoopDocs, DefaultsAreThoseOfTheStructs) {
   const auto rows = documented();

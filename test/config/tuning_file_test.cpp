@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/yaml_node.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "fmbpc/study/tuning_objective.hpp"
@@ -40,7 +41,7 @@ TEST(TuningFile, IsReadIntoItsStructs) {
   EXPECT_EQ(tuning.scenarios[1].loop, "other");
   EXPECT_EQ(tuning.held_out.size(), 3U);
   EXPECT_EQ(tuning.search.population, 8);
-  EXPECT_EQ(tuning.search.method, "apso");
+  EXPECT_EQ(tuning.search.method, SearchMethod::kApso);
   EXPECT_EQ(tuning.fitness.terms[1].signal, "u");
 }
 
@@ -142,13 +143,13 @@ TEST(TuningDocs, TellTheDefaultsOfTheStructs) {
   const std::map<std::string, std::string> defaults{
       {"fitness.band", exactText(f.band)},
       {"fitness.time_unit", f.time_unit},
-      {"fitness.across", f.across},
+      {"fitness.across", wordOf(f.across)},
       {"fitness.relative", "false"},
       {"fitness.failure", ".inf"},
       {"fitness.terms[].weight", exactText(FitnessTerm{}.weight)},
       {"parameters[].scale", "linear"},
       {"parameters[].integer", "false"},
-      {"search.method", s.method},
+      {"search.method", wordOf(s.method)},
       {"search.population", std::to_string(s.population)},
       {"search.evaluations", std::to_string(s.evaluations)},
       {"search.seed", std::to_string(s.seed)},

@@ -2,6 +2,8 @@
 // outside, bumpless both ways.
 #include "fmbpc/control/guard.hpp"
 
+#include "fmbpc/control/pi/pi.hpp"
+
 #include "control/session_fixture.hpp"
 
 namespace fpc::test_session {
@@ -57,13 +59,15 @@ class Guard : public testing::Test {
     GuardParams p;
     p.lock_samples = 0;
     p.return_samples = 3;
-    p.has_pi = with_pi;
+    if (!with_pi) return p;
     PiLoop pi;
     pi.output = 1;
     pi.kp = 0.5;
     pi.ki_per_h = 1.0;
     pi.bias = 775.0;
-    p.pi.loops = {pi};
+    PiParams fallback;
+    fallback.loops = {pi};
+    p.pi = std::make_shared<const PiParams>(fallback);
     return p;
   }
   double step(std::uint32_t k, double x, double applied) {

@@ -83,8 +83,8 @@ void csvTable(const std::string& bytes) {
       params.file = file;
       params.format = format;
       params.time_column = table.names.front();
-      params.missing = "interpolate";
-      params.end = "repeat";
+      params.missing = MissingCells::kInterpolate;
+      params.end = RecordEnd::kRepeat;
       params.channels = {{"d", table.names.back()}};
       const auto record = readDisturbances(params, {"d"}, Vector::Ones(1), 60.0, 100);
       if (record.values.hasNaN()) fail("a record with holes");

@@ -147,7 +147,7 @@ std::pair<double, double> biasOf(const MisoParams& params, double noise, int sam
 TEST(MisoEstimator, IsBiasedByNoiseWhichMoreDataDoNotCureAndOutputErrorIsNot) {
   MisoParams arx, robust;
   arx.bias = robust.bias = false;
-  robust.method = "output_error";
+  robust.method = MisoMethod::kOutputError;
   std::cout << "noise/std(y)   ARX: K, tau [%]   output error: K, tau [%]\n";
   for (const double noise : {0.01, 0.02, 0.05, 0.1}) {
     const auto [k, tau] = biasOf(arx, noise);
@@ -167,15 +167,15 @@ TEST(MisoEstimator, IsBiasedByNoiseWhichMoreDataDoNotCureAndOutputErrorIsNot) {
 }
 
 TEST(MisoEstimator, KeepsOnePercentOfNoiseWithinOneAndTwoPercentAlsoWhenForgetting) {
-  for (const char* method : {"arx", "output_error"})
+  for (const MisoMethod method : {MisoMethod::kArx, MisoMethod::kOutputError})
     for (const double forgetting : {0.995, 1.0}) {
       MisoParams params;
       params.bias = false;
       params.method = method;
       params.rls.forgetting = forgetting;
       const auto [k, tau] = biasOf(params, 0.01);
-      EXPECT_LT(std::abs(k), 0.01) << method << forgetting;
-      EXPECT_LT(std::abs(tau), 0.02) << method << forgetting;
+      EXPECT_LT(std::abs(k), 0.01) << static_cast<int>(method) << forgetting;
+      EXPECT_LT(std::abs(tau), 0.02) << static_cast<int>(method) << forgetting;
     }
 }
 
@@ -243,7 +243,7 @@ TEST(MisoEstimator, SkipsWhatIsNotFinite) {
 }
 
 TEST(MisoEstimator, GoesOnAfterWhatIsNotFinite) {
-  for (const char* method : {"arx", "output_error"})
+  for (const MisoMethod method : {MisoMethod::kArx, MisoMethod::kOutputError})
     for (const bool of_input : {true, false}) {
       MisoParams params;
       params.method = method;
@@ -256,16 +256,17 @@ TEST(MisoEstimator, GoesOnAfterWhatIsNotFinite) {
         if (spoiled && of_input) u[0] = NAN;
         learned += estimator.update(u, spoiled && !of_input ? NAN : record.y[k]);
       }
-      EXPECT_GT(learned, 500) << method << of_input;
-      ASSERT_TRUE(estimator.element(0).has_value()) << method << of_input;
-      EXPECT_NEAR(estimator.element(0)->gain, 2.0, 0.1) << method << of_input;
-      EXPECT_NEAR(estimator.element(0)->time_constant, 8.0, 0.5) << method << of_input;
+      EXPECT_GT(learned, 500) << static_cast<int>(method) << of_input;
+      ASSERT_TRUE(estimator.element(0).has_value()) << static_cast<int>(method) << of_input;
+      EXPECT_NEAR(estimator.element(0)->gain, 2.0, 0.1) << static_cast<int>(method) << of_input;
+      EXPECT_NEAR(estimator.element(0)->time_constant, 8.0, 0.5)
+          << static_cast<int>(method) << of_input;
     }
 }
 
 TEST(MisoEstimator, RefusesWhatItCannotDo) {
   MisoParams params;
-  params.method = "output_error";
+  params.method = MisoMethod::kOutputError;
   EXPECT_THROW(MisoEstimator(2, 1.0, params), InputError);
   EXPECT_THROW(MisoEstimator(3, 1.0, {}), InputError);
   params = {};

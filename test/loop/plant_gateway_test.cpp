@@ -230,7 +230,7 @@ class WildPlant {
 
 TEST(PlantGateway, EveryWriteKeepsBoundsAndMoveWhateverArrives) {
   const LoopFile loop = modbusLoop();
-  const RegisterFormat format = gatewayOf(loop).inputs[0].modbus.format;
+  const RegisterFormat format = loop.gateway.inputs[0].modbus.format;
   int writes = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     Dice dice(seed);

@@ -3,7 +3,6 @@
 #include <functional>
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/plausibility_file.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/identifier_session.hpp"
 #include "fmbpc/loop/run.hpp"

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/optim/particle_swarm.hpp"
 
@@ -39,7 +40,7 @@ Judge judgeOf(Function cost, int threads = 1) {
 
 SearchParams paramsOf(const std::string& method, int evaluations, std::uint64_t seed = 1) {
   SearchParams params;
-  params.method = method;
+  params.method = searchMethod(method);
   params.population = 20;
   params.evaluations = evaluations;
   params.seed = seed;
@@ -199,10 +200,9 @@ TEST(PopulationSearch, MistakesAreNamed) {
     }
     return std::string("nothing");
   };
-  SearchParams params = paramsOf("simplex", 10);
-  EXPECT_NE(error(params).find("search.method: expected one of apso, pso, random"),
-            std::string::npos);
-  params = paramsOf("apso", 0);
+  EXPECT_THROW(searchMethod("simplex"), InputError);
+  for (const std::string& word : searchMethods()) EXPECT_EQ(wordOf(searchMethod(word)), word);
+  SearchParams params = paramsOf("apso", 0);
   EXPECT_NE(error(params).find("search.evaluations"), std::string::npos);
   params = paramsOf("apso", 10);
   params.speed_upper = 0.0;

@@ -58,7 +58,7 @@ TEST(DisturbanceCsv, HoldsEachRowUntilTheNextAndStartsWithTheFirst) {
 
 TEST(DisturbanceCsv, InterpolatesBetweenRows) {
   CsvDisturbanceParams params = flowFrom(kThreeHours);
-  params.interpolation = "linear";
+  params.interpolation = Interpolation::kLinear;
   EXPECT_EQ(flows(params, 5), (Values{100, 150, 200, 300, 400, 400}));
 }
 
@@ -71,7 +71,7 @@ TEST(DisturbanceCsv, ScalesAndShifts) {
 
 TEST(DisturbanceCsv, ScalesToAWantedMeanOfTheMeasuredCells) {
   CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,\n2,300\n");
-  params.missing = "hold";
+  params.missing = MissingCells::kHold;
   params.channels[0].mean = 1000.0;
   EXPECT_EQ(flows(params, 4), (Values{500, 500, 500, 500, 1500}));
 }
@@ -114,13 +114,13 @@ TEST(DisturbanceCsv, AHoleInTimeIsMissingRows) {
   CsvDisturbanceParams params = flowFrom(text);
   expectWords(errorOf(params, 4),
               ":3: column 'q': the time jumps after this row: expected no missing");
-  params.missing = "hold";
+  params.missing = MissingCells::kHold;
   EXPECT_EQ(flows(params, 3, 3600.0), (Values{100, 110, 110, 130}));
-  params.missing = "interpolate";
+  params.missing = MissingCells::kInterpolate;
   EXPECT_EQ(flows(params, 3, 3600.0), (Values{100, 110, 120, 130}));
   EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 3).repaired, 1U);
   params = flowFrom("t,q\n0,1\n1,2\n2,3\n50,4\n51,5\n");
-  params.missing = "hold";
+  params.missing = MissingCells::kHold;
   EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 51).repaired, 47U);
   expectWords(errorOf(flowFrom("t,q\n0,1\n1,2\n2,3\n1e9,4\n")), "rows (another unit?)");
 }
@@ -132,7 +132,7 @@ TEST(DisturbanceCsv, OtherSeparatorsDecimalsAndMissingValues) {
   params.format.separator = ';';
   expectWords(errorOf(params), "is it comma?");
   params.format.decimal = ',';
-  params.missing = "hold";
+  params.missing = MissingCells::kHold;
   EXPECT_EQ(flows(params, 2, 3600.0), (Values{1.5, -999, 3.5}));
   params.format.missing_values = {"-999", "Bad", "null", "#N/A"};
   EXPECT_EQ(flows(params, 2, 3600.0), (Values{1.5, 1.5, 3.5}));
@@ -143,7 +143,7 @@ TEST(DisturbanceCsv, OtherSeparatorsDecimalsAndMissingValues) {
 
 TEST(DisturbanceCsv, ImplausibleCellsAreErrorsClippedHeldOrInterpolatedAndCounted) {
   CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,9999\n2,300\n3,-5\n4,\n5,600\n");
-  params.missing = "hold";
+  params.missing = MissingCells::kHold;
   params.channels[0].lower = 0.0;
   params.channels[0].upper = 1000.0;
   expectWords(errorOf(params, 4), ":3: column 'q': expected a value from 0 to 1000");
@@ -171,9 +171,9 @@ TEST(DisturbanceCsv, RoundedTimesDoNotShiftTheRecordByARow) {
 TEST(DisturbanceCsv, MissingCellsAreHeldInterpolatedAndCounted) {
   const std::string text = "t,q\n0,\n1,100\n2,\n3,\n5,500\n6,nan\n";
   CsvDisturbanceParams params = flowFrom(text);
-  params.missing = "hold";
+  params.missing = MissingCells::kHold;
   EXPECT_EQ(flows(params, 6, 3600.0), (Values{100, 100, 100, 100, 100, 500, 500}));
-  params.missing = "interpolate";
+  params.missing = MissingCells::kInterpolate;
   EXPECT_EQ(flows(params, 6, 3600.0), (Values{100, 100, 200, 300, 400, 500, 500}))
       << "the row at 4 h is missing as well";
   EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 6).repaired, 5U);
@@ -183,7 +183,7 @@ TEST(DisturbanceCsv, MissingCellsAreErrorsUnlessAllowed) {
   expectWords(errorOf(flowFrom("t,q\n0,1\n1,\n2,3\n")),
               ":3: column 'q': expected no missing cells");
   CsvDisturbanceParams nothing = flowFrom("t,q\n0,\n1,\n");
-  nothing.missing = "hold";
+  nothing.missing = MissingCells::kHold;
   expectWords(errorOf(nothing), "at least one number");
 }
 
@@ -191,17 +191,17 @@ TEST(DisturbanceCsv, ARecordThatIsTooShortIsAnErrorUnlessHeldOrRepeated) {
   CsvDisturbanceParams params = flowFrom(kThreeHours);
   EXPECT_EQ(flows(params, 6).back(), 400.0) << "the last row acts for an hour like those before";
   expectWords(errorOf(params, 7), "a record of at least 3.5 h");
-  params.end = "hold";
+  params.end = RecordEnd::kHold;
   EXPECT_EQ(flows(params, 8), (Values{100, 100, 200, 200, 400, 400, 400, 400, 400}));
-  params.end = "repeat";
+  params.end = RecordEnd::kRepeat;
   EXPECT_EQ(flows(params, 8), (Values{100, 100, 200, 200, 400, 400, 100, 100, 200}));
-  params.interpolation = "linear";
+  params.interpolation = Interpolation::kLinear;
   EXPECT_EQ(flows(params, 8), (Values{100, 150, 200, 300, 400, 250, 100, 150, 200}));
 }
 
 TEST(DisturbanceCsv, ALastRowEqualToTheFirstClosesThePeriod) {
   CsvDisturbanceParams params = flowFrom("t,q\n0,100\n1,200\n2,400\n3,100\n");
-  params.end = "repeat";
+  params.end = RecordEnd::kRepeat;
   EXPECT_EQ(flows(params, 7, 3600.0), (Values{100, 200, 400, 100, 200, 400, 100, 200}));
 }
 
@@ -228,9 +228,7 @@ TEST(DisturbanceCsv, BadNamesAndChoicesAreErrors) {
   expectWords(spoiled([](P& p) { p.channels[0].name = "x"; }), "'x': expected one of q_i, s_i");
   expectWords(spoiled([](P& p) { p.channels.push_back(p.channels[0]); }), "only once");
   expectWords(spoiled([](P& p) { p.time_unit = "hours"; }), "disturbance.csv.time_unit");
-  expectWords(spoiled([](P& p) { p.missing = "skip"; }), "disturbance.csv.missing");
-  expectWords(spoiled([](P& p) { p.interpolation = "cubic"; }), "disturbance.csv.interpolation");
-  expectWords(spoiled([](P& p) { p.end = "stop"; }), "disturbance.csv.end");
+  expectWords(spoiled([](P& p) { p.missing = MissingCells::kDrop; }), "disturbance.csv.missing");
   expectWords(spoiled([](P& p) { p.channels[0].scale = NAN; }), "finite scale");
   expectWords(errorOf(flowFrom(kThreeHours), 0), "duration");
 }
@@ -248,7 +246,7 @@ TEST(DisturbanceCsv, ReadsThePublicBsm1Influent) {
   if (params.file.empty()) GTEST_SKIP() << "FMBPC_DATA, the folder of public records, is not set";
   params.time_column = "t_d";
   params.time_unit = "d";
-  params.end = "repeat";
+  params.end = RecordEnd::kRepeat;
   params.channels = {{"q_i", "Q_m3d", 1.0, 0.0, 1300.0}, {"s_i", "COD_total", 1.0, 0.0, 366.67}};
   const DisturbanceRecord record = readDisturbances(params, kNames, kNominal, 900.0, 2 * 1344);
   EXPECT_EQ(record.repaired, 0U);
@@ -270,14 +268,15 @@ TEST(DisturbanceCsv, ReadsTheUciPlantWithItsGaps) {
   params.time_unit = "d";
   params.channels = {{"q_i", "q_i_m3h"}, {"s_i", "DQO_D_mgl"}};
   EXPECT_THROW(readDisturbances(params, kNames, kNominal, 3600.0, 168), InputError);
-  for (const char* repair : {"hold", "interpolate"}) {
+  for (const MissingCells repair : {MissingCells::kHold, MissingCells::kInterpolate}) {
     params.missing = repair;
     const DisturbanceRecord record = readDisturbances(params, kNames, kNominal, 86400.0, 667);
-    EXPECT_EQ(record.repaired, 159U + 150U) << repair;
+    EXPECT_EQ(record.repaired, 159U + 150U) << static_cast<int>(repair);
     EXPECT_EQ(record.values(0, 0), 1717.92);
     EXPECT_EQ(record.values(1, 1), 368.0);
     EXPECT_EQ(record.values(0, 667), 1313.5);
-    EXPECT_TRUE(record.values.allFinite() && record.values.minCoeff() > 0.0) << repair;
+    EXPECT_TRUE(record.values.allFinite() && record.values.minCoeff() > 0.0)
+        << static_cast<int>(repair);
   }
 }
 

@@ -101,8 +101,8 @@ TEST_F(DamagedFiles, TablesAreRefusedInWords) {
     CsvDisturbanceParams params;
     params.file = table.file;
     params.time_column = table.names.front();
-    params.missing = "interpolate";
-    params.end = "hold";
+    params.missing = MissingCells::kInterpolate;
+    params.end = RecordEnd::kHold;
     params.channels = {{"q_i", table.names.back()}};
     readDisturbances(params, {"q_i"}, Vector::Ones(1), 720.0, 50);
   });

@@ -109,6 +109,13 @@ TEST_F(Study, FailuresAreCountedByKind) {
   const StudyPlan wrong = plan("seeds: 1\nset: {controller.loops.0.reverse: true}\n");
   EXPECT_GT(count(runStudy(wrong), RunFailure::kLocked), 20U);
   EXPECT_EQ(count(runStudy(plan("seeds: 1\n")), RunFailure::kLocked), 0U);
+  // The same record with an input that stood there from the first sample on: nobody drove it.
+  RunRecord record = runLoop(wrong.loop(0));
+  const LoopFile loop = wrong.loop(0);
+  EXPECT_GT(lockedSamples(loop, record, 0), 20U);
+  const Vector bound = record.samples.back().measurement.input_applied;
+  for (SampleRecord& sample : record.samples) sample.measurement.input_applied = bound;
+  EXPECT_EQ(lockedSamples(loop, record, 0), 0U);
   const StudyPlan bounded = plan("seeds: 1\nset: {report.output_upper: {y: 0.1}}\n");
   EXPECT_GT(count(runStudy(bounded), RunFailure::kViolated), 10U);
 }

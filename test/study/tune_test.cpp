@@ -23,7 +23,7 @@ class Tune : public LoopFolder {
   }
   static SearchParams search(const std::string& method = "apso") {
     SearchParams params;
-    params.method = method;
+    params.method = searchMethod(method);
     params.population = 8;
     params.evaluations = 60;
     return params;

@@ -96,7 +96,8 @@ TEST_F(Tool, MistakesAreOneLineOnStandardError) {
   for (const char* arguments :
        {"run nothing", "run asp_case1 --set loop.pace=brisk", "run asp_case1 --set nonsense",
         "resolve", "fly", "run asp_case1 --fast", "resolve asp_case1 --set controller.horizon=3",
-        "model nothing.yaml", ""}) {
+        "model nothing.yaml", "", "run linear_2x2 --out ''", "study linear_2x2 --out ''",
+        "run linear_2x2 --commands=''"}) {
     const Outcome outcome = tool(arguments, true);
     EXPECT_EQ(outcome.code, 1) << arguments;
     EXPECT_EQ(outcome.printed.rfind("fmbpc: ", 0), 0U) << outcome.printed;

@@ -4,6 +4,7 @@
 //
 // c and f are what the operator knows: the outlet's coefficient and the measured feed.
 #include <fmbpc/control/registry.hpp>
+#include <fmbpc/control/settings_table.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,6 +17,16 @@ struct OutflowParams {
   double kp{5.0};       // [l/(s m)]
   double integral_time_s{600.0};
 };
+
+/// What may change in a run.
+const fpc::SettingsTable<OutflowParams>& table() {
+  using Params = OutflowParams;
+  static const auto table =
+      fpc::SettingsTable<Params>()
+          .number("kp", &Params::kp, "proportional gain [l/(s m)]", 0.0, 1000.0)
+          .number("integral_time_s", &Params::integral_time_s, "Ti [s]", 1.0, 1e6);
+  return table;
+}
 
 class OutflowController final : public fpc::Controller {
  public:
@@ -49,17 +60,11 @@ class OutflowController final : public fpc::Controller {
     last_error_ = error;
   }
 
-  fpc::Settings settings() const override {
-    return {{"kp", text(params_.kp)}, {"integral_time_s", text(params_.integral_time_s)}};
-  }
+  fpc::Settings settings() const override { return table().show(params_, {{}, {}}); }
 
   bool retune(const fpc::Settings& settings) override {
     OutflowParams next = params_;
-    for (const auto& [key, value] : settings) {
-      const std::string where = "controller." + key;
-      fpc::require(key == "kp" || key == "integral_time_s", where, "kp or integral_time_s");
-      (key == "kp" ? next.kp : next.integral_time_s) = fpc::settingNumber(value, where);
-    }
+    table().take(settings, {{}, {}}, next);
     fpc::require(next.kp >= 0.0 && next.integral_time_s > 0.0, "controller", "kp >= 0, a time > 0");
     integral_ += (params_.kp - next.kp) * last_error_;  // no bump
     params_ = next;
@@ -67,8 +72,6 @@ class OutflowController final : public fpc::Controller {
   }
 
  private:
-  static std::string text(double value) { return std::to_string(value); }
-
   OutflowParams params_;
   fpc::InputLimits limits_;
   double sample_time_s_;
@@ -94,8 +97,7 @@ std::unique_ptr<fpc::Controller> make(const OutflowParams& params,
 
 fpc::ControllerType describe() {
   fpc::ControllerType type{"outflow", "inflow equals the outflow at the setpoint, plus a PI term"};
-  type.settings = {{"kp", fpc::SettingKind::kNumber, "proportional gain [l/(s m)]", 0.0, 1000.0},
-                   {"integral_time_s", fpc::SettingKind::kNumber, "Ti [s]", 1.0, 1e6}};
+  type.settings = table().infos();
   return type;
 }
 

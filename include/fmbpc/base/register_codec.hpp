@@ -4,11 +4,17 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace fpc {
 
 enum class RegisterType : std::uint8_t { kInt16, kUint16, kInt32, kUint32, kFloat32 };
 enum class WordOrder : std::uint8_t { kHighFirst, kLowFirst };
+inline std::vector<std::string> wordsOf(RegisterType) {
+  return {"int16", "uint16", "int32", "uint32", "float32"};
+}
+inline std::vector<std::string> wordsOf(WordOrder) { return {"high_first", "low_first"}; }
 
 /// value = scale * raw + offset.
 struct RegisterFormat {

@@ -14,6 +14,7 @@ enum class GatewayType : std::uint8_t {
   kFloat64,  ///< std_msgs/Float64 topics, one per signal
   kModbus,   ///< Modbus/TCP
 };
+inline std::vector<std::string> wordsOf(GatewayType) { return {"none", "float64", "modbus"}; }
 
 /// A register (or two) of the plant.
 struct ModbusTag {
@@ -60,9 +61,5 @@ struct GatewayParams {
   std::vector<GatewayTag> outputs, disturbances, inputs;  ///< in the plant's order
   bool enabled() const { return type != GatewayType::kNone; }
 };
-
-struct LoopFile;
-/// Section `gateway` of the loop's text. @throws InputError naming the key.
-GatewayParams gatewayOf(const LoopFile& loop);
 
 }  // namespace fpc

@@ -6,10 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/config/gateway_params.hpp"
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
-#include "fmbpc/control/guard.hpp"
+#include "fmbpc/control/guard_params.hpp"
+#include "fmbpc/control/plausibility_params.hpp"
 #include "fmbpc/control/registry.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
+#include "fmbpc/control/standstill_params.hpp"
 #include "fmbpc/fuzzy/online_learner.hpp"
 #include "fmbpc/fuzzy/structure.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
@@ -18,6 +21,7 @@
 namespace fpc {
 
 enum class Pace { kLockstep, kPaced, kRealtime };
+inline std::vector<std::string> wordsOf(Pace) { return {"lockstep", "paced", "realtime"}; }
 
 /// Section `loop`: how the ring over topics runs; ignored in one process.
 struct RingParams {
@@ -48,10 +52,15 @@ struct TfParams {
   std::vector<SampleLine> sample_lines;
 };
 
+enum class DisturbanceSource { kConstant, kPattern, kCsv };
+inline std::vector<std::string> wordsOf(DisturbanceSource) {
+  return {"constant", "pattern", "csv"};
+}
+
 /// Section `disturbance`: what acts on the plant besides the inputs. Read when the plant is made,
 /// not before: only the plant's machine needs the record.
 struct DisturbanceParams {
-  std::string source{"constant"};  ///< constant, pattern or csv
+  DisturbanceSource source{DisturbanceSource::kConstant};
   PatternParams pattern;
   CsvDisturbanceParams csv;
 };
@@ -108,6 +117,10 @@ struct LoopFile {
   std::shared_ptr<const ControllerConfig> controller;  ///< never null in a loop that was read
   Vector disturbance_nominal;                          ///< n_d, of the measured disturbances
   GuardParams guard;                                   ///< around a law with a model
+  PlausibilityParams plausibility;                     ///< what a measurement may be
+  StuckParams stuck;            ///< section plausibility: inputs that do not follow
+  StandstillParams standstill;  ///< around any law; without signals: none
+  GatewayParams gateway;        ///< of an external plant
   bool has_clp{false};
   ClpParams clp;
   RingParams ring;

@@ -33,12 +33,16 @@ struct FitnessTerm {
   std::string scenario;  ///< counts in this one alone; empty: in all
 };
 
+/// What becomes of the costs of several scenarios.
+enum class AcrossScenarios { kMean, kMedian, kWorst };
+inline std::vector<std::string> wordsOf(AcrossScenarios) { return {"mean", "median", "worst"}; }
+
 struct FitnessParams {
   std::vector<FitnessTerm> terms;
   double band{0.02};           ///< of a step, for settling
   std::string time_unit{"h"};  ///< of rise and settling: s, min, h
-  std::string across{"mean"};  ///< scenarios: mean, median, worst
-  bool relative{false};        ///< each scenario's cost divided by that of the untouched loop
+  AcrossScenarios across{AcrossScenarios::kMean};
+  bool relative{false};  ///< each scenario's cost divided by that of the untouched loop
   double failure{std::numeric_limits<double>::infinity()};  ///< cost of a run that fails; also the
                                                             ///< largest cost of any run
 };

@@ -7,28 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "fmbpc/control/controller.hpp"
-#include "fmbpc/control/pi/pi.hpp"
+#include "fmbpc/control/controller_around.hpp"
+#include "fmbpc/control/guard_params.hpp"
 
 namespace fpc {
 
-/// Section `guard` of a loop file.
-struct GuardParams {
-  bool enabled{true};
-  double trust_low{0.25};   ///< below: the fallback takes over, or moves are smallest
-  double trust_high{0.75};  ///< above: the law acts freely (again)
-  double least_move{0.02};  ///< largest move at no trust, in parts of an input's range
-  int return_samples{10};   ///< so long above trust_high before the law is back
-  bool has_pi{false};       ///< without: moves shrink with trust
-  PiParams pi;              ///< the fallback
-  int lock_samples{25};     ///< an input so long at its bound is suspected; 0: never
-  double lock_error{0.02};  ///< ... while an error is larger than this part of its setpoint
-  double lock_step{0.1};    ///< by how much the bound is drawn in at once, in parts of the range
-  int lock_release{250};    ///< samples over which a drawn-in bound opens again
-  std::vector<Eigen::Index> lock_outputs;  ///< whose errors count; empty: all
-  /// @throws InputError naming guard.KEY.
-  void validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d) const;
-};
+class PiController;
 
 /// What the guard sees at one sample.
 struct GuardView {
@@ -84,7 +68,7 @@ class LockUpWatch {
 ///   says why.
 /// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
 /// then model_trust, locked.
-class GuardedController final : public Controller {
+class GuardedController final : public ControllerAround {
  public:
   /// @throws InputError naming the field.
   GuardedController(std::unique_ptr<Controller> inside, GuardParams params, InputLimits limits,
@@ -93,17 +77,9 @@ class GuardedController final : public Controller {
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
-  bool needsModel() const override { return inside_->needsModel(); }
-  bool followsSetpoint() const override { return inside_->followsSetpoint(); }
   void setModel(const TsModel& model) override;
-  bool mayBeSent(VectorRef input) const override { return inside_->mayBeSent(input); }
-  void makeSendable(Eigen::Ref<Vector> input) const override { inside_->makeSendable(input); }
-  bool adapt(bool on) override { return inside_->adapt(on); }
-  Settings settings() const override { return inside_->settings(); }
-  bool retune(const Settings& settings) override { return inside_->retune(settings); }
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
   const GuardView& view() const { return view_; }
-  const Controller& inside() const { return *inside_; }
 
  private:
   double trustAt(const Measurement& now, VectorRef input);
@@ -114,7 +90,6 @@ class GuardedController final : public Controller {
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
   void refreshSignals();
 
-  std::unique_ptr<Controller> inside_;
   GuardParams params_;
   InputLimits limits_, shrunk_;
   PlantInfo plant_;

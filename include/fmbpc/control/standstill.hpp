@@ -8,29 +8,10 @@
 #include <vector>
 
 #include "fmbpc/control/affine_law.hpp"
-#include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/controller_around.hpp"
+#include "fmbpc/control/standstill_params.hpp"
 
 namespace fpc {
-
-/// A measured signal that must not stand still.
-struct WatchedSignal {
-  std::string name;
-  bool is_output{true};
-  Eigen::Index place{};   ///< among outputs or measured disturbances
-  double least_change{};  ///< largest minus smallest value over the window is usually more
-};
-
-/// Section `standstill` of a loop file.
-struct StandstillParams {
-  std::vector<WatchedSignal> signals;  ///< empty: nothing is watched
-  int window_samples{24};
-  double others_change{0.1};  ///< what drives the plant must have moved by this part of its mean
-  Vector usual;               ///< n_d, the law's value of a disturbance that stands still
-  Vector fallback;            ///< n_u, the input while an output stands still ...
-  std::vector<AffineTerm> fallback_plan;  ///< ... and what the other signals add to it
-  /// @throws InputError naming standstill.KEY.
-  void validate(Eigen::Index n_y, Eigen::Index n_u, Eigen::Index n_d) const;
-};
 
 /// Smallest and largest value of each signal over the newest samples. No allocation in add().
 class SignalWindow {
@@ -57,7 +38,7 @@ class SignalWindow {
 /// is
 ///   reset, bumplessly, when the output is back.
 /// remark says which signal. Otherwise the law's answers pass untouched.
-class StandstillWatch final : public Controller {
+class StandstillWatch final : public ControllerAround {
  public:
   /// @throws InputError naming the field.
   StandstillWatch(std::unique_ptr<Controller> inside, StandstillParams params, InputLimits limits,
@@ -65,17 +46,6 @@ class StandstillWatch final : public Controller {
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
-  bool needsModel() const override { return inside_->needsModel(); }
-  bool followsSetpoint() const override { return inside_->followsSetpoint(); }
-  void setModel(const TsModel& model) override { inside_->setModel(model); }
-  bool mayBeSent(VectorRef input) const override { return inside_->mayBeSent(input); }
-  void makeSendable(Eigen::Ref<Vector> input) const override { inside_->makeSendable(input); }
-  bool adapt(bool on) override { return inside_->adapt(on); }
-  Settings settings() const override { return inside_->settings(); }
-  bool retune(const Settings& settings) override { return inside_->retune(settings); }
-  const std::vector<std::pair<std::string, double>>& signals() const override {
-    return inside_->signals();
-  }
 
  private:
   Eigen::Index rowOf(const WatchedSignal& signal) const;
@@ -84,7 +54,6 @@ class StandstillWatch final : public Controller {
   void watch(const Measurement& now);
   void fallBack(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
 
-  std::unique_ptr<Controller> inside_;
   StandstillParams params_;
   InputLimits limits_;
   Eigen::Index n_y_;

@@ -22,16 +22,18 @@ std::optional<Fopdt> recoverFopdt(double a, VectorRef b, double sample_time_min)
 /// and more. For comparison.
 std::optional<Fopdt> recoverFopdtRounded(double a, VectorRef b, double sample_time_min);
 
+/// kArx: measured y in the regressor; noise biases it whatever the amount of data. kOutputError:
+/// the model's own output there (landau1976), unbiased; one input only, as 1/A - 1/2 must be
+/// positive real, which a first-order A always is.
+enum class MisoMethod { kArx, kOutputError };
+
 struct MisoParams {
   int numerator_terms{
       10};          ///< m: b_1..b_m of each input; reaches dead times of m - n_u - 1 samples
   bool bias{true};  ///< a column of ones, for what no input explains
   RlsParams rls{1.0, 1e6, 1e8};
-  /// arx: measured y in the regressor; noise biases it whatever the amount of data. output_error:
-  /// the model's own output there (landau1976), unbiased; one input only, as 1/A - 1/2 must be
-  /// positive real, which a first-order A always is.
-  std::string method{"arx"};
-  int warm_up_steps{60};         ///< output_error: so many samples by arx first
+  MisoMethod method{MisoMethod::kArx};
+  int warm_up_steps{60};         ///< kOutputError: so many samples by kArx first
   int quiet_steps{0};            ///< > 0: inputs that have not moved for so long teach nothing
   void validate(int n_u) const;  ///< @throws InputError naming the field
 };

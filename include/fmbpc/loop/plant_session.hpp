@@ -20,6 +20,11 @@ struct PlantPolicy {
   StuckParams stuck;
 };
 
+/// Of a plant that moves on as soon as its sample is answered, whatever the loop's pace.
+PlantPolicy lockstepPolicy(const LoopFile& loop);
+/// As section `loop` says.
+PlantPolicy ringPolicy(const LoopFile& loop);
+
 enum class PlantPhase { kWaiting, kRunning, kFinished };
 
 /// Actions, each kind apart.

@@ -6,7 +6,7 @@
 
 #include "fmbpc/base/input_limits.hpp"
 #include "fmbpc/base/ring.hpp"
-#include "fmbpc/config/plausibility_file.hpp"
+#include "fmbpc/control/plausibility_params.hpp"
 
 namespace fpc {
 

@@ -23,9 +23,16 @@ class PopulationSearch {
   virtual void tell(const Vector& costs) = 0;
 };
 
+/// Particle swarms (apso: with an inertia that adapts), uniform points, differential evolution,
+/// CMA-ES.
+enum class SearchMethod { kApso, kPso, kRandom, kDe, kCmaes };
+inline std::vector<std::string> wordsOf(SearchMethod) {
+  return {"apso", "pso", "random", "de", "cmaes"};
+}
+
 /// What to search with. Symbols: w inertia, C1 and C2 pulls to the own and the common best.
 struct SearchParams {
-  std::string method{"apso"};  ///< one of searchMethods()
+  SearchMethod method{SearchMethod::kApso};
   int population{10};
   int evaluations{300};  ///< of the cost, in all, exactly; the first generation counts
   std::uint64_t seed{1};
@@ -43,6 +50,8 @@ struct SearchParams {
 
 /// apso, pso, random; and de, cmaes where pagmo2 was there at build time.
 std::vector<std::string> searchMethods();
+/// @throws InputError naming search.method and what this build has.
+SearchMethod searchMethod(const std::string& word);
 /// Why a known method is not in searchMethods(), in words.
 std::string missingMethods();
 

@@ -55,15 +55,22 @@ struct CsvChannel {
   Implausible implausible{Implausible::kError};        ///< what becomes of others; not kDrop
 };
 
+/// Between two rows of a record.
+enum class Interpolation { kHold, kLinear };
+/// What if the record is shorter than the run.
+enum class RecordEnd { kError, kHold, kRepeat };
+inline std::vector<std::string> wordsOf(Interpolation) { return {"hold", "linear"}; }
+inline std::vector<std::string> wordsOf(RecordEnd) { return {"error", "hold", "repeat"}; }
+
 struct CsvDisturbanceParams {
   std::string file;
   std::string time_column;
   std::string time_unit{"h"};  ///< s, min, h, d; dates and times of ISO 8601 carry their own
   CsvFormat format;
-  std::string missing{
-      "error"};  ///< error, hold, interpolate (at the ends: the nearest measured cell)
-  std::string interpolation{"hold"};  ///< hold (zero order) or linear
-  std::string end{"error"};  ///< what if the record is shorter than the run: error, hold, repeat
+  /// Not kDrop; at the ends interpolated cells take the nearest measured one.
+  MissingCells missing{MissingCells::kError};
+  Interpolation interpolation{Interpolation::kHold};
+  RecordEnd end{RecordEnd::kError};
   std::vector<CsvChannel> channels;
   double lead_in_h{};     ///< nominal values for so long before the record begins
   std::string next_file;  ///< a record of the same columns that follows; empty: none

@@ -3,17 +3,22 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "fmbpc/plant/plant.hpp"
 
 namespace fpc {
 
+/// kBdf: stiff, Newton, dense.
+enum class IntegrationMethod { kBdf, kAdams };
+inline std::vector<std::string> wordsOf(IntegrationMethod) { return {"bdf", "adams"}; }
+
 struct IntegratorParams {
   double relative_tolerance{1e-8};
   double absolute_tolerance{1e-8};
   int max_steps{5000};
-  std::string method{"bdf"};  ///< bdf (stiff, Newton, dense) or adams
-  void validate() const;      ///< @throws InputError naming the field
+  IntegrationMethod method{IntegrationMethod::kBdf};
+  void validate() const;  ///< @throws InputError naming the field
 };
 
 enum class IntegrationStatus { kOk, kTooMuchWork, kModelFailed, kSolverFailed };

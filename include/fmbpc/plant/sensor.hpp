@@ -31,8 +31,6 @@ struct SensorParams {
 };
 
 enum class SensorClass { kA, kB0, kB1, kC0, kC1, kD };
-/// "A", "B0", ... @throws InputError for another name.
-SensorClass sensorClass(const std::string& name);
 /// A class's lags, interval and dead time; with `noisy` noise of 2.5 % of its range.
 SensorParams sensorOfClass(SensorClass kind, double lower, double upper, bool noisy);
 

@@ -35,7 +35,7 @@ RunRecord withoutNoise(RunRecord record);
 /// Longest stretch in which an input stood at a bound (1e-6 of its range) for at least
 /// `locked_samples` and the error of some output, averaged over a quarter of the stretch, was no
 /// smaller at its end than at its begin and at its end larger than `kLockedError` of the setpoint.
-/// 0: none.
+/// 0: none. An input that never moved in the run is none that a law has driven there.
 std::uint64_t lockedSamples(const LoopFile& loop, const RunRecord& record, int locked_samples);
 
 RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord record);

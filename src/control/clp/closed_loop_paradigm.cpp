@@ -92,7 +92,7 @@ struct ClosedLoopParadigm::Workspace {
     solution.y_a = Vector::Zero(rows.rows());
   }
 
-  bool lq() const { return params.cost == "lq"; }
+  bool lq() const { return params.cost == ClpCostKind::kLq; }
   SolveStatus decide(const PredictiveAction& now, Vector& action);
   bool consistent(const PredictiveAction& now);
   bool findAim(const PredictiveAction& now);
@@ -188,7 +188,7 @@ void ClosedLoopParadigm::Workspace::assemble(const PredictiveAction& now) {
 void ClosedLoopParadigm::Workspace::takeSolution(const PredictiveAction& now,
                                                  Vector& action) const {
   action = solution.x.head(sizes.n_u).cwiseProduct(problem.input_scale);
-  if (params.bounds != "incremental" || params.action != "eq27") return;
+  if (params.bounds != ClpBounds::kIncremental || params.action != ClpAction::kEq27) return;
   action += now.input_base_unclipped + problem.perturbation_free.head(sizes.n_u);
 }
 

@@ -10,7 +10,7 @@ namespace fpc {
 
 ClpCost::ClpCost(const ClpParams& params, const ClpSizes& s)
     : sizes_(s),
-      lq_(params.cost == "lq"),
+      lq_(params.cost == ClpCostKind::kLq),
       weight_output_(lq_ ? params.weight_state_output : params.weight_tracking),
       weight_input_(lq_ ? params.weight_input : params.weight_perturbation),
       root_output_(weight_output_.cwiseSqrt()),

@@ -25,7 +25,7 @@ ClpLimits::ClpLimits(const ClpParams& params, const InputLimits& limits, const C
       output_upper_(params.output_upper),
       increment_lower_(params.increment_lower),
       increment_upper_(params.increment_upper),
-      incremental_(params.bounds == "incremental"),
+      incremental_(params.bounds == ClpBounds::kIncremental),
       penalty_(params.output_penalty),
       mode2_steps_(params.mode2_steps),
       lower_(s.n_u),

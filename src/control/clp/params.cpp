@@ -51,15 +51,12 @@ void fillIfEmpty(Vector& field, Eigen::Index size, double value) {
 }  // namespace
 
 bool needsTarget(const ClpParams& params) {
-  return params.cost == "lq" || params.bounds == "incremental";
+  return params.cost == ClpCostKind::kLq || params.bounds == ClpBounds::kIncremental;
 }
 
 void ClpParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   require(perturbation_steps >= 1, "clp.perturbation_steps", "an integer >= 1");
   require(mode2_steps >= 0, "clp.mode2_steps", "an integer >= 0");
-  require(cost == "least_perturbation" || cost == "lq", "clp.cost", "least_perturbation or lq");
-  require(bounds == "absolute" || bounds == "incremental", "clp.bounds", "absolute or incremental");
-  require(action == "eq26" || action == "eq27", "clp.action", "eq26 or eq27");
   requireWeights(weight_perturbation, n_u, true, "weight_perturbation");
   requireWeights(weight_tracking, n_y, false, "weight_tracking");
   requireWeights(weight_state_output, n_y, false, "weight_state_output");
@@ -68,7 +65,7 @@ void ClpParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   requireLimits(output_lower, output_upper, n_y, "output");
   require(std::isfinite(output_penalty) && output_penalty > 0.0, "clp.output_penalty",
           "a finite number > 0");
-  if (bounds == "incremental") {
+  if (bounds == ClpBounds::kIncremental) {
     require(increment_lower.size() == n_u, "clp.increment_lower", "as many numbers as inputs");
     require(increment_upper.size() == n_u, "clp.increment_upper", "as many numbers as inputs");
   }

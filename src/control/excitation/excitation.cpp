@@ -60,8 +60,8 @@ void validateLevels(const ExcitationSignal& s, const std::string& key, const Inp
   const auto inside = [&](double value) { return value >= lower && value <= upper; };
   const std::string expected = "a number " + numbersWithin(lower, upper);
   for (const double level : s.levels) require(inside(level), key + "levels", expected);
-  if (s.signal == "multi_level" && !s.levels.empty()) return;
-  if (s.signal == "prbs" || s.signal == "multi_level") {
+  if (s.signal == ExcitationKind::kMultiLevel && !s.levels.empty()) return;
+  if (s.signal == ExcitationKind::kPrbs || s.signal == ExcitationKind::kMultiLevel) {
     require(inside(s.lower), key + "lower", expected);
     require(inside(s.upper), key + "upper", expected);
     require(s.lower < s.upper, key + "upper", "a number above lower");
@@ -73,9 +73,6 @@ void validateLevels(const ExcitationSignal& s, const std::string& key, const Inp
 void validateSignal(const ExcitationSignal& s, const std::string& key, const InputLimits& limits) {
   require(s.input >= 0 && s.input < limits.lower.size(), key + "input",
           "one of the plant's inputs");
-  require(
-      s.signal == "prbs" || s.signal == "multi_level" || s.signal == "steps" || s.signal == "none",
-      key + "signal", "one of prbs, multi_level, steps, none");
   require(s.start_steps >= 0, key + "start_steps", "a number of samples >= 0");
   require(s.clock_steps >= 1, key + "clock_steps", "a number of samples >= 1");
   require(s.hold_lower_steps >= 1, key + "hold_lower_steps", "a number of samples >= 1");
@@ -84,7 +81,8 @@ void validateSignal(const ExcitationSignal& s, const std::string& key, const Inp
   require(
       s.register_bits >= ShiftRegister::kFewestBits && s.register_bits <= ShiftRegister::kMostBits,
       key + "register_bits", "2..20");
-  require(s.signal != "steps" || !s.schedule.empty(), key + "schedule", "at least one entry");
+  require(s.signal != ExcitationKind::kSteps || !s.schedule.empty(), key + "schedule",
+          "at least one entry");
   std::int64_t before = -1;
   for (const ExcitationStep& entry : s.schedule) {
     require(entry.step > before, key + "schedule", "times >= 0 that increase");
@@ -145,7 +143,7 @@ void ExcitationStream::rewind() {
   begin_ = 0;
   end_ = signal_.start_steps;
   value_ = start_input_;
-  if (signal_.signal == "none") end_ = kForEver;
+  if (signal_.signal == ExcitationKind::kNone) end_ = kForEver;
 }
 
 double ExcitationStream::at(std::uint32_t step) {
@@ -156,10 +154,10 @@ double ExcitationStream::at(std::uint32_t step) {
 
 void ExcitationStream::next() {
   begin_ = end_;
-  if (signal_.signal == "prbs") {
+  if (signal_.signal == ExcitationKind::kPrbs) {
     value_ = register_.next() ? signal_.upper : signal_.lower;
     end_ = begin_ + signal_.clock_steps;
-  } else if (signal_.signal == "multi_level") {
+  } else if (signal_.signal == ExcitationKind::kMultiLevel) {
     nextLevel();
   } else {
     if (entry_ > 0) value_ = signal_.schedule[entry_ - 1].value;

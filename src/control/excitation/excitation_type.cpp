@@ -1,5 +1,6 @@
 // Controller type excitation: its section of a loop file. Times are given in samples or in seconds
 // that are a whole number of samples.
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/excitation/excitation.hpp"
 
 #include <cmath>
@@ -78,19 +79,20 @@ ExcitationSignal readSignal(YamlSection& item, const ControllerContext& loop) {
   const double sample_time_s = loop.plant.sample_time_s;
   signal.input = indexByName(item, "input", loop.inputs());
   need(item, "signal", "one of prbs, multi_level, steps, none");
-  item.oneOf("signal", signal.signal, {"prbs", "multi_level", "steps", "none"});
+  readOption(item, "signal", signal.signal);
   const InputLimits& limits = loop.limits;
   const Range bounds{limits.lower[signal.input], limits.upper[signal.input]};
-  if (signal.signal == "prbs" || signal.signal == "multi_level") {
+  if (signal.signal == ExcitationKind::kPrbs || signal.signal == ExcitationKind::kMultiLevel) {
     signal.lower = bounds.lower;
     signal.upper = bounds.upper;
     item.number("lower", signal.lower, bounds);
     item.number("upper", signal.upper, bounds);
   }
-  if (signal.signal == "prbs") readRegister(item, signal, sample_time_s);
-  if (signal.signal == "multi_level") readHolds(item, signal, sample_time_s);
-  if (signal.signal == "steps") readStaircase(item, signal, sample_time_s);
-  if (signal.signal != "none") readSteps(item, "start", signal.start_steps, 0, sample_time_s);
+  if (signal.signal == ExcitationKind::kPrbs) readRegister(item, signal, sample_time_s);
+  if (signal.signal == ExcitationKind::kMultiLevel) readHolds(item, signal, sample_time_s);
+  if (signal.signal == ExcitationKind::kSteps) readStaircase(item, signal, sample_time_s);
+  if (signal.signal != ExcitationKind::kNone)
+    readSteps(item, "start", signal.start_steps, 0, sample_time_s);
   item.finish();
   return signal;
 }

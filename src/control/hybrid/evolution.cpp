@@ -46,7 +46,7 @@ HybridEvolution::HybridEvolution(HybridMpcParams params, InputLimits limits, con
     for (Index choice = 0; choice < n; ++choice)
       block_cost_(before, choice) =
           blockCost(params_.choices.col(before), static_cast<int>(choice));
-  if (params_.bound != "reach" || !model_.isMemoryless()) return;
+  if (params_.bound != BranchBound::kReach || !model_.isMemoryless()) return;
   highest_ = extremeChoice(1.0);
   lowest_ = extremeChoice(-1.0);
 }

@@ -58,7 +58,6 @@ void HybridMpcParams::validate(Index n_y, Index n_u) const {
   for (const ForbiddenTransition& t : forbidden_transitions)
     require(t.from.size() == n_u && t.to.size() == n_u, "controller.forbidden_transitions",
             "from and to of " + std::to_string(n_u) + " inputs");
-  require(bound == "cost" || bound == "reach", "controller.bound", "cost or reach");
   require(std::isfinite(time_budget_s) && time_budget_s >= 0.0, "controller.time_budget_s",
           "a time >= 0");
   TreeSearchParams{horizon_blocks, false, node_budget}.validate(static_cast<int>(choices.cols()));
@@ -104,10 +103,10 @@ void HybridMpc::setModel(const TsModel& model) {
   require(model.outputs.size() == plant_.outputs.size() &&
               model.disturbances.size() == plant_.disturbances.size(),
           "model", "a model matched to the plant");
-  const TreeSearchParams tree{
-      params_.horizon_blocks,
-      params_.bound == "reach" && (evolution->highest() >= 0 || evolution->lowest() >= 0),
-      params_.node_budget};
+  const TreeSearchParams tree{params_.horizon_blocks,
+                              params_.bound == BranchBound::kReach &&
+                                  (evolution->highest() >= 0 || evolution->lowest() >= 0),
+                              params_.node_budget};
   tree_ = std::make_unique<TreeSearch>(evolution->model().stateSize(),
                                        static_cast<int>(params_.choices.cols()), tree);
   evolution_ = std::move(evolution);

@@ -2,6 +2,7 @@
 // follow each other, what they cost.
 #include <cmath>
 
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/control/hybrid/hybrid_mpc.hpp"
@@ -131,7 +132,7 @@ HybridMpcParams readHybridMpc(YamlSection& section, const ControllerContext& loo
   section.integer("horizon_blocks", params.horizon_blocks, 1, 1000);
   section.boolean("preview", params.preview);
   readCost(section, params, loop);
-  section.oneOf("bound", params.bound, {"cost", "reach"});
+  readOption(section, "bound", params.bound);
   section.seed("node_budget", params.node_budget);
   section.number("time_budget_s", params.time_budget_s, kFiniteNotNegative);
   checked(section, [&] {

@@ -65,8 +65,10 @@ AdaptivePi::AdaptivePi(const AdaptivePiParams& params, InputLimits limits, Plant
   for (const std::size_t i : kLoops) {
     const AdaptiveLoop& loop = params.loops[i];
     PiTuning tuning{loop.kp, loop.integral_time_min};
-    if (params.tuning == "imc") tuning = imcTuning(params.model[i][i], loop.imc_time_constant_min);
-    if (params.tuning == "pso") tuning = swarmTuning(params.model[i][i], TuningCost::kStepTimes);
+    if (params.tuning == PiTuningRule::kImc)
+      tuning = imcTuning(params.model[i][i], loop.imc_time_constant_min);
+    if (params.tuning == PiTuningRule::kPso)
+      tuning = swarmTuning(params.model[i][i], TuningCost::kStepTimes);
     s.loops[i].kp = s.loops[i].kp_model = tuning.kp;
     s.loops[i].ti = tuning.integral_time_min;
     if (params.adaptation.enabled)

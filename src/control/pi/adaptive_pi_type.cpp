@@ -1,4 +1,5 @@
 // Controller type adaptive_pi: its section of a loop file.
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/control/pi/adaptive_pi.hpp"
 #include "fmbpc/control/pi/decoupling.hpp"
 #include "fmbpc/control/registry.hpp"
@@ -15,7 +16,7 @@ void readLoops(YamlSection& section, AdaptivePiParams& params, const ControllerC
     YamlSection& item = items[i];
     loop.input = indexByName(item, "input", context.inputs());
     loop.output = indexByName(item, "output", context.outputs());
-    if (params.tuning == "given")
+    if (params.tuning == PiTuningRule::kGiven)
       for (const char* key : {"kp", "integral_time_min"}) need(item, key, "a number");
     item.number("kp", loop.kp, kFinite);
     item.number("integral_time_min", loop.integral_time_min, kFinitePositive);
@@ -65,7 +66,7 @@ AdaptivePiParams readAdaptivePi(YamlSection& section, const ControllerContext& c
   AdaptivePiParams params;
   if (context.outputCount() != 2 || context.inputCount() != 2)
     section.fail("type", "a plant of two inputs and two outputs for adaptive_pi");
-  section.oneOf("tuning", params.tuning, {"given", "imc", "pso"});
+  readOption(section, "tuning", params.tuning);
   readLoops(section, params, context);
   section.boolean("decoupling", params.decoupling);
   readElements(section, params, context);

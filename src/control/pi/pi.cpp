@@ -52,10 +52,6 @@ void validateLoop(const PiLoop& loop, const std::string& key, Eigen::Index n_y, 
   require(std::isfinite(loop.kp), key + "kp", "a finite number");
   require(std::isfinite(loop.ki_per_h), key + "ki_per_h", "a finite number");
   require(std::isfinite(loop.bias), key + "bias", "a finite number");
-  const std::string& windup = loop.anti_windup;
-  require(windup == "none" || windup == "clamp" || windup == "tracking", key + "anti_windup",
-          "none, clamp or tracking");
-  require(loop.start == "bias" || loop.start == "bumpless", key + "start", "bias or bumpless");
   validateSchedule(loop.gain_schedule, key + "gain_schedule");
   loop.terms.validate(key, n_d);
   validateSignal(loop.terms.schedule, key + "schedule_by", n_y, n_u, n_d);
@@ -111,7 +107,7 @@ void PiController::reset(const Measurement& start) {
     LoopState& state = states_[i];
     state.integral = state.error = state.unclipped = state.next_kp = state.next_ki_per_h = 0.0;
     if (state.terms) state.terms->reset();
-    const bool from_bias = start.header.step == 0 && params_.loops[i].start == "bias";
+    const bool from_bias = start.header.step == 0 && params_.loops[i].start == PiStart::kBias;
     states_[i].transfer_pending = !from_bias;
   }
   retuned_ = running_ = false;
@@ -170,11 +166,11 @@ void PiController::integrate(const PiLoop& loop, const Measurement& now, double 
   const double before = now.input_applied[loop.input];
   const double move = limits_.move[loop.input];
   double change = loop.ki_per_h * state.error * sample_time_h_;
-  if (loop.anti_windup == "clamp") {
+  if (loop.anti_windup == AntiWindup::kClamp) {
     const bool above = state.unclipped > insideBounds(limits_, loop.input, before + move);
     const bool below = state.unclipped < insideBounds(limits_, loop.input, before - move);
     if ((above && change > 0.0) || (below && change < 0.0)) change = 0.0;
-  } else if (loop.anti_windup == "tracking") {
+  } else if (loop.anti_windup == AntiWindup::kTracking) {
     // dt / Tt with Tt = kp / ki; without a proportional part the clipped part comes back at once
     const double rate = std::abs(loop.ki_per_h) * sample_time_h_;
     change +=

@@ -1,5 +1,6 @@
 // Controller type pi: its section of a loop file.
 #include "control/pi/read_pi.hpp"
+#include "fmbpc/base/option.hpp"
 
 namespace fpc {
 namespace {
@@ -27,8 +28,8 @@ PiLoop readLoop(YamlSection& item, const ControllerContext& loop) {
   pi.bias = loop.initial_input[pi.input];
   item.number("bias", pi.bias, kFinite);
   item.boolean("reverse", pi.reverse);
-  item.oneOf("anti_windup", pi.anti_windup, {"none", "clamp", "tracking"});
-  item.oneOf("start", pi.start, {"bias", "bumpless"});
+  readOption(item, "anti_windup", pi.anti_windup);
+  readOption(item, "start", pi.start);
   pi.gain_schedule = readSchedule(item);
   readPiTerms(item, pi.terms, loop);
   item.finish();

@@ -216,10 +216,8 @@ PlantDescription describe(Front front) {
   return p;
 }
 
-Parameters readParameters(const PlantDescription& description, const PlantParameters& given) {
-  const Front front = description.name == "bsm1"      ? Front::kValves
-                      : description.name == "bsm1_pi" ? Front::kSetpoints
-                                                      : Front::kAir;
+Parameters readParameters(Front front, const PlantDescription& description,
+                          const PlantParameters& given) {
   Parameters p = usual(front);
   const auto places = listing(front, p).places();
   const Vector values = parameterValues(description, given);

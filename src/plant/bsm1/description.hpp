@@ -34,7 +34,8 @@ struct Parameters {
 
 PlantDescription describe(Front front);
 /// @throws InputError on an unknown name or a value out of range.
-Parameters readParameters(const PlantDescription& description, const PlantParameters& given);
+Parameters readParameters(Front front, const PlantDescription& description,
+                          const PlantParameters& given);
 /// The state at rest under constant influent and the nominal inputs.
 WorksState nominalState(Front front, const LocalLoopParams& loops);
 

@@ -22,7 +22,7 @@ class Bsm1 final : public Plant {
   Bsm1(Front front, const PlantParameters& parameters)
       : front_(front),
         description_(describe(front)),
-        parameters_(readParameters(description_, parameters)) {}
+        parameters_(readParameters(front, description_, parameters)) {}
   const PlantDescription& description() const override { return description_; }
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override;
   std::unique_ptr<PlantStepper> makeStepper(double sample_time_s) const override;

@@ -19,7 +19,7 @@ struct Solved {
 ClpParams lqParams(int n_c, double weight_input) {
   ClpParams params;
   params.perturbation_steps = n_c;
-  params.cost = "lq";
+  params.cost = ClpCostKind::kLq;
   params.weight_input = Vector::Constant(1, weight_input);
   return params;
 }

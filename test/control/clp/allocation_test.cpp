@@ -57,10 +57,10 @@ TEST(ClpAllocation, NoneWithSoftOutputsMode2AndTracking) {
 
 TEST(ClpAllocation, NoneWithLqAndIncrementalBounds) {
   ClpParams params = steps(42);
-  params.cost = "lq";
+  params.cost = ClpCostKind::kLq;
   params.target_outputs = {1};
   countSteps(params, true);
-  params.bounds = "incremental";
+  params.bounds = ClpBounds::kIncremental;
   params.increment_lower = Vector::Constant(1, -20.0);
   params.increment_upper = Vector::Constant(1, 20.0);
   countSteps(params, false);

@@ -135,7 +135,7 @@ TEST(ClosedLoopParadigm, LqRefusesABaseLawThatIsNotStable) {
   Case made = firstOrderLag(1.1, 0.1, 0.5, 0.0, 5, -100.0);  // Phi = 1.05, base 50
   made.limits.upper = one(20.0);
   ClpParams params = steps(5);
-  params.cost = "lq";
+  params.cost = ClpCostKind::kLq;
   const Outcome out = decide(made, params);
   EXPECT_EQ(out.report.status, SolveStatus::kNumericalError);
   EXPECT_EQ(out.input(), 20.0);
@@ -145,7 +145,7 @@ TEST(ClosedLoopParadigm, LqRefusesATargetThatNoInputReaches) {
   Case made = eager(5);
   made.now.B.setZero();
   ClpParams params = steps(5);
-  params.cost = "lq";
+  params.cost = ClpCostKind::kLq;
   EXPECT_EQ(decide(made, params).report.status, SolveStatus::kNumericalError);
 }
 

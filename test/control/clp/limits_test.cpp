@@ -52,7 +52,7 @@ TEST(ClpLimits, LqKeepsItsBounds) {
   made.limits.upper = one(700.0);
   made.now.setpoint[1] = 2150.0;
   ClpParams params = steps(42);
-  params.cost = "lq";
+  params.cost = ClpCostKind::kLq;
   params.target_outputs = {1};
   const Outcome out = decide(made, params);
   EXPECT_EQ(out.report.status, SolveStatus::kSolved);
@@ -65,8 +65,8 @@ TEST(ClpLimits, OnlyEquation26KeepsTheIncrementalBound) {
   made.now.feedforward.array() += 500.0;  // the law aims elsewhere than the steady state
   made.now.input_base_unclipped = baseLaw(made.now);
   ClpParams params = steps(42);
-  params.cost = "lq";
-  params.bounds = "incremental";
+  params.cost = ClpCostKind::kLq;
+  params.bounds = ClpBounds::kIncremental;
   params.target_outputs = {1};
   params.increment_lower = one(-100.0);
   params.increment_upper = one(100.0);
@@ -77,7 +77,7 @@ TEST(ClpLimits, OnlyEquation26KeepsTheIncrementalBound) {
   EXPECT_EQ(out.report.status, SolveStatus::kSolved);
   EXPECT_LE(std::abs(out.input() - u_ss), 100.0 + 1e-9);
   const double eq26 = out.input();
-  params.action = "eq27";
+  params.action = ClpAction::kEq27;
   out = decide(made, params);
   EXPECT_EQ(out.report.status, SolveStatus::kSolved);
   EXPECT_GT(std::abs(out.input() - u_ss), 300.0);
@@ -91,7 +91,7 @@ TEST(ClpLimits, IncrementalBoundsNeverOutbidTheActuator) {
   made.limits = {one(0.0), one(300.0), one(30.0)};
   made.now.input_previous = one(280.0);
   ClpParams params = steps(10);
-  params.bounds = "incremental";
+  params.bounds = ClpBounds::kIncremental;
   params.target_outputs = {1};
   params.increment_lower = one(-200.0);
   params.increment_upper = one(200.0);

@@ -28,9 +28,6 @@ TEST(ClpParams, EachBadFieldIsNamed) {
   const std::vector<BadField> fields = {
       {"perturbation_steps", [](ClpParams& p) { p.perturbation_steps = 0; }},
       {"mode2_steps", [](ClpParams& p) { p.mode2_steps = -1; }},
-      {"cost", [](ClpParams& p) { p.cost = "quadratic"; }},
-      {"bounds", [](ClpParams& p) { p.bounds = "relative"; }},
-      {"action", [](ClpParams& p) { p.action = "eq28"; }},
       {"weight_perturbation", [](ClpParams& p) { p.weight_perturbation = numbers({1.0}); }},
       {"weight_perturbation",
        [](ClpParams& p) {
@@ -48,7 +45,7 @@ TEST(ClpParams, EachBadFieldIsNamed) {
        [](ClpParams& p) {
          p.weight_input = numbers({0.0, 1.0});
        }},
-      {"increment_lower", [](ClpParams& p) { p.bounds = "incremental"; }},
+      {"increment_lower", [](ClpParams& p) { p.bounds = ClpBounds::kIncremental; }},
       {"increment_upper", [](ClpParams& p) { p.increment_upper = numbers({1.0}); }},
       {"increment_upper",
        [](ClpParams& p) {
@@ -92,7 +89,7 @@ TEST(ClpParams, EachBadFieldIsNamed) {
 TEST(ClpParams, MoreOutputsThanInputsNeedTargetsForLqOnly) {
   ClpParams params;
   EXPECT_NO_THROW(params.validate(2, 1));
-  params.cost = "lq";
+  params.cost = ClpCostKind::kLq;
   EXPECT_THROW(params.validate(2, 1), InputError);
   params.target_outputs = {1};
   EXPECT_NO_THROW(params.validate(2, 1));

@@ -97,7 +97,7 @@ TEST(ClosedLoopParadigmProperty, ActiveLimitsAreNeverViolated) {
     }
     ClpParams params;
     params.perturbation_steps = s.n_c;
-    params.cost = seed % 3 == 0 ? "lq" : "least_perturbation";
+    params.cost = seed % 3 == 0 ? ClpCostKind::kLq : ClpCostKind::kLeastPerturbation;
     if (seed % 3 == 1) params.weight_tracking = Vector::Constant(s.n_y, 0.5);
     ClosedLoopParadigm clp = made.make(params);
     ControlAction action;

@@ -19,7 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 ExcitationSignal prbs(int input) {
   ExcitationSignal signal;
   signal.input = input;
-  signal.signal = "prbs";
+  signal.signal = ExcitationKind::kPrbs;
   signal.lower = 200.0;
   signal.upper = 800.0;
   signal.register_bits = 7;
@@ -30,7 +30,7 @@ ExcitationSignal prbs(int input) {
 ExcitationSignal multiLevel(int input) {
   ExcitationSignal signal;
   signal.input = input;
-  signal.signal = "multi_level";
+  signal.signal = ExcitationKind::kMultiLevel;
   signal.lower = 200.0;
   signal.upper = 800.0;
   signal.hold_lower_steps = 4;
@@ -93,7 +93,7 @@ TEST(ExcitationStream, ListedLevelsAllComeAndNoOther) {
 
 TEST(ExcitationStream, AStaircaseCountsFromTheStart) {
   ExcitationSignal signal;
-  signal.signal = "steps";
+  signal.signal = ExcitationKind::kSteps;
   signal.start_steps = 2;
   signal.schedule = {{1, 300.0}, {3, 400.0}};
   EXPECT_EQ(played(signal, 1, 7),

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "control/hybrid/fixture.hpp"
+#include "fmbpc/base/option.hpp"
 
 namespace fpc {
 namespace {
@@ -15,7 +16,7 @@ TEST(HybridAllocation, DecisionsAndSamplesAllocateNothing) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   std::mt19937_64 generator(5);
   std::uniform_real_distribution<double> T(15.0, 66.0);
-  for (const char* bound : {"cost", "reach"}) {
+  for (const BranchBound bound : {BranchBound::kCost, BranchBound::kReach}) {
     const auto mpc = test::batchReactorMpc(test::batchReactorParams(45, bound));
     PlantInfo info = test::batchReactorInfo();
     SetpointParams asked;
@@ -37,7 +38,7 @@ TEST(HybridAllocation, DecisionsAndSamplesAllocateNothing) {
       if (k % 50 == 0) mpc->reset(now);
       mpc->step(now, setpoint, output);
       mpc->makeSendable(output.input);
-      ASSERT_EQ(counter.count(), 0U) << bound << ", sample " << k;
+      ASSERT_EQ(counter.count(), 0U) << wordOf(bound) << ", sample " << k;
       now.input_applied = output.input;
     }
   }

@@ -33,7 +33,7 @@ inline Matrix batchReactorInputs() {
   return P;
 }
 
-inline HybridMpcParams batchReactorParams(int equation, const std::string& bound, int blocks = 4) {
+inline HybridMpcParams batchReactorParams(int equation, BranchBound bound, int blocks = 4) {
   HybridMpcParams params;
   params.choices = batchReactorInputs();
   params.horizon_blocks = blocks;

@@ -46,7 +46,7 @@ const Vector kShut = Eigen::Vector3d(0.0, 0.0, 1.0);
 
 // One block of one sample from T = Tw = 40 with setpoint 40: eq. 45 by hand for each input vector.
 TEST(HybridMpc, TheCostOfABlockIsThatOfEquation45) {
-  HybridMpcParams params = test::batchReactorParams(45, "cost", 1);
+  HybridMpcParams params = test::batchReactorParams(45, BranchBound::kCost, 1);
   params.hold_samples = 1;
   params.weight_tracking[0] = 2.0;
   params.weight_consumption[0] = 0.5;
@@ -65,7 +65,7 @@ TEST(HybridMpc, TheCostOfABlockIsThatOfEquation45) {
 }
 
 TEST(HybridMpc, AnInputIsHeldForItsBlockAndDecidedAtItsStart) {
-  ControllerSession session = sessionOf(test::batchReactorParams(44, "reach"));
+  ControllerSession session = sessionOf(test::batchReactorParams(44, BranchBound::kReach));
   Vector applied = kShut;
   for (std::uint32_t k = 0; k < 31; ++k) {
     const double T = k < 10 ? 30.0 : 50.0;  // from far below to far above within the first block
@@ -77,7 +77,7 @@ TEST(HybridMpc, AnInputIsHeldForItsBlockAndDecidedAtItsStart) {
 }
 
 TEST(HybridMpc, ForbiddenTransitionsAndMoveLimitsAreKept) {
-  HybridMpcParams params = test::batchReactorParams(44, "reach", 3);
+  HybridMpcParams params = test::batchReactorParams(44, BranchBound::kReach, 3);
   const double any = std::nan("");
   params.forbidden_transitions = {{Eigen::Vector3d(any, any, 1.0), Eigen::Vector3d(any, 1.0, any)}};
   auto mpc = test::batchReactorMpc(params);
@@ -88,7 +88,8 @@ TEST(HybridMpc, ForbiddenTransitionsAndMoveLimitsAreKept) {
 
   InputLimits slow = test::batchReactorLimits();
   slow.move = Eigen::Vector3d(0.05, 1.0, 1.0);
-  HybridMpc limited(test::batchReactorParams(44, "reach", 3), slow, test::batchReactorInfo());
+  HybridMpc limited(test::batchReactorParams(44, BranchBound::kReach, 3), slow,
+                    test::batchReactorInfo());
   limited.setModel(test::batchModel("batch_fuzzy"));
   const Matrix hot = Eigen::Vector2d(70.0, 0.0).replicate(1, 45);
   const TreeResult& r = limited.decide(Eigen::Vector2d(20, 20), kShut, Vector(0), hot);
@@ -96,7 +97,7 @@ TEST(HybridMpc, ForbiddenTransitionsAndMoveLimitsAreKept) {
 }
 
 TEST(HybridMpc, WhereNothingIsAllowedTheNearestAllowedInputIsSentAndSaid) {
-  HybridMpcParams params = test::batchReactorParams(44, "reach", 2);
+  HybridMpcParams params = test::batchReactorParams(44, BranchBound::kReach, 2);
   const double any = std::nan("");
   params.forbidden_transitions = {{Eigen::Vector3d(0.3, any, any), Eigen::Vector3d(any, any, any)}};
   ControllerSession session = sessionOf(params);
@@ -106,7 +107,7 @@ TEST(HybridMpc, WhereNothingIsAllowedTheNearestAllowedInputIsSentAndSaid) {
 }
 
 TEST(HybridMpc, ABudgetStillGivesAnAllowedInputAndSaysSo) {
-  HybridMpcParams params = test::batchReactorParams(45, "cost");
+  HybridMpcParams params = test::batchReactorParams(45, BranchBound::kCost);
   params.node_budget = 28;
   ControllerSession session = sessionOf(params, 30.5);
   session.receive(measured(0, 30.0, 31.0, kShut));
@@ -117,7 +118,7 @@ TEST(HybridMpc, ABudgetStillGivesAnAllowedInputAndSaysSo) {
 }
 
 TEST(HybridMpc, AStuckValveIsNamed) {
-  ControllerSession session = sessionOf(test::batchReactorParams(44, "reach"));
+  ControllerSession session = sessionOf(test::batchReactorParams(44, BranchBound::kReach));
   session.receive(measured(0, 30.0, 30.0, kShut));
   EXPECT_STREQ(session.output().remark, "");
   session.receive(measured(1, 30.0, 30.0, Eigen::Vector3d(0.02, 0.0, 1.0)));
@@ -128,7 +129,7 @@ TEST(HybridMpc, AStuckValveIsNamed) {
 }
 
 TEST(HybridMpc, WhatIsNotAllowedIsNeverSent) {
-  ControllerSession session = sessionOf(test::batchReactorParams(44, "reach"));
+  ControllerSession session = sessionOf(test::batchReactorParams(44, BranchBound::kReach));
   session.receive(measured(0, 30.0, 30.0, kShut));
   session.receive(measured(1, std::nan(""), 30.0, Eigen::Vector3d(0.4, 0.0, 1.0)));
   EXPECT_EQ(session.answer().base.source, ActionSource::kHeld);
@@ -148,12 +149,12 @@ TEST(HybridMpc, WithoutRangesInTheModelTheBoundIsThePublishedOne) {
     output.lower = -std::numeric_limits<double>::infinity();
     output.upper = std::numeric_limits<double>::infinity();
   }
-  HybridMpc mpc(test::batchReactorParams(44, "reach"), test::batchReactorLimits(),
+  HybridMpc mpc(test::batchReactorParams(44, BranchBound::kReach), test::batchReactorLimits(),
                 test::batchReactorInfo());
   mpc.setModel(model);
   EXPECT_FALSE(mpc.boundsByReach());
   const Matrix reference = Eigen::Vector2d(31.0, 0.0).replicate(1, 60);
-  const auto exact = test::batchReactorMpc(test::batchReactorParams(44, "cost"));
+  const auto exact = test::batchReactorMpc(test::batchReactorParams(44, BranchBound::kCost));
   const Eigen::Vector2d at(30.0, 33.0);
   EXPECT_EQ(mpc.decide(at, kShut, Vector(0), reference).nodes,
             exact->decide(at, kShut, Vector(0), reference).nodes);
@@ -161,11 +162,11 @@ TEST(HybridMpc, WithoutRangesInTheModelTheBoundIsThePublishedOne) {
 
 TEST(HybridMpc, EachParameterIsChecked) {
   const auto refused = [](const auto& change) {
-    HybridMpcParams params = test::batchReactorParams(45, "reach");
+    HybridMpcParams params = test::batchReactorParams(45, BranchBound::kReach);
     change(params);
     EXPECT_THROW(params.validate(2, 3), InputError);
   };
-  EXPECT_NO_THROW(test::batchReactorParams(45, "reach").validate(2, 3));
+  EXPECT_NO_THROW(test::batchReactorParams(45, BranchBound::kReach).validate(2, 3));
   refused([](HybridMpcParams& p) { p.choices.col(1) = p.choices.col(0); });
   refused([](HybridMpcParams& p) { p.choices = Matrix(3, 0); });
   refused([](HybridMpcParams& p) {
@@ -181,7 +182,6 @@ TEST(HybridMpc, EachParameterIsChecked) {
   refused([](HybridMpcParams& p) { p.switching[0].after = 3; });
   refused([](HybridMpcParams& p) { p.travel[0].gate = 3; });
   refused([](HybridMpcParams& p) { p.forbidden_transitions.emplace_back(); });
-  refused([](HybridMpcParams& p) { p.bound = "none"; });
   refused([](HybridMpcParams& p) { p.time_budget_s = -1.0; });
 }
 

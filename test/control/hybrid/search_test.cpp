@@ -55,8 +55,10 @@ TEST_P(HybridSearch, EqualsEnumerationOnAThousandStatesWithFewNodes) {
   constexpr unsigned kSeed = 20070;
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::mt19937_64 generator(kSeed);
-  const auto by_cost = test::batchReactorMpc(test::batchReactorParams(GetParam(), "cost"));
-  const auto by_reach = test::batchReactorMpc(test::batchReactorParams(GetParam(), "reach"));
+  const auto by_cost =
+      test::batchReactorMpc(test::batchReactorParams(GetParam(), BranchBound::kCost));
+  const auto by_reach =
+      test::batchReactorMpc(test::batchReactorParams(GetParam(), BranchBound::kReach));
   ASSERT_TRUE(by_reach->boundsByReach());
   double nodes_cost = 0.0, nodes_reach = 0.0;
   for (int trial = 0; trial < 1000; ++trial) {

@@ -127,11 +127,11 @@ TEST(AdaptivePi, RefusesWhatItCannotDo) {
 
 TEST(AdaptivePi, CanTuneItselfByRuleOrBySwarm) {
   AdaptivePiParams params = adaptiveParams();
-  params.tuning = "imc";
+  params.tuning = PiTuningRule::kImc;
   params.loops[0].imc_time_constant_min = 3.9;
   AdaptiveColumn by_rule(params);
   EXPECT_NEAR(by_rule.law.kp(0), 0.3054, 5e-4);
-  params.tuning = "pso";
+  params.tuning = PiTuningRule::kPso;
   AdaptiveColumn by_swarm(params);
   EXPECT_NEAR(by_swarm.law.kp(0), 0.6345, 0.02);
   EXPECT_NEAR(by_swarm.law.integralTime(0), 20.9, 1.0);

@@ -114,7 +114,7 @@ TEST(PiController, StartBiasBeginsAtTheBiasWhateverTheInputIs) {
 
 TEST(PiController, BumplessStartMovesOnFromTheAppliedInput) {
   PiLoop loop = paperLoop();
-  loop.start = "bumpless";
+  loop.start = PiStart::kBumpless;
   Bench bench({loop}, limits(1, 0.0, 3000.0));
   bench.reset(0, 200.0, of({100.0}));
   EXPECT_EQ(bench.step(0, 200.0, of({100.0}))[0], 100.0);
@@ -153,7 +153,7 @@ TEST(PiController, StaysInsideBoundsAndMoveLimitAndSaysClipped) {
 }
 
 // s = 155 asks 875 and more, the bound is 800; then s = 45 asks 765 + integral.
-double afterSaturation(const std::string& anti_windup, double kp = 1.0) {
+double afterSaturation(AntiWindup anti_windup, double kp = 1.0) {
   PiLoop loop = paperLoop();
   loop.kp = kp;
   loop.anti_windup = anti_windup;
@@ -164,11 +164,11 @@ double afterSaturation(const std::string& anti_windup, double kp = 1.0) {
 }
 
 TEST(PiController, AntiWindupNoneWindsUp) {
-  EXPECT_NEAR(afterSaturation("none"), 1000 * 0.1 * 100.0 * 0.2, 1e-8);
+  EXPECT_NEAR(afterSaturation(AntiWindup::kNone), 1000 * 0.1 * 100.0 * 0.2, 1e-8);
 }
 
 TEST(PiController, AntiWindupClampStopsTheIntegralAtTheBound) {
-  EXPECT_EQ(afterSaturation("clamp"), 0.0);
+  EXPECT_EQ(afterSaturation(AntiWindup::kClamp), 0.0);
 }
 
 TEST(PiController, AntiWindupClampLetsTheErrorDriveBackIn) {
@@ -191,8 +191,8 @@ TEST(PiController, AntiWindupClampKnowsTheMoveLimit) {
 // At rest ki e dt = (u - 800) dt ki / kp: u stays above the bound by kp e = 100, the integral
 // at 25.
 TEST(PiController, AntiWindupTrackingSettlesWhereTheClippedPartBalancesTheError) {
-  EXPECT_NEAR(afterSaturation("tracking"), 800.0 + 100.0 - 875.0, 1e-5);
-  EXPECT_NEAR(afterSaturation("tracking", 0.0), 800.0 - 775.0 + 0.1 * 100.0 * 0.2, 1e-9);
+  EXPECT_NEAR(afterSaturation(AntiWindup::kTracking), 800.0 + 100.0 - 875.0, 1e-5);
+  EXPECT_NEAR(afterSaturation(AntiWindup::kTracking, 0.0), 800.0 - 775.0 + 0.1 * 100.0 * 0.2, 1e-9);
 }
 
 TEST(PiController, InputsWithoutALoopStayWhereTheyAre) {
@@ -255,8 +255,6 @@ TEST(PiParams, ValidationNamesTheField) {
   expectNamed("kp", [](PiLoop& l) { l.kp = kNaN; });
   expectNamed("ki_per_h", [](PiLoop& l) { l.ki_per_h = kInf; });
   expectNamed("bias", [](PiLoop& l) { l.bias = kNaN; });
-  expectNamed("anti_windup", [](PiLoop& l) { l.anti_windup = "yes"; });
-  expectNamed("start", [](PiLoop& l) { l.start = "warm"; });
 }
 
 TEST(PiParams, TwoLoopsOnOneInputAreRefused) {

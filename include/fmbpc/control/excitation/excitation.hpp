@@ -19,10 +19,16 @@ struct ExcitationStep {
   double value{};
 };
 
+/// none: the start input.
+enum class ExcitationKind { kPrbs, kMultiLevel, kSteps, kNone };
+inline std::vector<std::string> wordsOf(ExcitationKind) {
+  return {"prbs", "multi_level", "steps", "none"};
+}
+
 /// What one input does. Times are in samples.
 struct ExcitationSignal {
-  int input{};                 ///< index
-  std::string signal{"none"};  ///< prbs, multi_level, steps or none (the start input)
+  int input{};  ///< index
+  ExcitationKind signal{ExcitationKind::kNone};
   int start_steps{0};          ///< the start input before this sample
   double lower{}, upper{};     ///< prbs: both levels; multi_level: levels are uniform between them
   std::vector<double> levels;  ///< multi_level: drawn from this list instead

@@ -34,6 +34,11 @@ struct ForbiddenTransition {
   Vector from, to;  ///< n_u
 };
 
+/// What a node of the tree is judged by: the cost of the way so far, or of what must follow as
+/// well.
+enum class BranchBound { kCost, kReach };
+inline std::vector<std::string> wordsOf(BranchBound) { return {"cost", "reach"}; }
+
 /// Section `controller` of a loop file, type hybrid_mpc.
 struct HybridMpcParams {
   Matrix choices;  ///< n_u n_choices, the input vectors that may be sent, one per column
@@ -45,7 +50,7 @@ struct HybridMpcParams {
   Vector weight_consumption;  ///< n_u, of the input, per sample
   std::vector<SwitchTerm> switching;
   std::vector<TravelTerm> travel;
-  std::string bound{"reach"};   ///< cost (of the way so far) or reach (and of what must follow)
+  BranchBound bound{BranchBound::kReach};
   std::uint64_t node_budget{};  ///< 0: none
   double time_budget_s{};       ///< 0: none; not reproducible
   /// @throws InputError naming the field: sizes, repeated choices, negative costs, indices.

@@ -36,11 +36,16 @@ struct AdaptationParams {
   void validate() const;        ///< @throws InputError naming the field
 };
 
+/// Where the first gains come from: the loop file, or, at construction, the model by internal model
+/// control or by a particle swarm.
+enum class PiTuningRule { kGiven, kImc, kPso };
+inline std::vector<std::string> wordsOf(PiTuningRule) { return {"given", "imc", "pso"}; }
+
 struct AdaptivePiParams {
   std::array<AdaptiveLoop, 2> loops;
   FopdtMatrix model{};  ///< [loop of the output][loop of the input], minutes
   bool decoupling{true};
-  std::string tuning{"given"};  ///< given, imc or pso: from the model, at construction
+  PiTuningRule tuning{PiTuningRule::kGiven};
   AdaptationParams adaptation;
   /// @throws InputError naming the field.
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;

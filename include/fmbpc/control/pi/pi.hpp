@@ -20,6 +20,14 @@ struct GainPoint {
   double gain{1.0};
 };
 
+/// What keeps the integral from winding up while u is at a limit.
+enum class AntiWindup { kNone, kClamp, kTracking };
+/// bias: the integral starts at 0; bumpless: u(0) = input_applied.
+enum class PiStart { kBias, kBumpless };
+
+inline std::vector<std::string> wordsOf(AntiWindup) { return {"none", "clamp", "tracking"}; }
+inline std::vector<std::string> wordsOf(PiStart) { return {"bias", "bumpless"}; }
+
 /// u = bias + kp g e + ki int g e dt, e = setpoint - y. Gains in input units per output unit (and
 /// per hour); g = 1 unless scheduled. With `terms` the setpoint may be looked up ahead, filtered
 /// and led, and u takes on derivative, feed-forward and the steady input of the setpoint.
@@ -29,9 +37,9 @@ struct PiLoop {
   double kp{};
   double ki_per_h{};
   double bias{};
-  bool reverse{false};               ///< e = y - setpoint
-  std::string anti_windup{"clamp"};  ///< none, clamp or tracking
-  std::string start{"bias"};         ///< bias: integral starts at 0; bumpless: u(0) = input_applied
+  bool reverse{false};  ///< e = y - setpoint
+  AntiWindup anti_windup{AntiWindup::kClamp};
+  PiStart start{PiStart::kBias};
   /// g(y): outputs increasing, linear between points, held outside; empty: 1.
   std::vector<GainPoint> gain_schedule;
   PiTerms terms;

@@ -1,8 +1,9 @@
-#include "fmbpc/config/standstill_section.hpp"
+// Section `standstill`: sensors that stand still.
 
 #include <algorithm>
 #include <cmath>
 
+#include "config/read_safety.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -53,11 +54,11 @@ AffineTerm readTerm(YamlSection& item, const Names& names) {
 
 }  // namespace
 
-StandstillParams readStandstill(YamlSection& root, const LoopFile& loop) {
+void readStandstill(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("standstill");
   const PlantInfo& plant = loop.plant_info;
   const Names names{namesOf(plant.outputs), namesOf(plant.inputs), namesOf(plant.disturbances)};
-  StandstillParams params;
+  StandstillParams& params = loop.standstill;
   bool enabled = true;
   double window_h = 6.0;
   section.boolean("enabled", enabled);
@@ -77,12 +78,6 @@ StandstillParams readStandstill(YamlSection& root, const LoopFile& loop) {
     params.fallback_plan.push_back(readTerm(item, names));
   if (!enabled) params.signals.clear();
   section.finish();
-  return params;
-}
-
-StandstillParams standstillOf(const LoopFile& loop) {
-  YamlSection root = YamlSection::parse(loop.resolved, loop.name);
-  return readStandstill(root, loop);
 }
 
 }  // namespace fpc

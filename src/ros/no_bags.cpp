@@ -1,0 +1,24 @@
+// In place of bag_run.cpp and bag_table.cpp in a build without ROS.
+#include "fmbpc/base/input_error.hpp"
+#include "ros/bag_run.hpp"
+#include "ros/bag_table.hpp"
+
+namespace fpc {
+namespace {
+
+[[noreturn]] void refuse(const std::string& bag, const std::string& expected) {
+  throw InputError(bag + ": expected " + expected +
+                   "; this program is built without ROS and reads no bags");
+}
+
+}  // namespace
+
+std::string loopTextOf(const std::string& bag) { refuse(bag, "a program built with ROS"); }
+
+RecordedRun readBagRun(const std::string& bag, const LoopFile&) {
+  refuse(bag, "a program built with ROS");
+}
+
+CsvTable readBag(const std::string& file) { refuse(file, "a CSV"); }
+
+}  // namespace fpc

@@ -1,0 +1,83 @@
+// What sections of a loop file become: options by their words, instruments, watches.
+#include <gtest/gtest.h>
+
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace {
+
+/// A key that takes one of a few words.
+struct OptionKey {
+  std::string loop, key;
+  std::vector<std::string> words;
+};
+
+void PrintTo(const OptionKey& option, std::ostream* stream) { *stream << option.key; }
+
+class EveryOption : public ::testing::TestWithParam<OptionKey> {};
+
+TEST_P(EveryOption, RefusesAnotherWordAndNamesItsOwn) {
+  const OptionKey& option = GetParam();
+  const std::string error =
+      errorOf([&] { readLoop(option.loop, {parseOverride(option.key + "=nonsense")}); });
+  expectWords(error, {option.key.substr(option.key.rfind('.') + 1)});
+  for (const std::string& word : option.words) expectWords(error, {word});
+}
+
+const OptionKey kOptions[] = {
+    {"asp_case1_clp", "clp.cost", {"least_perturbation", "lq"}},
+    {"asp_case1_clp", "clp.bounds", {"absolute", "incremental"}},
+    {"asp_case1_clp", "clp.action", {"eq26", "eq27"}},
+    {"asp_case1_clp", "loop.pace", {"lockstep", "paced", "realtime"}},
+    {"asp_case1_clp", "disturbance.source", {"constant", "pattern", "csv"}},
+    {"asp_case1_clp", "plant.integrator.method", {"bdf", "adams"}},
+    {"asp_case1_clp", "sensors.x.class", {"none", "A", "B0", "B1", "C0", "C1", "D"}},
+    {"asp_case1_clp", "plausibility.signals.x.substitute", {"hold", "last_good", "model"}},
+    {"asp_case1_pi_x", "controller.loops.0.anti_windup", {"none", "clamp", "tracking"}},
+    {"asp_case1_pi_x", "controller.loops.0.start", {"bias", "bumpless"}},
+    {"asp_excite", "controller.signals.0.signal", {"prbs", "multi_level", "steps", "none"}},
+    {"asp_influent_csv", "disturbance.csv.time_unit", {"s", "min", "h", "d"}},
+    {"asp_influent_csv", "disturbance.csv.missing", {"error", "hold", "interpolate"}},
+    {"asp_influent_csv", "disturbance.csv.interpolation", {"hold", "linear"}},
+    {"asp_influent_csv", "disturbance.csv.end", {"error", "hold", "repeat"}},
+    {"batch_fuzzy_eq45", "controller.bound", {"cost", "reach"}},
+    {"column_adaptive", "controller.tuning", {"given", "imc", "pso"}},
+    {"cstr_modbus", "gateway.type", {"none", "float64", "modbus"}},
+    {"cstr_modbus", "gateway.modbus.word_order", {"high_first", "low_first"}},
+    {"cstr_modbus", "gateway.modbus.remote_table", {"coil", "discrete"}}};
+
+INSTANTIATE_TEST_SUITE_P(LoopSections, EveryOption, ::testing::ValuesIn(kOptions));
+
+SensorParams sensorOf(const Overrides& set) {
+  return readLoop("asp_case1_pi_x", set).simulation.instruments.sensors.at("x");
+}
+
+TEST(LoopSections, ASensorNeedsNoClass) {
+  const SensorParams plain = sensorOf({{"sensors.x.noise_std", "2.5"}});
+  EXPECT_EQ(plain.noise_std, 2.5);
+  EXPECT_EQ(plain.lags, 0);
+  EXPECT_EQ(sensorOf({{"sensors.x.class", "A"}}).lags, 2);
+  EXPECT_EQ(sensorOf({{"sensors.x.class", "none"}}).lags, 0);
+  EXPECT_THROW(sensorOf({{"sensors.x.class_noise", "true"}}), InputError);
+}
+
+TEST(LoopSections, WatchesAreHandedOn) {
+  const LoopFile plain = readLoop("asp_case1_pi_x");
+  EXPECT_TRUE(plain.standstill.signals.empty());
+  EXPECT_TRUE(plain.plausibility.enabled);
+  EXPECT_EQ(plain.stuck.samples, 5);
+  EXPECT_FALSE(plain.gateway.enabled());
+  const LoopFile watched = readLoop(
+      "asp_case1_pi_x", {{"standstill.signals.x", "3"}, {"plausibility.stuck_samples", "7"}});
+  ASSERT_EQ(watched.standstill.signals.size(), 1U);
+  EXPECT_EQ(watched.standstill.signals[0].name, "x");
+  EXPECT_EQ(watched.standstill.signals[0].least_change, 3.0);
+  EXPECT_EQ(watched.standstill.fallback, watched.simulation.actuator.initial);
+  EXPECT_EQ(watched.stuck.samples, 7);
+  const LoopFile off =
+      readLoop("asp_case1_pi_x", {{"standstill.signals.x", "3"}, {"standstill.enabled", "false"}});
+  EXPECT_TRUE(off.standstill.signals.empty());
+}
+
+}  // namespace
+}  // namespace fpc
