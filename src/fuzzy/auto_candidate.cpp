@@ -34,7 +34,7 @@ std::vector<Regressor> exogenousOf(const DataSet& data, const Candidate& c) {
   for (int j = 0; j < m; ++j)
     for (int lag = 0; lag < (c.hidden ? 1 : c.input_terms); ++lag)
       v.push_back({j < n_u ? SignalKind::kInput : SignalKind::kDisturbance, j < n_u ? j : j - n_u,
-                   c.delay[static_cast<std::size_t>(j)] + lag});
+                   std::max(c.delay[static_cast<std::size_t>(j)] + c.later, 0) + lag});
   return v;
 }
 
@@ -251,6 +251,7 @@ std::string Candidate::text() const {
                              : "y " + std::to_string(order) + ", u " + std::to_string(input_terms);
   if (absolute) words += ", size of";
   if (hidden && chain) words += ", chain";
+  if (later != 0) words += ", delays " + std::string(later > 0 ? "+" : "") + std::to_string(later);
   if (rules == 1) {
     if (!free_run) words += ", one-step fit";
     if (linear_ridge > 0.01) words += ", ridge " + number(linear_ridge);
@@ -259,6 +260,12 @@ std::string Candidate::text() const {
   return words + ", " + std::to_string(rules) + " rules on " +
          on[static_cast<std::size_t>(antecedents)] + ", ridge " + number(ridge) +
          (seed > 1 ? ", seed " + std::to_string(seed) : "");
+}
+
+std::string Candidate::structure() const {
+  Candidate first = *this;
+  first.seed = 1;
+  return first.text();
 }
 
 Fitted fitCandidate(const AutoData& data, const Candidate& candidate,

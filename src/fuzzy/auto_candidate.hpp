@@ -24,6 +24,7 @@ struct Candidate {
   int order{2};            ///< states
   int input_terms{2};      ///< past values of each input, not hidden
   std::vector<int> delay;  ///< of each input and disturbance
+  int later{};             ///< added to every delay, but none becomes negative
   int rules{1};
   AntecedentChoice antecedents{AntecedentChoice::kOutput};
   double ridge{10.0};         ///< of the rules towards the linear model
@@ -34,7 +35,8 @@ struct Candidate {
   int iterations{100};
   std::uint64_t seed{1};
 
-  std::string text() const;  ///< "hidden state 2, 3 rules on the state, ridge 10, seed 1"
+  std::string text() const;  ///< "hidden state 2, 3 rules on the state, ridge 10, seed 2"
+  std::string structure() const;  ///< the same without the seed
 };
 
 struct Fitted {
@@ -43,6 +45,7 @@ struct Fitted {
   Vector parameters;
   StartPrior prior;  ///< hidden only
   bool finite{false};
+  double error{};  ///< free-run rmse over the rows it was fitted to, unit of the output; fitWhole()
 };
 
 /// `proceed` may be empty; false ends fits early.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "fmbpc/fuzzy/prediction.hpp"
 
@@ -35,18 +37,6 @@ double widthOf(const Vector& errors) {
   return sizes[at];
 }
 
-double trainedError(const AutoData& data, const Fitted& fitted, int window) {
-  double sum = 0.0, n = 0.0;
-  for (const auto& s : data.all) {
-    const Vector y = freeRunOf(data, fitted, s, window);
-    for (Index k = s.first + window; k < s.last; ++k) {
-      const double e = data.data->values(k, data.output) - y[k];
-      if (std::isfinite(e)) sum += e * e, n += 1.0;
-    }
-  }
-  return n > 0.0 ? std::sqrt(sum / n) : std::numeric_limits<double>::infinity();
-}
-
 /// rmse over about kPieces parts of the blocks, none across two of them.
 std::vector<double> pieceErrors(const AutoData& data, const Vector& predicted) {
   std::vector<double> errors;
@@ -74,7 +64,7 @@ Committee chooseCommittee(const AutoData& data, const StructureSearch& found) {
   const auto consider = [&](std::vector<const Judgement*> members) {
     if (members.empty()) return;
     const Vector mean = averaged(members);
-    const double error = rmseOf(data, mean);
+    const double error = meanBlockError(data, mean);
     if (!(error < lowest)) return;
     lowest = error;
     best.members = std::move(members);
@@ -119,23 +109,34 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
 }
 
 Fitted fitWhole(const AutoData& data, const Judgement& judged, int window) {
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
   Candidate c = judged.candidate;
   c.iterations = kLastIterations;
   Fitted best;
-  double lowest = std::numeric_limits<double>::infinity();
-  for (int attempt = 0; attempt < 3; ++attempt) {
+  best.error = kInfinite;
+  const int attempts = c.hidden ? 1 : 3;  // hidden states have other members
+  for (int attempt = 0; attempt < attempts; ++attempt, ++c.seed) {
     Fitted fitted = fitCandidate(data, c, data.all);
-    const double error = fitted.finite ? trainedError(data, fitted, window)
-                                       : std::numeric_limits<double>::infinity();
-    if (error < lowest) {
-      lowest = error;
-      best = std::move(fitted);
-    }
-    if (lowest < kSuspicious * judged.rmse) return best;
-    ++c.seed;
+    fitted.error = fitted.finite ? seenError(data, fitted, data.all, window) : kInfinite;
+    if (fitted.error < best.error) best = std::move(fitted);
+    if (best.error < kSuspicious * judged.rmse) return best;
   }
-  best.finite = best.finite && lowest < 2.0 * judged.rmse;
+  best.finite = best.finite && best.error < 2.0 * judged.rmse;
   return best;
+}
+
+void dropStuck(const Committee& committee, std::vector<Fitted>& fitted) {
+  std::map<std::string, std::vector<std::size_t>> structures;
+  for (std::size_t i = 0; i < fitted.size(); ++i)
+    if (fitted[i].finite)
+      structures[committee.members[i]->candidate.structure()].push_back(i);
+  for (const auto& [text, all] : structures) {
+    std::vector<double> errors;
+    for (const std::size_t i : all) errors.push_back(fitted[i].error);
+    const std::vector<bool> stuck = stuckStarts(errors);
+    for (std::size_t m = 0; m < all.size(); ++m)
+      if (stuck[m]) fitted[all[m]].finite = false;
+  }
 }
 
 bool beyondSpread(const AutoFigures& other, const AutoFigures& linear) {

@@ -127,6 +127,7 @@ class OutputSearch {
     parallelFor(fitted.size(), params_.threads, [&](std::size_t i) {
       fitted[i] = fitWhole(data_, *committee.members[i], params_.window);
     });
+    dropStuck(committee, fitted);
     StateOutput state;
     state.shift = data_.shift[data_.output];
     state.scale = data_.scale[data_.output];

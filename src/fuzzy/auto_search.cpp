@@ -15,22 +15,11 @@ using Eigen::Index;
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kOneStepShare = 0.15;  // of the score of models of the output's past
-constexpr std::uint64_t kFirstSeeds = 3, kMoreSeeds = 4;
+constexpr std::uint64_t kMoreSeeds = 6;
 
-double squaredError(const AutoData& data, const Vector& predicted, Stretch s, double& n) {
-  double sum = 0.0;
-  for (Index k = s.first; k < s.last; ++k) {
-    const double error = data.data->values(k, data.output) - predicted[k];
-    if (std::isfinite(error)) sum += error * error, n += 1.0;
-  }
-  return sum;
-}
+/// The sign of a state that only its size tells of traps many starts.
+std::uint64_t firstSeeds(const Candidate& c) { return c.absolute ? 10 : 4; }
 
-/// Akaike's final prediction error, as a factor on the rms.
-double penalty(Index parameters, double rows) {
-  const double share = std::min(0.9, static_cast<double>(parameters) / rows);
-  return std::sqrt((1.0 + share) / (1.0 - share));
-}
 
 class Search {
  public:
@@ -39,18 +28,22 @@ class Search {
       : data_(data), delay_(delay), seed_(seed), limits_(limits) {}
 
   StructureSearch run(bool states) {
-    judge(linearCandidates(base(), states), 0.0, 0.12);
+    judge(linearCandidates(base(), states), 0.0, 0.08);
     sortAll();
-    judge(ruleCandidates(base(), result_.linear), 0.12, 0.38);
+    judge(shiftedLines(result_.linear), 0.08, 0.1);
     sortAll();
-    judge(refinedRules(result_.regressors), 0.38, 0.5);
+    judge(ruleCandidates(base(), result_.linear), 0.1, 0.3);
+    sortAll();
+    judge(refinedRules(result_.regressors), 0.3, 0.4);
     if (states) {
       sortAll();
-      judgeGroups(stateCandidates(base(), data_.may_be_absolute), kFirstSeeds, 0.5, 0.8);
+      judgeGroups(stateCandidates(base(), data_.may_be_absolute), 0.4, 0.7);
       sortAll();
-      judgeGroups(refinedStates(result_.state), kFirstSeeds, 0.8, 0.93);
+      judgeGroups(shiftedStates(result_.state), 0.7, 0.8);
       sortAll();
-      deepen(3, 0.93, 1.0);
+      judgeGroups(refinedStates(result_.state), 0.8, 0.9);
+      sortAll();
+      deepen(3, 0.9, 1.0);
     }
     sortAll();
     return std::move(result_);
@@ -65,10 +58,8 @@ class Search {
   }
   std::vector<Judgement> judgeAll(const Candidates& candidates, double from, double to);
   void judge(const Candidates& candidates, double from, double to);
-  void judgeGroups(const Candidates& structures, std::uint64_t seeds, double from, double to);
+  void judgeGroups(const Candidates& structures, double from, double to);
   void deepen(std::size_t groups, double from, double to);
-  void settleGroup(Group& group) const;
-  double rows() const;
   void judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const;
   void sortAll();
   bool over() const {
@@ -82,24 +73,22 @@ class Search {
   StructureSearch result_;
 };
 
-void Search::judgeGroups(const Candidates& structures, std::uint64_t seeds, double from,
-                         double to) {
+void Search::judgeGroups(const Candidates& structures, double from, double to) {
   Candidates all;
   for (const auto& s : structures)
-    for (std::uint64_t i = 0; i < seeds; ++i) {
+    for (std::uint64_t i = 0; i < firstSeeds(s); ++i) {
       all.push_back(s);
       all.back().seed += i;
     }
   std::vector<Judgement> judged = judgeAll(all, from, to);
-  for (std::size_t s = 0; s < structures.size(); ++s) {
+  auto next = judged.begin();
+  for (const auto& s : structures) {
     Group group;
-    for (std::uint64_t i = 0; i < seeds; ++i) {
-      Judgement& j = judged[s * seeds + i];
-      if (std::isfinite(j.score)) group.members.push_back(std::move(j));
-    }
+    for (std::uint64_t i = 0; i < firstSeeds(s); ++i, ++next)
+      if (std::isfinite(next->score)) group.members.push_back(std::move(*next));
     if (!group.members.empty()) result_.state.push_back(std::move(group));
   }
-  for (auto& group : result_.state) settleGroup(group);
+  for (auto& group : result_.state) settleGroup(data_, group);
 }
 
 /// More seeds for the best structures, behind those they have.
@@ -109,7 +98,7 @@ void Search::deepen(std::size_t groups, double from, double to) {
   for (std::size_t g = 0; g < groups; ++g)
     for (std::uint64_t i = 0; i < kMoreSeeds; ++i) {
       more.push_back(result_.state[g].members.front().candidate);
-      more.back().seed = seed_ + kFirstSeeds + i;
+      more.back().seed = seed_ + firstSeeds(more.back()) + i;
     }
   std::vector<Judgement> judged = judgeAll(more, from, to);
   for (std::size_t g = 0; g < groups; ++g) {
@@ -117,22 +106,8 @@ void Search::deepen(std::size_t groups, double from, double to) {
       Judgement& j = judged[g * kMoreSeeds + i];
       if (std::isfinite(j.score)) result_.state[g].members.push_back(std::move(j));
     }
-    settleGroup(result_.state[g]);
+    settleGroup(data_, result_.state[g]);
   }
-}
-
-void Search::settleGroup(Group& group) const {
-  std::vector<const Judgement*> members;
-  for (const auto& j : group.members) members.push_back(&j);
-  group.free_run = averaged(members);
-  group.rmse = rmseOf(data_, group.free_run);
-  group.score = group.rmse * penalty(group.members.front().parameters, rows());
-}
-
-double Search::rows() const {
-  double n = 0.0;
-  for (const auto& w : data_.windows) n += static_cast<double>(w.last - w.first);
-  return n;
 }
 
 void Search::judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const {
@@ -144,6 +119,7 @@ void Search::judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& o
   free.head(std::min<Index>(w.first + limits_.window, free.size())).setConstant(kMissing);
   if (!j.candidate.hidden) one = oneStepOf(data_, fitted, w);
   j.parameters = fitted.shape.parameterCount();
+  if (j.candidate.hidden) j.seen.assign(1, seenError(data_, fitted, training, limits_.window));
 }
 
 /// One judgement per candidate; its score is infinite where a block could not be judged.
@@ -177,6 +153,7 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
       if (free[task].size() == 0) continue;
       j.free_run.segment(w.first, length) = free[task].segment(w.first, length);
       j.parameters = parts[task].parameters;
+      j.seen.insert(j.seen.end(), parts[task].seen.begin(), parts[task].seen.end());
       if (one[task].size() > 0)
         j.one_step.segment(w.first, length) = one[task].segment(w.first, length);
     }
@@ -184,8 +161,9 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
     j.blocks = blockErrors(data_, j.free_run);
     const double one_step = rmseOf(data_, j.one_step);
     const double weight = std::isfinite(one_step) && one_step > 0.0 ? kOneStepShare : 0.0;
-    j.score = std::pow(j.rmse, 1.0 - weight) * (weight > 0.0 ? std::pow(one_step, weight) : 1.0) *
-              penalty(j.parameters, rows());
+    const double error = complete ? meanBlockError(data_, j.free_run) : kInfinite;
+    j.score = std::pow(error, 1.0 - weight) * (weight > 0.0 ? std::pow(one_step, weight) : 1.0) *
+              penalty(j.parameters, data_);
   }
   return judged;
 }
@@ -206,33 +184,6 @@ void Search::sortAll() {
 }
 
 }  // namespace
-
-Vector averaged(const std::vector<const Judgement*>& members) {
-  Vector mean = Vector::Constant(members.front()->free_run.size(), kMissing);
-  for (Index k = 0; k < mean.size(); ++k) {
-    std::vector<double> said;
-    for (const auto* m : members)
-      if (std::isfinite(m->free_run[k])) said.push_back(m->free_run[k]);
-    if (said.size() == members.size()) mean[k] = trimmedMean(said);
-  }
-  return mean;
-}
-
-double rmseOf(const AutoData& data, const Vector& predicted) {
-  double sum = 0.0, n = 0.0;
-  for (const auto& w : data.windows) sum += squaredError(data, predicted, w, n);
-  return n > 0.0 ? std::sqrt(sum / n) : kInfinite;
-}
-
-std::vector<double> blockErrors(const AutoData& data, const Vector& predicted) {
-  std::vector<double> errors;
-  for (const auto& w : data.windows) {
-    double n = 0.0;
-    const double sum = squaredError(data, predicted, w, n);
-    errors.push_back(n > 0.0 ? std::sqrt(sum / n) : kMissing);
-  }
-  return errors;
-}
 
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
                                  std::uint64_t seed, const SearchLimits& limits) {

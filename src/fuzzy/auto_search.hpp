@@ -14,8 +14,10 @@ struct Judgement {
   Candidate candidate;
   Vector free_run, one_step;   ///< rows of the record, NaN outside the blocks' judged rows
   std::vector<double> blocks;  ///< free-run rmse of each
+  std::vector<double> seen;    ///< free-run rmse over the rows that each block's fit saw
+  Vector settled;  ///< free_run without blocks whose fit got stuck; empty: not one of several starts
   double rmse{};               ///< of all judged rows
-  double score{};  ///< rmse, blended with that one step ahead, times a penalty for parameters
+  double score{};  ///< mean of the blocks, blended with one step, times a penalty for parameters
   Eigen::Index parameters{};
 };
 
@@ -30,12 +32,16 @@ struct SearchLimits {
 };
 
 /// One structure from several starts; their free runs are averaged, which tells more of the
-/// structure than any single fit.
+/// structure than any single fit. Starts that got stuck far above the others are left out.
 struct Group {
   std::vector<Judgement> members;
   Vector free_run;  ///< trimmed mean of the members
   double rmse{}, score{};
 };
+void settleGroup(const AutoData& data, Group& group);
+/// True for fits from several starts whose errors over the rows they saw lie far above those of the
+/// better ones.
+std::vector<bool> stuckStarts(const std::vector<double>& seen);
 
 /// All judgements of one output, the best first within each kind.
 struct StructureSearch {
@@ -46,11 +52,19 @@ struct StructureSearch {
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
                                  std::uint64_t seed, const SearchLimits& limits);
 
-/// Trimmed mean of what all members say at each row.
+/// Trimmed mean of what members say at each row (NaN: nobody).
 Vector averaged(const std::vector<const Judgement*>& members);
 
 /// rmse of measured minus predicted over the rows where both are known.
 double rmseOf(const AutoData& data, const Vector& predicted);
+/// Mean of the blocks' rmse, by which structures are chosen: one block that holds what the others
+/// lack does not decide alone, as it does among squares.
+double meanBlockError(const AutoData& data, const Vector& predicted);
+/// rmse of free runs over the stretches a model was fitted to.
+double seenError(const AutoData& data, const Fitted& fitted, const std::vector<Stretch>& stretches,
+                 int window);
+/// Akaike's final prediction error, as a factor on the rms.
+double penalty(Eigen::Index parameters, const AutoData& data);
 std::vector<double> blockErrors(const AutoData& data, const Vector& predicted);
 
 }  // namespace fpc

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kSearchIterations = 60;  // models of the output's past
 constexpr int kStateIterations = 100;
+constexpr std::size_t kFamilies = 3;  // whose ridge and number of rules are refined
 
 /// Leaves out what was judged before; `known` are texts.
 Candidates fresh(const Candidates& list, std::vector<std::string> known) {
@@ -116,7 +117,8 @@ Candidates stateCandidates(const Candidate& base, bool absolute) {
   std::vector<Form> forms{{2, true, false, A::kState},   {2, true, false, A::kStateAndInputs},
                           {2, true, false, A::kOutput},  {2, false, false, A::kState},
                           {2, false, false, A::kOutput}, {3, true, false, A::kState},
-                          {3, false, false, A::kState}};
+                          {3, false, false, A::kState},  {2, false, false, A::kInputs},
+                          {3, false, false, A::kInputs}};
   if (absolute)
     forms.insert(forms.begin(), {{3, false, true, A::kOutput},
                                  {2, false, true, A::kOutput},
@@ -139,10 +141,59 @@ Candidates stateCandidates(const Candidate& base, bool absolute) {
   return list;
 }
 
+namespace {
+
+std::vector<Candidate> bestFamilies(const std::vector<Group>& state) {
+  std::vector<Candidate> families;
+  for (const auto& g : state) {
+    const Candidate& c = g.members.front().candidate;
+    const auto same = [&c](const Candidate& f) {
+      return f.order == c.order && f.chain == c.chain && f.absolute == c.absolute &&
+             f.antecedents == c.antecedents;
+    };
+    if (families.size() < kFamilies && std::none_of(families.begin(), families.end(), same))
+      families.push_back(c);
+  }
+  return families;
+}
+
+/// All delays by so many samples earlier or later; none twice.
+void addShifted(const Candidate& c, Candidates& list) {
+  const int longest = c.delay.empty() ? 0 : *std::max_element(c.delay.begin(), c.delay.end());
+  for (const int later : {-2, -1, 1, 2}) {
+    if (longest + later < 0) continue;
+    list.push_back(c);
+    list.back().later = later;
+  }
+}
+
+std::vector<std::string> textsOf(const std::vector<Group>& state) {
+  std::vector<std::string> known;
+  for (const auto& g : state) known.push_back(g.members.front().candidate.text());
+  return known;
+}
+
+}  // namespace
+
+Candidates shiftedLines(const std::vector<Judgement>& linear) {
+  Candidates list;
+  for (const auto& j : linear) {
+    if (j.candidate.hidden) continue;
+    addShifted(j.candidate, list);
+    break;
+  }
+  return list;
+}
+
+Candidates shiftedStates(const std::vector<Group>& state) {
+  Candidates list;
+  for (const auto& c : bestFamilies(state)) addShifted(c, list);
+  return fresh(list, textsOf(state));
+}
+
 Candidates refinedStates(const std::vector<Group>& state) {
   Candidates list;
-  for (std::size_t i = 0; i < std::min<std::size_t>(2, state.size()); ++i) {
-    const Candidate c = state[i].members.front().candidate;
+  for (const auto& c : bestFamilies(state)) {
     for (const double ridge : {3.0, 30.0, 100.0}) {
       Candidate other = c;
       other.ridge = ridge;
@@ -152,9 +203,7 @@ Candidates refinedStates(const std::vector<Group>& state) {
     other.rules += 1;
     list.push_back(other);
   }
-  std::vector<std::string> known;
-  for (const auto& g : state) known.push_back(g.members.front().candidate.text());
-  return fresh(list, std::move(known));
+  return fresh(list, textsOf(state));
 }
 
 }  // namespace fpc

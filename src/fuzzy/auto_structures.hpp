@@ -13,6 +13,10 @@ Candidates ruleCandidates(const Candidate& base, const std::vector<Judgement>& l
 /// The best with other ridges, numbers of rules and starts.
 Candidates refinedRules(const std::vector<Judgement>& regressors);
 Candidates stateCandidates(const Candidate& base, bool absolute);
+/// The best with inputs that act earlier or later than a linear model of the past told.
+Candidates shiftedLines(const std::vector<Judgement>& linear);
+Candidates shiftedStates(const std::vector<Group>& state);
+/// The best with other ridges and numbers of rules.
 Candidates refinedStates(const std::vector<Group>& state);
 
 }  // namespace fpc

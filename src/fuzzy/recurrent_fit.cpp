@@ -40,6 +40,45 @@ struct Normal {
   double sum{};
 };
 
+/// Rows of a Jacobian and their errors on the way into normal equations: many at once, which is
+/// several times faster than one by one. The last row of `sum_` collects the gradient.
+class NormalRows {
+ public:
+  explicit NormalRows(Index unknowns)
+      : rows_(unknowns + 1, kPanel), sum_(Matrix::Zero(unknowns + 1, unknowns + 1)) {}
+
+  void add(const Eigen::Ref<const Vector>& row, double error, double weight) {
+    const double root = std::sqrt(weight);
+    rows_.col(count_).head(row.size()) = root * row;
+    rows_(row.size(), count_) = root * error;
+    if (++count_ == kPanel) flush();
+  }
+
+  /// The first `shared` unknowns stand first in `normal`, the others from `own` on.
+  void addTo(Normal& normal, Index shared, Index own) {
+    flush();
+    const Index rest = sum_.rows() - 1 - shared;
+    normal.hessian.topLeftCorner(shared, shared) += sum_.topLeftCorner(shared, shared);
+    normal.gradient.head(shared) += sum_.row(shared + rest).head(shared).transpose();
+    if (rest == 0) return;
+    normal.hessian.block(own, 0, rest, shared) += sum_.block(shared, 0, rest, shared);
+    normal.hessian.block(own, own, rest, rest) += sum_.block(shared, shared, rest, rest);
+    normal.gradient.segment(own, rest) +=
+        sum_.row(shared + rest).segment(shared, rest).transpose();
+  }
+
+ private:
+  static constexpr Index kPanel = 64;
+
+  void flush() {
+    if (count_ > 0) sum_.selfadjointView<Eigen::Lower>().rankUpdate(rows_.leftCols(count_));
+    count_ = 0;
+  }
+
+  Matrix rows_, sum_;
+  Index count_{};
+};
+
 class Objective {
  public:
   Objective(const RecurrentShape& shape, const RecurrentData& data,
@@ -94,20 +133,6 @@ class Objective {
     return true;
   }
 
-  /// A column of the Jacobian into the normal equations: `active` parameters only.
-  void add(const Eigen::Ref<const Vector>& row, Index start, double error, double weight,
-           Normal& normal) const {
-    const Index n = shape_.parameterCount();
-    normal.gradient.head(n) += weight * error * row.head(n);
-    normal.hessian.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(row.head(n),
-                                                                                  weight);
-    if (n_starts_ == 0) return;
-    const auto own = row.tail(n_starts_);
-    normal.gradient.segment(start, n_starts_) += weight * error * own;
-    normal.hessian.block(start, 0, n_starts_, n) += weight * own * row.head(n).transpose();
-    normal.hessian.block(start, start, n_starts_, n_starts_) += weight * own * own.transpose();
-  }
-
   double free(const Vector& p, std::size_t s, Normal* normal);
   double oneStep(const Vector& p, const Stretch& stretch, Normal* normal);
 
@@ -126,6 +151,7 @@ double Objective::free(const Vector& p, std::size_t s, Normal* normal) {
   Vector x = Vector::Zero(n), next(n);
   Matrix sensitivity = Matrix::Zero(n, n_theta + n_starts_);
   Vector row(n_theta + n_starts_);
+  NormalRows rows(normal != nullptr ? n_theta + n_starts_ : 0);
   bool started = n_starts_ > 0;
   if (started) {
     x = p.segment(startAt(s), n);
@@ -138,7 +164,7 @@ double Objective::free(const Vector& p, std::size_t s, Normal* normal) {
     sum += weight * miss.error * miss.error;
     if (normal == nullptr || miss.slope == 0.0) return;
     row = miss.slope * sensitivity.row(0).transpose();
-    add(row, startAt(s), miss.error, weight, *normal);
+    rows.add(row, miss.error, weight);
   };
   if (started) judge(stretches_[s].first);
   const auto theta = p.head(n_theta);
@@ -158,6 +184,7 @@ double Objective::free(const Vector& p, std::size_t s, Normal* normal) {
     if (!(x.cwiseAbs().maxCoeff() < kFarthest)) return kInfinite;
     judge(k + 1);
   }
+  if (normal != nullptr) rows.addTo(*normal, n_theta, startAt(s));
   return sum;
 }
 
@@ -165,6 +192,7 @@ double Objective::oneStep(const Vector& p, const Stretch& stretch, Normal* norma
   const double weight = params_.one_step_weight / (params_.step_unit * params_.step_unit);
   Vector x(shape_.states), next(shape_.states), row(shape_.parameterCount());
   const auto theta = p.head(shape_.parameterCount());
+  NormalRows rows(normal != nullptr ? row.size() : 0);
   double sum = 0.0;
   for (Index k = stretch.first + shape_.states - 1; k + 1 < stretch.last; ++k) {
     if (!data_.v.col(k).allFinite() || !std::isfinite(data_.y[k + 1]) || !past(k, x)) continue;
@@ -174,8 +202,9 @@ double Objective::oneStep(const Vector& p, const Stretch& stretch, Normal* norma
     if (normal == nullptr || miss.slope == 0.0) continue;
     step_.direct(theta, row);
     row *= miss.slope;
-    add(row, 0, miss.error, weight, *normal);
+    rows.add(row, miss.error, weight);
   }
+  if (normal != nullptr) rows.addTo(*normal, row.size(), 0);
   return sum;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fpc {
 
@@ -22,6 +23,7 @@ RecurrentStep::RecurrentStep(const RecurrentShape& shape)
       local_(shape.rows(), shape.rules),
       away_(static_cast<Index>(shape.antecedents.size()), shape.rules),
       inverse_(away_),
+      log_width_(Vector::Constant(shape.setCount(), std::numeric_limits<double>::quiet_NaN())),
       jacobian_(Matrix::Zero(shape.states, shape.states)) {
   terms_[shape.terms() - 1] = 1.0;
 }
@@ -29,12 +31,14 @@ RecurrentStep::RecurrentStep(const RecurrentShape& shape)
 void RecurrentStep::weigh(VectorRef p) {
   if (shape_.rules == 1) return;
   const Index n_z = away_.rows();
+  if (p.tail(log_width_.size()) != log_width_) {
+    log_width_ = p.tail(log_width_.size());
+    Eigen::Map<Vector>(inverse_.data(), inverse_.size()) = (-2.0 * log_width_.array()).exp();
+  }
   for (Index i = 0; i < shape_.rules; ++i) {
     double sum = 0.0;
     for (Index j = 0; j < n_z; ++j) {
-      const double width = std::exp(p[shape_.logWidth(i) + j]);
       away_(j, i) = phi_[shape_.antecedents[static_cast<std::size_t>(j)]] - p[shape_.centre(i) + j];
-      inverse_(j, i) = 1.0 / (width * width);
       sum -= 0.5 * away_(j, i) * away_(j, i) * inverse_(j, i);
     }
     log_[i] = sum;
@@ -97,7 +101,7 @@ void RecurrentStep::addDirect(VectorRef /*p*/, Index row, Eigen::Ref<Matrix> s, 
 
 void RecurrentStep::differentiate(VectorRef p, Eigen::Ref<Matrix> sensitivity) {
   slopes(p);
-  moved_.noalias() = jacobian_ * sensitivity;
+  moved_.noalias() = jacobian_.lazyProduct(sensitivity);
   sensitivity = moved_;
   for (Index r = 0; r < shape_.rows(); ++r) addDirect(p, r, sensitivity, r);
 }

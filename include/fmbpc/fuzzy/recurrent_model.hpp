@@ -72,6 +72,7 @@ class RecurrentStep {
   Vector phi_, terms_, weights_, log_, value_;  ///< value_: rows() blended
   Matrix local_;                                ///< rows x rules, each rule's own consequent
   Matrix away_, inverse_;                       ///< antecedents x rules: z - c, 1 / s^2
+  Vector log_width_;                            ///< of which inverse_ was made
   Matrix jacobian_, moved_;
 };
 
