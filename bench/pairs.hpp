@@ -48,7 +48,7 @@ inline double median(std::vector<double> values) {
 }
 
 /// Something of somebody else's that is measured beside ours.
-struct Rival {
+struct Baseline {
   std::string name;
   std::function<void()> work;
 };
@@ -67,26 +67,26 @@ inline void printRow(const std::string& path, const std::string& baseline, const
   std::fflush(stdout);
 }
 
-/// In rounds ours and every rival once. Prints one line of JSON per rival: the median, least and
-/// most of time(rival) / time(ours) of the same round, above 1 being in our favour, and the median
-/// times of both.
+/// In rounds ours and every baseline once. Prints one line of JSON per baseline: the median, least
+/// and most of time(baseline) / time(ours) of the same round, above 1 being in our favour, and the
+/// median times of both.
 template <class Ours>
 void printRounds(const std::string& path, const std::string& aim, const Ours& ours,
-                 const std::vector<Rival>& rivals, const Effort& effort) {
+                 const std::vector<Baseline>& others, const Effort& effort) {
   std::vector<double> ours_us;
-  std::vector<std::vector<double>> rival_us(rivals.size());
+  std::vector<std::vector<double>> baseline_us(others.size());
   for (int i = 0; i < effort.pairs; ++i) {
     ours_us.push_back(microseconds(ours, effort.seconds));
-    for (std::size_t r = 0; r < rivals.size(); ++r)
-      rival_us[r].push_back(microseconds(rivals[r].work, effort.seconds));
+    for (std::size_t r = 0; r < others.size(); ++r)
+      baseline_us[r].push_back(microseconds(others[r].work, effort.seconds));
   }
-  for (std::size_t r = 0; r < rivals.size(); ++r)
-    printRow(path, rivals[r].name, aim, ours_us, rival_us[r]);
+  for (std::size_t r = 0; r < others.size(); ++r)
+    printRow(path, others[r].name, aim, ours_us, baseline_us[r]);
 }
 
-template <class Ours, class Baseline>
+template <class Ours, class Other>
 void printPairs(const std::string& path, const std::string& baseline_name, const std::string& aim,
-                const Ours& ours, const Baseline& baseline) {
+                const Ours& ours, const Other& baseline) {
   printRounds(path, aim, ours, {{baseline_name, baseline}}, Effort::fromEnvironment());
 }
 

@@ -104,11 +104,11 @@ void compare(const Family& family, bool warm) {
   if (!warm)
     std::printf("{\"family\": \"%s\", \"solved\": %d, \"problems\": %zu}\n", family.name.c_str(),
                 solved, family.problems.size());
-  std::vector<Rival> rivals;
+  std::vector<Baseline> others;
   for (const BaselineType& type : baselines()) {
     const auto beside = std::make_shared<Beside>(family, type);
     if (warm && !beside->canWarm()) continue;
-    rivals.push_back({beside->judge(family, answers), [beside, warm] { beside->pass(warm); }});
+    others.push_back({beside->judge(family, answers), [beside, warm] { beside->pass(warm); }});
   }
   Effort effort = Effort::fromEnvironment();
   effort.seconds *= 0.5;  // hundreds of passes all the same
@@ -119,7 +119,7 @@ void compare(const Family& family, bool warm) {
       [&] {
         for (Ours& one : ours) one.solve(warm);
       },
-      rivals, effort);
+      others, effort);
 }
 
 Family controllerFamily(ControllerQp::Kind kind, const std::string& name) {
