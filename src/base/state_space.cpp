@@ -8,10 +8,9 @@ PowerSum::PowerSum(Eigen::Index n_x)
     : power_(Matrix::Identity(n_x, n_x)), sum_(Matrix::Zero(n_x, n_x)), scratch_(n_x, n_x) {}
 
 void PowerSum::compute(MatrixRef A, int horizon) {
-  // Compared before a message is made: require() would build its strings at every sample.
-  if (horizon < 1) throw InputError("horizon: expected an integer >= 1");
-  if (A.rows() != power_.rows() || A.cols() != power_.cols())
-    throw InputError("A: expected a square matrix of the size given at construction");
+  require(horizon >= 1, "horizon", "an integer >= 1");
+  require(A.rows() == power_.rows() && A.cols() == power_.cols(), "A",
+          "a square matrix of the size given at construction");
   power_.setIdentity();
   sum_.setZero();
   int bit = 1;

@@ -13,8 +13,9 @@ namespace fpc {
 ///   u = F e + V u(k-1),           e = what y(k+H) lacks when u = 0.
 /// Rows of outputs without weight stay zero. Row by row, so that a diverging submodel that an
 /// output does not depend on cannot reach it; what is beyond some steps by doubling, so that the
-/// work grows with log H. No allocation after construction; work is fixed by the sizes and H. Source: vallejo2019, eqs. 19-28; richalet2009 for the single
-/// variable. Symbols: P, S n_y n_x, M n_y n_u, F n_u n_y, V n_u n_u
+/// work grows with log H. No allocation after construction; work is fixed by the sizes and H.
+/// Source: vallejo2019, eqs. 19-28; richalet2009 for the single variable. Symbols: P, S n_y n_x, M
+/// n_y n_u, F n_u n_y, V n_u n_u
 class CoincidenceGains {
  public:
   CoincidenceGains(Eigen::Index n_x, Eigen::Index n_u, Eigen::Index n_y);
