@@ -48,7 +48,13 @@ void addClp(std::vector<Point>& points) {
 /// A sample of a chain of tanks from rest with the inflow stepped.
 struct PlantCase {
   explicit PlantCase(int tanks)
-      : plant(tanks), integrator(plant, {1e-6, 1e-6, 100000, "bdf"}), x(Vector::Ones(tanks)) {}
+      : plant(tanks), integrator(plant, stiffParams()), x(Vector::Ones(tanks)) {}
+  static IntegratorParams stiffParams() {
+    IntegratorParams params;
+    params.relative_tolerance = params.absolute_tolerance = 1e-6;
+    params.max_steps = 100000;
+    return params;
+  }
   void step() {
     x.setOnes();
     integrator.advance(x, Vector::Constant(1, 1.1), Vector(), 10.0);
