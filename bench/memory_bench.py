@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Memory: peak of every node of a loop, and how record and identification grow with their samples.
-memory_bench.py [--topics] [--quick]
+memory_bench.py [--tool FILE] [--topics] [--quick]
 
 Prints one line of JSON each: {"what", "peak_mb", "private_mb"} of a process, {"what", "mb_per_million"} of a growth (by two
 sizes). The nodes (--topics) are looked at after 10 s in lockstep; source scripts/env.sh before.
@@ -38,8 +38,7 @@ def growth(what, sizes, words):
     print_json(what=what, mb_per_million=(large - small) * 1e6 / (sizes[1] - sizes[0]), peak_mb=large, samples=sizes[1])
 
 
-def tool_growth(sizes):
-    tool = str(TOP / "scripts/fmbpc")
+def tool_growth(tool, sizes):
     with tempfile.TemporaryDirectory() as folder:
         def run(n):
             return [tool, "run", "asp_case1", "--set", f"sampling.duration_h={n * HOURS}", "--out", f"{folder}/{n}", "--no-plot"]
@@ -81,8 +80,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--topics", action="store_true")
     parser.add_argument("--quick", action="store_true", help="small sizes: shows that it works")
+    parser.add_argument("--tool", default=str(TOP / "scripts/fmbpc"))
     options = parser.parse_args()
-    tool_growth((1000, 3000) if options.quick else (50000, 200000))
+    tool_growth(options.tool, (1000, 3000) if options.quick else (50000, 200000))
     if options.topics:
         nodes(1 if options.quick else 10)
 
