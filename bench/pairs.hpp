@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -46,26 +47,47 @@ inline double median(std::vector<double> values) {
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-/// Prints one line of JSON: the median, least and most of time(baseline) / time(ours), a rate above
-/// 1 being in our favour, and the median times of both.
-template <class Ours, class Baseline>
-void printPairs(const std::string& path, const std::string& baseline_name, const std::string& aim,
-                const Ours& ours, const Baseline& baseline) {
-  const Effort effort = Effort::fromEnvironment();
-  std::vector<double> ours_us, baseline_us, ratios;
-  for (int i = 0; i < effort.pairs; ++i) {
-    ours_us.push_back(microseconds(ours, effort.seconds));
-    baseline_us.push_back(microseconds(baseline, effort.seconds));
-    ratios.push_back(baseline_us.back() / ours_us.back());
-  }
+/// Something of somebody else's that is measured beside ours.
+struct Baseline {
+  std::string name;
+  std::function<void()> work;
+};
+
+inline void printRow(const std::string& path, const std::string& baseline, const std::string& aim,
+                     const std::vector<double>& ours_us, const std::vector<double>& baseline_us) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < ours_us.size(); ++i) ratios.push_back(baseline_us[i] / ours_us[i]);
   std::printf(
       "{\"path\": \"%s\", \"baseline\": \"%s\", \"aim\": \"%s\", \"ratio\": %.4g, \"least\": %.4g, "
-      "\"most\": %.4g, \"ours_us\": %.5g, \"baseline_us\": %.5g, \"pairs\": %d}\n",
-      path.c_str(), baseline_name.c_str(), aim.c_str(), median(ratios),
+      "\"most\": %.4g, \"ours_us\": %.5g, \"baseline_us\": %.5g, \"pairs\": %zu}\n",
+      path.c_str(), baseline.c_str(), aim.c_str(), median(ratios),
       *std::min_element(ratios.begin(), ratios.end()),
       *std::max_element(ratios.begin(), ratios.end()), median(ours_us), median(baseline_us),
-      effort.pairs);
+      ratios.size());
   std::fflush(stdout);
+}
+
+/// In rounds ours and every baseline once. Prints one line of JSON per baseline: the median, least
+/// and most of time(baseline) / time(ours) of the same round, above 1 being in our favour, and the
+/// median times of both.
+template <class Ours>
+void printRounds(const std::string& path, const std::string& aim, const Ours& ours,
+                 const std::vector<Baseline>& others, const Effort& effort) {
+  std::vector<double> ours_us;
+  std::vector<std::vector<double>> baseline_us(others.size());
+  for (int i = 0; i < effort.pairs; ++i) {
+    ours_us.push_back(microseconds(ours, effort.seconds));
+    for (std::size_t r = 0; r < others.size(); ++r)
+      baseline_us[r].push_back(microseconds(others[r].work, effort.seconds));
+  }
+  for (std::size_t r = 0; r < others.size(); ++r)
+    printRow(path, others[r].name, aim, ours_us, baseline_us[r]);
+}
+
+template <class Ours, class Other>
+void printPairs(const std::string& path, const std::string& baseline_name, const std::string& aim,
+                const Ours& ours, const Other& baseline) {
+  printRounds(path, aim, ours, {{baseline_name, baseline}}, Effort::fromEnvironment());
 }
 
 }  // namespace fpc::bench

@@ -59,35 +59,67 @@ std::string text(double value) {
   return buffer;
 }
 
-void compare(const Family& family, const BaselineType& type, bool warm) {
+/// A solver of somebody else's on all problems of a family.
+class Beside {
+ public:
+  Beside(const Family& family, const BaselineType& type) : name_(type.name) {
+    for (const QpProblem& p : family.problems) {
+      solvers_.push_back(type.make());
+      solvers_.back()->prepare(p);
+    }
+  }
+  /// Solves all and says how well, beside our answers.
+  std::string judge(const Family& family, const std::vector<Vector>& ours) {
+    int solved = 0;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < solvers_.size(); ++i) {
+      const bool claims = solvers_[i]->solve();
+      const double error = errorOf(family.problems[i], solvers_[i]->x(), ours[i]);
+      worst = std::max(worst, error);
+      solved += claims && error <= 1e-6;
+    }
+    return name_ + " (" + std::to_string(solved) + " of " + std::to_string(solvers_.size()) +
+           ", error " + text(worst) + ")";
+  }
+  bool canWarm() const { return solvers_.front()->canWarm(); }
+  void pass(bool warm) {
+    for (auto& one : solvers_) warm ? one->solveWarm() : one->solve();
+  }
+
+ private:
+  std::string name_;
+  std::vector<std::unique_ptr<BaselineQp>> solvers_;
+};
+
+void compare(const Family& family, bool warm) {
   std::vector<Ours> ours;
-  std::vector<std::unique_ptr<BaselineQp>> theirs;
-  int solved = 0, solved_by_baseline = 0;
-  double worst = 0.0;
+  std::vector<Vector> answers;
+  int solved = 0;
   for (const QpProblem& p : family.problems) {
     ours.emplace_back(p);
-    theirs.push_back(type.make());
-    theirs.back()->prepare(p);
     const QpResult& r = ours.back().solve(false);
+    answers.push_back(r.x);
     solved += r.usable() && r.kkt_residual <= 1e-9;
-    const bool claims = theirs.back()->solve();
-    const double error = errorOf(p, theirs.back()->x(), r.x);
-    worst = std::max(worst, error);
-    solved_by_baseline += claims && error <= 1e-6;
   }
-  const auto count = std::to_string(family.problems.size());
-  const std::string path = "QP " + family.name + (warm ? ", warm" : ", cold") + " (" +
-                           std::to_string(solved) + " of " + count + " solved)";
-  const std::string baseline = type.name + " (" + std::to_string(solved_by_baseline) + " of " +
-                               count + ", error " + text(worst) + ")";
-  printPairs(
-      path, baseline, family.aim,
+  if (!warm)
+    std::printf("{\"family\": \"%s\", \"solved\": %d, \"problems\": %zu}\n", family.name.c_str(),
+                solved, family.problems.size());
+  std::vector<Baseline> others;
+  for (const BaselineType& type : baselines()) {
+    const auto beside = std::make_shared<Beside>(family, type);
+    if (warm && !beside->canWarm()) continue;
+    others.push_back({beside->judge(family, answers), [beside, warm] { beside->pass(warm); }});
+  }
+  Effort effort = Effort::fromEnvironment();
+  effort.seconds *= 0.5;  // hundreds of passes all the same
+  printRounds(
+      "QP " + family.name + (warm ? ", warm" : ", cold") + " (" + std::to_string(solved) + " of " +
+          std::to_string(family.problems.size()) + " solved)",
+      family.aim,
       [&] {
         for (Ours& one : ours) one.solve(warm);
       },
-      [&] {
-        for (auto& one : theirs) warm ? one->solveWarm() : one->solve();
-      });
+      others, effort);
 }
 
 Family controllerFamily(ControllerQp::Kind kind, const std::string& name) {
@@ -123,11 +155,7 @@ std::vector<Family> families() {
 
 int main() {
   using namespace fpc::bench;
-  for (const Family& family : families()) {
-    for (const BaselineType& type : baselines()) {
-      compare(family, type, false);
-      if (type.make()->canWarm()) compare(family, type, true);
-    }
-  }
+  for (const Family& family : families())
+    for (const bool warm : {false, true}) compare(family, warm);
   return 0;
 }

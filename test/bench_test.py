@@ -12,14 +12,21 @@ BUILD = pathlib.Path(os.environ.get("FMBPC_BUILD", TOP / "build"))
 
 class Bench(unittest.TestCase):
     def test_every_benchmark_runs_and_our_qps_are_solved(self):
-        if not (BUILD / "bench/path_bench").exists() or not (BUILD / "bench/qp_baselines").exists():
-            self.skipTest("no path_bench and qp_baselines in the build folder")
+        programs = ("growth_bench", "path_bench", "qp_baselines")
+        if not all((BUILD / "bench" / program).exists() for program in programs):
+            self.skipTest("not built: " + ", ".join(programs))
         page = subprocess.run([TOP / "scripts/bench", "--build", BUILD, "--quick", "--no-build"], check=True,
                               capture_output=True, text=True, timeout=300, env=dict(os.environ)).stdout
         rows = [line for line in page.splitlines() if re.search(r"\| (yes|\*\*no\*\*) \|", line)]
         for path in ("166 h in process", "step of the published law", "plant sample", "Gustafson-Kessel", "eight runs"):
             self.assertTrue(any(path in row for row in rows), path)
-        for solved, count in re.findall(r"^\| QP .*?\((\d+) of (\d+) solved\)", page, re.MULTILINE):
+        for curve in ("law, outputs = inputs", "law, rules", "law, coincidence", "CLP cold", "CLP warm", "plant sample, tanks"):
+            self.assertRegex(page, rf"\| {curve}[^|]*\| \d+ to \d+ \| [\d.e+]+ \|")
+        self.assertRegex(page, r"CLP step, n_c 42.* 0 unsolved")
+        self.assertRegex(page, r"\| record of a run .*\| \d+ \|  \| -?\d+ \|")
+        families = re.findall(r"^- QP .*: (\d+) of (\d+) solved by ours", page, re.MULTILINE)
+        self.assertGreaterEqual(len(families), 3)
+        for solved, count in families:
             self.assertEqual(solved, count)
 
 

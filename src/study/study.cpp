@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <filesystem>
 #include <limits>
-#include <mutex>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/parallel.hpp"
 #include "fmbpc/loop/run.hpp"
+#include "study/run_journal.hpp"
 #include "study/study_state.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr std::chrono::seconds kKeepEvery{2};  // a state file is not written more often
+// A state file is not written more often; what comes in between stands in its journal.
+constexpr std::chrono::seconds kKeepEvery{2};
 
 RunJudgement failed(const std::string& words) {
   RunJudgement run;
@@ -26,41 +27,73 @@ RunJudgement failed(const std::string& words) {
 
 class Session {
  public:
-  Session(const StudyPlan& plan, const StudyOptions& options)
-      : plan_(plan), options_(options), kept_(std::chrono::steady_clock::now()) {
+  Session(const StudyPlan& plan, const StudyOptions& options, RunPool& pool)
+      : plan_(plan),
+        options_(options),
+        pool_(pool),
+        keeps_(pool.leads() && !options.state.empty()),
+        journal_(options.state, plan.fingerprint()),
+        kept_(std::chrono::steady_clock::now()) {
     result_.runs.resize(plan.runs());
-    if (!options.resume) return;
-    require(!options.state.empty(), "resume", "a state file to resume from");
-    result_.runs = readStudyState(options.state, plan.fingerprint(), plan.runs());
+    require(!options.resume || !options.state.empty(), "resume", "a state file to resume from");
+    if (!pool.leads()) return;
+    if (options.resume) readDone();
     for (const auto& run : result_.runs) result_.resumed += run.has_value();
     done_ = result_.resumed;
   }
 
   StudyResult take() {
-    std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < plan_.runs(); ++i)
-      if (!result_.runs[i]) open.push_back(i);
-    // Pairs next to each other: what a stopped study holds can be compared.
-    std::stable_sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
-      return plan_.caseOf(a) < plan_.caseOf(b);
-    });
-    parallelFor(open.size(), options_.threads, [&](std::size_t i) { work(open[i]); });
-    keep(true);
-    result_.complete = done_ == plan_.runs();
+    if (keeps_) begin();
+    RunPool::Texts texts(plan_.runs());
+    for (std::size_t i = 0; i < texts.size(); ++i)
+      if (result_.runs[i]) texts[i] = textOf(*result_.runs[i]);
+    pool_.fill(
+        texts, open(), [&](std::size_t i) { return work(i); },
+        [&](std::size_t i, const std::string& text) { done(i, text); });
+    for (std::size_t i = 0; i < texts.size(); ++i)
+      if (texts[i]) result_.runs[i] = judgementOf(*texts[i]);
+    result_.complete = std::all_of(texts.begin(), texts.end(), [](const auto& t) { return t; });
+    if (keeps_) keep();
+    if (keeps_ && result_.complete) journal_.remove();
     return std::move(result_);
   }
 
  private:
-  void work(std::size_t index) {
+  /// The state file, and what was found after it was written. A study that was killed early has
+  /// only the latter.
+  void readDone() {
+    const auto found = journal_.read();
+    if (found.empty() || std::filesystem::exists(options_.state))
+      result_.runs = readStudyState(options_.state, plan_.fingerprint(), plan_.runs());
+    for (const auto& [run, text] : found)
+      if (run < plan_.runs()) result_.runs[run] = judgementOf(text);
+  }
+
+  void begin() {
+    if (options_.resume)
+      keep();
+    else
+      std::filesystem::remove(options_.state);  // of an older study
+    journal_.begin();
+  }
+
+  /// Pairs next to each other: what a stopped study holds can be compared.
+  std::vector<std::size_t> open() const {
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < plan_.runs(); ++i)
+      if (!result_.runs[i]) open.push_back(i);
+    std::stable_sort(open.begin(), open.end(), [&](std::size_t a, std::size_t b) {
+      return plan_.caseOf(a) < plan_.caseOf(b);
+    });
+    return open;
+  }
+
+  std::optional<std::string> work(std::size_t index) const {
     const auto stopped = [&] { return options_.stop && options_.stop(); };
-    if (stopped()) return;
-    RunJudgement judged = judge(index);
-    if (stopped()) return;  // it may have been cut short
-    const std::lock_guard<std::mutex> lock(mutex_);
-    result_.runs[index] = std::move(judged);
-    ++done_;
-    if (options_.progress) options_.progress(done_, plan_.runs());
-    keep(false);
+    if (stopped()) return std::nullopt;
+    const RunJudgement judged = judge(index);
+    if (stopped()) return std::nullopt;  // it may have been cut short
+    return textOf(judged);
   }
 
   RunJudgement judge(std::size_t index) const {
@@ -74,18 +107,27 @@ class Session {
     }
   }
 
-  void keep(bool now) {
-    if (options_.state.empty()) return;
-    const auto time = std::chrono::steady_clock::now();
-    if (!now && time - kept_ < kKeepEvery) return;
-    kept_ = time;
+  void done(std::size_t index, const std::string& text) {
+    if (keeps_) {
+      journal_.add(index, text);
+      result_.runs[index] = judgementOf(text);
+      if (std::chrono::steady_clock::now() - kept_ > kKeepEvery) keep();
+    }
+    if (options_.progress) options_.progress(++done_, plan_.runs());
+  }
+
+  void keep() {
+    kept_ = std::chrono::steady_clock::now();
     writeStudyState(options_.state, plan_.fingerprint(), result_.runs);
+    journal_.begin();
   }
 
   const StudyPlan& plan_;
   const StudyOptions& options_;
+  RunPool& pool_;
+  bool keeps_;
+  RunJournal journal_;
   StudyResult result_;
-  std::mutex mutex_;
   std::chrono::steady_clock::time_point kept_;
   std::size_t done_{};
 };
@@ -93,7 +135,8 @@ class Session {
 }  // namespace
 
 StudyResult runStudy(const StudyPlan& plan, const StudyOptions& options) {
-  return Session(plan, options).take();
+  ThreadPool threads(options.threads);
+  return Session(plan, options, options.pool != nullptr ? *options.pool : threads).take();
 }
 
 }  // namespace fpc

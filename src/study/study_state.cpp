@@ -39,6 +39,10 @@ RunJudgement runOf(const Json& json) {
 
 }  // namespace
 
+std::string textOf(const RunJudgement& run) { return toJson(run).dump(); }
+
+RunJudgement judgementOf(const std::string& text) { return runOf(Json::parse(text)); }
+
 void writeStudyState(const std::string& file, const std::string& fingerprint,
                      const std::vector<std::optional<RunJudgement>>& runs) {
   Json done = Json::object();

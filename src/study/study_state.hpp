@@ -7,6 +7,10 @@
 
 namespace fpc {
 
+/// A run in one line, exactly.
+std::string textOf(const RunJudgement& run);
+RunJudgement judgementOf(const std::string& text);
+
 /// Written beside and renamed, so that a crash leaves the old one. @throws InputError.
 void writeStudyState(const std::string& file, const std::string& fingerprint,
                      const std::vector<std::optional<RunJudgement>>& runs);

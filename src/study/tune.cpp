@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
+#include <map>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "study/run_journal.hpp"
 #include "study/tune_state.hpp"
 
 namespace fpc {
@@ -23,13 +27,15 @@ class Session {
       : objective_(objective),
         options_(options),
         identity_(identityOf(objective, search)),
+        keeps_(objective.pool().leads() && !options.state.empty()),
+        journal_(options.state, identity_),
         began_(std::chrono::steady_clock::now()) {
     result_.search = search;
-    if (!options.resume) return;
-    TuneState known = readState(options.state, identity_);
-    known_ = std::move(known.steps);
-    result_.seconds = known.seconds;
-    before_ = known.seconds;
+    if (options.resume) readKnown();
+    if (!keeps_) return;
+    if (!options.resume) std::filesystem::remove(options.state);  // of an older tuning
+    journal_.begin();
+    for (const auto& [run, text] : runs_) journal_.add(run, text);
   }
 
   bool judge(const Matrix& points, Vector& costs) {
@@ -58,12 +64,52 @@ class Session {
   TuneResult finish(const SearchResult& found) {
     result_.generations = found.generations;
     result_.stopped = found.stopped;
+    if (keeps_ && !found.stopped) journal_.remove();
     return std::move(result_);
   }
 
  private:
+  /// The state file, read by the process that leads and told to those that share its pool, and the
+  /// runs that ended after it was written. A tuning that was killed early has only the latter.
+  void readKnown() {
+    RunPool::Texts state(1);
+    if (objective_.pool().leads()) {
+      runs_ = journal_.read();
+      state[0] = stateText();
+    }
+    objective_.pool().fill(state, {}, {}, {});
+    if (state[0]->empty()) return;
+    TuneState known = parseState(*state[0], options_.state, identity_);
+    known_ = std::move(known.steps);
+    before_ = result_.seconds = known.seconds;
+  }
+
+  /// Empty: only the journal is there.
+  std::string stateText() const {
+    std::ifstream stream(options_.state);
+    if (!stream.good() && !runs_.empty()) return {};
+    require(stream.good(), options_.state,
+            "a readable file, as a stopped `fmbpc tune --out` leaves it");
+    std::string text((std::istreambuf_iterator<char>(stream)), {});
+    return text.empty() ? "{" : text;  // an empty file is no state
+  }
+
+  /// What the journal knows of `count` runs from run `first` on.
+  RunPool::Texts knownRuns(std::size_t first, std::size_t count) const {
+    RunPool::Texts texts(count);
+    for (auto at = runs_.lower_bound(first); at != runs_.end() && at->first < first + count; ++at)
+      texts[at->first - first] = at->second;
+    return texts;
+  }
+
   bool run(const Matrix& points, std::vector<TuningStep>& steps) {
-    const auto scores = objective_.judge(points, options_.stop);
+    const std::size_t scenarios = objective_.tuning().scenarios.size();
+    const std::size_t first = (result_.history.size() + steps.size()) * scenarios;
+    const auto count = static_cast<std::size_t>(points.cols()) * scenarios;
+    const auto scores = objective_.judge(points, options_.stop, knownRuns(first, count),
+                                         [&](std::size_t i, const std::string& text) {
+                                           if (keeps_) journal_.add(first + i, text);
+                                         });
     if (!scores) return false;
     for (Eigen::Index p = 0; p < points.cols(); ++p) {
       const TuningScore& score = (*scores)[static_cast<std::size_t>(p)];
@@ -88,13 +134,17 @@ class Session {
   void save() {
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - began_;
     result_.seconds = before_ + wall.count();
-    if (!options_.state.empty())
-      writeState(options_.state, identity_, {result_.history, result_.seconds});
+    if (!keeps_) return;
+    writeState(options_.state, identity_, {result_.history, result_.seconds});
+    journal_.begin();
   }
 
   const TuningObjective& objective_;
   const TuneOptions& options_;
   std::string identity_;
+  bool keeps_;  // the state file
+  RunJournal journal_;
+  std::map<std::size_t, std::string> runs_;  // of the journal
   std::chrono::steady_clock::time_point began_;
   std::vector<TuningStep> known_;
   TuneResult result_;

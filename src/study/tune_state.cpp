@@ -63,11 +63,10 @@ void writeState(const std::string& file, const std::string& identity, const Tune
   replaceFile(file, json.dump() + "\n");
 }
 
-TuneState readState(const std::string& file, const std::string& identity) {
-  std::ifstream stream(file);
-  require(stream.good(), file, "a readable file, as a stopped `fmbpc tune --out` leaves it");
+TuneState parseState(const std::string& text, const std::string& file,
+                     const std::string& identity) {
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(text);
     require(json.at("tuning") == identity, file,
             "the state of this tuning: loop, tuning file, method, seed, population and evaluations "
             "as they were when it stopped");

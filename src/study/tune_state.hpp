@@ -17,7 +17,8 @@ struct TuneState {
 std::string identityOf(const TuningObjective& objective, const SearchParams& search);
 /// Written beside and moved over, so that no half of a state can stand there.
 void writeState(const std::string& file, const std::string& identity, const TuneState& state);
-/// @throws InputError: no such file, not a state, of another tuning.
-TuneState readState(const std::string& file, const std::string& identity);
+/// @param text  what the state file holds; `file` for messages
+/// @throws InputError: not a state, of another tuning.
+TuneState parseState(const std::string& text, const std::string& file, const std::string& identity);
 
 }  // namespace fpc

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/loop/run.hpp"
@@ -18,6 +18,8 @@
 
 namespace fpc {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -75,7 +77,11 @@ double median(std::vector<double> values) {
 
 TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning, const Overrides& set,
                                  int threads)
-    : tuning_(std::move(tuning)), set_(tuning_.set), threads_(threads) {
+    : TuningObjective(loop, std::move(tuning), set, std::make_shared<ThreadPool>(threads)) {}
+
+TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning, const Overrides& set,
+                                 std::shared_ptr<RunPool> pool)
+    : tuning_(std::move(tuning)), set_(tuning_.set), pool_(std::move(pool)) {
   set_.insert(set_.end(), set.begin(), set.end());
   cases_ = casesOf(loop, tuning_.scenarios);
   held_out_ = casesOf(loop, tuning_.held_out);
@@ -190,12 +196,46 @@ TuningScore TuningObjective::scoreOf(const std::vector<Run>& runs, std::size_t f
   return score;
 }
 
+std::string TuningObjective::textOf(const Run& run) {
+  return Json{{"cost", std::isfinite(run.cost) ? Json(run.cost) : Json(nullptr)},
+              {"trouble", run.trouble}}
+      .dump();
+}
+
+TuningObjective::Run TuningObjective::runOf(const std::optional<std::string>& text) {
+  Run run;
+  run.cost = kInfinity;
+  run.stopped = !text;
+  if (!text) return run;
+  const Json json = Json::parse(*text);
+  if (!json.at("cost").is_null()) run.cost = json.at("cost");
+  run.trouble = json.at("trouble");
+  return run;
+}
+
+std::vector<TuningObjective::Run> TuningObjective::runAll(const std::vector<Case>& cases,
+                                                          const std::vector<Overrides>& changes,
+                                                          const Stop& stop, RunPool::Texts known,
+                                                          const RunPool::Done& done) const {
+  known.resize(changes.size() * cases.size());
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < known.size(); ++i)
+    if (!known[i]) order.push_back(i);
+  const auto work = [&](std::size_t i) -> std::optional<std::string> {
+    const Run made = run(cases[i % cases.size()], changes[i / cases.size()], stop);
+    if (made.stopped) return std::nullopt;
+    return textOf(made);
+  };
+  pool_->fill(known, order, work, done);
+  std::vector<Run> runs;
+  for (const auto& text : known) runs.push_back(runOf(text));
+  return runs;
+}
+
 std::optional<std::vector<TuningScore>> TuningObjective::judge(
-    const std::vector<Case>& cases, const std::vector<Overrides>& changes, const Stop& stop) const {
-  std::vector<Run> runs(changes.size() * cases.size());
-  parallelFor(runs.size(), threads_, [&](std::size_t i) {
-    runs[i] = run(cases[i % cases.size()], changes[i / cases.size()], stop);
-  });
+    const std::vector<Case>& cases, const std::vector<Overrides>& changes, const Stop& stop,
+    RunPool::Texts known, const RunPool::Done& done) const {
+  const std::vector<Run> runs = runAll(cases, changes, stop, std::move(known), done);
   if (std::any_of(runs.begin(), runs.end(), [](const Run& r) { return r.stopped; }))
     return std::nullopt;
   std::vector<TuningScore> scores;
@@ -205,23 +245,24 @@ std::optional<std::vector<TuningScore>> TuningObjective::judge(
 }
 
 std::optional<std::vector<TuningScore>> TuningObjective::judge(const Matrix& points,
-                                                               const Stop& stop) const {
+                                                               const Stop& stop,
+                                                               RunPool::Texts known,
+                                                               const RunPool::Done& done) const {
   std::vector<Overrides> all;
   for (Eigen::Index p = 0; p < points.cols(); ++p) all.push_back(valueOverrides(points.col(p)));
-  return judge(cases_, all, stop);
+  return judge(cases_, all, stop, std::move(known), done);
 }
 
 std::optional<TuningScore> TuningObjective::judgeHeldOut(const Vector& point,
                                                          const Stop& stop) const {
-  const auto scores = judge(held_out_, {valueOverrides(point)}, stop);
+  const auto scores = judge(held_out_, {valueOverrides(point)}, stop, {}, {});
   if (!scores) return std::nullopt;
   return scores->front();
 }
 
 void TuningObjective::judgeUntouched(std::vector<Case>& cases, TuningScore& untouched) const {
   if (tuning_.fitness.relative) {
-    std::vector<Run> runs(cases.size());
-    parallelFor(runs.size(), threads_, [&](std::size_t i) { runs[i] = run(cases[i], {}, {}); });
+    const std::vector<Run> runs = runAll(cases, {Overrides{}}, {}, {}, {});
     for (std::size_t i = 0; i < cases.size(); ++i) {
       const bool usable = std::isfinite(runs[i].cost) && runs[i].cost > 0.0;
       require(usable, tuning_.file + ": fitness.relative",
@@ -230,7 +271,7 @@ void TuningObjective::judgeUntouched(std::vector<Case>& cases, TuningScore& unto
       cases[i].scale = runs[i].cost;
     }
   }
-  untouched = judge(cases, {Overrides{}}, {})->front();
+  untouched = judge(cases, {Overrides{}}, {}, {}, {})->front();
 }
 
 }  // namespace fpc

@@ -69,6 +69,7 @@ void layOver(const StudyArguments& arguments, StudyFile& study) {
 StudyResult runWithBar(const StudyPlan& plan, const StudyArguments& arguments) {
   StudyOptions options;
   options.threads = arguments.threads;
+  options.pool = arguments.pool.get();
   if (!arguments.out.empty()) options.state = inFolder(arguments, "state.json");
   options.resume = arguments.resume;
   options.stop = [] { return interruption().load(); };
@@ -102,13 +103,15 @@ int study(const StudyArguments& arguments) {
   StudyFile study = from_file ? readStudy(arguments.names.front()) : fromOptions(arguments);
   layOver(arguments, study);
   const StudyPlan plan(std::move(study));
-  if (!arguments.out.empty()) {
+  const bool leads = !arguments.pool || arguments.pool->leads();
+  if (leads && !arguments.out.empty()) {
     std::error_code error;
     fs::create_directories(arguments.out, error);
     require(!error, arguments.out, "a folder that can be made (" + error.message() + ")");
   }
   catchInterrupts();
   const StudyResult result = runWithBar(plan, arguments);
+  if (!leads) return result.complete ? 0 : kInterrupted;
   const StudyStatistics statistics = statisticsOf(plan, result);
   if (!arguments.out.empty()) write(arguments, plan, result, statistics);
   if (arguments.json)

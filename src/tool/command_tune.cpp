@@ -65,11 +65,11 @@ int compare(const TuneArguments& arguments, const TuningObjective& objective,
             const SearchParams& search) {
   require(arguments.seeds >= 1, "--seeds", "an integer >= 1");
   const auto all = searchMethods();
-  CompareOptions options{arguments.loop, search,           arguments.methods, arguments.seeds,
-                         arguments.out,  arguments.resume, arguments.threads};
+  CompareOptions options{arguments.loop,  search,        arguments.methods,
+                         arguments.seeds, arguments.out, arguments.resume};
   if (options.methods.empty()) {
     options.methods = all;
-    if (!missingMethods().empty())
+    if (!missingMethods().empty() && objective.pool().leads())
       std::fprintf(stderr, "fmbpc: warning: %s\n", missingMethods().c_str());
   }
   for (const auto& method : options.methods) {
@@ -78,6 +78,7 @@ int compare(const TuneArguments& arguments, const TuningObjective& objective,
     tried.validate();
   }
   const Json comparison = compareMethods(objective, options);
+  if (!objective.pool().leads()) return comparison["complete"] ? 0 : kInterrupted;
   if (!arguments.out.empty()) writeText(comparison.dump(), inFolder(arguments, "compare.json"));
   if (!comparison["complete"]) return interrupted(arguments);
   draw(arguments);
@@ -107,7 +108,14 @@ int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
   if (result.best >= 0 && !result.stopped && !objective.tuning().held_out.empty())
     tuned.held_out = objective.judgeHeldOut(
         result.history[static_cast<std::size_t>(result.best)].shares, options.stop);
-  const Json json = toJson(objective, tuned, arguments.threads);
+  const auto check = [&] {
+    require(result.best >= 0, arguments.loop, "a run that does not fail: " + result.trouble);
+  };
+  if (!objective.pool().leads()) {
+    if (!result.stopped) check();
+    return result.stopped ? kInterrupted : 0;
+  }
+  const Json json = toJson(objective, tuned);
   std::string file;
   if (!arguments.out.empty()) {
     writeHistory(objective.tuning(), result, inFolder(arguments, "history.csv"));
@@ -115,10 +123,10 @@ int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
     if (result.best >= 0) file = writeTunedLoop(objective, tuned, arguments.out);
   }
   std::cout << (arguments.json ? json.dump(2) + "\n" : toTable(objective, tuned));
-  if (interruption()) return interrupted(arguments);
+  if (interruption() || result.stopped) return interrupted(arguments);
   draw(arguments);
   if (!arguments.json && !file.empty()) std::cout << "written: " << file << "\n";
-  require(result.best >= 0, arguments.loop, "a run that does not fail: " + result.trouble);
+  check();
   return 0;
 }
 
@@ -130,8 +138,10 @@ int tune(const TuneArguments& arguments) {
   require(!arguments.resume || !arguments.out.empty(), "--resume", "--out with a stopped tuning");
   Overrides overrides;
   for (const auto& text : arguments.set) overrides.push_back(parseOverride(text));
-  const TuningObjective objective(arguments.loop, tuning, overrides, arguments.threads);
-  makeFolder(arguments.out);
+  const auto pool =
+      arguments.pool ? arguments.pool : std::make_shared<ThreadPool>(arguments.threads);
+  const TuningObjective objective(arguments.loop, tuning, overrides, pool);
+  if (pool->leads()) makeFolder(arguments.out);
   catchInterrupts();
   return arguments.compare ? compare(arguments, objective, search)
                            : tuneOnce(arguments, objective, search);

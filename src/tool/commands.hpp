@@ -3,8 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
+
+namespace fpc {
+class RunPool;
+}
 
 namespace fpc::tool {
 
@@ -95,6 +100,7 @@ struct TuneArguments {
   bool compare{false};               ///< all methods at equal evaluations
   int seeds{6};                      ///< of the comparison
   std::vector<std::string> methods;  ///< of the comparison, empty: all
+  std::shared_ptr<RunPool> pool;     ///< of the ranks of an MPI job; null: threads
   bool json{false};
   bool no_plot{false};
 };
@@ -110,6 +116,7 @@ struct StudyArguments {
   std::string index;               ///< without a file; empty: ise
   std::string out;                 ///< folder, empty: nothing is written
   int threads{0};                  ///< 0: all cores
+  std::shared_ptr<RunPool> pool;   ///< of the ranks of an MPI job; null: threads
   bool resume{false};
   bool json{false};
   bool no_plot{false};

@@ -1,13 +1,13 @@
 // The command-line tool `fmbpc`.
 #include <CLI/CLI.hpp>
 
-#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <functional>
 
-#include "fmbpc/base/text.hpp"
 #include "tool/commands.hpp"
+#include "tool/ranks.hpp"
+#include "tool/study_options.hpp"
 #include "tool/topic_options.hpp"
 
 namespace {
@@ -187,75 +187,10 @@ void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
   reproduce->callback([&a] { chosen = [&a] { return fpc::tool::reproduce(a); }; });
 }
 
-void addTune(CLI::App& app, fpc::tool::TuneArguments& a) {
-  CLI::App* tune = app.add_subcommand(
-      "tune", "Searches the numbers of a loop file that a tuning file names, on all cores");
-  tune->add_option("LOOP", a.loop, "name of config/loop, or path")->required();
-  tune->add_option("TUNING", a.tuning, "name of config/tuning, or path")->required();
-  tune->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
-      ->allow_extra_args(false);
-  tune->add_option("--out", a.out,
-                   "folder for the tuned loop, tuning.json, history.csv, state, plot");
-  tune->add_option("--method", a.method,
-                   "apso, pso, random, de, cmaes (default: the tuning file's)");
-  tune->add_option("--population", a.population,
-                   "points per generation (default: the tuning file's)");
-  tune->add_option("--evaluations", a.evaluations,
-                   "points in all, each on every scenario (default: the tuning file's)");
-  tune->add_option("--seed", a.seed, "of the search (default: the tuning file's)");
-  tune->add_option("--threads", a.threads, "0: all cores; the answer does not depend on it")
-      ->capture_default_str();
-  tune->add_flag("--resume", a.resume, "go on with what --out holds");
-  tune->add_flag("--compare", a.compare, "all methods at equal evaluations instead of one tuning");
-  tune->add_option("--seeds", a.seeds, "seeds of the comparison")->capture_default_str();
-  tune->add_option("--methods", a.methods, "methods of the comparison (default: all)")
-      ->delimiter(',');
-  tune->add_flag("--json", a.json, "print one JSON object and nothing else");
-  tune->add_flag("--no-plot", a.no_plot, "no plot");
-  tune->footer("Example: fmbpc tune cstr_tracking cstr_law --out results/tuned\n");
-  tune->callback([&a] { chosen = [&a] { return fpc::tool::tune(a); }; });
-}
-
-void addStudy(CLI::App& app, fpc::tool::StudyArguments& a) {
-  CLI::App* study = app.add_subcommand(
-      "study", "Compares loops in pairs over seeds, parameters, noise and records, on all cores");
-  study->add_option("STUDY|LOOP", a.names, "a study of config/study, or loops")->required();
-  study->add_option("--seeds", a.seeds, "FIRST:LAST or a list: of patterns, noise and --vary");
-  study->add_option("--vary", a.vary, "KEY=LOWER:UPPER as factors, or KEY=value:LOWER:UPPER")
-      ->allow_extra_args(false);
-  study->add_option("--noise", a.noise, "OUTPUT=STD, may be repeated")->allow_extra_args(false);
-  study->add_option("--noise-percent", a.noise_percent, "std in percent of the span of setpoints");
-  study->add_option("--set", a.set, "KEY.PATH=VALUE over all loops, may be repeated")
-      ->allow_extra_args(false);
-  study->add_option("--against", a.against, "the loop that the others are paired with");
-  study->add_option("--index", a.index, "what counts, without a study file: ise, iae, rmse, ...");
-  study->add_option("--out", a.out, "folder for study.json, runs.csv, state, distributions.png");
-  study->add_option("--threads", a.threads, "0: all cores; the answer does not depend on it");
-  study->add_flag("--resume", a.resume, "go on with what --out holds");
-  study->add_flag("--json", a.json, "print one JSON object and nothing else");
-  study->add_flag("--no-plot", a.no_plot, "no plot");
-  study->footer("Example: fmbpc study asp_case1 asp_case1_pi_x --seeds 1:8\n");
-  study->callback([&a] { chosen = [&a] { return fpc::tool::study(a); }; });
-}
-
-/// What is wrong with the arguments; for an unknown command what may have been meant.
-std::string wrongWith(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
-  const std::string first = argc > 1 ? argv[1] : "";
-  std::vector<std::string> commands;
-  for (const CLI::App* command : app.get_subcommands(nullptr))
-    commands.push_back(command->get_name());
-  const bool known = std::find(commands.begin(), commands.end(), first) != commands.end();
-  if (first.empty()) return "expected a command: " + fpc::join(commands);
-  if (known || first[0] == '-') return error.what();
-  const auto near = fpc::nearest(first, commands, 1);
-  return "unknown command '" + first + "'" +
-         (near.empty() ? ": expected one of " + fpc::join(commands)
-                       : ", did you mean " + near[0] + "?");
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (!fpc::tool::becomeMpi(argv)) return 1;
   CLI::App app{"Process control with fuzzy model-based predictive control", "fmbpc"};
   app.require_subcommand(1);
   app.set_version_flag("--version", "fmbpc " FMBPC_VERSION);
@@ -277,9 +212,9 @@ int main(int argc, char** argv) {
   fpc::tool::ReproduceArguments reproduce;
   addReproduce(app, reproduce);
   fpc::tool::TuneArguments tune;
-  addTune(app, tune);
+  fpc::tool::addTune(app, tune, chosen);
   fpc::tool::StudyArguments study;
-  addStudy(app, study);
+  fpc::tool::addStudy(app, study, chosen);
   fpc::tool::ReplayArguments replay;
   fpc::tool::addReplay(app, replay, chosen);
   std::vector<std::string> watch_words;
@@ -290,7 +225,7 @@ int main(int argc, char** argv) {
     return chosen();
   } catch (const CLI::ParseError& e) {
     if (e.get_exit_code() == 0) return app.exit(e);
-    std::fprintf(stderr, "fmbpc: %s\n", wrongWith(app, e, argc, argv).c_str());
+    std::fprintf(stderr, "fmbpc: %s\n", fpc::tool::wrongWith(app, e, argc, argv).c_str());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "fmbpc: %s\n", e.what());
   }

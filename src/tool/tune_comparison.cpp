@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
 #include "tool/progress_bar.hpp"
 #include "tool/tune_report.hpp"
@@ -41,6 +40,14 @@ Json curveOf(const TuneResult& result) {
   return curve;
 }
 
+/// Whether there is a state to go on from, as the process sees it that leads.
+bool hasState(RunPool& pool, const std::string& state) {
+  RunPool::Texts there(1);
+  if (pool.leads()) there[0] = fs::exists(state) || fs::exists(state + ".runs") ? "yes" : "no";
+  pool.fill(there, {}, {}, {});
+  return there[0] == "yes";
+}
+
 /// One run; false if it was stopped.
 bool addRun(const TuningObjective& objective, const CompareOptions& options,
             const SearchParams& search, Json& method) {
@@ -50,7 +57,7 @@ bool addRun(const TuningObjective& objective, const CompareOptions& options,
     one.state = (fs::path(options.out) /
                  (wordOf(search.method) + "_" + std::to_string(search.seed) + ".state.json"))
                     .string();
-    one.resume = options.resume && fs::exists(one.state);
+    one.resume = options.resume && hasState(objective.pool(), one.state);
   }
   ProgressBar bar(wordOf(search.method) + " " + std::to_string(search.seed));
   one.progress = [&](int n, double best) {
@@ -91,7 +98,7 @@ Json compareMethods(const TuningObjective& objective, const CompareOptions& opti
                   {"population", options.search.population},
                   {"parameters", objective.size()},
                   {"seeds", options.seeds},
-                  {"threads", options.threads == 0 ? coreCount() : options.threads},
+                  {"threads", objective.pool().width()},
                   {"complete", false},
                   {"before", numberOrNull(objective.untouched().cost)}};
   const bool has_held_out = !objective.tuning().held_out.empty();

@@ -7,7 +7,6 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
 
@@ -68,7 +67,7 @@ void addScores(Rows& rows, const std::string& title, const std::vector<TuningSce
 
 Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json toJson(const TuningObjective& objective, const TunedLoop& tuned, int threads) {
+Json toJson(const TuningObjective& objective, const TunedLoop& tuned) {
   const TuneResult& result = tuned.result;
   const TuningFile& tuning = objective.tuning();
   const double fresh = static_cast<double>(result.history.size());
@@ -83,7 +82,7 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned, int thread
             {"generations", result.generations},
             {"resumed", result.resumed},
             {"complete", !result.stopped},
-            {"threads", threads == 0 ? coreCount() : threads},
+            {"threads", objective.pool().width()},
             {"seconds", result.seconds},
             {"evaluations_per_s", numberOrNull(fresh / result.seconds)},
             {"failures", result.failures},

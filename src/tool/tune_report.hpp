@@ -24,8 +24,7 @@ std::vector<std::string> remarksOf(const TuningObjective& objective, const Tuned
 
 /// Infinite numbers are null.
 nlohmann::ordered_json numberOrNull(double value);
-nlohmann::ordered_json toJson(const TuningObjective& objective, const TunedLoop& tuned,
-                              int threads);
+nlohmann::ordered_json toJson(const TuningObjective& objective, const TunedLoop& tuned);
 std::string toTable(const TuningObjective& objective, const TunedLoop& tuned);
 /// LOOP_tuned.yaml: extends the loop. Returns the file's name.
 std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tuned,
@@ -38,7 +37,6 @@ struct CompareOptions {
   int seeds{6};
   std::string out;
   bool resume{false};
-  int threads{0};
 };
 /// Every method with every seed. Prints nothing; state files in `out`. Stopped: `complete` false.
 nlohmann::ordered_json compareMethods(const TuningObjective& objective,

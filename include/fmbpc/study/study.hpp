@@ -8,16 +8,18 @@
 #include <vector>
 
 #include "fmbpc/study/run_judgement.hpp"
+#include "fmbpc/study/run_pool.hpp"
 #include "fmbpc/study/study_plan.hpp"
 
 namespace fpc {
 
 struct StudyOptions {
   int threads{0};              ///< 0: all cores; the answer does not depend on it
-  std::string state;           ///< file of what is done; empty: none
+  std::string state;           ///< file of what is done; empty: none. Beside it FILE.runs
   bool resume{false};          ///< begin with what the state file holds
   std::function<bool()> stop;  ///< called from several threads; may be empty
   std::function<void(std::size_t done, std::size_t runs)> progress;  ///< may be empty
+  RunPool* pool{nullptr};  ///< where the runs are made; null: `threads` of this process
 };
 
 struct StudyResult {

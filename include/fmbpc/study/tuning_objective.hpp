@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "fmbpc/config/tuning_file.hpp"
+#include "fmbpc/study/run_pool.hpp"
 
 namespace fpc {
 
@@ -27,6 +29,9 @@ class TuningObjective {
   /// threads: 0 = all cores. @throws InputError: a key or signal that the loop has not, a scenario
   /// without what its seed is for, fitness.relative where the untouched loop fails or costs 0.
   TuningObjective(const std::string& loop, TuningFile tuning, const Overrides& set, int threads);
+  /// The same, the runs made in a pool that others may share.
+  TuningObjective(const std::string& loop, TuningFile tuning, const Overrides& set,
+                  std::shared_ptr<RunPool> pool);
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(tuning_.parameters.size()); }
   /// The loop's own numbers (or those of `start`), as shares 0..1 of the ranges; the middle where
@@ -37,8 +42,11 @@ class TuningObjective {
   Overrides changes(const Vector& shares) const;
 
   /// Columns are points in the unit box. Empty if stopped. The answer does not depend on the number
-  /// of threads.
-  std::optional<std::vector<TuningScore>> judge(const Matrix& points, const Stop& stop = {}) const;
+  /// of threads. `known`: what runs are known to have found, point by point and scenario by
+  /// scenario (empty: nothing); `done` is told of each other one.
+  std::optional<std::vector<TuningScore>> judge(const Matrix& points, const Stop& stop = {},
+                                                RunPool::Texts known = {},
+                                                const RunPool::Done& done = {}) const;
   std::optional<TuningScore> judgeHeldOut(const Vector& point, const Stop& stop = {}) const;
   const TuningScore& untouched() const { return untouched_; }
   const TuningScore& untouchedHeldOut() const { return untouched_held_out_; }
@@ -46,6 +54,7 @@ class TuningObjective {
   /// Changes when the loop files, the models and records they name, the tuning file or the
   /// overrides do.
   const std::string& fingerprint() const { return fingerprint_; }
+  RunPool& pool() const { return *pool_; }
 
  private:
   /// A scenario ready to run.
@@ -62,16 +71,21 @@ class TuningObjective {
   std::vector<Case> casesOf(const std::string& loop, const std::vector<TuningScenario>& scenarios);
   Vector startOf() const;
   Run run(const Case& scenario, const Overrides& changes, const Stop& stop) const;
+  std::vector<Run> runAll(const std::vector<Case>& cases, const std::vector<Overrides>& changes,
+                          const Stop& stop, RunPool::Texts known, const RunPool::Done& done) const;
   std::optional<std::vector<TuningScore>> judge(const std::vector<Case>& cases,
                                                 const std::vector<Overrides>& changes,
-                                                const Stop& stop) const;
+                                                const Stop& stop, RunPool::Texts known,
+                                                const RunPool::Done& done) const;
+  static std::string textOf(const Run& run);
+  static Run runOf(const std::optional<std::string>& text);
   TuningScore scoreOf(const std::vector<Run>& runs, std::size_t first, std::size_t count) const;
   void judgeUntouched(std::vector<Case>& cases, TuningScore& untouched) const;
   Overrides valueOverrides(const Vector& shares) const;
 
   TuningFile tuning_;
   Overrides set_;
-  int threads_;
+  std::shared_ptr<RunPool> pool_;
   std::vector<Case> cases_, held_out_;
   Vector start_;
   TuningScore untouched_, untouched_held_out_;

@@ -1,11 +1,13 @@
 #include "fmbpc/control/fmbpc/coincidence.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fpc {
 namespace {
 
 constexpr double kSingular = 1e-12;  // relative size below which a pivot counts as rounding
+constexpr int kWalked = 32;          // steps that are summed one by one
 
 }  // namespace
 
@@ -21,7 +23,31 @@ CoincidenceGains::CoincidenceGains(Eigen::Index n_x, Eigen::Index n_u, Eigen::In
       normal_(n_u, n_u),
       gain_(n_u, n_y),
       move_gain_(n_u, n_u),
+      beyond_(n_x),
       factor_(n_u) {}
+
+void CoincidenceGains::walk(const AffineModel& model, int steps) {
+  for (int i = 0; i < steps; ++i) {
+    sum_ += free_;
+    effect_.noalias() = free_ * model.B;
+    effect_size_ += effect_.cwiseAbs();
+    next_.noalias() = free_ * model.A;
+    free_.swap(next_);
+  }
+}
+
+// False, with nothing done, if powers of A overflow: then only walking keeps the outputs apart.
+bool CoincidenceGains::leap(const AffineModel& model, int steps) {
+  beyond_.compute(model.A, steps);
+  if (!beyond_.power().allFinite() || !beyond_.sum().allFinite()) return false;
+  next_.noalias() = free_ * beyond_.sum();
+  sum_ += next_;
+  effect_.noalias() = next_ * model.B;
+  effect_size_ += effect_.cwiseAbs();
+  next_.noalias() = free_ * beyond_.power();
+  free_.swap(next_);
+  return true;
+}
 
 void CoincidenceGains::predict(const AffineModel& model, int horizon, VectorRef weight_output) {
   free_ = model.C;
@@ -29,13 +55,9 @@ void CoincidenceGains::predict(const AffineModel& model, int horizon, VectorRef 
     if (weight_output[i] == 0.0) free_.row(i).setZero();
   sum_.setZero();
   effect_size_.setZero();
-  for (int i = 0; i < horizon; ++i) {
-    sum_ += free_;
-    effect_.noalias() = free_ * model.B;
-    effect_size_ += effect_.cwiseAbs();
-    next_.noalias() = free_ * model.A;
-    free_.swap(next_);
-  }
+  walk(model, std::min(horizon, kWalked));
+  const int rest = horizon - kWalked;
+  if (rest > 0 && !leap(model, rest)) walk(model, rest);
   effect_.noalias() = sum_ * model.B;
   // An effect that is nothing but the rounding of what cancelled is none.
   effect_ = (effect_.array().abs() > kSingular * effect_size_.array()).select(effect_, 0.0);

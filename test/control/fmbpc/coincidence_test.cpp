@@ -33,6 +33,24 @@ TEST(CoincidenceGains, StackedPredictionEqualsSteppingTheModel) {
   }
 }
 
+TEST(CoincidenceGains, FarHorizonsEqualSteppingTheModel) {
+  for (const int horizon : {32, 33, 48, 180, 1000}) {
+    SCOPED_TRACE("horizon " + std::to_string(horizon));
+    AffineModel model(3, 1, 2);
+    model.A << 0.97, 0.01, 0.2, -0.03, 0.9, 0.1, 0.0, 0.0, 0.0;
+    model.B << 0.4, 0.1, 1.0;
+    model.C << 1.0, 0.0, 0.0, 0.0, 1.0, 0.0;
+    CoincidenceGains gains(3, 1, 2);
+    ASSERT_TRUE(gains.computeWeighted(model, horizon, Vector::Ones(2), Vector::Ones(1)));
+    Vector state = (Vector(3) << 3.0, -2.0, 1.0).finished();
+    const Vector u = Vector::Constant(1, 0.7);
+    const Vector stacked = gains.free() * state + gains.sum() * model.B * u;
+    for (int i = 0; i < horizon; ++i) state = (model.A * state + model.B * u).eval();
+    EXPECT_LT((model.C * state - stacked).cwiseAbs().maxCoeff(), 1e-12 * stacked.norm());
+    EXPECT_LT((gains.effect() - gains.sum() * model.B).norm(), 1e-12 * gains.effect().norm());
+  }
+}
+
 TEST(CoincidenceGains, WeightedInputMinimisesItsCost) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

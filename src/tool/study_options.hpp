@@ -1,0 +1,18 @@
+// Options of the commands that make many runs, which fmbpc_mpi has as well.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "tool/commands.hpp"
+
+namespace fpc::tool {
+
+/// Each sets `chosen` to what the command does once it is parsed.
+void addTune(CLI::App& app, TuneArguments& a, std::function<int()>& chosen);
+void addStudy(CLI::App& app, StudyArguments& a, std::function<int()>& chosen);
+/// What is wrong with the arguments; for an unknown command what may have been meant.
+std::string wrongWith(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv);
+
+}  // namespace fpc::tool
