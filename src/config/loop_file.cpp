@@ -7,6 +7,7 @@
 #include "config/read.hpp"
 #include "config/read_safety.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/config/estimator_section.hpp"
 #include "fmbpc/config/plugins.hpp"
 #include "fmbpc/config/standstill_section.hpp"
 
@@ -86,6 +87,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readClp(root, loop, names);
   readController(root, loop);
   readGuard(root, loop, names);
+  readEstimator(root, loop);
   readPlausibility(root, loop);
   readStandstill(root, loop);
   readModelSection(root, loop);

@@ -4,6 +4,7 @@
 #include "config/read.hpp"
 #include "config/read_safety.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/config/estimator_section.hpp"
 #include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
@@ -80,6 +81,8 @@ PlausibilityFile readPlausibility(YamlSection& root, const LoopFile& loop) {
   params.fallback = actuator.fallback;
   params.hold_samples = actuator.hold_samples;
   params.needs = needsOf(loop);
+  for (const Eigen::Index hidden : readEstimator(root, loop).outputs)
+    params.needs[static_cast<std::size_t>(hidden)] = false;  // estimated, whatever is measured
   double margin = 0.1;
   section.boolean("enabled", params.enabled);
   section.integer("hold_samples", params.hold_samples, -1);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
@@ -15,6 +16,7 @@ using Eigen::Index;
 constexpr const char* kOutside = "outside the model: moves shrink";
 constexpr const char* kFallback = "outside the model: the fallback acts";
 constexpr const char* kOutsideOnly = "outside the model";
+constexpr const char* kOutsideAhead = "what the law expects leaves the model";
 constexpr const char* kLocked = "locked up: the input's bound is drawn in";
 
 bool isLaws(ActionSource source) {
@@ -41,6 +43,7 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
 GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardParams params,
                                      InputLimits limits, PlantInfo plant)
     : inside_(std::move(inside)),
+      plan_(dynamic_cast<const PlanView*>(inside_.get())),
       params_(std::move(params)),
       limits_(std::move(limits)),
       shrunk_(limits_),
@@ -71,6 +74,7 @@ void GuardedController::reset(const Measurement& start) {
   for (LockUpWatch& lock : locks_) lock.reset();
   fallback_ = false;
   above_ = 0;
+  ahead_.reset();
   view_ = {};
 }
 
@@ -81,6 +85,17 @@ double GuardedController::trustAt(const Measurement& now, VectorRef input) {
   point_.segment(n_y, n_u) = input;
   point_.tail(now.disturbances.size()) = now.disturbances;
   return trustOf(model_, point_);
+}
+
+/// Trust along what the law expects.
+void GuardedController::lookAhead(const Measurement& now, const ControllerOutput& output) {
+  ahead_.reset();
+  if (!known_ || !output.ok) return;
+  if (plan_ && plan_->plannedSteps() > 0)
+    ahead_.judge(model_, *plan_, params_.trust_low);
+  else if (output.predictive)
+    ahead_.judge(model_, output.prediction, now.disturbances, params_.trust_low);
+  view_.ahead = ahead_.least();
 }
 
 /// The law goes on from the applied input once the data are back for long enough.
@@ -147,7 +162,10 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     if (allowed != proposed) output.input[i] = allowed;
   }
   view_.acting = view_.acting || fallback_;
-  if (view_.outside) output.remark = kOutsideOnly;
+  if (view_.outside)
+    output.remark = kOutsideOnly;
+  else if (view_.ahead < params_.trust_low && output.remark[0] == 0)
+    output.remark = kOutsideAhead;
   if (!view_.acting) return;
   output.source = ActionSource::kFallback;
   output.predictive = false;
@@ -161,6 +179,7 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
   if (pi_) comeBack(now, present);
   watchLocks(now, setpoint);
   inside_->step(now, setpoint, output);
+  lookAhead(now, output);
   view_.trust = present;
   if (isLaws(output.source)) {
     view_.trust = std::min(present, trustAt(now, output.input));
@@ -176,14 +195,17 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
 
 void GuardedController::refreshSignals() {
   const auto& inner = inside_->signals();
-  if (signals_.size() != inner.size() + 2) {
+  if (signals_.size() != inner.size() + 4) {
     signals_ = inner;
     signals_.emplace_back("model_trust", 1.0);
+    signals_.emplace_back("model_trust_ahead", 1.0);
+    signals_.emplace_back("model_trust_steps", 0.0);
     signals_.emplace_back("locked", 0.0);
   }
   for (std::size_t i = 0; i < inner.size(); ++i) signals_[i].second = inner[i].second;
-  signals_[inner.size()].second = view_.trust;
-  signals_[inner.size() + 1].second = view_.locked ? 1.0 : 0.0;
+  const double own[] = {view_.trust, view_.ahead, static_cast<double>(ahead_.trustedSteps()),
+                        view_.locked ? 1.0 : 0.0};
+  for (std::size_t i = 0; i < std::size(own); ++i) signals_[inner.size() + i].second = own[i];
 }
 
 }  // namespace fpc

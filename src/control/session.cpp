@@ -146,6 +146,8 @@ void ControllerSession::process(const Measurement& m) {
     runLaw(accepted);
     if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
   }
+  if (interruption_ != nullptr && m.input_applied.allFinite() && plausibility_.complete())
+    controller_->lookOn(accepted);
   expectNext();
   last_input_ = answer_.base.input;
 }

@@ -2,8 +2,10 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
+#include "fmbpc/config/estimator_section.hpp"
 #include "fmbpc/config/plausibility_file.hpp"
 #include "fmbpc/config/standstill_section.hpp"
+#include "fmbpc/control/estimating_controller.hpp"
 
 namespace fpc {
 namespace {
@@ -16,9 +18,17 @@ std::unique_ptr<Controller> makeGuarded(const LoopFile& loop) {
                                              loop.simulation.actuator.limits, loop.plant_info);
 }
 
+/// The guarded law, on estimates of what is not measured.
+std::unique_ptr<Controller> makeEstimating(const LoopFile& loop) {
+  std::unique_ptr<Controller> law = makeGuarded(loop);
+  EstimatorParams params = estimatorOf(loop);
+  if (params.outputs.empty()) return law;
+  return std::make_unique<EstimatingController>(std::move(law), std::move(params), loop.plant_info);
+}
+
 /// The law, and around it what watches its sensors if the loop asks for it.
 std::unique_ptr<Controller> makeController(const LoopFile& loop) {
-  std::unique_ptr<Controller> law = makeGuarded(loop);
+  std::unique_ptr<Controller> law = makeEstimating(loop);
   StandstillParams standstill = standstillOf(loop);
   if (standstill.signals.empty()) return law;
   return std::make_unique<StandstillWatch>(std::move(law), std::move(standstill),

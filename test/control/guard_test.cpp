@@ -56,6 +56,7 @@ class Guard : public testing::Test {
   static GuardParams params(bool with_pi = false) {
     GuardParams p;
     p.lock_samples = 0;
+    p.least_move = 0.02;
     p.return_samples = 3;
     p.has_pi = with_pi;
     PiLoop pi;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/horizon_trust.hpp"
 #include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
@@ -17,7 +18,7 @@ struct GuardParams {
   bool enabled{true};
   double trust_low{0.25};   ///< below: the fallback takes over, or moves are smallest
   double trust_high{0.75};  ///< above: the law acts freely (again)
-  double least_move{0.02};  ///< largest move at no trust, in parts of an input's range
+  double least_move{0.25};  ///< largest move at no trust, in parts of an input's range
   int return_samples{10};   ///< so long above trust_high before the law is back
   bool has_pi{false};       ///< without: moves shrink with trust
   PiParams pi;              ///< the fallback
@@ -34,6 +35,7 @@ struct GuardParams {
 struct GuardView {
   double trust{1.0};    ///< least of now and of what the law wants
   bool outside{false};  ///< trust below GuardParams::trust_low
+  double ahead{1.0};    ///< least trust over the horizon of what the law expects
   bool locked{false};   ///< some input is locked up
   bool acting{false};   ///< the input is not the law's
 };
@@ -83,7 +85,8 @@ class LockUpWatch {
 /// - where the guard changes an input the source is `fallback`, there is no prediction, and remark
 ///   says why.
 /// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
-/// then model_trust, locked.
+/// then model_trust, model_trust_ahead (the least over the horizon), model_trust_steps (samples
+/// ahead before it falls below trust_low; see HorizonTrust), locked.
 class GuardedController final : public Controller {
  public:
   /// @throws InputError naming the field.
@@ -93,6 +96,7 @@ class GuardedController final : public Controller {
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
+  void lookOn(const Measurement& now) override { inside_->lookOn(now); }
   bool needsModel() const override { return inside_->needsModel(); }
   bool followsSetpoint() const override { return inside_->followsSetpoint(); }
   void setModel(const TsModel& model) override;
@@ -112,9 +116,11 @@ class GuardedController final : public Controller {
   double worstError(const Measurement& now, const SetpointSource& setpoint) const;
   void shrink(double trust);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
+  void lookAhead(const Measurement& now, const ControllerOutput& output);
   void refreshSignals();
 
   std::unique_ptr<Controller> inside_;
+  const PlanView* plan_;  // of inside_, or null
   GuardParams params_;
   InputLimits limits_, shrunk_;
   PlantInfo plant_;
@@ -126,6 +132,7 @@ class GuardedController final : public Controller {
   bool fallback_{false};
   int above_{};  // samples in a row above trust_high
   Vector point_;
+  HorizonTrust ahead_;
   GuardView view_;
   std::vector<std::pair<std::string, double>> signals_;
 };

@@ -65,6 +65,7 @@ class StandstillWatch final : public Controller {
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
+  void lookOn(const Measurement& now) override { inside_->lookOn(now); }
   bool needsModel() const override { return inside_->needsModel(); }
   bool followsSetpoint() const override { return inside_->followsSetpoint(); }
   void setModel(const TsModel& model) override { inside_->setModel(model); }
