@@ -54,7 +54,7 @@ def study(family, seeds, percent):
             "noise": {"percent_of_span": percent},
             "fitness": {"terms": [{"index": "ise", "output": output} for output in outputs]}}
     with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
-        json.dump(text, file)
+        file.writelines("%s: %s\n" % (key, json.dumps(value)) for key, value in text.items())
         file.flush()
         done = subprocess.run([str(TOOL), "study", file.name, "--json"], capture_output=True, text=True, check=False)
     if done.returncode:

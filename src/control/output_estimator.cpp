@@ -27,8 +27,7 @@ void EstimatorParams::validate(Index n_y) const {
     require(i >= 0 && i < n_y, "estimator.outputs", "outputs of the plant");
   require(static_cast<Index>(outputs.size()) < n_y, "estimator.outputs",
           "at least one output that is measured");
-  require(initial.size() == n_y && initial.allFinite(), "estimator.initial",
-          "finite numbers");
+  require(initial.size() == n_y && initial.allFinite(), "estimator.initial", "finite numbers");
   numbers(initial_std, "initial_std", false);
   numbers(noise_std, "noise_std", false);
   numbers(process_std, "process_std", true);

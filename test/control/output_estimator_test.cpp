@@ -85,12 +85,9 @@ TEST(OutputEstimator, MistakesNameTheirKey) {
   };
   names(errorWith([](EstimatorParams& p) { p.outputs = {0, 1}; }), "estimator.outputs");
   names(errorWith([](EstimatorParams& p) { p.outputs = {2}; }), "estimator.outputs");
-  names(errorWith([](EstimatorParams& p) { p.process_std[0] = 0.0; }),
-        "estimator.process_std");
-  names(errorWith([](EstimatorParams& p) { p.noise_std[1] = -1.0; }),
-        "estimator.noise_std");
-  names(errorWith([](EstimatorParams& p) { p.initial[0] = std::nan(""); }),
-        "estimator.initial");
+  names(errorWith([](EstimatorParams& p) { p.process_std[0] = 0.0; }), "estimator.process_std");
+  names(errorWith([](EstimatorParams& p) { p.noise_std[1] = -1.0; }), "estimator.noise_std");
+  names(errorWith([](EstimatorParams& p) { p.initial[0] = std::nan(""); }), "estimator.initial");
 }
 
 /// Keeps what it was shown.

@@ -8,9 +8,9 @@
 namespace fpc {
 
 /// Trust (see trustOf()) along what a law expects, one sample after the other: the plan that it
-/// shows (PlanView), else its predictive action, the frozen local model under its own feedback, over
-/// kLeastHorizon samples or more (the last feedforward is held). Fixed work, no allocation after the
-/// first sample.
+/// shows (PlanView), else its predictive action, the frozen local model under its own feedback,
+/// over kLeastHorizon samples or more (the last feedforward is held). Fixed work, no allocation
+/// after the first sample.
 class HorizonTrust {
  public:
   void reset();

@@ -21,7 +21,7 @@ struct EstimatorParams {
 /// Extended Kalman filter over the state of a Takagi-Sugeno model: the outputs that are measured
 /// correct all of it. Jacobians from differences, the rules blended anew, so that weights that
 /// change with a state count. x(k+1) = f(x, u, d) + w on the rows of the outputs; y = C x + v.
-/// Source: Jazwinski 1970, section 8.3; scalar updates one output after the other, since the noises
+/// Source: jazwinski1970, section 8.3; scalar updates one output after the other, since the noises
 /// are independent. Per sample rest() or advance(); no allocation after construction.
 /// Symbols: P covariance of the state, Q of w, R of v.
 class OutputEstimator {

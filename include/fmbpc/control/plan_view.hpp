@@ -1,4 +1,4 @@
-// What a law shows of its plan, so that others can judge how far ahead its model may be believed.
+// What a law shows of its plan, so that others can judge how far ahead its model may be trusted.
 #pragma once
 
 #include "fmbpc/base/types.hpp"

@@ -92,8 +92,7 @@ class IteratedLaw final : public InputLaw {
                PredictiveAction& prediction) const override;
   void retune(const FmbpcParams& params) override;
   Eigen::Index plannedSteps() const override { return solver_.inputs().cols(); }
-  void planned(const InternalModel& model, Eigen::Index i,
-               Eigen::Ref<Vector> point) const override;
+  void planned(const InternalModel& model, Eigen::Index i, Eigen::Ref<Vector> point) const override;
 
  private:
   InputLimitedIlqr solver_;

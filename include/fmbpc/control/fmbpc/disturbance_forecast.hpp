@@ -35,8 +35,8 @@ class DisturbanceForecast {
   Matrix past_, future_;  ///< past_: d of sample k in column k mod its columns
   Vector weight_;
   Vector error_, held_error_;  ///< faded sums of squares, of the forecast and of holding
-  double fading_{1.0};                ///< of the squares, per sample; 1: w stays 1
-  Eigen::Index lead_{};               ///< samples ahead at which w is judged
+  double fading_{1.0};         ///< of the squares, per sample; 1: w stays 1
+  Eigen::Index lead_{};        ///< samples ahead at which w is judged
   Eigen::Index period_;
   double pole_;
   std::uint32_t last_step_{};

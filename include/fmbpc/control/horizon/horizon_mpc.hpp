@@ -78,9 +78,9 @@ class HorizonMpc : public Controller {
   Matrix inputs_, past_;  // u and d of the samples since the measured outputs were true, and before
   Vector state_;          // when the measured outputs were true
   Vector present_, correction_, disturbances_, plan_, kept_;
-  StepHeader seen_;     // of the last sample
-  bool fresh_{true};    // the state is to be taken from the next measurement
-  bool anew_{true};     // the plan as well
+  StepHeader seen_;   // of the last sample
+  bool fresh_{true};  // the state is to be taken from the next measurement
+  bool anew_{true};   // the plan as well
   std::vector<std::pair<std::string, double>> signals_;
 };
 
