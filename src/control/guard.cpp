@@ -7,6 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/fuzzy/process_trust.hpp"
 
 namespace fpc {
 namespace {
@@ -18,6 +19,14 @@ constexpr const char* kFallback = "outside the model: the fallback acts";
 constexpr const char* kOutsideOnly = "outside the model";
 constexpr const char* kOutsideAhead = "what the law expects leaves the model";
 constexpr const char* kLocked = "locked up: the input's bound is drawn in";
+
+/// Outputs, an input and disturbances, as models have them.
+void place(const Measurement& now, VectorRef input, Vector& point) {
+  const Index n_y = now.outputs.size(), n_u = input.size();
+  point.head(n_y) = now.outputs;
+  point.segment(n_y, n_u) = input;
+  point.tail(now.disturbances.size()) = now.disturbances;
+}
 
 bool isLaws(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kClipped;
@@ -80,10 +89,7 @@ void GuardedController::reset(const Measurement& start) {
 
 double GuardedController::trustAt(const Measurement& now, VectorRef input) {
   if (!known_) return 1.0;
-  const Index n_y = now.outputs.size(), n_u = input.size();
-  point_.head(n_y) = now.outputs;
-  point_.segment(n_y, n_u) = input;
-  point_.tail(now.disturbances.size()) = now.disturbances;
+  place(now, input, point_);
   return trustOf(model_, point_);
 }
 
@@ -149,7 +155,8 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     pi_->step(now, setpoint, pi_output_);
     output.input = pi_output_.input;
   }
-  shrink(fallback_ ? 1.0 : view_.trust);
+  place(now, now.input_applied, point_);
+  shrink(fallback_ || !known_ ? 1.0 : processTrustOf(model_, point_));
   bool drawn = false;
   for (Index i = 0; i < output.input.size(); ++i) {
     const double before = now.input_applied[i];
@@ -176,14 +183,15 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
                              ControllerOutput& output) {
   view_ = {};
   const double present = trustAt(now, now.input_applied);
-  if (pi_) comeBack(now, present);
+  const double process = known_ ? processTrustOf(model_, point_) : 1.0;
+  if (pi_) comeBack(now, process);
   watchLocks(now, setpoint);
   inside_->step(now, setpoint, output);
   lookAhead(now, output);
   view_.trust = present;
   if (isLaws(output.source)) {
     view_.trust = std::min(present, trustAt(now, output.input));
-    if (pi_ && !fallback_ && present < params_.trust_low) {
+    if (pi_ && !fallback_ && process < params_.trust_low) {
       fallback_ = true;
       pi_->reset(now);
     }

@@ -8,6 +8,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/data_set.hpp"
+#include "fmbpc/fuzzy/process_trust.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
 
 namespace fpc {
@@ -51,13 +52,18 @@ Index signalCount(const TsModel& model) {
   return static_cast<Index>(model.outputs.size() + model.inputs.size() + model.disturbances.size());
 }
 
+bool isInput(const TsModel& model, Index i) {
+  const auto n_y = static_cast<Index>(model.outputs.size());
+  return i >= n_y && i < n_y + static_cast<Index>(model.inputs.size());
+}
+
 /// Distance from the box of the ranges, in parts of each range.
-double beyondRanges(const TsModel& model, VectorRef point) {
+double beyondRanges(const TsModel& model, VectorRef point, bool with_inputs) {
   double square = 0.0;
   for (Index i = 0; i < point.size(); ++i) {
     const SignalInfo& s = signalAt(model, i);
     const double range = s.upper - s.lower;
-    if (!std::isfinite(range) || range <= 0.0) continue;
+    if (!std::isfinite(range) || range <= 0.0 || (isInput(model, i) && !with_inputs)) continue;
     const double beyond = std::max({s.lower - point[i], point[i] - s.upper, 0.0}) / range;
     square += beyond * beyond;
   }
@@ -157,28 +163,44 @@ ModelDomain makeDomain(const DataSet& data, int centres) {
   return domain;
 }
 
-double trustOf(const TsModel& model, VectorRef point) {
+namespace {
+
+/// Squared distance of outputs and disturbances from the nearest centre, scaled.
+double nearestCentre(const TsModel& model, VectorRef point) {
   const ModelDomain& domain = model.domain;
-  if (!point.allFinite()) return 0.0;
-  if (domain.empty()) return fade(beyondRanges(model, point) / kRangeFade);
-  const auto n_y = static_cast<Index>(model.outputs.size());
-  const auto n_u = static_cast<Index>(model.inputs.size());
   double nearest = kInfinity;
   for (Index c = 0; c < domain.centres.cols(); ++c) {
     double square = 0.0;
     for (Index j = 0; j < point.size(); ++j) {
-      const bool input = j >= n_y && j < n_y + n_u;
-      const double apart = input ? 0.0 : (point[j] - domain.centres(j, c)) / domain.scale[j];
+      if (isInput(model, j)) continue;
+      const double apart = (point[j] - domain.centres(j, c)) / domain.scale[j];
       square += apart * apart;
     }
     nearest = std::min(nearest, square);
   }
-  for (Index j = n_y; j < n_y + n_u; ++j) {
+  return nearest;
+}
+
+double trustAt(const TsModel& model, VectorRef point, bool with_inputs) {
+  const ModelDomain& domain = model.domain;
+  if (!point.allFinite()) return 0.0;
+  if (domain.empty()) return fade(beyondRanges(model, point, with_inputs) / kRangeFade);
+  double square = nearestCentre(model, point);
+  for (Index j = 0; j < point.size() && with_inputs; ++j) {
+    if (!isInput(model, j)) continue;
     const double beyond = beyondCentres(domain, j, point[j]);
-    nearest += beyond * beyond;
+    square += beyond * beyond;
   }
   const double width = std::max(kDomainFade * domain.radius, kRangeFade);
-  return fade((std::sqrt(nearest) - domain.radius) / width);
+  return fade((std::sqrt(square) - domain.radius) / width);
+}
+
+}  // namespace
+
+double trustOf(const TsModel& model, VectorRef point) { return trustAt(model, point, true); }
+
+double processTrustOf(const TsModel& model, VectorRef point) {
+  return trustAt(model, point, false);
 }
 
 bool knowsDomain(const TsModel& model) {

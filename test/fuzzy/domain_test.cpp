@@ -9,6 +9,7 @@
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/fuzzy/data_set.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/fuzzy/process_trust.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
 
 namespace fpc {
@@ -107,7 +108,9 @@ TEST(Domain, InputsCountByHowFarTheyAreBeyondAllData) {
   EXPECT_EQ(trustOf(m, at(10.0, 3.0)), 1.0);  // y = 10 was seen, and u = 3, not together
   EXPECT_EQ(trustOf(m, at(5.0, 4.0)), 1.0);
   EXPECT_EQ(trustOf(m, at(10.0, 6.0)), 0.0);
+  EXPECT_EQ(processTrustOf(m, at(10.0, 6.0)), 1.0);
   EXPECT_EQ(trustOf(m, at(30.0, 3.0)), 0.0);
+  EXPECT_EQ(processTrustOf(m, at(30.0, 3.0)), 0.0);
 }
 
 TEST(Domain, SurvivesItsFileAndTheOrderOfThePlant) {

@@ -76,11 +76,11 @@ class LockUpWatch {
 };
 
 /// The law `inside`, and four rules:
-/// - trust is that of the model (trustOf) at the measured outputs, the input in force and the
-///   measured disturbances, and at the input that the law wants; the smaller counts;
-/// - between trust_high and trust_low the largest move shrinks from the actuator's to
-///   `least_move`; below trust_low a PI, if there is one, takes over without a bump until trust has
-///   been above trust_high for `return_samples`, then the law goes on from the applied input;
+/// - trust at the measured outputs, disturbances and the input in force, and at the input that the
+///   law wants: the smaller is said; what is done depends on outputs and disturbances only
+///   (processTrustOf), as the bounds say which inputs are allowed: between trust_high and trust_low
+///   the largest move shrinks to `least_move`; below trust_low a PI, if there is one, takes over
+///   bumplessly until trust has been above trust_high for `return_samples`; then the law goes on;
 /// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in;
 /// - where the guard changes an input the source is `fallback`, there is no prediction, and remark
 ///   says why.
