@@ -85,6 +85,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readClp(root, loop, names);
   readController(root, loop);
   readGuard(root, loop, names);
+  readEstimator(root, loop);
   readPlausibility(root, loop);
   readStandstill(root, loop);
   readModelSection(root, loop);

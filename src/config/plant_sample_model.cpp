@@ -13,7 +13,22 @@ namespace {
 using Eigen::Index;
 
 constexpr int kRestSamples = 10000;
+constexpr double kWhole = 1e-6;   // of a sample
 constexpr double kStill = 1e-12;  // relative change of a state that rests
+
+/// All outputs are measured so many samples late.
+int delayOf(const SimulationParams& params, const std::string& where) {
+  int delay = 0;
+  for (const double& late : params.output_delay_s) {
+    const double samples = late / params.sample_time_s;
+    const auto whole = static_cast<int>(std::lround(samples));
+    require(std::abs(samples - whole) < kWhole, where, "delays of whole samples");
+    require(&late == params.output_delay_s.data() || whole == delay, where,
+            "outputs that are measured equally late");
+    delay = whole;
+  }
+  return delay;
+}
 
 class PlantSampleModel final : public SampleModel {
  public:
@@ -25,8 +40,7 @@ class PlantSampleModel final : public SampleModel {
     const std::string where = "controller.type nmpc with plant " + about.name;
     require(!stepper_ || !stepper_->remembers(), where,
             "a plant whose states say everything: this one has dead times or other memory");
-    for (const double delay : params.output_delay_s)
-      require(delay == 0.0, where, "outputs that are measured without delay");
+    delay_ = delayOf(params, where);
     step_ = params.sample_time_s / about.time_unit_s / integration_steps;
     for (const auto& name : params.outputs) outputs_.push_back(indexOf(about.states, name));
     for (const auto& name : params.measured_disturbances)
@@ -40,6 +54,7 @@ class PlantSampleModel final : public SampleModel {
     for (Vector* v : {&x_, &start_, &sum_, &rate_, &point_}) *v = Vector::Zero(n_);
   }
 
+  int delaySteps() const override { return delay_; }
   Index stateSize() const override { return 2 * n_; }
   Index outputState(Index output) const override {
     return outputs_[static_cast<std::size_t>(output)];
@@ -103,7 +118,7 @@ class PlantSampleModel final : public SampleModel {
 
   std::unique_ptr<Plant> plant_;
   std::unique_ptr<PlantStepper> stepper_;
-  int steps_;
+  int steps_, delay_{};
   double step_{};  // of Runge and Kutta, in the plant's time unit
   Index n_{};
   std::vector<Index> outputs_, measured_, hidden_;

@@ -30,7 +30,7 @@ std::vector<Index> followed(const LoopFile& loop, Index n_y) {
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("guard");
   GuardParams& guard = loop.guard;
-  guard.enabled = root.has("guard");
+  if (!root.has("guard")) guard.lock_samples = 0;
   section.boolean("enabled", guard.enabled);
   section.number("trust_low", guard.trust_low, {0.0, 1.0});
   section.number("trust_high", guard.trust_high, {0.0, 1.0});

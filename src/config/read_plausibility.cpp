@@ -76,6 +76,8 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   params.fallback = actuator.fallback;
   params.hold_samples = actuator.hold_samples;
   params.needs = needsOf(loop);
+  for (const Eigen::Index hidden : loop.estimator.outputs)
+    params.needs[static_cast<std::size_t>(hidden)] = false;  // estimated, whatever is measured
   double margin = 0.1;
   section.boolean("enabled", params.enabled);
   section.integer("hold_samples", params.hold_samples, -1);

@@ -7,6 +7,7 @@
 
 namespace fpc {
 
+void readEstimator(YamlSection& root, LoopFile& loop);
 void readGateway(YamlSection& root, LoopFile& loop);
 void readPlausibility(YamlSection& root, LoopFile& loop);
 void readStandstill(YamlSection& root, LoopFile& loop);

@@ -8,6 +8,8 @@ bool Controller::retune(const Settings& /*settings*/) { return false; }
 
 bool Controller::adapt(bool /*on*/) { return false; }
 
+void Controller::lookOn(const Measurement& /*now*/) {}
+
 void Controller::setModel(const TsModel& /*model*/) {}
 
 bool Controller::mayBeSent(VectorRef /*input*/) const { return true; }

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/control/pi/pi.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/fuzzy/process_trust.hpp"
 
 namespace fpc {
 namespace {
@@ -16,7 +18,16 @@ using Eigen::Index;
 constexpr const char* kOutside = "outside the model: moves shrink";
 constexpr const char* kFallback = "outside the model: the fallback acts";
 constexpr const char* kOutsideOnly = "outside the model";
+constexpr const char* kOutsideAhead = "what the law expects leaves the model";
 constexpr const char* kLocked = "locked up: the input's bound is drawn in";
+
+/// Outputs, an input and disturbances, as models have them.
+void place(const Measurement& now, VectorRef input, Vector& point) {
+  const Index n_y = now.outputs.size(), n_u = input.size();
+  point.head(n_y) = now.outputs;
+  point.segment(n_y, n_u) = input;
+  point.tail(now.disturbances.size()) = now.disturbances;
+}
 
 bool isLaws(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kClipped;
@@ -42,6 +53,7 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
 GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardParams params,
                                      InputLimits limits, PlantInfo plant)
     : ControllerAround(std::move(inside), "guard"),
+      plan_(dynamic_cast<const PlanView*>(inside_.get())),
       params_(std::move(params)),
       limits_(std::move(limits)),
       shrunk_(limits_),
@@ -71,16 +83,25 @@ void GuardedController::reset(const Measurement& start) {
   for (LockUpWatch& lock : locks_) lock.reset();
   fallback_ = false;
   above_ = 0;
+  ahead_.reset();
   view_ = {};
 }
 
 double GuardedController::trustAt(const Measurement& now, VectorRef input) {
   if (!known_) return 1.0;
-  const Index n_y = now.outputs.size(), n_u = input.size();
-  point_.head(n_y) = now.outputs;
-  point_.segment(n_y, n_u) = input;
-  point_.tail(now.disturbances.size()) = now.disturbances;
+  place(now, input, point_);
   return trustOf(model_, point_);
+}
+
+/// Trust along what the law expects.
+void GuardedController::lookAhead(const Measurement& now, const ControllerOutput& output) {
+  ahead_.reset();
+  if (!known_ || !output.ok) return;
+  if (plan_ && plan_->plannedSteps() > 0)
+    ahead_.judge(model_, *plan_, params_.trust_low);
+  else if (output.predictive)
+    ahead_.judge(model_, output.prediction, now.disturbances, params_.trust_low);
+  view_.ahead = ahead_.least();
 }
 
 /// The law goes on from the applied input once the data are back for long enough.
@@ -134,7 +155,8 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     pi_->step(now, setpoint, pi_output_);
     output.input = pi_output_.input;
   }
-  shrink(fallback_ ? 1.0 : view_.trust);
+  place(now, now.input_applied, point_);
+  shrink(fallback_ || !known_ ? 1.0 : processTrustOf(model_, point_));
   bool drawn = false;
   for (Index i = 0; i < output.input.size(); ++i) {
     const double before = now.input_applied[i];
@@ -147,7 +169,10 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     if (allowed != proposed) output.input[i] = allowed;
   }
   view_.acting = view_.acting || fallback_;
-  if (view_.outside) output.remark = kOutsideOnly;
+  if (view_.outside)
+    output.remark = kOutsideOnly;
+  else if (view_.ahead < params_.trust_low && output.remark[0] == 0)
+    output.remark = kOutsideAhead;
   if (!view_.acting) return;
   output.source = ActionSource::kFallback;
   output.predictive = false;
@@ -158,13 +183,15 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
                              ControllerOutput& output) {
   view_ = {};
   const double present = trustAt(now, now.input_applied);
-  if (pi_) comeBack(now, present);
+  const double process = known_ ? processTrustOf(model_, point_) : 1.0;
+  if (pi_) comeBack(now, process);
   watchLocks(now, setpoint);
   inside_->step(now, setpoint, output);
+  lookAhead(now, output);
   view_.trust = present;
   if (isLaws(output.source)) {
     view_.trust = std::min(present, trustAt(now, output.input));
-    if (pi_ && !fallback_ && present < params_.trust_low) {
+    if (pi_ && !fallback_ && process < params_.trust_low) {
       fallback_ = true;
       pi_->reset(now);
     }
@@ -176,14 +203,17 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
 
 void GuardedController::refreshSignals() {
   const auto& inner = inside_->signals();
-  if (signals_.size() != inner.size() + 2) {
+  if (signals_.size() != inner.size() + 4) {
     signals_ = inner;
     signals_.emplace_back("model_trust", 1.0);
+    signals_.emplace_back("model_trust_ahead", 1.0);
+    signals_.emplace_back("model_trust_steps", 0.0);
     signals_.emplace_back("locked", 0.0);
   }
   for (std::size_t i = 0; i < inner.size(); ++i) signals_[i].second = inner[i].second;
-  signals_[inner.size()].second = view_.trust;
-  signals_[inner.size() + 1].second = view_.locked ? 1.0 : 0.0;
+  const double own[] = {view_.trust, view_.ahead, static_cast<double>(ahead_.trustedSteps()),
+                        view_.locked ? 1.0 : 0.0};
+  for (std::size_t i = 0; i < std::size(own); ++i) signals_[inner.size() + i].second = own[i];
 }
 
 }  // namespace fpc

@@ -176,6 +176,7 @@ bool Plausibility::replace(std::size_t signal) {
 Verdict Plausibility::look(const Measurement& now) {
   bool any = false, doubted = false, repaired = true;
   accepted_ = now;
+  complete_ = true;
   const auto first = static_cast<Eigen::Index>(n_y_);
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     Memory& signal = signals_[i];
@@ -191,6 +192,7 @@ Verdict Plausibility::look(const Measurement& now) {
     ++signal.since_good;
     any = true;
     const bool replaced = replace(i);
+    complete_ = complete_ && replaced;
     if (!needed_[i]) continue;
     doubted = true;
     repaired = repaired && replaced && asked_[i].substitute != Substitute::kHold;

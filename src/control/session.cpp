@@ -159,6 +159,8 @@ void ControllerSession::process(const Measurement& m) {
     runLaw(accepted);
     if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
   }
+  if (interruption_ != nullptr && m.input_applied.allFinite() && plausibility_.complete())
+    controller_->lookOn(accepted);
   if (remark_due_ && *output_.remark == '\0') output_.remark = model_remark_.c_str();
   if (*output_.remark == '\0') output_.remark = reaction().c_str();
   remark_due_ = false;

@@ -2,6 +2,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
+#include "fmbpc/control/estimating_controller.hpp"
 #include "fmbpc/control/guard.hpp"
 #include "fmbpc/control/standstill.hpp"
 
@@ -16,9 +17,16 @@ std::unique_ptr<Controller> makeGuarded(const LoopFile& loop) {
                                              loop.simulation.actuator.limits, loop.plant_info);
 }
 
+/// The guarded law, on estimates of what is not measured.
+std::unique_ptr<Controller> makeEstimating(const LoopFile& loop) {
+  std::unique_ptr<Controller> law = makeGuarded(loop);
+  if (loop.estimator.outputs.empty()) return law;
+  return std::make_unique<EstimatingController>(std::move(law), loop.estimator, loop.plant_info);
+}
+
 /// The law, and around it what watches its sensors if the loop asks for it.
 std::unique_ptr<Controller> makeController(const LoopFile& loop) {
-  std::unique_ptr<Controller> law = makeGuarded(loop);
+  std::unique_ptr<Controller> law = makeEstimating(loop);
   if (loop.standstill.signals.empty()) return law;
   return std::make_unique<StandstillWatch>(std::move(law), loop.standstill,
                                            loop.simulation.actuator.limits, loop.plant_info);

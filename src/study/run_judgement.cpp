@@ -78,11 +78,20 @@ double largestMove(const RunRecord& record) {
   return largest;
 }
 
-double leastOutput(const RunRecord& record) {
+/// The output that the study judges first; without one the plant's first.
+std::size_t judgedOutput(const StudyFile& study, const LoopFile& loop) {
+  const auto& outputs = loop.plant_info.outputs;
+  for (const FitnessTerm& term : study.fitness.terms)
+    for (std::size_t i = 0; i < outputs.size(); ++i)
+      if (outputs[i].name == term.signal) return i;
+  return 0;
+}
+
+double leastOutput(const RunRecord& record, std::size_t output) {
   double least = kInfinity;
   for (const auto& sample : record.samples)
-    if (sample.measurement.outputs.size() > 0)
-      least = std::min(least, sample.measurement.outputs[0]);
+    if (sample.measurement.outputs.size() > static_cast<Index>(output))
+      least = std::min(least, sample.measurement.outputs[static_cast<Index>(output)]);
   return least;
 }
 
@@ -145,7 +154,7 @@ RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord re
   };
   judged.cost = fitness(study.fitness, loop, record);
   judged.move = meanMove(summary);
-  judged.least = leastOutput(record);
+  judged.least = leastOutput(record, judgedOutput(study, loop));
   judged.largest_move = largestMove(record);
   if (!std::isfinite(judged.cost)) note(RunFailure::kDiverged) = record.samples.size();
   note(RunFailure::kLocked) = lockedSamples(loop, record, study.locked_samples);

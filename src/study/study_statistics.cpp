@@ -38,6 +38,7 @@ LoopStatistics statisticsOfLoop(const StudyPlan& plan, const StudyResult& result
     costs.push_back(run->cost);
     moves.push_back(run->move);
     s.largest_move = std::max(s.largest_move, run->largest_move);
+    s.least = s.runs == 1 ? run->least : std::min(s.least, run->least);
     if (run->cost > s.worst) {
       s.worst = run->cost;
       s.worst_case = plan.cases()[c].name;

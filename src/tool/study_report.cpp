@@ -32,6 +32,7 @@ Json loopJson(const LoopStatistics& loop) {
           {"worst_case", loop.worst_case},
           {"median_move", numberOrNull(loop.median_move)},
           {"largest_move", numberOrNull(loop.largest_move)},
+          {"least", numberOrNull(loop.least)},
           {"failures", failuresJson(loop)},
           {"failing_cases", loop.failing_cases},
           {"trouble", loop.trouble}};
@@ -65,8 +66,8 @@ std::string interval(double lower, double upper) {
 std::string percent(double share) { return shortText(100.0 * share) + " %"; }
 
 Rows loopRows(const StudyStatistics& statistics) {
-  Rows rows{{"loop", "runs", "median", "quartiles", "worst", "in", "move", "diverged", "locked",
-             "violated", "held", "out of model"}};
+  Rows rows{{"loop", "runs", "median", "quartiles", "worst", "in", "move", "largest move", "least",
+             "diverged", "locked", "violated", "held", "out of model"}};
   for (const auto& loop : statistics.loops) {
     std::vector<std::string> row{loop.name,
                                  std::to_string(loop.runs),
@@ -74,7 +75,9 @@ Rows loopRows(const StudyStatistics& statistics) {
                                  interval(loop.lower_quartile, loop.upper_quartile),
                                  shortText(loop.worst),
                                  loop.worst_case,
-                                 shortText(loop.median_move)};
+                                 shortText(loop.median_move),
+                                 shortText(loop.largest_move),
+                                 shortText(loop.least)};
     for (const std::size_t count : loop.failures) row.push_back(std::to_string(count));
     rows.push_back(std::move(row));
   }

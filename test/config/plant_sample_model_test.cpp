@@ -52,6 +52,27 @@ TEST(PlantSampleModel, TheLocalLoopInsideThePlantIsPartOfIt) {
   EXPECT_LE(worstError(loop, 100, 8), 1e-6);
 }
 
+TEST(PlantSampleModel, KnowsHowLateTheOutputsAreMeasured) {
+  LoopFile loop = readLoop("cstr_tracking");
+  EXPECT_EQ(makePlantSampleModel(loop.simulation, 4)->delaySteps(), 5);
+  EXPECT_EQ(makePlantSampleModel(readLoop("surge_tank_up").simulation, 1)->delaySteps(), 0);
+  loop.simulation.output_delay_s = {33.0};  // 5.5 samples
+  EXPECT_THROW(makePlantSampleModel(loop.simulation, 4), InputError);
+}
+
+// What the law with the true equations makes of late measurements: the load is half gone.
+TEST(PlantSampleModel, LateMeasurementsCorrectTheStateOfTheirOwnTime) {
+  const auto squares = [](const char* name) {
+    double sum = 0.0;
+    for (const auto& sample : runLoop(readLoop(name)).samples) {
+      const double error = sample.measurement.outputs[0] - 0.1;
+      sum += error * error;
+    }
+    return sum;
+  };
+  EXPECT_LE(squares("cstr_disturbance_nmpc"), 0.5 * squares("cstr_disturbance"));
+}
+
 TEST(PlantSampleModel, StatesThatAreNotMeasuredRestUnderTheInputInForce) {
   const LoopFile loop = readLoop("surge_tank_up");
   const auto model = makePlantSampleModel(loop.simulation, 1);

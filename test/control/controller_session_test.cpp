@@ -222,6 +222,27 @@ TEST_F(ControllerSessionRing, OneThatDoesNotKnowWhatWasAskedHoldsUntilItIsReleas
   EXPECT_EQ(session->resetReason(), "first sample is 7; released");
 }
 
+TEST_F(ControllerSessionRing, TheLawLooksOnWhileOthersHaveTheInput) {
+  Measurement unknown = sample(0);
+  unknown.outputs[0] = kNaN;
+  session->receive(unknown);  // never measured: nothing to look at
+  session->receive(sample(1));
+  session->manual(true);
+  session->receive(sample(2));
+  session->receive(sample(3));
+  session->manual(false);
+  session->receive(sample(4));
+  Measurement bad = sample(5);
+  bad.outputs[0] = kNaN;
+  session->receive(bad);  // looks at the last good value
+  session->receive(sample(6));
+  session->plantTakesActions(false);
+  session->receive(sample(7));
+  EXPECT_EQ(law->looks, (Steps{2, 3, 5, 7}));
+  EXPECT_EQ(law->steps, (Steps{1, 4, 6}));
+  EXPECT_EQ(law->resets, (Steps{1, 4, 6}));
+}
+
 TEST_F(ControllerSessionRing, AnEarlierClockOfThePlantDoesNotStopIt) {
   session->announce(9);
   session->receive(sample(0, 9));

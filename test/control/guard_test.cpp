@@ -58,6 +58,7 @@ class Guard : public testing::Test {
   static GuardParams params(bool with_pi = false) {
     GuardParams p;
     p.lock_samples = 0;
+    p.least_move = 0.02;
     p.return_samples = 3;
     if (!with_pi) return p;
     PiLoop pi;
@@ -106,10 +107,14 @@ TEST_F(Guard, OutsideMovesShrinkToTheLeast) {
   EXPECT_EQ(guard->signals().front().second, 0.0);
 }
 
-TEST_F(Guard, AWishOutsideTheDataCountsAsWell) {
+TEST_F(Guard, AWishOutsideTheDataIsSaidAndGranted) {
   make(params());
   law->wish = 1400.0;  // two thirds of the range beyond
-  EXPECT_DOUBLE_EQ(step(0, 2000.0, 990.0), 990.0 + 32.0);
+  EXPECT_DOUBLE_EQ(step(0, 2000.0, 990.0), 1400.0);
+  EXPECT_EQ(guard->view().trust, 0.0);
+  EXPECT_TRUE(guard->view().outside);
+  EXPECT_STREQ(out.remark, "outside the model");
+  EXPECT_EQ(out.source, ActionSource::kBase);
 }
 
 TEST_F(Guard, BetweenTheThresholdsMovesShrinkInProportion) {
@@ -117,11 +122,9 @@ TEST_F(Guard, BetweenTheThresholdsMovesShrinkInProportion) {
   p.trust_low = 0.0;
   p.trust_high = 1.0;
   make(p);
-  law->wish = 1600.0;
   law->wish = 0.0;
   const double moved = 900.0 - step(0, 2250.0, 900.0);  // an eighth of the range: trust 0.5
-  EXPECT_LT(guard->view().trust, 0.5);                  // the wish is outside, too
-  EXPECT_NEAR(moved, (0.02 + 0.98 * guard->view().trust) * 1600.0, 1e-9);
+  EXPECT_NEAR(moved, (0.02 + 0.98 * 0.5) * 1600.0, 1e-9);
 }
 
 TEST_F(Guard, ThePiTakesOverWithoutABumpAndTheLawComesBackWithoutOne) {

@@ -72,13 +72,18 @@ struct FakeLaw final : Controller {
     output.remark = "";
     if (spoil) spoil(output);
   }
+  void lookOn(const Measurement& now) override {
+    ASSERT_TRUE(now.outputs.allFinite() && now.disturbances.allFinite() &&
+                now.input_applied.allFinite());
+    looks.push_back(now.header.step);
+  }
   bool needsModel() const override { return needs_model; }
   void setModel(const TsModel& model) override {
     if (model.name == "bad") throw InputError("model.name: expected a good one");
     models.push_back(model.name);
   }
 
-  std::vector<std::uint32_t> resets, steps;
+  std::vector<std::uint32_t> resets, steps, looks;
   std::vector<std::string> models;
   Vector seen_setpoint;
   bool needs_model{false};

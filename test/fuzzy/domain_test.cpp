@@ -9,6 +9,7 @@
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/fuzzy/data_set.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/fuzzy/process_trust.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
 
 namespace fpc {
@@ -25,15 +26,16 @@ DataSet ring() {
   return data;
 }
 
-TsModel model() {
+/// Of y and of a second signal, which is a disturbance or an input.
+TsModel model(SignalKind second = SignalKind::kDisturbance) {
   TsModel m;
   m.name = "ring";
   m.sample_time_s = 1.0;
   const double infinite = std::numeric_limits<double>::infinity();
   m.outputs = {{"y", "m", -infinite, infinite}};
-  m.inputs = {{"u", "A", -infinite, infinite}};
+  (second == SignalKind::kInput ? m.inputs : m.disturbances) = {{"u", "A", -infinite, infinite}};
   OutputModel submodel;
-  submodel.regressors = {{SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 0}};
+  submodel.regressors = {{SignalKind::kOutput, 0, 0}, {second, 0, 0}};
   Rule rule;
   rule.coefficients = Vector::Constant(2, 0.5);
   submodel.rules = {rule};
@@ -56,6 +58,17 @@ TEST(Domain, EveryDatumIsInsideAndFarPointsAreNot) {
   EXPECT_EQ(trustOf(m, at(std::nan(""), 3.0)), 0.0);
 }
 
+TEST(Domain, OneStrayRowIsNotWhereTheDataAre) {
+  DataSet data = ring();
+  data.values.row(7) << 40.0, 3.0;
+  TsModel m = model();
+  m.domain = makeDomain(data, 24);
+  EXPECT_EQ(m.domain.centres.cols(), 23);
+  EXPECT_EQ(trustOf(m, at(40.0, 3.0)), 0.0);
+  for (Eigen::Index k = 0; k < data.rows(); ++k)
+    EXPECT_EQ(trustOf(m, data.values.row(k).transpose()), k == 7 ? 0.0 : 1.0) << k;
+}
+
 TEST(Domain, TrustFallsMonotonicallyFromTheSurfaceOfABall) {
   TsModel m = model();
   m.domain.centres = at(0.0, 0.0);
@@ -65,6 +78,8 @@ TEST(Domain, TrustFallsMonotonicallyFromTheSurfaceOfABall) {
   EXPECT_NEAR(trustOf(m, at(1.5, 0.0)), 0.5, 1e-12);
   EXPECT_NEAR(trustOf(m, at(0.0, 3.0)), 0.5, 1e-12);
   EXPECT_EQ(trustOf(m, at(2.0, 0.0)), 0.0);
+  m.domain.radius = 0.05;  // of a dense record: a quarter of the ranges counts
+  EXPECT_NEAR(trustOf(m, at(2.0 * (0.05 + 0.125), 0.0)), 0.5, 1e-12);
 }
 
 TEST(Domain, WithoutOneTheRangesCount) {
@@ -87,8 +102,19 @@ TEST(Domain, ASignalThatNeverMovesDoesNotCount) {
   EXPECT_EQ(trustOf(m, at(10.0, 77.0)), trustOf(m, at(10.0, 2.0)));
 }
 
+TEST(Domain, InputsCountByHowFarTheyAreBeyondAllData) {
+  TsModel m = model(SignalKind::kInput);
+  m.domain = makeDomain(ring(), 24);
+  EXPECT_EQ(trustOf(m, at(10.0, 3.0)), 1.0);  // y = 10 was seen, and u = 3, not together
+  EXPECT_EQ(trustOf(m, at(5.0, 4.0)), 1.0);
+  EXPECT_EQ(trustOf(m, at(10.0, 6.0)), 0.0);
+  EXPECT_EQ(processTrustOf(m, at(10.0, 6.0)), 1.0);
+  EXPECT_EQ(trustOf(m, at(30.0, 3.0)), 0.0);
+  EXPECT_EQ(processTrustOf(m, at(30.0, 3.0)), 0.0);
+}
+
 TEST(Domain, SurvivesItsFileAndTheOrderOfThePlant) {
-  TsModel m = model();
+  TsModel m = model(SignalKind::kInput);
   m.domain = makeDomain(ring(), 5);
   const TsModel read = parseModel(writeModel(m), "ring.yaml");
   EXPECT_EQ(read.domain.centres, m.domain.centres);

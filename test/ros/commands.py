@@ -57,7 +57,7 @@ class Commands(unittest.TestCase):
 
         folder = recorded.wait().data
         with tempfile.TemporaryDirectory() as reference:
-            ring.run_in_process("asp_case1", reference, rospy.get_param("~set").split() + [
+            ring.run_in_process(rospy.get_param("~loop"), reference, rospy.get_param("~set").split() + [
                 "setpoint.commands=" + key(SETPOINTS), "disturbance.commands=" + key(DISTURBANCES)])
             ring.assert_same_run(self, folder, reference)
         for topic, commands in (("setpoint_effect", SETPOINTS), ("disturbance_effect", DISTURBANCES)):

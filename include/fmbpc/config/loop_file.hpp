@@ -8,6 +8,7 @@
 
 #include "fmbpc/config/gateway_params.hpp"
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "fmbpc/control/estimator_params.hpp"
 #include "fmbpc/control/guard_params.hpp"
 #include "fmbpc/control/plausibility_params.hpp"
 #include "fmbpc/control/registry.hpp"
@@ -119,6 +120,7 @@ struct LoopFile {
   GuardParams guard;                                   ///< around a law with a model
   PlausibilityParams plausibility;                     ///< what a measurement may be
   StuckParams stuck;            ///< section plausibility: inputs that do not follow
+  EstimatorParams estimator;    ///< around a law with a model; without outputs: none
   StandstillParams standstill;  ///< around any law; without signals: none
   GatewayParams gateway;        ///< of an external plant
   bool has_clp{false};

@@ -37,6 +37,10 @@ class Controller {
   /// Works in fixed time without allocation; limits hold whatever happens inside.
   virtual void step(const Measurement& now, const SetpointSource& setpoint,
                     ControllerOutput& output) = 0;
+  /// A sample at which somebody else has the inputs (a person, a hold): the law asks for nothing,
+  /// but may keep following the process, so that reset() at the very next sample finds its hidden
+  /// states where they are. Finite; without allocation. Default: nothing.
+  virtual void lookOn(const Measurement& now);
   virtual bool needsModel() const { return false; }
   /// False for an open-loop experiment: setpoints and references are then recorded as NaN.
   virtual bool followsSetpoint() const { return true; }

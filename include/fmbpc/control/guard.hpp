@@ -9,6 +9,7 @@
 
 #include "fmbpc/control/controller_around.hpp"
 #include "fmbpc/control/guard_params.hpp"
+#include "fmbpc/control/horizon_trust.hpp"
 
 namespace fpc {
 
@@ -18,6 +19,7 @@ class PiController;
 struct GuardView {
   double trust{1.0};    ///< least of now and of what the law wants
   bool outside{false};  ///< trust below GuardParams::trust_low
+  double ahead{1.0};    ///< least trust over the horizon of what the law expects
   bool locked{false};   ///< some input is locked up
   bool acting{false};   ///< the input is not the law's
 };
@@ -58,16 +60,17 @@ class LockUpWatch {
 };
 
 /// The law `inside`, and four rules:
-/// - trust is that of the model (trustOf) at the measured outputs, the input in force and the
-///   measured disturbances, and at the input that the law wants; the smaller counts;
-/// - between trust_high and trust_low the largest move shrinks from the actuator's to
-///   `least_move`; below trust_low a PI, if there is one, takes over without a bump until trust has
-///   been above trust_high for `return_samples`, then the law goes on from the applied input;
+/// - trust at the measured outputs, disturbances and the input in force, and at the input that the
+///   law wants: the smaller is said; what is done depends on outputs and disturbances only
+///   (processTrustOf), as the bounds say which inputs are allowed: between trust_high and trust_low
+///   the largest move shrinks to `least_move`; below trust_low a PI, if there is one, takes over
+///   bumplessly until trust has been above trust_high for `return_samples`; then the law goes on;
 /// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in;
 /// - where the guard changes an input the source is `fallback`, there is no prediction, and remark
 ///   says why.
 /// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
-/// then model_trust, locked.
+/// then model_trust, model_trust_ahead (the least over the horizon), model_trust_steps (samples
+/// ahead before it falls below trust_low; see HorizonTrust), locked.
 class GuardedController final : public ControllerAround {
  public:
   /// @throws InputError naming the field.
@@ -88,8 +91,10 @@ class GuardedController final : public ControllerAround {
   double worstError(const Measurement& now, const SetpointSource& setpoint) const;
   void shrink(double trust);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
+  void lookAhead(const Measurement& now, const ControllerOutput& output);
   void refreshSignals();
 
+  const PlanView* plan_;  // of inside_, or null
   GuardParams params_;
   InputLimits limits_, shrunk_;
   PlantInfo plant_;
@@ -101,6 +106,7 @@ class GuardedController final : public ControllerAround {
   bool fallback_{false};
   int above_{};  // samples in a row above trust_high
   Vector point_;
+  HorizonTrust ahead_;
   GuardView view_;
   std::vector<std::pair<std::string, double>> signals_;
 };

@@ -15,7 +15,7 @@ struct GuardParams {
   bool enabled{true};
   double trust_low{0.25};              ///< below: the fallback takes over, or moves are smallest
   double trust_high{0.75};             ///< above: the law acts freely (again)
-  double least_move{0.02};             ///< largest move at no trust, in parts of an input's range
+  double least_move{0.25};             ///< largest move at no trust, in parts of an input's range
   int return_samples{10};              ///< so long above trust_high before the law is back
   std::shared_ptr<const PiParams> pi;  ///< the fallback; without: moves shrink with trust
   int lock_samples{25};                ///< an input so long at its bound is suspected; 0: never

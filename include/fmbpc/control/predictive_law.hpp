@@ -10,6 +10,7 @@
 
 #include "fmbpc/control/bumpless_transfer.hpp"
 #include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/plan_view.hpp"
 #include "fmbpc/control/reference.hpp"
 
 namespace fpc {
@@ -51,6 +52,9 @@ class LawCore {
   /// Number `which` of the signals of an output.
   virtual double signal(Eigen::Index output, std::size_t which) const = 0;
   virtual const Vector& referencePole() const = 0;  ///< n_y, a_r
+  /// See PlanView; none by default.
+  virtual Eigen::Index plannedSteps() const { return 0; }
+  virtual void planned(Eigen::Index /*i*/, Eigen::Ref<Vector> /*point*/) const {}
   virtual void adoptTuning() {}  ///< a tuning that was prepared counts from now on
 };
 
@@ -76,12 +80,16 @@ void readPredictiveLaw(YamlSection& section, const ControllerContext& loop,
 /// If anything is not finite, or the core is in trouble, the last applied input is held (clipped),
 /// ok is false, and there is no prediction. signals(): those of the core for each output, and
 /// NAME_unclipped of each input.
-class PredictiveLaw : public Controller {
+class PredictiveLaw : public Controller, public PlanView {
  public:
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
   bool needsModel() const override { return true; }
+  Eigen::Index plannedSteps() const override { return inRun() ? core_->plannedSteps() : 0; }
+  void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {
+    core_->planned(i, point);
+  }
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
 
  protected:

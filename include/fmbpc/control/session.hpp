@@ -50,7 +50,9 @@ enum class Receipt {
 /// Rules, in this order, for each measurement:
 /// - wrong sizes: dropped and counted; no model yet: not ready, the plant will send it again;
 /// - old, of an earlier run, repeated: as StepGate says;
-/// - manual: the person's input inside the limits; the controller is reset when auto is back;
+/// - manual: the person's input inside the limits; the controller looks on, as whenever its law
+/// does
+///   not run, and is reset when auto is back;
 /// - the plant takes no actions: its own input is sent back, source held, and the
 ///   controller is reset when it takes them again;
 /// - a signal that the law needs is not accepted (Plausibility: no number, out of range,

@@ -25,10 +25,12 @@ struct ModelDomain {
 /// left out. Works on at most 5000 rows, evenly spaced.
 ModelDomain makeDomain(const DataSet& data, int centres = 60);
 
-/// How far a model is trusted at one point, 0..1: 1 inside a ball, then (1 + cos(pi t)) / 2 with t
-/// from 0 at its surface to 1 at kDomainFade radii further. Without a domain the same of the
-/// distance from the box of the ranges, in parts of each range, over kRangeFade. No allocation.
-/// Points: n, outputs, inputs, disturbances of the model.
+/// How far a model is trusted at one point, 0..1: 1 inside a ball, as 99 % of its data are, then
+/// (1 + cos(pi t)) / 2 with t from 0 at its surface to 1 at kDomainFade radii, or kRangeFade of the
+/// ranges, further, whatever is more. Inputs count by how far they are beyond all their data, not
+/// by how near to a datum: a law that may only repeat the inputs of a record cannot act. Without a
+/// domain the same of the distance from the box of the ranges, in parts of each range, over
+/// kRangeFade. No allocation. Points: n, outputs, inputs, disturbances of the model.
 double trustOf(const TsModel& model, VectorRef point);
 constexpr double kDomainFade = 1.0;
 constexpr double kRangeFade = 0.25;

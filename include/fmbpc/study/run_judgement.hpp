@@ -23,7 +23,7 @@ const char* wordOf(RunFailure failure);
 struct RunJudgement {
   double cost{};          ///< infinite if the run diverged
   double move{};          ///< mean |move| of all inputs, each in parts of its range
-  double least{};         ///< least of the first output
+  double least{};         ///< least of the output that is judged first
   double largest_move{};  ///< of any input, in its unit
   std::vector<std::uint64_t> failures = std::vector<std::uint64_t>(kRunFailures, 0);  ///< samples
   std::string trouble;  ///< of a run that could not be made, in words

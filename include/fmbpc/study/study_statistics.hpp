@@ -15,6 +15,7 @@ struct LoopStatistics {
   double median{}, lower_quartile{}, upper_quartile{}, worst{};
   std::string worst_case;  ///< its name, with the seed
   double median_move{}, largest_move{};
+  double least{};                          ///< of all runs, of the output that is judged first
   std::vector<std::size_t> failures;       ///< runs that show each RunFailure
   std::vector<std::string> failing_cases;  ///< of runs that show any
   std::string trouble;                     ///< of the first run that could not be made

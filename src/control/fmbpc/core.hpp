@@ -23,6 +23,10 @@ class FmbpcCore final : public LawCore {
   void predict(PredictiveAction& prediction) const override;
   double signal(Eigen::Index output, std::size_t which) const override;
   const Vector& referencePole() const override { return params_.reference_pole; }
+  Eigen::Index plannedSteps() const override { return law_->plannedSteps(); }
+  void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {
+    law_->planned(*model_, i, point);
+  }
   /// Settings that adoptTuning() will take; allocates.
   void prepareTuning(const FmbpcParams& params);
   void adoptTuning() override;

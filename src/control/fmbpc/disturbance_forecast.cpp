@@ -6,17 +6,23 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
+namespace {
+
+/// At which forecasts are judged.
+Eigen::Index leadOf(int horizon_steps) { return std::max(1, horizon_steps / 2); }
+
+}  // namespace
 
 DisturbanceForecast::DisturbanceForecast(Eigen::Index n_d, int horizon_steps, int period_steps,
                                          double pole, int memory_steps)
-    : past_(Matrix::Zero(n_d, std::max(period_steps, 0) + 1 +
-                                  (memory_steps > 0 ? std::max(1, horizon_steps / 5) : 0))),
+    : past_(Matrix::Zero(n_d, Eigen::Index{std::max(period_steps, 0)} + 1 +
+                                  (memory_steps > 0 ? leadOf(horizon_steps) : Eigen::Index{0}))),
       future_(Matrix::Zero(n_d, std::max(horizon_steps, 1))),
       weight_(Vector::Ones(n_d)),
-      product_(Vector::Zero(n_d)),
-      square_(product_),
+      error_(Vector::Zero(n_d)),
+      held_error_(error_),
       fading_(memory_steps > 0 ? std::exp(-1.0 / memory_steps) : 1.0),
-      lead_(std::max(1, horizon_steps / 5)),
+      lead_(leadOf(horizon_steps)),
       period_(period_steps),
       pole_(pole) {
   require(period_steps == 0 || period_steps >= horizon_steps, "controller.forecast_period_h",
@@ -27,8 +33,8 @@ DisturbanceForecast::DisturbanceForecast(Eigen::Index n_d, int horizon_steps, in
 void DisturbanceForecast::forget() {
   known_ = 0;
   weight_.setOnes();
-  product_.setZero();
-  square_.setZero();
+  error_.setZero();
+  held_error_.setZero();
 }
 
 /// The forecast of d(k) that was made at k - lead, against holding d(k - lead).
@@ -40,9 +46,11 @@ void DisturbanceForecast::learn() {
   for (Eigen::Index i = 0; i < weight_.size(); ++i) {
     const double held = back(lead_)[i];
     const double daily = back(period_)[i] + faded * (held - back(lead_ + period_)[i]);
-    product_[i] = fading_ * product_[i] + (back(0)[i] - held) * (daily - held);
-    square_[i] = fading_ * square_[i] + (daily - held) * (daily - held);
-    if (square_[i] > 0.0) weight_[i] = std::clamp(product_[i] / square_[i], 0.0, 1.0);
+    const double missed = back(0)[i] - daily, missed_held = back(0)[i] - held;
+    error_[i] = fading_ * error_[i] + missed * missed;
+    held_error_[i] = fading_ * held_error_[i] + missed_held * missed_held;
+    const double beyond = error_[i] - held_error_[i], most = (kUseless - 1.0) * held_error_[i];
+    weight_[i] = beyond <= 0.0 ? 1.0 : beyond >= most ? 0.0 : 1.0 - beyond / most;
   }
 }
 

@@ -25,6 +25,10 @@ class InputLaw {
   virtual void predict(const InternalModel& model, const Matrix& future,
                        PredictiveAction& prediction) const = 0;
   virtual void retune(const FmbpcParams& params) = 0;
+  /// See PlanView; none by default.
+  virtual Eigen::Index plannedSteps() const { return 0; }
+  virtual void planned(const InternalModel& /*model*/, Eigen::Index /*i*/,
+                       Eigen::Ref<Vector> /*point*/) const {}
 };
 
 /// The outputs meet their references at one sample ahead: see CoincidenceGains. u = F e + V u(k-1).
@@ -87,6 +91,8 @@ class IteratedLaw final : public InputLaw {
   void predict(const InternalModel& model, const Matrix& future,
                PredictiveAction& prediction) const override;
   void retune(const FmbpcParams& params) override;
+  Eigen::Index plannedSteps() const override { return solver_.inputs().cols(); }
+  void planned(const InternalModel& model, Eigen::Index i, Eigen::Ref<Vector> point) const override;
 
  private:
   InputLimitedIlqr solver_;

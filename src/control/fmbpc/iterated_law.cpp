@@ -38,6 +38,15 @@ void IteratedLaw::predict(const InternalModel& model, const Matrix& /*future*/,
     prediction.feedforward.col(i) = plan.col(std::min(i, plan.cols() - 1));
 }
 
+void IteratedLaw::planned(const InternalModel& model, Eigen::Index i,
+                          Eigen::Ref<Vector> point) const {
+  const Eigen::Index n_y = model.outputs().size(), n_u = solver_.inputs().rows();
+  for (Eigen::Index o = 0; o < n_y; ++o)
+    point[o] = solver_.states()(model.local().outputState(o), i) + model.offsetOutput()[o];
+  point.segment(n_y, n_u) = solver_.inputs().col(i);
+  point.tail(point.size() - n_y - n_u) = solver_.disturbances().col(i);
+}
+
 void IteratedLaw::retune(const FmbpcParams& params) {
   solver_.retune(params.iterations, params.weight_output, params.weight_move);
 }

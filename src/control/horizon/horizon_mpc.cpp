@@ -38,7 +38,9 @@ HorizonMpc::HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo
 void HorizonMpc::predictWith(std::unique_ptr<SampleModel> model) {
   cost_ = std::make_unique<PlanCost>(*model, params_);
   model_ = std::move(model);
-  state_ = next_ = moved_ = Vector::Zero(model_->stateSize());
+  state_ = present_ = next_ = moved_ = Vector::Zero(model_->stateSize());
+  inputs_ = Matrix::Zero(n_u_, model_->delaySteps() + 1);
+  past_ = Matrix::Zero(disturbances_.size(), inputs_.cols());
   if (params_.observe) {
     std::vector<Index> rows;
     for (Index i = 0; i < n_y_; ++i) rows.push_back(model_->outputState(i));
@@ -48,20 +50,66 @@ void HorizonMpc::predictWith(std::unique_ptr<SampleModel> model) {
   fresh_ = true;
 }
 
-void HorizonMpc::reset(const Measurement& start) {
-  reference_.reset(start.outputs);
-  fresh_ = true;
+bool HorizonMpc::goesOn(const StepHeader& header) const {
+  return header.run_id == seen_.run_id && header.step == seen_.step + 1;
 }
 
-/// A at the state of k-1, and the state of k; false if something is not finite.
-bool HorizonMpc::linearise(const Measurement& now) {
+void HorizonMpc::reset(const Measurement& start) {
+  reference_.reset(start.outputs);
+  fresh_ = fresh_ || !goesOn(start.header);
+  anew_ = true;
+}
+
+void HorizonMpc::lookOn(const Measurement& now) {
+  if (!model_) return;
+  fresh_ = fresh_ || !goesOn(now.header);
+  estimate(now);
+  seen_ = now.header;
+  fresh_ = !state_.allFinite();
+}
+
+/// All inputs as the one in force.
+void HorizonMpc::restPlan(const Measurement& now) {
+  for (Index j = 0; j < plan_.size(); ++j) plan_[j] = now.input_applied[j % n_u_];
+}
+
+/// u(k-1) and d(k-1) become the newest; a start fills all.
+void HorizonMpc::remember(const Measurement& now) {
+  const Index last = inputs_.cols() - 1;
+  if (fresh_) {
+    inputs_.colwise() = now.input_applied;
+    past_.colwise() = now.disturbances;
+  } else {
+    for (Index j = 0; j < last; ++j) {
+      inputs_.col(j) = inputs_.col(j + 1);
+      past_.col(j) = past_.col(j + 1);
+    }
+    inputs_.col(last) = now.input_applied;
+    past_.col(last) = disturbances_;
+  }
+  disturbances_ = now.disturbances;
+}
+
+/// From when the outputs were true to now; false if something is not finite.
+bool HorizonMpc::runForward() {
+  present_ = state_;
+  for (Index j = 1; j < inputs_.cols(); ++j) {
+    if (!model_->step(inputs_.col(j), past_.col(j), present_)) return false;
+    for (Index i = 0; i < n_y_; ++i) present_[model_->outputState(i)] += correction_[i];
+  }
+  return true;
+}
+
+/// A at the state a sample before the outputs were true, and the state then; false if something is
+/// not finite.
+bool HorizonMpc::linearise() {
   next_ = state_;
-  if (!model_->step(now.input_applied, disturbances_, next_)) return false;
+  if (!model_->step(inputs_.col(0), past_.col(0), next_)) return false;
   for (Index j = 0; j < state_.size(); ++j) {
     moved_ = state_;
     const double h = kDifference * std::max(kDifference, std::abs(state_[j]));
     moved_[j] += h;
-    if (!model_->step(now.input_applied, disturbances_, moved_)) return false;
+    if (!model_->step(inputs_.col(0), past_.col(0), moved_)) return false;
     A_.col(j) = (moved_ - next_) / h;
   }
   state_ = next_;
@@ -70,8 +118,7 @@ bool HorizonMpc::linearise(const Measurement& now) {
 
 /// estimate() with the observer.
 bool HorizonMpc::observe(const Measurement& now) {
-  const bool follows = !fresh_ && linearise(now);
-  disturbances_ = now.disturbances;
+  const bool follows = !fresh_ && linearise();
   fresh_ = false;
   if (follows) {
     observer_->addDisturbance(state_);
@@ -88,9 +135,9 @@ bool HorizonMpc::observe(const Measurement& now) {
 
 /// False if the state had to start anew.
 bool HorizonMpc::estimate(const Measurement& now) {
+  remember(now);
   if (observer_) return observe(now);
-  const bool follows = !fresh_ && model_->step(now.input_applied, disturbances_, state_);
-  disturbances_ = now.disturbances;
+  const bool follows = !fresh_ && model_->step(inputs_.col(0), past_.col(0), state_);
   fresh_ = false;
   correction_.setZero();
   if (!follows) model_->rest(now.outputs, now.input_applied, disturbances_, state_);
@@ -109,14 +156,19 @@ void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
   reference_.predict(setpoint, now.header.step, future_);
   reference_.advance(setpoint, now.header.step);
   const Index rest = plan_.size() - n_u_;
-  if (estimate(now)) {
+  const bool follows = estimate(now);
+  seen_ = now.header;
+  if (follows && runForward()) {
     for (Index j = 0; j < rest; ++j) plan_[j] = plan_[j + n_u_];
   } else {
-    for (Index j = 0; j < plan_.size(); ++j) plan_[j] = now.input_applied[j % n_u_];
+    anew_ = true;
+    present_ = state_;
   }
+  if (anew_) restPlan(now);
+  anew_ = false;
   clipPlan(plan_, now.input_applied, limits_);
   kept_ = plan_;
-  cost_->start(state_, correction_, disturbances_, now.input_applied, future_);
+  cost_->start(present_, correction_, disturbances_, now.input_applied, future_);
   PlanFound found = search(now, plan_);
   found.usable = found.usable && plan_.allFinite();
   if (!found.usable) plan_ = kept_;

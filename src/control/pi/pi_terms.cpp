@@ -107,7 +107,8 @@ double PiTermState::feedforward(const Measurement& now) {
 }
 
 double PiTermState::sum(const Measurement& now, double gain) {
-  const double at = terms_.setpoint_pole > 0.0 ? path_before_ : path_;
+  const double from = terms_.setpoint_pole > 0.0 ? path_before_ : path_;
+  const double at = from + terms_.setpoint_lead_h * (path_ - path_before_) / sample_time_h_;
   const double total =
       valueOf(terms_.static_input, at) + gain * derivative(now.outputs[output_]) + feedforward(now);
   fresh_ = false;

@@ -33,8 +33,10 @@ class InputLimitedIlqr {
   /// disturbances n_d N, reference n_y N or more columns. Returns false if nothing finite came out.
   bool plan(VectorRef state, VectorRef correction, VectorRef offset_output,
             const Matrix& disturbances, const Matrix& reference, VectorRef input_previous);
-  const Matrix& inputs() const { return inputs_; }  ///< n_u N, u(k)...
-  double cost() const { return cost_; }             ///< of that plan
+  const Matrix& inputs() const { return inputs_; }              ///< n_u N, u(k)...
+  const Matrix& states() const { return states_; }              ///< n_x N + 1, xi(k)...
+  const Matrix& disturbances() const { return disturbances_; }  ///< n_d N, as they are expected
+  double cost() const { return cost_; }                         ///< of that plan
 
  private:
   double simulate(double share, Matrix& states, Matrix& inputs);

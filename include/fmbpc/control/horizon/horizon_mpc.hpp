@@ -25,15 +25,19 @@ struct PlanFound {
 /// Each sample: the model moves on with u(k-1), the measured outputs take the place of the
 /// predicted ones, and what lay between them is added to every predicted sample. With `observe` an
 /// extended Kalman filter moves the whole state, those that are not measured too, and what is added
-/// is its disturbance; the Jacobian comes from differences. The search starts
-/// from the plan of the sample before, moved on by one sample and put inside the limits; if it
-/// fails that plan's input is sent, ok is false and the source `clipped`. Hard limits on inputs and
-/// moves. signals(): NAME_correction of each output, plan_cost, plan_effort.
+/// is its disturbance; the Jacobian comes from differences. Measurements that are late
+/// (SampleModel::delaySteps()) correct the state of their own time, from which the model runs
+/// forward on the inputs applied since, corrected in every sample. The search starts from the plan
+/// of the sample before, moved on by one sample and put inside the limits; if it fails that plan's
+/// input is sent, ok is false and the source `clipped`. Hard limits on inputs and moves. signals():
+/// NAME_correction of each output, plan_cost, plan_effort. While somebody else has the inputs the
+/// state moves on (lookOn()); reset() at the next sample keeps it, and plans anew.
 class HorizonMpc : public Controller {
  public:
   void reset(const Measurement& start) override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
+  void lookOn(const Measurement& now) override;
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
   const Vector& plan() const { return plan_; }  ///< n_u M, of the last sample
 
@@ -51,9 +55,13 @@ class HorizonMpc : public Controller {
   const Vector& range() const { return range_; }  ///< n_u, upper - lower, or 1 where that is 0
 
  private:
+  bool goesOn(const StepHeader& header) const;
   bool estimate(const Measurement& now);
+  void restPlan(const Measurement& now);
   bool observe(const Measurement& now);
-  bool linearise(const Measurement& now);
+  bool linearise();
+  void remember(const Measurement& now);
+  bool runForward();
   void refreshSignals(const PlanFound& found);
 
   HorizonParams params_;
@@ -66,9 +74,13 @@ class HorizonMpc : public Controller {
   Matrix A_;             // of the model at the state of k-1
   Vector moved_, next_;  // for the differences
   ReferenceTrajectory reference_;
-  Matrix future_;  // n_y P
-  Vector state_, correction_, disturbances_, plan_, kept_;
-  bool fresh_{true};
+  Matrix future_;         // n_y P
+  Matrix inputs_, past_;  // u and d of the samples since the measured outputs were true, and before
+  Vector state_;          // when the measured outputs were true
+  Vector present_, correction_, disturbances_, plan_, kept_;
+  StepHeader seen_;   // of the last sample
+  bool fresh_{true};  // the state is to be taken from the next measurement
+  bool anew_{true};   // the plan as well
   std::vector<std::pair<std::string, double>> signals_;
 };
 

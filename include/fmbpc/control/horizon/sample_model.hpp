@@ -18,6 +18,8 @@ class SampleModel {
                     Eigen::Ref<Vector> state) = 0;
   /// The state one sample later, in place, without allocation. Returns false if it is not finite.
   virtual bool step(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> state) = 0;
+  /// How many samples ago the measured outputs were true.
+  virtual int delaySteps() const { return 0; }
 };
 
 /// A Takagi-Sugeno model along its own path: rules are blended anew at every sample, with the
