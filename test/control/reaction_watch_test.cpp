@@ -94,8 +94,8 @@ TEST(ReactionWatch, AnInputThatPushesTheOtherWayIsNamedToo) {
   EXPECT_NE(watch.words().find("u2"), std::string::npos);
 }
 
-TEST(ReactionWatch, ModelErrorsOfHalfOrDoubleAreNoFault) {
-  for (const double part : {0.6, 2.0}) {
+TEST(ReactionWatch, AGainThatIsOffByAThirdOrDoubleIsNoFault) {
+  for (const double part : {0.7, 2.0}) {
     ReactionWatch watch(model(), kWindow);
     Process process;
     process.part1 = process.part2 = part;

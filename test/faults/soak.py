@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A long run in lockstep while things happen to it: nodes are killed and hang for a moment, strangers speak, people ask. No
-sample may be lost, no limit broken, and no node may grow while the run lasts (at its end the recorder reads its journal once
-to write the files of the run). Run with scripts/soak.
+sample may be lost, no limit broken, and no node may grow, the recorder while it makes the files of the run from its journal
+included. Run with scripts/soak.
 
   --samples N      of the run (default 3000000)
   --injections N   (default 10000)
@@ -99,6 +99,11 @@ class Soak:
         self.rows.append({"seconds": time.monotonic() - self.started, "step": self.latest.step, "pids":
                           {n: self.pid(n) for n in NODES}, "memory_kB": memory})
 
+    def peak(self, node):
+        """Largest memory that a node ever had [kB]."""
+        status = pathlib.Path(f"/proc/{self.pid(node)}/status").read_text(encoding="utf-8")
+        return int(status.split("VmHWM:")[1].split()[0])
+
     def run(self, injections):
         ring.wait_until(lambda: self.latest is not None and self.info is not None and self.latest.step > 0, "the run")
         done, looked = 0, -1
@@ -115,6 +120,7 @@ class Soak:
                       flush=True)
             time.sleep(0.005)
         self.finished = time.monotonic() - self.started
+        self.recorder_peak = self.peak("loop_recorder")
         return done
 
 
@@ -183,6 +189,7 @@ def main():
         begun = time.time() - (time.monotonic() - soak.started)
         ring.wait_until(lambda: os.path.exists(summary) and os.path.getmtime(summary) > begun, "the record", 600.0)
         time.sleep(1.0)
+        finishing = soak.peak("loop_recorder") - soak.recorder_peak
     finally:
         launch.terminate()
         launch.wait(60)
@@ -193,11 +200,11 @@ def main():
     seconds = soak.finished
     result = {"samples": rows - 1, "lost": arguments.samples + 1 - rows, "complete": complete, "violations": broken,
               "injections": done, "kinds": soak.counts, "seconds": seconds, "samples_per_s": rows / seconds,
-              "grown_kB": grown, "rows": soak.rows}
+              "grown_kB": grown, "recorder_finish_kB": finishing, "rows": soak.rows}
     pathlib.Path(arguments.out, "soak.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
     draw(soak.rows, os.path.join(arguments.out, "soak.png"))
     print(json.dumps({k: v for k, v in result.items() if k != "rows"}, indent=1))
-    bad = not complete or rows != arguments.samples + 1 or broken or max(grown.values()) > GROWTH
+    bad = not complete or rows != arguments.samples + 1 or broken or max(grown.values()) > GROWTH or finishing > GROWTH
     return 1 if bad else 0
 
 

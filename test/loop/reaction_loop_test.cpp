@@ -73,33 +73,38 @@ TEST(Reaction, TheLoopFileSaysWhatIsDone) {
   }
 }
 
+bool acts(const ControllerSession& session) {
+  const ActionSource source = session.answer().base.source;
+  return source == ActionSource::kBase || source == ActionSource::kClipped;
+}
+
 TEST(PlantBounds, AreHeldAgainstTheLoopFileAsItSays) {
-  for (const auto& [word, source] :
-       {std::pair{"say", ActionSource::kBase}, std::pair{"hold", ActionSource::kHeld},
-        std::pair{"fallback", ActionSource::kFallback}}) {
+  for (const std::string word : {"say", "hold", "fallback"}) {
     const LoopFile loop = readLoop(
         "asp_case1", {{"plausibility.plant_bounds", word}, {"actuator.fallback.q_r", "300"}});
     ControllerSession session = makeControllerSession(loop);
     session.setModel(loop.model);
     session.doubtPlant("plant_info: q_r may be 0..900, the loop file says 0..1600");
     Measurement m = makeSimulation(loop).measurement();
-    m.header.run_id = 1;
-    session.receive(m);
-    EXPECT_EQ(session.answer().base.source, source) << word;
+    ASSERT_EQ(session.receive(m), Receipt::kAnswered);
+    EXPECT_EQ(acts(session), word == "say") << word;
+    EXPECT_EQ(session.fellBack(), word == "fallback") << word;
     session.doubtPlant("");
     ++m.header.step;
     m.header.time_ns += 720'000'000'000;
-    session.receive(m);
-    EXPECT_EQ(session.answer().base.source, ActionSource::kBase) << word;
+    ASSERT_EQ(session.receive(m), Receipt::kAnswered);
+    EXPECT_TRUE(acts(session)) << word;
   }
 }
 
 TEST(PlantBounds, AFallbackMustBeThere) {
-  expectWords(errorOf([] {
-                readLoop("cstr_tracking",
-                         {{"plausibility.plant_bounds", "fallback"}, {"actuator.fallback", "{}"}});
-              }),
+  PlausibilityParams params;
+  EXPECT_NO_THROW(params.validate(1, 0, 1));
+  params.plant_bounds = DoubtAction::kFallback;
+  expectWords(errorOf([&] { params.validate(1, 0, 1); }),
               {"plausibility.plant_bounds", "actuator.fallback"});
+  params.fallback = Vector::Zero(1);
+  EXPECT_NO_THROW(params.validate(1, 0, 1));
 }
 
 }  // namespace
