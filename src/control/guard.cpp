@@ -29,6 +29,8 @@ void place(const Measurement& now, VectorRef input, Vector& point) {
   point.tail(now.disturbances.size()) = now.disturbances;
 }
 
+constexpr double kHalf = 0.5;  // of an input's range
+
 bool isLaws(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kClipped;
 }
@@ -134,14 +136,15 @@ void GuardedController::watchLocks(const Measurement& now, const SetpointSource&
   }
 }
 
-/// Between trust_high and trust_low the move limit goes from that of the actuator, at most the
-/// range, to least_move of the range.
+/// Below trust_high no move is larger than half the range, and the limit goes down to least_move of
+/// it at trust_low.
 void GuardedController::shrink(double trust) {
   const double width = params_.trust_high - params_.trust_low;
   const double part = width > 0.0 ? std::clamp((trust - params_.trust_low) / width, 0.0, 1.0) : 0.0;
   for (Index i = 0; i < shrunk_.move.size(); ++i) {
     const double range = limits_.upper[i] - limits_.lower[i];
-    const double share = params_.least_move + (1.0 - params_.least_move) * part;
+    const double first = std::max(kHalf, params_.least_move);
+    const double share = params_.least_move + (first - params_.least_move) * part;
     shrunk_.move[i] = limits_.move[i];
     if (trust < params_.trust_high && std::isfinite(range))
       shrunk_.move[i] = std::min(limits_.move[i], share * range);

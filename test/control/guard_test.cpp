@@ -124,7 +124,7 @@ TEST_F(Guard, BetweenTheThresholdsMovesShrinkInProportion) {
   make(p);
   law->wish = 0.0;
   const double moved = 900.0 - step(0, 2250.0, 900.0);  // an eighth of the range: trust 0.5
-  EXPECT_NEAR(moved, (0.02 + 0.98 * 0.5) * 1600.0, 1e-9);
+  EXPECT_NEAR(moved, (0.02 + 0.48 * 0.5) * 1600.0, 1e-9);
 }
 
 TEST_F(Guard, ThePiTakesOverWithoutABumpAndTheLawComesBackWithoutOne) {

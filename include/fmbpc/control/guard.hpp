@@ -63,8 +63,8 @@ class LockUpWatch {
 /// - trust at the measured outputs, disturbances and the input in force, and at the input that the
 ///   law wants: the smaller is said; what is done depends on outputs and disturbances only
 ///   (processTrustOf), as the bounds say which inputs are allowed: between trust_high and trust_low
-///   the largest move shrinks to `least_move`; below trust_low a PI, if there is one, takes over
-///   bumplessly until trust has been above trust_high for `return_samples`; then the law goes on;
+///   moves shrink from half the range to `least_move`; below trust_low a PI, if there is one, acts
+///   (bumplessly) until trust has been above trust_high for `return_samples`;
 /// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in;
 /// - where the guard changes an input the source is `fallback`, there is no prediction, and remark
 ///   says why.
