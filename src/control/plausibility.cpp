@@ -192,8 +192,8 @@ Verdict Plausibility::look(const Measurement& now) {
     ++signal.since_good;
     any = true;
     const bool replaced = replace(i);
-    complete_ = complete_ && replaced;
     if (!needed_[i]) continue;
+    complete_ = complete_ && replaced;
     doubted = true;
     repaired = repaired && replaced && asked_[i].substitute != Substitute::kHold;
   }

@@ -35,7 +35,7 @@ class Plausibility {
   Verdict look(const Measurement& now);
   /// The sample with every doubted value replaced.
   const Measurement& accepted() const { return accepted_; }
-  /// Whether each value of accepted() was measured or foreseen at some time.
+  /// Whether each needed value of accepted() was measured or foreseen at some time.
   bool complete() const { return complete_; }
   /// The law's forecast y(k+1) out of sample k, for Substitute::kModel.
   void expect(const PredictiveAction& prediction, VectorRef input);
