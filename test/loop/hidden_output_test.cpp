@@ -85,12 +85,13 @@ TEST(HiddenOutput, WhatIsMeasuredOfItIsNotLookedAt) {
     ASSERT_NE(blind.answer().base.source, ActionSource::kHeld) << k << blind.output().remark;
     ASSERT_EQ(blind.answer().base.input, seeing.answer().base.input) << k;
     ASSERT_EQ(blind.controller().signals().back().first, "x_r_estimate");
-    farthest = std::max(farthest, std::abs(blind.controller().signals().back().second - x_r));
+    const double estimate = blind.controller().signals().back().second;
+    if (k >= 30) farthest = std::max(farthest, std::abs(estimate - x_r));
     if (k == 60) blind.manual(true), seeing.manual(true);
     if (k == 70) blind.manual(false), seeing.manual(false);
     plant.advance(blind.answer().base.input);
   }
-  EXPECT_LE(farthest, 400.0);  // [mg/l] of some 6000
+  EXPECT_LE(farthest, 400.0);  // [mg/l] of some 7000; the start is 1575 off
 }
 
 TEST(HiddenOutput, AnotherOutputThatIsNoNumberHoldsTheInput) {
