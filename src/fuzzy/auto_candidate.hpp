@@ -35,7 +35,7 @@ struct Candidate {
   int iterations{100};
   std::uint64_t seed{1};
 
-  std::string text() const;  ///< "hidden state 2, 3 rules on the state, ridge 10, seed 2"
+  std::string text() const;       ///< "hidden state 2, 3 rules on the state, ridge 10, seed 2"
   std::string structure() const;  ///< the same without the seed
 };
 

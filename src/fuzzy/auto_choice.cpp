@@ -128,8 +128,7 @@ Fitted fitWhole(const AutoData& data, const Judgement& judged, int window) {
 void dropStuck(const Committee& committee, std::vector<Fitted>& fitted) {
   std::map<std::string, std::vector<std::size_t>> structures;
   for (std::size_t i = 0; i < fitted.size(); ++i)
-    if (fitted[i].finite)
-      structures[committee.members[i]->candidate.structure()].push_back(i);
+    if (fitted[i].finite) structures[committee.members[i]->candidate.structure()].push_back(i);
   for (const auto& [text, all] : structures) {
     std::vector<double> errors;
     for (const std::size_t i : all) errors.push_back(fitted[i].error);

@@ -20,7 +20,8 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
 /// error. Not finite: none came near.
 Fitted fitWhole(const AutoData& data, const Judgement& judged, int window);
 
-/// Of several starts of one structure, those that got stuck in the fit to all rows become not finite.
+/// Of several starts of one structure, those that got stuck in the fit to all rows become not
+/// finite.
 void dropStuck(const Committee& committee, std::vector<Fitted>& fitted);
 
 /// `other` is better than `linear` by more than the spread of their ratio over parts of the blocks.

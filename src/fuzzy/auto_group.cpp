@@ -94,7 +94,8 @@ void settleGroup(const AutoData& data, Group& group) {
   }
   group.free_run = averaged(members);
   group.rmse = rmseOf(data, group.free_run);
-  group.score = meanBlockError(data, group.free_run) * penalty(group.members.front().parameters, data);
+  group.score =
+      meanBlockError(data, group.free_run) * penalty(group.members.front().parameters, data);
 }
 
 Vector averaged(const std::vector<const Judgement*>& members) {

@@ -113,7 +113,8 @@ class OutputSearch {
     if (rules >= 0) {
       const Judgement& r = searched_.regressors[static_cast<std::size_t>(rules)];
       found_.regressors = figuresOf(data_, r.free_run, r.one_step);
-      fuzzy_chosen_ = found_.regressors.free_run < kWorth * found_.linear.free_run &&
+      fuzzy_chosen_ = found_.regressors.fit > 0.0 &&
+                      found_.regressors.free_run < kWorth * found_.linear.free_run &&
                       beyondSpread(found_.regressors, found_.linear);
       fuzzy_text_ = r.candidate.text();
     }
@@ -157,25 +158,26 @@ class OutputSearch {
       found_.best = ModelKind::kRegressors;
     }
     const AutoFigures& own = found_.state;
-    if (!own.blocks.empty() && own.free_run < kWorth * best->free_run && beyondSpread(own, line)) {
+    if (!own.blocks.empty() && own.fit > 0.0 && own.free_run < kWorth * best->free_run &&
+        beyondSpread(own, line)) {
       best = &own;
       found_.best = ModelKind::kState;
     }
     found_.beats_linear = best != &line;
     found_.fuzzy_model = fuzzy_chosen_;
-    found_.verdict = verdictOf(*best);
-    if (!(best->fit > 0.0))
-      remark(
-          "no model says more than the mean of the record in free run over held-out blocks: do "
-          "not trust any of them there");
+    found_.verdict = best->fit > 0.0
+                         ? verdictOf(*best)
+                         : "no model says more than the mean of the record in free run over "
+                           "held-out blocks: do not trust any of them there (" +
+                               verdictOf(*best) + ")";
   }
 
   std::string verdictOf(const AutoFigures& best) const {
     const AutoFigures& line = found_.linear;
     if (!found_.beats_linear)
       return "no fuzzy model beats the best linear one beyond the spread over held-out blocks "
-             "(free run " +
-             shortNumber(lowestFuzzy()) + " beside " + shortNumber(line.free_run) +
+             "(" +
+             lowestFuzzyText() + ", beside " + shortNumber(line.free_run) +
              "): the linear model is written";
     std::string words =
         "the fuzzy model beats linear beyond the spread over held-out blocks: free "
@@ -187,6 +189,11 @@ class OutputSearch {
                shortNumber(fuzzy_chosen_ ? found_.regressors.free_run : line.free_run) +
                (fuzzy_chosen_ ? "" : " (linear)");
     return words;
+  }
+
+  std::string lowestFuzzyText() const {
+    const double lowest = lowestFuzzy();
+    return std::isfinite(lowest) ? "free run " + shortNumber(lowest) : "none ran to the end";
   }
 
   double lowestFuzzy() const {

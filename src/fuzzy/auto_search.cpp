@@ -20,7 +20,6 @@ constexpr std::uint64_t kMoreSeeds = 6;
 /// The sign of a state that only its size tells of traps many starts.
 std::uint64_t firstSeeds(const Candidate& c) { return c.absolute ? 10 : 4; }
 
-
 class Search {
  public:
   Search(const AutoData& data, const std::vector<int>& delay, std::uint64_t seed,

@@ -15,8 +15,9 @@ struct Judgement {
   Vector free_run, one_step;   ///< rows of the record, NaN outside the blocks' judged rows
   std::vector<double> blocks;  ///< free-run rmse of each
   std::vector<double> seen;    ///< free-run rmse over the rows that each block's fit saw
-  Vector settled;  ///< free_run without blocks whose fit got stuck; empty: not one of several starts
-  double rmse{};               ///< of all judged rows
+  Vector
+      settled;    ///< free_run without blocks whose fit got stuck; empty: not one of several starts
+  double rmse{};  ///< of all judged rows
   double score{};  ///< mean of the blocks, blended with one step, times a penalty for parameters
   Eigen::Index parameters{};
 };

@@ -23,7 +23,7 @@ struct Excursion {
   double span() const { return upper - lower; }
 };
 
-/// Lowest and highest first state of a run from the mean of the data; infinite if it runs away.
+/// Lowest and highest output of a run from the mean of the data; infinite if it runs away.
 Excursion excursion(const Fitted& fitted, const Matrix& inputs, double start) {
   constexpr double kAway = 1e3;
   const Index n = fitted.shape.states;
@@ -34,9 +34,8 @@ Excursion excursion(const Fitted& fitted, const Matrix& inputs, double start) {
     if (!inputs.col(k).allFinite()) continue;
     step.predict(fitted.parameters, x, inputs.col(k), next);
     x = next;
-    const double y = fitted.shape.absolute ? std::abs(x[0]) : x[0];
-    range.add(y);
-    if (!(std::abs(y) < kAway))
+    range.add(fitted.shape.output(x[0]));  // a sensor at its limit hides what is beyond
+    if (!(std::abs(x[0]) < kAway))
       return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   }
   return range;

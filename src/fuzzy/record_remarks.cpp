@@ -12,9 +12,10 @@ using Eigen::Index;
 
 constexpr double kHardly = 0.01;  // share of rows in which an input must move
 constexpr Index kFewMoves = 10;
-constexpr double kSpike = 12.0;    // robust deviations of a sample from its neighbours
-constexpr double kSlow = 300.0;    // samples per time constant: too many
-constexpr double kFast = 0.5;      // too few
+constexpr double kSpike = 12.0;  // robust deviations of a sample from its neighbours
+constexpr double kSlow = 300.0;  // samples per time constant: too many
+constexpr double kFast = 0.5;    // too few
+constexpr double kUnstable = 1.002;
 constexpr double kLeft = 1.0;      // spans beyond the data: a free run has gone
 constexpr double kFeedback = 2.0;  // bounds
 constexpr Index kFeedbackLags = 10;
@@ -50,12 +51,15 @@ void addSampleTime(const DataSet& data, const TsModel& linear, std::vector<std::
   for (const auto& d : ruleDynamics(linear)) {
     double slowest = 0.0;
     for (const auto& pole : d.poles) slowest = std::max(slowest, std::abs(pole));
+    if (slowest > kUnstable)
+      remarks.push_back(d.output + ": unstable by itself: the linear model has a pole at " +
+                        shortNumber(slowest) + ", so that free runs leave any bounds in the end");
     if (!(slowest > 0.0 && slowest < 1.0)) continue;
     const double samples = -1.0 / std::log(slowest);
     if (samples > kSlow)
       remarks.push_back(d.output + ": sample time of " + shortNumber(data.sample_time_s) +
                         " s looks short: the slowest time constant is " + shortNumber(samples) +
-                        " samples (or the record drifts)");
+                        " samples (or the output integrates or drifts)");
     if (samples < kFast)
       remarks.push_back(d.output + ": sample time of " + shortNumber(data.sample_time_s) +
                         " s looks long: the slowest time constant is " + shortNumber(samples) +

@@ -63,8 +63,7 @@ class NormalRows {
     if (rest == 0) return;
     normal.hessian.block(own, 0, rest, shared) += sum_.block(shared, 0, rest, shared);
     normal.hessian.block(own, own, rest, rest) += sum_.block(shared, shared, rest, rest);
-    normal.gradient.segment(own, rest) +=
-        sum_.row(shared + rest).segment(shared, rest).transpose();
+    normal.gradient.segment(own, rest) += sum_.row(shared + rest).segment(shared, rest).transpose();
   }
 
  private:

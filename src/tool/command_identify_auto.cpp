@@ -213,11 +213,11 @@ int identifyAuto(const IdentifyArguments& a) {
     return 0;
   }
   for (const auto& o : found.outputs) std::cout << o.output << ": " << o.verdict << "\n";
+  for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
   std::cout << "\n"
             << crossTable(found) << "\n"
             << searchTable(found) << "\n"
             << toTable(parts) << "\n";
-  for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
   std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s\n";
   if (!a.out.empty()) std::cout << "written: " << a.out << "\n";
   return 0;

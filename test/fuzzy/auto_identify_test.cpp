@@ -136,6 +136,33 @@ TEST(AutoIdentify, ThinsALongRecordAndSaysSo) {
   EXPECT_LT(freeRunError(found.model, data), 0.6 * freeRunError(found.linear, data));
 }
 
+TEST(AutoIdentify, SaysFirstThatNothingIsToBeTrusted) {
+  DataSet data = simulate(bentLaw, 150, 0.005, 0, 3);
+  data.values.col(1).setConstant(2.0);  // what moved the output was not recorded
+  const AutoIdentification found = autoIdentify(data, quick(false));
+  const AutoOutput& y = found.outputs[0];
+  EXPECT_EQ(y.verdict.rfind("no model says more than the mean", 0), 0U) << y.verdict;
+  EXPECT_FALSE(y.beats_linear);
+  EXPECT_EQ(found.model.submodels[0].rules.size(), 1U);
+}
+
+TEST(AutoIdentify, UnitsDoNotMatter) {
+  const DataSet data = simulate(bentLaw, 150, 0.005, 0, 3);
+  DataSet other = data;
+  other.values.col(0) *= 1e-6;
+  other.values.col(1) *= 1e6;
+  for (auto* signals : {&other.outputs, &other.inputs})
+    for (auto& s : *signals) {
+      const double unit = signals == &other.outputs ? 1e-6 : 1e6;
+      s.lower *= unit;
+      s.upper *= unit;
+    }
+  const auto a = autoIdentify(data, quick(false)), b = autoIdentify(other, quick(false));
+  EXPECT_EQ(a.outputs[0].best, b.outputs[0].best);
+  EXPECT_NEAR(1e6 * b.outputs[0].linear.free_run, a.outputs[0].linear.free_run, 1e-6);
+  EXPECT_NEAR(1e6 * b.outputs[0].regressors.free_run, a.outputs[0].regressors.free_run, 1e-3);
+}
+
 TEST(AutoIdentify, RefusesWhatItCannotSearch) {
   DataSet data = simulate(linearLaw, 40, 0.0, 0, 1);
   EXPECT_THROW(autoIdentify(data, quick(false)), InputError);

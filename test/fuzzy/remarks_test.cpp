@@ -71,6 +71,8 @@ TEST(RecordRemarks, TellASampleTimeTooShortOrTooLong) {
   };
   EXPECT_TRUE(contains(told(0.999), "sample time of 2 s looks short"));
   EXPECT_TRUE(contains(told(0.05), "sample time of 2 s looks long"));
+  EXPECT_TRUE(contains(told(1.05), "unstable by itself: the linear model has a pole at 1.05"));
+  EXPECT_FALSE(contains(told(0.999), "unstable"));
   for (const double pole : {0.2, 0.5, 0.95, 0.99})
     EXPECT_FALSE(contains(told(pole), "sample time")) << pole;
 }

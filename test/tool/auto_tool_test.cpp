@@ -40,10 +40,13 @@ TEST_F(AutoTool, FindsTheProcessAndJudgesItsFileAlike) {
 }
 
 TEST_F(AutoTool, PrintsTheVerdictFirst) {
-  const Outcome outcome = tool(search("--rows 1:120 --budget 2"));
+  const Outcome outcome = tool(search("--rows 1:120 --budget 0.05"));
   ASSERT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.printed.rfind("y: ", 0), 0U);
   EXPECT_LT(outcome.printed.find("beat"), outcome.printed.find('\n'));
+  ASSERT_NE(outcome.printed.find("remark: "), std::string::npos)
+      << "so short a time leaves much out";
+  EXPECT_LT(outcome.printed.find("remark: "), outcome.printed.find("held-out blocks  "));
 }
 
 TEST_F(AutoTool, ValidateTakesOtherNames) {
