@@ -64,7 +64,7 @@ TsModel outputsOf(const std::vector<double>& b) {
   m.outputs = test::numbered("y", static_cast<int>(b.size()));
   m.inputs = {test::signal("u")};
   for (std::size_t i = 0; i < b.size(); ++i) {
-    const auto own = static_cast<Eigen::Index>(i);
+    const auto own = static_cast<int>(i);
     OutputModel y;
     y.antecedents = {{SignalKind::kOutput, own, 0}};
     y.regressors = {{SignalKind::kOutput, own, 0}, {SignalKind::kInput, 0, 0}};

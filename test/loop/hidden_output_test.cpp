@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fmbpc/control/output_estimator.hpp"
 #include "fmbpc/fuzzy/local_model.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
 #include "fmbpc/loop/factory.hpp"
