@@ -195,7 +195,8 @@ TEST_F(Resolve, AMistakeInTheRecordNamesLoopAndRecord) {
   const std::string file = write("loop.yaml", smallLoop() + csv);
   expectWords(errorOf([&] { readLoop(file); }),
               {file + ":12: disturbance", path("week.csv"), "column 'q'", "missing"});
-  EXPECT_EQ(readLoop(file, {{"disturbance.csv.missing", "hold"}}).disturbance.csv.missing, "hold");
+  EXPECT_EQ(readLoop(file, {{"disturbance.csv.missing", "hold"}}).disturbance.csv.missing,
+            MissingCells::kHold);
 }
 
 TEST_F(Resolve, UserFoldersComeFirst) {
