@@ -159,9 +159,11 @@ void ControllerSession::process(const Measurement& m) {
     runLaw(accepted);
     if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
   }
-  if (remark_due_ && *output_.remark == '\0') output_.remark = model_remark_.c_str();
+  if (remark_due_ && *output_.remark == '\0') {
+    output_.remark = model_remark_.c_str();
+    remark_due_ = false;
+  }
   if (*output_.remark == '\0') output_.remark = reaction().c_str();
-  remark_due_ = false;
   expectNext();
   last_input_ = answer_.base.input;
 }
