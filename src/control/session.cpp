@@ -161,9 +161,11 @@ void ControllerSession::process(const Measurement& m) {
   }
   if (interruption_ != nullptr && m.input_applied.allFinite() && plausibility_.complete())
     controller_->lookOn(accepted);
-  if (remark_due_ && *output_.remark == '\0') output_.remark = model_remark_.c_str();
+  if (remark_due_ && *output_.remark == '\0') {
+    output_.remark = model_remark_.c_str();
+    remark_due_ = false;
+  }
   if (*output_.remark == '\0') output_.remark = reaction().c_str();
-  remark_due_ = false;
   expectNext();
   last_input_ = answer_.base.input;
 }

@@ -207,7 +207,7 @@ std::map<std::string, std::string> structDefaults() {
           {"disturbance.source", wordOf(loop.disturbance.source)},
           {"disturbance.pattern.seed", std::to_string(loop.disturbance.pattern.seed)},
           {"disturbance.csv.time_unit", csv.time_unit},
-          {"disturbance.csv.missing", wordOf(csv.missing)},
+          {"disturbance.csv.missing", csv.missing == MissingCells::kError ? "error" : "another"},
           {"disturbance.csv.interpolation", wordOf(csv.interpolation)},
           {"disturbance.csv.end", wordOf(csv.end)},
           {"disturbance.csv.channels.NAME.scale", exactText(CsvChannel{}.scale)},

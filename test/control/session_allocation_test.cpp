@@ -76,7 +76,7 @@ TEST(SessionAllocation, ControllerSessionDoesNotAllocatePerSample) {
   ExcitationParams excitation;
   excitation.signals.resize(1);
   excitation.signals[0].upper = 1000.0;
-  for (const char* signal : {"prbs", "multi_level"}) {
+  for (const ExcitationKind signal : {ExcitationKind::kPrbs, ExcitationKind::kMultiLevel}) {
     excitation.signals[0].signal = signal;
     expectNoAllocations(std::make_unique<ExcitationController>(
         excitation, clp_test::sludgeLike(8).limits, Vector::Constant(1, 570.0), plant()));

@@ -2,6 +2,7 @@
 // must come back, and the reactor must not have gone out meanwhile.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -16,7 +17,7 @@ namespace {
 constexpr double kPeriod = 0.1;  // [s] of wall time per sample
 constexpr double kMove = 4.0;    // [l/min] that the PLC lets through at once
 constexpr double kSetpoint = 0.12;
-constexpr double kBurns = 0.3;  // [mol/l] a reactor with more than this has gone out
+constexpr double kGoneOut = 0.3;  // [mol/l] a reactor with more than this has gone out
 
 using Lie = std::function<double(double)>;
 double truth(double value) { return value; }
@@ -30,7 +31,7 @@ double swapped(double value) {
 class BrokenWire {
  public:
   BrokenWire()
-      : loop_(readLoop("cstr_modbus", {{"setpoint.schedule", "[]"}})),
+      : loop_(readLoop("cstr_modbus", {{"setpoint.schedule", "[]"}, {"sampling.duration_h", "0"}})),
         reactor_(makeSimulation(readLoop("cstr_tracking", {{"sampling.duration_h", "0"}}))),
         session_(makeControllerSession(loop_)),
         gateway_(loop_, rounding()) {
@@ -52,14 +53,14 @@ class BrokenWire {
     gateway_.tick(now_s_);
     read(analyser, valve);
     gateway_.advance(gateway_.command());
-    hottest_ = std::max(hottest_, concentration());
+    most_ = std::max(most_, concentration());
   }
   void live(int samples, const Lie& analyser = truth, const Lie& valve = truth) {
     for (int k = 0; k < samples; ++k) live(analyser, valve);
   }
 
   double concentration() const { return reactor_.measurement().outputs[0]; }
-  double leastBurnt() const { return hottest_; }
+  double mostUnburnt() const { return most_; }
   int refused() const { return refused_; }
   ActionSource source() const { return session_.answer().base.source; }
   std::string remark() const { return session_.output().remark; }
@@ -97,13 +98,13 @@ class BrokenWire {
   Simulation reactor_;
   ControllerSession session_;
   PlantGateway gateway_;
-  double now_s_{}, flow_{}, hottest_{};
+  double now_s_{}, flow_{}, most_{};
   std::uint64_t beat_{}, told_{};
   int refused_{};
 };
 
 void expectCalm(BrokenWire& wire, const std::string& where) {
-  EXPECT_LT(wire.leastBurnt(), kBurns) << where << ": the reactor has gone out";
+  EXPECT_LT(wire.mostUnburnt(), kGoneOut) << where << ": the reactor has gone out";
   EXPECT_TRUE(wire.source() == ActionSource::kBase || wire.source() == ActionSource::kClipped)
       << where << ": " << wire.remark();
   EXPECT_NEAR(wire.concentration(), kSetpoint, 0.02) << where;
