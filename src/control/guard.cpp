@@ -161,15 +161,20 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   place(now, now.input_applied, point_);
   shrink(fallback_ || !known_ ? 1.0 : processTrustOf(model_, point_));
   bool drawn = false;
+  proposed_ = output.input;
   for (Index i = 0; i < output.input.size(); ++i) {
     const double before = now.input_applied[i];
-    const double proposed = output.input[i];
+    const double proposed = proposed_[i];
     double allowed = std::clamp(proposed, shrunk_.lower[i], shrunk_.upper[i]);
     allowed = std::clamp(allowed, before - shrunk_.move[i], before + shrunk_.move[i]);
     allowed = std::clamp(allowed, limits_.lower[i], limits_.upper[i]);
     drawn = drawn || (allowed != proposed && locks_[static_cast<std::size_t>(i)].drawnIn());
     view_.acting = view_.acting || allowed != proposed;
     if (allowed != proposed) output.input[i] = allowed;
+  }
+  if (view_.acting && !inside_->mayBeSent(output.input)) {  // between two positions of a valve
+    output.input = proposed_;
+    view_.acting = drawn = false;
   }
   view_.acting = view_.acting || fallback_;
   if (view_.outside)

@@ -176,7 +176,6 @@ bool Plausibility::replace(std::size_t signal) {
 Verdict Plausibility::look(const Measurement& now) {
   bool any = false, doubted = false, repaired = true;
   accepted_ = now;
-  complete_ = true;
   const auto first = static_cast<Eigen::Index>(n_y_);
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     Memory& signal = signals_[i];
@@ -193,7 +192,6 @@ Verdict Plausibility::look(const Measurement& now) {
     any = true;
     const bool replaced = replace(i);
     if (!needed_[i]) continue;
-    complete_ = complete_ && replaced;
     doubted = true;
     repaired = repaired && replaced && asked_[i].substitute != Substitute::kHold;
   }

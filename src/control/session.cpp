@@ -45,6 +45,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
       plant_(std::move(plant)),
       last_input_(std::move(initial_input)),
       plausibility_(std::move(plausibility), plant_),
+      recent_(plant_),
       max_pole_(max_pole) {
   require(controller_ != nullptr, "controller", "a controller");
   const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
@@ -128,7 +129,9 @@ void ControllerSession::process(const Measurement& m) {
   const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
   const bool finite = allFinite(m);
   if (!finite) gate_.countNotFinite();
+  if (needsReset(arrival_) || !usable) recent_.reset();
   if (usable) present_ = accepted;
+  if (usable) recent_.add(accepted);
   if (usable)
     watchReaction(accepted);
   else if (reaction_)
@@ -159,8 +162,7 @@ void ControllerSession::process(const Measurement& m) {
     runLaw(accepted);
     if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
   }
-  if (interruption_ != nullptr && m.input_applied.allFinite() && plausibility_.complete())
-    controller_->lookOn(accepted);
+  if (interruption_ != nullptr && usable) controller_->lookOn(accepted);
   if (remark_due_ && *output_.remark == '\0') {
     output_.remark = model_remark_.c_str();
     remark_due_ = false;
@@ -263,8 +265,13 @@ void ControllerSession::setModel(const TsModel& model) {
   TsModel matched = matters ? matchToPlant(model, plant_) : TsModel();
   if (models_ > 0 && matters && present_.outputs.size() > 0) {
     requireStable(matched, present_, max_pole_);
-    if (plausibility_.params().gain_sign) requireSameGainSigns(model_, matched, present_);
-    model_remark_ = wordsOf(turnedGains(model_, matched, present_), matched);
+    const auto turned = turnedGains(model_, matched, present_);
+    if (plausibility_.params().gain_sign) {
+      requireSameGainSigns(model_, matched, present_);
+      if (!turned.empty())
+        requireForeseen(turned, matched, recent_.errorsOf(model_), recent_.errorsOf(matched));
+    }
+    model_remark_ = wordsOf(turned, matched);
     remark_due_ = !model_remark_.empty();
   }
   controller_->setModel(model);

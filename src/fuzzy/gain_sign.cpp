@@ -10,6 +10,7 @@ namespace fpc {
 namespace {
 
 constexpr double kCounts = 1.0 / 3.0;  // of the largest gain of an output
+constexpr double kWorse = 1.5;         // an error one sample ahead, in parts of another
 
 /// Columns in parts of the inputs' ranges, where those are finite.
 Matrix scaled(Matrix gains, const TsModel& model) {
@@ -56,7 +57,7 @@ std::vector<TurnedGain> turnedGains(const TsModel& running, const TsModel& fresh
     const Eigen::Index j = turnedInput(before, after, i);
     if (j < 0) continue;
     turned.push_back({running.outputs[static_cast<std::size_t>(i)].name,
-                      running.inputs[static_cast<std::size_t>(j)].name});
+                      running.inputs[static_cast<std::size_t>(j)].name, i});
   }
   return turned;
 }
@@ -70,6 +71,18 @@ std::string wordsOf(const std::vector<TurnedGain>& turned, const TsModel& fresh)
   for (const TurnedGain& gain : turned)
     words += (words.empty() ? "" : ", ") + gain.input + " to " + gain.output;
   return words.empty() ? "" : "model '" + fresh.name + "' turns the sign of the gain from " + words;
+}
+
+void requireForeseen(const std::vector<TurnedGain>& turned, const TsModel& fresh,
+                     const Vector& running_errors, const Vector& fresh_errors) {
+  if (running_errors.size() == 0 || fresh_errors.size() == 0) return;
+  for (const TurnedGain& gain : turned)
+    if (fresh_errors[gain.row] > kWorse * running_errors[gain.row])
+      throw InputError("model '" + fresh.name + "': expected to foresee " + gain.output +
+                       " as well as the running model, since it turns the sign of the gain from " +
+                       gain.input + ", got errors of " + shortText(fresh_errors[gain.row]) +
+                       " instead of " + shortText(running_errors[gain.row]) +
+                       " one sample ahead (plausibility.gain_sign)");
 }
 
 void requireSameGainSigns(const TsModel& running, const TsModel& fresh, const Measurement& at) {

@@ -99,7 +99,7 @@ LoopFile loopParameter(const ros::NodeHandle& private_node);
 /// respawns) only after a shutdown.
 int stayIdle(const ros::NodeHandle& private_node, const std::string& reason);
 
-/// Everything a main() does (nodelets: nodes/nodelets.cpp). `Class` has `static std::string
+/// Everything a main() does (nodelets: ros/nodelets.cpp). `Class` has `static std::string
 /// idleReason(const LoopFile&)`, empty if the loop needs the node, and a constructor (NodeHandle,
 /// private NodeHandle, const LoopFile&).
 template <typename Class>

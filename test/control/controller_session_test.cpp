@@ -234,11 +234,11 @@ TEST_F(ControllerSessionRing, TheLawLooksOnWhileOthersHaveTheInput) {
   session->receive(sample(4));
   Measurement bad = sample(5);
   bad.outputs[0] = kNaN;
-  session->receive(bad);  // looks at the last good value
+  session->receive(bad);  // held: what was not measured is not looked at
   session->receive(sample(6));
   session->plantTakesActions(false);
   session->receive(sample(7));
-  EXPECT_EQ(law->looks, (Steps{2, 3, 5, 7}));
+  EXPECT_EQ(law->looks, (Steps{2, 3, 7}));
   EXPECT_EQ(law->steps, (Steps{1, 4, 6}));
   EXPECT_EQ(law->resets, (Steps{1, 4, 6}));
 }

@@ -18,9 +18,21 @@ struct Wish final : Controller {
     output.source = ActionSource::kBase;
     output.reference = setpoint.present();
     output.predictive = true;
+    output.prediction = resting(now.outputs);
     output.ok = true;
     output.remark = "";
     seen = now.input_applied[0];
+  }
+  /// Nothing moves, whatever the input.
+  PredictiveAction resting(const Vector& outputs) const {
+    PredictiveAction p;
+    p.state = outputs;
+    p.A = p.C = Matrix::Identity(2, 2);
+    p.B = Matrix::Zero(2, 1);
+    p.K = Matrix::Zero(1, 2);
+    p.offset_state = p.offset_output = Vector::Zero(2);
+    p.feedforward = Matrix::Constant(1, 1, wish);
+    return p;
   }
   bool needsModel() const override { return true; }
   void setModel(const TsModel&) override {}

@@ -114,9 +114,9 @@ TEST(PlausibleSession, AModelThatTurnsOneOfTwoOutputsIsTakenAndSaid) {
   Measurement m;
   ControllerSession session = started(loop, m);
   EXPECT_STREQ(session.output().remark, "");
-  session.setModel(negated(loop.model, {0}));
+  session.setModel(negated(loop.model, {1}));
   EXPECT_EQ(session.models(), 2U);
-  expectWords(session.modelRemark(), {"turns the sign of the gain from q_r to s"});
+  expectWords(session.modelRemark(), {"turns the sign of the gain from q_r to x"});
   for (const bool said : {true, false}) {
     ++m.header.step;
     m.header.time_ns += 720'000'000'000;
@@ -124,7 +124,7 @@ TEST(PlausibleSession, AModelThatTurnsOneOfTwoOutputsIsTakenAndSaid) {
     ASSERT_EQ(session.receive(m), Receipt::kAnswered);
     EXPECT_EQ(session.output().remark == session.modelRemark(), said);
   }
-  session.setModel(negated(loop.model, {0}));  // the same again turns nothing
+  session.setModel(negated(loop.model, {1}));  // the same again turns nothing
   EXPECT_EQ(session.modelRemark(), "");
 }
 

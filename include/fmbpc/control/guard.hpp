@@ -105,7 +105,7 @@ class GuardedController final : public ControllerAround {
   bool known_{false};  // the model says where its data were
   bool fallback_{false};
   int above_{};  // samples in a row above trust_high
-  Vector point_;
+  Vector point_, proposed_;
   HorizonTrust ahead_;
   GuardView view_;
   std::vector<std::pair<std::string, double>> signals_;

@@ -35,8 +35,6 @@ class Plausibility {
   Verdict look(const Measurement& now);
   /// The sample with every doubted value replaced.
   const Measurement& accepted() const { return accepted_; }
-  /// Whether each needed value of accepted() was measured or foreseen at some time.
-  bool complete() const { return complete_; }
   /// The law's forecast y(k+1) out of sample k, for Substitute::kModel.
   void expect(const PredictiveAction& prediction, VectorRef input);
   bool usesModel() const { return uses_model_; }  ///< some signal asks for a forecast
@@ -73,7 +71,7 @@ class Plausibility {
   const char* words_{""};
   Measurement accepted_;
   Vector state_, expected_;
-  bool has_expected_{false}, uses_model_{false}, complete_{true};
+  bool has_expected_{false}, uses_model_{false};
   int doubted_{};  // samples in a row with a doubt about a needed signal
 };
 

@@ -12,6 +12,7 @@
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 #include "fmbpc/control/controller.hpp"
 #include "fmbpc/control/plausibility.hpp"
+#include "fmbpc/control/recent_samples.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 
 namespace fpc {
@@ -85,8 +86,9 @@ class ControllerSession {
 
   /// Acts from the next sample. @throws InputError if it does not fit the plant, or if it would
   /// replace another one and is unstable at the last finite sample (see largestPole(); beyond
-  /// max_pole), or turns the sign of a gain there (see requireSameGainSigns()): the old model
-  /// stays. A first model is taken even if it is unstable somewhere, since there is no better one.
+  /// max_pole), or turns the sign of a gain there (see requireSameGainSigns(), requireForeseen()):
+  /// the old model stays. A first model is taken even if it is unstable somewhere, since there is no
+  /// better one.
   void setModel(const TsModel& model);
   std::uint64_t models() const { return models_; }  ///< taken so far
   /// What is to be known of the model in use, in words: gains whose sign it turned when it came.
@@ -161,6 +163,7 @@ class ControllerSession {
   Plausibility plausibility_;
   TsModel model_;        // in use, matched to the plant; of a law that needs one
   Measurement present_;  // the last that was accepted; empty before the first
+  RecentSamples recent_;
   std::string model_remark_, plant_doubt_;
   std::unique_ptr<ReactionWatch> reaction_;  // of a law with a model, if it is asked for
   bool remark_due_{false};                   // it has not been said yet

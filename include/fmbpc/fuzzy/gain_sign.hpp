@@ -18,6 +18,7 @@ inline constexpr int kGainSamples = 1024;
 /// An output, and the first of its large gains that is turned round, by names.
 struct TurnedGain {
   std::string output, input;
+  Eigen::Index row{};  ///< of the output
 };
 
 /// Gains count where they are at least a third of the largest of their output, in both models and
@@ -31,6 +32,11 @@ bool tooManyTurned(const std::vector<TurnedGain>& turned, const TsModel& running
 /// "model 'new' turns the sign of the gain from q_r to x, q_r to s"; empty if there is none.
 std::string wordsOf(const std::vector<TurnedGain>& turned, const TsModel& fresh);
 
+/// Errors of both models one sample ahead over the same samples (n_y; empty: not known): an output
+/// whose gain a model turns it must not foresee worse by more than a half.
+/// @throws InputError naming output and input of the first that it does.
+void requireForeseen(const std::vector<TurnedGain>& turned, const TsModel& fresh,
+                     const Vector& running_errors, const Vector& fresh_errors);
 /// @throws InputError naming the first output and input whose sign is turned round, if too many
 /// are.
 void requireSameGainSigns(const TsModel& running, const TsModel& fresh, const Measurement& at);

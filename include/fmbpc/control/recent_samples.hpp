@@ -1,0 +1,34 @@
+// The last samples of a loop, to ask what a model would have foreseen of them.
+#pragma once
+
+#include <vector>
+
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/fuzzy/ts_model.hpp"
+
+namespace fpc {
+
+/// Consecutive samples, the oldest forgotten first.
+class RecentSamples {
+ public:
+  static constexpr int kKept = 40;
+  static constexpr int kJudged = 20;  ///< the latest of them; those before fill a model's lags
+
+  explicit RecentSamples(const PlantInfo& plant);
+  /// A sample was lost or not accepted: those before say nothing of what follows.
+  void reset() { count_ = 0; }
+  /// Sample k; its input_applied is u(k-1). No allocation.
+  void add(const Measurement& now);
+  bool enough() const { return count_ == kKept; }
+  /// n_y: root mean square of the errors one sample ahead over the judged samples, of a model
+  /// matched to the plant; empty before there are enough.
+  Vector errorsOf(const TsModel& model) const;
+
+ private:
+  const Measurement& at(int k) const;  ///< 0 is the oldest
+
+  std::vector<Measurement> samples_;
+  int count_{}, next_{};
+};
+
+}  // namespace fpc

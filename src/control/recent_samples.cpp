@@ -1,0 +1,49 @@
+#include "fmbpc/control/recent_samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fmbpc/base/signals.hpp"
+#include "fmbpc/fuzzy/local_model.hpp"
+
+namespace fpc {
+
+RecentSamples::RecentSamples(const PlantInfo& plant) {
+  Measurement empty;
+  empty.outputs = Vector::Zero(countOf(plant.outputs));
+  empty.input_applied = Vector::Zero(countOf(plant.inputs));
+  empty.disturbances = Vector::Zero(countOf(plant.disturbances));
+  samples_.assign(kKept, empty);
+}
+
+void RecentSamples::add(const Measurement& now) {
+  Measurement& place = samples_[static_cast<std::size_t>(next_)];
+  place.outputs = now.outputs;
+  place.input_applied = now.input_applied;
+  place.disturbances = now.disturbances;
+  next_ = (next_ + 1) % kKept;
+  count_ = std::min(count_ + 1, kKept);
+}
+
+const Measurement& RecentSamples::at(int k) const {
+  return samples_[static_cast<std::size_t>((next_ + k) % kKept)];
+}
+
+Vector RecentSamples::errorsOf(const TsModel& model) const {
+  if (!enough()) return {};
+  LocalModel local(model);
+  const AffineModel& affine = local.affine();
+  Vector state(local.stateSize()), next = state, squares = Vector::Zero(countOf(model.outputs));
+  local.restState(at(0).outputs, at(0).input_applied, at(0).disturbances, state);
+  for (int k = 1; k < kKept; ++k) {
+    const Measurement& now = at(k);
+    const Vector& before = at(k - 1).disturbances;
+    local.blend(state, now.input_applied, before);
+    next = affine.A * state + affine.B * now.input_applied + affine.g;
+    if (k >= kKept - kJudged) squares += (now.outputs - affine.C * next).cwiseAbs2();
+    local.shiftState(now.outputs, now.input_applied, before, state);
+  }
+  return (squares / static_cast<double>(kJudged)).cwiseSqrt();
+}
+
+}  // namespace fpc
