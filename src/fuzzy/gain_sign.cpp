@@ -10,7 +10,7 @@ namespace fpc {
 namespace {
 
 constexpr double kCounts = 1.0 / 3.0;  // of the largest gain of an output
-constexpr double kWorse = 1.5;         // an error one sample ahead, in parts of another
+constexpr double kWorse = 5.0;         // an error one sample ahead, in parts of another
 
 /// Columns in parts of the inputs' ranges, where those are finite.
 Matrix scaled(Matrix gains, const TsModel& model) {
