@@ -109,14 +109,14 @@ TEST(PlausibleSession, AModelWithNegatedGainsIsRefusedInTheRun) {
   EXPECT_EQ(session.modelRemark(), "");
 }
 
-TEST(PlausibleSession, AModelThatTurnsOneOfTwoOutputsIsTakenAndSaid) {
-  const LoopFile loop = loopWith({});
+TEST(PlausibleSession, ATurnedModelThatIsTakenIsSaidOnce) {
+  const LoopFile loop = loopWith({{"plausibility.gain_sign", "false"}});
   Measurement m;
   ControllerSession session = started(loop, m);
   EXPECT_STREQ(session.output().remark, "");
   session.setModel(negated(loop.model, {1}));
   EXPECT_EQ(session.models(), 2U);
-  expectWords(session.modelRemark(), {"turns the sign of the gain from q_r to x"});
+  expectWords(session.modelRemark(), {"turns the sign of the gain from", "q_r to x"});
   for (const bool said : {true, false}) {
     ++m.header.step;
     m.header.time_ns += 720'000'000'000;
@@ -159,6 +159,21 @@ TEST(PlausibleSession, ALearnedModelThatTurnsAGainIsTakenAndSaid) {
   EXPECT_EQ(session.models(), 2U);
   expectWords(of_model, {"turns the sign of the gain from", "q_r to x"});
   EXPECT_NE(said.find(of_model), std::string::npos) << said;
+}
+
+/// All coefficients of one output of two turned round: one gain turns, and what came is missed by
+/// far.
+TEST(PlausibleSession, ANegatedOutputIsRefusedByWhatItForesees) {
+  const LoopFile loop = readLoop("asp_case1", {{"sampling.duration_h", "12"}});
+  ControllerSession session = makeControllerSession(loop);
+  session.setModel(loop.model);
+  for (const SampleRecord& sample : runLoop(loop).samples) session.receive(sample.measurement);
+  TsModel bad = loop.model;
+  for (Rule& rule : bad.submodels[0].rules) rule.coefficients *= -1.0;
+  expectWords(errorOf([&] { session.setModel(bad); }), {"foresee s", "q_r", "gain_sign"});
+  EXPECT_EQ(session.models(), 1U);
+  session.setModel(loop.model);
+  EXPECT_EQ(session.models(), 2U);
 }
 
 /// Every fourth loop, 40 samples of it; with FMBPC_LONG_TESTS all of all.

@@ -34,8 +34,7 @@ std::string wordsOf(const std::vector<TurnedGain>& turned, const TsModel& fresh)
 
 /// Errors of both models one sample ahead over the same samples (n_y; empty: not known): an output
 /// whose gain a model turns it must not foresee more than five times as badly. (Models learned
-/// online from few samples err twice as much without harm; one that is negated errs a hundred
-/// times.)
+/// online from few samples err twice as much without harm; one that is negated errs far more.)
 /// @throws InputError naming output and input of the first that it does.
 void requireForeseen(const std::vector<TurnedGain>& turned, const TsModel& fresh,
                      const Vector& running_errors, const Vector& fresh_errors);
