@@ -68,7 +68,7 @@ class BrokenWire {
  private:
   PlantGateway::Rounding rounding() const {
     return [format = loop_.gateway.inputs[0].modbus.format](Eigen::Index, double value,
-                                                               double lower, double upper) {
+                                                            double lower, double upper) {
       return representable(format, value, lower, upper);
     };
   }

@@ -87,8 +87,8 @@ class ControllerSession {
   /// Acts from the next sample. @throws InputError if it does not fit the plant, or if it would
   /// replace another one and is unstable at the last finite sample (see largestPole(); beyond
   /// max_pole), or turns the sign of a gain there (see requireSameGainSigns(), requireForeseen()):
-  /// the old model stays. A first model is taken even if it is unstable somewhere, since there is no
-  /// better one.
+  /// the old model stays. A first model is taken even if it is unstable somewhere, since there is
+  /// no better one.
   void setModel(const TsModel& model);
   std::uint64_t models() const { return models_; }  ///< taken so far
   /// What is to be known of the model in use, in words: gains whose sign it turned when it came.
