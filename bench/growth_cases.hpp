@@ -9,6 +9,7 @@
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/plant/plant.hpp"
+#include "fuzzy/model_fixture.hpp"
 
 namespace fpc::bench {
 
@@ -63,22 +64,13 @@ inline TsModel neighbourModel(int outputs, int rules) {
   return model;
 }
 
-inline PlantInfo infoOf(const TsModel& model) {
-  PlantInfo info;
-  info.name = model.name;
-  info.sample_time_s = model.sample_time_s;
-  info.outputs = model.outputs;
-  info.inputs = model.inputs;
-  return info;
-}
-
 /// The law on a neighbourModel(), asked again and again at two setpoints in turn.
 class LawCase {
  public:
   LawCase(int outputs, int rules, int horizon)
       : model_(neighbourModel(outputs, rules)),
         setpoint_(setpointParams(outputs), namesOf(model_), SampleClock(1.0, 1.0)),
-        law_(paramsOf(outputs, horizon), limitsOf(outputs), infoOf(model_)) {
+        law_(paramsOf(outputs, horizon), limitsOf(outputs), test::infoOf(model_)) {
     now_.outputs = Vector::Zero(outputs);
     now_.disturbances = Vector::Zero(0);
     now_.input_applied = Vector::Zero(outputs);

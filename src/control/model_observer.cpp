@@ -52,11 +52,7 @@ void ModelObserver::inherit(const ModelObserver& other) {
 
 /// One sample on, with the disturbance; the matrices of the blend stay in local_.
 void ModelObserver::move(VectorRef input, VectorRef disturbances, Vector& state) {
-  local_.blend(state, input, disturbances);
-  const AffineModel& m = local_.affine();
-  next_ = m.g;
-  next_ += m.A.lazyProduct(state);
-  next_ += m.B.lazyProduct(Vector::Map(input.data(), input.size()));
+  local_.advance(state, input, disturbances, next_);
   filter_.addDisturbance(next_);
   state.swap(next_);
 }

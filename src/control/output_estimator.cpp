@@ -84,11 +84,7 @@ void OutputEstimator::resume(VectorRef outputs, VectorRef input, VectorRef distu
 }
 
 void OutputEstimator::move(VectorRef input, VectorRef disturbances, Vector& state) {
-  local_.blend(state, input, disturbances);
-  const AffineModel& m = local_.affine();
-  next_ = m.g;
-  next_ += m.A.lazyProduct(state);
-  next_ += m.B.lazyProduct(Vector::Map(input.data(), input.size()));
+  local_.advance(state, input, disturbances, next_);
   state.swap(next_);
 }
 

@@ -96,11 +96,8 @@ void ReactionWatch::look(const Measurement& now) {
 
 /// The error of y(k) out of sample k - 1, and what each input had to do with its forecast.
 void ReactionWatch::predict(const Measurement& now) {
-  local_.blend(state_, now.input_applied, before_);
+  local_.advance(state_, now.input_applied, before_, next_);
   const AffineModel& affine = local_.affine();
-  next_ = affine.g;
-  next_.noalias() += affine.A * state_;
-  next_.noalias() += affine.B * now.input_applied;
   error_ = now.outputs;
   error_.noalias() -= affine.C * next_;
   const Index n_y = error_.size();

@@ -32,15 +32,13 @@ const Measurement& RecentSamples::at(int k) const {
 Vector RecentSamples::errorsOf(const TsModel& model) const {
   if (!enough()) return {};
   LocalModel local(model);
-  const AffineModel& affine = local.affine();
   Vector state(local.stateSize()), next = state, squares = Vector::Zero(countOf(model.outputs));
   local.restState(at(0).outputs, at(0).input_applied, at(0).disturbances, state);
   for (int k = 1; k < kKept; ++k) {
     const Measurement& now = at(k);
     const Vector& before = at(k - 1).disturbances;
-    local.blend(state, now.input_applied, before);
-    next = affine.A * state + affine.B * now.input_applied + affine.g;
-    if (k >= kKept - kJudged) squares += (now.outputs - affine.C * next).cwiseAbs2();
+    local.advance(state, now.input_applied, before, next);
+    if (k >= kKept - kJudged) squares += (now.outputs - local.affine().C * next).cwiseAbs2();
     local.shiftState(now.outputs, now.input_applied, before, state);
   }
   return (squares / static_cast<double>(kJudged)).cwiseSqrt();

@@ -122,20 +122,16 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
 
 void ControllerSession::process(const Measurement& m) {
   fell_back_ = false;
-  if (needsReset(arrival_)) plausibility_.reset();
-  if (needsReset(arrival_) && reaction_) reaction_->reset();
+  if (needsReset(arrival_)) forgetSamples();
   const Verdict verdict = plausibility_.look(m);
   const Measurement& accepted = verdict == Verdict::kClean ? m : plausibility_.accepted();
   const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
   const bool finite = allFinite(m);
   if (!finite) gate_.countNotFinite();
-  if (needsReset(arrival_) || !usable) recent_.reset();
-  if (usable) present_ = accepted;
-  if (usable) recent_.add(accepted);
   if (usable)
-    watchReaction(accepted);
-  else if (reaction_)
-    reaction_->interrupt();
+    keep(accepted);
+  else
+    interrupt();
   if (unreleased_) {
     hold(m, "joined a run without knowing what its operator asked: held until ~manual is called");
     interruption_ = "released";
@@ -170,6 +166,24 @@ void ControllerSession::process(const Measurement& m) {
   if (*output_.remark == '\0') output_.remark = reaction().c_str();
   expectNext();
   last_input_ = answer_.base.input;
+}
+
+void ControllerSession::forgetSamples() {
+  plausibility_.reset();
+  recent_.reset();
+  if (reaction_) reaction_->reset();
+}
+
+/// An accepted sample; only who has a model is asked for its past.
+void ControllerSession::keep(const Measurement& accepted) {
+  present_ = accepted;
+  if (models_ > 0) recent_.add(accepted);
+  watchReaction(accepted);
+}
+
+void ControllerSession::interrupt() {
+  recent_.reset();
+  if (reaction_) reaction_->interrupt();
 }
 
 // What the law foresees for the next sample, in case that one is not accepted.
@@ -266,10 +280,9 @@ void ControllerSession::setModel(const TsModel& model) {
   if (models_ > 0 && matters && present_.outputs.size() > 0) {
     requireStable(matched, present_, max_pole_);
     const auto turned = turnedGains(model_, matched, present_);
-    if (plausibility_.params().gain_sign) {
-      requireSameGainSigns(model_, matched, present_);
-      if (!turned.empty())
-        requireForeseen(turned, matched, recent_.errorsOf(model_), recent_.errorsOf(matched));
+    if (plausibility_.params().gain_sign && !turned.empty()) {
+      requireFewTurned(turned, matched);
+      requireForeseen(turned, matched, recent_.errorsOf(model_), recent_.errorsOf(matched));
     }
     model_remark_ = wordsOf(turned, matched);
     remark_due_ = !model_remark_.empty();

@@ -175,4 +175,11 @@ bool LocalModel::blend(VectorRef state, VectorRef input, VectorRef disturbances)
   return fired;
 }
 
+void LocalModel::advance(VectorRef state, VectorRef input, VectorRef disturbances, Vector& next) {
+  blend(state, input, disturbances);
+  next = affine_.g;
+  next += affine_.A.lazyProduct(state);
+  next += affine_.B.lazyProduct(input);
+}
+
 }  // namespace fpc

@@ -1,4 +1,4 @@
-#include "ros/bag_run.hpp"
+#include "loop/bag_reader.hpp"
 
 #include <fmbpc/CommandEffect.h>
 #include <fmbpc/ControlAction.h>

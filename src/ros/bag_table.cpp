@@ -1,4 +1,4 @@
-#include "ros/bag_table.hpp"
+#include "loop/bag_reader.hpp"
 
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>

@@ -95,65 +95,44 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
   }
 }
 
-// Any message of the first sample may come first.
-void LoopRecorder::noteBegin() {
-  if (began_s_ < 0) began_s_ = steadyNow();
+// Any message of the first sample may come first, and any of the last one may be the last.
+template <typename Take>
+void LoopRecorder::record(const char* topic, Take take) {
+  guarded(topic, [&] {
+    if (began_s_ < 0) began_s_ = steadyNow();
+    take();
+    if (!written_ && closed_s_ < 0 && session_.complete()) conclude();
+  });
 }
 
 void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
-  guarded(topics::kMeasurement, [&] {
-    noteBegin();
+  record(topics::kMeasurement, [&] {
     session_.receive(fromMsg(*msg));
     if (!session_.finalSeen())
       final_seen_s_ = -1;
     else if (!written_ && final_seen_s_ < 0)
       final_seen_s_ = steadyNow();
-    checkComplete();
   });
 }
 
 void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
-  guarded(topics::kPlantState, [&] {
-    noteBegin();
-    session_.receive(fromMsg(*msg));
-    checkComplete();
-  });
+  record(topics::kPlantState, [&] { session_.receive(fromMsg(*msg)); });
 }
 
 void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
-  guarded(topics::kTracking, [&] {
-    noteBegin();
-    session_.receive(fromMsg(*msg), msg->remark);
-    checkComplete();
-  });
+  record(topics::kTracking, [&] { session_.receive(fromMsg(*msg), msg->remark); });
 }
 
 void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
-  guarded(topics::kBaseAction, [&] {
-    noteBegin();
-    session_.receiveBase(fromMsg(*msg));
-    checkComplete();
-  });
+  record(topics::kBaseAction, [&] { session_.receiveBase(fromMsg(*msg)); });
 }
 
 void LoopRecorder::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
-  guarded(topics::kControlAction, [&] {
-    noteBegin();
-    session_.receiveAction(fromMsg(*msg));
-    checkComplete();
-  });
+  record(topics::kControlAction, [&] { session_.receiveAction(fromMsg(*msg)); });
 }
 
 void LoopRecorder::onReport(const fmbpc::SolverReport::ConstPtr& msg) {
-  guarded(topics::kSolverReport, [&] {
-    noteBegin();
-    session_.receive(fromMsg(*msg));
-    checkComplete();
-  });
-}
-
-void LoopRecorder::checkComplete() {
-  if (!written_ && closed_s_ < 0 && session_.complete()) conclude();
+  record(topics::kSolverReport, [&] { session_.receive(fromMsg(*msg)); });
 }
 
 // Writes the files; a disk without room gets some time, the journal stays whatever happens.

@@ -49,8 +49,8 @@ class LoopRecorder : public Node {
   void poll();
   void announceIfConnected();
   void beginRun(std::uint64_t run_id);
-  void noteBegin();
-  void checkComplete();
+  template <typename Take>
+  void record(const char* topic, Take take);
   void conclude();
   bool tryWrite();
   void end();

@@ -1,6 +1,8 @@
 // The same classes as nodelets, all in one process: messages go from one to the next without being
-// copied. Each has a queue of its own, and one thread at a time works on it.
+// copied. Each has a queue and a thread of its own.
 #include <nodelet/nodelet.h>
+#include <ros/callback_queue.h>
+#include <ros/spinner.h>
 #include <pluginlib/class_list_macros.hpp>
 
 #include <memory>
@@ -23,13 +25,17 @@ template <typename Class>
 class Hosted : public nodelet::Nodelet {
  public:
   ~Hosted() override {
+    spinner_.reset();
     if (instance_) instance_->finish();
   }
 
  private:
+  // The manager's own threads would hand messages to an object that is still being made: as in a
+  // process of its own, nothing is heard before it is.
   void onInit() override {
-    const ros::NodeHandle& node = getNodeHandle();
-    const ros::NodeHandle& private_node = getPrivateNodeHandle();
+    ros::NodeHandle node = getNodeHandle(), private_node = getPrivateNodeHandle();
+    node.setCallbackQueue(&queue_);
+    private_node.setCallbackQueue(&queue_);
     try {
       const LoopFile loop = loopParameter(private_node);
       const std::string idle = Class::idleReason(loop);
@@ -39,14 +45,18 @@ class Hosted : public nodelet::Nodelet {
       }
       watch_.emplace(node, private_node, loop);
       instance_ = std::make_unique<Class>(node, private_node, loop);
+      spinner_.emplace(1, &queue_);
+      spinner_->start();
     } catch (const std::exception& error) {
       ROS_FATAL("%s: %s", getName().c_str(), error.what());
       ros::requestShutdown();
     }
   }
 
+  ros::CallbackQueue queue_;
   std::optional<MasterWatch> watch_;
   std::unique_ptr<Class> instance_;
+  std::optional<ros::AsyncSpinner> spinner_;
 };
 
 class PlantSimulatorNodelet : public Hosted<PlantSimulator> {};

@@ -6,7 +6,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
-#include "ros/bag_run.hpp"
+#include "loop/bag_reader.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

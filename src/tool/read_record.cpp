@@ -5,7 +5,7 @@
 #include <fstream>
 
 #include "fmbpc/base/input_error.hpp"
-#include "ros/bag_table.hpp"
+#include "loop/bag_reader.hpp"
 
 namespace fpc::tool {
 namespace {

@@ -40,23 +40,6 @@ struct Wish final : Controller {
   double wish{700.0}, seen{};
 };
 
-/// q_r was between 400 and 1000 in the data, s between 50 and 60, x between 1800 and 2200.
-TsModel model() {
-  TsModel m;
-  m.name = "box";
-  m.sample_time_s = 720.0;
-  m.outputs = {{"s", "mg/l", 50, 60}, {"x", "mg/l", 1800, 2200}};
-  m.inputs = {{"q_r", "m3/h", 400, 1000}};
-  m.disturbances = {{"q_i", "m3/h", 1000, 1600}};
-  OutputModel submodel;
-  submodel.regressors = {{SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 0}};
-  Rule rule;
-  rule.coefficients = of({0.5, 0.5});
-  submodel.rules = {rule};
-  m.submodels = {submodel, submodel};
-  return m;
-}
-
 class Guard : public testing::Test {
  protected:
   void make(GuardParams params) {
@@ -64,7 +47,7 @@ class Guard : public testing::Test {
     law = owned.get();
     guard =
         std::make_unique<GuardedController>(std::move(owned), std::move(params), limits(), plant());
-    guard->setModel(model());
+    guard->setModel(boxModel());
     guard->reset(sample(0));
   }
   static GuardParams params(bool with_pi = false) {

@@ -9,23 +9,6 @@
 namespace fpc::test_session {
 namespace {
 
-/// x was between 1800 and 2200: no trust of 0.25 beyond 2200 + a sixth of that, 2266.7.
-TsModel model() {
-  TsModel m;
-  m.name = "box";
-  m.sample_time_s = 720.0;
-  m.outputs = {{"s", "mg/l", 50, 60}, {"x", "mg/l", 1800, 2200}};
-  m.inputs = {{"q_r", "m3/h", 400, 1000}};
-  m.disturbances = {{"q_i", "m3/h", 1000, 1600}};
-  OutputModel submodel;
-  submodel.regressors = {{SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 0}};
-  Rule rule;
-  rule.coefficients = of({0.5, 0.5});
-  submodel.rules = {rule};
-  m.submodels = {submodel, submodel};
-  return m;
-}
-
 /// A law that plans 20 samples: x rises by `slope` in each of them.
 struct Planner final : Controller, PlanView {
   void reset(const Measurement&) override {}
@@ -54,7 +37,7 @@ class PlanAhead : public testing::Test {
     GuardParams params;
     params.lock_samples = 0;
     guard = std::make_unique<GuardedController>(std::move(owned), params, limits(), plant());
-    guard->setModel(model());
+    guard->setModel(boxModel());
     guard->reset(sample(0));
   }
   void step(double x, double slope) {
@@ -109,11 +92,11 @@ TEST(HorizonTrust, APredictiveActionIsRunForward) {
   p.K = Matrix::Zero(1, 1);
   p.feedforward = Matrix::Constant(1, 6, 600.0);
   HorizonTrust trust;
-  trust.judge(model(), p, of({1300.0}), 0.25);
+  trust.judge(boxModel(), p, of({1300.0}), 0.25);
   EXPECT_EQ(trust.horizon(), 10);  // the last feedforward is held
   EXPECT_EQ(trust.trustedSteps(), 3);
   EXPECT_EQ(trust.least(), 0.0);
-  trust.judge(model(), p, of({9000.0}), 0.25);  // no such flow in the data
+  trust.judge(boxModel(), p, of({9000.0}), 0.25);  // no such flow in the data
   EXPECT_EQ(trust.trustedSteps(), 1);
 }
 

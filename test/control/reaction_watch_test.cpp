@@ -15,21 +15,10 @@ constexpr int kWindow = 40;
 
 /// y(k+1) = 0.8 y + 0.5 u1(k-1) + 0.2 u2(k).
 TsModel model() {
-  TsModel m;
-  m.name = "two inputs";
-  m.sample_time_s = 1.0;
-  m.outputs = {test::signal("y")};
-  m.inputs = {test::signal("u1"), test::signal("u2")};
-  m.submodels.resize(1);
-  OutputModel& y = m.submodels[0];
-  y.antecedents = {{SignalKind::kOutput, 0, 0}};
-  y.regressors = {
-      {SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 1}, {SignalKind::kInput, 1, 0}};
-  y.rules = {{{{MembershipShape::kTriangular, {-1e3, 0.0, 1e3}}},
-              (Vector(3) << 0.8, 0.5, 0.2).finished(),
-              0.0,
-              0}};
-  return m;
+  return test::oneRule(
+      test::numbered("u", 2),
+      {{SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 1}, {SignalKind::kInput, 1, 0}},
+      Eigen::Vector3d(0.8, 0.5, 0.2));
 }
 
 /// The process of that model, with parts of its inputs' moves arriving, and what the watch says.

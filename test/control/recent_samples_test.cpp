@@ -14,25 +14,9 @@ namespace {
 
 /// y(k+1) = a y(k) + b u(k).
 TsModel model(double a, double b) {
-  TsModel m;
-  m.name = "new";
-  m.sample_time_s = 1.0;
-  m.outputs = {test::signal("y")};
-  m.inputs = {test::signal("u")};
-  m.submodels.resize(1);
-  OutputModel& y = m.submodels[0];
-  y.antecedents = {{SignalKind::kOutput, 0, 0}};
-  y.regressors = {{SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 0}};
-  y.rules = {
-      {{{MembershipShape::kTriangular, {-1e3, 0.0, 1e3}}}, (Vector(2) << a, b).finished(), 0.0, 0}};
-  return m;
-}
-
-PlantInfo plant() {
-  PlantInfo info;
-  info.outputs = {test::signal("y")};
-  info.inputs = {test::signal("u")};
-  return info;
+  return test::oneRule({test::signal("u")},
+                       {{SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 0}},
+                       Eigen::Vector2d(a, b));
 }
 
 /// Samples of y(k+1) = 0.8 y + 0.5 u under a random input.
@@ -48,7 +32,7 @@ void live(RecentSamples& recent, int samples) {
 }
 
 TEST(RecentSamples, TheTrueModelErrsByNothingAndOneWithHalfTheGainByHalfTheInput) {
-  RecentSamples recent(plant());
+  RecentSamples recent(test::infoOf(model(0.8, 0.5)));
   live(recent, RecentSamples::kKept + 7);
   EXPECT_LE(recent.errorsOf(model(0.8, 0.5))[0], 1e-15);
   const double error = recent.errorsOf(model(0.8, 0.25))[0];
@@ -57,7 +41,7 @@ TEST(RecentSamples, TheTrueModelErrsByNothingAndOneWithHalfTheGainByHalfTheInput
 }
 
 TEST(RecentSamples, FewSamplesOrAGapSayNothing) {
-  RecentSamples recent(plant());
+  RecentSamples recent(test::infoOf(model(0.8, 0.5)));
   live(recent, RecentSamples::kKept - 1);
   EXPECT_EQ(recent.errorsOf(model(0.8, 0.5)).size(), 0);
   live(recent, 1);
@@ -68,7 +52,7 @@ TEST(RecentSamples, FewSamplesOrAGapSayNothing) {
 }
 
 TEST(RecentSamples, AModelThatTurnsAGainMustForeseeWhatCame) {
-  RecentSamples recent(plant());
+  RecentSamples recent(test::infoOf(model(0.8, 0.5)));
   live(recent, RecentSamples::kKept);
   const std::vector<TurnedGain> turned = {{"y", "u", 0}};
   const TsModel truth = model(0.8, 0.5), wrong = model(0.8, -0.5);

@@ -14,7 +14,7 @@
 #include "fuzz/scratch_file.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"
-#include "ros/bag_table.hpp"
+#include "loop/bag_reader.hpp"
 #include "ros/conversions.hpp"
 
 namespace fpc::fuzz {

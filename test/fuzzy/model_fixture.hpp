@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fmbpc/config/model_file.hpp"
@@ -94,6 +95,22 @@ inline PlantInfo infoOf(const TsModel& model) {
   info.inputs = model.inputs;
   info.disturbances = model.disturbances;
   return info;
+}
+
+/// One output y, y(k+1) = coefficients' regressors, one rule that fires everywhere within 1e3.
+inline TsModel oneRule(std::vector<SignalInfo> inputs, std::vector<Regressor> regressors,
+                       const Vector& coefficients) {
+  TsModel model;
+  model.name = "new";
+  model.sample_time_s = 1.0;
+  model.outputs = {signal("y")};
+  model.inputs = std::move(inputs);
+  OutputModel y;
+  y.antecedents = {{SignalKind::kOutput, 0, 0}};
+  y.regressors = std::move(regressors);
+  y.rules = {{{{MembershipShape::kTriangular, {-1e3, 0.0, 1e3}}}, coefficients, 0.0, 0}};
+  model.submodels = {y};
+  return model;
 }
 
 inline Vector randomVector(std::mt19937_64& generator, Eigen::Index n, double size = 1.0) {

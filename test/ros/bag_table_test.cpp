@@ -1,5 +1,5 @@
 // A bag is the table that the same run writes.
-#include "ros/bag_table.hpp"
+#include "loop/bag_reader.hpp"
 
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>

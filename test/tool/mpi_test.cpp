@@ -44,15 +44,6 @@ class Mpi : public LoopFolder {
   Outcome ranks(int n, const std::string& arguments) const {
     return shell(kMpirun + std::to_string(n) + " " FMBPC_MPI " " + arguments + " 2>&1");
   }
-  Outcome shell(const std::string& line) const {
-    FILE* pipe = popen(line.c_str(), "r");
-    Outcome outcome;
-    std::array<char, 4096> buffer{};
-    while (const std::size_t n = fread(buffer.data(), 1, buffer.size(), pipe))
-      outcome.printed.append(buffer.data(), n);
-    outcome.code = WEXITSTATUS(pclose(pipe));
-    return outcome;
-  }
   Json studyJson(const std::string& out) const {
     Json json = Json::parse(std::ifstream(path(out) + "/study.json"));
     json.erase("resumed");

@@ -86,7 +86,7 @@ class ControllerSession {
 
   /// Acts from the next sample. @throws InputError if it does not fit the plant, or if it would
   /// replace another one and is unstable at the last finite sample (see largestPole(); beyond
-  /// max_pole), or turns the sign of a gain there (see requireSameGainSigns(), requireForeseen()):
+  /// max_pole), or turns the sign of a gain there (see requireFewTurned(), requireForeseen()):
   /// the old model stays. A first model is taken even if it is unstable somewhere, since there is
   /// no better one.
   void setModel(const TsModel& model);
@@ -144,6 +144,9 @@ class ControllerSession {
   void fallBack(const Measurement& m, const char* remark);
   const std::string* imposing(DoubtAction action) const;
   void watchReaction(const Measurement& m);
+  void forgetSamples();
+  void keep(const Measurement& accepted);
+  void interrupt();
   void expectNext();
   void noteNeeds();
   void sendManual(const Measurement& m);

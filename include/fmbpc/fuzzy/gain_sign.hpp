@@ -28,7 +28,7 @@ std::vector<TurnedGain> turnedGains(const TsModel& running, const TsModel& fresh
                                     const Measurement& at);
 /// A model that was learned anew may know better in some outputs: more than half of them are too
 /// many.
-bool tooManyTurned(const std::vector<TurnedGain>& turned, const TsModel& running);
+bool tooManyTurned(const std::vector<TurnedGain>& turned, const TsModel& fresh);
 /// "model 'new' turns the sign of the gain from q_r to x, q_r to s"; empty if there is none.
 std::string wordsOf(const std::vector<TurnedGain>& turned, const TsModel& fresh);
 
@@ -40,6 +40,6 @@ void requireForeseen(const std::vector<TurnedGain>& turned, const TsModel& fresh
                      const Vector& running_errors, const Vector& fresh_errors);
 /// @throws InputError naming the first output and input whose sign is turned round, if too many
 /// are.
-void requireSameGainSigns(const TsModel& running, const TsModel& fresh, const Measurement& at);
+void requireFewTurned(const std::vector<TurnedGain>& turned, const TsModel& fresh);
 
 }  // namespace fpc

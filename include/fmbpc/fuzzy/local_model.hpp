@@ -38,6 +38,9 @@ class LocalModel {
   bool blend(VectorRef state, VectorRef disturbances);
   /// The same for a u(k) that is known, as along a planned path.
   bool blend(VectorRef state, VectorRef input, VectorRef disturbances);
+  /// xi(k+1) of a state under u(k), d(k): blends there, then moves. No allocation once `next` has
+  /// its size.
+  void advance(VectorRef state, VectorRef input, VectorRef disturbances, Vector& next);
   const AffineModel& affine() const { return affine_; }
   const std::vector<FiringResult>& firing() const { return firing_; }
 

@@ -11,11 +11,7 @@ void FuzzySampleModel::rest(VectorRef outputs, VectorRef input, VectorRef distur
 }
 
 bool FuzzySampleModel::step(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> state) {
-  local_.blend(state, input, disturbances);
-  const AffineModel& affine = local_.affine();
-  next_ = affine.g;
-  next_ += affine.A.lazyProduct(state);
-  next_ += affine.B.lazyProduct(input);
+  local_.advance(state, input, disturbances, next_);
   state = next_;
   return state.allFinite();
 }

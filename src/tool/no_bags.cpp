@@ -1,7 +1,6 @@
 // In place of bag_run.cpp and bag_table.cpp in a build without ROS.
 #include "fmbpc/base/input_error.hpp"
-#include "ros/bag_run.hpp"
-#include "ros/bag_table.hpp"
+#include "loop/bag_reader.hpp"
 
 namespace fpc {
 namespace {
