@@ -2,7 +2,6 @@
 // states. The base law runs into its limits all the time, so that every step solves a QP.
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 
-#include <limits>
 #include <string>
 
 #include <benchmark/benchmark.h>
@@ -13,7 +12,6 @@ using fpc::Matrix;
 using fpc::Vector;
 
 constexpr int kSteps = 42;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 enum Limits { kBounds, kMoves, kSoftOutputs, kInactive };
 

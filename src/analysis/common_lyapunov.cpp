@@ -14,7 +14,7 @@ namespace fpc {
 namespace {
 
 constexpr int kBisections = 8;
-constexpr int kDoublings = 40;
+constexpr int kLyapunovDoublings = 40;
 constexpr double kRounding = 1e-9;  // what a certified decay must stay below 1
 
 /// Upper factor R of P = R' R with A' P A - P = -I for the mean map: its coordinates make the
@@ -24,7 +24,7 @@ Matrix roundCoordinates(const std::vector<Matrix>& maps) {
   Matrix A = Matrix::Zero(n, n);
   for (const auto& map : maps) A += map / static_cast<double>(maps.size());
   Matrix P = Matrix::Identity(n, n);
-  for (int i = 0; i < kDoublings; ++i) {
+  for (int i = 0; i < kLyapunovDoublings; ++i) {
     P += (A.transpose() * P * A).eval();
     A = (A * A).eval();
     if (!P.allFinite()) return Matrix::Identity(n, n);

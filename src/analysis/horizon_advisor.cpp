@@ -10,12 +10,12 @@ namespace {
 
 constexpr int kSimulated = 5000;  // samples
 constexpr double kBand = 0.02;
-constexpr int kDoublings = 40;
+constexpr int kGramianDoublings = 40;
 
 /// W = A W A' + G G', by doubling.
 Matrix stationaryVariance(Matrix A, const Matrix& G) {
   Matrix W = G * G.transpose();
-  for (int i = 0; i < kDoublings; ++i) {
+  for (int i = 0; i < kGramianDoublings; ++i) {
     W += (A * W * A.transpose()).eval();
     A = (A * A).eval();
   }

@@ -1,7 +1,6 @@
 // Rise, settling, overshoot and offset of every step of a setpoint.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/analysis/performance.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -11,7 +10,6 @@ namespace {
 
 constexpr double kLeastStep = 0.01;  // of the largest
 constexpr double kRiseFrom = 0.1, kRiseTo = 0.9;
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<StepIndices> findSteps(VectorRef y, VectorRef setpoint) {
   std::vector<StepIndices> steps;
@@ -64,7 +62,7 @@ void judge(VectorRef y, double sample_time, double band, StepIndices& step) {
   const Eigen::Index n = step.last - step.first;
   const Vector z = (y.segment(step.first, n + 1).array() - step.from) / (step.to - step.from);
   if (!z.allFinite()) {
-    step.rise = step.settling = step.overshoot = step.offset = kMissing;
+    step.rise = step.settling = step.overshoot = step.offset = kNaN;
     return;
   }
   const bool rises = z.maxCoeff() >= kRiseTo;

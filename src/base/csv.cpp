@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <map>
 #include <set>
 
@@ -15,7 +14,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 const std::string kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets put it before UTF-8
 
 const std::map<std::string, char>& separators() {
@@ -82,7 +80,7 @@ double readCell(const std::string& cell, std::size_t line, const CsvFormat& form
   }
   if (kind.other == 0) kind.text = cell;
   keepFirst(kind.other, line);
-  return kMissing;
+  return kNaN;
 }
 
 std::vector<std::vector<double>> readRows(std::istream& stream, const CsvFormat& format,

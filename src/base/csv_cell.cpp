@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::string trimmed(const std::string& text) {
   const auto from = text.find_first_not_of(" \t\r");
@@ -128,9 +125,9 @@ std::vector<std::string> cellsOf(const std::string& line, char separator) {
 }
 
 std::optional<double> cellNumber(const std::string& cell, const CsvFormat& format) {
-  if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NAN") return kMissing;
+  if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NAN") return kNaN;
   for (const auto& word : format.missing_values)
-    if (means(cell, word, format.decimal)) return kMissing;
+    if (means(cell, word, format.decimal)) return kNaN;
   if (format.decimal == '.') return numberOf(cell);
   if (cell.find('.') != std::string::npos) return std::nullopt;  // thousands, or the other decimal
   std::string pointed = cell;

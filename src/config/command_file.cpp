@@ -13,11 +13,9 @@
 namespace fpc {
 namespace {
 
-std::vector<std::string> disturbanceNames(const LoopFile& loop) {
+std::vector<std::string> disturbedNames(const LoopFile& loop) {
   requireSimulated(loop);
-  std::vector<std::string> names;
-  const auto plant = makePlant(loop.simulation);
-  for (const Quantity& q : plant->description().disturbances) names.push_back(q.name);
+  std::vector<std::string> names = disturbanceNames(loop);
   for (const SignalInfo& input : loop.plant_info.inputs) names.push_back("input/" + input.name);
   for (const SignalInfo& output : loop.plant_info.outputs) names.push_back("output/" + output.name);
   return names;
@@ -105,7 +103,7 @@ const std::vector<Kind>& kinds() {
        }},
       {"disturbance",
        [](Entry entry, Key key, Loop loop) -> What {
-         return DisturbanceCommand{readSignals(entry, key, disturbanceNames(loop))};
+         return DisturbanceCommand{readSignals(entry, key, disturbedNames(loop))};
        }},
       {"manual", [](Entry entry, Key key, Loop) -> What { return SetManual{readOn(entry, key)}; }},
       {"manual_input",

@@ -8,18 +8,18 @@ namespace {
 
 constexpr std::uint32_t kMostSamples = 10'000'000;  // of a record that is held as a whole
 
-std::vector<std::string> disturbanceNames(const LoopFile& loop) {
-  std::vector<std::string> names;
-  const auto plant = makePlant(loop.simulation);
-  for (const auto& quantity : plant->description().disturbances) names.push_back(quantity.name);
-  return names;
-}
-
 }  // namespace
 
 void requireSimulated(const LoopFile& loop) {
   require(!loop.external_plant, loop.name + ": plant.type",
           "a plant that can be simulated; an external one runs over topics only");
+}
+
+std::vector<std::string> disturbanceNames(const LoopFile& loop) {
+  std::vector<std::string> names;
+  const auto plant = makePlant(loop.simulation);
+  for (const auto& quantity : plant->description().disturbances) names.push_back(quantity.name);
+  return names;
 }
 
 DisturbanceRecord makeDisturbance(const LoopFile& loop) {

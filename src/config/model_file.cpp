@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "config/model_file_parts.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -20,7 +19,7 @@ std::vector<SignalInfo> readSignals(YamlSection& top, const std::string& key, bo
   for (const auto& signal : section.keys()) {
     std::string unit;
     section.text(signal, unit);
-    signals.push_back({signal, unit, -kInfinite, kInfinite});
+    signals.push_back({signal, unit, -kInfinity, kInfinity});
   }
   return signals;
 }

@@ -57,10 +57,10 @@ void defaultClp(ClpParams& clp, Eigen::Index n_y, Eigen::Index n_u) {
   clp.weight_tracking = Vector::Zero(n_y);
   clp.weight_state_output = Vector::Ones(n_y);
   clp.weight_input = Vector::Ones(n_u);
-  clp.increment_lower = Vector::Constant(n_u, -kInfinite);
-  clp.increment_upper = Vector::Constant(n_u, kInfinite);
-  clp.output_lower = Vector::Constant(n_y, -kInfinite);
-  clp.output_upper = Vector::Constant(n_y, kInfinite);
+  clp.increment_lower = Vector::Constant(n_u, -kInfinity);
+  clp.increment_upper = Vector::Constant(n_u, kInfinity);
+  clp.output_lower = Vector::Constant(n_y, -kInfinity);
+  clp.output_upper = Vector::Constant(n_y, kInfinity);
 }
 
 void readTargets(YamlSection& section, ClpParams& clp, const std::vector<std::string>& outputs) {
@@ -105,9 +105,9 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   SetpointParams& params = loop.setpoint;
   const Eigen::Index n_y = countOf(names.outputs);
   params.initial = defaultSetpoint(loop, names);
-  params.lower = Vector::Constant(n_y, -kInfinite);
-  params.upper = Vector::Constant(n_y, kInfinite);
-  params.rate_per_h = Vector::Constant(n_y, kInfinite);
+  params.lower = Vector::Constant(n_y, -kInfinity);
+  params.upper = Vector::Constant(n_y, kInfinity);
+  params.rate_per_h = Vector::Constant(n_y, kInfinity);
   section.byName("initial", params.initial, names.outputs, kFinite);
   if (!params.initial.allFinite())
     section.fail("initial", "a value for each of " + join(names.outputs));
@@ -130,7 +130,7 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   if (!recipe.empty()) params.schedule = recipe;
   section.byName("lower", params.lower, names.outputs);
   section.byName("upper", params.upper, names.outputs);
-  section.byName("rate_per_h", params.rate_per_h, names.outputs, Range{0.0, kInfinite, true});
+  section.byName("rate_per_h", params.rate_per_h, names.outputs, Range{0.0, kInfinity, true});
   for (Eigen::Index i = 0; i < n_y; ++i) {  // what a person asks is clamped likewise
     const SignalInfo& range = loop.plant_info.outputs[static_cast<std::size_t>(i)];
     params.lower[i] = std::max(params.lower[i], range.lower);

@@ -13,7 +13,7 @@ namespace {
 /// The plant's usual values and ranges of its inputs; for an external plant the declared ranges.
 void defaultActuator(const LoopFile& loop, const LoopNames& names, ActuatorParams& actuator) {
   const Eigen::Index n_u = countOf(names.inputs);
-  actuator.limits = {Vector(n_u), Vector(n_u), Vector::Constant(n_u, kInfinite)};
+  actuator.limits = {Vector(n_u), Vector(n_u), Vector::Constant(n_u, kInfinity)};
   actuator.initial = Vector::Zero(n_u);
   for (Eigen::Index i = 0; i < n_u; ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -86,7 +86,7 @@ void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   defaultActuator(loop, names, actuator);
   section.byName("input_lower", actuator.limits.lower, names.inputs);
   section.byName("input_upper", actuator.limits.upper, names.inputs);
-  section.byName("move_upper", actuator.limits.move, names.inputs, Range{0.0, kInfinite, true});
+  section.byName("move_upper", actuator.limits.move, names.inputs, Range{0.0, kInfinity, true});
   section.byName("initial", actuator.initial, names.inputs, kFinite);
   actuator.fallback = actuator.initial;
   section.byName("fallback", actuator.fallback, names.inputs, kFinite);

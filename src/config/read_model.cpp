@@ -54,7 +54,7 @@ bool suits(const TsModel& model, const PlantInfo& plant) {
 void readModelSection(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("model");
   section.text("file", loop.model_file);
-  section.number("max_pole", loop.max_pole, {0.0, kInfinite, true});
+  section.number("max_pole", loop.max_pole, {0.0, kInfinity, true});
   readIdentify(section, loop);
   section.finish();
   loop.has_model = !loop.model_file.empty();

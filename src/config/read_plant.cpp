@@ -77,7 +77,7 @@ std::vector<SignalInfo> readSignals(YamlSection& plant, const std::string& key,
                                     std::vector<std::string>& names) {
   std::vector<SignalInfo> signals;
   for (auto& item : plant.list(key)) {
-    SignalInfo signal{"", "", -kInfinite, kInfinite};
+    SignalInfo signal{"", "", -kInfinity, kInfinity};
     need(item, "name", "a name");
     item.text("name", signal.name);
     item.text("unit", signal.unit);

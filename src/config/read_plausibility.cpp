@@ -27,8 +27,8 @@ void readSignal(YamlSection& section, SignalPlausibility& asked) {
   section.number("lower", asked.lower, {});
   section.number("upper", asked.upper, {});
   if (!(asked.lower <= asked.upper)) section.fail("upper", "a number >= lower");
-  section.number("rate_per_h", asked.rate_per_h, {0.0, kInfinite, true});
-  section.number("jump", asked.jump, {0.0, kInfinite, true});
+  section.number("rate_per_h", asked.rate_per_h, {0.0, kInfinity, true});
+  section.number("jump", asked.jump, {0.0, kInfinity, true});
   section.integer("jump_samples", asked.jump_samples, 1);
   section.integer("frozen_samples", asked.frozen_samples, 0);
   readOption(section, "substitute", asked.substitute);

@@ -177,8 +177,8 @@ void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("report");
   const auto n_y = static_cast<Eigen::Index>(names.outputs.size());
-  Vector lower = Vector::Constant(n_y, -kInfinite);
-  Vector upper = Vector::Constant(n_y, kInfinite);
+  Vector lower = Vector::Constant(n_y, -kInfinity);
+  Vector upper = Vector::Constant(n_y, kInfinity);
   section.text("title", loop.report.title);
   section.byName("output_lower", lower, names.outputs);
   section.byName("output_upper", upper, names.outputs);

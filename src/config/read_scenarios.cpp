@@ -34,7 +34,7 @@ FitnessTerm readTerm(YamlSection& item, bool of_tuning) {
   need(item, "index", "one of " + join(fitnessIndices()));
   item.oneOf("index", term.index, fitnessIndices());
   item.number("weight", term.weight, kFiniteNotNegative);
-  item.number("above", term.above, {-kInfinite, kInfinite, true});
+  item.number("above", term.above, {-kInfinity, kInfinity, true});
   if (of_tuning) item.text("scenario", term.scenario);
   const std::string key = signalKey(term.index);
   if (!key.empty()) item.text(key, term.signal);
@@ -71,7 +71,7 @@ FitnessParams readFitness(YamlSection& root, bool of_tuning) {
   if (of_tuning) {
     readOption(section, "across", fitness.across);
     section.boolean("relative", fitness.relative);
-    section.number("failure", fitness.failure, {0.0, kInfinite, true});
+    section.number("failure", fitness.failure, {0.0, kInfinity, true});
   }
   section.finish();
   return fitness;

@@ -1,7 +1,6 @@
 // Reads structure files. Every key is checked, so that a misspelt signal cannot pass for an absent
 // one.
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "base/yaml_node.hpp"
@@ -44,7 +43,7 @@ std::vector<StructureSignal> readSignals(YamlSection& top, const std::string& ke
   YamlSection section = top.section(key);
   std::vector<StructureSignal> signals;
   for (const auto& name : section.keys()) {
-    StructureSignal signal{{name, "", -kInfinite, kInfinite}, name};
+    StructureSignal signal{{name, "", -kInfinity, kInfinity}, name};
     YamlSection body = section.section(name);
     body.text("column", signal.column);
     body.text("unit", signal.info.unit);
@@ -125,7 +124,7 @@ void readClusters(YamlSection& section, OutputStructure& structure) {
   structure.clusters_max = static_cast<int>(range[1]);
 }
 
-Membership readSet(YamlSection section) {
+Membership readMembership(YamlSection section) {
   const auto shapes = section.keys();
   if (shapes.size() != 1)
     section.fail("set", "one shape with its parameters, like {gaussian: [0, 1]}");
@@ -141,7 +140,8 @@ void readSets(YamlSection& section, const TsModel& model, OutputStructure& struc
   YamlSection sets = section.section("sets");
   for (const auto& variable : structure.antecedents) {
     structure.sets.emplace_back();
-    for (auto& set : sets.list(model.text(variable))) structure.sets.back().push_back(readSet(set));
+    for (auto& set : sets.list(model.text(variable)))
+      structure.sets.back().push_back(readMembership(set));
   }
   sets.finish();
 }

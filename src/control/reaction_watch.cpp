@@ -12,7 +12,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFlat = 1e-7;       // of an output: a forecast that moves less says nothing
 constexpr double kMostAlike = 0.98;  // of an autocorrelation
 
@@ -73,7 +72,7 @@ ReactionWatch::ReactionWatch(const TsModel& model, int samples)
 void ReactionWatch::reset() {
   known_ = started_ = false;
   filled_ = place_ = 0;
-  share_.setConstant(kNan);
+  share_.setConstant(kNaN);
   away_.assign(names_.size(), 0);
   dead_.assign(names_.size(), false);
   words_.clear();
@@ -143,16 +142,16 @@ void ReactionWatch::judge() {
   const int patience = std::max(3, static_cast<int>(errors_.cols() / 4));
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const auto k = static_cast<Index>(i);
-    double least = std::numeric_limits<double>::infinity(), share = kNan;
+    double least = std::numeric_limits<double>::infinity(), share = kNaN;
     for (Index o = 0; o < errors_.rows(); ++o) {
-      double here = kNan, error = least;
+      double here = kNaN, error = least;
       estimate(o, k, here, error);
       if (!(error < least)) continue;
       least = error;
       share = here;
     }
     const bool sure = least < kSure;
-    share_[k] = sure ? share : kNan;
+    share_[k] = sure ? share : kNaN;
     const bool away = sure && share + 2.0 * least < kLeast;
     away_[i] = away ? std::min(away_[i] + 1, patience) : 0;
     if (away_[i] == patience) dead_[i] = true;

@@ -13,7 +13,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kFewestMembers = 5;  // of a committee
 constexpr std::size_t kMostGroups = 4;     // of structures in it
 constexpr int kLastIterations = 150;
@@ -50,7 +49,7 @@ std::vector<double> pieceErrors(const AutoData& data, const Vector& predicted) {
       double sum = 0.0, n = 0.0;
       for (Index k = w.first + length * i / parts; k < w.first + length * (i + 1) / parts; ++k)
         if (std::isfinite(error[k])) sum += error[k] * error[k], n += 1.0;
-      errors.push_back(n > 0.0 ? std::sqrt(sum / n) : kMissing);
+      errors.push_back(n > 0.0 ? std::sqrt(sum / n) : kNaN);
     }
   }
   return errors;
@@ -100,7 +99,7 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
   const FitFigures free = fitFigures(measured, free_run), one = fitFigures(measured, one_step);
   f.free_run = free.rmse;
   f.fit = free.fit;
-  f.one_step = one.samples > 0 ? one.rmse : kMissing;
+  f.one_step = one.samples > 0 ? one.rmse : kNaN;
   f.blocks = blockErrors(data, free_run);
   f.pieces = pieceErrors(data, free_run);
   f.width = widthOf(measured - free_run);
@@ -109,15 +108,14 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
 }
 
 Fitted fitWhole(const AutoData& data, const Judgement& judged, int window) {
-  constexpr double kInfinite = std::numeric_limits<double>::infinity();
   Candidate c = judged.candidate;
   c.iterations = kLastIterations;
   Fitted best;
-  best.error = kInfinite;
+  best.error = kInfinity;
   const int attempts = c.hidden ? 1 : 3;  // hidden states have other members
   for (int attempt = 0; attempt < attempts; ++attempt, ++c.seed) {
     Fitted fitted = fitCandidate(data, c, data.all);
-    fitted.error = fitted.finite ? seenError(data, fitted, data.all, window) : kInfinite;
+    fitted.error = fitted.finite ? seenError(data, fitted, data.all, window) : kInfinity;
     if (fitted.error < best.error) best = std::move(fitted);
     if (best.error < kSuspicious * judged.rmse) return best;
   }

@@ -1,7 +1,6 @@
 // Errors of free runs over blocks; several starts of one structure as one.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fuzzy/auto_search.hpp"
 
@@ -10,8 +9,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kStuck = 1.3;  // of the lower quartile of the starts' errors
 
 double squaredError(const AutoData& data, const Vector& predicted, Stretch s, double& n) {
@@ -37,7 +34,7 @@ double penalty(Index parameters, const AutoData& data) {
 double rmseOf(const AutoData& data, const Vector& predicted) {
   double sum = 0.0, n = 0.0;
   for (const auto& w : data.windows) sum += squaredError(data, predicted, w, n);
-  return n > 0.0 ? std::sqrt(sum / n) : kInfinite;
+  return n > 0.0 ? std::sqrt(sum / n) : kInfinity;
 }
 
 std::vector<double> blockErrors(const AutoData& data, const Vector& predicted) {
@@ -45,7 +42,7 @@ std::vector<double> blockErrors(const AutoData& data, const Vector& predicted) {
   for (const auto& w : data.windows) {
     double n = 0.0;
     const double sum = squaredError(data, predicted, w, n);
-    errors.push_back(n > 0.0 ? std::sqrt(sum / n) : kMissing);
+    errors.push_back(n > 0.0 ? std::sqrt(sum / n) : kNaN);
   }
   return errors;
 }
@@ -54,7 +51,7 @@ double meanBlockError(const AutoData& data, const Vector& predicted) {
   double sum = 0.0, n = 0.0;
   for (const double e : blockErrors(data, predicted))
     if (std::isfinite(e)) sum += e, n += 1.0;
-  return n > 0.0 ? sum / n : kInfinite;
+  return n > 0.0 ? sum / n : kInfinity;
 }
 
 double seenError(const AutoData& data, const Fitted& fitted, const std::vector<Stretch>& stretches,
@@ -64,7 +61,7 @@ double seenError(const AutoData& data, const Fitted& fitted, const std::vector<S
     const Vector y = freeRunOf(data, fitted, s, window);
     sum += squaredError(data, y, {std::min<Index>(s.first + window, s.last), s.last}, n);
   }
-  return n > 0.0 ? std::sqrt(sum / n) : kInfinite;
+  return n > 0.0 ? std::sqrt(sum / n) : kInfinity;
 }
 
 std::vector<bool> stuckStarts(const std::vector<double>& seen) {
@@ -84,8 +81,7 @@ void settleGroup(const AutoData& data, Group& group) {
     const std::vector<bool> stuck = stuckStarts(seen);
     const Stretch w = data.windows[b];
     for (std::size_t i = 0; i < stuck.size(); ++i)
-      if (stuck[i])
-        group.members[i].settled.segment(w.first, w.last - w.first).setConstant(kMissing);
+      if (stuck[i]) group.members[i].settled.segment(w.first, w.last - w.first).setConstant(kNaN);
   }
   std::vector<const Judgement*> members;
   for (auto& j : group.members) {
@@ -99,7 +95,7 @@ void settleGroup(const AutoData& data, Group& group) {
 }
 
 Vector averaged(const std::vector<const Judgement*>& members) {
-  Vector mean = Vector::Constant(members.front()->free_run.size(), kMissing);
+  Vector mean = Vector::Constant(members.front()->free_run.size(), kNaN);
   for (Index k = 0; k < mean.size(); ++k) {
     std::vector<double> said;
     for (const auto* m : members)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/parallel.hpp"
 #include "fuzzy/auto_structures.hpp"
@@ -12,8 +11,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kOneStepShare = 0.15;  // of the score of models of the output's past
 constexpr std::uint64_t kMoreSeeds = 6;
 
@@ -115,7 +112,7 @@ void Search::judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& o
   if (!fitted.finite) return;
   const Stretch w = data_.windows[block];
   free = freeRunOf(data_, fitted, w, limits_.window);
-  free.head(std::min<Index>(w.first + limits_.window, free.size())).setConstant(kMissing);
+  free.head(std::min<Index>(w.first + limits_.window, free.size())).setConstant(kNaN);
   if (!j.candidate.hidden) one = oneStepOf(data_, fitted, w);
   j.parameters = fitted.shape.parameterCount();
   if (j.candidate.hidden) j.seen.assign(1, seenError(data_, fitted, training, limits_.window));
@@ -140,7 +137,7 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Judgement& j = judged[i];
     j.candidate = candidates[i];
-    j.free_run = Vector::Constant(data_.scaled.rows(), kMissing);
+    j.free_run = Vector::Constant(data_.scaled.rows(), kNaN);
     j.one_step = j.free_run;
     bool complete = true;
     for (std::size_t b = 0; b < blocks; ++b) {
@@ -156,11 +153,11 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
       if (one[task].size() > 0)
         j.one_step.segment(w.first, length) = one[task].segment(w.first, length);
     }
-    j.rmse = complete ? rmseOf(data_, j.free_run) : kInfinite;
+    j.rmse = complete ? rmseOf(data_, j.free_run) : kInfinity;
     j.blocks = blockErrors(data_, j.free_run);
     const double one_step = rmseOf(data_, j.one_step);
     const double weight = std::isfinite(one_step) && one_step > 0.0 ? kOneStepShare : 0.0;
-    const double error = complete ? meanBlockError(data_, j.free_run) : kInfinite;
+    const double error = complete ? meanBlockError(data_, j.free_run) : kInfinity;
     j.score = std::pow(error, 1.0 - weight) * (weight > 0.0 ? std::pow(one_step, weight) : 1.0) *
               penalty(j.parameters, data_);
   }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <numeric>
 
@@ -16,7 +15,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSpacingTolerance = 0.02;  // of a sample: files round their times
 constexpr double kLongestGap = 1e6;         // samples in one hole
 
@@ -81,7 +79,7 @@ TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& stru
       sampleNumbers(time, order, structure.sample_time_s / secondsPer(unit_expected), where);
   const Index holes = numbers.back() + 1 - count;
   TableRows rows(static_cast<std::size_t>(numbers.back()) + 1, -1);
-  Matrix placed = Matrix::Constant(numbers.back() + 1, data.values.cols(), kMissing);
+  Matrix placed = Matrix::Constant(numbers.back() + 1, data.values.cols(), kNaN);
   for (std::size_t k = 0; k < order.size(); ++k) {
     placed.row(numbers[k]) = data.values.row(order[k]);
     rows[static_cast<std::size_t>(numbers[k])] = first + order[k];

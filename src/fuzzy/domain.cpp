@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -17,7 +16,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Index kMostRows = 5000;
 constexpr double kStrays = 0.01;  // of the rows may lie where hardly any others do
 

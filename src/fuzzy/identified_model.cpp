@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
@@ -12,7 +11,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr Index kMostStarts =
     5000;  // of predictions n samples ahead: of longer records every so many
 
@@ -34,7 +32,7 @@ ModelKind bestOf(const IdentifiedModel& model, std::size_t output) {
 /// The TsModel `steps` samples ahead of every row, from its measured past.
 Matrix stepsAhead(const TsModel& model, const DataSet& data, int steps) {
   const auto n_y = static_cast<Index>(model.outputs.size());
-  Matrix predicted = Matrix::Constant(data.rows(), n_y, kMissing);
+  Matrix predicted = Matrix::Constant(data.rows(), n_y, kNaN);
   Index longest = 0;
   for (const auto& s : model.submodels)
     for (const auto* list : {&s.antecedents, &s.regressors})
@@ -51,7 +49,7 @@ Matrix stepsAhead(const TsModel& model, const DataSet& data, int steps) {
 
 /// The free run plus the error expected `steps` samples later.
 Vector correctedAhead(VectorRef measured, VectorRef free_run, const Vector& correction, int steps) {
-  Vector y = Vector::Constant(free_run.size(), kMissing);
+  Vector y = Vector::Constant(free_run.size(), kNaN);
   const Index order = correction.size();
   for (Index k = order - 1; k + steps < y.size(); ++k) {
     Vector past = (measured - free_run).segment(k - order + 1, order).reverse();
@@ -157,7 +155,7 @@ double coverage(VectorRef measured, VectorRef predicted, double width) {
     n += 1.0;
     if (std::abs(error) <= width) inside += 1.0;
   }
-  return n > 0.0 && width > 0.0 ? 100.0 * inside / n : kMissing;
+  return n > 0.0 && width > 0.0 ? 100.0 * inside / n : kNaN;
 }
 
 }  // namespace fpc

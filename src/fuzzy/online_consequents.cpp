@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -10,8 +9,6 @@ namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 Index longestLag(const TsModel& model) {
   int longest = 0;
@@ -72,7 +69,7 @@ OnlineConsequents::OnlineConsequents(TsModel model, const RlsParams& params)
   forgetPast();
 }
 
-void OnlineConsequents::forgetPast() { past_.setConstant(kMissing); }
+void OnlineConsequents::forgetPast() { past_.setConstant(kNaN); }
 
 bool OnlineConsequents::take(VectorRef outputs, VectorRef input_applied, VectorRef disturbances) {
   const auto n_y = static_cast<Index>(model_.outputs.size()),
@@ -88,7 +85,7 @@ bool OnlineConsequents::take(VectorRef outputs, VectorRef input_applied, VectorR
   if (learned) ++samples_;
   for (Index lag = past_.cols() - 1; lag > 0; --lag) past_.col(lag) = past_.col(lag - 1);
   past_.col(0).head(n_y) = outputs;
-  past_.col(0).segment(n_y, n_u).setConstant(kMissing);
+  past_.col(0).segment(n_y, n_u).setConstant(kNaN);
   past_.col(0).tail(disturbances.size()) = disturbances;
   return learned;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -11,8 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kFarthest = 100.0;  // spans of the data
+constexpr double kFarthestOutput = 100.0;  // spans of the data
 
 /// Evaluates submodels on a table of pasts.
 class Predictor {
@@ -38,11 +36,11 @@ class Predictor {
   /// y_i(k + 1) from the rows up to k of `past`; NaN if one is missing.
   double predict(std::size_t i, const Matrix& past, Index k) {
     const OutputModel& submodel = model_.submodels[i];
-    if (k < longest_) return kMissing;
+    if (k < longest_) return kNaN;
     Vector& z = antecedents_[i];
     for (std::size_t j = 0; j < submodel.antecedents.size(); ++j)
       z[static_cast<Index>(j)] = value(submodel.antecedents[j], past, k);
-    if (!z.allFinite()) return kMissing;
+    if (!z.allFinite()) return kNaN;
     firingWeights(submodel, z, firing_);
     double sum = 0.0;
     for (std::size_t r = 0; r < submodel.rules.size(); ++r) {
@@ -73,7 +71,7 @@ class Predictor {
 
 double clampToData(double value, const SignalInfo& signal) {
   if (!std::isfinite(signal.lower) || !std::isfinite(signal.upper)) return value;
-  const double reach = kFarthest * (signal.upper - signal.lower);
+  const double reach = kFarthestOutput * (signal.upper - signal.lower);
   return std::clamp(value, signal.lower - reach, signal.upper + reach);
 }
 
@@ -81,8 +79,7 @@ double clampToData(double value, const SignalInfo& signal) {
 
 Matrix predictOneStep(const TsModel& model, const DataSet& data) {
   Predictor predictor(model, data);
-  Matrix predicted =
-      Matrix::Constant(data.rows(), static_cast<Index>(model.outputs.size()), kMissing);
+  Matrix predicted = Matrix::Constant(data.rows(), static_cast<Index>(model.outputs.size()), kNaN);
   for (Index k = 0; k + 1 < data.rows(); ++k)
     for (std::size_t i = 0; i < model.outputs.size(); ++i)
       predicted(k + 1, static_cast<Index>(i)) = predictor.predict(i, data.values, k);
@@ -92,7 +89,7 @@ Matrix predictOneStep(const TsModel& model, const DataSet& data) {
 Matrix predictFreeRun(const TsModel& model, const DataSet& data) {
   Predictor predictor(model, data);
   const auto n_y = static_cast<Index>(model.outputs.size());
-  Matrix predicted = Matrix::Constant(data.rows(), n_y, kMissing);
+  Matrix predicted = Matrix::Constant(data.rows(), n_y, kNaN);
   Matrix past = data.values;  // outputs are replaced by predictions as the run goes on
   Vector next(n_y);
   for (Index k = predictor.longest(); k + 1 < data.rows(); ++k) {

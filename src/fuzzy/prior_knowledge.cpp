@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/data_set.hpp"
@@ -77,7 +76,6 @@ class KnowledgeBuilder {
   }
 
  private:
-  static constexpr double kInfinite = std::numeric_limits<double>::infinity();
   static bool anySign(const std::vector<int>& signs) {
     return std::any_of(signs.begin(), signs.end(), [](int s) { return s != 0; });
   }
@@ -132,13 +130,13 @@ class KnowledgeBuilder {
   /// A gain has a sign only if the rule comes to rest: the own coefficients sum up to less than 1.
   void rest(Index rule) {
     if (!hasOwn()) return;
-    each(rows_.add(-kInfinite, 1.0 - kLeastRest), rule, 1.0, [&](auto& r) { return isOwn(r); });
+    each(rows_.add(-kInfinity, 1.0 - kLeastRest), rule, 1.0, [&](auto& r) { return isOwn(r); });
   }
 
   void gain(Index rule, Index j) {
     const int s = sign(known_.monotone, j) != 0 ? sign(known_.monotone, j) : sign(known_.gain, j);
     if (s == 0 || !depends(j)) return;
-    each(rows_.add(leastGain(j), kInfinite), rule, s, [&](auto& r) { return isCause(r, j); });
+    each(rows_.add(leastGain(j), kInfinity), rule, s, [&](auto& r) { return isCause(r, j); });
   }
 
   /// The triangle of Jury for z^2 = a0 z + a1 in a circle of radius r, in terms of z / r.
@@ -154,11 +152,11 @@ class KnowledgeBuilder {
     const double r = known_.max_pole - kPoleMargin;
     if (lags == 0 || lags > 2) return;
     for (const double side : {1.0, -1.0}) {
-      Vector& row = rows_.add(-kInfinite, 1.0);
+      Vector& row = rows_.add(-kInfinity, 1.0);
       if (first >= 0) row[at(rule) + first] = side / r;
       if (second >= 0) row[at(rule) + second] = 1.0 / (r * r);
     }
-    if (second >= 0) rows_.add(-1.0, kInfinite)[at(rule) + second] = 1.0 / (r * r);
+    if (second >= 0) rows_.add(-1.0, kInfinity)[at(rule) + second] = 1.0 / (r * r);
   }
 
   /// Change of all weights if the antecedents that `of` names move by one unit.
@@ -199,7 +197,7 @@ class KnowledgeBuilder {
         const int s = sign(known_.monotone, j);
         const Index column = static_cast<Index>(data_.outputs.size()) + j;
         if (s != 0 && depends(j))
-          slope(rows_.add(0.0, kInfinite), z, x, weights, kNudge * span(column), s,
+          slope(rows_.add(0.0, kInfinity), z, x, weights, kNudge * span(column), s,
                 [&](const Regressor& r) { return isCause(r, j); });
       }
     }
@@ -227,7 +225,7 @@ class KnowledgeBuilder {
     const Vector weights = firing_.weights;
     const double within = kInside * state.within;
     for (const double side : {1.0, -1.0}) {
-      Vector& row = rows_.add(-kInfinite, within + side * y);
+      Vector& row = rows_.add(-kInfinity, within + side * y);
       for (Index i = 0; i < rules_; ++i) {
         row.segment(at(i), p_) += side * weights[i] * x;
         row[at(i) + p_] += side * weights[i];

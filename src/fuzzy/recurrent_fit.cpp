@@ -3,15 +3,14 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace fpc {
 namespace {
 
 using Eigen::Index;
 
-constexpr double kFarthest = 30.0;  // deviations of the data: a run that leaves further has failed
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kFarthestRun =
+    30.0;  // deviations of the data: a run that leaves further has failed
 constexpr double kMostDamping = 1e8;
 
 /// Error of a prediction and its derivative to x1. A limit reached by both is no error; a limit
@@ -180,7 +179,7 @@ double Objective::free(const Vector& p, std::size_t s, Normal* normal) {
     step_.predict(theta, x, data_.v.col(k), next);
     if (normal != nullptr) step_.differentiate(theta, sensitivity);
     x = next;
-    if (!(x.cwiseAbs().maxCoeff() < kFarthest)) return kInfinite;
+    if (!(x.cwiseAbs().maxCoeff() < kFarthestRun)) return kInfinity;
     judge(k + 1);
   }
   if (normal != nullptr) rows.addTo(*normal, n_theta, startAt(s));
@@ -215,7 +214,7 @@ double admitted(Objective& objective, const RecurrentFitParams& params, double v
     metric = normal.hessian.selfadjointView<Eigen::Lower>();
     metric.diagonal() += 1e-6 * metric.diagonal() + Vector::Constant(p.size(), 1e-9);
   }
-  if (!params.admit(metric, p)) return kInfinite;
+  if (!params.admit(metric, p)) return kInfinity;
   return objective(p, &normal);
 }
 
@@ -240,7 +239,7 @@ RecurrentFitResult fitRecurrent(const RecurrentShape& shape, const RecurrentData
       damped.diagonal().array() += 1e-9;
       trial = p + damped.selfadjointView<Eigen::Lower>().ldlt().solve(normal.gradient);
       const bool admissible = trial.allFinite() && (!params.admit || params.admit(damped, trial));
-      const double reached = admissible ? objective(trial, nullptr) : kInfinite;
+      const double reached = admissible ? objective(trial, nullptr) : kInfinity;
       improved = reached < best;
       if (!improved) continue;
       settled = reached > (1.0 - params.settle) * best;

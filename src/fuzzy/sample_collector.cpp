@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
@@ -11,11 +10,10 @@
 namespace fpc {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kLongestBreak =
     1000;  // rows that are kept; rows() shortens breaks to the longest lag
 
-double finiteOrMissing(double value) { return std::isfinite(value) ? value : kMissing; }
+double finiteOrMissing(double value) { return std::isfinite(value) ? value : kNaN; }
 
 std::size_t longestLag(const Structure& structure) {
   int longest = 0;
@@ -73,7 +71,7 @@ Arrival SampleCollector::take(const Measurement& m) {
   Row row;
   row.reserve(n_y_ + n_u_ + n_d_);
   for (const double value : m.outputs) row.push_back(finiteOrMissing(value));
-  row.resize(n_y_ + n_u_, kMissing);
+  row.resize(n_y_ + n_u_, kNaN);
   for (const double value : m.disturbances) row.push_back(finiteOrMissing(value));
   push(std::move(row));
   ++counts_.samples;
@@ -90,7 +88,7 @@ void SampleCollector::push(Row row) {
 }
 
 void SampleCollector::breakRows(std::uint64_t count) {
-  for (std::uint64_t i = 0; i < count; ++i) push(Row(n_y_ + n_u_ + n_d_, kMissing));
+  for (std::uint64_t i = 0; i < count; ++i) push(Row(n_y_ + n_u_ + n_d_, kNaN));
 }
 
 std::size_t SampleCollector::placeOf(const StructureSignal& signal,

@@ -8,10 +8,10 @@
 namespace fpc {
 namespace {
 
-constexpr double kSame = 1e-9;
+constexpr double kSameSet = 1e-9;
 
 bool near(double a, double b) {
-  return a == b || std::abs(a - b) <= kSame * std::max(std::abs(a), std::abs(b));
+  return a == b || std::abs(a - b) <= kSameSet * std::max(std::abs(a), std::abs(b));
 }
 
 bool sameSet(const Membership& a, const Membership& b) {
@@ -22,8 +22,9 @@ bool sameSet(const Membership& a, const Membership& b) {
 bool sameRegion(const Rule& a, const Rule& b) {
   if (a.multivariate.has_value() != b.multivariate.has_value()) return false;
   if (a.multivariate)
-    return a.multivariate->center.isApprox(b.multivariate->center, kSame) &&
-           a.multivariate->inverse_covariance.isApprox(b.multivariate->inverse_covariance, kSame);
+    return a.multivariate->center.isApprox(b.multivariate->center, kSameSet) &&
+           a.multivariate->inverse_covariance.isApprox(b.multivariate->inverse_covariance,
+                                                       kSameSet);
   return std::equal(a.antecedents.begin(), a.antecedents.end(), b.antecedents.begin(),
                     b.antecedents.end(), sameSet);
 }

@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr Index kCorrectionOrder = 4;
 
 RecurrentData recordOf(const StateOutput& model, const StateMember& member, const DataSet& data,
@@ -52,7 +51,7 @@ Vector freeRunOf(const StateOutput& model, const DataSet& data, Index output, in
   const auto stretches = stretchesOf(data);
   for (const auto& member : model.members) {
     const RecurrentData record = recordOf(model, member, data, output);
-    Vector run = Vector::Constant(data.rows(), kMissing);
+    Vector run = Vector::Constant(data.rows(), kNaN);
     for (const auto& s : stretches) {
       const Vector part =
           runRecurrent(member.shape, record, s, member.parameters, member.prior, window);
@@ -61,7 +60,7 @@ Vector freeRunOf(const StateOutput& model, const DataSet& data, Index output, in
     runs.push_back(run * model.scale +
                    Vector::Constant(data.rows(), member.shape.absolute ? 0.0 : model.shift));
   }
-  Vector y = Vector::Constant(data.rows(), kMissing);
+  Vector y = Vector::Constant(data.rows(), kNaN);
   for (const auto& s : stretches)
     for (Index k = s.first + window; k < s.last; ++k) {
       std::vector<double> said;

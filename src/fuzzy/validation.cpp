@@ -1,7 +1,6 @@
 #include "fmbpc/fuzzy/validation.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -9,8 +8,6 @@ namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// Two-sided quantile of the normal distribution, by Newton steps on erfc; from 0 they come from
 /// the left for any confidence, because erfc is convex.
@@ -32,7 +29,7 @@ Vector normalised(const Eigen::Ref<const Vector>& values) {
   for (const double v : values)
     if (std::isfinite(v)) square += (v - mean) * (v - mean);
   const double deviation = n > 0.0 ? std::sqrt(square / n) : 0.0;
-  Vector result = Vector::Constant(values.size(), kMissing);
+  Vector result = Vector::Constant(values.size(), kNaN);
   for (Index k = 0; k < values.size(); ++k)
     if (std::isfinite(values[k]))
       result[k] = deviation > 0.0 ? (values[k] - mean) / deviation : 0.0;

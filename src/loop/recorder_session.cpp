@@ -1,13 +1,11 @@
 #include "fmbpc/loop/recorder_session.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace fpc {
 namespace {
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostGaps = 100;  // that are named
 constexpr std::uint32_t kBelieved = 5;  // measurements far ahead that follow each other
 
@@ -117,7 +115,7 @@ void RecorderSession::receive(const Tracking& t, const std::string& remark) {
     sample.tracking = item;
     sample.remark = remark;
     for (const Eigen::Index i : layout_.without_setpoint)
-      sample.tracking.setpoint[i] = sample.tracking.reference[i] = kMissing;
+      sample.tracking.setpoint[i] = sample.tracking.reference[i] = kNaN;
   };
   collect(t, &SampleRecord::has_tracking, place);
 }

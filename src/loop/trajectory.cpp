@@ -2,17 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "fmbpc/plant/simulation.hpp"
 
 namespace fpc {
-namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 Trajectory::Trajectory(const LoopFile& loop, const RecordLayout& layout, Row row)
     : layout_(layout),
@@ -40,7 +34,7 @@ void Trajectory::addOutputs() {
   for (std::size_t i = 0; i < layout_.info.outputs.size(); ++i) {
     const SignalInfo& y = layout_.info.outputs[i];
     column(y.name, y.unit, [k = static_cast<Eigen::Index>(i)](const View& view) {
-      return view.now.has_measurement ? view.now.measurement.outputs[k] : kMissing;
+      return view.now.has_measurement ? view.now.measurement.outputs[k] : kNaN;
     });
   }
 }
@@ -50,7 +44,7 @@ void Trajectory::addInputs() {
     const SignalInfo& u = layout_.info.inputs[i];
     column(u.name, u.unit, [k = static_cast<Eigen::Index>(i)](const View& view) {
       const bool known = view.next != nullptr && view.next->has_measurement;
-      return known ? view.next->measurement.input_applied[k] : kMissing;
+      return known ? view.next->measurement.input_applied[k] : kNaN;
     });
   }
 }
@@ -61,14 +55,14 @@ void Trajectory::addDisturbances(const LoopFile& loop) {
     const auto all = makePlant(loop.simulation)->description().disturbances;
     for (std::size_t i = 0; i < all.size(); ++i)
       column(all[i].name, all[i].unit, [k = static_cast<Eigen::Index>(i)](const View& view) {
-        return view.now.has_state ? view.now.state.disturbances[k] : kMissing;
+        return view.now.has_state ? view.now.state.disturbances[k] : kNaN;
       });
     return;
   }
   for (std::size_t i = 0; i < layout_.info.disturbances.size(); ++i) {
     const SignalInfo& d = layout_.info.disturbances[i];
     column(d.name, d.unit, [k = static_cast<Eigen::Index>(i)](const View& view) {
-      return view.now.has_measurement ? view.now.measurement.disturbances[k] : kMissing;
+      return view.now.has_measurement ? view.now.measurement.disturbances[k] : kNaN;
     });
   }
 }
@@ -78,15 +72,14 @@ void Trajectory::addTracking() {
     const SignalInfo& y = layout_.info.outputs[i];
     const auto k = static_cast<Eigen::Index>(i);
     column(y.name + "_setpoint", y.unit, [k](const View& view) {
-      return view.now.has_tracking ? view.now.tracking.setpoint[k] : kMissing;
+      return view.now.has_tracking ? view.now.tracking.setpoint[k] : kNaN;
     });
     column(y.name + "_reference", y.unit, [k](const View& view) {
-      return view.now.has_tracking ? view.now.tracking.reference[k] : kMissing;
+      return view.now.has_tracking ? view.now.tracking.reference[k] : kNaN;
     });
     if (layout_.states.empty()) continue;
-    column(y.name + "_true", y.unit, [k](const View& view) {
-      return view.now.has_state ? view.now.state.outputs[k] : kMissing;
-    });
+    column(y.name + "_true", y.unit,
+           [k](const View& view) { return view.now.has_state ? view.now.state.outputs[k] : kNaN; });
   }
 }
 
@@ -94,15 +87,14 @@ void Trajectory::addActions(bool has_optimizer) {
   for (std::size_t i = 0; i < layout_.info.inputs.size(); ++i) {
     const SignalInfo& u = layout_.info.inputs[i];
     const auto k = static_cast<Eigen::Index>(i);
-    column(u.name + "_commanded", u.unit, [k](const View& view) {
-      return view.now.has_action ? view.now.action.input[k] : kMissing;
-    });
+    column(u.name + "_commanded", u.unit,
+           [k](const View& view) { return view.now.has_action ? view.now.action.input[k] : kNaN; });
     column(u.name + "_base", u.unit,
-           [k](const View& view) { return view.now.has_base ? view.now.base.input[k] : kMissing; });
+           [k](const View& view) { return view.now.has_base ? view.now.base.input[k] : kNaN; });
     if (!has_optimizer) continue;
     column(u.name + "_perturbation", u.unit, [k](const View& view) {
       const Vector& c = view.now.report.perturbation;
-      return view.now.has_report && k < c.size() ? c[k] : kMissing;
+      return view.now.has_report && k < c.size() ? c[k] : kNaN;
     });
   }
 }
@@ -115,7 +107,7 @@ void Trajectory::addOtherStates() {
     if (is_output) continue;
     column(layout_.states[i], layout_.state_units[i],
            [k = static_cast<Eigen::Index>(i)](const View& view) {
-             return view.now.has_state ? view.now.state.state[k] : kMissing;
+             return view.now.has_state ? view.now.state.state[k] : kNaN;
            });
   }
 }

@@ -2,17 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-}  // namespace
 
 void SwarmParams::validate() const {
   require(particles >= 1, "swarm.particles", "an integer >= 1");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -13,8 +12,6 @@
 
 namespace fpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Uniform points for ever.
 class RandomSearch : public PopulationSearch {

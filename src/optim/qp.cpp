@@ -2,7 +2,6 @@
 #include "fmbpc/optim/qp.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 #include "optim/qp_solver.hpp"
@@ -11,8 +10,6 @@ namespace fpc {
 namespace {
 
 using qp::Index;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool limitsValid(const Vector& lower, const Vector& upper) {
   for (Index i = 0; i < lower.size(); ++i) {

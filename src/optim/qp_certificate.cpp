@@ -13,7 +13,6 @@ namespace {
 using qp::Index;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Adds y's part of sum y+ lower + y- upper, and its size.
 void addSupport(double y, double lower, double upper, double& support, double& size) {

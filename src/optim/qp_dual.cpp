@@ -3,7 +3,6 @@
 // constraints enter one at a time. Bounds enter before rows, because they are cheap to look at.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "optim/qp_kernels.hpp"
 #include "optim/qp_workspace.hpp"
@@ -13,7 +12,6 @@ namespace {
 
 constexpr double kBlockingTolerance =
     1e-12;  // of |normal|: a smaller r of a dependent normal is noise
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "fmbpc/base/input_error.hpp"
@@ -10,7 +9,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // A bound is a sum in another order than the cost it stays below: rounding must not cut the
 // optimum.
 constexpr double kRounding = 1.0 - 1e-9;
@@ -79,10 +77,10 @@ void TreeSearch::expand(int level, int before, double cost, VectorRef state) {
     child.choice = choice;
     here.states.col(choice) = state;
     child.cost = cost + problem_->advance(level, before, choice, here.states.col(choice));
-    if (!(child.cost < kInfinite)) child.cost = kInfinite;
+    if (!(child.cost < kInfinity)) child.cost = kInfinity;
     child.bound = child.cost;
     ++result_.nodes;
-    if (!params_.cost_to_go || leaves || !(child.cost <= result_.cost) || child.cost == kInfinite)
+    if (!params_.cost_to_go || leaves || !(child.cost <= result_.cost) || child.cost == kInfinity)
       continue;
     scratch_ = here.states.col(choice);
     ++result_.bounds;
@@ -99,7 +97,7 @@ void TreeSearch::explore(int level, int before, double cost, VectorRef state) {
   expand(level, before, cost, state);
   const Level& here = levels_[static_cast<std::size_t>(level)];
   for (const Child& child : here.children) {
-    if (child.bound > result_.cost || child.cost == kInfinite || stopped_) return;
+    if (child.bound > result_.cost || child.cost == kInfinity || stopped_) return;
     path_[static_cast<std::size_t>(level)] = child.choice;
     if (level + 1 == params_.levels)
       keep(child.cost);
@@ -113,7 +111,7 @@ const TreeResult& TreeSearch::search(TreeProblem& problem, VectorRef start,
   problem_ = &problem;
   stop_ = &stop;
   found_ = stopped_ = false;
-  result_.cost = kInfinite;
+  result_.cost = kInfinity;
   result_.nodes = result_.bounds = 0;
   explore(0, -1, 0.0, start);
   result_.status = !found_    ? TreeStatus::kImpossible

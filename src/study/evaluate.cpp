@@ -91,13 +91,13 @@ struct Sums {
   double first_solids{}, last_solids{};
 };
 
-struct Row {
+struct PlantRow {
   const Record& record;
   Eigen::Index row;
   double operator()(const std::string& name) const { return record.at(name, row); }
 };
 
-void addEnergy(const Row& at, bool old, EffluentReport& report) {
+void addEnergy(const PlantRow& at, bool old, EffluentReport& report) {
   for (int t = 0; t < kTanks; ++t) {
     const double KLa = at.record.orZero(numbered("KLa", t + 1), at.row);
     report.AE += old ? 24.0 * kVolume[t] / 1333.0 * (0.0007 * KLa * KLa + 0.3267 * KLa)
@@ -109,7 +109,7 @@ void addEnergy(const Row& at, bool old, EffluentReport& report) {
   report.PE += old ? 0.04 * (Qintr + Qr + Qw) : 0.004 * Qintr + 0.008 * Qr + 0.05 * Qw;
 }
 
-void addSludge(const Row& at, bool first, EffluentReport& report, Sums& sums) {
+void addSludge(const PlantRow& at, bool first, EffluentReport& report, Sums& sums) {
   report.SP += at("TSS_L10") * at("Qw") / 1000.0;
   double stored = 0.0;
   for (int t = 0; t < kTanks; ++t) stored += kVolume[t] * solidsOf(tank(at.record, t + 1, at.row));
@@ -118,7 +118,7 @@ void addSludge(const Row& at, bool first, EffluentReport& report, Sums& sums) {
   if (first) sums.first_solids = sums.last_solids;
 }
 
-void addWater(const Row& at, bool old, EffluentReport& report, Sums& sums) {
+void addWater(const PlantRow& at, bool old, EffluentReport& report, Sums& sums) {
   const Water out = effluent(at.record, tank(at.record, 5, at.row), at.row);
   Water in;
   for (std::size_t i = 0; i < kNames.size(); ++i) in[i] = at(std::string(kNames[i]) + "_in");
@@ -191,7 +191,7 @@ EffluentReport evaluateEffluent(const CsvTable& table, const EvaluateParams& par
   EffluentReport report;
   Sums sums;
   for (const Eigen::Index row : rows) {
-    const Row at{record, row};
+    const PlantRow at{record, row};
     addEnergy(at, params.weights_2002, report);
     addSludge(at, row == rows.front(), report, sums);
     addWater(at, params.weights_2002, report, sums);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -81,8 +80,6 @@ const std::map<std::string, OfEffluent>& effluentTable() {
       {"TSS_share", [](const EffluentReport& r) { return r.limit("TSS").share_percent; }}};
   return table;
 }
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// All steps of output i.
 std::vector<StepIndices> stepsOf(const FitnessParams& fitness, const LoopFile& loop,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/study/fitness.hpp"
@@ -15,7 +14,6 @@ using Eigen::Index;
 constexpr double kAtBound = 1e-6;  // of an input's range
 constexpr double kLockedError =
     0.02;  // of the setpoint, below which an output is where it should be
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// -1: at the lower bound, 1: at the upper one, 0: between them.
 int boundOf(const InputLimits& limits, const Vector& input, Index i) {

@@ -25,9 +25,9 @@ RunJudgement failed(const std::string& words) {
   return run;
 }
 
-class Session {
+class StudySession {
  public:
-  Session(const StudyPlan& plan, const StudyOptions& options, RunPool& pool)
+  StudySession(const StudyPlan& plan, const StudyOptions& options, RunPool& pool)
       : plan_(plan),
         options_(options),
         pool_(pool),
@@ -136,7 +136,7 @@ class Session {
 
 StudyResult runStudy(const StudyPlan& plan, const StudyOptions& options) {
   ThreadPool threads(options.threads);
-  return Session(plan, options, options.pool != nullptr ? *options.pool : threads).take();
+  return StudySession(plan, options, options.pool != nullptr ? *options.pool : threads).take();
 }
 
 }  // namespace fpc

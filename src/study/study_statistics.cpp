@@ -7,8 +7,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// z with P(|N(0,1)| < z) = confidence, by bisection of erf.
 double normalBound(double confidence) {
   double low = 0.0, high = 10.0;

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <map>
 
 #include "fmbpc/base/input_error.hpp"
@@ -17,13 +16,12 @@
 namespace fpc {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Judges generations: points that the state file knows are looked up, the others are run. The
 /// search itself is replayed from its seed, so no method needs a state of its own on disk.
-class Session {
+class TuneSession {
  public:
-  Session(const TuningObjective& objective, const SearchParams& search, const TuneOptions& options)
+  TuneSession(const TuningObjective& objective, const SearchParams& search,
+              const TuneOptions& options)
       : objective_(objective),
         options_(options),
         identity_(identityOf(objective, search)),
@@ -158,7 +156,7 @@ TuneResult tune(const TuningObjective& objective, const SearchParams& search,
                 const TuneOptions& options) {
   search.validate();
   require(!options.resume || !options.state.empty(), "resume", "a state file to resume from");
-  Session session(objective, search, options);
+  TuneSession session(objective, search, options);
   const auto judge = [&](const Matrix& points, Vector& costs) {
     return session.judge(points, costs);
   };

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/input_error.hpp"
@@ -20,8 +19,6 @@ namespace fpc {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Where a scenario's seed goes: the disturbance pattern and the noise, if the loop has them.
 Overrides seedOverrides(const std::string& loop, const TuningScenario& scenario,

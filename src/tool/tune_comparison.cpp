@@ -1,7 +1,6 @@
 // fmbpc tune --compare: every method with every seed at equal evaluations.
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
@@ -13,8 +12,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double numberOf(const Json& json) { return json.is_null() ? kInfinity : json.get<double>(); }
 

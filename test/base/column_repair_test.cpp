@@ -9,8 +9,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 struct Repaired {
   Vector cells;
   ColumnRepairs done;

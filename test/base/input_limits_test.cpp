@@ -3,16 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -52,8 +48,8 @@ TEST(InputLimits, AFullMoveIsNoConflictWhateverTheRounding) {
 
 TEST(InputLimits, NotANumberNeverPasses) {
   const InputLimits l = limits(0.0, 10.0, kInfinity);
-  EXPECT_EQ(clipped(l, kNan, 4.0), 4.0);
-  EXPECT_EQ(clipped(l, kNan, kNan), 0.0);
+  EXPECT_EQ(clipped(l, kNaN, 4.0), 4.0);
+  EXPECT_EQ(clipped(l, kNaN, kNaN), 0.0);
   EXPECT_EQ(clipped(l, kInfinity, 4.0), 10.0);
   EXPECT_EQ(clipped(l, -kInfinity, 4.0), 0.0);
 }
@@ -87,11 +83,11 @@ TEST(InputLimits, ValidateNamesEachBadField) {
   };
   EXPECT_EQ(errorOf([](InputLimits&) {}), "");
   names(errorOf([](InputLimits& l) { l.lower.resize(2); }), "input_lower");
-  names(errorOf([](InputLimits& l) { l.lower[0] = kNan; }), "input_lower");
+  names(errorOf([](InputLimits& l) { l.lower[0] = kNaN; }), "input_lower");
   names(errorOf([](InputLimits& l) { l.upper[0] = kInfinity; }), "input_upper");
   names(errorOf([](InputLimits& l) { l.upper[0] = -1.0; }), "input_upper");
   names(errorOf([](InputLimits& l) { l.move[0] = 0.0; }), "move_upper");
-  names(errorOf([](InputLimits& l) { l.move[0] = kNan; }), "move_upper");
+  names(errorOf([](InputLimits& l) { l.move[0] = kNaN; }), "move_upper");
 }
 
 }  // namespace

@@ -9,9 +9,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 TEST(SampleClock, TimesAreExactMultiplesOfTheSampleTime) {
   const SampleClock clock(720.0, 1.0);
   EXPECT_EQ(clock.timeAt(0), 1'000'000'000);
@@ -67,7 +64,7 @@ TEST(SampleClock, HeaderCarriesRunAndStep) {
 }
 
 TEST(SampleClock, UnusableTimesAreErrors) {
-  for (const double bad : {0.0, -1.0, kNan, kInfinity, 1e300}) {
+  for (const double bad : {0.0, -1.0, kNaN, kInfinity, 1e300}) {
     EXPECT_THROW(SampleClock(bad, 1.0), InputError) << bad;
     EXPECT_THROW(SampleClock(1.0, bad), InputError) << bad;
   }

@@ -1,5 +1,4 @@
 #include <functional>
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -11,7 +10,6 @@ namespace fpc {
 namespace {
 
 constexpr int kSteps = 8;  // n_c
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 PlantInfo plant() {
   PlantInfo info;

@@ -10,8 +10,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 PlantInfo plant() {
   PlantInfo info;
   info.sample_time_s = 3600.0;
@@ -48,7 +46,7 @@ TEST(Plausibility, AsksNothingByItselfButNumbers) {
   Watch watch{PlausibilityParams{}};
   EXPECT_EQ(watch.look(1e9), Verdict::kClean);
   EXPECT_EQ(watch.look(-1e9), Verdict::kClean);
-  EXPECT_EQ(watch.look(kNan), Verdict::kHold);
+  EXPECT_EQ(watch.look(kNaN), Verdict::kHold);
   EXPECT_STREQ(watch.judge.words(), "x is no number: input held");
 }
 
@@ -67,7 +65,7 @@ TEST(Plausibility, ASignalThatTheLawDoesNotNeedHoldsNothing) {
   Watch watch(params());
   watch.judge.need(1, false);
   EXPECT_EQ(watch.look(1.0, 1.0, 7.0), Verdict::kClean);
-  for (int k = 0; k < 10; ++k) EXPECT_EQ(watch.look(1.0, 1.0, kNan), Verdict::kRepaired);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(watch.look(1.0, 1.0, kNaN), Verdict::kRepaired);
   EXPECT_EQ(watch.judge.accepted().disturbances[0], 7.0);
   EXPECT_STREQ(watch.judge.words(), "q is no number: its last good value is used");
 }

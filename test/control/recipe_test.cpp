@@ -2,15 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "fmbpc/control/setpoint_source.hpp"
 
 namespace fpc {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Vector two(double first, double second) {
   Vector values(2);

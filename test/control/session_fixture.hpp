@@ -16,7 +16,6 @@
 
 namespace fpc::test_session {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kStart = 1234500000000;  // t0 is not 1 s
 constexpr std::int64_t kSample = 720000000000;

@@ -10,7 +10,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kStart = 1234.5;               // t0 [s]
 constexpr std::int64_t kSample = 720000000000;  // 0.2 h [ns]

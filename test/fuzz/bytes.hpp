@@ -1,7 +1,6 @@
 // What a fuzzer's bytes decide, one after the other; past their end every decision is the first.
 #pragma once
 
-#include <limits>
 #include <string>
 
 namespace fpc::fuzz {
@@ -14,7 +13,6 @@ class Bytes {
   bool empty() const { return at_ >= bytes_.size(); }
   /// Few and odd values: ties, zeros, rounding and the ends of the range come up by themselves.
   double number() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     static const double odd[] = {0.0,  1.0, -1.0, 0.5,  2.0,   -3.0,      1e-16,      -2.8e-17,
                                  1e-9, 1e6, -1e6, 1e12, 1e-12, kInfinity, -kInfinity, 100.0};
     const int byte = next();

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "fuzzy/auto_search.hpp"
 
@@ -10,8 +9,6 @@ namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// 40 rows of zero, two blocks.
 DataSet zeros() {
@@ -44,7 +41,7 @@ TEST(StuckStarts, AreThoseFarAboveTheLowerQuartile) {
             (std::vector<bool>{false, false, true, false, false}))
       << "the quartile of five is the second";
   EXPECT_EQ(stuckStarts({5.0}), std::vector<bool>{false});
-  EXPECT_EQ(stuckStarts({kInfinite, 1.0, 1.0, 1.0, 1.0}).front(), true);
+  EXPECT_EQ(stuckStarts({kInfinity, 1.0, 1.0, 1.0, 1.0}).front(), true);
 }
 
 TEST(StartsOfOneStructure, LeaveOutThoseStuckInABlock) {

@@ -6,14 +6,11 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 Structure structureWith(const std::string& rest = "") {
   return parseStructure(

@@ -14,8 +14,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 Vector of(std::initializer_list<double> values) {
   Vector v(static_cast<Eigen::Index>(values.size()));
   std::copy(values.begin(), values.end(), v.begin());

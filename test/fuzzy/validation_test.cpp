@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
@@ -11,8 +10,6 @@
 
 namespace fpc {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// y(k+1) = a y(k) + b u(k) + c
 TsModel linearModel(double a, double b, double c) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 #include "loop/gateway_fixture.hpp"
@@ -11,8 +10,6 @@
 
 namespace fpc {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Everything has come, and the loop runs, at time 0.
 PlantGateway ready(const LoopFile& loop, double position = 2.0) {
@@ -57,7 +54,7 @@ TEST(PlantGateway, StartsFromWhereThePlantReallyIs) {
 TEST(PlantGateway, GivesEverySignalItsQualityAndAge) {
   PlantGateway gateway = ready(topicLoop());
   EXPECT_EQ(gateway.quality(), std::vector<Quality>(2, Quality::kGood));
-  gateway.sense(1, kNan, 1.0);
+  gateway.sense(1, kNaN, 1.0);
   gateway.tick(2.5);
   gateway.advance(one(2.0));
   EXPECT_EQ(gateway.quality()[0], Quality::kStale);
@@ -192,7 +189,7 @@ class WildPlant {
     deliver(now_s);
     if (!remote_) wander();
     for (const std::size_t signal : {0, 1})
-      if (dice_.chance(0.8)) gateway_.sense(signal, dice_.chance(0.1) ? kNan : 1.0, now_s);
+      if (dice_.chance(0.8)) gateway_.sense(signal, dice_.chance(0.1) ? kNaN : 1.0, now_s);
     if (dice_.chance(0.8)) gateway_.readBack(0, position, now_s + 0.01);
   }
   int writes{0};
@@ -244,7 +241,7 @@ TEST(PlantGateway, EveryWriteKeepsBoundsAndMoveWhateverArrives) {
       const double now_s = k;
       plant.live(now_s - 0.4);
       gateway.tick(now_s);
-      const Vector wild = one(dice.chance(0.1) ? kNan : dice.between(-50.0, 50.0));
+      const Vector wild = one(dice.chance(0.1) ? kNaN : dice.between(-50.0, 50.0));
       if (dice.chance(0.8)) gateway.take(wild);
       plant.live(now_s + 0.1);
       gateway.tick(now_s + 0.2);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
@@ -13,8 +12,6 @@
 
 namespace fpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// 0 at (0.3, ..., 0.3).
 double sphere(const Vector& x) { return (x.array() - 0.3).square().sum(); }

@@ -1,7 +1,6 @@
 // Every way in which the QP solver can fail, and what its KKT residual sees.
 #include "fmbpc/optim/qp.hpp"
 
-#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -11,8 +10,6 @@
 
 namespace fpc::testing {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Infeasible counts only with its proof.
 SolveStatus statusOf(const QpProblem& p) {
@@ -96,7 +93,7 @@ TEST(Qp, AConcaveProblemIsNotSolvedByTheRememberedBounds) {
 
 TEST(Qp, DataThatAreNotFiniteAreInvalid) {
   const QpProblem good = nearestPointOfHalfPlane();
-  for (const double bad : {kNan, kInf, -kInf}) {
+  for (const double bad : {kNaN, kInf, -kInf}) {
     QpProblem p = good;
     p.H(0, 1) = bad;
     EXPECT_EQ(statusOf(p), SolveStatus::kInvalidProblem) << "H upper " << bad;
@@ -113,7 +110,7 @@ TEST(Qp, DataThatAreNotFiniteAreInvalid) {
   for (Vector QpProblem::*limit :
        {&QpProblem::x_lower, &QpProblem::x_upper, &QpProblem::a_lower, &QpProblem::a_upper}) {
     QpProblem p = good;
-    (p.*limit)(0) = kNan;
+    (p.*limit)(0) = kNaN;
     EXPECT_EQ(statusOf(p), SolveStatus::kInvalidProblem);
   }
 }
@@ -173,7 +170,7 @@ TEST(QpSettings, BadValuesAreNamed) {
   };
   EXPECT_EQ(messageOf({}), "");
   EXPECT_NE(messageOf({0, 1e-10}).find("max_iterations"), std::string::npos);
-  for (const double bad : {0.0, -1.0, 1.0, kNan}) {
+  for (const double bad : {0.0, -1.0, 1.0, kNaN}) {
     EXPECT_NE(messageOf({10, bad}).find("feasibility_tolerance"), std::string::npos) << bad;
   }
 }
@@ -196,7 +193,7 @@ TEST(KktResidual, EachKindOfErrorIsSeen) {
   EXPECT_DOUBLE_EQ(residual(1.0, -2.0), 1.0 / 4.0);  // distance 1 of 4, multiplier 2 of 4
   p.x_upper << kInf;
   EXPECT_DOUBLE_EQ(residual(2.0, -1.0), 1.0 / 4.0);  // a multiplier without its limit
-  EXPECT_EQ(residual(kNan, 0.0), kInf);
+  EXPECT_EQ(residual(kNaN, 0.0), kInf);
   EXPECT_THROW(kktResidual(p, Vector(2), Vector(1), Vector(0)), InputError);
 }
 

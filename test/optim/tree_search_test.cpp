@@ -4,15 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
-
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 /// x(k+1) = a x + b(choice), cost (x - target(level))^2 + a charge for some pairs of choices.
 struct RandomTree final : TreeProblem {
@@ -25,7 +22,7 @@ struct RandomTree final : TreeProblem {
     charge = Matrix(n + 1, n).unaryExpr([&](double) { return std::max(draw(), 0.0); });
     if (forbidden)
       for (double& c : flat(charge))
-        if (unit(generator) > 0.3) c = kInfinite;
+        if (unit(generator) > 0.3) c = kInfinity;
   }
   double advance(int level, int before, int choice, Eigen::Ref<Vector> state) override {
     state[0] = 0.5 * state[0] + b[choice];
@@ -58,7 +55,7 @@ struct RandomTree final : TreeProblem {
   int choices, levels;
   Vector b, target;
   Matrix charge;
-  double best{kInfinite};
+  double best{kInfinity};
   std::vector<int> best_path;
 };
 
@@ -79,7 +76,7 @@ TEST_P(TreeSearchKinds, EqualsEnumerationBitForBit) {
     tree.enumerate(0, -1, 0.0, start, path);
     TreeSearch search(1, n, {levels, bound, 0});
     const TreeResult& result = search.search(tree, start);
-    ASSERT_EQ(result.usable(), tree.best < kInfinite) << "trial " << trial;
+    ASSERT_EQ(result.usable(), tree.best < kInfinity) << "trial " << trial;
     impossible += !result.usable();
     if (!result.usable()) continue;
     EXPECT_EQ(result.status, TreeStatus::kOptimal);
@@ -105,7 +102,7 @@ TEST(TreeSearch, ABudgetGivesTheBestSequenceSoFarAndSaysSo) {
     RandomTree tree(generator, 4, 5, false, false);
     const Vector start = Vector::Zero(1);
     const TreeResult best = TreeSearch(1, 4, {5, false, 0}).search(tree, start);
-    double before = kInfinite;
+    double before = kInfinity;
     for (const std::uint64_t budget : {20U, 40U, 80U, 160U, 2000U}) {
       const TreeResult cut = TreeSearch(1, 4, {5, false, budget}).search(tree, start);
       ASSERT_TRUE(cut.usable());

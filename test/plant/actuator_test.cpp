@@ -3,16 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -73,7 +69,7 @@ TEST(Actuator, MissingOrUnusableActionsAreHeldForEver) {
   actuator.apply(one(700.0));
   actuator.miss();
   EXPECT_TRUE(actuator.missing());
-  actuator.apply(one(kNan));
+  actuator.apply(one(kNaN));
   actuator.apply(one(kInfinity));
   actuator.apply(Vector::Zero(2));
   actuator.apply(Vector());
@@ -105,7 +101,7 @@ TEST(Actuator, AFaultIsClampedAndMovesAreLimitedFromThere) {
   EXPECT_EQ(actuator.applied()[0], 100.0);
   actuator.disturb(0, kInfinity);
   EXPECT_EQ(actuator.applied()[0], 1600.0);
-  actuator.disturb(0, kNan);
+  actuator.disturb(0, kNaN);
   EXPECT_EQ(actuator.applied()[0], 1600.0);
 }
 
@@ -134,7 +130,7 @@ TEST(Actuator, NeverLeavesItsLimitsWhateverArrives) {
         actuator.miss();
         break;
       case 1:
-        actuator.apply(one(i % 3 == 0 ? kNan : -kInfinity));
+        actuator.apply(one(i % 3 == 0 ? kNaN : -kInfinity));
         break;
       default:
         actuator.apply(one(wild(generator)));
@@ -167,9 +163,9 @@ TEST(Actuator, ValidateNamesEachBadField) {
     return "nothing was thrown";
   };
   using P = ActuatorParams;
-  EXPECT_NE(errorOf([](P& p) { p.limits.upper[0] = kNan; }).find("input_upper"), std::string::npos);
+  EXPECT_NE(errorOf([](P& p) { p.limits.upper[0] = kNaN; }).find("input_upper"), std::string::npos);
   EXPECT_NE(errorOf([](P& p) { p.initial[0] = 1601.0; }).find("initial"), std::string::npos);
-  EXPECT_NE(errorOf([](P& p) { p.fallback[0] = kNan; }).find("fallback"), std::string::npos);
+  EXPECT_NE(errorOf([](P& p) { p.fallback[0] = kNaN; }).find("fallback"), std::string::npos);
   EXPECT_NE(errorOf([](P& p) { p.fallback.resize(2); }).find("fallback"), std::string::npos);
   EXPECT_NE(errorOf([](P& p) { p.hold_samples = -2; }).find("hold_samples"), std::string::npos);
 }

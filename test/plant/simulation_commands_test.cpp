@@ -7,7 +7,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Vector kU = one(570.0);
 
 TEST(SimulationCommands, NamesAreDisturbancesInputsAndOutputs) {
@@ -168,7 +167,7 @@ TEST(SimulationCommands, ASensorFaultChangesWhatIsShownAndNothingElse) {
 TEST(SimulationCommands, BadCommandsAreErrorsAndNothingIsTaken) {
   Simulation simulation(sludgeParams());
   EXPECT_THROW(simulation.command(command("q_r", 1.0)), InputError);
-  EXPECT_THROW(simulation.command(command("q_i", kNan)), InputError);
+  EXPECT_THROW(simulation.command(command("q_i", kNaN)), InputError);
   EXPECT_THROW(simulation.command(command("q_i", -1.0)), InputError);
   EXPECT_THROW(simulation.command(command("s_i", 1e6)), InputError);
   EXPECT_THROW(simulation.command({0, {"q_i", "s_i"}, {1000.0, 1e6}}), InputError);

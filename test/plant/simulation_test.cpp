@@ -10,8 +10,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 TEST(Simulation, StartsWithSampleZero) {
   const Simulation simulation(sludgeParams());
   const Measurement& m = simulation.measurement();
@@ -188,7 +186,7 @@ TEST(Simulation, TheActuatorGuardsThePlant) {
   Simulation simulation(p);
   EXPECT_EQ(simulation.advance(one(5000.0)).input_applied, one(670.0));
   EXPECT_EQ(simulation.state().actuator_clips, 1U);
-  EXPECT_EQ(simulation.advance(one(kNan)).input_applied, one(670.0));
+  EXPECT_EQ(simulation.advance(one(kNaN)).input_applied, one(670.0));
   EXPECT_EQ(simulation.state().actuator_clips, 0U);
   EXPECT_TRUE(simulation.state().input_missing);
   EXPECT_EQ(simulation.advance(Vector::Zero(4)).input_applied, one(670.0));
@@ -241,7 +239,7 @@ TEST(Simulation, BadParamsAreErrorsThatNameTheField) {
   names(errorOf([](P& p) { p.plant = "asp"; }), "plant.type 'asp'");
   names(errorOf([](P& p) { p.parameters = {{"volume", 1.0}}; }), "plant.parameters.volume");
   names(errorOf([](P& p) { p.initial_state.conservativeResize(5); }), "plant.initial_state");
-  names(errorOf([](P& p) { p.initial_state[1] = kNan; }), "plant.initial_state.x");
+  names(errorOf([](P& p) { p.initial_state[1] = kNaN; }), "plant.initial_state.x");
   names(errorOf([](P& p) { p.initial_state[0] = -1.0; }), "plant.initial_state.s");
   names(errorOf([](P& p) { p.outputs = {"y"}; }), "plant.outputs: 'y'");
   names(errorOf([](P& p) { p.outputs = {"x", "x"}; }), "only once");
@@ -252,7 +250,7 @@ TEST(Simulation, BadParamsAreErrorsThatNameTheField) {
   names(errorOf([](P& p) { p.noise_std[1] = -1.0; }), "noise.std");
   names(errorOf([](P& p) { p.disturbance_nominal[0] = -1.0; }), "disturbance.nominal.q_i");
   names(errorOf([](P& p) { p.disturbance = rampRecord(5); }), "every sample");
-  names(errorOf([](P& p) { (p.disturbance = rampRecord(20)).values(1, 7) = kNan; }),
+  names(errorOf([](P& p) { (p.disturbance = rampRecord(20)).values(1, 7) = kNaN; }),
         "sample 7.s_i");
   names(errorOf([](P& p) { p.actuator.limits.upper[0] = 4000.0; }), "actuator.input_upper.q_r");
   names(errorOf([](P& p) { p.actuator.limits.lower.resize(2); }), "actuator.input_lower");

@@ -13,7 +13,6 @@
 namespace fpc {
 
 inline constexpr double kInf = std::numeric_limits<double>::infinity();
-inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 inline const StepHeader kHeader{1234500000001, 18000000000000000001u, 4294967295u};
 
 inline bool sameBits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
 
 #include "tool/identify_fixture.hpp"
 
@@ -32,19 +31,17 @@ class IdentifyErrors : public IdentifyTool {
   }
 };
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-
 TEST_F(IdentifyErrors, MissingCellsAreCounted) {
-  expectError(spoilt([](CsvTable& t) { t.values(40, 2) = kMissing; }),
+  expectError(spoilt([](CsvTable& t) { t.values(40, 2) = kNaN; }),
               {"spoilt.csv", "'u'", "1 are", ":42:"});
 }
 
 TEST_F(IdentifyErrors, TheInputOfTheLastRowActsOnNothingAndMayBeMissing) {
-  const std::string file = spoilt([](CsvTable& t) { t.values(299, 2) = kMissing; });
+  const std::string file = spoilt([](CsvTable& t) { t.values(299, 2) = kNaN; });
   const auto json = parsed(tool("identify " + file + " " + structure_ + " --json").printed);
   const auto whole = parsed(tool(onRecord("--json")).printed);
   EXPECT_EQ(json["identification"], whole["identification"]);
-  expectError(spoilt([](CsvTable& t) { t.values(299, 1) = kMissing; }), {"spoilt.csv", "'y'"});
+  expectError(spoilt([](CsvTable& t) { t.values(299, 1) = kNaN; }), {"spoilt.csv", "'y'"});
 }
 
 TEST_F(IdentifyErrors, ColumnsThatNeverMove) {

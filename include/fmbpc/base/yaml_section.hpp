@@ -30,7 +30,6 @@ struct Range {
   }  ///< and finite
 };
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kLargest = std::numeric_limits<double>::max();
 constexpr Range kFinite{-kLargest, kLargest};
 constexpr Range kFinitePositive{0.0, kLargest, true};

@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "control/power_of_two.hpp"
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 
 namespace fpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 bool inside(VectorRef value, VectorRef lower, VectorRef upper) {
   return (value.array() >= lower.array()).all() && (value.array() <= upper.array()).all();

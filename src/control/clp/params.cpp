@@ -2,14 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void requireWeights(const Vector& weight, Eigen::Index size, bool positive, const char* name) {
   if (weight.size() == 0) return;

@@ -51,7 +51,7 @@ std::unique_ptr<Controller> makeFmbpc(const FmbpcParams& params, const Controlle
   return std::make_unique<FmbpcLaw>(params, loop.limits, loop.plant);
 }
 
-ControllerType describe() {
+ControllerType describeFmbpc() {
   ControllerType type{"fmbpc", "fuzzy model-based predictive control: an explicit law"};
   type.needs_model = true;
   type.predicts = true;
@@ -59,7 +59,8 @@ ControllerType describe() {
   return type;
 }
 
-const bool kRegistered = registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc});
+const bool kFmbpcRegistered =
+    registerController<FmbpcParams>({describeFmbpc(), &readFmbpc, &makeFmbpc});
 
 }  // namespace
 }  // namespace fpc

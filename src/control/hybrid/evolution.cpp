@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace fpc {
@@ -10,16 +9,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kSame = 1e-9;        // values of an input that differ by less are the same
 constexpr double kGridPoints = 4000;  // of all outputs together, where extremes are checked
 constexpr double kSlack = 1e-12;      // of the comparison of two predictions
-
-bool matches(const Vector& pattern, VectorRef input) {
-  for (Index i = 0; i < pattern.size(); ++i)
-    if (!std::isnan(pattern[i]) && std::abs(pattern[i] - input[i]) > kSame) return false;
-  return true;
-}
 
 /// Moves to the next point of a grid of `n` points a side; false after the last one.
 bool nextPoint(std::vector<int>& index, int n) {
@@ -31,6 +22,12 @@ bool nextPoint(std::vector<int>& index, int n) {
 }
 
 }  // namespace
+
+bool matches(const Vector& pattern, VectorRef input) {
+  for (Index i = 0; i < pattern.size(); ++i)
+    if (!std::isnan(pattern[i]) && std::abs(pattern[i] - input[i]) > kSameInput) return false;
+  return true;
+}
 
 HybridEvolution::HybridEvolution(HybridMpcParams params, InputLimits limits, const TsModel& model)
     : params_(std::move(params)),
@@ -54,9 +51,9 @@ HybridEvolution::HybridEvolution(HybridMpcParams params, InputLimits limits, con
 double HybridEvolution::blockCost(VectorRef before, int choice) const {
   const auto now = params_.choices.col(choice);
   for (const ForbiddenTransition& t : params_.forbidden_transitions)
-    if (matches(t.from, before) && matches(t.to, now)) return kInfinite;
+    if (matches(t.from, before) && matches(t.to, now)) return kInfinity;
   for (Index i = 0; i < now.size(); ++i)
-    if (std::abs(now[i] - before[i]) > limits_.move[i] * (1.0 + kSame)) return kInfinite;
+    if (std::abs(now[i] - before[i]) > limits_.move[i] * (1.0 + kSameInput)) return kInfinity;
   double cost = params_.hold_samples * params_.weight_consumption.dot(now);
   for (const SwitchTerm& s : params_.switching)
     cost += s.weight * std::max(before[s.before], 0.0) * now[s.after];
@@ -86,7 +83,7 @@ double HybridEvolution::trackingCost(VectorRef state, Index sample) const {
 
 double HybridEvolution::advance(int level, int before, int choice, Eigen::Ref<Vector> state) {
   double cost = before < 0 ? first_cost_[choice] : block_cost_(before, choice);
-  if (cost == kInfinite) return cost;
+  if (cost == kInfinity) return cost;
   const Index first = static_cast<Index>(level) * params_.hold_samples;
   for (Index k = 0; k < params_.hold_samples; ++k) {
     model_.step(choice, disturbances_, state);
@@ -146,7 +143,7 @@ int HybridEvolution::extremeChoice(double sign) {
   }
   if (!middle.allFinite()) return -1;  // a range is missing
   int best = 0;
-  double most = -kInfinite;
+  double most = -kInfinity;
   for (int choice = 0; choice < static_cast<int>(params_.choices.cols()); ++choice) {
     const double sum = sign * mapped(choice, middle).sum();
     if (sum > most) {

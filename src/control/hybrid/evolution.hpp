@@ -7,6 +7,10 @@
 
 namespace fpc {
 
+inline constexpr double kSameInput = 1e-9;  // values of an input that differ by less are the same
+/// Is the input one of the pattern's? NaN in a pattern: any value.
+bool matches(const Vector& pattern, VectorRef input);
+
 /// A level is a block of Z samples. Costs: karer2007, eqs. 27-29, 44, 45.
 class HybridEvolution final : public TreeProblem {
  public:

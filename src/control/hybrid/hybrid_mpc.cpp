@@ -11,7 +11,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kSame = 1e-9;   // two values of an input that differ by less are the same
 constexpr double kMoved = 1e-6;  // an input is elsewhere than it was sent
 
 void checkWeights(const Vector& weights, Index n, const std::string& key) {
@@ -25,8 +24,8 @@ void checkChoices(const Matrix& choices, Index n_u) {
   require(choices.allFinite(), "controller.inputs", "finite numbers");
   for (Index i = 0; i < choices.cols(); ++i)
     for (Index j = 0; j < i; ++j)
-      require((choices.col(i) - choices.col(j)).cwiseAbs().maxCoeff() > kSame, "controller.inputs",
-              "every vector only once");
+      require((choices.col(i) - choices.col(j)).cwiseAbs().maxCoeff() > kSameInput,
+              "controller.inputs", "every vector only once");
 }
 
 void checkTerm(double weight, int input, Index n_u, const std::string& key) {
@@ -65,8 +64,8 @@ void HybridMpcParams::validate(Index n_y, Index n_u) const {
 
 void HybridMpcParams::validateLimits(const InputLimits& limits) const {
   for (Index i = 0; i < choices.cols(); ++i)
-    require((choices.col(i).array() >= limits.lower.array() - kSame).all() &&
-                (choices.col(i).array() <= limits.upper.array() + kSame).all(),
+    require((choices.col(i).array() >= limits.lower.array() - kSameInput).all() &&
+                (choices.col(i).array() <= limits.upper.array() + kSameInput).all(),
             "controller.inputs", "vectors inside the actuator's bounds");
 }
 
@@ -77,7 +76,7 @@ Index HybridMpcParams::nearestChoice(VectorRef input) const {
 }
 
 bool HybridMpcParams::mayBeSent(VectorRef input) const {
-  return (choices.col(nearestChoice(input)) - input).cwiseAbs().maxCoeff() <= kSame;
+  return (choices.col(nearestChoice(input)) - input).cwiseAbs().maxCoeff() <= kSameInput;
 }
 
 HybridMpc::HybridMpc(HybridMpcParams params, InputLimits limits, PlantInfo plant)

@@ -2,6 +2,7 @@
 // follow each other, what they cost.
 #include <cmath>
 
+#include "control/hybrid/evolution.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
@@ -13,7 +14,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kSame = 1e-9;
 constexpr std::size_t kMostInputs = 10000;
 
 /// Values by name; NaN where a name is absent: any value.
@@ -23,12 +23,6 @@ Vector readPattern(YamlSection& item, const std::vector<std::string>& names) {
     item.number(names[static_cast<std::size_t>(i)], values[i], kFinite);
   item.finish();
   return values;
-}
-
-bool matches(const Vector& pattern, const Vector& input) {
-  for (Index i = 0; i < pattern.size(); ++i)
-    if (!std::isnan(pattern[i]) && std::abs(pattern[i] - input[i]) > kSame) return false;
-  return true;
 }
 
 std::vector<Vector> readList(YamlSection& section, const std::vector<std::string>& names) {
@@ -148,14 +142,14 @@ std::unique_ptr<Controller> makeHybridMpc(const HybridMpcParams& params,
   return std::make_unique<HybridMpc>(params, loop.limits, loop.plant);
 }
 
-ControllerType describe() {
+ControllerType describeHybridMpc() {
   ControllerType type{"hybrid_mpc", "the best sequence out of a set of input vectors, by search"};
   type.needs_model = true;
   return type;
 }
 
-const bool kRegistered =
-    registerController<HybridMpcParams>({describe(), &readHybridMpc, &makeHybridMpc});
+const bool kHybridMpcRegistered =
+    registerController<HybridMpcParams>({describeHybridMpc(), &readHybridMpc, &makeHybridMpc});
 
 }  // namespace
 }  // namespace fpc

@@ -52,7 +52,7 @@ void checkModel(const FuzzyOptimalParams& params, const TsModel& model, const Co
   FuzzyOptimalLaw::check(params, model);
 }
 
-ControllerType describe() {
+ControllerType describeFuzzyOptimal() {
   ControllerType type{"fuzzy_optimal", "a quadratic predictive law for every rule, blended"};
   type.needs_model = true;
   type.predicts = true;
@@ -60,8 +60,8 @@ ControllerType describe() {
   return type;
 }
 
-const bool kRegistered = registerController<FuzzyOptimalParams>(
-    {describe(), &readFuzzyOptimal, &makeFuzzyOptimal, &checkModel});
+const bool kFuzzyOptimalRegistered = registerController<FuzzyOptimalParams>(
+    {describeFuzzyOptimal(), &readFuzzyOptimal, &makeFuzzyOptimal, &checkModel});
 
 }  // namespace
 }  // namespace fpc

@@ -59,13 +59,13 @@ std::unique_ptr<Controller> makePi(const PiParams& params, const ControllerConte
   return std::make_unique<PiController>(params, loop.limits, loop.plant);
 }
 
-ControllerType describe() {
+ControllerType describePi() {
   ControllerType type{"pi", "PI control, one loop per input, gains scheduled if asked"};
   type.settings = piSettings().infos();
   return type;
 }
 
-const bool kRegistered = registerController<PiParams>({describe(), &readPi, &makePi});
+const bool kPiRegistered = registerController<PiParams>({describePi(), &readPi, &makePi});
 
 }  // namespace
 }  // namespace fpc

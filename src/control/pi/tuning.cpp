@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRunaway = 1e6;   // times the step
 constexpr double kSettled = 0.02;  // of the step
 constexpr double kRiseFrom = 0.1, kRiseTo = 0.9;

@@ -32,15 +32,15 @@ std::unique_ptr<Controller> makeSupervisor(const LoadSupervisorParams& params,
   return std::make_unique<LoadSupervisor>(params, loop.limits, loop.plant);
 }
 
-ControllerType describe() {
+ControllerType describeLoadSupervisor() {
   ControllerType type{"load_supervisor",
                       "PI control of one output with the measured load ahead of it"};
   type.settings = loadSupervisorSettings().infos();
   return type;
 }
 
-const bool kRegistered =
-    registerController<LoadSupervisorParams>({describe(), &readSupervisor, &makeSupervisor});
+const bool kLoadSupervisorRegistered = registerController<LoadSupervisorParams>(
+    {describeLoadSupervisor(), &readSupervisor, &makeSupervisor});
 
 }  // namespace
 }  // namespace fpc

@@ -130,7 +130,8 @@ bool enlist(Front front) {
   });
 }
 
-const bool kRegistered = enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
+const bool kBsm1PlantRegistered =
+    enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
 
 }  // namespace
 }  // namespace fpc::bsm1

@@ -79,7 +79,7 @@ Rows elements() {
   return rows;
 }
 
-const bool kRegistered =
+const bool kActivatedSludgeRegistered =
     registerExperiments({{"asp2_table_7", kPaper, "table 7",
                           "eigenvalues of the closed loop, formulas", "formulas", kBehind, table7},
                          {"asp2_table_8", kPaper, "table 8",

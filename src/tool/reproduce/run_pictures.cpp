@@ -85,7 +85,7 @@ bool addOthers() {
   return add("taieb_figure_10", {"mimo_cstr_steps"}, {"Ca"});
 }
 
-const bool kRegistered = addSludge() && addBatch() && addOthers();
+const bool kRunPicturesRegistered = addSludge() && addBatch() && addOthers();
 
 }  // namespace
 }  // namespace fpc::tool

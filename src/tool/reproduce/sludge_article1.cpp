@@ -195,8 +195,9 @@ std::vector<Experiment> tables() {
            ownModels}};
 }
 
-const bool kRegistered = registerExperiments(casesAandB()) && registerExperiments(casesCandD()) &&
-                         registerExperiments(tables());
+const bool kSludgeArticle1Registered = registerExperiments(casesAandB()) &&
+                                       registerExperiments(casesCandD()) &&
+                                       registerExperiments(tables());
 
 }  // namespace
 }  // namespace fpc::tool

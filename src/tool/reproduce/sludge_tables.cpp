@@ -119,7 +119,7 @@ Experiment entry(const std::string& item, int model, const char* shows, const ch
           [model] { return rows(model); }};
 }
 
-const bool kRegistered =
+const bool kSludgeTablesRegistered =
     registerExperiments({entry<structure>("table 3", 1, "names of the sets", "none"),
                          entry<coefficients>("table 4", 1, "consequents", "62 numbers"),
                          entry<structure>("table 5", 2, "names of the sets", "none"),

@@ -6,14 +6,11 @@
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 
 #include <cstdint>
-#include <limits>
 #include <random>
 
 #include <Eigen/Dense>
 
 namespace fpc::clp_test {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Uniform numbers, the same on every machine.
 class Draw {

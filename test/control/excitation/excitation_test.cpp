@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "fmbpc/base/input_error.hpp"
@@ -13,8 +12,6 @@
 
 namespace fpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 ExcitationSignal prbs(int input) {
   ExcitationSignal signal;

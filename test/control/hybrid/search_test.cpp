@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "control/hybrid/fixture.hpp"
@@ -11,10 +10,8 @@
 namespace fpc {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 struct Best {
-  double cost{kInfinite};
+  double cost{kInfinity};
   int first{-1};
 };
 

@@ -11,7 +11,6 @@ namespace fpc {
 namespace {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSampleTime = 720.0;  // 0.2 h
 
 Vector of(std::initializer_list<double> values) {

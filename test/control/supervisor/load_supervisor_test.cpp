@@ -7,8 +7,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 PlantInfo plant() {
   PlantInfo info;
   info.sample_time_s = 1800.0;
@@ -31,7 +29,7 @@ LoadSupervisorParams params() {
 }
 
 InputLimits limits() {
-  return {Eigen::Vector2d(-2.0, -1.0), Eigen::Vector2d(4.0, 1.0), Vector::Constant(2, kInfinite)};
+  return {Eigen::Vector2d(-2.0, -1.0), Eigen::Vector2d(4.0, 1.0), Vector::Constant(2, kInfinity)};
 }
 
 Measurement sample(std::uint32_t step, double y, double c, double q, double air) {
@@ -49,8 +47,8 @@ class Supervisor : public ::testing::Test {
   SetpointSource setpoint = [] {
     SetpointParams p;
     p.initial = Vector::Constant(1, 1.0);
-    p.lower = Vector::Constant(1, -kInfinite);
-    p.upper = p.rate_per_h = Vector::Constant(1, kInfinite);
+    p.lower = Vector::Constant(1, -kInfinity);
+    p.upper = p.rate_per_h = Vector::Constant(1, kInfinity);
     return SetpointSource(p, {"S"}, SampleClock(1800.0, 1.0));
   }();
   ControllerOutput output;
