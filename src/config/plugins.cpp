@@ -82,7 +82,10 @@ std::string load(const std::string& path) {
   const Registered before;
   if (dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL) != nullptr) return whatIsWrong(before, path);
   const char* reason = dlerror();
-  return "a library that this fmbpc can load: " + oneLine(reason ? reason : path);
+  const std::string words = oneLine(reason ? reason : path);
+  if (words.find("requireSameLayout") != std::string::npos)
+    return "a library that was built against this fmbpc (build it again), got " + path;
+  return "a library that this fmbpc can load: " + words;
 }
 
 }  // namespace

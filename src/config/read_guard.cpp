@@ -1,31 +1,9 @@
 // Section `guard`: what a law does outside its model's data, and when it is locked up.
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/control/optimal/law.hpp"
 #include "fmbpc/control/pi/pi_reader.hpp"
 
 namespace fpc {
-namespace {
-
-using Eigen::Index;
-
-/// Outputs that the law follows: those with a weight; the published law follows the last one.
-std::vector<Index> followed(const LoopFile& loop, Index n_y) {
-  Vector weight = Vector::Ones(n_y);
-  if (const auto* law = findParams<FmbpcParams>(*loop.controller)) {
-    if (law->law == FmbpcForm::kPublished) return {n_y - 1};
-    weight = law->weight_output;
-  } else if (const auto* optimal = findParams<FuzzyOptimalParams>(*loop.controller)) {
-    weight = optimal->tuning.weight.output;
-  }
-  std::vector<Index> outputs;
-  for (Index i = 0; i < weight.size(); ++i)
-    if (weight[i] > 0.0) outputs.push_back(i);
-  return outputs;
-}
-
-}  // namespace
 
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("guard");
@@ -40,13 +18,13 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.number("lock_error", guard.lock_error, kFinitePositive);
   section.number("lock_step", guard.lock_step, {0.0, 1.0, true});
   section.integer("lock_release", guard.lock_release, 1);
-  guard.lock_outputs = followed(loop, static_cast<Index>(names.outputs.size()));
+  guard.lock_outputs = loop.controller->signalUse(controllerContext(loop)).followed;
   std::vector<std::string> outputs;
   section.subset("lock_outputs", outputs, names.outputs);
   if (!outputs.empty()) guard.lock_outputs.clear();
   for (std::size_t i = 0; i < names.outputs.size(); ++i)
     for (const auto& output : outputs)
-      if (output == names.outputs[i]) guard.lock_outputs.push_back(static_cast<Index>(i));
+      if (output == names.outputs[i]) guard.lock_outputs.push_back(static_cast<Eigen::Index>(i));
   const YAML::Node fallback = section.raw("pi");
   if (fallback.IsDefined() && !fallback.IsNull()) {
     YamlSection pi = section.section("pi");
@@ -54,9 +32,9 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
     pi.finish();
   }
   checked(section, [&] {
-    guard.validate(static_cast<Index>(names.outputs.size()),
-                   static_cast<Index>(names.inputs.size()),
-                   static_cast<Index>(names.seen_disturbances.size()));
+    guard.validate(static_cast<Eigen::Index>(names.outputs.size()),
+                   static_cast<Eigen::Index>(names.inputs.size()),
+                   static_cast<Eigen::Index>(names.seen_disturbances.size()));
   });
   section.finish();
 }

@@ -5,7 +5,6 @@
 #include "config/read_safety.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
 namespace {
@@ -45,26 +44,6 @@ void readSignals(YamlSection& signals, const std::vector<SignalInfo>& infos, dou
   }
 }
 
-/// A PI needs what its loops take; other laws all outputs, and disturbances while no model says
-/// otherwise (ControllerSession looks into the model).
-std::vector<bool> needsOf(const LoopFile& loop) {
-  const std::size_t n_y = loop.plant_info.outputs.size();
-  const auto* pi = findParams<PiParams>(*loop.controller);
-  std::vector<bool> needs(n_y + loop.plant_info.disturbances.size(), pi == nullptr);
-  if (pi == nullptr) return needs;
-  using Kind = PiScheduleSignal::Kind;
-  for (const PiLoop& control : pi->loops) {
-    const PiScheduleSignal& schedule = control.terms.schedule;
-    const auto index = static_cast<std::size_t>(schedule.index);
-    needs[static_cast<std::size_t>(control.output)] = true;
-    if (schedule.kind == Kind::kOutput) needs[index] = true;
-    if (schedule.kind == Kind::kDisturbance) needs[n_y + index] = true;
-    for (const PiFeedforward& term : control.terms.feedforward)
-      needs[n_y + static_cast<std::size_t>(term.disturbance)] = true;
-  }
-  return needs;
-}
-
 }  // namespace
 
 void readPlausibility(YamlSection& root, LoopFile& loop) {
@@ -75,7 +54,7 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   params.enabled = params.gain_sign = true;
   params.fallback = actuator.fallback;
   params.hold_samples = actuator.hold_samples;
-  params.needs = needsOf(loop);
+  params.needs = loop.controller->signalUse(controllerContext(loop)).needed;
   for (const Eigen::Index hidden : loop.estimator.outputs)
     params.needs[static_cast<std::size_t>(hidden)] = false;  // estimated, whatever is measured
   double margin = 0.1;

@@ -33,6 +33,27 @@ const Entry& entryOf(const std::string& name) {
 
 }  // namespace
 
+template <>
+void requireSameLayout<ControllerLayout>() {}
+
+SignalUse noSignal(const ControllerContext& loop) {
+  return {std::vector<bool>(loop.plant.outputs.size() + loop.plant.disturbances.size(), false), {}};
+}
+
+SignalUse everySignal(const ControllerContext& loop) {
+  SignalUse use = noSignal(loop);
+  use.needed.assign(use.needed.size(), true);
+  for (Eigen::Index i = 0; i < loop.outputCount(); ++i) use.followed.push_back(i);
+  return use;
+}
+
+std::vector<Eigen::Index> weighted(VectorRef weight_output) {
+  std::vector<Eigen::Index> outputs;
+  for (Eigen::Index i = 0; i < weight_output.size(); ++i)
+    if (weight_output[i] > 0.0) outputs.push_back(i);
+  return outputs;
+}
+
 std::vector<std::string> ControllerContext::outputs() const { return namesOf(plant.outputs); }
 std::vector<std::string> ControllerContext::inputs() const { return namesOf(plant.inputs); }
 std::vector<std::string> ControllerContext::disturbances() const {

@@ -259,6 +259,7 @@ void ControllerSession::runLaw(const Measurement& m) {
     interruption_ = nullptr;
     arrival_reason_.clear();
   }
+  output_.begin();
   controller_->step(m, setpoint_, output_);
   if (output_.reference.size() == m.outputs.size()) answer_.tracking.reference = output_.reference;
   if (!output_.ok) return hold(m, output_.remark);

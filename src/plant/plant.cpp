@@ -31,7 +31,10 @@ std::string namesOf(const std::vector<Named>& things) {
 
 std::unique_ptr<PlantStepper> Plant::makeStepper(double) const { return nullptr; }
 
-bool registerPlant(const std::string& name, PlantFactory factory) {
+template <>
+void requireSameLayout<PlantLayout>() {}
+
+bool addPlant(const std::string& name, PlantFactory factory) {
   const bool is_new = registry().emplace(name, std::move(factory)).second;
   if (!is_new) refused().push_back(name);
   return is_new;

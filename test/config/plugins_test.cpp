@@ -62,6 +62,11 @@ TEST_F(Plugins, WhatIsNoPluginIsSaidSo) {
                 {"p.yaml:12: plugins", "registers plants or controllers", "registers_nothing"});
 }
 
+TEST_F(Plugins, OneThatWasBuiltAgainstAnotherFmbpcIsNotLoaded) {
+  expectWords(errorWith("other_layout"), {"p.yaml:12: plugins", "built against this fmbpc",
+                                          "build it again", "libother_layout.so"});
+}
+
 TEST_F(Plugins, ANameThatIsTakenIsRefusedEveryTime) {
   for (int again = 0; again < 2; ++again)
     expectWords(errorWith("taken_name"),

@@ -68,6 +68,28 @@ TEST_F(ControllerSessionRing, WrongSizesAreDroppedAndDoNotTouchTheSequence) {
   EXPECT_EQ(law->resets, Steps{0});
 }
 
+/// A law that fills in what it must and nothing else.
+struct InputOnly final : Controller {
+  void reset(const Measurement&) override {}
+  void step(const Measurement& now, const SetpointSource&, ControllerOutput& output) override {
+    output.input = now.input_applied.array() + 1.0;
+  }
+};
+
+TEST(ControllerSession, ALawThatOnlyGivesAnInputActsAlsoAfterItWasHeld) {
+  ControllerSession session(std::make_unique<InputOnly>(), setpoints(), limits(), of({570.0}),
+                            plant());
+  Measurement lost = sample(1);
+  lost.outputs[0] = kNaN;
+  const Measurement samples[] = {sample(0), lost, sample(2)};
+  const ActionSource expected[] = {ActionSource::kBase, ActionSource::kHeld, ActionSource::kBase};
+  for (int i = 0; i < 3; ++i) {
+    session.receive(samples[i]);
+    EXPECT_EQ(session.answer().base.source, expected[i]) << i;
+  }
+  EXPECT_EQ(session.answer().base.input[0], 571.0);
+}
+
 TEST_F(ControllerSessionRing, GapResetsAndNamesTheMissingSamples) {
   session->receive(sample(0));
   session->receive(sample(4));

@@ -95,12 +95,22 @@ std::unique_ptr<fpc::Controller> make(const OutflowParams& params,
   return std::make_unique<OutflowController>(params, loop);
 }
 
+/// It goes on without the other levels.
+fpc::SignalUse uses(const OutflowParams& params, const fpc::ControllerContext& loop) {
+  fpc::SignalUse use = fpc::noSignal(loop);
+  use.needed[static_cast<std::size_t>(params.output)] = true;
+  use.needed.back() = true;  // the feed
+  use.followed = {params.output};
+  return use;
+}
+
 fpc::ControllerType describe() {
   fpc::ControllerType type{"outflow", "inflow equals the outflow at the setpoint, plus a PI term"};
   type.settings = table().infos();
   return type;
 }
 
-const bool kRegistered = fpc::registerController<OutflowParams>({describe(), &read, &make});
+const bool kRegistered =
+    fpc::registerController<OutflowParams>({describe(), &read, &make, nullptr, &uses});
 
 }  // namespace

@@ -16,8 +16,15 @@
 namespace fpc {
 
 /// Filled by step(); sized by the controller at its first step, reused afterwards (no allocation
-/// per sample).
+/// per sample). The session calls begin() before each step(), so a law fills in `input`, and the
+/// rest only where it differs.
 struct ControllerOutput {
+  void begin() {
+    source = ActionSource::kBase;
+    predictive = false;
+    ok = true;
+    remark = "";
+  }
   Vector input;  ///< n_u, inside bounds and move limit
   ActionSource source{ActionSource::kHeld};
   Vector reference;        ///< n_y, y_r(k)

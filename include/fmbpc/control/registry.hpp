@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fmbpc/base/layout.hpp"
 #include "fmbpc/base/yaml_section.hpp"
 #include "fmbpc/control/controller.hpp"
 #include "fmbpc/control/settings.hpp"
@@ -38,6 +39,16 @@ struct ControllerContext {
   Eigen::Index inputCount() const;                ///< n_u
 };
 
+/// What a controller of a loop looks at.
+struct SignalUse {
+  std::vector<bool> needed;  ///< outputs, then measured disturbances: without one it has no answer
+  std::vector<Eigen::Index> followed;  ///< outputs that it steers to their setpoints
+};
+SignalUse everySignal(const ControllerContext& loop);
+SignalUse noSignal(const ControllerContext& loop);
+/// Indices of the outputs with a weight above 0.
+std::vector<Eigen::Index> weighted(VectorRef weight_output);
+
 /// What the rest of the house knows of a type.
 struct ControllerType {
   std::string name;                     ///< controller.type
@@ -57,6 +68,7 @@ class ControllerConfig {
   virtual std::unique_ptr<Controller> make(const ControllerContext& loop) const = 0;
   /// @throws InputError if the controller cannot work with this model, matched to the plant.
   virtual void checkModel(const TsModel& model, const ControllerContext& loop) const = 0;
+  virtual SignalUse signalUse(const ControllerContext& loop) const = 0;
 
  private:
   const ControllerType& type_;  // of the registry
@@ -73,6 +85,8 @@ struct ControllerRegistration {
   /// See ControllerConfig::checkModel(). nullptr: any model of the plant will do.
   void (*check_model)(const Params& params, const TsModel& model,
                       const ControllerContext& loop){nullptr};
+  /// nullptr: everySignal().
+  SignalUse (*signal_use)(const Params& params, const ControllerContext& loop){nullptr};
 };
 
 /// A configuration whose parameters have a type of their own.
@@ -89,6 +103,9 @@ class ControllerConfigOf final : public ControllerConfig {
   void checkModel(const TsModel& model, const ControllerContext& loop) const override {
     if (by_.check_model) by_.check_model(params_, model, loop);
   }
+  SignalUse signalUse(const ControllerContext& loop) const override {
+    return by_.signal_use ? by_.signal_use(params_, loop) : everySignal(loop);
+  }
 
  private:
   Params params_;
@@ -100,10 +117,16 @@ using ControllerReader = std::function<std::unique_ptr<ControllerConfig>(
 /// The registration without its types; false if the name is taken.
 bool registerControllerReader(ControllerType type, ControllerReader read);
 
+using ControllerLayout = LayoutOf<ControllerType, ControllerContext, ControllerConfig, Controller,
+                                  ControllerOutput, Measurement, SetpointSource, SettingInfo>;
+template <>
+void requireSameLayout<ControllerLayout>();
+
 /// Called by the registration line of each type:
 ///   const bool kRegistered = registerController<PiParams>({{"pi", "..."}, readPi, makePi});
 template <typename Params>
 bool registerController(const ControllerRegistration<Params>& given) {
+  requireSameLayout<ControllerLayout>();
   return registerControllerReader(
       given.type,
       [given](const ControllerType& type, YamlSection& section, const ControllerContext& loop) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/layout.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/types.hpp"
 
@@ -80,8 +81,16 @@ class Plant {
 using PlantParameters = std::map<std::string, double>;
 using PlantFactory = std::function<std::unique_ptr<Plant>(const PlantParameters&)>;
 
+using PlantLayout = LayoutOf<PlantDescription, Quantity, EquipmentFrame, Plant, PlantStepper>;
+template <>
+void requireSameLayout<PlantLayout>();
+/// False if the name is taken.
+bool addPlant(const std::string& name, PlantFactory factory);
 /// Called by the registration line of each plant.
-bool registerPlant(const std::string& name, PlantFactory factory);
+inline bool registerPlant(const std::string& name, PlantFactory factory) {
+  requireSameLayout<PlantLayout>();
+  return addPlant(name, std::move(factory));
+}
 /// @throws InputError with the known names, or naming an unknown parameter.
 std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters = {});
 std::vector<std::string> plantNames();

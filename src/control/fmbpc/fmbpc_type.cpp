@@ -51,6 +51,17 @@ std::unique_ptr<Controller> makeFmbpc(const FmbpcParams& params, const Controlle
   return std::make_unique<FmbpcLaw>(params, loop.limits, loop.plant);
 }
 
+/// The published law follows the last output, the others those with a weight. What of the rest is
+/// needed its model says (ControllerSession).
+SignalUse usedByFmbpc(const FmbpcParams& params, const ControllerContext& loop) {
+  SignalUse use = everySignal(loop);
+  if (params.law == FmbpcForm::kPublished)
+    use.followed = {loop.outputCount() - 1};
+  else
+    use.followed = weighted(params.weight_output);
+  return use;
+}
+
 ControllerType describeFmbpc() {
   ControllerType type{"fmbpc", "fuzzy model-based predictive control: an explicit law"};
   type.needs_model = true;
@@ -59,8 +70,8 @@ ControllerType describeFmbpc() {
   return type;
 }
 
-const bool kFmbpcRegistered =
-    registerController<FmbpcParams>({describeFmbpc(), &readFmbpc, &makeFmbpc});
+const bool kFmbpcRegistered = registerController<FmbpcParams>(
+    {describeFmbpc(), &readFmbpc, &makeFmbpc, nullptr, &usedByFmbpc});
 
 }  // namespace
 }  // namespace fpc

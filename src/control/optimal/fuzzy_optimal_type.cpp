@@ -52,6 +52,12 @@ void checkModel(const FuzzyOptimalParams& params, const TsModel& model, const Co
   FuzzyOptimalLaw::check(params, model);
 }
 
+SignalUse usedByFuzzyOptimal(const FuzzyOptimalParams& params, const ControllerContext& loop) {
+  SignalUse use = everySignal(loop);
+  use.followed = weighted(params.tuning.weight.output);
+  return use;
+}
+
 ControllerType describeFuzzyOptimal() {
   ControllerType type{"fuzzy_optimal", "a quadratic predictive law for every rule, blended"};
   type.needs_model = true;
@@ -60,8 +66,9 @@ ControllerType describeFuzzyOptimal() {
   return type;
 }
 
-const bool kFuzzyOptimalRegistered = registerController<FuzzyOptimalParams>(
-    {describeFuzzyOptimal(), &readFuzzyOptimal, &makeFuzzyOptimal, &checkModel});
+const bool kFuzzyOptimalRegistered =
+    registerController<FuzzyOptimalParams>({describeFuzzyOptimal(), &readFuzzyOptimal,
+                                            &makeFuzzyOptimal, &checkModel, &usedByFuzzyOptimal});
 
 }  // namespace
 }  // namespace fpc

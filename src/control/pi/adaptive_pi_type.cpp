@@ -1,4 +1,6 @@
 // Controller type adaptive_pi: its section of a loop file.
+#include <algorithm>
+
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/control/pi/adaptive_pi.hpp"
 #include "fmbpc/control/pi/decoupling.hpp"
@@ -78,6 +80,13 @@ AdaptivePiParams readAdaptivePi(YamlSection& section, const ControllerContext& c
   return params;
 }
 
+/// Both outputs; it looks at no disturbance.
+SignalUse usedByAdaptivePi(const AdaptivePiParams&, const ControllerContext& context) {
+  SignalUse use = everySignal(context);
+  std::fill(use.needed.begin() + context.outputCount(), use.needed.end(), false);
+  return use;
+}
+
 std::unique_ptr<Controller> makeAdaptivePi(const AdaptivePiParams& params,
                                            const ControllerContext& context) {
   return std::make_unique<AdaptivePi>(params, context.limits, context.plant);
@@ -86,7 +95,9 @@ std::unique_ptr<Controller> makeAdaptivePi(const AdaptivePiParams& params,
 const bool kAdaptivePiRegistered = registerController<AdaptivePiParams>(
     {{"adaptive_pi", "two PI loops behind a decoupling, retuned from gains learned on line"},
      &readAdaptivePi,
-     &makeAdaptivePi});
+     &makeAdaptivePi,
+     nullptr,
+     &usedByAdaptivePi});
 
 }  // namespace
 }  // namespace fpc

@@ -32,6 +32,15 @@ std::unique_ptr<Controller> makeSupervisor(const LoadSupervisorParams& params,
   return std::make_unique<LoadSupervisor>(params, loop.limits, loop.plant);
 }
 
+SignalUse usedBySupervisor(const LoadSupervisorParams& params, const ControllerContext& loop) {
+  SignalUse use = noSignal(loop);
+  const auto n_y = static_cast<int>(loop.outputCount());
+  for (const int index : {params.output, n_y + params.concentration, n_y + params.flow})
+    use.needed[static_cast<std::size_t>(index)] = true;
+  use.followed = {params.output};
+  return use;
+}
+
 ControllerType describeLoadSupervisor() {
   ControllerType type{"load_supervisor",
                       "PI control of one output with the measured load ahead of it"};
@@ -40,7 +49,7 @@ ControllerType describeLoadSupervisor() {
 }
 
 const bool kLoadSupervisorRegistered = registerController<LoadSupervisorParams>(
-    {describeLoadSupervisor(), &readSupervisor, &makeSupervisor});
+    {describeLoadSupervisor(), &readSupervisor, &makeSupervisor, nullptr, &usedBySupervisor});
 
 }  // namespace
 }  // namespace fpc
