@@ -1,6 +1,5 @@
-# Completion of `fmbpc` in bash: commands, options, names of loops, tunings, models and structures.
-#   . scripts/fmbpc_completion.bash
-# Installed under share/bash-completion/completions it is found without a line in ~/.bashrc.
+# Completion of `fmbpc` in bash: commands, options, names of loops, studies, tunings, models and structures; else files.
+# scripts/env.sh sources it; installed under share/bash-completion/completions it is found without a line in ~/.bashrc.
 
 _fmbpc_names() { # names of config/KIND
   local folder
@@ -21,8 +20,9 @@ _fmbpc() {
     words=$("$tool" "$command" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u)
   else
     case $command in
-      run | resolve) words=$("$tool" loops --names 2>/dev/null) ;;
+      run | resolve | evaluate) words=$("$tool" loops --names 2>/dev/null) ;;
       stability) words="$("$tool" loops --names 2>/dev/null) $(_fmbpc_names model)" ;;
+      study) words="$("$tool" loops --names 2>/dev/null) $(_fmbpc_names study)" ;;
       tune) words="$("$tool" loops --names 2>/dev/null) $(_fmbpc_names tuning)" ;;
       model | validate) words=$(_fmbpc_names model) ;;
       identify) words=$(_fmbpc_names structure) ;;
@@ -34,5 +34,7 @@ _fmbpc() {
   case $command in identify | validate | table | run) mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -- "$word") ;; esac
 }
 
-_fmbpc_config=$(cd "$(dirname "${BASH_SOURCE[0]}")/../config" 2>/dev/null && pwd)
-complete -o filenames -F _fmbpc fmbpc
+for _fmbpc_config in ../config ../../fmbpc/config; do # of the source tree, installed
+  _fmbpc_config=$(cd "$(dirname "${BASH_SOURCE[0]}")/$_fmbpc_config" 2>/dev/null && pwd) && break
+done
+complete -o filenames -o default -F _fmbpc fmbpc

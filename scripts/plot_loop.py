@@ -16,6 +16,7 @@ import textwrap
 
 LONG_H = 240.0  # days beyond
 COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a"]
+DASHES = [(7, 3), (3, 2), (9, 3, 2, 3), (1.5, 1.5), (5, 2, 1.5, 2, 1.5, 2)]
 SUFFIXES = ("_setpoint", "_reference", "_true", "_commanded", "_base", "_perturbation")
 
 
@@ -76,19 +77,11 @@ def draw_limits(axis, limits, values, always):
                          label=None if "limit" in known else "limit")
 
 
-def is_hidden(values, drawn):
-    """True if a line drawn later lies on one drawn before, so that the first would not be seen."""
-    finite = [v for v in values if v == v]
-    span = max(finite) - min(finite) if finite else 0.0
-    near = [[abs(a - b) <= 5e-3 * span for a, b in zip(values, other) if a == a and b == b] for other in drawn]
-    return any(same and sum(same) > 0.9 * len(same) for same in near)
-
-
 def draw_run(axis, run, values, colour, text, drawn, step):
-    """One line; dashed with gaps where another lies under it."""
+    """One line; all but the lowest have gaps, through which those below are seen."""
     style = {"drawstyle": "steps-post"} if step else {}
-    if is_hidden(values, drawn):
-        style["dashes"] = (5, 4)
+    if drawn:
+        style["dashes"] = DASHES[(len(drawn) - 1) % len(DASHES)]
     drawn.append(values)
     axis.plot(run.time, values, color=colour, linewidth=1.2, label=text, zorder=3 + 0.1 * len(drawn), **style)
 

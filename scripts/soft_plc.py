@@ -30,7 +30,7 @@ SCALE = 100.0  # registers per l/min
 
 
 class Reactor:
-    """dCA/dt, dT/dt of Blazic and Skrjanc (2007), eqs. 1 and 2, with the compensator of eq. 10 inside."""
+    """dCA/dt, dT/dt of blazic2007, eqs. 1 and 2, with the compensator of eq. 10 inside."""
 
     def __init__(self):
         self.concentration, self.temperature = 0.1000001680476245, 438.5443805030675

@@ -11,6 +11,7 @@ import unittest
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 BUILD = pathlib.Path(os.environ.get("FMBPC_BUILD", TOP / "build"))
+WITH_ROS = "FMBPC_WITH_ROS:BOOL=ON" in (BUILD / "CMakeCache.txt").read_text()
 
 
 def run(*command, check=True, **variables):
@@ -64,6 +65,20 @@ class ExamplePackage(unittest.TestCase):
         predictive = self.summary("two_tanks_fmbpc")
         self.assertTrue(predictive["complete"])
         self.assertEqual((0, 0), (predictive["violations"]["input"], predictive["violations"]["move"]))
+
+    @unittest.skipUnless(WITH_ROS, "a build without ROS")
+    def test_a_workspace_of_both_packages_is_configured(self):
+        """catkin_make makes the workspace's CMakeLists.txt; the targets of fmbpc are there before its export is."""
+        source = self.folder / "ws" / "src"
+        source.mkdir(parents=True)
+        (source / "fmbpc").symlink_to(TOP)
+        (source / "CMakeLists.txt").symlink_to("/usr/share/catkin/cmake/toplevel.cmake")
+        shutil.copytree(TOP / "examples" / "two_tanks", source / "two_tanks")
+        ws = self.folder / "ws"
+        run("cmake", "-S", source, "-B", ws / "build", "-DCATKIN_ENABLE_TESTING=OFF", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+            "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
+        link = (ws / "build" / "two_tanks" / "CMakeFiles" / "two_tanks.dir" / "link.txt").read_text()
+        self.assertIn("libfmbpc_core.so", link)
 
     def test_without_the_package_one_line_says_what_is_missing(self):
         text = run(self.fmbpc / "lib" / "fmbpc" / "fmbpc_tool", "run",

@@ -62,6 +62,11 @@ class House(unittest.TestCase):
                     self.assertLess(RANKS[other], RANKS[room], f"{path} includes {other}/")
                     self.assertNotIn((room, other), FORBIDDEN, f"{path} includes {other}/")
 
+    def test_no_room_looks_into_the_parameters_of_one_type(self):
+        """What the house must know of a type the type registers."""
+        for path in sources("src/config", "src/loop", "src/study", "src/ros"):
+            self.assertNotIn("findParams<", path.read_text(), path)
+
     def test_types_of_controllers_are_compared_nowhere(self):
         """Everything learns of them from the registry; their names stand in their own registration."""
         named = re.compile(r'(?:ControllerType type\{|\{\{)"(\w+)"')

@@ -1,6 +1,9 @@
 """Every script says what it is for: --help prints words and ends well, without ROS and without doing anything."""
 import os
+import pathlib
+import shutil
 import subprocess
+import tempfile
 import unittest
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -24,6 +27,28 @@ class Scripts(unittest.TestCase):
                                       env={"PATH": "/usr/bin:/bin", "HOME": os.environ.get("HOME", "/")}, check=False)
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertGreater(len(done.stdout.split()), 5, done.stdout)
+
+    def source_env(self, top, shell="bash"):
+        done = subprocess.run([shell, "-c", f". '{top}/scripts/env.sh'; status=$?; command -v fmbpc; exit $status"], capture_output=True, text=True,
+                              timeout=60, cwd="/", env={"PATH": "/usr/bin:/bin", "HOME": "/"}, check=False)
+        return done.returncode, done.stdout + done.stderr
+
+    def test_env_says_what_is_wrong_and_fails(self):
+        with tempfile.TemporaryDirectory() as folder:
+            top = pathlib.Path(os.path.realpath(folder)) / "tree"
+            shutil.copytree(SCRIPTS, top / "scripts", symlinks=True)
+            for shell, devel, words in (("sh", None, "is for bash"), ("bash", None, "not built yet"), ("bash", "/elsewhere" + str(top), "moved here"),
+                                        ("bash", str(top), "tree/scripts/bin/fmbpc")):
+                if devel:
+                    (top / "devel").mkdir(exist_ok=True)
+                    (top / "devel" / "setup.sh").write_text(f": ${{_CATKIN_SETUP_DIR:={devel}/devel}}\n")
+                    (top / "devel" / "setup.bash").write_text("")
+                status, text = self.source_env(top, shell)
+                with self.subTest(words):
+                    self.assertIn(words, text)
+                    self.assertEqual(status == 0, words.endswith("fmbpc"))
+            (pathlib.Path(folder) / "link").symlink_to(top)
+            self.assertEqual(self.source_env(pathlib.Path(folder) / "link")[0], 0)
 
     def test_completion(self):
         """The names that bash offers, with a tool that knows two loops."""

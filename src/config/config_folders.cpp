@@ -79,6 +79,14 @@ std::string find(const std::string& kind, const std::string& name_or_path) {
 
 std::vector<std::string> loopNames() { return namesIn("loop"); }
 
+std::vector<std::string> loopFiles() {
+  std::vector<std::string> files;
+  for (const auto& file : filesOf("loop")) files.push_back(file.second.string());
+  return files;
+}
+
+std::vector<std::string> modelNames() { return namesIn("model"); }
+
 std::string findLoop(const std::string& name_or_path) { return find("loop", name_or_path); }
 
 std::string findStructure(const std::string& name_or_path) {

@@ -28,7 +28,7 @@ constexpr double kSubstrateFloor = 1e-3;
 PlantDescription describeActivatedSludge() {
   PlantDescription p;
   p.name = "activated_sludge";
-  p.title = "Activated-sludge wastewater plant, 6 states (Vallejo Llamas 2021, article 1, app. D)";
+  p.title = "Activated-sludge wastewater plant, 6 states (vallejo2019, app. D)";
   p.time_unit_s = 3600.0;
   p.states = {{"s", "mg/l", 55.009, 0.0, 5000.0},     {"x", "mg/l", 2000.0, 0.0, 10000.0},
               {"c", "mg/l", 2.0, 0.0, 20.0},          {"x_d", "mg/l", 79.996, 0.0, 10000.0},

@@ -19,7 +19,7 @@ namespace {
 PlantDescription describeBatchReactor() {
   PlantDescription p;
   p.name = "batch_reactor";
-  p.title = "Batch reactor with a water jacket and discrete valves (Karer et al. 2007, section 5)";
+  p.title = "Batch reactor with a water jacket and discrete valves (karer2007, section 5)";
   p.states = {{"T", "degC", 41.1191, 0.0, 100.0}, {"Tw", "degC", 41.1191, 0.0, 100.0}};
   p.inputs = {{"kM", "-", 0.02, 0.0, 1.0}, {"kC", "-", 0.0, 0.0, 1.0}, {"kH", "-", 1.0, 0.0, 1.0}};
   p.disturbances = {{"T_C", "degC", 12.0, 0.0, 100.0},

@@ -22,7 +22,7 @@ namespace {
 PlantDescription describeCstr() {
   PlantDescription p;
   p.name = "cstr";
-  p.title = "Stirred-tank reactor with coolant jacket, 2 states (Blazic and Skrjanc 2007)";
+  p.title = "Stirred-tank reactor with coolant jacket, 2 states (blazic2007)";
   p.time_unit_s = 60.0;
   p.states = {{"CA", "mol/l", 0.1000001680476245, 0.0, 10.0},
               {"T", "K", 438.5443805030675, 200.0, 1000.0}};

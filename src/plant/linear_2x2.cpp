@@ -25,7 +25,7 @@ TransferElement lag(const char* output, const char* input, double factor, double
 TransferMatrix linearExample() {
   TransferMatrix m;
   m.name = "linear_2x2";
-  m.title = "Linear example, four discrete lags, 2 inputs, 2 outputs (Taieb et al. 2017, eq. 4)";
+  m.title = "Linear example, four discrete lags, 2 inputs, 2 outputs (taieb2017, eq. 4)";
   m.time_unit_s = 1.0;
   m.outputs = {{"y1", "-", 0.0, -1e4, 1e4}, {"y2", "-", 0.0, -1e4, 1e4}};
   m.inputs = {{"u1", "-", 0.0, -1e3, 1e3}, {"u2", "-", 0.0, -1e3, 1e3}};

@@ -18,7 +18,7 @@ namespace {
 PlantDescription describeMimoCstr() {
   PlantDescription p;
   p.name = "mimo_cstr";
-  p.title = "Stirred-tank reactor, feed and coolant flow both moved (Taieb et al. 2017)";
+  p.title = "Stirred-tank reactor, feed and coolant flow both moved (taieb2017)";
   p.time_unit_s = 60.0;
   p.states = {{"Ca", "mol/l", 0.1000001680476245, 0.0, 10.0},
               {"T", "K", 438.5443805030675, 200.0, 1000.0}};

@@ -24,7 +24,7 @@ constexpr double kGravity = 9.81;  // [m/s2]
 PlantDescription describeSurgeTank() {
   PlantDescription p;
   p.name = "surge_tank";
-  p.title = "Surge tank filled by a pump, level and pump flow (Taieb et al. 2017)";
+  p.title = "Surge tank filled by a pump, level and pump flow (taieb2017)";
   p.states = {{"H", "m", 0.15, 0.0, 10.0}, {"Q", "m3/s", 9.764896312813569e-5, 0.0, 1.0}};
   p.inputs = {{"I", "A", 9.764896312813569e-4, 0.0, 1.0}};
   p.disturbances = {{"q_f", "m3/s", 0.0, -1e-3, 1e-3}};

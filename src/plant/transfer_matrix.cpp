@@ -67,7 +67,7 @@ void TransferMatrix::validate() const {
 TransferMatrix woodBerry() {
   TransferMatrix m;
   m.name = "distillation_column";
-  m.title = "Binary distillation column, 2x2 lags with dead times and feed (Wood and Berry 1973)";
+  m.title = "Binary distillation column, 2x2 lags with dead times and feed (wood1973)";
   m.time_unit_s = 60.0;
   m.outputs = {{"y_D", "mol%", 96.25, 0.0, 200.0}, {"x_B", "mol%", 0.5, -100.0, 100.0}};
   m.inputs = {{"L", "lb/min", 0.0, -2.0, 2.0}, {"V", "lb/min", 0.0, -2.0, 2.0}};

@@ -28,6 +28,7 @@ std::string word(bool value) { return value ? "yes" : "no"; }
 }  // namespace
 
 int controllers(bool json) {
+  loadPluginsOfLoops();
   Json all = Json::array();
   std::vector<std::vector<std::string>> rows{
       {"type", "needs model", "predicts", "follows setpoint", "may change in a run"}};

@@ -3,6 +3,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "tool/commands.hpp"
@@ -36,8 +38,16 @@ std::string findModel(const std::string& name) {
   return name;  // readModel() says that it is not there
 }
 
+std::string requireModel(const std::string& name) {
+  const std::string file = findModel(name);
+  if (fs::exists(file)) return file;
+  const auto near = nearest(name, modelNames());
+  throw InputError("model '" + name + "': expected a path or a name from config/model" +
+                   (near.empty() ? "" : "; near: " + join(near)));
+}
+
 int model(const std::string& file, bool json) {
-  const TsModel model = readModel(findModel(file));
+  const TsModel model = readModel(requireModel(file));
   const auto remarks = reportModel(model);
   if (!json) {
     print(model, remarks);

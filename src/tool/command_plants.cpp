@@ -40,7 +40,10 @@ Json toJson(const PlantDescription& plant) {
 void print(const PlantDescription& plant) {
   std::cout << plant.name << ": " << plant.title << "\n";
   for (const auto& [group, quantities] : groupsOf(plant)) {
-    std::cout << "  " << group << "\n";
+    if (!quantities->empty())
+      std::cout << "  " << std::left << std::setw(26) << group << std::setw(8) << "unit"
+                << std::right << std::setw(12) << "nominal"
+                << "   range\n";
     for (const auto& q : *quantities)
       std::cout << "    " << std::left << std::setw(24) << q.name << std::setw(8) << q.unit
                 << std::right << std::setw(12) << q.nominal << "   " << q.lower << " .. " << q.upper
@@ -51,6 +54,7 @@ void print(const PlantDescription& plant) {
 }  // namespace
 
 int plants(bool json) {
+  loadPluginsOfLoops();
   Json all = Json::array();
   for (const auto& name : plantNames()) {
     const PlantDescription description = makePlant(name)->description();

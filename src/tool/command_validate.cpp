@@ -99,7 +99,7 @@ Structure structureOf(const TsModel& model, const CsvTable& table,
 }  // namespace
 
 int validate(const ValidateArguments& a) {
-  const IdentifiedModel model = readIdentified(findModel(a.model));
+  const IdentifiedModel model = readIdentified(requireModel(a.model));
   const CsvTable table = readRecord(a.data, csvFormat(a.format));
   const auto columns = columnsOf(a.columns);
   requireSignals(columns, model.model);

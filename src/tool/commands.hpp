@@ -143,6 +143,8 @@ int validate(const ValidateArguments& arguments);
 int run(const RunArguments& arguments);
 /// `sets`: more of them in one text, see parseOverrides().
 int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets);
+/// What the plugins of all loops that are found register, so that lists show it.
+void loadPluginsOfLoops();
 int plants(bool json);
 int controllers(bool json);
 /// Names, titles, plants and controllers of the loops that contain all words (in any of these).
@@ -150,6 +152,8 @@ int loops(const std::vector<std::string>& words, bool names_only, bool json);
 int model(const std::string& file, bool json);
 /// A path, or a name below config/model; what it was given if there is neither.
 std::string findModel(const std::string& name);
+/// The same. @throws InputError with the nearest names.
+std::string requireModel(const std::string& name);
 int stability(const StabilityArguments& arguments);
 int reproduce(const ReproduceArguments& arguments);
 int tune(const TuneArguments& arguments);

@@ -179,7 +179,8 @@ void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
                         "papers, experiments (or how their names begin), loops behind them; all of "
                         "them if none is named");
   reproduce->add_flag("--list", a.list, "only list them: what each shows and prints");
-  reproduce->add_flag("--details", a.details, "every row, not only the summary of each paper");
+  reproduce->add_flag("--details", a.details,
+                      "every row of every paper; a paper that is named shows its rows anyway");
   reproduce->add_option("--plots", a.plots, "folder for a picture of every figure");
   reproduce->add_flag("--markdown", a.markdown, "the page docs/results.md");
   reproduce->add_flag("--json", a.json, "print one JSON array and nothing else");

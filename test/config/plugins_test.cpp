@@ -36,6 +36,12 @@ TEST_F(Plugins, ALoopBringsThePlantAndTheControllerOfItsPackage) {
   EXPECT_NEAR(last.outputs[1], 1.2, 0.01);
 }
 
+TEST_F(Plugins, ATypeSaysWhichSignalsItNeedsAndFollows) {
+  const LoopFile loop = readLoop("two_tanks_outflow");
+  EXPECT_EQ(loop.plausibility.needs, (std::vector<bool>{false, true, true}));  // h1, h2, the feed
+  EXPECT_EQ(loop.guard.lock_outputs, std::vector<Eigen::Index>{1});
+}
+
 TEST_F(Plugins, ThePathOfALibraryIsTakenBesideTheLoopFile) {
   std::filesystem::create_symlink(FMBPC_TEST_PLUGINS "/libtwo_tanks.so", folder_ / "link.so");
   write("by_path.yaml", "extends: two_tanks_outflow.yaml\nplugins: [./link.so]\n");

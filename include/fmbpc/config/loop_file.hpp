@@ -160,6 +160,8 @@ std::vector<std::string> configFolders();
 /// names.
 std::string findLoop(const std::string& name_or_path);
 std::vector<std::string> loopNames();
+std::vector<std::string> loopFiles();   ///< paths, in the order of the names
+std::vector<std::string> modelNames();  ///< of config/model
 /// An identification structure's file from its name ("asp_c") or path, in the same way.
 std::string findStructure(const std::string& name_or_path);
 

@@ -202,7 +202,7 @@ PlantDescription describe(Front front) {
   Parameters parameters = usual(front);
   p.name = names[static_cast<int>(front)];
   p.title = std::string("Benchmark simulation model no. 1, wastewater plant, inputs: ") +
-            what[static_cast<int>(front)] + " (Copp 2002, Alex et al. 2008)";
+            what[static_cast<int>(front)] + " (copp2002, alex2008)";
   p.time_unit_s = 86400.0;
   const WorksState rest = nominalState(front, parameters.loops);
   p.states = tankStates(rest);
