@@ -73,9 +73,9 @@ def rows(family, seeds, percent):
     quiet = study(family, None, None)
     baseline = FAMILIES[family][0]
     for loop in FAMILIES[family][3]:
-        cost, rival = noisy[loop]["median"], noisy[baseline]["median"]
-        ratio = cost / rival if cost is not None and rival else float("inf")
-        yield [loop, baseline, number(quiet[loop]["median"]), number(cost), number(rival), "%.2f" % ratio,
+        cost, other = noisy[loop]["median"], noisy[baseline]["median"]
+        ratio = cost / other if cost is not None and other else float("inf")
+        yield [loop, baseline, number(quiet[loop]["median"]), number(cost), number(other), "%.2f" % ratio,
                "yes" if ratio <= LIMIT else "no"], ratio
 
 
