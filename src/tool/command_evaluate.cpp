@@ -45,6 +45,13 @@ Json jsonOf(const std::string& run, const EffluentReport& report) {
   return json;
 }
 
+constexpr const char* kLegend =
+    "EQI, IQI: effluent and influent quality [kg/d]; AE, PE, ME: aeration, pumping, mixing energy "
+    "[kWh/d]; SP: sludge to be disposed "
+    "of [kg/d];\nEC: external carbon [kg COD/d]; OCI: operational cost index; TN > 18, NH > 4: "
+    "share of the time above that limit "
+    "[g/m3] (times crossed);\n95%: percentile of the samples [g/m3] (alex2008)\n";
+
 void printHead() {
   std::printf("%-28s %9s %9s %8s %7s %8s %7s %7s %9s %14s %14s %7s %7s\n", "run", "EQI", "IQI",
               "AE", "PE", "SP", "ME", "EC", "OCI", "TN > 18", "NH > 4", "TN 95%", "NH 95%");
@@ -71,12 +78,13 @@ int evaluate(const EvaluateArguments& arguments) {
   Overrides overrides;
   for (const auto& text : arguments.set) overrides.push_back(parseOverride(text));
   Json all = Json::array();
-  if (!arguments.json) printHead();
   for (const auto& run : arguments.runs) {
     const EffluentReport report = evaluateEffluent(trajectory(run, overrides), params);
+    if (!arguments.json && all.empty()) printHead();
     all.push_back(jsonOf(run, report));
     if (!arguments.json) print(run, report);
   }
+  if (!arguments.json && !all.empty()) std::cout << kLegend;
   if (arguments.json) std::cout << (all.size() == 1 ? all[0] : Json{{"runs", all}}).dump(2) << "\n";
   return interruption().load() ? 130 : 0;
 }

@@ -14,6 +14,13 @@ using Json = nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kNamedCases = 12;
+constexpr const char* kLoopLegend =
+    "cost: the study's fitness of a run; move: mean of all inputs and samples, as a share of their "
+    "ranges, median of the runs;\nlargest move: of any input in a sample, in its unit; least: of "
+    "the output that is judged first; the rest: runs in which that happened\n";
+constexpr const char* kPairLegend =
+    "won: cases with the lower cost (a tie is a half); ratio: cost / cost of the loop it stands "
+    "against, below 1 is better\n";
 
 Json failuresJson(const LoopStatistics& loop) {
   Json json = Json::object();
@@ -66,8 +73,8 @@ std::string interval(double lower, double upper) {
 std::string percent(double share) { return shortText(100.0 * share) + " %"; }
 
 Rows loopRows(const StudyStatistics& statistics) {
-  Rows rows{{"loop", "runs", "median", "quartiles", "worst", "in", "move", "largest move", "least",
-             "diverged", "locked", "violated", "held", "out of model"}};
+  Rows rows{{"loop", "runs", "median cost", "quartiles", "worst", "worst case", "move",
+             "largest move", "least", "diverged", "locked", "violated", "held", "out of model"}};
   for (const auto& loop : statistics.loops) {
     std::vector<std::string> row{loop.name,
                                  std::to_string(loop.runs),
@@ -86,7 +93,8 @@ Rows loopRows(const StudyStatistics& statistics) {
 
 Rows pairRows(const StudyPlan& plan, const StudyStatistics& statistics) {
   const std::string sure = std::to_string(plan.study().confidence_percent) + " %";
-  Rows rows{{"pairs", "against", "n", "won", "share", sure, "median ratio", sure}};
+  Rows rows{
+      {"pairs", "against", "n", "won", "share", "its " + sure, "median ratio", "its " + sure}};
   for (const auto& pair : statistics.pairs)
     rows.push_back({pair.name, pair.against, std::to_string(pair.pairs), shortText(pair.wins),
                     percent(pair.share), percent(pair.lower) + ".." + percent(pair.upper),
@@ -116,7 +124,9 @@ std::string toTable(const StudyPlan& plan, const StudyResult& result,
                     const StudyStatistics& statistics) {
   std::string text = plan.study().title.empty() ? "" : plan.study().title + "\n\n";
   text += alignedTable(loopRows(statistics));
-  if (!statistics.pairs.empty()) text += "\n" + alignedTable(pairRows(plan, statistics));
+  text += kLoopLegend;
+  if (!statistics.pairs.empty())
+    text += "\n" + alignedTable(pairRows(plan, statistics)) + kPairLegend;
   for (const auto& loop : statistics.loops) {
     if (loop.failing_cases.empty()) continue;
     std::vector<std::string> named = loop.failing_cases;
