@@ -205,7 +205,7 @@ std::vector<double*> numbersOf(PredictiveAction& p) {
 TEST(OptimizerSession, PredictionThatIsNotFiniteIsCountedAndTheBaseIsClipped) {
   std::vector<Spoil> spoils;
   for (std::size_t i = 0; i < 12; ++i)
-    for (const double bad : {kNaN, clp_test::kInfinity})
+    for (const double bad : {kNaN, kInfinity})
       spoils.push_back([i, bad](PredictiveAction& p) { *numbersOf(p)[i] = bad; });
   expectClipped(spoils);
 }
