@@ -15,7 +15,8 @@ class OperatorNotes {
  public:
   explicit OperatorNotes(const LoopFile& loop);
 
-  /// A command that was not done, due at `step`. The first twenty are kept in words, others counted.
+  /// A command that was not done, due at `step`. The first twenty are kept in words, others
+  /// counted.
   void refused(std::uint32_t step, const std::string& words);
   /// What is asked for sample `step`, beside the limits of the loop: call it when the sample is
   /// answered. Commands only; what the file's schedule asks was checked when it was read.

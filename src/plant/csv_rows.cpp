@@ -17,14 +17,14 @@ constexpr double kMostAbsent = 1e6;  // rows that are missing
 /// s, min, h or d for what headers write; empty for what is none of them.
 std::string timeUnitIn(const std::string& header) {
   static const std::map<std::string, std::string> others{
-      {"sec", "s"},  {"second", "s"}, {"seconds", "s"}, {"minute", "min"}, {"minutes", "min"},
-      {"hr", "h"},   {"hour", "h"},   {"hours", "h"},   {"day", "d"},      {"days", "d"}};
+      {"sec", "s"}, {"second", "s"}, {"seconds", "s"}, {"minute", "min"}, {"minutes", "min"},
+      {"hr", "h"},  {"hour", "h"},   {"hours", "h"},   {"day", "d"},      {"days", "d"}};
   if (secondsPer(header) > 0.0) return header;
   const auto found = others.find(header);
   return found != others.end() ? found->second : "";
 }
 
-/// A record that says its unit is believed before the loop file is.
+/// What a record says of its unit and what the loop file says agree.
 void requireTimeUnit(const CsvTable& table, std::size_t column, const std::string& time_unit) {
   if (table.is_date[column] || column >= table.units.size()) return;
   const std::string& header = table.units[column];

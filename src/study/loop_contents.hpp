@@ -7,8 +7,8 @@
 
 namespace fpc {
 
-/// Models, structures and records in one text: part of the fingerprint of many runs, since a changed
-/// file makes other runs.
+/// Models, structures and records in one text: part of the fingerprint of many runs, since a
+/// changed file makes other runs.
 std::string contentsOf(const LoopFile& loop);
 
 }  // namespace fpc

@@ -21,7 +21,8 @@ struct TunedLoop {
 std::string boundOf(const TuningParameter& parameter, double value);
 /// What the untouched loop has, if it lies outside the range.
 bool isOutside(const TuningParameter& parameter, double own);
-/// Parameters that stand at a bound or began outside their range, costs that got worse; a line each.
+/// Parameters that stand at a bound or began outside their range, costs that got worse; a line
+/// each.
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned);
 
 /// Infinite numbers are null.

@@ -97,8 +97,8 @@ class CsvUnits : public LoopFolder {
 TEST_F(CsvUnits, ThoseOfAColumnAreThePlantsUnlessConverted) {
   const std::string none = "nothing was thrown";
   for (const char* column : {"v", "v[degC]", "v [deg C]"}) EXPECT_EQ(errorWith(column), none);
-  expectWords(errorWith("v[K]"), {"d.csv: column 'v'", "[degC]", "got [K]",
-                                  "disturbance.csv.channels.T_in.scale"});
+  expectWords(errorWith("v[K]"),
+              {"d.csv: column 'v'", "[degC]", "got [K]", "disturbance.csv.channels.T_in.scale"});
   for (const char* how : {", offset: -273.15", ", scale: 1", ", mean: 15"})
     EXPECT_EQ(errorWith("v[K]", how), none) << how;
 }

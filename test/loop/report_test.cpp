@@ -161,9 +161,8 @@ TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
 
 TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {
   write("d.csv", "t[h],v[degC]\n0,15\n10,16\n");
-  const std::string csv =
-      "{file: " + path("d.csv") +
-      ", time_column: t, end: hold, channels: {T_in: {column: v}}, lead_in_h: ";
+  const std::string csv = "{file: " + path("d.csv") +
+                          ", time_column: t, end: hold, channels: {T_in: {column: v}}, lead_in_h: ";
   const auto told = [&](Overrides overrides) {
     const LoopFile loop = readLoop("heated_tank", overrides);
     const RunRecord record = recordLayout(loop).emptyRecord();

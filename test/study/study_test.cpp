@@ -129,8 +129,8 @@ TEST_F(Study, ARunThatCannotBeMadeIsADivergedOneWithItsWords) {
 }
 
 TEST_F(Study, ARunWithoutACostSaysWhy) {
-  const StudyPlan study = plan(
-      "seeds: 1:2\nset: {plant: {type: cstr}, plant.integrator.max_steps: 1}\n");
+  const StudyPlan study =
+      plan("seeds: 1:2\nset: {plant: {type: cstr}, plant.integrator.max_steps: 1}\n");
   const StudyStatistics statistics = statisticsOf(study, runStudy(study));
   EXPECT_TRUE(noneSucceeded(statistics.loops[0]));
   expectWords(statistics.loops[0].trouble, {"sample 0", "integration"});
@@ -143,9 +143,9 @@ TEST_F(Study, ChangedRecordsAndModelsMakeAnotherStudy) {
   const std::string csv =
       "{file: " + record("16") + ", time_column: t, end: hold, channels: {T_in: {column: v}}}";
   const auto study = [&](const std::string& more) {
-    return StudyPlan(parseStudy("loops: [{loop: heated_tank}]\nfitness: {terms: [{index: ise}]}\n" +
-                                    more,
-                                "s.yaml"))
+    return StudyPlan(
+               parseStudy("loops: [{loop: heated_tank}]\nfitness: {terms: [{index: ise}]}\n" + more,
+                          "s.yaml"))
         .fingerprint();
   };
   const std::string by_set = "set: {disturbance: {source: csv, csv: " + csv + "}}\n";
