@@ -129,8 +129,10 @@ TEST_F(Study, ARunThatCannotBeMadeIsADivergedOneWithItsWords) {
 }
 
 TEST_F(Study, ARunWithoutACostSaysWhy) {
-  const StudyPlan study =
-      plan("seeds: 1:2\nset: {plant: {type: cstr}, plant.integrator.max_steps: 1}\n");
+  const StudyPlan study(
+      parseStudy("loops: [{loop: cstr_tracking_pi}]\nfitness: {terms: [{index: ise}]}\n"
+                 "set: {plant.integrator.max_steps: 2, sampling.duration_h: 0.1}\n",
+                 "s.yaml"));
   const StudyStatistics statistics = statisticsOf(study, runStudy(study));
   EXPECT_TRUE(noneSucceeded(statistics.loops[0]));
   expectWords(statistics.loops[0].trouble, {"sample 0", "integration"});
