@@ -38,11 +38,11 @@ class EveryLoop(unittest.TestCase):
         sample_times = {"cstr": 6, "batch": 10, "surge_tank": 0.1, "mimo_cstr": 0.6, "linear_2x2": 1, "column": 60,
                         "heated_tank": 30, "bsm1_": 900}
         seconds = next((s for name, s in sample_times.items() if loop.startswith(name)), 720)
-        duration = f"sampling.duration_h={480 * seconds / 3600}"
+        sets = [f"sampling.duration_h={480 * seconds / 3600}", "report.record_from_h=0"]
         port = ring.free_port()
         topics = run(f"roslaunch -p {port} fmbpc loop.launch loop:={loop} pace:=lockstep draw:=false "
-                     f"set:='{duration}' out:={folder}/topics", ROS_MASTER_URI=f"http://localhost:{port}")
-        process = run(f"rosrun fmbpc fmbpc run {loop} --set {duration} --no-plot --out {folder}/process")
+                     f"set:='{' '.join(sets)}' out:={folder}/topics", ROS_MASTER_URI=f"http://localhost:{port}")
+        process = run(f"rosrun fmbpc fmbpc run {loop} --set {' --set '.join(sets)} --no-plot --out {folder}/process")
         self.assertEqual(process.returncode, 0, process.stderr)
         files = [f"{folder}/{kind}/trajectory.csv" for kind in ("topics", "process")]
         self.assertTrue(os.path.exists(files[0]), topics.stdout[-2000:])

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/csv_cell.hpp"
+#include "base/csv_header.hpp"
 #include "fmbpc/base/csv_writer.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -168,9 +169,8 @@ std::string CsvTable::at(Eigen::Index row, Eigen::Index column) const {
   return file + place + ": column '" + names[static_cast<std::size_t>(column)] + "'";
 }
 
-CsvTable readCsv(const std::string& file, const CsvFormat& format) {
+CsvTable readCsvHeader(std::istream& stream, const std::string& file, const CsvFormat& format) {
   format.validate();
-  std::ifstream stream(file);
   require(stream.good(), file, "a readable file");
   CsvTable table;
   table.file = file;
@@ -179,6 +179,12 @@ CsvTable readCsv(const std::string& file, const CsvFormat& format) {
   if (line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
   require(!isBlank(line), file + ":1", "a header line");
   readHeader(line, format, table);
+  return table;
+}
+
+CsvTable readCsv(const std::string& file, const CsvFormat& format) {
+  std::ifstream stream(file);
+  CsvTable table = readCsvHeader(stream, file, format);
   std::vector<ColumnKind> kinds(table.names.size());
   const auto rows = readRows(stream, format, table, kinds);
   require(!rows.empty(), file, "at least one row below the header");

@@ -21,9 +21,27 @@ std::vector<std::string> disturbedNames(const LoopFile& loop) {
   return names;
 }
 
-/// {x: 1900, s: 50} with `mode`; a list of names suffices to release.
+/// Ranges of what may be asked or disturbed.
+std::vector<SignalInfo> disturbanceRanges(const LoopFile& loop) {
+  std::vector<SignalInfo> ranges;
+  for (const Quantity& q : makePlant(loop.simulation)->description().disturbances)
+    ranges.push_back({q.name, q.unit, q.lower, q.upper});
+  return ranges;
+}
+
+void requireInRanges(const YamlSection& values, const Command& command,
+                     const std::vector<SignalInfo>& ranges, const std::string& what) {
+  if (command.mode != CommandMode::kOverride) return;
+  for (std::size_t i = 0; i < command.name.size(); ++i)
+    for (const SignalInfo& range : ranges)
+      if (range.name == command.name[i])
+        requireInRange(values, command.name[i], command.value[i], range, what);
+}
+
+/// {x: 1900, s: 50} with `mode`; a list of names suffices to release. What overrides lies in its
+/// range, as in a loop file.
 Command readSignals(YamlSection& entry, const std::string& key,
-                    const std::vector<std::string>& known) {
+                    const std::vector<std::string>& known, const std::vector<SignalInfo>& ranges) {
   Command command;
   readMode(entry, command);
   if (command.mode == CommandMode::kRelease) {
@@ -42,13 +60,36 @@ Command readSignals(YamlSection& entry, const std::string& key,
   }
   values.finish();
   if (command.name.empty()) values.fail("", "names out of " + join(known));
+  requireInRanges(values, command, ranges, key);
   return command;
+}
+
+/// Inside the limits of the actuator, which would clip it.
+Vector readManualInput(YamlSection& entry, const std::string& key, const LoopFile& loop) {
+  Vector input;
+  entry.byName(key, input, namesOf(loop.plant_info.inputs), kFinite);
+  const InputLimits& limits = loop.simulation.actuator.limits;
+  for (Eigen::Index i = 0; i < input.size(); ++i) {
+    SignalInfo range = loop.plant_info.inputs[static_cast<std::size_t>(i)];
+    range.lower = limits.lower[i];
+    range.upper = limits.upper[i];
+    requireInRange(entry, key + "." + range.name, input[i], range, "manual input",
+                   "the limits of the actuator");
+  }
+  return input;
 }
 
 bool readOn(YamlSection& entry, const std::string& key) {
   bool on = false;
   entry.boolean(key, on);
   return on;
+}
+
+/// Without a schedule there is nothing to hold.
+bool readHold(YamlSection& entry, const std::string& key, const LoopFile& loop) {
+  if (loop.setpoint.schedule.empty())
+    entry.fail(key, "a loop with setpoint.schedule or setpoint.recipe");
+  return readOn(entry, key);
 }
 
 Settings readSettings(YamlSection& entry, const std::string& key) {
@@ -99,20 +140,23 @@ const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       {"setpoint",
        [](Entry entry, Key key, Loop loop) -> What {
-         return SetpointCommand{readSignals(entry, key, namesOf(loop.plant_info.outputs))};
+         const auto& outputs = loop.plant_info.outputs;
+         return SetpointCommand{readSignals(entry, key, namesOf(outputs), outputs)};
        }},
       {"disturbance",
        [](Entry entry, Key key, Loop loop) -> What {
-         return DisturbanceCommand{readSignals(entry, key, disturbedNames(loop))};
+         return DisturbanceCommand{
+             readSignals(entry, key, disturbedNames(loop), disturbanceRanges(loop))};
        }},
       {"manual", [](Entry entry, Key key, Loop) -> What { return SetManual{readOn(entry, key)}; }},
       {"manual_input",
        [](Entry entry, Key key, Loop loop) -> What {
-         Vector input;
-         entry.byName(key, input, namesOf(loop.plant_info.inputs), kFinite);
-         return SetManualInput{input};
+         return SetManualInput{readManualInput(entry, key, loop)};
        }},
-      {"hold", [](Entry entry, Key key, Loop) -> What { return HoldRecipe{readOn(entry, key)}; }},
+      {"hold",
+       [](Entry entry, Key key, Loop loop) -> What {
+         return HoldRecipe{readHold(entry, key, loop)};
+       }},
       {"adapt", [](Entry entry, Key key, Loop) -> What { return SetAdapt{readOn(entry, key)}; }},
       {"settings",
        [](Entry entry, Key key, Loop) -> What { return Retune{readSettings(entry, key)}; }},
@@ -128,6 +172,24 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
+/// "file:12: commands[3]"
+std::string placeOf(const YamlSection& entry) {
+  std::string place = entry.where("");
+  if (place.back() == '.') place.pop_back();
+  return place;
+}
+
+/// A key that no entry has: the slip is named, not what is missing because of it.
+void requireKnown(const YamlSection& entry, const std::vector<std::string>& kinds) {
+  for (const std::string& key : entry.keys()) {
+    const bool known = key == "time_h" || key == "mode" ||
+                       std::find(kinds.begin(), kinds.end(), key) != kinds.end();
+    if (!known)
+      throw InputError(entry.where(key) + ": unknown key; expected time_h, mode and one of " +
+                       join(kinds));
+  }
+}
+
 const Kind& kindOf(const YamlSection& entry) {
   std::vector<std::string> known;
   const Kind* found = nullptr;
@@ -138,7 +200,8 @@ const Kind& kindOf(const YamlSection& entry) {
     found = &kind;
     ++count;
   }
-  if (count != 1) entry.fail("", "one of " + join(known));
+  requireKnown(entry, known);
+  if (count != 1) throw InputError(placeOf(entry) + ": expected one of " + join(known));
   return *found;
 }
 
@@ -146,7 +209,7 @@ TimedCommand readEntry(YamlSection& entry, const LoopFile& loop) {
   TimedCommand timed;
   const Kind& kind = kindOf(entry);
   need(entry, "time_h", "a time >= 0");
-  entry.number("time_h", timed.time_h, {0.0, 1e7});
+  entry.number("time_h", timed.time_h, {0.0, kLatestCommandH});
   timed.what = kind.read(entry, kind.key, loop);
   entry.finish();
   return timed;
@@ -157,9 +220,10 @@ TimedCommand readEntry(YamlSection& entry, const LoopFile& loop) {
 std::vector<TimedCommand> readCommands(const std::string& file, const LoopFile& loop) {
   YamlSection root = YamlSection::load(file);
   std::vector<TimedCommand> commands;
+  root.markRead("commands");
+  root.finish();  // a misspelt section is named, not the one that is missing because of it
   need(root, "commands", "a list of commands");
   for (YamlSection& entry : root.list("commands")) commands.push_back(readEntry(entry, loop));
-  root.finish();
   std::stable_sort(commands.begin(), commands.end(),
                    [](const auto& a, const auto& b) { return a.time_h < b.time_h; });
   return commands;

@@ -1,5 +1,6 @@
 #include "fmbpc/config/disturbance_source.hpp"
 
+#include "config/csv_units.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 
@@ -36,6 +37,7 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
   if (params.source == DisturbanceSource::kPattern)
     return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,
                        sim.samples);
+  requireCsvUnits(loop, makePlant(sim)->description().disturbances);
   return readDisturbanceSequence(params.csv, names, sim.disturbance_nominal, sim.sample_time_s,
                                  sim.samples);
 }

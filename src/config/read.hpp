@@ -50,6 +50,11 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);
 
+/// A value that the plant can never take is a mistake of unit or digits; NaN is none. `what`: a
+/// setpoint, ...; `whose` range. @throws InputError naming the key and the range.
+void requireInRange(const YamlSection& section, const std::string& key, double value,
+                    const SignalInfo& signal, const std::string& what,
+                    const std::string& whose = "the range of the plant");
 /// Key `mode` of a command.
 void readMode(YamlSection& item, Command& command);
 /// `time_h`, `name`, `value`, `mode` of one scheduled command.

@@ -24,20 +24,11 @@ Vector defaultSetpoint(const LoopFile& loop, const LoopNames& names) {
   return value;
 }
 
-/// A setpoint that the plant can never reach is a mistake of unit or digits.
-void requireInRange(const YamlSection& section, const std::string& key, double value,
-                    const SignalInfo& output) {
-  if (std::isnan(value) || (value >= output.lower && value <= output.upper)) return;
-  throw InputError(section.where(key) + ": expected a setpoint of " + output.name +
-                   " >= " + exactText(output.lower) + " and <= " + exactText(output.upper) + " [" +
-                   output.unit + "], the range of the plant, got " + exactText(value));
-}
-
 void requireInRange(const YamlSection& section, const std::string& key, const Vector& values,
                     const PlantInfo& plant) {
   for (std::size_t i = 0; i < plant.outputs.size(); ++i)
     requireInRange(section, key + "." + plant.outputs[i].name, values[static_cast<Eigen::Index>(i)],
-                   plant.outputs[i]);
+                   plant.outputs[i], "setpoint");
 }
 
 SetpointStep readSetpointStep(YamlSection& item, const std::vector<std::string>& outputs) {
@@ -100,6 +91,14 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
 
 }  // namespace
 
+void requireInRange(const YamlSection& section, const std::string& key, double value,
+                    const SignalInfo& signal, const std::string& what, const std::string& whose) {
+  if (std::isnan(value) || (value >= signal.lower && value <= signal.upper)) return;
+  throw InputError(section.where(key) + ": expected a " + what + " of " + signal.name +
+                   " >= " + exactText(signal.lower) + " and <= " + exactText(signal.upper) + " [" +
+                   signal.unit + "], " + whose + ", got " + exactText(value));
+}
+
 void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("setpoint");
   SetpointParams& params = loop.setpoint;
@@ -117,7 +116,7 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
     for (std::size_t i = 0; i < names.outputs.size(); ++i)
       requireInRange(item, names.outputs[i],
                      params.schedule.back().value[static_cast<Eigen::Index>(i)],
-                     loop.plant_info.outputs[i]);
+                     loop.plant_info.outputs[i], "setpoint");
     if (params.schedule.size() > 1 &&
         params.schedule.end()[-2].time_h > params.schedule.back().time_h)
       item.fail("time_h", "times that do not decrease");
@@ -144,7 +143,7 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
         names.outputs.begin());
     if (scheduled.command.mode == CommandMode::kOverride)
       requireInRange(item, "value", scheduled.command.value.front(),
-                     loop.plant_info.outputs[output]);
+                     loop.plant_info.outputs[output], "setpoint");
     scheduled.command.time_ns = clock.timeAt(clock.firstStepAtHours(scheduled.time_h));
     params.commands.push_back(std::move(scheduled.command));
   }

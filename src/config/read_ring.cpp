@@ -138,6 +138,14 @@ void readConsumption(YamlSection& report, const LoopNames& names,
   section.finish();
 }
 
+/// A record that begins after the run has ended would hold nothing.
+void requireInRun(const YamlSection& report, const LoopFile& loop) {
+  const double end_h = loop.simulation.samples * loop.simulation.sample_time_s / 3600.0;
+  if (loop.simulation.samples == 0 || loop.report.record_from_h <= end_h * (1.0 + 1e-9)) return;
+  report.fail("record_from_h", "a time not after the end of the run, " + exactText(end_h) +
+                                   " h (sampling.duration_h); 0 records all of a shortened run");
+}
+
 std::vector<double> toStd(const Vector& v) { return {v.data(), v.data() + v.size()}; }
 
 }  // namespace
@@ -186,6 +194,7 @@ void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   for (auto& item : section.list("windows"))
     loop.report.windows.push_back(readWindow(item, names.outputs));
   section.number("record_from_h", loop.report.record_from_h, {0.0, 1e7});
+  requireInRun(section, loop);
   readConsumption(section, names, loop.report.consumption);
   std::vector<std::string> free;
   section.subset("without_setpoint", free, names.outputs);

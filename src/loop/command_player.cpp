@@ -1,8 +1,7 @@
 #include "fmbpc/loop/command_player.hpp"
 
-#include <cmath>
-
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
@@ -28,23 +27,20 @@ struct Doer {
 
 }  // namespace
 
-std::int64_t CommandPlayer::stampOf(const TimedCommand& command) const {
-  return clock_.startNanoseconds() + std::llround(command.time_h * 3600e9);
-}
-
+// Counted in samples like the schedules of the loop file, so that k Ts is sample k.
 std::uint32_t CommandPlayer::stepOf(const TimedCommand& command) const {
-  return clock_.firstStepAt(stampOf(command));
+  return clock_.firstStepAtHours(command.time_h);
 }
 
 void CommandPlayer::begin(const CommandTargets& targets) {
   for (const TimedCommand& timed : commands_) {
     if (const auto* setpoint = std::get_if<SetpointCommand>(&timed.what)) {
       Command command = setpoint->command;
-      command.time_ns = stampOf(timed);
+      command.time_ns = clock_.timeAt(stepOf(timed));
       targets.controller.command(command);
     } else if (const auto* disturbance = std::get_if<DisturbanceCommand>(&timed.what)) {
       Command command = disturbance->command;
-      command.time_ns = stampOf(timed);
+      command.time_ns = clock_.timeAt(stepOf(timed));
       targets.simulation.command(command);
     }
   }
@@ -55,9 +51,17 @@ void CommandPlayer::advance(std::uint32_t step, const CommandTargets& targets) {
     try {
       std::visit(Doer{targets}, commands_[next_].what);
     } catch (const InputError& error) {
-      targets.refused("sample " + std::to_string(step) + ": " + error.what());
+      targets.refused(step, error.what());
     }
   }
+}
+
+std::string CommandPlayer::unplayed() const {
+  if (next_ >= commands_.size()) return "";
+  const std::size_t left = commands_.size() - next_;
+  return std::to_string(left) + (left == 1 ? " command" : " commands") +
+         " of the operator never played: the run ended before (the first at " +
+         exactText(commands_[next_].time_h) + " h)";
 }
 
 }  // namespace fpc

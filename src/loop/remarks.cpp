@@ -44,8 +44,11 @@ std::vector<std::string> remarksOf(const Summary& summary) {
   count(ActionSource::kClipped, "clipped: the law or the optimizer asked for more than the limits");
   if (neverControlled(summary)) add("the controller never acted");
   for (const RunRemark& remark : summary.remarks)
-    add(ofAll(remark.samples, summary) + ": " + remark.words + " (first sample " +
-        std::to_string(remark.first) + ")");
+    if (remark.samples == 0)
+      add(remark.words);
+    else
+      add(ofAll(remark.samples, summary) + ": " + remark.words + " (first sample " +
+          std::to_string(remark.first) + ")");
   for (const LockUp& lock : summary.locked)
     add(lock.input + " locked at its " + (lock.upper ? "upper" : "lower") +
         " limit over the last " + ofAll(lock.samples, summary));

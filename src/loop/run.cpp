@@ -10,6 +10,7 @@
 #include "fmbpc/loop/identifier_session.hpp"
 #include "fmbpc/loop/plant_session.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
+#include "loop/operator_notes.hpp"
 
 namespace fpc {
 namespace {
@@ -30,13 +31,9 @@ class Ring {
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
-        targets_{
-            simulation_, controller_,
-            [this](int window) {
-              identify(identifier_->job(loop_.identify.structure, static_cast<std::size_t>(window),
-                                        loop_.identify.validation_share));
-            },
-            [this](const std::string& words) { remark(words); }} {
+        notes_(loop),
+        targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
+                 [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
     plant_.begin(kRunId);
@@ -56,6 +53,8 @@ class Ring {
     recorder_.receive(simulation_.state());
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
+    if (controller_.controller().followsSetpoint())
+      notes_.look(controller_.setpoint(), now.header.step);
     recorder_.receive(answer.tracking, now.final ? "" : controller_.output().remark);
     if (!now.final) {
       recorder_.receiveBase(answer.base);
@@ -70,6 +69,9 @@ class Ring {
   RunRecord take() {
     recorder_.close();
     conclude(record_, recorder_.complete());
+    for (RunRemark& note : notes_.remarks()) record_.remarks.push_back(std::move(note));
+    const std::string unplayed = player_.unplayed();
+    if (!unplayed.empty()) record_.remarks.push_back({unplayed, 0, 0});
     return std::move(record_);
   }
 
@@ -97,6 +99,12 @@ class Ring {
     if (due.job) identify(*due.job);
   }
 
+  void identifyAsked(int window) {
+    require(identifier_ && loop_.has_identify, "identify", "a loop with model.identify");
+    identify(identifier_->job(loop_.identify.structure, static_cast<std::size_t>(window),
+                              loop_.identify.validation_share));
+  }
+
   void identify(const IdentificationJob& job) {
     try {
       const RecordIdentification result =
@@ -118,6 +126,12 @@ class Ring {
     }
   }
 
+  /// What an operator asked in vain is told at once and kept.
+  void refuse(std::uint32_t step, const std::string& words) {
+    notes_.refused(step, words);
+    remark("sample " + std::to_string(step) + ": " + words);
+  }
+
   void remark(const std::string& words) const {
     if (options_.remark) options_.remark(words);
   }
@@ -134,6 +148,7 @@ class Ring {
   CommandPlayer player_;
   RunRecord record_;
   RecorderSession recorder_;
+  OperatorNotes notes_;
   CommandTargets targets_;
 };
 

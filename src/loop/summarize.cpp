@@ -12,6 +12,7 @@
 #include "fmbpc/loop/run_summary.hpp"
 #include "loop/model_use.hpp"
 #include "loop/run_tally.hpp"
+#include "loop/unplayed.hpp"
 
 namespace fpc {
 namespace {
@@ -35,6 +36,10 @@ void countCells(const LoopFile& loop, Summary& summary) {
     summary.implausible_cells = record.implausible;
   } catch (const InputError&) {  // not on this machine
   }
+}
+
+void addUnplayed(const LoopFile& loop, Summary& summary) {
+  for (RunRemark& remark : unplayedIn(loop)) summary.remarks.push_back(std::move(remark));
 }
 
 /// What stands in a summary before the first sample.
@@ -206,6 +211,7 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
   result.failed_samples = sums_->tally.failed_samples;
   result.trouble = sums_->tally.trouble;
   result.remarks = sums_->tally.remarks;
+  addUnplayed(sums_->loop, result);
   result.complete = nothing_missing && result.failed_samples == 0;
   for (const RunningOutput& output : sums_->outputs) result.outputs.push_back(output.indices());
   for (const RunningInput& input : sums_->inputs) result.inputs.push_back(input.indices());
@@ -231,6 +237,7 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
   summary.failed_samples = record.failed_samples;
   summary.trouble = record.trouble;
   summary.remarks = record.remarks;
+  addUnplayed(loop, summary);
   return summary;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -13,6 +14,25 @@ namespace {
 constexpr double kHole = 1.5;        // intervals: longer ones have rows missing
 constexpr double kMostAbsent = 1e6;  // rows that are missing
 
+/// s, min, h or d for what headers write; empty for what is none of them.
+std::string timeUnitIn(const std::string& header) {
+  static const std::map<std::string, std::string> others{
+      {"sec", "s"}, {"second", "s"}, {"seconds", "s"}, {"minute", "min"}, {"minutes", "min"},
+      {"hr", "h"},  {"hour", "h"},   {"hours", "h"},   {"day", "d"},      {"days", "d"}};
+  if (secondsPer(header) > 0.0) return header;
+  const auto found = others.find(header);
+  return found != others.end() ? found->second : "";
+}
+
+/// What a record says of its unit and what the loop file says agree.
+void requireTimeUnit(const CsvTable& table, std::size_t column, const std::string& time_unit) {
+  if (table.is_date[column] || column >= table.units.size()) return;
+  const std::string& header = table.units[column];
+  require(header.empty() || timeUnitIn(header) == time_unit,
+          table.file + ": column '" + table.names[column] + "'",
+          "times in [" + time_unit + "], as disturbance.csv.time_unit says, got [" + header + "]");
+}
+
 /// Seconds since the first row.
 std::vector<double> timesOf(const CsvTable& table, const std::string& time_column,
                             const std::string& time_unit) {
@@ -21,6 +41,7 @@ std::vector<double> timesOf(const CsvTable& table, const std::string& time_colum
   const double unit_s = secondsPer(table.is_date[index] ? "d" : time_unit);
   require(unit_s > 0.0, "disturbance.csv.time_unit",
           "one of " + join(timeUnits()) + ", got '" + time_unit + "'");
+  requireTimeUnit(table, index, time_unit);
   const auto& cells = table.values.col(column);
   const std::string& text = table.texts[index];
   std::vector<double> times;

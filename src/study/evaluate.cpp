@@ -154,7 +154,8 @@ LimitIndices judge(const std::string& name, double limit, std::vector<double> va
 std::vector<Eigen::Index> judgedRows(const CsvTable& table, const EvaluateParams& params) {
   const Eigen::Index time = table.column("time");
   const Eigen::Index rows = table.rows();
-  require(rows >= 3, table.file, "a run of some samples");
+  require(rows >= 3, table.file,
+          "a record of three rows at least: a longer run, or an earlier report.record_from_h");
   const double start = table.values(0, time);
   const double sample = table.values(1, time) - start;
   const double end = table.values(rows - 1, time) - start;
@@ -167,7 +168,9 @@ std::vector<Eigen::Index> judgedRows(const CsvTable& table, const EvaluateParams
   std::vector<Eigen::Index> judged;
   for (Eigen::Index r = first; r < rows - 1; r += stride)
     if (table.values(r, time) - start < to - 1e-6) judged.push_back(r);
-  require(judged.size() >= 2, table.file, "a run that reaches the judged part");
+  require(judged.size() >= 2, table.file,
+          "two rows or more in the judged part, --from-h to --to-h after the record's begin "
+          "(report.record_from_h)");
   return judged;
 }
 

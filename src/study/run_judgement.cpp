@@ -93,6 +93,12 @@ double leastOutput(const RunRecord& record, std::size_t output) {
   return least;
 }
 
+/// Why a run has no cost.
+std::string reasonOf(const RunRecord& record) {
+  if (!record.trouble.empty()) return record.trouble;
+  return record.complete ? "the cost is not finite" : "the run ended early";
+}
+
 }  // namespace
 
 const char* wordOf(RunFailure failure) {
@@ -154,7 +160,10 @@ RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord re
   judged.move = meanMove(summary);
   judged.least = leastOutput(record, judgedOutput(study, loop));
   judged.largest_move = largestMove(record);
-  if (!std::isfinite(judged.cost)) note(RunFailure::kDiverged) = record.samples.size();
+  if (!std::isfinite(judged.cost)) {
+    note(RunFailure::kDiverged) = record.samples.size();
+    judged.trouble = reasonOf(record);
+  }
   note(RunFailure::kLocked) = lockedSamples(loop, record, study.locked_samples);
   note(RunFailure::kViolated) =
       summary.input_violations + summary.move_violations + summary.output_violations;

@@ -6,9 +6,11 @@
 
 #include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/study/fitness.hpp"
+#include "study/loop_contents.hpp"
 #include "study/text_hash.hpp"
 
 namespace fpc {
@@ -54,6 +56,10 @@ Vector spanOf(const LoopFile& loop) {
 
 Overrides noiseOf(const StudyFile& study, const LoopFile& loop) {
   Overrides noise;
+  const std::vector<std::string> outputs = namesOf(loop.plant_info.outputs);
+  for (const auto& [output, std] : study.noise)
+    require(std::find(outputs.begin(), outputs.end(), output) != outputs.end(), "noise." + output,
+            "one of " + join(outputs) + " of loop " + loop.name);
   for (const auto& [output, std] : study.noise)
     noise.emplace_back("noise.std." + output, exactText(std));
   if (study.noise_percent == 0.0) return noise;
@@ -93,7 +99,7 @@ StudyPlan::StudyPlan(StudyFile study) : study_(std::move(study)) {
     for (std::size_t s = 0; s < std::max<std::size_t>(1, study_.scenarios.size()); ++s) {
       prepared_.back().push_back(
           prepare(loop, study_.scenarios.empty() ? nullptr : &study_.scenarios[s]));
-      all += prepared_.back().back().text;
+      all += prepared_.back().back().text + prepared_.back().back().contents;
     }
     all += loop.name;
   }
@@ -113,6 +119,7 @@ StudyPlan::Prepared StudyPlan::prepare(const StudyLoop& loop,
   const LoopFile read = readLoop(name, overrides);
   Prepared prepared;
   prepared.text = read.resolved;
+  prepared.contents = contentsOf(read);
   prepared.noise = noiseOf(study_, read);
   for (const auto& variation : study_.vary)
     prepared.numbers.push_back(variation.factor ? numberAt(read, variation.key) : 1.0);

@@ -88,6 +88,11 @@ PairStatistics statisticsOfPair(const StudyPlan& plan, const StudyResult& result
 
 }  // namespace
 
+bool noneSucceeded(const LoopStatistics& loop) {
+  return loop.runs > 0 &&
+         loop.failures[static_cast<std::size_t>(RunFailure::kDiverged)] == loop.runs;
+}
+
 double quantileOf(const std::vector<double>& sorted, double p) {
   if (sorted.empty()) return kNaN;
   const double place = p * static_cast<double>(sorted.size() - 1);

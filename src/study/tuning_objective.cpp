@@ -4,8 +4,6 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/input_error.hpp"
@@ -13,6 +11,7 @@
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/fitness.hpp"
+#include "study/loop_contents.hpp"
 #include "study/text_hash.hpp"
 
 namespace fpc {
@@ -34,23 +33,6 @@ Overrides seedOverrides(const std::string& loop, const TuningScenario& scenario,
   require(!seeds.empty(), "scenario " + scenario.name + ": seed",
           "a loop with a disturbance pattern or noise: " + read.name);
   return seeds;
-}
-
-std::string contentOf(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-/// What the files that a loop names hold: a changed model or record is another tuning.
-std::string contentsOf(const LoopFile& loop) {
-  std::string all;
-  if (!loop.model_file.empty()) all += contentOf(loop.model_file);
-  if (!loop.identify.structure_file.empty()) all += contentOf(loop.identify.structure_file);
-  if (loop.disturbance.source == DisturbanceSource::kCsv) {
-    all += contentOf(loop.disturbance.csv.file);
-    if (!loop.disturbance.csv.next_file.empty()) all += contentOf(loop.disturbance.csv.next_file);
-  }
-  return all;
 }
 
 /// Without the terms of other scenarios.
@@ -82,6 +64,7 @@ TuningObjective::TuningObjective(const std::string& loop, TuningFile tuning, con
   set_.insert(set_.end(), set.begin(), set.end());
   cases_ = casesOf(loop, tuning_.scenarios);
   held_out_ = casesOf(loop, tuning_.held_out);
+  own_ = ownValues();
   start_ = startOf();
   std::string all = tuning_.text;
   for (const auto* cases : {&cases_, &held_out_})
@@ -110,17 +93,24 @@ std::vector<TuningObjective::Case> TuningObjective::casesOf(
   return cases;
 }
 
+std::vector<double> TuningObjective::ownValues() const {
+  std::vector<double> values;
+  for (const TuningParameter& parameter : tuning_.parameters) {
+    const std::string text = scalarOf(cases_.front().text, parameter.key);
+    char* end = nullptr;
+    const double own = std::strtod(text.c_str(), &end);
+    const bool is_number = !text.empty() && *end == '\0' && std::isfinite(own);
+    values.push_back(is_number ? own : std::nan(""));
+  }
+  return values;
+}
+
 Vector TuningObjective::startOf() const {
   Vector start(size());
   for (Eigen::Index i = 0; i < start.size(); ++i) {
-    const TuningParameter& parameter = tuning_.parameters[static_cast<std::size_t>(i)];
-    double value = parameter.start;
-    if (std::isnan(value)) {
-      const std::string text = scalarOf(cases_.front().text, parameter.key);
-      char* end = nullptr;
-      const double own = std::strtod(text.c_str(), &end);
-      if (!text.empty() && *end == '\0' && std::isfinite(own)) value = own;
-    }
+    const auto k = static_cast<std::size_t>(i);
+    const TuningParameter& parameter = tuning_.parameters[k];
+    const double value = std::isnan(parameter.start) ? own_[k] : parameter.start;
     start[i] = std::isnan(value) ? 0.5 : parameter.share(value);
   }
   return start;

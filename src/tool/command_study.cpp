@@ -94,6 +94,18 @@ void write(const StudyArguments& arguments, const StudyPlan& plan, const StudyRe
   if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
 }
 
+/// True if a loop has no run to judge; says which, and why its first run failed.
+bool reportTrouble(const StudyStatistics& statistics) {
+  bool any = false;
+  for (const LoopStatistics& loop : statistics.loops) {
+    if (!noneSucceeded(loop)) continue;
+    any = true;
+    std::fprintf(stderr, "fmbpc: %s: none of %zu runs succeeded; %s: %s\n", loop.name.c_str(),
+                 loop.runs, loop.failing_cases.front().c_str(), loop.trouble.c_str());
+  }
+  return any;
+}
+
 }  // namespace
 
 int study(const StudyArguments& arguments) {
@@ -118,7 +130,7 @@ int study(const StudyArguments& arguments) {
     std::cout << toJson(plan, result, statistics).dump(2) << "\n";
   else
     std::cout << toTable(plan, result, statistics);
-  if (result.complete) return 0;
+  if (result.complete) return reportTrouble(statistics) ? 1 : 0;
   std::fprintf(stderr, "fmbpc: interrupted%s\n",
                arguments.out.empty() ? "" : "; --resume goes on with what is in --out");
   return kInterrupted;

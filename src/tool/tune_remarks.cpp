@@ -1,4 +1,4 @@
-// What a tuning does not say by its numbers alone: bounds that held it back, runs it made worse.
+// What a tuning does not say by its numbers alone: ranges that held it back, runs it made worse.
 #include "fmbpc/base/text.hpp"
 #include "tool/tune_report.hpp"
 
@@ -12,6 +12,10 @@ const TuningStep& bestOf(const TunedLoop& tuned) {
 }
 
 }  // namespace
+
+bool isOutside(const TuningParameter& parameter, double own) {
+  return own < parameter.lower || own > parameter.upper;
+}
 
 std::string boundOf(const TuningParameter& parameter, double value) {
   const double share = parameter.share(value);
@@ -29,7 +33,16 @@ std::vector<std::string> remarksOf(const TuningObjective& objective, const Tuned
     if (!bound.empty())
       remarks.push_back(parameters[i].key + " ends at the " + bound + " bound of its range, " +
                         shortText(value) + ": the best may lie beyond");
+    const double own = objective.own()[i];
+    if (isOutside(parameters[i], own))
+      remarks.push_back(parameters[i].key + " of the untouched loop, " + shortText(own) +
+                        ", lies outside its range " + shortText(parameters[i].lower) + ".." +
+                        shortText(parameters[i].upper));
   }
+  const double untouched = objective.untouched().cost, found = bestOf(tuned).cost;
+  if (found > untouched)
+    remarks.push_back("the tuned cost is worse than that of the untouched loop, " +
+                      shortText(untouched) + " -> " + shortText(found));
   if (!tuned.held_out) return remarks;
   const double before = objective.untouchedHeldOut().cost, after = tuned.held_out->cost;
   if (after > before)

@@ -35,14 +35,16 @@ Json scoresJson(const std::vector<TuningScenario>& scenarios, double cost,
 
 Json parametersJson(const TuningObjective& objective, const TunedLoop& tuned) {
   Json list = Json::array();
-  const auto before = objective.values(objective.start());
-  for (std::size_t i = 0; i < before.size(); ++i) {
+  const auto start = objective.values(objective.start());
+  const auto& own = objective.own();
+  for (std::size_t i = 0; i < own.size(); ++i) {
     const TuningParameter& p = objective.tuning().parameters[i];
     Json parameter{{"key", p.key},
                    {"lower", p.lower},
                    {"upper", p.upper},
                    {"scale", p.logarithmic ? "log" : "linear"},
-                   {"start", before[i]}};
+                   {"before", numberOrNull(own[i])},
+                   {"start", start[i]}};
     if (tuned.result.best >= 0) {
       parameter["value"] = valuesAfter(tuned)[i];
       const std::string bound = boundOf(p, valuesAfter(tuned)[i]);
@@ -61,6 +63,12 @@ void addScores(Rows& rows, const std::string& title, const std::vector<TuningSce
                     shortText(after.scenarios[i]), ratio(before.scenarios[i], after.scenarios[i])});
   rows.push_back(
       {title, shortText(before.cost), shortText(after.cost), ratio(before.cost, after.cost)});
+}
+
+/// What untouched() was judged with.
+std::string ownText(const TuningParameter& parameter, double own) {
+  if (std::isnan(own)) return "-";
+  return shortText(own) + (isOutside(parameter, own) ? " (outside)" : "");
 }
 
 }  // namespace
@@ -115,11 +123,11 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
     text << result.failures << " runs failed; the first: " << result.trouble << "\n\n";
   if (result.best < 0) return text.str() + "no run succeeded\n";
   Rows rows{{"parameter", "before", "after", "lower", "upper"}};
-  const auto before = objective.values(objective.start()), after = valuesAfter(tuned);
-  for (std::size_t i = 0; i < before.size(); ++i) {
+  const auto after = valuesAfter(tuned);
+  for (std::size_t i = 0; i < after.size(); ++i) {
     const TuningParameter& p = tuning.parameters[i];
-    rows.push_back(
-        {p.key, shortText(before[i]), shortText(after[i]), shortText(p.lower), shortText(p.upper)});
+    rows.push_back({p.key, ownText(p, objective.own()[i]), shortText(after[i]), shortText(p.lower),
+                    shortText(p.upper)});
   }
   text << alignedTable(rows) << "\n";
   TuningScore tuned_score;

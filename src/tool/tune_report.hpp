@@ -19,7 +19,10 @@ struct TunedLoop {
 
 /// "lower" or "upper" if the value stands at that bound of its range (to a thousandth of it).
 std::string boundOf(const TuningParameter& parameter, double value);
-/// Parameters that stand at a bound, a held-out cost that got worse; a line each.
+/// What the untouched loop has, if it lies outside the range.
+bool isOutside(const TuningParameter& parameter, double own);
+/// Parameters that stand at a bound or began outside their range, costs that got worse; a line
+/// each.
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned);
 
 /// Infinite numbers are null.

@@ -197,6 +197,16 @@ TEST_F(LoopErrors, AnEndlessRunNeedsConstantDisturbances) {
   expectWords(error, {"asp_case1", "sampling.duration_h", "constant"});
 }
 
+TEST_F(LoopErrors, ARecordThatBeginsAfterTheEndIsRefused) {
+  const std::string file = write("loop.yaml", smallLoop() + "report:\n  record_from_h: 4\n");
+  EXPECT_EQ(readLoop(file).report.record_from_h, 4.0);
+  EXPECT_EQ(readLoop(file, {{"sampling.duration_h", "0"}}).report.record_from_h, 4.0);
+  expectWords(errorOf([&] {
+                readLoop(file, {{"sampling.duration_h", "3"}});
+              }),
+              {file + ":13: report.record_from_h", "3 h (sampling.duration_h)", "0 records all"});
+}
+
 TEST_F(LoopErrors, UnknownLoopsNameTheNearest) {
   expectWords(errorOf([] { readLoop("asp_case_one"); }),
               {"'asp_case_one'", "near:", "asp_case1_own"});

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/csv.hpp"
+#include "fmbpc/loop/recorder_session.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
 
@@ -156,6 +157,37 @@ TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
   writeRun(loop, record, summary, path("told"));
   EXPECT_EQ(remarksOf(readSummary(path("told/summary.json"))), remarksOf(summary));
   EXPECT_FALSE(neverControlled(summary));
+}
+
+TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {
+  write("d.csv", "t[h],v[degC]\n0,15\n10,16\n");
+  const std::string csv = "{file: " + path("d.csv") +
+                          ", time_column: t, end: hold, channels: {T_in: {column: v}}, lead_in_h: ";
+  const auto told = [&](Overrides overrides) {
+    const LoopFile loop = readLoop("heated_tank", overrides);
+    const RunRecord record = recordLayout(loop).emptyRecord();
+    std::string all;
+    for (const RunRemark& remark : summarize(loop, record, 0.0).remarks) all += remark.words + "|";
+    return all;
+  };
+  EXPECT_EQ(told({}), "");
+  EXPECT_EQ(told({{"sampling.duration_h", "0.25"}, {"disturbance.commands", "[]"}}), "");
+  expectWords(told({{"sampling.duration_h", "0.2"}}),
+              {"1 of 1 entries of the setpoint's schedule", "0.25 h",
+               "1 of 1 entries of disturbance.commands", "1.5 h", "ends at 0.2 h"});
+  expectWords(told({{"setpoint.commands",
+                     "[{time_h: 1, name: T, value: 50}, {time_h: 4, name: T, value: 50}]"}}),
+              {"1 of 2 entries of setpoint.commands", "4 h", "ends at 3 h"});
+  const Overrides record{{"disturbance.source", "csv"}, {"disturbance.commands", "[]"}};
+  const auto with = [&](const std::string& more) {
+    Overrides all = record;
+    all.emplace_back("disturbance.csv", csv + more + "}");
+    return told(all);
+  };
+  EXPECT_EQ(with("2"), "");
+  expectWords(with("4"), {"record of disturbance.csv never acts", "4 h"});
+  expectWords(with("1, next: {file: " + path("d.csv") + ", after_h: 2.5}"),
+              {"disturbance.csv.next never acts", "3.5 h"});
 }
 
 TEST_F(Report, TrajectoryHasTheColumnsOfAMatrixOfTheLoopFile) {

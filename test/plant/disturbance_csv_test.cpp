@@ -280,5 +280,20 @@ TEST(DisturbanceCsv, ReadsTheUciPlantWithItsGaps) {
   }
 }
 
+TEST(DisturbanceCsv, TimesOfAnotherUnitThanSaidAreRefused) {
+  const std::string rows = ",q\n0,100\n60,200\n120,400\n";
+  CsvDisturbanceParams params = flowFrom("t[min]" + rows);
+  for (const char* word : {"column 't'", "[h]", "disturbance.csv.time_unit", "got [min]"})
+    expectWords(errorOf(params), word);
+  params.time_unit = "min";
+  EXPECT_EQ(flows(params, 3), (Values{100, 100, 200, 200}));
+  params = flowFrom("t[minutes]" + rows);
+  params.time_unit = "min";
+  EXPECT_EQ(flows(params, 3), (Values{100, 100, 200, 200}));
+  params = flowFrom("t[ms]" + rows);
+  params.time_unit = "s";
+  expectWords(errorOf(params), "got [ms]");
+}
+
 }  // namespace
 }  // namespace fpc

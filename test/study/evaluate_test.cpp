@@ -117,7 +117,12 @@ TEST(Evaluate, MissingColumnsAndEmptyPartsAreErrors) {
   ByHand run(3, 0.25);
   EvaluateParams late;
   late.from_h = 5.0;
-  EXPECT_THROW(evaluateEffluent(run.table, late), InputError);
+  try {
+    evaluateEffluent(run.table, late);
+    ADD_FAILURE() << "nothing was thrown";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("report.record_from_h"), std::string::npos) << e.what();
+  }
   run.table.names.back() = "other";
   run.table.names[1] = "else";
   EXPECT_THROW(evaluateEffluent(run.table), InputError);

@@ -128,6 +128,53 @@ TEST_F(Study, ARunThatCannotBeMadeIsADivergedOneWithItsWords) {
   EXPECT_EQ(statistics.pairs[0].wins, 1.0);  // two draws
 }
 
+TEST_F(Study, ARunWithoutACostSaysWhy) {
+  const StudyPlan study(
+      parseStudy("loops: [{loop: cstr_tracking_pi}]\nfitness: {terms: [{index: ise}]}\n"
+                 "set: {plant.integrator.max_steps: 2, sampling.duration_h: 0.1}\n",
+                 "s.yaml"));
+  const StudyStatistics statistics = statisticsOf(study, runStudy(study));
+  EXPECT_TRUE(noneSucceeded(statistics.loops[0]));
+  expectWords(statistics.loops[0].trouble, {"sample 0", "integration"});
+}
+
+TEST_F(Study, ChangedRecordsAndModelsMakeAnotherStudy) {
+  const auto record = [&](const char* value) {
+    return write("d.csv", std::string("t[h],v\n0,15\n10,") + value + "\n");
+  };
+  const std::string csv =
+      "{file: " + record("16") + ", time_column: t, end: hold, channels: {T_in: {column: v}}}";
+  const auto study = [&](const std::string& more) {
+    return StudyPlan(
+               parseStudy("loops: [{loop: heated_tank}]\nfitness: {terms: [{index: ise}]}\n" + more,
+                          "s.yaml"))
+        .fingerprint();
+  };
+  const std::string by_set = "set: {disturbance: {source: csv, csv: " + csv + "}}\n";
+  const std::string by_scenario =
+      "scenarios: [{name: a, set: {disturbance: {source: csv, csv: " + csv + "}}}]\n";
+  const std::string set = study(by_set), scenario = study(by_scenario), plain = study("");
+  EXPECT_EQ(study(by_set), set);
+  record("17");
+  EXPECT_NE(study(by_set), set);
+  EXPECT_NE(study(by_scenario), scenario);
+  EXPECT_EQ(study(""), plain);
+  const auto model = [&](const std::string& file) {
+    return StudyPlan(parseStudy("loops: [{loop: asp_case1, set: {model.file: " + file +
+                                    "}}]\nseeds: 1\nfitness: {terms: [{index: ise}]}\n",
+                                "s.yaml"))
+        .fingerprint();
+  };
+  std::ifstream own(configFolders().back() + "/model/fm_1.yaml");
+  const std::string text((std::istreambuf_iterator<char>(own)), {});
+  const std::string before = model(write("m.yaml", text));
+  EXPECT_NE(model(write("m.yaml", text + "# changed\n")), before);
+}
+
+TEST_F(Study, NoiseOfNoOutputIsRefusedBeforeTheRuns) {
+  expectWords(errorOf([&] { plan("seeds: 1\nnoise: {z: 0.1}\n"); }), {"noise.z", "one of y"});
+}
+
 TEST_F(Study, NoiseInPercentIsThatOfTheSpanOfTheSetpoints) {
   const LoopFile loop = plan("seeds: 1\nnoise: {percent_of_span: 2}\n").loop(0);
   EXPECT_NEAR(loop.simulation.noise_std[0], 0.02 * 0.5, 1e-12);  // setpoints 1 and 0.5

@@ -62,6 +62,20 @@ TEST_F(StudyTool, WritesItsFilesAndResumesToTheSameNumbers) {
   EXPECT_NE(other.printed.find("state of this study"), std::string::npos) << other.printed;
 }
 
+TEST_F(StudyTool, FailsWithAReasonIfALoopHasNoRunToJudge) {
+  const std::string frozen =
+      "cstr_tracking_pi --seeds 1:2 --noise CA=0.001 --set plant.integrator.max_steps=2";
+  const Outcome errors = tool("study " + frozen, true);
+  EXPECT_EQ(errors.code, 1);
+  for (const char* words : {"none of 2 runs succeeded", "seed 1: sample 0", "integration"})
+    EXPECT_NE(errors.printed.find(words), std::string::npos) << words << " in " << errors.printed;
+  const std::string table = tool("study " + frozen).printed;
+  EXPECT_NE(table.find("sample 0"), std::string::npos) << table;
+  const Outcome typo = tool("study " + loops() + " --seeds 1:3 --noise Y=0.1", true);
+  EXPECT_EQ(typo.code, 1);
+  EXPECT_NE(typo.printed.find("noise.Y: expected one of y"), std::string::npos) << typo.printed;
+}
+
 TEST_F(StudyTool, TakesAStudyFile) {
   write("s.yaml", "title: Two gains\nloops:\n  - {loop: " + path("good.yaml") +
                       "}\n  - {loop: " + path("lag.yaml") +

@@ -95,6 +95,23 @@ TEST_F(TuneTool, SaysWhichParametersStandAtABoundAndThatHeldOutCostGotWorse) {
       << text;
 }
 
+/// The loop's gains, 0.2 and 0.5, lie outside both ranges, in which everything is worse.
+TEST_F(TuneTool, SaysWhatTheLoopHadAndThatItWasBetter) {
+  write("t.yaml",
+        "parameters:\n  - {key: controller.loops.0.kp, lower: 0.001, upper: 0.002}\n"
+        "  - {key: controller.loops.0.ki_per_h, lower: 0.001, upper: 0.002}\n"
+        "fitness: {terms: [{index: ise, output: y}]}\n"
+        "search: {population: 4, evaluations: 8}\n");
+  const auto tuned = json("");
+  EXPECT_EQ(tuned["parameters"][0]["before"], 0.2);
+  EXPECT_EQ(tuned["parameters"][1]["before"], 0.5);
+  EXPECT_GT(tuned["after"]["cost"], tuned["before"]["cost"]);
+  const std::string told = tool("tune " + files() + " --no-plot").printed;
+  for (const char* words : {"0.2 (outside)", "0.5 (outside)", "kp of the untouched loop, 0.2, lies",
+                            "worse than that of the untouched loop"})
+    EXPECT_NE(told.find(words), std::string::npos) << words << " in " << told;
+}
+
 TEST_F(TuneTool, SaysThatHeldOutCostGotWorse) {
   write("t.yaml",
         "parameters:\n  - {key: controller.loops.0.kp, lower: 0.1, upper: 5}\n"

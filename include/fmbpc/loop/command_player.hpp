@@ -19,7 +19,7 @@ struct CommandTargets {
   Simulation& simulation;
   ControllerSession& controller;
   std::function<void(int window)> identify;
-  std::function<void(const std::string&)> refused;
+  std::function<void(std::uint32_t step, const std::string& words)> refused;
 };
 
 class CommandPlayer {
@@ -32,10 +32,11 @@ class CommandPlayer {
   void begin(const CommandTargets& targets);
   /// What is due before sample `step` is answered.
   void advance(std::uint32_t step, const CommandTargets& targets);
+  /// What the run ended before, in words; empty if everything was played.
+  std::string unplayed() const;
 
  private:
   std::uint32_t stepOf(const TimedCommand& command) const;
-  std::int64_t stampOf(const TimedCommand& command) const;
 
   std::vector<TimedCommand> commands_;
   SampleClock clock_;

@@ -26,7 +26,7 @@ struct SampleRecord {
 /// What a controller said of its own answers (`controller.horizon_steps is too short`, ...).
 struct RunRemark {
   std::string words;
-  std::uint32_t samples{};  ///< at which it was said
+  std::uint32_t samples{};  ///< at which it was said; 0: of the whole run
   std::uint32_t first{};    ///< of them
 };
 

@@ -30,13 +30,15 @@ class StudyPlan {
   std::size_t caseOf(std::size_t run) const { return run % cases_.size(); }
   /// The loop of a run, ready to read.
   LoopFile loop(std::size_t run) const;
-  /// Changes when the study, a loop file or one of their overrides does.
+  /// Changes when the study, a loop file, one of their overrides, or a model or record that a loop
+  /// names does.
   const std::string& fingerprint() const { return fingerprint_; }
 
  private:
   /// A loop under one scenario, before seeds.
   struct Prepared {
     std::string text;                 ///< resolved
+    std::string contents;             ///< of the files it names
     std::vector<double> numbers;      ///< its own, of vary
     std::vector<std::string> seeded;  ///< keys that take the seed
     Overrides noise;

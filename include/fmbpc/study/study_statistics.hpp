@@ -18,7 +18,7 @@ struct LoopStatistics {
   double least{};                          ///< of all runs, of the output that is judged first
   std::vector<std::size_t> failures;       ///< runs that show each RunFailure
   std::vector<std::string> failing_cases;  ///< of runs that show any
-  std::string trouble;                     ///< of the first run that could not be made
+  std::string trouble;                     ///< of the first run without a finite cost
 };
 
 /// Of one loop against the one that the study pairs with. Equal costs count as half a win.
@@ -31,6 +31,9 @@ struct PairStatistics {
   double median_ratio{};                ///< of cost / cost of the other
   double ratio_lower{}, ratio_upper{};  ///< confidence interval of that median (order statistics)
 };
+
+/// True if there are runs and none of them has a finite cost.
+bool noneSucceeded(const LoopStatistics& loop);
 
 struct StudyStatistics {
   std::vector<LoopStatistics> loops;

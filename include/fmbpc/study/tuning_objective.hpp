@@ -34,9 +34,11 @@ class TuningObjective {
                   std::shared_ptr<RunPool> pool);
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(tuning_.parameters.size()); }
-  /// The loop's own numbers (or those of `start`), as shares 0..1 of the ranges; the middle where
-  /// it has none.
+  /// Where a search begins: the loop's own numbers (or those of `start`), as shares 0..1 of the
+  /// ranges, moved into them; the middle where it has none.
   const Vector& start() const { return start_; }
+  /// The loop's own numbers as they stand, which untouched() judges; NaN where it has none.
+  const std::vector<double>& own() const { return own_; }
   std::vector<double> values(const Vector& shares) const;
   /// What a tuned loop file changes: `set` and the values.
   Overrides changes(const Vector& shares) const;
@@ -69,6 +71,7 @@ class TuningObjective {
     bool stopped{false};
   };
   std::vector<Case> casesOf(const std::string& loop, const std::vector<TuningScenario>& scenarios);
+  std::vector<double> ownValues() const;
   Vector startOf() const;
   Run run(const Case& scenario, const Overrides& changes, const Stop& stop) const;
   std::vector<Run> runAll(const std::vector<Case>& cases, const std::vector<Overrides>& changes,
@@ -87,6 +90,7 @@ class TuningObjective {
   Overrides set_;
   std::shared_ptr<RunPool> pool_;
   std::vector<Case> cases_, held_out_;
+  std::vector<double> own_;
   Vector start_;
   TuningScore untouched_, untouched_held_out_;
   std::string fingerprint_;
