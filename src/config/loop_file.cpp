@@ -12,10 +12,21 @@
 namespace fpc {
 namespace {
 
+/// A plant that moves by steps of its own would ignore what the section says.
+void refuseUnusedIntegrator(YamlSection& root, const LoopFile& loop) {
+  const YamlSection plant = root.section("plant");
+  if (!plant.has("integrator")) return;
+  const auto simulated = makePlant(loop.simulation);
+  if (simulated->makeStepper(loop.simulation.sample_time_s))
+    plant.fail("integrator", "no such section for " + simulated->description().name +
+                                 ", which moves by steps of its own");
+}
+
 /// Lets the plant describe itself, so that nodes and process agree to the last bit.
 void describePlant(YamlSection& root, LoopFile& loop) {
   if (!loop.external_plant) {
-    checked(root.section("plant"), [&] { loop.plant_info = Simulation(loop.simulation).info(); });
+    checked(root, [&] { loop.plant_info = Simulation(loop.simulation).info(); });
+    refuseUnusedIntegrator(root, loop);
   }
   PlantInfo& info = loop.plant_info;
   info.sample_time_s = loop.simulation.sample_time_s;

@@ -21,6 +21,10 @@ std::vector<double> timesOf(const CsvTable& table, const std::string& time_colum
   const double unit_s = secondsPer(table.is_date[index] ? "d" : time_unit);
   require(unit_s > 0.0, "disturbance.csv.time_unit",
           "one of " + join(timeUnits()) + ", got '" + time_unit + "'");
+  const std::string& stated = table.units[index];
+  require(table.is_date[index] || stated.empty() || stated == time_unit,
+          table.file + ":1: column '" + time_column + "'",
+          "[" + time_unit + "] as disturbance.csv.time_unit says, got [" + stated + "]");
   const auto& cells = table.values.col(column);
   const std::string& text = table.texts[index];
   std::vector<double> times;
