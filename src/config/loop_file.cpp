@@ -33,6 +33,25 @@ void describePlant(YamlSection& root, LoopFile& loop) {
   info.header = SampleClock(info.sample_time_s, loop.simulation.start_time_s).header(0, 0);
 }
 
+const std::vector<std::string>& sections() {
+  static const std::vector<std::string> names{
+      "actuator", "clp",      "controller", "disturbance", "estimator",  "extends",      "gateway",
+      "guard",    "loop",     "model",      "noise",       "plant",      "plausibility", "plugins",
+      "report",   "sampling", "sensors",    "setpoint",    "standstill", "tf",           "title"};
+  return names;
+}
+
+/// A misspelt section would otherwise be told as what lacks without it.
+void requireKnownSections(const YamlSection& root) {
+  for (const std::string& key : root.keys()) {
+    if (std::count(sections().begin(), sections().end(), key) > 0) continue;
+    const auto near = nearest(key, sections(), 1);
+    throw InputError(root.where(key) + ": unknown key" +
+                     (near.empty() ? "" : " (" + near.front() + "?)") + "; expected one of " +
+                     join(sections()));
+  }
+}
+
 /// Before anything else: what follows may name plants and controllers of theirs.
 void readPlugins(YamlSection& root) {
   std::vector<std::string> plugins;
@@ -79,6 +98,7 @@ ControllerContext controllerContext(const LoopFile& loop) {
 LoopFile readSections(YamlSection& root, const std::string& name) {
   LoopFile loop;
   LoopNames names;
+  requireKnownSections(root);
   loop.name = name;
   loop.report.title = name;
   root.text("title", loop.report.title);

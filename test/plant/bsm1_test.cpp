@@ -4,7 +4,9 @@
 
 #include <map>
 
+#include "fmbpc/base/number.hpp"
 #include "fmbpc/plant/integrator.hpp"
+#include "fmbpc/plant/simulation.hpp"
 #include "plant/bsm1_fixture.hpp"
 
 namespace fpc {
@@ -111,6 +113,41 @@ TEST(Bsm1, ABlowerAtPartOfItsCapacityCapsTheAeration) {
   stepper->advance(x, u, d);
   EXPECT_NEAR(x[placeOf(about.states, "KLa3")], 144.0, 1e-3);
   EXPECT_LT(x[placeOf(about.states, "KLa5")], 216.0 + 1e-3);
+}
+
+/// What a quarter of an hour under these parameters fails with.
+std::string troubleWith(const PlantParameters& parameters) {
+  SimulationParams p;
+  p.plant = "bsm1_pi";
+  p.parameters = parameters;
+  const PlantDescription about = makePlant(p.plant, parameters)->description();
+  p.initial_state = nominalOf(about.states);
+  p.disturbance_nominal = nominalOf(about.disturbances);
+  p.actuator.initial = p.actuator.fallback = nominalOf(about.inputs);
+  for (const auto& input : about.inputs) {
+    p.actuator.limits.lower.conservativeResize(p.actuator.limits.lower.size() + 1);
+    p.actuator.limits.upper.conservativeResize(p.actuator.limits.upper.size() + 1);
+    p.actuator.limits.lower.tail(1)[0] = input.lower;
+    p.actuator.limits.upper.tail(1)[0] = input.upper;
+  }
+  p.actuator.limits.move = Vector::Constant(p.actuator.initial.size(), kInfinity);
+  p.sample_time_s = 900.0;
+  Simulation works(p);
+  const Vector before = works.state().state;
+  for (int k = 0; k < 8 && works.trouble().empty(); ++k) works.advance(p.actuator.initial);
+  if (!works.trouble().empty()) EXPECT_GE(works.state().state.minCoeff(), -1e-3);
+  return works.trouble();
+}
+
+// Steps of a fixed length cannot follow everything that parameters may ask for: that is said.
+TEST(Bsm1, AStepThatLeavesWhatIsPossibleIsAFailure) {
+  EXPECT_EQ(troubleWith({}), "");
+  for (const PlantParameters& parameters :
+       {PlantParameters{{"layer_height", 0.01}}, PlantParameters{{"mu_H", 100.0}, {"K_S", 1e-6}},
+        PlantParameters{{"settling_max", 10000.0}, {"settling_0", 10000.0}}}) {
+    const std::string trouble = troubleWith(parameters);
+    EXPECT_NE(trouble.find("its range is 0 to"), std::string::npos) << trouble;
+  }
 }
 
 TEST(Bsm1, LocalNoiseFollowsItsSeed) {
