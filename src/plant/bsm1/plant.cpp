@@ -100,7 +100,7 @@ void Bsm1::derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector>
   write(rate, dxdt);
 }
 
-/// A concentration below zero by more than this [g/m3] is no rounding of a step [see below].
+/// A state outside its range by more than this [its unit] is no rounding of a step.
 constexpr double kTolerance = 1e-3;
 
 class Bsm1Stepper final : public PlantStepper, public StepFailure {
@@ -116,8 +116,7 @@ class Bsm1Stepper final : public PlantStepper, public StepFailure {
     stepper_.advance(state, plant_.driveOf(u, d), days_);
     plant_.write(state, x);
     failure_ = outsideRange(plant_.description().states, kStates, x, kTolerance);
-    if (!failure_.empty())
-      failure_ += ": these parameters are too fast for the plant's steps of 8.64 s";
+    if (!failure_.empty()) failure_ += ": something is too fast for the plant's steps of 8.64 s";
   }
   const std::string& failure() const override { return failure_; }
   bool remembers() const override { return plant_.parameters().loops.noise > 0.0; }
