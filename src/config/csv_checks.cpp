@@ -71,8 +71,8 @@ void checkChannel(const CsvDisturbanceParams& params, const CsvChannel& channel,
   const auto culprit = extremeCell(params, channel, below == (channel.scale > 0.0));
   if (!culprit) return;
   const std::string cell = exactText(culprit->cell);
-  throw InputError(culprit->place + ": expected a cell that makes " + q.name + " >= " +
-                   exactText(q.lower) + " and <= " + exactText(q.upper) + " [" + q.unit +
+  throw InputError(culprit->place + ": expected a cell that makes " + q.name +
+                   " >= " + exactText(q.lower) + " and <= " + exactText(q.upper) + " [" + q.unit +
                    "], the plant's range, got " + cell + " (a code for missing cells? " +
                    "disturbance.csv.missing_values: [" + cell + "]; a bad one? " +
                    channelKey(channel) + ".plausible)");
@@ -89,8 +89,7 @@ void checkCsvUnits(const CsvDisturbanceParams& params, const std::vector<Quantit
       const std::string& stated = header.units[column];
       if (!q || stated.empty() || q->unit.empty() || q->unit == "-" || isConverted(channel))
         continue;
-      require(plainUnit(stated) == plainUnit(q->unit),
-              file + ":1: column '" + channel.column + "'",
+      require(plainUnit(stated) == plainUnit(q->unit), file + ":1: column '" + channel.column + "'",
               "[" + q->unit + "], the unit of " + channel.name + ", got [" + stated + "]; with " +
                   channelKey(channel) + ".scale, offset or mean another unit is converted");
     }

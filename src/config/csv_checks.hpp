@@ -12,8 +12,8 @@ namespace fpc {
 /// mean. @throws InputError naming file, column, both units and the keys.
 void checkCsvUnits(const CsvDisturbanceParams& params, const std::vector<Quantity>& disturbances);
 
-/// `values` (n_d x samples) came of these files. @throws InputError naming the file's row that gives
-/// a value outside the range of its disturbance, and the key for codes of missing cells.
+/// `values` (n_d x samples) came of these files. @throws InputError naming the file's row that
+/// gives a value outside the range of its disturbance, and the key for codes of missing cells.
 void checkCsvRanges(const CsvDisturbanceParams& params, const std::vector<Quantity>& disturbances,
                     const Matrix& values);
 

@@ -39,8 +39,8 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
                        sim.samples);
   const auto disturbances = makePlant(sim)->description().disturbances;
   checkCsvUnits(params.csv, disturbances);
-  DisturbanceRecord record = readDisturbanceSequence(
-      params.csv, names, sim.disturbance_nominal, sim.sample_time_s, sim.samples);
+  DisturbanceRecord record = readDisturbanceSequence(params.csv, names, sim.disturbance_nominal,
+                                                     sim.sample_time_s, sim.samples);
   checkCsvRanges(params.csv, disturbances, record.values);
   return record;
 }

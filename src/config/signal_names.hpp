@@ -5,9 +5,9 @@
 
 namespace fpc {
 
-/// @throws InputError naming the signal: a name that a CSV header cannot carry, one that is a key of
-/// its own in the sections that are keyed by names, or one that makes two columns of a run's table
-/// the same.
+/// @throws InputError naming the signal: a name that a CSV header cannot carry, one that is a key
+/// of its own in the sections that are keyed by names, or one that makes two columns of a run's
+/// table the same.
 void requireSignalNames(const YamlSection& plant, const LoopFile& loop, const LoopNames& names);
 
 }  // namespace fpc

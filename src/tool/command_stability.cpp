@@ -174,8 +174,7 @@ PlantContinuation continuationOf(const StabilitySubject& s) {
   PlantContinuation set = plantContinuation(s.plant, 0, s.sample_time_s, -1.0, -1.0);
   if (s.input_upper != input.upper) set.params.upper = s.input_upper;
   if (s.input_lower != input.lower) set.params.lower = s.input_lower;
-  if (set.params.lower >= 0.0)
-    set.params.lower = std::max(s.input_lower, 0.01 * set.params.upper);
+  if (set.params.lower >= 0.0) set.params.lower = std::max(s.input_lower, 0.01 * set.params.upper);
   return set;
 }
 

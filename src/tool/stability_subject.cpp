@@ -137,9 +137,9 @@ StabilitySubject readSubject(const std::string& name, const std::string& at) {
     settleOn(subject);
   }
   require(given.empty(), "--at " + (given.empty() ? "" : given.begin()->first),
-          subject.has_model ? "a signal of the model"
-                            : "a loop or model with a law that is analysed, which " + subject.name +
-                                  " is not");
+          subject.has_model
+              ? "a signal of the model"
+              : "a loop or model with a law that is analysed, which " + subject.name + " is not");
   return subject;
 }
 
