@@ -7,7 +7,7 @@
 #include <set>
 
 #include "base/csv_cell.hpp"
-#include "base/csv_header.hpp"
+#include "fmbpc/base/csv_header.hpp"
 #include "fmbpc/base/csv_writer.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -55,6 +55,20 @@ void readHeader(const std::string& line, const CsvFormat& format, CsvTable& tabl
     require(seen.insert(table.names.back()).second,
             table.file + ":1: column '" + table.names.back() + "'", "every column name only once");
   }
+}
+
+/// The table without rows; the stream stands behind the header then.
+CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat& format) {
+  format.validate();
+  require(stream.good(), file, "a readable file");
+  CsvTable table;
+  table.file = file;
+  std::string line;
+  std::getline(stream, line);
+  if (line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
+  require(!isBlank(line), file + ":1", "a header line");
+  readHeader(line, format, table);
+  return table;
 }
 
 /// What a column has been seen to hold: the line of the first cell of each kind, 0 if there is
@@ -169,22 +183,14 @@ std::string CsvTable::at(Eigen::Index row, Eigen::Index column) const {
   return file + place + ": column '" + names[static_cast<std::size_t>(column)] + "'";
 }
 
-CsvTable readCsvHeader(std::istream& stream, const std::string& file, const CsvFormat& format) {
-  format.validate();
-  require(stream.good(), file, "a readable file");
-  CsvTable table;
-  table.file = file;
-  std::string line;
-  std::getline(stream, line);
-  if (line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
-  require(!isBlank(line), file + ":1", "a header line");
-  readHeader(line, format, table);
-  return table;
+CsvTable readCsvHeader(const std::string& file, const CsvFormat& format) {
+  std::ifstream stream(file);
+  return headerOf(stream, file, format);
 }
 
 CsvTable readCsv(const std::string& file, const CsvFormat& format) {
   std::ifstream stream(file);
-  CsvTable table = readCsvHeader(stream, file, format);
+  CsvTable table = headerOf(stream, file, format);
   std::vector<ColumnKind> kinds(table.names.size());
   const auto rows = readRows(stream, format, table, kinds);
   require(!rows.empty(), file, "at least one row below the header");

@@ -7,6 +7,18 @@
 
 namespace fpc {
 
+namespace {
+
+/// As readers take it back: quoted if it holds what separates cells.
+std::string headerCell(const std::string& text) {
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+}  // namespace
+
 CsvWriter::CsvWriter(const std::string& file) : file_(file), stream_(file) {
   require(stream_.good(), file, "a writable file");
 }
@@ -15,7 +27,7 @@ void CsvWriter::header(const std::vector<std::string>& names,
                        const std::vector<std::string>& units) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string unit = i < units.size() ? units[i] : "";
-    stream_ << (i ? "," : "") << names[i] << (unit.empty() ? "" : "[" + unit + "]");
+    stream_ << (i ? "," : "") << headerCell(names[i] + (unit.empty() ? "" : "[" + unit + "]"));
   }
   stream_ << "\n";
 }

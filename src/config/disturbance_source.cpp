@@ -1,6 +1,6 @@
 #include "fmbpc/config/disturbance_source.hpp"
 
-#include "config/csv_units.hpp"
+#include "config/csv_checks.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 
@@ -37,9 +37,12 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
   if (params.source == DisturbanceSource::kPattern)
     return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,
                        sim.samples);
-  requireCsvUnits(loop, makePlant(sim)->description().disturbances);
-  return readDisturbanceSequence(params.csv, names, sim.disturbance_nominal, sim.sample_time_s,
-                                 sim.samples);
+  const auto disturbances = makePlant(sim)->description().disturbances;
+  checkCsvUnits(params.csv, disturbances);
+  DisturbanceRecord record = readDisturbanceSequence(params.csv, names, sim.disturbance_nominal,
+                                                     sim.sample_time_s, sim.samples);
+  checkCsvRanges(params.csv, disturbances, record.values);
+  return record;
 }
 
 }  // namespace fpc

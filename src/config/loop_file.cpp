@@ -12,14 +12,44 @@
 namespace fpc {
 namespace {
 
+/// A plant that moves by steps of its own would ignore what the section says.
+void refuseUnusedIntegrator(YamlSection& root, const LoopFile& loop) {
+  const YamlSection plant = root.section("plant");
+  if (!plant.has("integrator")) return;
+  const auto simulated = makePlant(loop.simulation);
+  if (simulated->makeStepper(loop.simulation.sample_time_s))
+    plant.fail("integrator", "no such section for " + simulated->description().name +
+                                 ", which moves by steps of its own");
+}
+
 /// Lets the plant describe itself, so that nodes and process agree to the last bit.
 void describePlant(YamlSection& root, LoopFile& loop) {
   if (!loop.external_plant) {
-    checked(root.section("plant"), [&] { loop.plant_info = Simulation(loop.simulation).info(); });
+    checked(root, [&] { loop.plant_info = Simulation(loop.simulation).info(); });
+    refuseUnusedIntegrator(root, loop);
   }
   PlantInfo& info = loop.plant_info;
   info.sample_time_s = loop.simulation.sample_time_s;
   info.header = SampleClock(info.sample_time_s, loop.simulation.start_time_s).header(0, 0);
+}
+
+const std::vector<std::string>& sections() {
+  static const std::vector<std::string> names{
+      "actuator", "clp",      "controller", "disturbance", "estimator",  "extends",      "gateway",
+      "guard",    "loop",     "model",      "noise",       "plant",      "plausibility", "plugins",
+      "report",   "sampling", "sensors",    "setpoint",    "standstill", "tf",           "title"};
+  return names;
+}
+
+/// A misspelt section would otherwise be told as what lacks without it.
+void requireKnownSections(const YamlSection& root) {
+  for (const std::string& key : root.keys()) {
+    if (std::count(sections().begin(), sections().end(), key) > 0) continue;
+    const auto near = nearest(key, sections(), 1);
+    throw InputError(root.where(key) + ": unknown key" +
+                     (near.empty() ? "" : " (" + near.front() + "?)") + "; expected one of " +
+                     join(sections()));
+  }
 }
 
 /// Before anything else: what follows may name plants and controllers of theirs.
@@ -68,6 +98,7 @@ ControllerContext controllerContext(const LoopFile& loop) {
 LoopFile readSections(YamlSection& root, const std::string& name) {
   LoopFile loop;
   LoopNames names;
+  requireKnownSections(root);
   loop.name = name;
   loop.report.title = name;
   root.text("title", loop.report.title);

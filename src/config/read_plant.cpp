@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "config/read.hpp"
+#include "config/signal_names.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
@@ -124,6 +125,7 @@ void readPlant(YamlSection& root, LoopFile& loop, LoopNames& names) {
   } else {
     readSimulated(plant, loop, names);
   }
+  requireSignalNames(plant, loop, names);
   plant.finish();
 }
 

@@ -17,6 +17,7 @@ using Eigen::Index;
 
 constexpr double kSpacingTolerance = 0.02;  // of a sample: files round their times
 constexpr double kLongestGap = 1e6;         // samples in one hole
+constexpr double kLargestCell = 1e60;       // products of a few of them must stay finite
 
 using RowName = std::function<std::string(Index row)>;
 
@@ -130,6 +131,10 @@ void repairCells(DataSet& data, const Structure& structure,
       require(!std::isinf(data.values(k, c)), at(k), "finite values");
     const ColumnRepairs done =
         repairColumn(data.values.col(c), times, rulesOf(structure, signal), at);
+    for (Index k = 0; k < data.values.rows(); ++k)
+      require(!(std::abs(data.values(k, c)) > kLargestCell), at(k),
+              "values of at most 1e60 (a code for missing cells? csv.missing_values), got " +
+                  exactText(data.values(k, c)));
     const std::string of = " cells of '" + signal.column + "' ";
     if (done.missing > 0)
       data.repairs.push_back(std::to_string(done.missing) + " missing" + of +

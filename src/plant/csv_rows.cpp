@@ -29,8 +29,8 @@ void requireTimeUnit(const CsvTable& table, std::size_t column, const std::strin
   if (table.is_date[column] || column >= table.units.size()) return;
   const std::string& header = table.units[column];
   require(header.empty() || timeUnitIn(header) == time_unit,
-          table.file + ": column '" + table.names[column] + "'",
-          "times in [" + time_unit + "], as disturbance.csv.time_unit says, got [" + header + "]");
+          table.file + ":1: column '" + table.names[column] + "'",
+          "[" + time_unit + "] as disturbance.csv.time_unit says, got [" + header + "]");
 }
 
 /// Seconds since the first row.

@@ -10,6 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "plant/quantity_index.hpp"
+#include "plant/step_failure.hpp"
 
 namespace fpc {
 namespace {
@@ -21,6 +22,13 @@ std::vector<std::string> namesForCommands(const SimulationParams& params,
   for (const auto& q : description.inputs) names.push_back("input/" + q.name);
   for (const auto& name : params.outputs) names.push_back("output/" + name);
   return names;
+}
+
+/// Why the state after a stepper's step is not to be used; empty if it is.
+std::string troubleOf(const PlantStepper& stepper, const Vector& state) {
+  if (!state.allFinite()) return "the state is not finite";
+  const auto* failing = dynamic_cast<const StepFailure*>(&stepper);
+  return failing ? failing->failure() : "";
 }
 
 }  // namespace
@@ -75,8 +83,15 @@ const Measurement& Simulation::reset(std::uint64_t run_id) {
 
 void Simulation::schedule() {
   commands_.clear();
-  for (const auto& [time_h, command] : params_.disturbance_commands) {
-    checkRanges(command);
+  for (std::size_t i = 0; i < params_.disturbance_commands.size(); ++i) {
+    const auto& [time_h, command] = params_.disturbance_commands[i];
+    try {
+      checkRanges(command);
+    } catch (const InputError& e) {
+      const std::string words = e.what();
+      throw InputError("disturbance.commands[" + std::to_string(i) + "].value" +
+                       words.substr(words.find(':')));
+    }
     commands_.accept(command, clock_.firstStepAtHours(time_h));
   }
 }
@@ -137,7 +152,7 @@ void Simulation::movePlant() {
     const Vector& u = instruments_.drive(plant_input_);
     if (stepper_) {
       stepper_->advance(state_.state, u, d);
-      if (!state_.state.allFinite()) reason = "the state is not finite";
+      reason = troubleOf(*stepper_, state_.state);
     } else {
       reason = integrator_.advance(state_.state, u, d, instruments_.stepSeconds()).reason;
     }

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "plant/transfer_stepper.hpp"
 
 namespace fpc {
@@ -18,18 +19,43 @@ Eigen::Index find(const std::vector<Quantity>& quantities, const std::string& na
   return -1;
 }
 
+void requireGroup(const std::vector<Quantity>& group, const std::string& key,
+                  std::set<std::string>& seen) {
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    const Quantity& q = group[i];
+    const std::string item = "plant.matrix." + key + "[" + std::to_string(i) + "].";
+    require(!q.name.empty() && seen.insert(q.name).second, item + "name",
+            "a name that no other signal has, got '" + q.name + "'");
+    require(std::isfinite(q.lower) && std::isfinite(q.upper) && q.lower < q.upper, item + "upper",
+            "lower < upper");
+    require(q.nominal >= q.lower && q.nominal <= q.upper, item + "nominal",
+            "a number between lower and upper, got " + exactText(q.nominal));
+  }
+}
+
 void requireSignals(const TransferMatrix& matrix) {
   std::set<std::string> seen;
   require(!matrix.outputs.empty(), "plant.matrix.outputs", "at least one");
   require(!matrix.inputs.empty(), "plant.matrix.inputs", "at least one");
-  for (const auto* group : {&matrix.outputs, &matrix.inputs, &matrix.disturbances})
-    for (const auto& q : *group) {
-      require(!q.name.empty() && seen.insert(q.name).second, "plant.matrix: '" + q.name + "'",
-              "a name that no other signal has");
-      require(std::isfinite(q.nominal) && q.lower < q.upper && q.nominal >= q.lower &&
-                  q.nominal <= q.upper,
-              "plant.matrix: " + q.name, "lower < upper and nominal between them");
-    }
+  requireGroup(matrix.outputs, "outputs", seen);
+  requireGroup(matrix.inputs, "inputs", seen);
+  requireGroup(matrix.disturbances, "disturbances", seen);
+}
+
+/// The states that describe() makes of outputs and elements have names of their own.
+void requireStates(const TransferMatrix& matrix) {
+  std::set<std::string> states, begun;
+  for (const auto& output : matrix.outputs) states.insert(output.name);
+  for (std::size_t i = 0; i < matrix.elements.size(); ++i) {
+    const TransferElement& e = matrix.elements[i];
+    const auto add = [&](const std::string& name) {
+      require(states.insert(name).second, "plant.matrix.elements[" + std::to_string(i) + "].from",
+              "names of outputs and sources that make no state twice; " + e.output + " from " +
+                  e.from + " makes '" + name + "' again");
+    };
+    if (!begun.insert(e.output).second) add(e.output + "_" + e.from);
+    if (e.second_time_constant > 0.0) add(e.output + "_" + e.from + "_inner");
+  }
 }
 
 void requireElement(const TransferMatrix& matrix, const TransferElement& e,
@@ -59,6 +85,7 @@ void TransferMatrix::validate() const {
             "one element for each pair of output and source");
     driven.insert(elements[i].output);
   }
+  requireStates(*this);
   for (const auto& output : outputs)
     require(driven.count(output.name) > 0, "plant.matrix.elements",
             "at least one element for output " + output.name);

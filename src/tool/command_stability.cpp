@@ -167,8 +167,19 @@ Json certificateOf(const StabilitySubject& s, const std::vector<RuleChoice>& cho
   return json;
 }
 
+/// The usual range of the first input, or what the loop's limits leave or add; an input that
+/// cannot be negative begins at a hundredth.
+PlantContinuation continuationOf(const StabilitySubject& s) {
+  const Quantity& input = s.plant->description().inputs[0];
+  PlantContinuation set = plantContinuation(s.plant, 0, s.sample_time_s, -1.0, -1.0);
+  if (s.input_upper != input.upper) set.params.upper = s.input_upper;
+  if (s.input_lower != input.lower) set.params.lower = s.input_lower;
+  if (set.params.lower >= 0.0) set.params.lower = std::max(s.input_lower, 0.01 * set.params.upper);
+  return set;
+}
+
 Json branchesOf(const StabilitySubject& s) {
-  const PlantContinuation set = plantContinuation(s.plant, 0, s.sample_time_s, -1.0, -1.0);
+  const PlantContinuation set = continuationOf(s);
   const auto& states = s.plant->description().states;
   const auto stateOf = [&](const Vector& x) {
     Json object = Json::object();
@@ -192,6 +203,8 @@ Json branchesOf(const StabilitySubject& s) {
   }
   return {{"input", s.plant->description().inputs[0].name},
           {"input_unit", s.plant->description().inputs[0].unit},
+          {"input_lower", set.params.lower},
+          {"input_upper", set.params.upper},
           {"output", s.plant->description().outputs.back()},
           {"map", set.problem.map},
           {"branches", list}};
@@ -207,8 +220,20 @@ Json adviceOf(const LinearModel& model, const LoopLaw& law, const StabilityArgum
           {"reasons", advice.reasons}};
 }
 
+/// Options that only an analysed law understands.
+void refuseWithoutLaw(const StabilitySubject& s, const StabilityArguments& a) {
+  const std::pair<const char*, bool> asked[] = {
+      {"--horizon", a.horizon != StabilityArguments().horizon},
+      {"--noise-gain", a.noise_gain != 0.0},
+      {"--settling", a.settling != 0}};
+  for (const auto& [option, given] : asked)
+    require(s.has_model || !given, option,
+            "a loop or model with a law that is analysed, which " + s.name + " is not");
+}
+
 Json reportOf(const StabilitySubject& s, const StabilityArguments& a) {
   const auto range = parseHorizon(a.horizon);
+  refuseWithoutLaw(s, a);
   const Stage stage;
   Json json = {{"name", s.name}};
   if (!s.note.empty()) json["note"] = s.note;

@@ -86,7 +86,9 @@ std::string certificateText(const Json& c) {
 
 std::string branchesText(const Json& s) {
   std::string out = "\nsteady states of the plant over " + s["input"].get<std::string>() + " [" +
-                    s["input_unit"].get<std::string>() + "]" +
+                    s["input_unit"].get<std::string>() + "] from " +
+                    number(s["input_lower"].get<double>()) + " to " +
+                    number(s["input_upper"].get<double>()) +
                     (s["map"].get<bool>() ? ", as a map from sample to sample" : "") + "\n";
   for (const auto& branch : s["branches"]) {
     out += "  branch of " + std::to_string(branch["points"].size()) + " points" +

@@ -9,6 +9,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/base/yaml_section.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
@@ -35,8 +36,10 @@ std::map<std::string, double> parsePoint(const std::string& at) {
 bool isLoop(const std::string& name) {
   const auto names = loopNames();
   if (std::find(names.begin(), names.end(), name) != names.end()) return true;
-  if (std::filesystem::path(name).parent_path().filename() == "loop") return true;
-  return !std::filesystem::is_regular_file(findModel(name));  // readLoop() says what is missing
+  const std::string file = findModel(name);
+  if (!std::filesystem::is_regular_file(file)) return true;  // readLoop() says what is missing
+  const YamlSection top = YamlSection::load(file);
+  return top.has("plant") || top.has("extends");
 }
 
 double nominalOf(const StabilitySubject& subject, SignalKind kind, int index) {
@@ -103,7 +106,14 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
   if (loop.has_model && !law)
     subject.note = "the law of controller.type " + loop.controllerType().name +
                    " is not analysed; name the model file instead of the loop for that of fmbpc";
-  if (!loop.external_plant) subject.plant = makePlant(loop.simulation);
+  require(subject.has_model || !loop.external_plant, loop.name,
+          "a plant that can be simulated, or a model with a law that is analysed: an external "
+          "plant under controller.type " +
+              loop.controllerType().name + " leaves nothing to look at");
+  if (loop.external_plant) return;
+  subject.plant = makePlant(loop.simulation);
+  subject.input_lower = loop.simulation.actuator.limits.lower[0];
+  subject.input_upper = loop.simulation.actuator.limits.upper[0];
 }
 
 }  // namespace
@@ -126,8 +136,10 @@ StabilitySubject readSubject(const std::string& name, const std::string& at) {
     subject.outputs = pointOf(subject, SignalKind::kOutput, given, outputs);
     settleOn(subject);
   }
-  require(given.empty() || !subject.has_model,
-          "--at " + (given.empty() ? "" : given.begin()->first), "a signal of the model");
+  require(given.empty(), "--at " + (given.empty() ? "" : given.begin()->first),
+          subject.has_model
+              ? "a signal of the model"
+              : "a loop or model with a law that is analysed, which " + subject.name + " is not");
   return subject;
 }
 

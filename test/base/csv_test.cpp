@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "fmbpc/base/csv_header.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -171,6 +172,20 @@ TEST(Csv, WritingAndReadingGivesTheSameDoubles) {
   CsvTable table{"", {"t", "x"}, {"h", ""}, Matrix(3, 2)};
   table.values << 0.1, 1.0 / 3.0, nan, 1e-300, 5e22, nan;
   expectRoundTrip(table);
+}
+
+TEST(Csv, NamesWithSeparatorsAndQuotesSurvive) {
+  CsvTable table{"", {"A,b", "say \"x\"", "c"}, {"", "m,s", "K"}, Matrix::Ones(2, 3)};
+  expectRoundTrip(table);
+}
+
+TEST(Csv, TheHeaderAloneIsTheSameHeader) {
+  const std::string file = fileWith("\xEF\xBB\xBFt[h];x[mg/l]\r\nthis is no row\r\n");
+  const CsvTable header = readCsvHeader(file, {';', ',', {}});
+  EXPECT_EQ(header.names, (std::vector<std::string>{"t", "x"}));
+  EXPECT_EQ(header.units, (std::vector<std::string>{"h", "mg/l"}));
+  EXPECT_THROW(readCsvHeader(fileWith("")), InputError);
+  EXPECT_THROW(readCsvHeader("no/such/file.csv"), InputError);
 }
 
 TEST(Csv, AMissingCellInAnOnlyColumnSurvives) {

@@ -79,29 +79,5 @@ TEST(LoopSections, WatchesAreHandedOn) {
   EXPECT_TRUE(off.standstill.signals.empty());
 }
 
-class CsvUnits : public LoopFolder {
- protected:
-  /// What a record with this column says, taken as T_in [degC].
-  std::string errorWith(const std::string& column, const std::string& conversion = "") const {
-    const std::string file = write("d.csv", "t[h]," + column + "\n0,15\n10,16\n");
-    return errorOf([&] {
-      readLoop("heated_tank", {{"disturbance.source", "csv"},
-                               {"disturbance.csv", "{file: " + file +
-                                                       ", time_column: t, end: hold, channels: "
-                                                       "{T_in: {column: v" +
-                                                       conversion + "}}}"}});
-    });
-  }
-};
-
-TEST_F(CsvUnits, ThoseOfAColumnAreThePlantsUnlessConverted) {
-  const std::string none = "nothing was thrown";
-  for (const char* column : {"v", "v[degC]", "v [deg C]"}) EXPECT_EQ(errorWith(column), none);
-  expectWords(errorWith("v[K]"),
-              {"d.csv: column 'v'", "[degC]", "got [K]", "disturbance.csv.channels.T_in.scale"});
-  for (const char* how : {", offset: -273.15", ", scale: 1", ", mean: 15"})
-    EXPECT_EQ(errorWith("v[K]", how), none) << how;
-}
-
 }  // namespace
 }  // namespace fpc

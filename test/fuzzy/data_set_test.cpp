@@ -148,6 +148,11 @@ TEST(DataSet, DuplicatedColumnsAreNamed) {
            "column 'u': expected other values than column 'y'");
 }
 
+TEST(DataSet, ACellThatOverflowsTheFitIsNamed) {
+  contains(errorOf([](CsvTable& t) { t.values(7, 2) = 1e300; }),
+           "data.csv, row 8: column 'u': expected values of at most 1e60");
+}
+
 TEST(DataSet, AnotherUnitIsRefused) {
   contains(errorOf([](CsvTable& t) { t.units[1] = "mm"; }),
            "the unit [m] of the structure, got [mm]");

@@ -4,7 +4,9 @@
 
 #include <map>
 
+#include "fmbpc/base/number.hpp"
 #include "fmbpc/plant/integrator.hpp"
+#include "fmbpc/plant/simulation.hpp"
 #include "plant/bsm1_fixture.hpp"
 
 namespace fpc {
@@ -72,6 +74,24 @@ TEST(Bsm1, DefaultControlRestsWhereTheBenchmarkSays) {
                  {"TSS_L10", 6399.298}});
 }
 
+/// An hour of the plant's own steps from its usual state against CVODE, states first..last - 1.
+void expectAsIntegrated(const Plant& plant, const Vector& u, const Vector& d,
+                        std::pair<Eigen::Index, Eigen::Index> states, double tolerance) {
+  const auto& about = plant.description();
+  Vector own = nominalOf(about.states), exact = own;
+  const auto stepper = plant.makeStepper(900.0);
+  stepper->reset(u, d);
+  Integrator cvode(plant, {});
+  for (int k = 0; k < 4; ++k) {
+    stepper->advance(own, u, d);
+    ASSERT_TRUE(cvode.advance(exact, u, d, 900.0).ok());
+  }
+  EXPECT_GT((own - nominalOf(about.states)).norm(), 1.0) << "it has moved";
+  for (Eigen::Index i = states.first; i < states.second; ++i)
+    EXPECT_NEAR(own[i], exact[i], tolerance * (0.1 + std::abs(exact[i])))
+        << about.states[static_cast<std::size_t>(i)].name;
+}
+
 // An hour with the influent twice the usual and the valves elsewhere: every form of the plant, its
 // own steps against CVODE.
 TEST(Bsm1, OwnStepsFollowTheDifferentialEquations) {
@@ -79,24 +99,12 @@ TEST(Bsm1, OwnStepsFollowTheDifferentialEquations) {
     SCOPED_TRACE(name);
     const auto plant = makePlant(name);
     const auto& about = plant->description();
-    Vector own = nominalOf(about.states), u = nominalOf(about.inputs);
-    Vector d = nominalOf(about.disturbances);
+    Vector u = nominalOf(about.inputs), d = nominalOf(about.disturbances);
     d[9] *= 1.5;
     d[13] *= 1.5;
     u[0] *= 0.8;
     u[1] *= 0.9;
-    Vector exact = own;
-    const auto stepper = plant->makeStepper(900.0);
-    stepper->reset(u, d);
-    Integrator cvode(*plant, {});
-    for (int k = 0; k < 4; ++k) {
-      stepper->advance(own, u, d);
-      ASSERT_TRUE(cvode.advance(exact, u, d, 900.0).ok());
-    }
-    EXPECT_GT((own - nominalOf(about.states)).norm(), 1.0) << "it has moved";
-    for (Eigen::Index i = 0; i < own.size(); ++i)
-      EXPECT_NEAR(own[i], exact[i], 2e-4 * (0.1 + std::abs(exact[i])))
-          << about.states[static_cast<std::size_t>(i)].name;
+    expectAsIntegrated(*plant, u, d, {0, static_cast<Eigen::Index>(about.states.size())}, 2e-4);
   }
 }
 
@@ -111,6 +119,53 @@ TEST(Bsm1, ABlowerAtPartOfItsCapacityCapsTheAeration) {
   stepper->advance(x, u, d);
   EXPECT_NEAR(x[placeOf(about.states, "KLa3")], 144.0, 1e-3);
   EXPECT_LT(x[placeOf(about.states, "KLa5")], 216.0 + 1e-3);
+}
+
+/// What a quarter of an hour under these parameters fails with.
+std::string troubleWith(const PlantParameters& parameters) {
+  SimulationParams p;
+  p.plant = "bsm1_pi";
+  p.parameters = parameters;
+  const PlantDescription about = makePlant(p.plant, parameters)->description();
+  p.initial_state = nominalOf(about.states);
+  p.disturbance_nominal = nominalOf(about.disturbances);
+  p.actuator.initial = p.actuator.fallback = nominalOf(about.inputs);
+  for (const auto& input : about.inputs) {
+    p.actuator.limits.lower.conservativeResize(p.actuator.limits.lower.size() + 1);
+    p.actuator.limits.upper.conservativeResize(p.actuator.limits.upper.size() + 1);
+    p.actuator.limits.lower.tail(1)[0] = input.lower;
+    p.actuator.limits.upper.tail(1)[0] = input.upper;
+  }
+  p.actuator.limits.move = Vector::Constant(p.actuator.initial.size(), kInfinity);
+  p.sample_time_s = 900.0;
+  Simulation works(p);
+  const Vector before = works.state().state;
+  for (int k = 0; k < 8 && works.trouble().empty(); ++k) works.advance(p.actuator.initial);
+  if (!works.trouble().empty()) EXPECT_GE(works.state().state.minCoeff(), -1e-3);
+  return works.trouble();
+}
+
+// Thin layers and fast sludge take more steps of the settler.
+TEST(Bsm1, ThinLayersAndFastSludgeFollowTheDifferentialEquations) {
+  for (const PlantParameters& parameters :
+       {PlantParameters{{"layer_height", 0.02}},
+        PlantParameters{{"settling_max", 10000.0}, {"settling_0", 10000.0}}}) {
+    SCOPED_TRACE(parameters.begin()->first);
+    const auto plant = makePlant("bsm1", parameters);
+    const auto& about = plant->description();
+    expectAsIntegrated(*plant, nominalOf(about.inputs), nominalOf(about.disturbances), {65, 75},
+                       2e-3);
+  }
+}
+
+// Steps of a fixed length cannot follow everything that parameters may ask for: that is said.
+TEST(Bsm1, AStepThatLeavesWhatIsPossibleIsAFailure) {
+  EXPECT_EQ(troubleWith({}), "");
+  for (const PlantParameters& parameters :
+       {PlantParameters{{"K_S", 0.01}}, PlantParameters{{"mu_H", 100.0}, {"K_S", 1e-6}}}) {
+    const std::string trouble = troubleWith(parameters);
+    EXPECT_NE(trouble.find("its range is 0 to"), std::string::npos) << trouble;
+  }
 }
 
 TEST(Bsm1, LocalNoiseFollowsItsSeed) {

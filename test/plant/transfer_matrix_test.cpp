@@ -179,6 +179,10 @@ TEST(TransferMatrix, RefusesWhatIsNoMatrix) {
   refused([](auto& m) { m.elements[1] = m.elements[0]; });
   refused([](auto& m) { m.elements.resize(3); });
   refused([](auto& m) { m.inputs[0].name = "F"; });
+  refused([](auto& m) {
+    m.outputs[1].name = m.elements[5].output = m.elements[4].output = m.elements[3].output =
+        "y_D_V";
+  });  // two states y_D_V
   TransferMatrix slow = single(1.0, 1.0, 1e9);
   EXPECT_THROW(TransferMatrixPlant(slow).makeStepper(60.0), InputError);
 }

@@ -74,6 +74,12 @@ bool CoincidenceGains::computePublished(const AffineModel& model, int horizon) {
   return free_.allFinite() && sum_.allFinite();
 }
 
+Eigen::Index CoincidenceGains::idleInput() const {
+  for (Eigen::Index j = 0; j < effect_.cols(); ++j)
+    if ((effect_.col(j).array() == 0.0).all()) return j;
+  return -1;
+}
+
 bool CoincidenceGains::factor() {
   scale_ = normal_.diagonal().cwiseSqrt().cwiseInverse();
   if (!normal_.allFinite() || !scale_.allFinite()) return false;
@@ -92,7 +98,7 @@ bool CoincidenceGains::computeWeighted(const AffineModel& model, int horizon,
   normal_.diagonal() += weight_move;
   gain_.setZero();
   move_gain_.setZero();
-  if (!factor()) return false;
+  if ((effect_.array() == 0.0).all() || !factor()) return false;
   for (Eigen::Index i = 0; i < gain_.cols(); ++i) {
     gain_.col(i) = weight_output[i] * scale_.cwiseProduct(effect_.row(i).transpose());
     factor_.solveInPlace(gain_.col(i));

@@ -41,7 +41,7 @@ Proposal CoincidenceLaw::propose(InternalModel& model, const LawSample& sample,
   shortfall_.noalias() -= gains_.free() * model.state();
   input.noalias() = gains_.gain() * shortfall_;
   input.noalias() += gains_.moveGain() * sample.now.input_applied;
-  return {solvable ? nullptr : "the input has no effect at the horizon"};
+  return {solvable ? nullptr : "the input has no effect at the horizon", remark()};
 }
 
 /// With A, B, g and y - y_m frozen, the law at k+i is affine in x(k+i): K = F P - V E, where E
@@ -60,7 +60,11 @@ bool PublishedLaw::computeGains(const AffineModel& model) {
 GeneralLaw::GeneralLaw(const InternalModel& model, const FmbpcParams& params, Eigen::Index n_u)
     : CoincidenceLaw(model, params, n_u),
       weight_output_(params.weight_output),
-      weight_move_(params.weight_move) {}
+      weight_move_(params.weight_move) {
+  for (const auto& input : model.local().model().inputs)
+    idle_words_.push_back("input " + input.name +
+                          " has no effect at controller.coincidence_steps and rests");
+}
 
 void GeneralLaw::retune(const FmbpcParams& params) {
   CoincidenceLaw::retune(params);
@@ -70,6 +74,12 @@ void GeneralLaw::retune(const FmbpcParams& params) {
 
 bool GeneralLaw::computeGains(const AffineModel& model) {
   return gains_.computeWeighted(model, coincidence_steps_, weight_output_, weight_move_);
+}
+
+/// A weight of its moves makes an input solvable that cannot do anything.
+const char* GeneralLaw::remark() const {
+  const Eigen::Index idle = gains_.idleInput();
+  return idle < 0 ? "" : idle_words_[static_cast<std::size_t>(idle)].c_str();
 }
 
 void GeneralLaw::predict(const InternalModel& model, const Matrix& future,

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "control/fmbpc/internal_model.hpp"
 #include "fmbpc/control/fmbpc/coincidence.hpp"
@@ -43,6 +45,7 @@ class CoincidenceLaw : public InputLaw {
 
  protected:
   virtual bool computeGains(const AffineModel& model) = 0;
+  virtual const char* remark() const { return ""; }
 
   CoincidenceGains gains_;
   int coincidence_steps_;
@@ -73,8 +76,10 @@ class GeneralLaw final : public CoincidenceLaw {
 
  private:
   bool computeGains(const AffineModel& model) override;
+  const char* remark() const override;
 
   Vector weight_output_, weight_move_;
+  std::vector<std::string> idle_words_;  ///< by input
 };
 
 /// The first input of the best path over the horizon; the local model is then that of its first

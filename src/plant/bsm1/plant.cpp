@@ -13,6 +13,7 @@
 
 #include "plant/bsm1/description.hpp"
 #include "plant/bsm1/stepper.hpp"
+#include "plant/step_failure.hpp"
 
 namespace fpc::bsm1 {
 namespace {
@@ -99,7 +100,10 @@ void Bsm1::derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector>
   write(rate, dxdt);
 }
 
-class Bsm1Stepper final : public PlantStepper {
+/// A state outside its range by more than this [its unit] is no rounding of a step.
+constexpr double kTolerance = 1e-3;
+
+class Bsm1Stepper final : public PlantStepper, public StepFailure {
  public:
   Bsm1Stepper(const Bsm1& plant, double sample_time_s)
       : plant_(plant),
@@ -111,13 +115,17 @@ class Bsm1Stepper final : public PlantStepper {
     WorksState state = plant_.stateOf(x);
     stepper_.advance(state, plant_.driveOf(u, d), days_);
     plant_.write(state, x);
+    failure_ = outsideRange(plant_.description().states, kStates, x, kTolerance);
+    if (!failure_.empty()) failure_ += ": something is too fast for the plant's steps of 8.64 s";
   }
+  const std::string& failure() const override { return failure_; }
   bool remembers() const override { return plant_.parameters().loops.noise > 0.0; }
 
  private:
   const Bsm1& plant_;
   double days_;
   WorksStepper stepper_;
+  std::string failure_;
 };
 
 std::unique_ptr<PlantStepper> Bsm1::makeStepper(double sample_time_s) const {

@@ -11,6 +11,8 @@ namespace {
 constexpr double kMinute = 1.0 / 1440.0;
 constexpr double kFastStep = 1e-4;  // [d]; oxygen of the anoxic tanks has rates of 2e4 1/d
 constexpr int kFastPerSettler = 4;
+constexpr double kLayersPerStep =
+    1.0;  // that sludge may pass in a step of the settler; 0.3 usually
 
 /// y = x + h dx, element by element.
 void move(const TankTable& x, double h, const TankTable& dx, TankTable& y) {
@@ -27,6 +29,12 @@ void move(const SettlerState& x, double h, const SettlerState& dx, SettlerState&
   move(x.solids, h, dx.solids, y.solids);
   for (std::size_t s = 0; s < kSolubles.size(); ++s)
     move(x.solubles[s], h, dx.solubles[s], y.solubles[s]);
+}
+
+/// Steps of the settler over `days`: more than one for thin layers or fast sludge.
+int settlerSteps(const SettlerParams& p, const SettlerFlows& flows, double days) {
+  const double speed = std::min(p.v_max, p.v_0) + flows.feed / p.area;
+  return std::max(1, static_cast<int>(std::ceil(days * speed / p.layer_height / kLayersPerStep)));
 }
 
 }  // namespace
@@ -84,7 +92,8 @@ void WorksStepper::settlerStep(WorksState& x, const Drive& drive, double h) cons
 void WorksStepper::block(WorksState& x, const Drive& drive, double days) {
   const double h = days / kFastPerSettler;
   for (int i = 0; i < kFastPerSettler / 2; ++i) fastStep(x, drive, h);
-  settlerStep(x, drive, days);
+  const int steps = settlerSteps(works_.settler, settlerFlows(drive.in), days);
+  for (int i = 0; i < steps; ++i) settlerStep(x, drive, days / steps);
   for (int i = 0; i < kFastPerSettler / 2; ++i) fastStep(x, drive, h);
 }
 

@@ -106,6 +106,43 @@ TEST(FmbpcLaw, HoldsWithoutAModelAndRefusesOneThatDoesNotFit) {
             [](const Measurement&, const ControllerOutput& output) { EXPECT_TRUE(output.ok); });
 }
 
+/// Of two inputs the second acts only after the horizon.
+TsModel oneLateInput() {
+  TsModel model = test::firstOrder(0.9, 0.1, 0.0);
+  model.inputs = {test::signal("early"), test::signal("late")};
+  model.submodels[0].regressors.push_back({SignalKind::kInput, 1, 9});
+  model.submodels[0].rules[0].coefficients = (Vector(3) << 0.9, 0.1, 0.2).finished();
+  return model;
+}
+
+TEST(FmbpcLaw, AnInputThatActsAfterTheHorizonIsNamedBesideOneThatActs) {
+  const TsModel model = oneLateInput();
+  const PlantInfo info = test::infoOf(model);
+  for (const int horizon : {5, 20}) {
+    FmbpcLaw law(test::generalParams(1, 2, horizon, 0.7, 0.1), test::wideLimits(2), info);
+    test::ModelPlant plant(model, one(0.0), Vector::Zero(2), Vector());
+    SetpointSource setpoint = test::setpointOf(info, one(2.0));
+    law.setModel(model);
+    test::start(law, plant, setpoint, 10, [&](const Measurement&, const ControllerOutput& o) {
+      EXPECT_TRUE(o.ok);
+      EXPECT_STREQ(o.remark, horizon == 20 ? ""
+                                           : "input late has no effect at "
+                                             "controller.coincidence_steps and rests");
+      if (horizon == 5) EXPECT_EQ(o.input[1], 0.0);
+    });
+  }
+}
+
+TEST(FmbpcLaw, AWeightOfMovesDoesNotHideThatNoInputActs) {
+  Running loop(test::generalParams(1, 1, 5, 0.7, 0.1));
+  loop.law.setModel(test::firstOrder(0.9, 0.1, 0.0, 9));
+  test::run(loop.law, loop.plant, loop.setpoint, 40, 43,
+            [&](const Measurement&, const ControllerOutput& output) {
+              EXPECT_FALSE(output.ok);
+              EXPECT_STREQ(output.remark, "the input has no effect at the horizon");
+            });
+}
+
 TEST(FmbpcLaw, AnInputWithoutEffectIsHeldAndSaidSo) {
   Running loop;
   const double before = loop.last.input[0];

@@ -89,9 +89,23 @@ TEST(CoincidenceGains, AnInputWithoutEffectIsReported) {
   CoincidenceGains gains(1, 1, 1);
   EXPECT_FALSE(gains.computePublished(model, 5));
   EXPECT_FALSE(gains.computeWeighted(model, 5, Vector::Ones(1), Vector::Zero(1)));
-  EXPECT_TRUE(
-      gains.computeWeighted(model, 5, Vector::Ones(1), Vector::Ones(1)));  // then the input rests
-  EXPECT_EQ(gains.moveGain()(0, 0), 1.0);
+  EXPECT_FALSE(gains.computeWeighted(model, 5, Vector::Ones(1), Vector::Ones(1)))
+      << "a weight of moves does not hide it";
+  EXPECT_EQ(gains.idleInput(), 0);
+}
+
+TEST(CoincidenceGains, OneOfTwoInputsWithoutEffectIsNamedAndRests) {
+  AffineModel model(2, 2, 2);
+  model.A << 0.9, 0.0, 0.0, 0.8;
+  model.B << 0.5, 0.0, 0.0, 0.3;
+  model.C << 1.0, 0.0, 0.0, 1.0;
+  CoincidenceGains gains(2, 2, 2);
+  ASSERT_TRUE(gains.computeWeighted(model, 5, Vector::Ones(2), Vector::Ones(2)));
+  EXPECT_EQ(gains.idleInput(), -1);
+  ASSERT_TRUE(gains.computeWeighted(model, 5, Vector::Unit(2, 0), Vector::Constant(2, 1e-30)));
+  EXPECT_EQ(gains.idleInput(), 1) << "the output that it moves has no weight";
+  EXPECT_NEAR(gains.moveGain()(1, 1), 1.0, 1e-12);
+  EXPECT_FALSE(gains.computeWeighted(model, 5, Vector::Unit(2, 0), Vector::Zero(2)));
 }
 
 TEST(CoincidenceGains, EffectsThatCancelCountAsNone) {
@@ -115,8 +129,9 @@ TEST(CoincidenceGains, BothLawsRefuseWhatCancels) {
   for (const int horizon : {3, 4, 7}) {
     EXPECT_FALSE(gains.computePublished(model, horizon)) << horizon;
     EXPECT_FALSE(gains.computeWeighted(model, horizon, Vector::Ones(1), Vector::Zero(1)));
-    ASSERT_TRUE(gains.computeWeighted(model, horizon, Vector::Ones(1), Vector::Ones(1)));
-    EXPECT_EQ(gains.gain()(0, 0), 0.0) << "no effect, then the input rests";
+    for (const double weight : {1e-30, 1e-12, 0.01, 1.0})
+      EXPECT_FALSE(
+          gains.computeWeighted(model, horizon, Vector::Ones(1), Vector::Constant(1, weight)));
   }
   EXPECT_TRUE(gains.computeWeighted(model, 2, Vector::Ones(1), Vector::Zero(1)));
 }

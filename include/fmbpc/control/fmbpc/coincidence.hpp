@@ -25,9 +25,13 @@ class CoincidenceGains {
   /// ill-conditioned (up to 2e24) and not needed. Returns false if m2 vanishes or is not finite.
   bool computePublished(const AffineModel& model, int horizon);
   /// u = (M' W M + L)^-1 (M' W e + L u(k-1)) with W = diag(weight_output), L = diag(weight_move).
-  /// Returns false if that matrix is singular or not finite.
+  /// Returns false if that matrix is singular or not finite, or if no input has an effect: a weight
+  /// of moves would hide that.
   bool computeWeighted(const AffineModel& model, int horizon, VectorRef weight_output,
                        VectorRef weight_move);
+
+  /// The first input without an effect on any weighted output at the horizon, -1 if all have one.
+  Eigen::Index idleInput() const;
 
   const Matrix& free() const { return free_; }           ///< P
   const Matrix& sum() const { return sum_; }             ///< S

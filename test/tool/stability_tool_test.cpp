@@ -1,0 +1,59 @@
+// fmbpc stability: which files are loops, how far it looks, and what it would ignore.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "loop/loop_fixture.hpp"
+#include "tool/tool_run.hpp"
+
+namespace fpc {
+namespace {
+
+using StabilityTool = LoopFolder;
+
+nlohmann::json steadyStates(const std::string& subject) {
+  const Outcome outcome = tool("stability --json " + subject);
+  EXPECT_EQ(outcome.code, 0) << subject;
+  return nlohmann::json::parse(outcome.printed)["steady_states"];
+}
+
+TEST_F(StabilityTool, ALoopOfOnesOwnIsOneWhereverItLies) {
+  const std::string loop = write("mine.yaml", "extends: heated_tank\n");
+  EXPECT_EQ(steadyStates(loop)["input"], "heat");
+  const Outcome model = tool("resolve heated_tank > " + path("whole.yaml"));
+  ASSERT_EQ(model.code, 0);
+  EXPECT_EQ(steadyStates(path("whole.yaml"))["input"], "heat") << "with plant in place of extends";
+}
+
+TEST_F(StabilityTool, TheRangeIsThatOfTheLoopAndIsPrinted) {
+  const auto tank = steadyStates("heated_tank");
+  EXPECT_DOUBLE_EQ(tank["input_lower"], 0.15) << "the limits are the plant's: three times 5 kW";
+  EXPECT_DOUBLE_EQ(tank["input_upper"], 15.0);
+  const std::string narrow = write(
+      "narrow.yaml",
+      "extends: heated_tank\nactuator:\n  input_lower: {heat: 2}\n  input_upper: {heat: 18}\n");
+  const auto states = steadyStates(narrow);
+  EXPECT_DOUBLE_EQ(states["input_lower"], 2.0);
+  EXPECT_DOUBLE_EQ(states["input_upper"], 18.0);
+  const std::string printed = tool("stability " + narrow).printed;
+  EXPECT_NE(printed.find("over heat [kW] from 2 to 18"), std::string::npos) << printed;
+}
+
+TEST_F(StabilityTool, OptionsThatOnlyALawUnderstandsAreRefusedWithoutOne) {
+  for (const char* option :
+       {"--at bogus=7", "--at heat=7", "--noise-gain 3", "--settling 3", "--horizon 1..9"}) {
+    const Outcome outcome = tool(std::string("stability heated_tank ") + option, true);
+    EXPECT_EQ(outcome.code, 1) << option;
+    EXPECT_NE(outcome.printed.find(std::string(option).substr(0, 4)), std::string::npos)
+        << outcome.printed;
+  }
+}
+
+TEST_F(StabilityTool, NothingToLookAtIsAnError) {
+  const Outcome outcome = tool("stability example_external", true);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.printed.find("external"), std::string::npos) << outcome.printed;
+}
+
+}  // namespace
+}  // namespace fpc
