@@ -85,9 +85,11 @@ void draw(const std::vector<Outcome>& outcomes, const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   require(!error, folder, "a folder that can be made (" + error.message() + ")");
+  bool any = false;
   for (const auto& outcome : outcomes) {
     const Experiment& e = outcome.experiment;
     if (!hasPicture(e.name)) continue;
+    any = true;
     Json json = toJson(pictureOf(e.name));
     json["title"] = e.paper + ", " + e.item + ": " + e.shows;
     json["rows"] = toJson(std::vector<Outcome>{outcome});
@@ -97,6 +99,7 @@ void draw(const std::vector<Outcome>& outcomes, const std::string& folder) {
     stream.close();
     require(!stream.fail(), file, "a writable file");
   }
+  if (!any) return;  // tables and equations alone
   const PlotResult plot = drawReproduction(folder);
   if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
 }
@@ -117,14 +120,9 @@ void print(const std::vector<Outcome>& outcomes, const ReproduceArguments& argum
 
 /// Rows without a result and failed runs, on standard error.
 int failures(const std::vector<Outcome>& outcomes) {
-  std::size_t lost = 0;
-  for (const auto& outcome : outcomes)
-    for (const auto& row : outcome.rows)
-      if (row.verdict() == Verdict::kNoResult) ++lost;
-  for (const auto& text : failedRuns()) std::fprintf(stderr, "fmbpc: failed: %s\n", text.c_str());
-  if (lost == 0) return 0;
-  std::fprintf(stderr, "fmbpc: %zu rows without a result\n", lost);
-  return 1;
+  const auto lines = failuresOf(outcomes, failedRuns());
+  for (const auto& line : lines) std::fprintf(stderr, "fmbpc: %s\n", line.c_str());
+  return lines.empty() ? 0 : 1;
 }
 
 }  // namespace

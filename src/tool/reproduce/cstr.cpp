@@ -49,23 +49,32 @@ double boundOf(const std::string& loop) {
 }
 
 Rows scores(const std::string& loop, double pi, double fmbpc) {
-  Rows rows{figure("sum (y_r - y)^2, PI", pi, score(loop + "_pi"), kUnit, {0.05}),
-            figure("sum, FMBPC as printed, model B", fmbpc, score(loop + "_literal_b"), kUnit,
-                   {0.05}, "model B is calibrated to this figure, as figure 1 is lost")};
-  const auto other = [&](const char* what, const std::string& name, const char* note) {
-    rows.push_back(figure(what, fmbpc, score(name), kUnit, {0.05, Direction::kLower}, note));
+  Rows rows{figure("sum (y_r - y)^2, PI", pi, score(loop + "_pi"), kUnit, {0.05})};
+  const auto add = [&](ReproduceRow row, const std::string& name) {
+    rows.push_back(std::move(row));
     rows.back().behind = name;
   };
-  other("sum, FMBPC as printed, model A", loop + "_literal", "sets from a static fit");
-  other("sum, FMBPC with NARX states, model A", loop, "the same law without the extra sample");
-  other("sum, NARX, identified model", loop + "_own", "from our own record");
-  other("sum, aiming at y_r(k + H + delay)", loop + "_preview", "an option of ours");
+  const std::string as_printed = loop + "_literal", calibrated = loop + "_literal_b";
+  add(figure("sum, FMBPC as printed, model A", fmbpc, score(as_printed), kUnit,
+             {0.05, Direction::kLower}, "the paper's law and rules; sets from a static fit"),
+      as_printed);
+  add(incomparable("sum, FMBPC as printed, model B", fmbpc, score(calibrated), kUnit,
+                   "fitted to this figure: the sets of model B, as figure 1 is lost"),
+      calibrated);
+  const auto ours = [&](const char* what, const std::string& name, const char* note) {
+    add(check(what, score(name), Direction::kLower, fmbpc, kUnit, note), name);
+  };
+  ours("sum, NARX states, model A, at most the paper's", loop, "ours: without the extra sample");
+  ours("sum, NARX, identified model, at most the paper's", loop + "_own",
+       "ours: a model from our own record");
+  ours("sum, aiming at y_r(k + H + delay), at most the paper's", loop + "_preview",
+       "ours: an option");
   const auto against = [&](const char* what, const std::string& mine, const std::string& baseline,
                            const char* note) {
     rows.push_back(check(what, score(mine) / score(baseline), Direction::kLower, 1.0, "-", note));
     rows.back().behind = mine + ", " + baseline;
   };
-  against("FMBPC as printed, model B / PI", loop + "_literal_b", loop + "_pi",
+  against("FMBPC as printed, model A / PI", as_printed, loop + "_pi",
           "the paper: better than the PI");
   against("NARX, model A / gain-scheduled PI", loop, loop + "_gspi",
           "the honest baseline, not in the paper");

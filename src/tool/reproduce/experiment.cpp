@@ -48,22 +48,25 @@ bool before(const Experiment& a, const Experiment& b) {
 
 }  // namespace
 
+bool Values::sound() const {
+  return !all_.empty() &&
+         std::all_of(all_.begin(), all_.end(), [](double value) { return std::isfinite(value); });
+}
+
 double Values::median() const {
-  if (all_.empty()) return notPrinted();
+  if (!sound()) return notPrinted();
   std::vector<double> sorted = all_;
-  for (const double value : sorted)
-    if (!std::isfinite(value)) return notPrinted();
   std::sort(sorted.begin(), sorted.end());
   const std::size_t half = sorted.size() / 2;
   return sorted.size() % 2 == 1 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
 }
 
 double Values::lowest() const {
-  return all_.empty() ? notPrinted() : *std::min_element(all_.begin(), all_.end());
+  return sound() ? *std::min_element(all_.begin(), all_.end()) : notPrinted();
 }
 
 double Values::highest() const {
-  return all_.empty() ? notPrinted() : *std::max_element(all_.begin(), all_.end());
+  return sound() ? *std::max_element(all_.begin(), all_.end()) : notPrinted();
 }
 
 Verdict ReproduceRow::verdict() const {

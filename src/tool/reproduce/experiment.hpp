@@ -17,11 +17,12 @@ class Values {
   Values(std::vector<double> values) : all_{std::move(values)} {}  // NOLINT
   std::size_t count() const { return all_.size(); }
   double median() const;  ///< NaN if there is none, or if one is not finite: a run failed
-  double lowest() const;
+  double lowest() const;  ///< NaN as the median
   double highest() const;
   const std::vector<double>& all() const { return all_; }
 
  private:
+  bool sound() const;  ///< at least one value, all finite
   std::vector<double> all_;
 };
 

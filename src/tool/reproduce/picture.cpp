@@ -9,7 +9,6 @@ namespace fpc::tool {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using OfSample = std::function<double(const SampleRecord&)>;
 constexpr int kPoints = 400;
 
 std::map<std::string, std::function<Picture()>>& registry() {
@@ -31,18 +30,7 @@ Scale scaleOf(const RunRecord& run) {
   return {1.0, "time [s]"};
 }
 
-Curve curveOf(const RunRecord& run, const std::string& label, const char* style,
-              const OfSample& value) {
-  const double step = run.info.sample_time_s * scaleOf(run).per_second;
-  Curve curve{label, {}, {}, style};
-  for (std::size_t k = 0; k < run.samples.size(); ++k) {
-    const double y = value(run.samples[k]);
-    if (!std::isfinite(y)) continue;
-    curve.x.push_back(step * static_cast<double>(k));
-    curve.y.push_back(y);
-  }
-  return curve;
-}
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 struct Found {
   const SignalInfo* info;
@@ -72,8 +60,8 @@ OfSample reader(const Found& found) {
   return [i](const SampleRecord& k) { return at(k.state.disturbances, i); };
 }
 
-Panel panelOf(const std::vector<const RunRecord*>& runs, const std::string& signal) {
-  const RunRecord& first = *runs.front();
+Panel panelOf(const std::vector<LabelledRun>& runs, const std::string& signal) {
+  const RunRecord& first = *runs.front().run;
   const Found found = find(first, signal);
   Panel panel{signal + " [" + found.info->unit + "]", {}};
   if (found.kind == 'y') {
@@ -85,18 +73,45 @@ Panel panelOf(const std::vector<const RunRecord*>& runs, const std::string& sign
       return at(k.tracking.reference, i);
     }));
   }
-  for (const RunRecord* run : runs)
+  for (const auto& [run, label] : runs)
     panel.curves.push_back(
-        curveOf(*run, run->loop, found.kind == 'y' ? "line" : "step", reader(find(*run, signal))));
+        curveOf(*run, label, found.kind == 'y' ? "line" : "step", reader(find(*run, signal))));
   return panel;
 }
 
 }  // namespace
 
-Picture pictureOfRuns(const std::vector<const RunRecord*>& runs,
+Curve curveOf(const RunRecord& run, const std::string& label, const char* style,
+              const OfSample& value) {
+  const double step = run.info.sample_time_s * scaleOf(run).per_second;
+  Curve curve{label, {}, {}, style};
+  for (std::size_t k = 0; k < run.samples.size(); ++k) {
+    const double y = value(run.samples[k]);
+    if (!std::isfinite(y)) continue;
+    curve.x.push_back(step * static_cast<double>(k));
+    curve.y.push_back(y);
+  }
+  return curve;
+}
+
+Panel closeUp(Panel panel, Span span) {
+  for (Curve& curve : panel.curves) {
+    Curve within{curve.label, {}, {}, curve.style};
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      if (curve.x[i] < span.from || curve.x[i] > span.to) continue;
+      within.x.push_back(curve.x[i]);
+      within.y.push_back(curve.y[i]);
+    }
+    curve = std::move(within);
+  }
+  panel.span = span;
+  return panel;
+}
+
+Picture pictureOfRuns(const std::vector<LabelledRun>& runs,
                       const std::vector<std::string>& signals) {
   require(!runs.empty(), "picture", "at least one run");
-  Picture picture{scaleOf(*runs.front()).label, {}};
+  Picture picture{scaleOf(*runs.front().run).label, {}};
   for (const auto& signal : signals) picture.panels.push_back(panelOf(runs, signal));
   return picture;
 }
@@ -136,8 +151,14 @@ Json toJson(const Picture& picture) {
       if (!curve.x.empty())
         curves.push_back(
             {{"label", curve.label}, {"style", curve.style}, {"x", curve.x}, {"y", curve.y}});
-    json["panels"].push_back(
-        {{"label", panel.label}, {"curves", curves}, {"limits", panel.limits}});
+    Json marks = Json::array();
+    for (const auto& mark : panel.marks)
+      marks.push_back({{"label", mark.label}, {"x", number(mark.x)}, {"y", mark.y}});
+    json["panels"].push_back({{"label", panel.label},
+                              {"curves", curves},
+                              {"marks", marks},
+                              {"from", number(panel.span.from)},
+                              {"to", number(panel.span.to)}});
   }
   return json;
 }

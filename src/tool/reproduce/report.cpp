@@ -82,9 +82,8 @@ void addTable(std::string& page, const std::vector<Outcome>& outcomes) {
     std::string item = experiment.item, shows = experiment.shows;
     for (const auto& row : rows) {
       std::string line;
-      for (const std::string& cell :
-           {item, shows, row.quantity, paperCell(row), figureText(row.here.median()), row.unit,
-            std::string(name(row.verdict())), remarkOf(row)})
+      for (const std::string& cell : {item, shows, row.quantity, paperCell(row), hereText(row),
+                                      row.unit, std::string(name(row.verdict())), remarkOf(row)})
         line += "| " + withoutBars(cell) + " ";
       page += line + "|\n";
       item.clear();
@@ -99,6 +98,16 @@ std::string figureText(double value) {
   if (!std::isfinite(value)) return "-";
   const std::string text = format("%.4g", value == 0.0 ? 0.0 : value);
   return text == "-0" ? "0" : text;
+}
+
+std::string hereText(const ReproduceRow& row) {
+  const double here = row.here.median();
+  std::string text = figureText(here);
+  if (!row.statement || here == row.paper || !std::isfinite(row.paper - here)) return text;
+  const std::string limit = figureText(row.paper);
+  for (int digits = 5; text == limit && digits <= 17; ++digits)
+    text = format(("%." + std::to_string(digits) + "g").c_str(), here);
+  return text;
 }
 
 Counts countsOf(const Rows& rows) {
@@ -122,6 +131,18 @@ std::string remarkOf(const ReproduceRow& row) {
   for (const std::string& part : {deviationOf(row), spreadOf(row), row.incomparable, row.note})
     if (!part.empty()) words.push_back(part);
   return join(words, "; ");
+}
+
+std::vector<std::string> failuresOf(const std::vector<Outcome>& outcomes,
+                                    const std::vector<std::string>& failed_runs) {
+  std::vector<std::string> lines;
+  for (const auto& text : failed_runs) lines.push_back("failed: " + text);
+  const Rows rows = rowsOfAll(outcomes);
+  const auto lost = std::count_if(rows.begin(), rows.end(), [](const ReproduceRow& row) {
+    return row.verdict() == Verdict::kNoResult;
+  });
+  if (lost > 0) lines.push_back(std::to_string(lost) + " rows without a result");
+  return lines;
 }
 
 std::string reasonOf(const Rows& rows) {
@@ -152,8 +173,7 @@ std::string detailsText(const Outcome& outcome) {
   const Experiment& e = outcome.experiment;
   std::vector<std::vector<std::string>> table{{"quantity", "paper", "here", "unit", "verdict"}};
   for (const auto& row : outcome.rows)
-    table.push_back({row.quantity, paperCell(row), figureText(row.here.median()), row.unit,
-                     name(row.verdict())});
+    table.push_back({row.quantity, paperCell(row), hereText(row), row.unit, name(row.verdict())});
   std::string text = e.name + " (" + paperTitle(e.paper) + ", " + e.item + ": " + e.shows + ")\n" +
                      "  from " + e.behind + "\n";
   const std::string aligned = alignedTable(table);

@@ -27,6 +27,13 @@ std::string remarkOf(const ReproduceRow& row);
 /// Of the row that says most about what is not reached; empty if all is.
 std::string reasonOf(const Rows& rows);
 
+/// What a statement's `here` needs to be told from its limit: "1.0000095" where "1" would hide why
+/// it fails. Figures as figureText().
+std::string hereText(const ReproduceRow& row);
+/// One line for each failed run and one that counts the rows without a result; empty: none.
+std::vector<std::string> failuresOf(const std::vector<Outcome>& outcomes,
+                                    const std::vector<std::string>& failed_runs);
+
 std::string summaryText(const std::vector<Outcome>& outcomes);
 std::string detailsText(const Outcome& outcome);
 nlohmann::ordered_json toJson(const std::vector<Outcome>& outcomes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 
@@ -81,6 +82,14 @@ const Seeded& seeded(const std::string& loop) {
   return all.emplace(loop, std::move(runs)).first->second;
 }
 
+template <typename Operation>
+Values paired(const Values& a, const Values& b, Operation operation) {
+  require(a.count() == b.count(), "values over seeds", "equally many runs of both");
+  std::vector<double> values;
+  for (std::size_t i = 0; i < a.count(); ++i) values.push_back(operation(a.all()[i], b.all()[i]));
+  return values;
+}
+
 }  // namespace
 
 const RunRecord& recordOf(const std::string& loop, const Overrides& overrides) {
@@ -119,10 +128,11 @@ Values iseOver(const std::string& loop, const std::string& output) {
 }
 
 Values ratio(const Values& above, const Values& below) {
-  require(above.count() == below.count(), "ratio", "equally many runs above and below");
-  std::vector<double> values;
-  for (std::size_t i = 0; i < above.count(); ++i) values.push_back(above.all()[i] / below.all()[i]);
-  return values;
+  return paired(above, below, std::divides<>());
+}
+
+Values difference(const Values& from, const Values& subtracted) {
+  return paired(from, subtracted, std::minus<>());
 }
 
 const std::vector<std::string>& failedRuns() { return failures(); }

@@ -33,6 +33,7 @@ Values iseOver(const std::string& loop, const std::string& output);
 Values activeOver(const std::string& loop);
 /// Seed by seed. @throws InputError if there are not equally many.
 Values ratio(const Values& above, const Values& below);
+Values difference(const Values& from, const Values& subtracted);  ///< likewise
 /// What went wrong in runs over seeds: "asp_case1, seed 3: ...".
 const std::vector<std::string>& failedRuns();
 

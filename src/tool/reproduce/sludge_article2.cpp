@@ -101,8 +101,8 @@ Rows clp(std::size_t group) {
   for (const std::size_t wider : {0U, 1U})
     rows.push_back(
         check(std::string("samples at a bound, ") + loops[wider] + " - " + loops[wider + 1],
-              activeOver(loops[wider]).median() - activeOver(loops[wider + 1]).median(),
-              Direction::kLower, 0.0, "%", "the paper: the wider the less saturated"));
+              difference(activeOver(loops[wider]), activeOver(loops[wider + 1])), Direction::kLower,
+              0.0, "%", "the paper: the wider the less saturated"));
   for (const char* baseline : {"_pi_s", "_pi_x"})
     rows.push_back(ahead(loops[0], loops[0] + std::string(baseline), "x",
                          "the paper runs no PI beside FMBPC/CLP"));

@@ -83,14 +83,17 @@ Rows table1() {
   return rows;
 }
 
-/// Steady inputs of the setpoints (6.1, 12.8), and what the pull to (1, 1) leaves.
+/// The inputs under which the run without an offset comes to rest at the setpoints (6.1, 12.8),
+/// and what the pull to (1, 1) leaves.
 Rows offset() {
-  const AffineModel m = example();
-  const Matrix rest = Matrix::Identity(4, 4) - m.A;
-  const Matrix gain = m.C * rest.diagonal().cwiseInverse().asDiagonal() * m.B;
-  const Vector u = gain.inverse() * Eigen::Vector2d(6.1, 12.8);
-  Rows rows{figure("steady input u1, printed as u_r", 1.0, u[0], "-"),
-            figure("steady input u2, printed as u_r", 1.0, u[1], "-")};
+  const auto& samples = recordOf("linear_2x2_move").samples;
+  const Vector u = samples.at(samples.size() - 2).action.input;  // the final sample has none
+  Rows rows;
+  for (const Eigen::Index i : {0, 1}) {
+    rows.push_back(
+        figure("steady input u" + std::to_string(i + 1) + ", printed as u_r", 1.0, u[i], "-"));
+    rows.back().behind = "linear_2x2_move";
+  }
   const auto left = [&](const char* what, const char* loop, double limit, const char* note) {
     const SampleRecord& last = recordOf(loop).samples.back();
     const double off = (last.measurement.outputs - last.tracking.setpoint).cwiseAbs().maxCoeff();
