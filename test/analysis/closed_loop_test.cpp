@@ -13,7 +13,7 @@
 #include "fmbpc/fuzzy/undelayed.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_closed_loop_test {
 
 const Matrix kA = (Matrix(2, 2) << 0.80, 0.77, 0.0, 0.88).finished();
 const Matrix kB = (Matrix(2, 2) << 0.90, 0.57, 0.81, 0.0).finished();
@@ -166,5 +166,5 @@ TEST(RuleModels, ChoicesCombineTheRulesOfAllOutputs) {
   EXPECT_NEAR(middle.affine.A(0, 0), 0.6, 1e-15);
 }
 
-}  // namespace
+}  // namespace analysis_closed_loop_test
 }  // namespace fpc

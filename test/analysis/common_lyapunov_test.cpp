@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_common_lyapunov_test {
 
 Matrix of(double a, double b, double c, double d) {
   return (Matrix(2, 2) << a, b, c, d).finished();
@@ -88,5 +88,5 @@ TEST(LargestRegion, LeavesOutTheRuleThatBreaksTheCertificate) {
   EXPECT_THROW(commonLyapunov({}), InputError);
 }
 
-}  // namespace
+}  // namespace analysis_common_lyapunov_test
 }  // namespace fpc

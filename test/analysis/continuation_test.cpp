@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_continuation_test {
 
 ContinuationParams box(double lower, double upper, Eigen::Index n_x, double size) {
   ContinuationParams params;
@@ -177,5 +177,5 @@ TEST(Linearise, ALocalLoopOnTheDifferenceKeepsTheSteadyGain) {
   EXPECT_NEAR((rest - Eigen::Vector2d(1.0, 1.0)).norm(), 0.0, 1e-14);
 }
 
-}  // namespace
+}  // namespace analysis_continuation_test
 }  // namespace fpc

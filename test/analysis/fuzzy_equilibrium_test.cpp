@@ -8,7 +8,7 @@
 #include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_fuzzy_equilibrium_test {
 
 /// Two rules on y, far apart and narrow: y+ = 0.5 y + b u + c around each centre.
 TsModel twoBasins() {
@@ -62,5 +62,5 @@ TEST(UsualValue, IsTheMeanOfTheCentresOfEllipsoidsAsOfSets) {
   EXPECT_NEAR(usualValue(test::multivariate(model), SignalKind::kOutput, 0), 1.0, 1e-12);
 }
 
-}  // namespace
+}  // namespace analysis_fuzzy_equilibrium_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_horizon_advisor_test {
 
 /// y(k+1) = 0.9 y(k) + 0.1 u(k)
 LinearModel lag() {
@@ -54,5 +54,5 @@ TEST(HorizonAdvice, SaysWhyThereIsNone) {
   EXPECT_THROW(adviseHorizon(lag(), {}, {0.0, 2}), InputError);
 }
 
-}  // namespace
+}  // namespace analysis_horizon_advisor_test
 }  // namespace fpc

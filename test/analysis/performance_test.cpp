@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_performance_test {
 
 Vector of(std::initializer_list<double> values) {
   Vector v(static_cast<Eigen::Index>(values.size()));
@@ -74,5 +74,5 @@ TEST(InputIndices, WithoutSamplesTheInputStayed) {
   EXPECT_EQ(i.mean_abs_move, 0.0);
 }
 
-}  // namespace
+}  // namespace analysis_performance_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_steady_state_test {
 
 const Vector kNone;
 
@@ -142,5 +142,5 @@ TEST(SteadyState, BadArgumentsAreErrors) {
     EXPECT_THROW(findSteadyState(f, one(1.0), kNone, kNone, params), InputError);
 }
 
-}  // namespace
+}  // namespace analysis_steady_state_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_step_indices_test {
 
 Vector vector(std::initializer_list<double> values) {
   Vector v(static_cast<Eigen::Index>(values.size()));
@@ -105,5 +105,5 @@ TEST(InputIndices, EffortIsTheSumOfSquaredMovesAndEnergyOfSquaredInputs) {
   EXPECT_EQ(u.energy, 1.0 + 9.0 + 4.0);
 }
 
-}  // namespace
+}  // namespace analysis_step_indices_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace analysis_transfer_test {
 
 constexpr double kA1[] = {-1.3462, -1.4506, -1.5681, -1.7114, -1.8111, -1.9157};
 constexpr double kA2[] = {0.4298, 0.5262, 0.6437, 0.7689, 0.8592, 0.9485};
@@ -64,5 +64,5 @@ TEST(Transfer, OfAnInputThatNeverArrivesHasNoRelativeDegree) {
   EXPECT_THROW(transferOf(model, 1, 0), InputError);
 }
 
-}  // namespace
+}  // namespace analysis_transfer_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_column_repair_test {
 
 struct Repaired {
   Vector cells;
@@ -75,5 +75,5 @@ TEST(ColumnRepair, SaysWhereAndWhichKeyHelps) {
   EXPECT_EQ(nothing.error, "row 0: expected at least one number in the column");
 }
 
-}  // namespace
+}  // namespace base_column_repair_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_command_table_test {
 
 Command command(const std::string& name, double value, CommandMode mode = CommandMode::kOverride) {
   return {0, {name}, {value}, mode};
@@ -97,5 +97,5 @@ TEST(CommandTable, ClearForgetsActiveAndPending) {
   EXPECT_TRUE(table.advance(9).empty());
 }
 
-}  // namespace
+}  // namespace base_command_table_test
 }  // namespace fpc

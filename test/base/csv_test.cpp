@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_csv_test {
 
 std::string fileWith(const std::string& text) {
   const std::string file = ::testing::TempDir() + "csv_test.csv";
@@ -199,5 +199,5 @@ TEST(Csv, AnUnwritableFileIsAnError) {
   EXPECT_THROW(writeCsv(table, ::testing::TempDir() + "no/such/folder/x.csv"), InputError);
 }
 
-}  // namespace
+}  // namespace base_csv_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_input_limits_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -90,5 +90,5 @@ TEST(InputLimits, ValidateNamesEachBadField) {
   names(errorOf([](InputLimits& l) { l.move[0] = kNaN; }), "move_upper");
 }
 
-}  // namespace
+}  // namespace base_input_limits_test
 }  // namespace fpc

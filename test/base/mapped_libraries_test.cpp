@@ -7,7 +7,7 @@
 #include "fmbpc/base/parallel.hpp"
 
 namespace fpc::testing {
-namespace {
+namespace base_mapped_libraries_test {
 
 bool mapped(const std::string& library) {
   std::ifstream maps("/proc/self/maps");
@@ -22,5 +22,5 @@ TEST(MappedLibraries, TheCoreBringsNoPagmo) {
   EXPECT_FALSE(mapped("libpagmo"));
 }
 
-}  // namespace
+}  // namespace base_mapped_libraries_test
 }  // namespace fpc::testing

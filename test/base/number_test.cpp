@@ -10,7 +10,7 @@
 #include <random>
 
 namespace fpc {
-namespace {
+namespace base_number_test {
 
 TEST(Number, ShortestTextOfKnownNumbers) {
   for (const auto& print : {&fpc::printNumber, &portable::printNumber}) {
@@ -54,5 +54,5 @@ TEST(Number, WhatIsNoNumberIsRefusedByBoth) {
   }
 }
 
-}  // namespace
+}  // namespace base_number_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_option_test {
 
 enum class Colour { kRed, kGreen };
 std::vector<std::string> wordsOf(Colour) { return {"red", "green"}; }
@@ -70,5 +70,5 @@ TEST(Option, KeepsAValueWithoutAWord) {
   EXPECT_EQ(sign, 0);
 }
 
-}  // namespace
+}  // namespace base_option_test
 }  // namespace fpc

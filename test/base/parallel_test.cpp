@@ -9,7 +9,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_parallel_test {
 
 TEST(ParallelFor, DoesEveryIndexOnceOnAnyNumberOfThreads) {
   for (const int threads : {0, 1, 2, 4, 100}) {
@@ -35,5 +35,5 @@ TEST(ParallelFor, ThrowsWhatTheLowestIndexThrewAndDoesTheRest) {
   EXPECT_THROW(parallelFor(1, -1, [](std::size_t) {}), InputError);
 }
 
-}  // namespace
+}  // namespace base_parallel_test
 }  // namespace fpc

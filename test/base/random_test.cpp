@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc {
-namespace {
+namespace base_random_test {
 
 TEST(Gaussian, MomentsAreThoseOfTheStandardNormal) {
   constexpr unsigned kSeed = 1;
@@ -50,5 +50,5 @@ TEST(Gaussian, UniformNumbersFillTheHalfOpenInterval) {
   EXPECT_GT(high, 1.0 - 1e-4);
 }
 
-}  // namespace
+}  // namespace base_random_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "random/dice.hpp"
 
 namespace fpc {
-namespace {
+namespace base_register_codec_test {
 
 const std::vector<RegisterType> kTypes{RegisterType::kInt16, RegisterType::kUint16,
                                        RegisterType::kInt32, RegisterType::kUint32,
@@ -77,5 +77,5 @@ TEST(RegisterCodec, ARoundedNumberGivesWayToTheLimitAndNotTheLimitToIt) {
   EXPECT_FALSE(representable(f, 1.95, 1.9, 2.0));
 }
 
-}  // namespace
+}  // namespace base_register_codec_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_sample_clock_test {
 
 TEST(SampleClock, TimesAreExactMultiplesOfTheSampleTime) {
   const SampleClock clock(720.0, 1.0);
@@ -70,5 +70,5 @@ TEST(SampleClock, UnusableTimesAreErrors) {
   }
 }
 
-}  // namespace
+}  // namespace base_sample_clock_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_state_space_test {
 
 TEST(PowerSum, ScalarGeometricSeries) {
   PowerSum sums(1);
@@ -57,5 +57,5 @@ TEST(AffineModel, StartsAtZeroWithTheRightShapes) {
   EXPECT_EQ(model.g, Vector::Zero(3));
 }
 
-}  // namespace
+}  // namespace base_state_space_test
 }  // namespace fpc

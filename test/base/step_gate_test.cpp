@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc {
-namespace {
+namespace base_step_gate_test {
 
 StepHeader header(std::uint64_t run, std::uint32_t step) { return {0, run, step}; }
 
@@ -119,5 +119,5 @@ TEST(StepGate, OnlyLostOrNewRunsNeedAReset) {
     EXPECT_FALSE(isNew(arrival) || needsReset(arrival));
 }
 
-}  // namespace
+}  // namespace base_step_gate_test
 }  // namespace fpc

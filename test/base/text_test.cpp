@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_text_test {
 
 TEST(Text, JoinPutsSeparatorsOnlyBetweenWords) {
   EXPECT_EQ(join({}), "");
@@ -67,5 +67,5 @@ TEST(Text, AMissingVariableOrBraceIsNamed) {
   EXPECT_THROW(expandEnvironment("${HOME", "file"), InputError);
 }
 
-}  // namespace
+}  // namespace base_text_test
 }  // namespace fpc

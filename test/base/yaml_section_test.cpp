@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace base_yaml_section_test {
 
 YamlSection parsed(const std::string& text) { return YamlSection::parse(text, "loop.yaml"); }
 
@@ -263,5 +263,5 @@ TEST(YamlSection, MergedTextsReportWhereAPathWasWritten) {
   EXPECT_EQ(trace->asked.count("controller.kp"), 1U);
 }
 
-}  // namespace
+}  // namespace base_yaml_section_test
 }  // namespace fpc

@@ -5,7 +5,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_csv_checks_test {
 
 class CsvChecks : public LoopFolder {
  protected:
@@ -56,5 +56,5 @@ TEST_F(CsvChecks, AValueThatThePlantCannotTakeNamesItsRowAndTheKeyForMissingCell
   expectWords(errorFor(rows("t,v", "50"), ", scale: -1, offset: 40"), {":3: column 'v'", "got 50"});
 }
 
-}  // namespace
+}  // namespace config_csv_checks_test
 }  // namespace fpc

@@ -4,7 +4,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_error_keys_test {
 
 using ErrorKeys = LoopFolder;
 
@@ -56,5 +56,5 @@ TEST_F(ErrorKeys, AMisspeltSectionIsNamedBeforeWhatLacksWithoutIt) {
   expectWords(errorIn(text), {"controler: unknown key (controller?)"});
 }
 
-}  // namespace
+}  // namespace config_error_keys_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_extends_test {
 
 using Extends = LoopFolder;
 using Resolve = LoopFolder;
@@ -226,5 +226,5 @@ TEST_F(Resolve, TheRingWaitsForTheNodesTheLoopNeeds) {
   EXPECT_EQ(readLoop("asp_case1_pi_x").ring.wait_for, (Names{"loop_recorder", "fmbpc_controller"}));
 }
 
-}  // namespace
+}  // namespace config_extends_test
 }  // namespace fpc

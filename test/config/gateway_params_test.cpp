@@ -4,7 +4,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_gateway_params_test {
 
 std::string errorIn(const std::string& gateway) {
   return errorOf([&] { gatewayLoop(gateway); });
@@ -86,5 +86,5 @@ TEST(PlausibilityFile, ErrorsNameKeyAndWhatWasExpected) {
   expectWords(error("{hold_samples: -2}"), {"hold_samples"});
 }
 
-}  // namespace
+}  // namespace config_gateway_params_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "fmbpc/config/model_file.hpp"
 
 namespace fpc {
-namespace {
+namespace config_identified_file_test {
 
 IdentifiedModel example() {
   IdentifiedModel m;
@@ -86,5 +86,5 @@ TEST(IdentifiedFile, RefusesTyposAndWrongSizes) {
   EXPECT_THROW(parseIdentified(with("scaling: [", "scaling: [1, "), "memory"), InputError);
 }
 
-}  // namespace
+}  // namespace config_identified_file_test
 }  // namespace fpc

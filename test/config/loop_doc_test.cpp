@@ -20,7 +20,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace config_loop_doc_test {
 
 struct Row {
   std::string unit, fallback, meaning;
@@ -294,5 +294,5 @@ TEST(LoopDocs, DefaultsAreThoseOfTheStructs) {
   }
 }
 
-}  // namespace
+}  // namespace config_loop_doc_test
 }  // namespace fpc

@@ -5,7 +5,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_loop_errors_test {
 
 using LoopErrors = LoopFolder;
 
@@ -226,5 +226,5 @@ TEST_F(LoopErrors, AMistakeInAnExtendedFileNamesThatFile) {
   expectWords(errorOf([&] { readLoop(child); }), {parent + ":13: loop.speedup", "got '-3'"});
 }
 
-}  // namespace
+}  // namespace config_loop_errors_test
 }  // namespace fpc

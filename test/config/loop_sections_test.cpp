@@ -4,7 +4,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_loop_sections_test {
 
 /// A key that takes one of a few words.
 struct OptionKey {
@@ -79,5 +79,5 @@ TEST(LoopSections, WatchesAreHandedOn) {
   EXPECT_TRUE(off.standstill.signals.empty());
 }
 
-}  // namespace
+}  // namespace config_loop_sections_test
 }  // namespace fpc

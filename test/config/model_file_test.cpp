@@ -9,7 +9,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_model_file_test {
 
 void expectSame(const TsModel& a, const TsModel& b) {
   EXPECT_EQ(a.name, b.name);
@@ -186,5 +186,5 @@ TEST(MatchToPlant, NamesWhatDoesNotFit) {
   expect("disturbances.s_i", [](PlantInfo& p) { p.disturbances[1].unit = "kg/m3"; });
 }
 
-}  // namespace
+}  // namespace config_model_file_test
 }  // namespace fpc

@@ -4,7 +4,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_override_text_test {
 
 TEST(OverrideText, SpacesSeparateUnlessBracketsOrQuotesHoldThem) {
   EXPECT_EQ(parseOverrides("setpoint.initial={s: 55, x: 1900}  noise.seed=3"),
@@ -32,5 +32,5 @@ TEST(OverrideText, AValueWithoutAKeyIsNamed) {
               {"--set fast", "path=value"});
 }
 
-}  // namespace
+}  // namespace config_override_text_test
 }  // namespace fpc

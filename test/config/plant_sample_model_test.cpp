@@ -10,7 +10,7 @@
 #include "fmbpc/loop/run.hpp"
 
 namespace fpc {
-namespace {
+namespace config_plant_sample_model_test {
 
 /// Largest distance of the outputs over a run under inputs that swing, relative to the start.
 double worstError(const LoopFile& loop, std::uint32_t samples, int integration_steps) {
@@ -105,5 +105,5 @@ TEST(PlantSampleModel, TheBaselineReachesItsSetpointsOnThePlantItKnows) {
   EXPECT_NEAR(record.samples.back().state.outputs[0], 0.20, 1e-9);
 }
 
-}  // namespace
+}  // namespace config_plant_sample_model_test
 }  // namespace fpc

@@ -11,7 +11,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace config_plugins_test {
 
 /// Finds the libraries of the build, and the loops of the example.
 class Plugins : public LoopFolder {
@@ -80,5 +80,5 @@ TEST_F(Plugins, ANameThatIsTakenIsRefusedEveryTime) {
   EXPECT_NE(controllerType("pi").summary, "not ours");
 }
 
-}  // namespace
+}  // namespace config_plugins_test
 }  // namespace fpc

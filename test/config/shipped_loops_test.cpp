@@ -9,7 +9,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_shipped_loops_test {
 
 class ShippedLoop : public ::testing::TestWithParam<std::string> {};
 
@@ -72,5 +72,5 @@ TEST(ShippedLoops, CaseOneIsThatOfThePaper) {
   EXPECT_NEAR(makeDisturbance(loop).values.row(1).mean(), 430.0, 1e-9);
 }
 
-}  // namespace
+}  // namespace config_shipped_loops_test
 }  // namespace fpc

@@ -4,7 +4,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_signal_names_test {
 
 class SignalNames : public LoopFolder {
  protected:
@@ -91,5 +91,5 @@ TEST_F(IntegratorSection, IsRefusedForAPlantWithStepsOfItsOwn) {
   EXPECT_EQ(errorWithIntegrator("asp_case1", {}), kNamesTaken);
 }
 
-}  // namespace
+}  // namespace config_signal_names_test
 }  // namespace fpc

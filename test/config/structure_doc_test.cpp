@@ -13,7 +13,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace config_structure_doc_test {
 
 /// Default by key, from rows "| `key` | default | meaning |"; a cell may name several keys of one
 /// section.
@@ -152,5 +152,5 @@ TEST(StructureDocs, DefaultsAreThoseOfTheStructs) {
   }
 }
 
-}  // namespace
+}  // namespace config_structure_doc_test
 }  // namespace fpc

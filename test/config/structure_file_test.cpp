@@ -7,7 +7,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace config_structure_file_test {
 
 const std::string kSignals =
     "sample_time_s: 2\noutputs: {y: {unit: m}, z: {}}\ninputs: {u: {column: U1, unit: "
@@ -124,5 +124,5 @@ TEST(StructureFile, TheCasesOfTheThesisHaveItsRegressors) {
   EXPECT_EQ(s.submodels[1].clusters_max, 5);
 }
 
-}  // namespace
+}  // namespace config_structure_file_test
 }  // namespace fpc

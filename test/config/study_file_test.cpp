@@ -11,7 +11,7 @@
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_study_file_test {
 
 std::string text(const std::string& more = "") {
   return "loops: [a, b]\nseeds: 1:3,7\nvary: {k: [0.7, 1.3], c: {values: [2, 5]}}\n"
@@ -99,5 +99,5 @@ TEST(StudyFile, EveryShippedOneCanBeRead) {
   for (const auto& name : studyNames()) EXPECT_NO_THROW(readStudy(name)) << name;
 }
 
-}  // namespace
+}  // namespace config_study_file_test
 }  // namespace fpc

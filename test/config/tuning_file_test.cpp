@@ -13,7 +13,7 @@
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace config_tuning_file_test {
 
 std::string errorIn(const std::string& text) {
   return errorOf([&] { parseTuning(text, "t.yaml"); });
@@ -182,5 +182,5 @@ TEST(TuningFile, EveryShippedOneCanBeRead) {
   for (const auto& name : tuningNames()) EXPECT_NO_THROW(readTuning(name)) << name;
 }
 
-}  // namespace
+}  // namespace config_tuning_file_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "control/session_fixture.hpp"
 
 namespace fpc::test_session {
-namespace {
+namespace control_affine_law_test {
 
 /// s follows the load x q_i / 2.6e6, gain 4.
 AffineTerm load(double lag_h = 0.0) { return {0, {1}, {0}, 2.6e6, 4.0, lag_h}; }
@@ -52,5 +52,5 @@ TEST(AffineLaw, MistakesAreNamed) {
   EXPECT_NE(words({0, {1}, {}, 1.0, 1.0, -1.0}).find("lag_h"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace control_affine_law_test
 }  // namespace fpc::test_session

@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace fpc {
-namespace {
+namespace control_bumpless_transfer_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -52,5 +52,5 @@ TEST(BumplessTransfer, BetweenTwoLawsTheOlderOnesInputIsKept) {
   EXPECT_EQ(plan, (Matrix(1, 3) << 7.0, 8.0, 8.5).finished());
 }
 
-}  // namespace
+}  // namespace control_bumpless_transfer_test
 }  // namespace fpc

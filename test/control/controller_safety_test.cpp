@@ -2,7 +2,7 @@
 #include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
-namespace {
+namespace control_controller_safety_test {
 
 using namespace test_session;
 
@@ -219,5 +219,5 @@ TEST(ControllerSessionWithPi, ManualAndBackIsBumplessWithPi) {
   EXPECT_NEAR(next(5), 400.02, 1e-9);
 }
 
-}  // namespace
+}  // namespace control_controller_safety_test
 }  // namespace fpc

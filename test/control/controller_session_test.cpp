@@ -1,7 +1,7 @@
 #include "control/session_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_controller_session_test {
 
 using namespace test_session;
 
@@ -295,5 +295,5 @@ TEST(ControllerSession, BadConstructionNamesTheField) {
   EXPECT_THROW(ControllerSession(nullptr, setpoints(), limits(), of({1.0}), plant()), InputError);
 }
 
-}  // namespace
+}  // namespace control_controller_session_test
 }  // namespace fpc

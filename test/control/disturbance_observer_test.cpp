@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_disturbance_observer_test {
 
 ObserverParams params(double noise, double change) {
   ObserverParams p;
@@ -136,5 +136,5 @@ TEST(DisturbanceObserver, MistakesNameTheirKey) {
   EXPECT_NE(errorWith(p).find("adaptation"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace control_disturbance_observer_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "control/session_fixture.hpp"
 
 namespace fpc::test_session {
-namespace {
+namespace control_guard_test {
 
 /// Asks for the same input always.
 struct Wish final : Controller {
@@ -159,5 +159,5 @@ TEST_F(Guard, MistakesNameTheirKey) {
   names(errorWith([](GuardParams& p) { p.lock_outputs = {2}; }), "guard.lock_outputs");
 }
 
-}  // namespace
+}  // namespace control_guard_test
 }  // namespace fpc::test_session

@@ -7,7 +7,7 @@
 #include "fmbpc/control/guard.hpp"
 
 namespace fpc::test_session {
-namespace {
+namespace control_horizon_trust_test {
 
 /// A law that plans 20 samples: x rises by `slope` in each of them.
 struct Planner final : Controller, PlanView {
@@ -100,5 +100,5 @@ TEST(HorizonTrust, APredictiveActionIsRunForward) {
   EXPECT_EQ(trust.trustedSteps(), 1);
 }
 
-}  // namespace
+}  // namespace control_horizon_trust_test
 }  // namespace fpc::test_session

@@ -7,7 +7,7 @@
 #include "fmbpc/control/guard.hpp"
 
 namespace fpc {
-namespace {
+namespace control_lock_up_test {
 
 GuardParams params() {
   GuardParams p;
@@ -98,5 +98,5 @@ TEST(LockUp, ZeroSamplesSwitchItOff) {
   EXPECT_EQ(lock.upper(), 1.0);
 }
 
-}  // namespace
+}  // namespace control_lock_up_test
 }  // namespace fpc

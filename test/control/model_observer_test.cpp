@@ -6,7 +6,7 @@
 #include <cmath>
 
 namespace fpc {
-namespace {
+namespace control_model_observer_test {
 
 /// y(k+1) = 0.8 y(k) + 0.5 u(k) + 0.1.
 TsModel model() {
@@ -72,5 +72,5 @@ TEST(ModelObserver, GoesOnFromAnotherOne) {
   EXPECT_EQ(first.disturbance(), second.disturbance());
 }
 
-}  // namespace
+}  // namespace control_model_observer_test
 }  // namespace fpc

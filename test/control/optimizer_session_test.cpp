@@ -7,7 +7,7 @@
 #include "fmbpc/control/session.hpp"
 
 namespace fpc {
-namespace {
+namespace control_optimizer_session_test {
 
 constexpr int kSteps = 8;  // n_c
 
@@ -293,5 +293,5 @@ TEST(OptimizerSession, BadParamsAreRefusedAtConstruction) {
   EXPECT_THROW(OptimizerSession(params(), limits, plant()), InputError);
 }
 
-}  // namespace
+}  // namespace control_optimizer_session_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "fmbpc/control/estimating_controller.hpp"
 
 namespace fpc::test_session {
-namespace {
+namespace control_output_estimator_test {
 
 /// h(k+1) = 0.9 h + u, y(k+1) = 0.5 y + 0.4 h: h is not measured.
 TsModel model() {
@@ -136,5 +136,5 @@ TEST(EstimatingController, TheLawSeesTheEstimateWhateverIsMeasured) {
   EXPECT_NEAR(law.seen.outputs[0], h, 0.05);
 }
 
-}  // namespace
+}  // namespace control_output_estimator_test
 }  // namespace fpc::test_session

@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_plausibility_test {
 
 PlantInfo plant() {
   PlantInfo info;
@@ -145,5 +145,5 @@ TEST(Plausibility, RefusesWhatMakesNoSense) {
   EXPECT_THROW(Plausibility(p, plant()), InputError);
 }
 
-}  // namespace
+}  // namespace control_plausibility_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "random/dice.hpp"
 
 namespace fpc {
-namespace {
+namespace control_reaction_watch_test {
 
 constexpr int kWindow = 40;
 
@@ -121,5 +121,5 @@ TEST(ReactionWatch, AWindowOfFewSamplesIsRefused) {
   EXPECT_THROW(ReactionWatch(model(), 7), InputError);
 }
 
-}  // namespace
+}  // namespace control_reaction_watch_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "random/dice.hpp"
 
 namespace fpc {
-namespace {
+namespace control_recent_samples_test {
 
 /// y(k+1) = a y(k) + b u(k).
 TsModel model(double a, double b) {
@@ -67,5 +67,5 @@ TEST(RecentSamples, AModelThatTurnsAGainMustForeseeWhatCame) {
   }
 }
 
-}  // namespace
+}  // namespace control_recent_samples_test
 }  // namespace fpc

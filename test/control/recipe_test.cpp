@@ -7,7 +7,7 @@
 #include "fmbpc/control/setpoint_source.hpp"
 
 namespace fpc {
-namespace {
+namespace control_recipe_test {
 
 Vector two(double first, double second) {
   Vector values(2);
@@ -74,5 +74,5 @@ TEST(SetpointSource, CommandsActWhileTheScheduleIsHeld) {
   EXPECT_EQ(s.advance(1)[1], 1500.0);
 }
 
-}  // namespace
+}  // namespace control_recipe_test
 }  // namespace fpc

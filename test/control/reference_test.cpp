@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_reference_test {
 
 using test::pair;
 
@@ -64,5 +64,5 @@ TEST(ReferenceTrajectory, PolesOutsideTheUnitIntervalAreRefused) {
   EXPECT_THROW(ReferenceTrajectory(pair(std::nan(""), 0.5), false), InputError);
 }
 
-}  // namespace
+}  // namespace control_reference_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "fmbpc/control/session.hpp"
 
 namespace fpc {
-namespace {
+namespace control_session_allocation_test {
 
 PlantInfo plant() {
   PlantInfo info;
@@ -109,5 +109,5 @@ TEST(SessionAllocation, OptimizerSessionDoesNotAllocatePerSample) {
   EXPECT_EQ(solved, 199u - 19u);
 }
 
-}  // namespace
+}  // namespace control_session_allocation_test
 }  // namespace fpc

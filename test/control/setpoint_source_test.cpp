@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_setpoint_source_test {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kStart = 1234.5;               // t0 [s]
@@ -282,5 +282,5 @@ TEST(SetpointParams, ValidationNamesTheField) {
   EXPECT_THROW(source(p), InputError);
 }
 
-}  // namespace
+}  // namespace control_setpoint_source_test
 }  // namespace fpc

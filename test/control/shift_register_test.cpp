@@ -7,7 +7,7 @@
 #include "fmbpc/control/excitation/excitation.hpp"
 
 namespace fpc {
-namespace {
+namespace control_shift_register_test {
 
 std::vector<int> signs(int bits, std::size_t count) {
   ShiftRegister shift(bits, 1);
@@ -64,5 +64,5 @@ TEST(ShiftRegister, NeverStartsFromZeroWhateverTheStateIs) {
   EXPECT_THROW(ShiftRegister(21, 1), InputError);
 }
 
-}  // namespace
+}  // namespace control_shift_register_test
 }  // namespace fpc

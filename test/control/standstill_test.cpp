@@ -7,7 +7,7 @@
 #include "control/session_fixture.hpp"
 
 namespace fpc::test_session {
-namespace {
+namespace control_standstill_test {
 
 constexpr int kWindow = 5;
 
@@ -120,5 +120,5 @@ TEST_F(Standstill, MistakesAreNamed) {
   EXPECT_THROW(make(p), InputError);
 }
 
-}  // namespace
+}  // namespace control_standstill_test
 }  // namespace fpc::test_session

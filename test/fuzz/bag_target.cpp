@@ -18,7 +18,7 @@
 #include "ros/conversions.hpp"
 
 namespace fpc::fuzz {
-namespace {
+namespace fuzz_bag_target {
 
 const RunRecord& example() {
   static const RunRecord record =
@@ -78,7 +78,7 @@ void checkTable(const CsvTable& table) {
       throw std::logic_error("times that do not increase");
 }
 
-}  // namespace
+}  // namespace fuzz_bag_target
 
 void bag(const std::string& text) {
   Bytes bytes(text);

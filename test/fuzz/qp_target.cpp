@@ -9,7 +9,7 @@
 #include "fuzz/targets.hpp"
 
 namespace fpc::fuzz {
-namespace {
+namespace fuzz_qp_target {
 
 using Eigen::Index;
 
@@ -63,7 +63,7 @@ void check(const QpProblem& p, const QpResult& result, const char* how) {
   }
 }
 
-}  // namespace
+}  // namespace fuzz_qp_target
 
 void qp(const std::string& text) {
   Bytes bytes(text);

@@ -12,7 +12,7 @@
 #include "paths.hpp"
 
 namespace fpc::fuzz {
-namespace {
+namespace fuzz_replay_test {
 
 class Replay : public ::testing::TestWithParam<NamedTarget> {};
 
@@ -69,5 +69,5 @@ INSTANTIATE_TEST_SUITE_P(Fuzz, Replay, ::testing::ValuesIn(targets()),
 INSTANTIATE_TEST_SUITE_P(Fuzz, RandomDecisions, ::testing::ValuesIn(ofDecisions()),
                          [](const auto& target) { return std::string(target.param.name); });
 
-}  // namespace
+}  // namespace fuzz_replay_test
 }  // namespace fpc::fuzz

@@ -15,7 +15,7 @@
 #include "fuzz/tolerant.hpp"
 
 namespace fpc::fuzz {
-namespace {
+namespace fuzz_text_targets {
 
 constexpr std::uint32_t kSamples = 30;
 
@@ -46,7 +46,7 @@ void runBriefly(const LoopFile& loop) {
   }
 }
 
-}  // namespace
+}  // namespace fuzz_text_targets
 
 void loopFile(const std::string& bytes) {
   tolerant([&] {

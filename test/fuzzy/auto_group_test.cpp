@@ -6,7 +6,7 @@
 #include "fuzzy/auto_search.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_auto_group_test {
 
 using Eigen::Index;
 
@@ -69,5 +69,5 @@ TEST(MeanBlockError, IsNotDecidedByOneBlockAlone) {
   EXPECT_GT(rmseOf(a, uneven.free_run), rmseOf(a, even.free_run)) << "squares say otherwise";
 }
 
-}  // namespace
+}  // namespace fuzzy_auto_group_test
 }  // namespace fpc

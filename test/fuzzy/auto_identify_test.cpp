@@ -12,7 +12,7 @@
 #include "fmbpc/fuzzy/prediction.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_auto_identify_test {
 
 using Eigen::Index;
 using Law = std::function<double(double y, double u)>;
@@ -174,5 +174,5 @@ TEST(AutoIdentify, RefusesWhatItCannotSearch) {
   EXPECT_THROW(autoIdentify(data, quick(false)), InputError);
 }
 
-}  // namespace
+}  // namespace fuzzy_auto_identify_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "base/random.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_auto_stress_test {
 
 using Eigen::Index;
 
@@ -72,5 +72,5 @@ TEST(AutoStress, GapsAreSteppedOver) {
   EXPECT_TRUE(endures(model(2, 1.5, 0.7), model(1, 0.0, 0.0), data, {{0, 300}}));
 }
 
-}  // namespace
+}  // namespace fuzzy_auto_stress_test
 }  // namespace fpc

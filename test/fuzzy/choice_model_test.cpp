@@ -9,7 +9,7 @@
 #include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_choice_model_test {
 
 Matrix valves() {  // eq. 43
   Matrix P(3, 7);
@@ -133,5 +133,5 @@ TEST(HybridModel, FileAndBackLosesNothing) {
   }
 }
 
-}  // namespace
+}  // namespace fuzzy_choice_model_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "fmbpc/fuzzy/cluster_validity.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_clustering_test {
 
 /// Normal clouds around (0, 0), (6, 0), (12, 0)...
 Matrix clouds(int count, Eigen::Index each, std::uint64_t seed, double spread = 0.5) {
@@ -206,5 +206,5 @@ TEST(ClusterValidity, BothIndicesPreferTheTrueNumberOfCloudsOnHeldOutPoints) {
   }
 }
 
-}  // namespace
+}  // namespace fuzzy_clustering_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "fuzzy/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_consequents_test {
 
 struct Problem {
   Regression rows;
@@ -135,5 +135,5 @@ TEST(Consequents, EvidenceAddsUpToTheSamples) {
   EXPECT_NEAR(static_cast<double>(p.model.rules[0].data_count), fits[0].evidence, 0.5);
 }
 
-}  // namespace
+}  // namespace fuzzy_consequents_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_data_set_test {
 
 Structure structureWith(const std::string& rest = "") {
   return parseStructure(
@@ -191,5 +191,5 @@ TEST(DataSet, TooFewRowsAndUnknownColumnsAreErrors) {
   contains(errorOf([](CsvTable& t) { t.names[2] = "v"; }), "'u'");
 }
 
-}  // namespace
+}  // namespace fuzzy_data_set_test
 }  // namespace fpc

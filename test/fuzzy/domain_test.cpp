@@ -13,7 +13,7 @@
 #include "fmbpc/fuzzy/ts_model.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_domain_test {
 
 /// Data on a ring of radius 1: the middle of the box has none.
 DataSet ring() {
@@ -130,5 +130,5 @@ TEST(Domain, SurvivesItsFileAndTheOrderOfThePlant) {
   EXPECT_EQ(trustOf(matched, point), 1.0);
 }
 
-}  // namespace
+}  // namespace fuzzy_domain_test
 }  // namespace fpc

@@ -11,7 +11,7 @@
 #include "fuzzy/column_model.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_fopdt_identification_test {
 
 Vector numeratorOf(const Fopdt& element, double sample_time, int terms) {
   const SampledFopdt lag = sampled(element, sample_time);
@@ -274,5 +274,5 @@ TEST(MisoEstimator, RefusesWhatItCannotDo) {
   EXPECT_THROW(MisoEstimator(1, 1.0, params), InputError);
 }
 
-}  // namespace
+}  // namespace fuzzy_fopdt_identification_test
 }  // namespace fpc

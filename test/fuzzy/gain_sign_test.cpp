@@ -6,7 +6,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_gain_sign_test {
 
 void takeOver(const TsModel& running, const TsModel& fresh, const Measurement& at) {
   requireFewTurned(turnedGains(running, fresh, at), fresh);
@@ -106,5 +106,5 @@ TEST(GainSign, EveryTurnedOutputIsNamed) {
             "model 'new' turns the sign of the gain from u to y1, u to y3");
 }
 
-}  // namespace
+}  // namespace fuzzy_gain_sign_test
 }  // namespace fpc

@@ -12,7 +12,7 @@
 #include "fuzzy/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_identify_test {
 
 using test::knownRecord;
 using test::knownStructure;
@@ -190,5 +190,5 @@ TEST(Identify, AFreeRunFitLowersTheFreeRunErrorAndKeepsOneStepErrorsSmall) {
   EXPECT_GT(after.outputs[0].free_run.iterations, 0);
 }
 
-}  // namespace
+}  // namespace fuzzy_identify_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_linear_model_test {
 
 double valueOf(const Regressor& r, const Matrix& outputs, const Matrix& inputs, Eigen::Index k) {
   const Matrix& from = r.kind == SignalKind::kOutput ? outputs : inputs;
@@ -77,5 +77,5 @@ TEST(LinearModel, RefusesElementsOfNobody) {
   EXPECT_THROW(linearModel(names, {}, {Vector::Zero(1), Vector::Zero(2), Vector()}), InputError);
 }
 
-}  // namespace
+}  // namespace fuzzy_linear_model_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_local_model_test {
 
 /// Newest first: signals as a person would write them down.
 struct History {
@@ -130,5 +130,5 @@ TEST(LocalModel, SaysWhenNoRuleFired) {
   EXPECT_TRUE(local.blend((Vector(3) << 60.0, 2000.0, 570.0).finished(), d));
 }
 
-}  // namespace
+}  // namespace fuzzy_local_model_test
 }  // namespace fpc

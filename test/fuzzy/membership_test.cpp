@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_membership_test {
 
 const double kMinusInfinity = -std::numeric_limits<double>::infinity();
 
@@ -95,5 +95,5 @@ TEST(Membership, WrongParametersAreRefusedByName) {
       (Membership{MembershipShape::kExponential, {1.0, 1.0, 1.0, 1.0}}.validate("the set")));
 }
 
-}  // namespace
+}  // namespace fuzzy_membership_test
 }  // namespace fpc

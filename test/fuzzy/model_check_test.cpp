@@ -9,7 +9,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_model_check_test {
 
 Measurement at(double y, double u) {
   Measurement m;
@@ -88,5 +88,5 @@ TEST(ModelCheck, CoefficientsBeyondAllNumbersAreNotStable) {
                InputError);
 }
 
-}  // namespace
+}  // namespace fuzzy_model_check_test
 }  // namespace fpc

@@ -5,7 +5,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_model_report_test {
 
 /// "s 2" for every remark whose text contains the word.
 std::set<std::string> rulesWith(const std::string& word, const TsModel& model) {
@@ -45,5 +45,5 @@ TEST(ModelReport, FindsPolesOfHigherOrderRules) {
   EXPECT_TRUE(reportModel(model).empty());
 }
 
-}  // namespace
+}  // namespace fuzzy_model_report_test
 }  // namespace fpc

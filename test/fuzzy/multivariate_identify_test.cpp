@@ -9,7 +9,7 @@
 #include "fuzzy/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_multivariate_identify_test {
 
 using Eigen::Vector2d;
 using test::knownStructure;
@@ -217,5 +217,5 @@ TEST(MultivariateOnline, APerfectModelStaysAndAWrongOneLearns) {
   EXPECT_LT(error(learning), 0.5 * error(untaught));
 }
 
-}  // namespace
+}  // namespace fuzzy_multivariate_identify_test
 }  // namespace fpc

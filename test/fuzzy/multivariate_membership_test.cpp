@@ -11,7 +11,7 @@
 #include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_multivariate_membership_test {
 
 using Eigen::Vector2d;
 
@@ -266,5 +266,5 @@ TEST(MultivariateModelFile, EveryMistakeNamesFileLineAndKey) {
          ":11: " + when + ".y(k)");
 }
 
-}  // namespace
+}  // namespace fuzzy_multivariate_membership_test
 }  // namespace fpc

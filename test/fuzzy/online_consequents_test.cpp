@@ -8,7 +8,7 @@
 #include "fuzzy/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_online_consequents_test {
 
 const Vector kNone(0);
 
@@ -97,5 +97,5 @@ TEST(OnlineConsequents, WrongSizesAreNamed) {
   EXPECT_THROW(online.take(Vector::Zero(1), Vector::Zero(1), Vector::Zero(1)), InputError);
 }
 
-}  // namespace
+}  // namespace fuzzy_online_consequents_test
 }  // namespace fpc

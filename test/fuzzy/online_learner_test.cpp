@@ -10,7 +10,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_online_learner_test {
 
 /// Measurement k of the record: y(k), u(k-1).
 Measurement sample(const Matrix& record, Eigen::Index k) {
@@ -88,5 +88,5 @@ TEST(OnlineLearner, BadParametersAreNamed) {
   EXPECT_THROW(OnlineLearner(wrongModel(), plant, params), InputError);
 }
 
-}  // namespace
+}  // namespace fuzzy_online_learner_test
 }  // namespace fpc

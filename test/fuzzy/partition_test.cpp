@@ -5,7 +5,7 @@
 #include <cmath>
 
 namespace fpc {
-namespace {
+namespace fuzzy_partition_test {
 
 const Vector kValues = Vector::LinSpaced(401, -2.0, 2.0);
 
@@ -64,5 +64,5 @@ TEST(Partition, ScalingCentersColumnsAndLeavesConstantOnesAlone) {
   EXPECT_EQ(columnScaling(values, Scaling::kNone).apply(values), values);
 }
 
-}  // namespace
+}  // namespace fuzzy_partition_test
 }  // namespace fpc

@@ -13,7 +13,7 @@
 #include "fuzzy/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_prior_knowledge_test {
 
 using Eigen::Index;
 
@@ -187,5 +187,5 @@ TEST(PriorKnowledge, StandsInStructureFilesForThoseWhoKeepIt) {
   EXPECT_THROW(parseStructure(text, "t.yaml"), InputError);
 }
 
-}  // namespace
+}  // namespace fuzzy_prior_knowledge_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "fuzzy/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_record_identification_test {
 
 const std::string kGrid = "partition: {method: grid}\nconsequents: {method: global, ridge: 0}\n";
 
@@ -82,5 +82,5 @@ TEST(IdentifyRecord, CancelledWhereverTheCallbackSaysSo) {
   }
 }
 
-}  // namespace
+}  // namespace fuzzy_record_identification_test
 }  // namespace fpc

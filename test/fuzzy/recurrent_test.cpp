@@ -8,7 +8,7 @@
 #include "base/random.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_recurrent_test {
 
 using Eigen::Index;
 
@@ -199,5 +199,5 @@ TEST(RecurrentRun, StatesAreHeldInsideTheirLimits) {
   EXPECT_EQ(runRecurrent(s, data, {0, 60}, p, prior, 1).maxCoeff(), 2.0);
 }
 
-}  // namespace
+}  // namespace fuzzy_recurrent_test
 }  // namespace fpc

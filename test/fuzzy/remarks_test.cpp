@@ -9,7 +9,7 @@
 #include "fmbpc/fuzzy/record_remarks.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_remarks_test {
 
 using Eigen::Index;
 
@@ -112,5 +112,5 @@ TEST(RecordRemarks, TellADelayThatTheRecordCannotTell) {
   EXPECT_FALSE(contains(searched(200), "doubtful"));
 }
 
-}  // namespace
+}  // namespace fuzzy_remarks_test
 }  // namespace fpc

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc {
-namespace {
+namespace fuzzy_rule_neighbour_test {
 
 Rule bell(double centre) {
   Rule rule;
@@ -65,5 +65,5 @@ TEST(RuleNeighbour, OfAnotherOperatingModeIsNone) {
   EXPECT_EQ(nearestFitted(model, fitted(3, {0, 2}), 0), -1);
 }
 
-}  // namespace
+}  // namespace fuzzy_rule_neighbour_test
 }  // namespace fpc

@@ -12,7 +12,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_sample_collector_test {
 
 Vector of(std::initializer_list<double> values) {
   Vector v(static_cast<Eigen::Index>(values.size()));
@@ -159,5 +159,5 @@ TEST(SampleCollector, SignalsThatThePlantLacksAreNamed) {
   EXPECT_THROW(collector.take(wrong), InputError);
 }
 
-}  // namespace
+}  // namespace fuzzy_sample_collector_test
 }  // namespace fpc

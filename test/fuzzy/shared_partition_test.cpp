@@ -8,7 +8,7 @@
 #include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_shared_partition_test {
 
 TEST(SharedPartition, WeighedRulesAddUpToTheModel) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -64,5 +64,5 @@ TEST(SharedPartition, OtherSetsAreRefusedNamingTheOutput) {
     }
 }
 
-}  // namespace
+}  // namespace fuzzy_shared_partition_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "fmbpc/fuzzy/record_remarks.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_state_model_test {
 
 using Eigen::Index;
 
@@ -156,5 +156,5 @@ TEST(Remarks, TellClosedLoopData) {
   EXPECT_TRUE(told);
 }
 
-}  // namespace
+}  // namespace fuzzy_state_model_test
 }  // namespace fpc

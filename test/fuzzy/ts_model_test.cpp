@@ -9,7 +9,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_ts_model_test {
 
 OutputModel twoRules(Membership first, Membership second) {
   OutputModel model;
@@ -143,5 +143,5 @@ TEST(TsModel, ValidateNamesThePartThatIsWrong) {
          [](TsModel& m) { m.submodels[0].rules[5].antecedents[1].parameters[0] = 1e9; });
 }
 
-}  // namespace
+}  // namespace fuzzy_ts_model_test
 }  // namespace fpc

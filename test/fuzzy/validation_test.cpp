@@ -9,7 +9,7 @@
 #include "fuzzy/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace fuzzy_validation_test {
 
 /// y(k+1) = a y(k) + b u(k) + c
 TsModel linearModel(double a, double b, double c) {
@@ -142,5 +142,5 @@ TEST(Validation, PolesAndGainsOfARuleAreKnown) {
   EXPECT_NEAR(dynamics[0].gains[0], 0.6 / 0.2, 1e-12);
 }
 
-}  // namespace
+}  // namespace fuzzy_validation_test
 }  // namespace fpc

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc {
-namespace {
+namespace loop_authority_test {
 
 TEST(Authority, OnlyTheNamedNodesSpeakOnAGuardedTopic) {
   Authority authority(Publishers{{"measurement", {"/plant_simulator"}}, {"setpoint", {}}});
@@ -36,5 +36,5 @@ TEST(RateLimit, LetsABurstThroughAndThenTheStatedRate) {
   for (int i = 0; i < 100; ++i) EXPECT_TRUE(limit.pass(101.0 + 0.1001 * i));
 }
 
-}  // namespace
+}  // namespace loop_authority_test
 }  // namespace fpc

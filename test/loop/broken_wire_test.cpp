@@ -12,7 +12,7 @@
 #include "random/dice.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_broken_wire_test {
 
 constexpr double kPeriod = 0.1;  // [s] of wall time per sample
 constexpr double kMove = 4.0;    // [l/min] that the PLC lets through at once
@@ -138,5 +138,5 @@ TEST(BrokenWire, AValveThatLiesAboutItsPositionDoesNotPutTheReactorOut) {
   }
 }
 
-}  // namespace
+}  // namespace loop_broken_wire_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_command_player_test {
 
 class Commands : public LoopFolder {
  protected:
@@ -207,5 +207,5 @@ TEST_F(Commands, ValuesBeyondTheRangesAreRefusedWithTheirPlace) {
               {"commands[0].hold", "setpoint.schedule"});
 }
 
-}  // namespace
+}  // namespace loop_command_player_test
 }  // namespace fpc

@@ -14,7 +14,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_controller_contract_test {
 
 constexpr std::uint32_t kSettle = 30, kRun = 60;  // samples
 constexpr double kRounding = 1e-9;                // of an input's range
@@ -266,5 +266,5 @@ TEST(ControllerRegistry, ParametersOfAnotherTypeAreNotGuessed) {
   EXPECT_EQ(findParams<Other>(*loop.controller), nullptr);
 }
 
-}  // namespace
+}  // namespace loop_controller_contract_test
 }  // namespace fpc

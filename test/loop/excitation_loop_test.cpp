@@ -12,7 +12,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_excitation_loop_test {
 
 std::string experiment(const std::string& signal) {
   return "plant:\n  type: activated_sludge\nsampling:\n  sample_time_s: 720\n  duration_h: 20\n"
@@ -108,5 +108,5 @@ TEST_F(ExcitationLoop, TheValidationRecordHasOtherLoadsAndOtherLevels) {
   EXPECT_NEAR(makeDisturbance(first).values.row(1).mean(), 366.67, 1e-9);
 }
 
-}  // namespace
+}  // namespace loop_excitation_loop_test
 }  // namespace fpc

@@ -5,7 +5,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_fuzzy_optimal_loop_test {
 
 LoopFile read(const Overrides& overrides) { return readLoop("mimo_cstr_steps", overrides); }
 
@@ -57,5 +57,5 @@ TEST(FuzzyOptimalLoop, MistakesAreNamed) {
               {"controller.horizon_steps", "effect"});
 }
 
-}  // namespace
+}  // namespace loop_fuzzy_optimal_loop_test
 }  // namespace fpc

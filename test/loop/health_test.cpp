@@ -5,7 +5,7 @@
 #include "fmbpc/loop/optimizer_watch.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_health_test {
 
 const std::vector<std::string> kNobody;
 Health health(LoopMode mode, const std::string& words = "") { return {mode, words, {}}; }
@@ -94,5 +94,5 @@ TEST(OptimizerWatch, PacedWaitsForTheStatedTimeAndLockstepForEver) {
   EXPECT_TRUE(lockstep.waitsInVain(1.1));  // and says so
 }
 
-}  // namespace
+}  // namespace loop_health_test
 }  // namespace fpc

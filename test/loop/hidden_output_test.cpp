@@ -11,7 +11,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_hidden_output_test {
 
 using Eigen::Index;
 
@@ -120,5 +120,5 @@ TEST(HiddenOutput, TheSectionNamesItsMistakes) {
               {"estimator.outputs", "fuzzy model"});
 }
 
-}  // namespace
+}  // namespace loop_hidden_output_test
 }  // namespace fpc

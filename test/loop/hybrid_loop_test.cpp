@@ -8,7 +8,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_hybrid_loop_test {
 
 LoopFile read(const Overrides& overrides) { return readLoop("batch_fuzzy_eq45", overrides); }
 
@@ -85,5 +85,5 @@ TEST(HybridLoop, MistakesAreNamed) {
   expectWords(error("model", "{}"), {"model.file", "hybrid_mpc"});
 }
 
-}  // namespace
+}  // namespace loop_hybrid_loop_test
 }  // namespace fpc

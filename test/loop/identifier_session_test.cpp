@@ -6,7 +6,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_identifier_session_test {
 
 /// What a run told of models.
 struct Told {
@@ -82,5 +82,5 @@ TEST(Run, IdentifiesByItselfAndHandsTheModelOver) {
   expectWords(told.models[0].source, {"samples up to 399"});
 }
 
-}  // namespace
+}  // namespace loop_identifier_session_test
 }  // namespace fpc

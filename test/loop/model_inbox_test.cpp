@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc {
-namespace {
+namespace loop_model_inbox_test {
 
 StepHeader header(std::uint32_t step, std::uint64_t run = 7) { return {0, run, step}; }
 TsModel model(const std::string& name) {
@@ -74,5 +74,5 @@ TEST(ModelInbox, AnIdentifierThatCameBackLaterDoesNotStallTheLoop) {
   EXPECT_TRUE(inbox.complete(header(10)));
 }
 
-}  // namespace
+}  // namespace loop_model_inbox_test
 }  // namespace fpc

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc {
-namespace {
+namespace loop_pacer_test {
 
 constexpr double kStart = 1000.0;
 double at(double seconds) { return kStart + seconds; }
@@ -53,5 +53,5 @@ TEST(Pacer, RemainingTimeIsNeverZero) {
   EXPECT_GT(pacer.remaining(at(5.0)), 0.0);
 }
 
-}  // namespace
+}  // namespace loop_pacer_test
 }  // namespace fpc

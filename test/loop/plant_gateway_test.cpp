@@ -9,7 +9,7 @@
 #include "random/dice.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_plant_gateway_test {
 
 /// Everything has come, and the loop runs, at time 0.
 PlantGateway ready(const LoopFile& loop, double position = 2.0) {
@@ -264,5 +264,5 @@ TEST(PlantGateway, ALoopWithoutOneHasNone) {
   EXPECT_THROW(PlantGateway(gatewayLoop("  type: none\n")), InputError);
 }
 
-}  // namespace
+}  // namespace loop_plant_gateway_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_plant_session_test {
 
 /// A plant of 5 samples with an input inside [0, 1600].
 PlantSession session(Pace pace, const Overrides& more = {}) {
@@ -164,5 +164,5 @@ TEST(PlantSession, ANewRunMayHaveASmallerNumber) {
   EXPECT_TRUE(plant.receive(action(0, 600.0, 3)));
 }
 
-}  // namespace
+}  // namespace loop_plant_session_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_plausible_session_test {
 
 /// 120 samples of the activated sludge loop; x may be in [0, 3500] and more.
 LoopFile loopWith(const Overrides& more) {
@@ -196,5 +196,5 @@ TEST(PlausibleSession, NoShippedLoopIsDoubted) {
   EXPECT_GT(seen, 30U);
 }
 
-}  // namespace
+}  // namespace loop_plausible_session_test
 }  // namespace fpc

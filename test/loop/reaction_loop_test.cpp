@@ -6,7 +6,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_reaction_loop_test {
 
 /// The stirred tank with a valve that nobody reads back: the command is taken for what is in force.
 class BlindValve {
@@ -107,5 +107,5 @@ TEST(PlantBounds, AFallbackMustBeThere) {
   EXPECT_NO_THROW(params.validate(1, 0, 1));
 }
 
-}  // namespace
+}  // namespace loop_reaction_loop_test
 }  // namespace fpc

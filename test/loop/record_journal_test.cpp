@@ -11,7 +11,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_record_journal_test {
 
 class RecordJournalTest : public LoopFolder {
  protected:
@@ -115,5 +115,5 @@ TEST_F(RecordJournalTest, AFullDiskIsSaidAndWhatItRefusedIsWrittenOnceThereIsRoo
   EXPECT_EQ(textOf(readJournal(path("journal"), layout_)), textOf(record_));
 }
 
-}  // namespace
+}  // namespace loop_record_journal_test
 }  // namespace fpc

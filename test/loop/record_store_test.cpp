@@ -8,7 +8,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_record_store_test {
 
 /// Largest memory of this process since the last call [kB]; 0 where the system does not say.
 double peakSinceLastCall() {
@@ -82,5 +82,5 @@ TEST_F(RecordStoreTest, MemoryDoesNotGrowWithTheRun) {
   EXPECT_LT(peakSinceLastCall() - before, 3000.0);  // 21600 when the record was read whole
 }
 
-}  // namespace
+}  // namespace loop_record_store_test
 }  // namespace fpc

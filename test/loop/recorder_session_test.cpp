@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc {
-namespace {
+namespace loop_recorder_session_test {
 
 StepHeader header(std::uint32_t step, std::uint64_t run = 7) { return {1000 + step, run, step}; }
 
@@ -199,5 +199,5 @@ TEST_F(RecorderSessionTest, WrongSizesAreCounted) {
   EXPECT_FALSE(r.running());
 }
 
-}  // namespace
+}  // namespace loop_recorder_session_test
 }  // namespace fpc

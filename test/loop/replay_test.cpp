@@ -9,7 +9,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_replay_test {
 
 class ReplayOfRuns : public LoopFolder {
  protected:
@@ -97,5 +97,5 @@ TEST_F(ReplayOfRuns, ARecordWithoutItsModelIsRefused) {
   EXPECT_FALSE(ReplayResult{}.equal());  // nothing compared is not equal
 }
 
-}  // namespace
+}  // namespace loop_replay_test
 }  // namespace fpc

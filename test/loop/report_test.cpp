@@ -11,7 +11,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_report_test {
 
 using Report = LoopFolder;
 
@@ -226,5 +226,5 @@ TEST_F(Report, TheTableHasALinePerOutputAndPerInput) {
   EXPECT_NE(table.find("mean move"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace loop_report_test
 }  // namespace fpc

@@ -13,7 +13,7 @@
 #include "loop/loops_of_type.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_retune_contract_test {
 
 constexpr std::uint32_t kSettle = 30, kRun = 60;  // samples
 constexpr double kRounding = 1e-9;                // of an input's range
@@ -137,5 +137,5 @@ TEST(RetuneRegistry, TheTypesThatCanBeRetunedAreKnown) {
     EXPECT_NE(std::find(types.begin(), types.end(), name), types.end()) << name;
 }
 
-}  // namespace
+}  // namespace loop_retune_contract_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_run_test {
 
 LoopFile shortLoop(const std::string& name, Overrides overrides = {}) {
   overrides.emplace_back("sampling.duration_h", "40");
@@ -126,5 +126,5 @@ TEST(Run, EndlessAndExternalLoopsAreRefused) {
   expectWords(errorOf([] { makeOptimizerSession(readLoop("asp_case1")); }), {"asp_case1", "clp"});
 }
 
-}  // namespace
+}  // namespace loop_run_test
 }  // namespace fpc

@@ -3,7 +3,7 @@
 #include "loop/gateway_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace loop_stuck_watch_test {
 
 StuckWatch watch() {
   return StuckWatch({3, 0.02}, {one(0.0), one(10.0), one(1.0)}, {{"inflow", "m3/h", 0, 10}});
@@ -25,5 +25,5 @@ TEST(StuckWatch, WhatTheLimitsHoldBackIsNotStuck) {
   EXPECT_EQ(stuck.words(), "");
 }
 
-}  // namespace
+}  // namespace loop_stuck_watch_test
 }  // namespace fpc

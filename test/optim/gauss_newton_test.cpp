@@ -9,7 +9,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace optim_gauss_newton_test {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
@@ -148,5 +148,5 @@ TEST(GaussNewton, SettingsAreCheckedByName) {
   refuses(c, "difference");
 }
 
-}  // namespace
+}  // namespace optim_gauss_newton_test
 }  // namespace fpc

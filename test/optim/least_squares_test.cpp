@@ -7,7 +7,7 @@
 #include <random>
 
 namespace fpc {
-namespace {
+namespace optim_least_squares_test {
 
 TEST(LeastSquares, ALineThroughItsPointsIsFoundExactly) {
   LeastSquares squares(2);
@@ -84,5 +84,5 @@ TEST(LeastSquares, NoRowsGiveZeros) {
   EXPECT_EQ(squares.solve().rank, 0);
 }
 
-}  // namespace
+}  // namespace optim_least_squares_test
 }  // namespace fpc

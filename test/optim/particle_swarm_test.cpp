@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace optim_particle_swarm_test {
 
 Vector two(double a, double b) { return (Vector(2) << a, b).finished(); }
 
@@ -113,5 +113,5 @@ TEST(ParticleSwarm, RefusesWhatIsNoBox) {
   EXPECT_THROW(minimizeBySwarm(bowl, two(0, 0), two(1, 1), params), InputError);
 }
 
-}  // namespace
+}  // namespace optim_particle_swarm_test
 }  // namespace fpc

@@ -11,7 +11,7 @@
 #include "fmbpc/optim/particle_swarm.hpp"
 
 namespace fpc {
-namespace {
+namespace optim_population_search_test {
 
 /// 0 at (0.3, ..., 0.3).
 double sphere(const Vector& x) { return (x.array() - 0.3).square().sum(); }
@@ -212,5 +212,5 @@ TEST(PopulationSearch, MistakesAreNamed) {
   EXPECT_THROW(makeSearch(paramsOf("random", 10), Vector::Ones(2), Vector::Zero(2)), InputError);
 }
 
-}  // namespace
+}  // namespace optim_population_search_test
 }  // namespace fpc

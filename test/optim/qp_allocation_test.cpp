@@ -10,7 +10,7 @@
 #include "optim/qp_problems.hpp"
 
 namespace fpc::testing {
-namespace {
+namespace optim_qp_allocation_test {
 
 /// A pointer that the compiler must take for used, so that it keeps the allocation.
 void keep(void* pointer) { asm volatile("" : : "g"(pointer) : "memory"); }
@@ -92,5 +92,5 @@ TEST(QpAllocation, NoOutcomeOnRandomProblemsAllocates) {
   EXPECT_GT(failed, 50);
 }
 
-}  // namespace
+}  // namespace optim_qp_allocation_test
 }  // namespace fpc::testing

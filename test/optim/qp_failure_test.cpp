@@ -9,7 +9,7 @@
 #include "optim/qp_problems.hpp"
 
 namespace fpc::testing {
-namespace {
+namespace optim_qp_failure_test {
 
 /// Infeasible counts only with its proof.
 SolveStatus statusOf(const QpProblem& p) {
@@ -206,5 +206,5 @@ TEST(KktResidual, RowOfTheWrongSignIsSeen) {
   EXPECT_DOUBLE_EQ(kktResidual(p, x, none, Vector::Constant(1, 1.0)), 0.5);
 }
 
-}  // namespace
+}  // namespace optim_qp_failure_test
 }  // namespace fpc::testing

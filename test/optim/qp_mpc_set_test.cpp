@@ -11,7 +11,7 @@
 #include "optim/qp_problems.hpp"
 
 namespace fpc::testing {
-namespace {
+namespace optim_qp_mpc_set_test {
 
 const char* nameOf(SolveStatus status) {
   if (status == SolveStatus::kSolved) return "solved";
@@ -91,5 +91,5 @@ TEST(QpMpcSet, TheLargeOneIsSolvedFromOtherStatesToo) {
   }
 }
 
-}  // namespace
+}  // namespace optim_qp_mpc_set_test
 }  // namespace fpc::testing

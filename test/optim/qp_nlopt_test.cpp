@@ -13,7 +13,7 @@
 #include "optim/qp_problems.hpp"
 
 namespace fpc::testing {
-namespace {
+namespace optim_qp_nlopt_test {
 
 using VectorMap = Eigen::Map<const Vector>;
 
@@ -86,5 +86,5 @@ TEST(QpBesideNlopt, SlsqpFindsTheSamePointOnScaledProblems) {
   std::cout << "compared " << compared << ", largest difference " << worst << "\n";
 }
 
-}  // namespace
+}  // namespace optim_qp_nlopt_test
 }  // namespace fpc::testing

@@ -8,7 +8,7 @@
 #include "optim/qp_problems.hpp"
 
 namespace fpc::testing {
-namespace {
+namespace optim_qp_property_test {
 
 double distance(const Vector& a, const Vector& b) {
   return a.size() > 0 ? (a - b).lpNorm<Eigen::Infinity>() : 0.0;
@@ -271,5 +271,5 @@ TEST(QpProperty, GarbageNeverThrowsAndIsNeverCalledSolved) {
   EXPECT_GT(solved, 100);  // some of it was harmless
 }
 
-}  // namespace
+}  // namespace optim_qp_property_test
 }  // namespace fpc::testing

@@ -8,7 +8,7 @@
 #include "optim/qp_problems.hpp"
 
 namespace fpc::testing {
-namespace {
+namespace optim_qp_semidefinite_test {
 
 double costOf(const QpProblem& p, const Vector& x) { return 0.5 * x.dot(p.H * x) + p.g.dot(x); }
 
@@ -227,5 +227,5 @@ TEST(QpInfeasible, ProofsThatProveNothingHaveNoRadius) {
   EXPECT_EQ(farkasRadius(p, y_x, y_a), 0.0);
 }
 
-}  // namespace
+}  // namespace optim_qp_semidefinite_test
 }  // namespace fpc::testing

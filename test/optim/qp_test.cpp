@@ -9,7 +9,7 @@
 #include "optim/qp_problems.hpp"
 
 namespace fpc::testing {
-namespace {
+namespace optim_qp_test {
 
 void expectVector(const Vector& actual, std::initializer_list<double> expected) {
   ASSERT_EQ(actual.size(), static_cast<Eigen::Index>(expected.size()));
@@ -233,5 +233,5 @@ TEST(Qp, SolverCanBeMoved) {
   EXPECT_TRUE(second.solve(nearestPointOfHalfPlane()).usable());
 }
 
-}  // namespace
+}  // namespace optim_qp_test
 }  // namespace fpc::testing

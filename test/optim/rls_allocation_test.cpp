@@ -4,7 +4,7 @@
 #include "fmbpc/optim/rls.hpp"
 
 namespace fpc {
-namespace {
+namespace optim_rls_allocation_test {
 
 TEST(RecursiveLeastSquares, AnUpdateDoesNotAllocate) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
@@ -20,5 +20,5 @@ TEST(RecursiveLeastSquares, AnUpdateDoesNotAllocate) {
   EXPECT_EQ(counter.count(), 0U);
 }
 
-}  // namespace
+}  // namespace optim_rls_allocation_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace optim_rls_test {
 
 struct Samples {
   Matrix x;
@@ -147,5 +147,5 @@ TEST(RecursiveLeastSquares, BadParametersAreNamed) {
   EXPECT_THROW(RecursiveLeastSquares(Vector(), {}), InputError);
 }
 
-}  // namespace
+}  // namespace optim_rls_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace optim_tree_search_test {
 
 /// x(k+1) = a x + b(choice), cost (x - target(level))^2 + a charge for some pairs of choices.
 struct RandomTree final : TreeProblem {
@@ -146,5 +146,5 @@ TEST(TreeSearch, EachParameterIsChecked) {
   EXPECT_NO_THROW(TreeSearch(1, 2, {4, false, 8}));
 }
 
-}  // namespace
+}  // namespace optim_tree_search_test
 }  // namespace fpc

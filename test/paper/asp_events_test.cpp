@@ -11,7 +11,7 @@
 #include "fmbpc/study/run_judgement.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_asp_events_test {
 
 struct Case {
   const char* bound;
@@ -75,5 +75,5 @@ TEST(Burst, IsNotExpectedAgainAsMuchByALawThatLearnsWhatItsForecastIsWorth) {
   EXPECT_LE(learning, 2.0 / 3.0 * trusting);
 }
 
-}  // namespace
+}  // namespace paper_asp_events_test
 }  // namespace fpc

@@ -15,7 +15,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_asp_excite_test {
 
 CsvTable recorded(const std::string& name) {
   const LoopFile loop = readLoop(name);
@@ -71,5 +71,5 @@ TEST(AspExcite, TheRecordedSludgeLiftsTheBiomassAbove97OnTheOtherRecord) {
   EXPECT_GT(outcomeOf("asp_d_xr").held_out[1].free_run.vaf, 97.0);
 }
 
-}  // namespace
+}  // namespace paper_asp_excite_test
 }  // namespace fpc

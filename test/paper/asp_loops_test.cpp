@@ -13,7 +13,7 @@
 #include "fmbpc/loop/run.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_asp_loops_test {
 
 constexpr int kWeeks = 8;
 
@@ -125,5 +125,5 @@ TEST(AspRealInfluent, RunsToTheEndInsideItsLimits) {
   }
 }
 
-}  // namespace
+}  // namespace paper_asp_loops_test
 }  // namespace fpc

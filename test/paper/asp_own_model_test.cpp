@@ -14,7 +14,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_asp_own_model_test {
 
 struct Weeks {
   std::vector<double> ise_s, ise_x, move;
@@ -125,5 +125,5 @@ TEST(AspOwnModel, TheShippedFilesAreWhatIdentificationGivesFromTheShippedExperim
   }
 }
 
-}  // namespace
+}  // namespace paper_asp_own_model_test
 }  // namespace fpc

@@ -12,7 +12,7 @@
 #include "fmbpc/loop/run.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_batch_loops_test {
 
 struct Pooled {
   double rms[3]{};  // windows at 62, 26, 35 degC
@@ -108,5 +108,5 @@ TEST(BatchLoops, LongerBlocksControlWorse) {
   }
 }
 
-}  // namespace
+}  // namespace paper_batch_loops_test
 }  // namespace fpc

@@ -11,7 +11,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_bsm1_faults_test {
 
 /// From 8 days before the end to the end.
 const std::string kFrom = "192", kTo = "384";
@@ -81,5 +81,5 @@ TEST(Bsm1Faults, AHealthyPlantIsNotAccused) {
   EXPECT_LE(ours.effluent.EQI, run("bsm1_own_default", {}).effluent.EQI);
 }
 
-}  // namespace
+}  // namespace paper_bsm1_faults_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_bsm1_loops_test {
 
 EffluentReport evaluated(const std::string& name, const Overrides& overrides = {}) {
   const LoopFile loop = readLoop(name, overrides);
@@ -119,5 +119,5 @@ TEST(Bsm1OwnInfluent, FmbpcBeatsTheDefaultWhereNothingWasTuned) {
   EXPECT_LT(ours.OCI, is.OCI);
 }
 
-}  // namespace
+}  // namespace paper_bsm1_loops_test
 }  // namespace fpc

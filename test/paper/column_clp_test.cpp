@@ -12,7 +12,7 @@
 #include "paper/plain_mpc.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_column_clp_test {
 
 using test::columnIndices;
 using test::columnRun;
@@ -154,5 +154,5 @@ TEST(ColumnClp, WorksTheSameOnAModelIdentifiedFromTheMeasuredSums) {
   EXPECT_EQ(identified.violations, 0U);
 }
 
-}  // namespace
+}  // namespace paper_column_clp_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "paper/column_run.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_column_loops_test {
 
 using test::columnIndices;
 using test::columnRun;
@@ -199,5 +199,5 @@ TEST(ColumnAdaptation, SurvivesNoiseAnUnmeasuredFeedAndASensorThatTellsNonsense)
   EXPECT_LT(hit.bottom, 1.1 * hit_best.bottom);
 }
 
-}  // namespace
+}  // namespace paper_column_loops_test
 }  // namespace fpc

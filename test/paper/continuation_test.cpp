@@ -8,7 +8,7 @@
 #include "fmbpc/loop/plant_continuation.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_continuation_test {
 
 std::vector<SpecialPoint> allOf(const std::vector<Branch>& branches, SpecialKind kind) {
   std::vector<SpecialPoint> found;
@@ -65,5 +65,5 @@ TEST(SludgeContinuation, FindsTheHumpOfTheBiomass) {
   EXPECT_NEAR(humps[0].state[1], 2128.0, 1.0);
 }
 
-}  // namespace
+}  // namespace paper_continuation_test
 }  // namespace fpc

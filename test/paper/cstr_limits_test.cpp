@@ -11,7 +11,7 @@
 #include "fmbpc/loop/run.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_cstr_limits_test {
 
 Overrides bounds(const std::string& lower, const std::string& upper) {
   return {{"actuator.input_lower.q_c", lower}, {"actuator.input_upper.q_c", upper}};
@@ -93,5 +93,5 @@ TEST(CstrLimits, TheLawKeepsItsLeadWithinBounds) {
   }
 }
 
-}  // namespace
+}  // namespace paper_cstr_limits_test
 }  // namespace fpc

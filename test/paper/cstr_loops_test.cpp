@@ -12,7 +12,7 @@
 #include "fmbpc/loop/run.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_cstr_loops_test {
 
 RunRecord recordOf(const std::string& name, const Overrides& overrides = {}) {
   const RunRecord record = runLoop(readLoop(name, overrides));
@@ -162,5 +162,5 @@ TEST(CstrReference, NoLawIsBetterThanTheDeadTimeAllows) {
   EXPECT_LT(disturbance, score("cstr_disturbance_preview"));
 }
 
-}  // namespace
+}  // namespace paper_cstr_loops_test
 }  // namespace fpc

@@ -16,7 +16,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_cstr_own_model_test {
 
 TsModel identified(int seed) {
   const LoopFile loop = readLoop("cstr_excite", {{"controller.seed", std::to_string(seed)}});
@@ -87,5 +87,5 @@ TEST(CstrOwnModelFile, IsTheOneOfTheFirstSeed) {
   }
 }
 
-}  // namespace
+}  // namespace paper_cstr_own_model_test
 }  // namespace fpc

@@ -13,7 +13,7 @@
 #include "paper/paper_plant.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_fm_1_one_step_test {
 
 /// q_r uniform in 400..1600 m3/h, each value held for 2 to 12 h.
 std::vector<double> recirculation(std::uint64_t seed) {
@@ -60,5 +60,5 @@ TEST(Fm1, OneStepErrorOfSubstrateIsBelow2Point5) {
   }
 }
 
-}  // namespace
+}  // namespace paper_fm_1_one_step_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "paper/paper_plant.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_fmbpc_offset_test {
 
 double finalOffset(const FmbpcParams& params, const Vector& constant_loads) {
   const SimulationParams simulation = test::paperPlant(constant_loads, 1600.0);
@@ -42,5 +42,5 @@ TEST(Fm1, BiomassEndsWithinHalfAMilligramOfItsSetpoint) {
     }
 }
 
-}  // namespace
+}  // namespace paper_fmbpc_offset_test
 }  // namespace fpc

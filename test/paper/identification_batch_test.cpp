@@ -22,7 +22,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_identification_batch_test {
 
 constexpr int kSamples = 5000;
 
@@ -183,5 +183,5 @@ TEST(IdentificationBatch, ARuleWithoutSamplesTakesItsNeighbourOfTheSameModeAndSa
   EXPECT_NE(found.remarks.back().find("rule 9 stands in"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace paper_identification_batch_test
 }  // namespace fpc

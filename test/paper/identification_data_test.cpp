@@ -12,7 +12,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_identification_data_test {
 
 class PublicRecord : public ::testing::Test {
  protected:
@@ -111,5 +111,5 @@ INSTANTIATE_TEST_SUITE_P(, CascadedTanks,
                          ::testing::Values(Split{"1:512", "513:1024"}, Split{"1:600", "601:1024"},
                                            Split{"1:700", "701:1024"}, Split{"1:768", "769:1024"}));
 
-}  // namespace
+}  // namespace paper_identification_data_test
 }  // namespace fpc

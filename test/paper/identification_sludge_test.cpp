@@ -12,7 +12,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_identification_sludge_test {
 
 constexpr std::uint32_t kRows = 4980;    // 664 h + 332 h
 constexpr Eigen::Index kLastRow = 3320;  // of the identification part
@@ -105,5 +105,5 @@ TEST_P(SludgeExperiment, WithoutTheInflowTheModelIsWorse) {
 
 INSTANTIATE_TEST_SUITE_P(, SludgeExperiment, ::testing::Range<std::uint64_t>(1, 5));
 
-}  // namespace
+}  // namespace paper_identification_sludge_test
 }  // namespace fpc

@@ -4,7 +4,7 @@
 #include "paper/step_response.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_linear_2x2_test {
 
 using test::wholeRun;
 
@@ -50,5 +50,5 @@ TEST(Linear2x2, WithActiveLimitsTheOptimizerBeatsClipping) {
   EXPECT_LT(squares("linear_2x2_clp"), 0.95 * squares("linear_2x2_limits"));
 }
 
-}  // namespace
+}  // namespace paper_linear_2x2_test
 }  // namespace fpc

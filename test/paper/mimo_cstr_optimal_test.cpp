@@ -6,7 +6,7 @@
 #include "paper/step_response.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_mimo_cstr_optimal_test {
 
 using test::StepFigures;
 using test::wholeRun;
@@ -84,5 +84,5 @@ TEST(MimoCstrOptimal, InputsStayInsideTheirBoundsWithAndWithoutOptimizer) {
   }
 }
 
-}  // namespace
+}  // namespace paper_mimo_cstr_optimal_test
 }  // namespace fpc

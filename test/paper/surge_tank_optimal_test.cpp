@@ -6,7 +6,7 @@
 #include "paper/step_response.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_surge_tank_optimal_test {
 
 using test::StepFigures;
 using test::wholeRun;
@@ -74,5 +74,5 @@ TEST(SurgeTankOptimal, CurrentStaysInsideItsBoundsWithAndWithoutOptimizer) {
   }
 }
 
-}  // namespace
+}  // namespace paper_surge_tank_optimal_test
 }  // namespace fpc

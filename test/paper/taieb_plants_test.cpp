@@ -20,7 +20,7 @@
 #include "paths.hpp"
 
 namespace fpc {
-namespace {
+namespace paper_taieb_plants_test {
 
 std::string config(const std::string& file) { return sourceDir() + "/config/" + file; }
 
@@ -248,5 +248,5 @@ TEST(SurgeTankBound, ATargetThatCannotBeReachedIsRefused) {
   EXPECT_THROW(shortestStep(readLoop("mimo_cstr_steps"), 0.2, 0.5), InputError);
 }
 
-}  // namespace
+}  // namespace paper_taieb_plants_test
 }  // namespace fpc

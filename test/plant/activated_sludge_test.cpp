@@ -9,7 +9,7 @@
 #include "fmbpc/plant/plant.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_activated_sludge_test {
 
 enum State { kS, kX, kC, kXd, kXb, kXr };
 
@@ -131,5 +131,5 @@ TEST_F(ActivatedSludge, ParametersReachTheEquations) {
   }
 }
 
-}  // namespace
+}  // namespace plant_activated_sludge_test
 }  // namespace fpc

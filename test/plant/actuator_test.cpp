@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_actuator_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -170,5 +170,5 @@ TEST(Actuator, ValidateNamesEachBadField) {
   EXPECT_NE(errorOf([](P& p) { p.hold_samples = -2; }).find("hold_samples"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace plant_actuator_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "fmbpc/plant/plant.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_batch_reactor_test {
 
 class BatchReactor : public ::testing::Test {
  protected:
@@ -81,5 +81,5 @@ TEST_F(BatchReactor, TheHeatBalanceCloses) {
   EXPECT_NEAR(stored, entering, 1e-6);
 }
 
-}  // namespace
+}  // namespace plant_batch_reactor_test
 }  // namespace fpc

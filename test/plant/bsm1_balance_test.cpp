@@ -6,7 +6,7 @@
 #include "plant/bsm1_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_bsm1_balance_test {
 
 using namespace bsm1;  // NOLINT(google-build-using-namespace)
 
@@ -176,5 +176,5 @@ TEST_F(Balances, SettlerKeepsSludgeAndSolublesOverSevenDays) {
   EXPECT_GT(moved, 1.0) << "nothing was tested at rest";
 }
 
-}  // namespace
+}  // namespace plant_bsm1_balance_test
 }  // namespace fpc

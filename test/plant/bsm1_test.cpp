@@ -10,7 +10,7 @@
 #include "plant/bsm1_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_bsm1_test {
 
 using Printed = std::map<std::string, double>;
 
@@ -183,5 +183,5 @@ TEST(Bsm1, LocalNoiseFollowsItsSeed) {
   EXPECT_NE(run(1.0), run(2.0));
 }
 
-}  // namespace
+}  // namespace plant_bsm1_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_cstr_test {
 
 constexpr double kSampleTime = 6.0;  // [s]
 
@@ -139,5 +139,5 @@ TEST(Cstr, InputDisturbanceActsLikeTheInputButIsNotSeenInIt) {
   }
 }
 
-}  // namespace
+}  // namespace plant_cstr_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fmbpc/plant/disturbance.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_disturbance_csv_test {
 
 const std::vector<std::string> kNames{"q_i", "s_i"};
 const Vector kNominal = Eigen::Vector2d(1300.0, 366.67);
@@ -295,5 +295,5 @@ TEST(DisturbanceCsv, TimesOfAnotherUnitThanSaidAreRefused) {
   expectWords(errorOf(params), "got [ms]");
 }
 
-}  // namespace
+}  // namespace plant_disturbance_csv_test
 }  // namespace fpc

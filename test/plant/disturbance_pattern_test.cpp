@@ -8,7 +8,7 @@
 #include "fmbpc/plant/disturbance.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_disturbance_pattern_test {
 
 const std::vector<std::string> kNames{"q_i", "s_i"};
 const Vector kNominal = Eigen::Vector2d(1300.0, 366.67);
@@ -143,5 +143,5 @@ TEST(DisturbancePattern, ADayOfTinySamplesIsRefusedBeforeItIsMade) {
   }
 }
 
-}  // namespace
+}  // namespace plant_disturbance_pattern_test
 }  // namespace fpc

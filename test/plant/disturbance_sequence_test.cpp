@@ -6,7 +6,7 @@
 #include "fmbpc/plant/disturbance.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_disturbance_sequence_test {
 
 std::string fileWith(const std::string& name, const std::string& text) {
   const std::string file = ::testing::TempDir() + "disturbance_sequence_" + name;
@@ -68,5 +68,5 @@ TEST(DisturbanceSequence, TimesBetweenSamplesAreErrors) {
   EXPECT_THROW(flows(params, 5), InputError);
 }
 
-}  // namespace
+}  // namespace plant_disturbance_sequence_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_integrator_test {
 
 using Equations = std::function<void(VectorRef, VectorRef, VectorRef, Eigen::Ref<Vector>)>;
 
@@ -256,5 +256,5 @@ TEST(Integrator, ValidateNamesEachBadField) {
   EXPECT_NE(errorOf([](P& p) { p.max_steps = 0; }).find("max_steps"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace plant_integrator_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "fmbpc/plant/plant.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_linear_2x2_test {
 
 TEST(Linear2x2, MovesByThePrintedDifferenceEquation) {
   const auto plant = makePlant("linear_2x2");
@@ -47,5 +47,5 @@ TEST(Linear2x2, HasNoParameters) {
   EXPECT_THROW(makePlant("linear_2x2", {{"pole", 0.5}}), InputError);
 }
 
-}  // namespace
+}  // namespace plant_linear_2x2_test
 }  // namespace fpc

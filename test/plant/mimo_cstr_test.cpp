@@ -8,7 +8,7 @@
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_mimo_cstr_test {
 
 using Eigen::Vector2d;
 
@@ -108,5 +108,5 @@ TEST(MimoCstr, AHotterOrRicherFeedHeats) {
   EXPECT_GT(rates(x, u, Eigen::Vector3d(1.0, 350.0, 360.0))[1], plain[1]);
 }
 
-}  // namespace
+}  // namespace plant_mimo_cstr_test
 }  // namespace fpc

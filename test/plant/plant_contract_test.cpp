@@ -9,7 +9,7 @@
 #include "fmbpc/plant/plant.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_plant_contract_test {
 
 Vector nominal(const std::vector<Quantity>& quantities) {
   Vector values(static_cast<Eigen::Index>(quantities.size()));
@@ -127,5 +127,5 @@ TEST_P(PlantContract, SplittingTheHoldChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(AllPlants, PlantContract, ::testing::ValuesIn(plantNames()),
                          [](const auto& instance) { return instance.param; });
 
-}  // namespace
+}  // namespace plant_plant_contract_test
 }  // namespace fpc

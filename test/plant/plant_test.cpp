@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_plant_test {
 
 PlantDescription twoParameters() {
   PlantDescription description;
@@ -52,5 +52,5 @@ TEST(Plant, ANameIsRegisteredOnce) {
   EXPECT_NE(makePlant("activated_sludge"), nullptr);
 }
 
-}  // namespace
+}  // namespace plant_plant_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_sensor_test {
 
 TEST(LagChain, OneLagFollowsAStepAsOnPaper) {
   LagChain lag(1, 100.0);
@@ -215,5 +215,5 @@ TEST(Instruments, SensorsOfUnknownSignalsAreRefused) {
   EXPECT_THROW(Simulation{p}, InputError);
 }
 
-}  // namespace
+}  // namespace plant_sensor_test
 }  // namespace fpc

@@ -5,7 +5,7 @@
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_simulation_commands_test {
 
 const Vector kU = one(570.0);
 
@@ -184,5 +184,5 @@ TEST(SimulationCommands, OffsetsNeverTakeADisturbanceOutOfItsRange) {
   EXPECT_EQ(simulation.trouble(), "");
 }
 
-}  // namespace
+}  // namespace plant_simulation_commands_test
 }  // namespace fpc

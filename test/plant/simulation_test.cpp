@@ -8,7 +8,7 @@
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_simulation_test {
 
 TEST(Simulation, StartsWithSampleZero) {
   const Simulation simulation(sludgeParams());
@@ -261,5 +261,5 @@ TEST(Simulation, BadParamsAreErrorsThatNameTheField) {
   names(errorOf([](P& p) { p.disturbance_commands = {{0.0, command("q", 1.0)}}; }), "name 'q'");
 }
 
-}  // namespace
+}  // namespace plant_simulation_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_surge_tank_test {
 
 constexpr double kStep = 0.1;                          // [s]
 const double kOutflow = 6e-5 * std::sqrt(2.0 * 9.81);  // [m2.5/s], times the root of H - Hs
@@ -143,5 +143,5 @@ TEST(SurgeTank, AnEulerStepMustBeAPartOfTheSampleTime) {
   EXPECT_THROW(Simulation{p}, InputError) << "would make the pump swing";
 }
 
-}  // namespace
+}  // namespace plant_surge_tank_test
 }  // namespace fpc

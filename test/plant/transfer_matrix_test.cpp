@@ -11,7 +11,7 @@
 #include "fmbpc/plant/simulation.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_transfer_matrix_test {
 
 /// One element from u (and one from d) in minutes.
 TransferMatrix single(double gain, double tau, double theta, double tau_2 = 0.0) {
@@ -187,5 +187,5 @@ TEST(TransferMatrix, RefusesWhatIsNoMatrix) {
   EXPECT_THROW(TransferMatrixPlant(slow).makeStepper(60.0), InputError);
 }
 
-}  // namespace
+}  // namespace plant_transfer_matrix_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace plant_transport_delay_test {
 
 /// Output at sample 20 of a ramp y(k) = k that starts at sample 0 after a rest at 0.
 double rampAt20(double delay_samples) {
@@ -46,5 +46,5 @@ TEST(TransportDelay, UnusableDelaysAreErrors) {
     EXPECT_THROW(TransportDelay{bad}, InputError) << bad;
 }
 
-}  // namespace
+}  // namespace plant_transport_delay_test
 }  // namespace fpc

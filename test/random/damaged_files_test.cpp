@@ -14,7 +14,7 @@
 #include "random/random_loop.hpp"
 
 namespace fpc {
-namespace {
+namespace random_damaged_files_test {
 
 constexpr std::uint32_t kLongestRun = 300;  // samples
 
@@ -108,5 +108,5 @@ TEST_F(DamagedFiles, TablesAreRefusedInWords) {
   });
 }
 
-}  // namespace
+}  // namespace random_damaged_files_test
 }  // namespace fpc

@@ -13,7 +13,7 @@
 #include "random/random_loop.hpp"
 
 namespace fpc {
-namespace {
+namespace random_random_loops_test {
 
 constexpr std::uint64_t kQuick = 120;
 constexpr std::uint64_t kLong = 6000;
@@ -231,5 +231,5 @@ TEST_F(RandomLoops, CanBeWrittenToAFolder) {
   }
 }
 
-}  // namespace
+}  // namespace random_random_loops_test
 }  // namespace fpc

@@ -14,7 +14,7 @@
 #include "ros/conversions.hpp"
 
 namespace fpc {
-namespace {
+namespace ros_bag_table_test {
 
 class BagTable : public LoopFolder {
  protected:
@@ -115,5 +115,5 @@ TEST_F(BagTable, WhatIsNoRecordedLoopIsRefused) {
   expectWords(errorOf([&] { readBag(path("sizes.bag")); }), {"sizes.bag", "sizes"});
 }
 
-}  // namespace
+}  // namespace ros_bag_table_test
 }  // namespace fpc

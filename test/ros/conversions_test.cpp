@@ -10,7 +10,7 @@
 #include "same_bits.hpp"
 
 namespace fpc {
-namespace {
+namespace ros_conversions_test {
 
 /// Random numbers with everything that is awkward in between.
 class Numbers {
@@ -241,5 +241,5 @@ TEST(PlainConversions, StampsCoverTheRangeOfRosTimeOnly) {
   EXPECT_THROW(toStamp(-1), InputError);
 }
 
-}  // namespace
+}  // namespace ros_conversions_test
 }  // namespace fpc

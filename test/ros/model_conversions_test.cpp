@@ -7,7 +7,7 @@
 #include "same_bits.hpp"
 
 namespace fpc {
-namespace {
+namespace ros_model_conversions_test {
 
 TsModel smallModel() {
   const auto set = [](MembershipShape shape, std::vector<double> p) {
@@ -113,5 +113,5 @@ TEST(ModelConversions, BrokenFuzzyModelsAreRefused) {
   EXPECT_THROW(fromMsg(short_rule), InputError);
 }
 
-}  // namespace
+}  // namespace ros_model_conversions_test
 }  // namespace fpc

@@ -5,7 +5,7 @@
 #include <limits>
 
 namespace fpc {
-namespace {
+namespace ros_plant_check_test {
 
 PlantInfo tank() {
   PlantInfo info;
@@ -51,5 +51,5 @@ TEST(PlantCheck, NamesTheFirstDifference) {
             plantMismatch(tank(), arrived));
 }
 
-}  // namespace
+}  // namespace ros_plant_check_test
 }  // namespace fpc

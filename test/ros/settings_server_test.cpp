@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace ros_settings_server_test {
 
 const std::vector<SettingInfo> kTable = {
     {"gain", SettingKind::kNumber, "a number", 0.0, 10.0},
@@ -54,5 +54,5 @@ TEST(SettingsServer, NumbersOutsideTheTablesRangeAreRefused) {
   }
 }
 
-}  // namespace
+}  // namespace ros_settings_server_test
 }  // namespace fpc

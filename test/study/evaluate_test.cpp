@@ -6,7 +6,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace study_evaluate_test {
 
 const char* const kComponents[] = {"S_I", "S_S",  "X_I",  "X_S",  "X_BH", "X_BA", "X_P",
                                    "S_O", "S_NO", "S_NH", "S_ND", "X_ND", "S_ALK"};
@@ -128,5 +128,5 @@ TEST(Evaluate, MissingColumnsAndEmptyPartsAreErrors) {
   EXPECT_THROW(evaluateEffluent(run.table), InputError);
 }
 
-}  // namespace
+}  // namespace study_evaluate_test
 }  // namespace fpc

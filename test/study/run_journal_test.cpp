@@ -7,7 +7,7 @@
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace study_run_journal_test {
 
 using RunJournalFile = LoopFolder;
 
@@ -43,5 +43,5 @@ TEST_F(RunJournalFile, WithoutAStateFileNothingIsKept) {
   EXPECT_FALSE(none.exists());
 }
 
-}  // namespace
+}  // namespace study_run_journal_test
 }  // namespace fpc

@@ -11,7 +11,7 @@
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace study_study_test {
 
 class Study : public LoopFolder {
  protected:
@@ -203,5 +203,5 @@ TEST(StudyStatistics, QuantilesAndIntervalsAreThoseOfTheBooks) {
   EXPECT_EQ(medianInterval({1, 2, 3}, 0.95).lower, 1.0);
 }
 
-}  // namespace
+}  // namespace study_study_test
 }  // namespace fpc

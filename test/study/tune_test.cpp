@@ -14,7 +14,7 @@
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace study_tune_test {
 
 class Tune : public LoopFolder {
  protected:
@@ -271,5 +271,5 @@ TEST_F(Tune, HistoryHoldsEveryEvaluationExactly) {
   EXPECT_EQ(rows, 60U);
 }
 
-}  // namespace
+}  // namespace study_tune_test
 }  // namespace fpc

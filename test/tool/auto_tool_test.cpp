@@ -5,7 +5,7 @@
 #include "tool/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_auto_tool_test {
 
 class AutoTool : public IdentifyTool {
  protected:
@@ -125,5 +125,5 @@ TEST_F(AutoTool, ValidateKnowsTheSignalsOfTheModelOnly) {
   expectWords(refusal(judge + " --columns u=u,u=y"), {"'u=y'", "once"});
 }
 
-}  // namespace
+}  // namespace tool_auto_tool_test
 }  // namespace fpc

@@ -6,7 +6,7 @@
 #include "tool/reproduce/experiment.hpp"
 
 namespace fpc::tool {
-namespace {
+namespace tool_column_reproduce_test {
 
 TEST(ColumnReproduction, ReachesEveryFigureButThoseOfThePrintedLoopTwo) {
   std::size_t count = 0;
@@ -26,5 +26,5 @@ TEST(ColumnReproduction, ReachesEveryFigureButThoseOfThePrintedLoopTwo) {
   EXPECT_EQ(count, 8U + 2U * 5U * 4U);
 }
 
-}  // namespace
+}  // namespace tool_column_reproduce_test
 }  // namespace fpc::tool

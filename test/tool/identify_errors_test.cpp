@@ -8,7 +8,7 @@
 #include "tool/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_identify_errors_test {
 
 class IdentifyErrors : public IdentifyTool {
  protected:
@@ -100,5 +100,5 @@ TEST_F(IdentifyErrors, UnknownStructuresAreAnsweredWithTheNearest) {
   EXPECT_NE(outcome.printed.find("asp_c"), std::string::npos) << outcome.printed;
 }
 
-}  // namespace
+}  // namespace tool_identify_errors_test
 }  // namespace fpc

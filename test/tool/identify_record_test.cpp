@@ -4,7 +4,7 @@
 #include "tool/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_identify_record_test {
 
 using IdentifyRecord = IdentifyTool;
 
@@ -57,5 +57,5 @@ TEST_F(IdentifyRecord, CascadedTanksFollowTheirOwnHeldOutPart) {
   EXPECT_LE(held_out["free_run"]["rmse"], 0.70);
 }
 
-}  // namespace
+}  // namespace tool_identify_record_test
 }  // namespace fpc

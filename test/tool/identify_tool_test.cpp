@@ -10,7 +10,7 @@
 #include "tool/identify_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_identify_tool_test {
 
 std::string contents(const std::string& file) {
   std::ifstream stream(file);
@@ -118,5 +118,5 @@ TEST_F(IdentifyTool, InterruptedItEndsWithAnErrorAndWritesNothing) {
     EXPECT_EQ(entry.path().string().find("model.yaml"), std::string::npos) << entry.path();
 }
 
-}  // namespace
+}  // namespace tool_identify_tool_test
 }  // namespace fpc

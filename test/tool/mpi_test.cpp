@@ -11,7 +11,7 @@
 #include "tool/tool_run.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_mpi_test {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
@@ -159,5 +159,5 @@ TEST_F(Mpi, TheToolBecomesTheProgramForRanks) {
   EXPECT_EQ(std::count(alone.printed.begin(), alone.printed.end(), '\n'), 1);
 }
 
-}  // namespace
+}  // namespace tool_mpi_test
 }  // namespace fpc

@@ -13,7 +13,7 @@
 #include "tool/reproduce/taieb_steps.hpp"
 
 namespace fpc::tool {
-namespace {
+namespace tool_reproduce_test {
 
 std::vector<std::string> figures(int from, int to) {
   std::vector<std::string> all;
@@ -134,5 +134,5 @@ TEST(Report, MarkdownHasARowForEachAndKeepsItsColumns) {
   EXPECT_NE(page.find("| table 9 |"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace tool_reproduce_test
 }  // namespace fpc::tool

@@ -11,7 +11,7 @@
 #include "tool/tool_run.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_results_page_test {
 
 std::vector<std::string> wordsOf(const std::string& text) {
   std::istringstream stream(text);
@@ -58,5 +58,5 @@ TEST(ResultsPage, IsWhatTheCommandPrints) {
         << written[i > 0 ? i - 1 : 0];
 }
 
-}  // namespace
+}  // namespace tool_results_page_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "tool/tool_run.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_stability_tool_test {
 
 using StabilityTool = LoopFolder;
 
@@ -55,5 +55,5 @@ TEST_F(StabilityTool, NothingToLookAtIsAnError) {
   EXPECT_NE(outcome.printed.find("external"), std::string::npos) << outcome.printed;
 }
 
-}  // namespace
+}  // namespace tool_stability_tool_test
 }  // namespace fpc

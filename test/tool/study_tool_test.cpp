@@ -10,7 +10,7 @@
 #include "tool/tool_run.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_study_tool_test {
 
 class StudyTool : public LoopFolder {
  protected:
@@ -96,5 +96,5 @@ TEST_F(StudyTool, MistakesAreOneLine) {
   }
 }
 
-}  // namespace
+}  // namespace tool_study_tool_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "tool/tool_run.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_tool_test {
 
 using Tool = LoopFolder;
 const std::string kShort = " --set sampling.duration_h=40";
@@ -254,5 +254,5 @@ TEST_F(Tool, ReproduceWritesWhatAPictureNeeds) {
   EXPECT_GE(json["rows"].size(), 6U);
 }
 
-}  // namespace
+}  // namespace tool_tool_test
 }  // namespace fpc

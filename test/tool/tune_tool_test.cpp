@@ -9,7 +9,7 @@
 #include "tool/tool_run.hpp"
 
 namespace fpc {
-namespace {
+namespace tool_tune_tool_test {
 
 class TuneTool : public LoopFolder {
  protected:
@@ -179,5 +179,5 @@ TEST_F(TuneTool, MistakesAreOneLineOnStandardError) {
   }
 }
 
-}  // namespace
+}  // namespace tool_tune_tool_test
 }  // namespace fpc

@@ -14,7 +14,7 @@
 #include "tool/reproduce/experiment.hpp"
 
 namespace fpc::tool {
-namespace {
+namespace tool_verdict_test {
 
 Claim figureOf(double paper, double here, Direction better = Direction::kEqual,
                double absolute = 0.0) {
@@ -124,5 +124,5 @@ TEST(Verdict, IsNoConstantAnywhere) {
   EXPECT_GT(files, 20U);
 }
 
-}  // namespace
+}  // namespace tool_verdict_test
 }  // namespace fpc::tool

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc::clp_test {
-namespace {
+namespace control_clp_algebra_test {
 
 struct Solved {
   Case made;
@@ -266,5 +266,5 @@ TEST(ClpAlgebra, AnIntegratorHasASteadyStateToo) {
   EXPECT_EQ(solved.report.status, SolveStatus::kSolved);
 }
 
-}  // namespace
+}  // namespace control_clp_algebra_test
 }  // namespace fpc::clp_test

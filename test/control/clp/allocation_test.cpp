@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc::clp_test {
-namespace {
+namespace control_clp_allocation_test {
 
 using testing::AllocationCounter;
 
@@ -87,5 +87,5 @@ TEST(ClpAllocation, NoneWhenTheStepFails) {
   EXPECT_EQ(report.status, SolveStatus::kInvalidProblem);
 }
 
-}  // namespace
+}  // namespace control_clp_allocation_test
 }  // namespace fpc::clp_test

@@ -6,7 +6,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc::clp_test {
-namespace {
+namespace control_clp_closed_loop_paradigm_test {
 
 TEST(ClosedLoopParadigm, OneStepWithOneBoundIsClipping) {
   Case made = eager(1);
@@ -197,5 +197,5 @@ TEST(ClosedLoopParadigm, AfterResetItRepeatsItselfBitForBit) {
   EXPECT_TRUE(runs[0] == runs[1]);
 }
 
-}  // namespace
+}  // namespace control_clp_closed_loop_paradigm_test
 }  // namespace fpc::clp_test

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc::clp_test {
-namespace {
+namespace control_clp_limits_test {
 
 TEST(ClpLimits, MoveLimitHoldsFromThePreviousInputOn) {
   Case made = eager(6);
@@ -174,5 +174,5 @@ TEST(ClpLimits, Mode2LimitsAreFeltInMode1) {
   }
 }
 
-}  // namespace
+}  // namespace control_clp_limits_test
 }  // namespace fpc::clp_test

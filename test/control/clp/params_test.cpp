@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc::clp_test {
-namespace {
+namespace control_clp_params_test {
 
 Vector numbers(std::initializer_list<double> list) {
   Vector v(static_cast<Eigen::Index>(list.size()));
@@ -105,5 +105,5 @@ TEST(ClpParams, ConstructionChecksLimitsAndSizes) {
   EXPECT_THROW(made.make(params), InputError);
 }
 
-}  // namespace
+}  // namespace control_clp_params_test
 }  // namespace fpc::clp_test

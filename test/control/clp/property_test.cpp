@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace fpc::clp_test {
-namespace {
+namespace control_clp_property_test {
 
 constexpr int kCases = 1000;
 
@@ -208,5 +208,5 @@ TEST(ClosedLoopParadigmProperty, StackedPredictionEqualsSteppingTheModel) {
   }
 }
 
-}  // namespace
+}  // namespace control_clp_property_test
 }  // namespace fpc::clp_test

@@ -11,7 +11,7 @@
 #include "fmbpc/control/session.hpp"
 
 namespace fpc {
-namespace {
+namespace control_excitation_excitation_test {
 
 ExcitationSignal prbs(int input) {
   ExcitationSignal signal;
@@ -275,5 +275,5 @@ TEST(ExcitationParams, MistakesNameTheField) {
   }
 }
 
-}  // namespace
+}  // namespace control_excitation_excitation_test
 }  // namespace fpc

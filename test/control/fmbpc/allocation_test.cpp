@@ -9,7 +9,7 @@
 #include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_allocation_test {
 
 struct Steady {
   Steady(FmbpcParams params, const TsModel& model)
@@ -133,5 +133,5 @@ TEST(FmbpcLawMemory, HoldingAndStartingAgainDoNotAllocateEither) {
   EXPECT_FALSE(loop.output.ok);
 }
 
-}  // namespace
+}  // namespace control_fmbpc_allocation_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_behaviour_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -248,5 +248,5 @@ TEST(FmbpcLaw, SignalsShowTheModelAndItsCorrection) {
   EXPECT_EQ(signals[2].second, loop.last.prediction.input_base_unclipped[0]);
 }
 
-}  // namespace
+}  // namespace control_fmbpc_behaviour_test
 }  // namespace fpc

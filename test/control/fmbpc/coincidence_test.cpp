@@ -8,7 +8,7 @@
 #include "fuzzy/model_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_coincidence_test {
 
 TEST(CoincidenceGains, StackedPredictionEqualsSteppingTheModel) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -146,5 +146,5 @@ TEST(CoincidenceGains, TwoInputsThatDoTheSameAreSingularWithoutMoveWeight) {
   EXPECT_TRUE(gains.computeWeighted(model, 5, Vector::Ones(1), Vector::Constant(2, 0.01)));
 }
 
-}  // namespace
+}  // namespace control_fmbpc_coincidence_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "fmbpc/fuzzy/undelayed.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_delay_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -232,5 +232,5 @@ TEST(Undelayed, ShortensEveryLagOfTheInputsAndNoneOfTheOutputs) {
   EXPECT_THROW(withoutDelay(model, 6), InputError);
 }
 
-}  // namespace
+}  // namespace control_fmbpc_delay_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_disturbance_forecast_test {
 
 constexpr int kPeriod = 6, kHorizon = 4;
 
@@ -98,5 +98,5 @@ TEST(DisturbanceForecast, AnEventThatDoesNotComeAgainIsNotBelieved) {
   EXPECT_LT(forecast.weight()[0], 0.3);
 }
 
-}  // namespace
+}  // namespace control_fmbpc_disturbance_forecast_test
 }  // namespace fpc

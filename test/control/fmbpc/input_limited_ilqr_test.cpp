@@ -9,7 +9,7 @@
 #include "fmbpc/optim/qp.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_input_limited_ilqr_test {
 
 constexpr int kHorizon = 12;
 
@@ -147,5 +147,5 @@ TEST(InputLimitedIlqr, NotANumberIsReportedAndForgotten) {
   EXPECT_EQ(task.planner.inputs(), first);
 }
 
-}  // namespace
+}  // namespace control_fmbpc_input_limited_ilqr_test
 }  // namespace fpc

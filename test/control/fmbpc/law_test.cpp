@@ -10,7 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_law_test {
 
 using test::pair;
 
@@ -201,5 +201,5 @@ TEST(PublishedLaw, IsForOneInput) {
   EXPECT_THROW(FmbpcLaw(test::publishedParams(), test::wideLimits(2), info), InputError);
 }
 
-}  // namespace
+}  // namespace control_fmbpc_law_test
 }  // namespace fpc

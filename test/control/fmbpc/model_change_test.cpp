@@ -11,7 +11,7 @@
 #include "fmbpc/control/session.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_model_change_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -231,5 +231,5 @@ TEST(ModelRefusal, AFirstModelIsNotJudgedByItsPoles) {
   }
 }
 
-}  // namespace
+}  // namespace control_fmbpc_model_change_test
 }  // namespace fpc

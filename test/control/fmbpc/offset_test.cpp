@@ -5,7 +5,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_offset_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -99,5 +99,5 @@ TEST(OffsetFree, WithoutDisturbanceFeedforwardTheNominalValueIsUsed) {
   EXPECT_THROW(FmbpcLaw(params, test::wideLimits(2), test::infoOf(crossed(1.0, 0.0))), InputError);
 }
 
-}  // namespace
+}  // namespace control_fmbpc_offset_test
 }  // namespace fpc

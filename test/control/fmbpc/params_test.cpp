@@ -6,7 +6,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_params_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -34,5 +34,5 @@ TEST(FmbpcParams, ValidateNamesTheField) {
   expect("weight_move", [](FmbpcParams& p) { p.weight_move = one(-1.0); });
 }
 
-}  // namespace
+}  // namespace control_fmbpc_params_test
 }  // namespace fpc

@@ -7,7 +7,7 @@
 #include "control/fmbpc/law_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_fmbpc_prediction_test {
 
 double relativeGap(const Vector& a, const Vector& b) {
   return ((a - b).array().abs() / (1.0 + b.array().abs())).maxCoeff();
@@ -153,5 +153,5 @@ TEST(Prediction, PublishedGainIsTheBiomassRowOverM2) {
   });
 }
 
-}  // namespace
+}  // namespace control_fmbpc_prediction_test
 }  // namespace fpc

@@ -9,7 +9,7 @@
 #include "control/horizon/fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_horizon_allocation_test {
 
 std::size_t allocations(Controller& law, const PlantInfo& info) {
   SetpointSource setpoint = test::setpointOf(info, Vector::Ones(1));
@@ -52,5 +52,5 @@ TEST(HorizonAllocation, SwarmsAllocateNothing) {
   EXPECT_EQ(allocations(law, test::infoOf(model)), 0U);
 }
 
-}  // namespace
+}  // namespace control_horizon_allocation_test
 }  // namespace fpc

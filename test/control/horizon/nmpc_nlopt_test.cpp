@@ -10,7 +10,7 @@
 #include "control/horizon/fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_horizon_nmpc_nlopt_test {
 
 constexpr double kMove = 0.6;
 
@@ -85,5 +85,5 @@ TEST(NmpcBesideNlopt, SlsqpFindsNoBetterPlanAndTheSameInput) {
   EXPECT_GE(limited, 10);
 }
 
-}  // namespace
+}  // namespace control_horizon_nmpc_nlopt_test
 }  // namespace fpc

@@ -11,7 +11,7 @@
 #include "fmbpc/optim/qp.hpp"
 
 namespace fpc {
-namespace {
+namespace control_horizon_nmpc_test {
 
 using Eigen::Index;
 constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -238,5 +238,5 @@ TEST(Nmpc, ParametersAreCheckedByName) {
   refuses(integration, "integration_steps");
 }
 
-}  // namespace
+}  // namespace control_horizon_nmpc_test
 }  // namespace fpc

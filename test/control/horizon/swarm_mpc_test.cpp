@@ -7,7 +7,7 @@
 #include "control/horizon/fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_horizon_swarm_mpc_test {
 
 SwarmMpcParams swarmParams(std::uint64_t seed = 1, int particles = 12, int iterations = 15) {
   SwarmMpcParams params;
@@ -116,5 +116,5 @@ TEST(SwarmMpc, LimitsOfInputsAndMovesHoldAtEverySample) {
 
 TEST(SwarmMpc, NeedsAModel) { EXPECT_TRUE(Loop(swarmParams()).law.needsModel()); }
 
-}  // namespace
+}  // namespace control_horizon_swarm_mpc_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "fmbpc/base/option.hpp"
 
 namespace fpc {
-namespace {
+namespace control_hybrid_allocation_test {
 
 TEST(HybridAllocation, DecisionsAndSamplesAllocateNothing) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
@@ -44,5 +44,5 @@ TEST(HybridAllocation, DecisionsAndSamplesAllocateNothing) {
   }
 }
 
-}  // namespace
+}  // namespace control_hybrid_allocation_test
 }  // namespace fpc

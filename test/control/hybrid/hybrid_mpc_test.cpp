@@ -12,7 +12,7 @@
 #include "fmbpc/control/session.hpp"
 
 namespace fpc {
-namespace {
+namespace control_hybrid_hybrid_mpc_test {
 
 SetpointParams asked(double T) {
   SetpointParams params;
@@ -185,5 +185,5 @@ TEST(HybridMpc, EachParameterIsChecked) {
   refused([](HybridMpcParams& p) { p.time_budget_s = -1.0; });
 }
 
-}  // namespace
+}  // namespace control_hybrid_hybrid_mpc_test
 }  // namespace fpc

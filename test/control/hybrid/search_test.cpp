@@ -8,7 +8,7 @@
 #include "control/hybrid/fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_hybrid_search_test {
 
 struct Best {
   double cost{kInfinity};
@@ -82,5 +82,5 @@ TEST_P(HybridSearch, EqualsEnumerationOnAThousandStatesWithFewNodes) {
 
 INSTANTIATE_TEST_SUITE_P(Costs, HybridSearch, ::testing::Values(44, 45));
 
-}  // namespace
+}  // namespace control_hybrid_search_test
 }  // namespace fpc

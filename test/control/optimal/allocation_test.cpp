@@ -8,7 +8,7 @@
 #include "control/optimal/fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_optimal_allocation_test {
 
 struct Steady {
   Steady(const FuzzyOptimalParams& params, const TsModel& model)
@@ -82,5 +82,5 @@ TEST(FuzzyOptimalMemory, TakingOverHoldingAndStartingAgainDoNotAllocate) {
   EXPECT_FALSE(loop.output.ok);
 }
 
-}  // namespace
+}  // namespace control_optimal_allocation_test
 }  // namespace fpc

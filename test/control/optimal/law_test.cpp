@@ -10,7 +10,7 @@
 #include "fmbpc/fuzzy/shared_partition.hpp"
 
 namespace fpc {
-namespace {
+namespace control_optimal_law_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -214,5 +214,5 @@ TEST(FuzzyOptimalParams, EachFieldIsCheckedByName) {
         << field << ": " << words;
 }
 
-}  // namespace
+}  // namespace control_optimal_law_test
 }  // namespace fpc

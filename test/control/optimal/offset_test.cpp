@@ -5,7 +5,7 @@
 #include "control/optimal/fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_optimal_offset_test {
 
 /// Inputs reach the plant with an error, outputs are measured with one.
 double finalError(const FuzzyOptimalParams& params, const TsModel& model, const TsModel& truth,
@@ -96,5 +96,5 @@ TEST(FuzzyOptimalOffset, AWeightTowardsTheWrongInputLeavesOne) {
   EXPECT_GT(finalError(params, truth, truth, test::pair(0.8, -0.8), 0.0, 0.0), 1e-3);
 }
 
-}  // namespace
+}  // namespace control_optimal_offset_test
 }  // namespace fpc

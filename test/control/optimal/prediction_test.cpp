@@ -7,7 +7,7 @@
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 
 namespace fpc {
-namespace {
+namespace control_optimal_prediction_test {
 
 TEST(FuzzyOptimalPrediction, BaseActionFollowsFromItsGainStateAndFeedforward) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
@@ -125,5 +125,5 @@ TEST(FuzzyOptimalPrediction, WithActiveLimitsTheOptimizerBeatsClipping) {
       << "clipped " << clipped.squared_error;
 }
 
-}  // namespace
+}  // namespace control_optimal_prediction_test
 }  // namespace fpc

@@ -12,7 +12,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_optimal_quadratic_law_test {
 
 using Eigen::Index;
 
@@ -191,5 +191,5 @@ TEST(QuadraticLaw, RefusesWhatCannotBeMeant) {
   EXPECT_THROW(makeQuadraticLaw(m, {2, 1, true}, {one, none, Vector::Ones(2)}), InputError);
 }
 
-}  // namespace
+}  // namespace control_optimal_quadratic_law_test
 }  // namespace fpc

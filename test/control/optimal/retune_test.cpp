@@ -8,7 +8,7 @@
 #include "fmbpc/control/session.hpp"
 
 namespace fpc {
-namespace {
+namespace control_optimal_retune_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -182,5 +182,5 @@ TEST(FuzzyOptimalRetune, AStartInTheMiddleOfARunGoesOnFromTheAppliedInput) {
   EXPECT_NEAR(loop.y, 2.0, 1e-8);
 }
 
-}  // namespace
+}  // namespace control_optimal_retune_test
 }  // namespace fpc

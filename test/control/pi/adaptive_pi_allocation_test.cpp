@@ -6,7 +6,7 @@
 #include "control/pi/adaptive_fixture.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_adaptive_pi_allocation_test {
 
 TEST(AdaptivePiMemory, StepDoesNotAllocate) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
@@ -27,5 +27,5 @@ TEST(AdaptivePiMemory, StepDoesNotAllocate) {
   EXPECT_EQ(count, 0U);
 }
 
-}  // namespace
+}  // namespace control_pi_adaptive_pi_allocation_test
 }  // namespace fpc

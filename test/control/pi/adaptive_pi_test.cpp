@@ -9,7 +9,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_adaptive_pi_test {
 
 using test::AdaptiveColumn;
 using test::adaptiveParams;
@@ -137,5 +137,5 @@ TEST(AdaptivePi, CanTuneItselfByRuleOrBySwarm) {
   EXPECT_NEAR(by_swarm.law.integralTime(0), 20.9, 1.0);
 }
 
-}  // namespace
+}  // namespace control_pi_adaptive_pi_test
 }  // namespace fpc

@@ -8,7 +8,7 @@
 #include "fuzzy/column_model.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_decoupling_test {
 
 using Pair = std::array<double, 2>;
 
@@ -110,5 +110,5 @@ TEST(InvertedDecoupling, TakesNewGainsAtOnce) {
   EXPECT_NEAR(decoupling.cross()[0], 0.1 * -15.12 / 15.36, 1e-12);
 }
 
-}  // namespace
+}  // namespace control_pi_decoupling_test
 }  // namespace fpc

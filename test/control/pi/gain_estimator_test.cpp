@@ -10,7 +10,7 @@
 #include "fuzzy/column_model.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_gain_estimator_test {
 
 /// The sum of two elements under inputs that change every 10 samples.
 struct Process {
@@ -133,5 +133,5 @@ TEST(GainEstimator, SkipsWhatIsNotFiniteAndRefusesBadParameters) {
   EXPECT_THROW(GainEstimator(test::columnMatrix()[0], 1.0, params), InputError);
 }
 
-}  // namespace
+}  // namespace control_pi_gain_estimator_test
 }  // namespace fpc

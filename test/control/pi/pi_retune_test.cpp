@@ -5,7 +5,7 @@
 #include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_pi_retune_test {
 
 constexpr double kSampleTime = 720.0;  // 0.2 h
 
@@ -79,5 +79,5 @@ TEST_F(PiRetune, WhatIsRefusedChangesNothing) {
   EXPECT_DOUBLE_EQ(next(6.0), 512.0);
 }
 
-}  // namespace
+}  // namespace control_pi_pi_retune_test
 }  // namespace fpc

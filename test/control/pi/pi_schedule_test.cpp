@@ -7,7 +7,7 @@
 #include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_pi_schedule_test {
 
 Vector one(double value) { return Vector::Constant(1, value); }
 
@@ -89,5 +89,5 @@ TEST_F(ScheduledPi, RefusesASchedulesWithoutOrderOrWithoutGain) {
   EXPECT_THROW(make(), InputError);
 }
 
-}  // namespace
+}  // namespace control_pi_pi_schedule_test
 }  // namespace fpc

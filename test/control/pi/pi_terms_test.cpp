@@ -9,7 +9,7 @@
 #include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_pi_terms_test {
 
 constexpr double kSampleTime = 720.0;  // 0.2 h
 
@@ -160,5 +160,5 @@ TEST(PiTerms, MistakesNameTheirKey) {
         "schedule_by");
 }
 
-}  // namespace
+}  // namespace control_pi_pi_terms_test
 }  // namespace fpc

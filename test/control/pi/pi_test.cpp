@@ -8,7 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_pi_test {
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kSampleTime = 720.0;  // 0.2 h
@@ -263,5 +263,5 @@ TEST(PiParams, TwoLoopsOnOneInputAreRefused) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace control_pi_pi_test
 }  // namespace fpc

@@ -10,7 +10,7 @@
 #include "fuzzy/column_model.hpp"
 
 namespace fpc {
-namespace {
+namespace control_pi_tuning_test {
 
 TEST(PiTuning, ByTheRuleIsThatOnPaper) {
   const PiTuning pi = imcTuning({2.0, 10.0, 4.0}, 6.0);
@@ -75,5 +75,5 @@ TEST(SwarmTuning, ComesWithinOnePercentOfAGridOptimumForBothLoopsAndCosts) {
   check(1, TuningCost::kIae, {-0.148, 14.8});
 }
 
-}  // namespace
+}  // namespace control_pi_tuning_test
 }  // namespace fpc

@@ -5,7 +5,7 @@
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
-namespace {
+namespace control_supervisor_load_supervisor_test {
 
 PlantInfo plant() {
   PlantInfo info;
@@ -100,5 +100,5 @@ TEST_F(Supervisor, BadParamsAreErrorsThatNameTheField) {
   throws([](auto& p) { p.integral_limit = -1.0; });
 }
 
-}  // namespace
+}  // namespace control_supervisor_load_supervisor_test
 }  // namespace fpc
