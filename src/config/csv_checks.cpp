@@ -7,6 +7,7 @@
 #include "fmbpc/base/csv_header.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/config/extending_loop.hpp"
 
 namespace fpc {
 namespace {
@@ -38,8 +39,11 @@ std::string plainUnit(std::string unit) {
   return unit;
 }
 
-bool isConverted(const CsvChannel& channel) {
-  return channel.scale != 1.0 || channel.offset != 0.0 || channel.mean != 0.0;
+/// Asked of the text: a scale of 1 that somebody wrote is an answer, that of the default is none.
+bool isConverted(const LoopFile& loop, const CsvChannel& channel) {
+  for (const char* how : {".scale", ".offset", ".mean"})
+    if (!scalarOf(loop.resolved, channelKey(channel) + how).empty()) return true;
+  return false;
 }
 
 /// The cell that leads farthest out of the range.
@@ -80,18 +84,21 @@ void checkChannel(const CsvDisturbanceParams& params, const CsvChannel& channel,
 
 }  // namespace
 
-void checkCsvUnits(const CsvDisturbanceParams& params, const std::vector<Quantity>& disturbances) {
+void checkCsvUnits(const LoopFile& loop, const std::vector<Quantity>& disturbances) {
+  const CsvDisturbanceParams& params = loop.disturbance.csv;
   for (const std::string& file : filesOf(params)) {
     const CsvTable header = readCsvHeader(file, params.format);
     for (const CsvChannel& channel : params.channels) {
       const Quantity* q = find(disturbances, channel.name);
       const auto column = static_cast<std::size_t>(header.column(channel.column));
       const std::string& stated = header.units[column];
-      if (!q || stated.empty() || q->unit.empty() || q->unit == "-" || isConverted(channel))
-        continue;
-      require(plainUnit(stated) == plainUnit(q->unit), file + ":1: column '" + channel.column + "'",
+      if (!q || stated.empty() || q->unit.empty() || q->unit == "-") continue;
+      require(plainUnit(stated) == plainUnit(q->unit) || isConverted(loop, channel),
+              file + ":1: column '" + channel.column + "'",
               "[" + q->unit + "], the unit of " + channel.name + ", got [" + stated + "]; with " +
-                  channelKey(channel) + ".scale, offset or mean another unit is converted");
+                  channelKey(channel) +
+                  ".scale, offset or mean another unit is converted (scale 1: the same by another "
+                  "name)");
     }
   }
 }

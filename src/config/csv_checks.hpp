@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "fmbpc/plant/disturbance.hpp"
-#include "fmbpc/plant/plant.hpp"
+#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {
 
-/// A column whose header states another unit than the disturbance needs a scale, an offset or a
-/// mean. @throws InputError naming file, column, both units and the keys.
-void checkCsvUnits(const CsvDisturbanceParams& params, const std::vector<Quantity>& disturbances);
+/// A column whose header states another unit than the disturbance needs a scale (1: it is the same
+/// by another name), an offset or a mean in the loop file. @throws InputError naming file, column,
+/// both units and the keys.
+void checkCsvUnits(const LoopFile& loop, const std::vector<Quantity>& disturbances);
 
 /// `values` (n_d x samples) came of these files. @throws InputError naming the file's row that
 /// gives a value outside the range of its disturbance, and the key for codes of missing cells.

@@ -38,7 +38,7 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
     return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,
                        sim.samples);
   const auto disturbances = makePlant(sim)->description().disturbances;
-  checkCsvUnits(params.csv, disturbances);
+  checkCsvUnits(loop, disturbances);
   DisturbanceRecord record = readDisturbanceSequence(params.csv, names, sim.disturbance_nominal,
                                                      sim.sample_time_s, sim.samples);
   checkCsvRanges(params.csv, disturbances, record.values);
