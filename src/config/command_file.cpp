@@ -23,8 +23,10 @@ std::vector<std::string> disturbedNames(const LoopFile& loop) {
 
 /// Ranges of what may be asked or disturbed.
 std::vector<SignalInfo> disturbanceRanges(const LoopFile& loop) {
+  requireSimulated(loop);
   std::vector<SignalInfo> ranges;
-  for (const Quantity& q : makePlant(loop.simulation)->description().disturbances)
+  const auto plant = makePlant(loop.simulation);
+  for (const Quantity& q : plant->description().disturbances)
     ranges.push_back({q.name, q.unit, q.lower, q.upper});
   return ranges;
 }
