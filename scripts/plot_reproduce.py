@@ -18,7 +18,7 @@ STYLES = {"setpoint": {"color": "black", "linestyle": "--", "linewidth": 1.0, "d
 DASHES = [(0, (6, 2)), (0, (2, 2)), (0, (6, 2, 2, 2))]
 MARKERS = ["o", "s", "^", "v", "D", "P"]
 ROWS = 12  # of the table below a picture
-LINE = 0.125  # height of a line of it [in]
+LINE = 0.115  # height of a line of it [in]
 
 
 def draw_curves(axis, curves):
@@ -74,11 +74,21 @@ def cell(value):
     return "-" if value is None else "%.4g" % value
 
 
+def here_text(row):
+    """Enough digits of a statement's number to tell it from its limit."""
+    text = cell(row["here"])
+    for digits in range(5, 18):
+        if row["kind"] != "check" or row["here"] in (None, row["paper"]) or text != cell(row["paper"]):
+            break
+        text = "%.*g" % (digits, row["here"])
+    return text
+
+
 def table_of(rows):
     """One line a row: quantity, paper (or limit), here with its range, verdict."""
     lines = []
     for row in rows[:ROWS]:
-        here = cell(row["here"])
+        here = here_text(row)
         if row["runs"] > 1:
             here += " (%s .. %s)" % (cell(row["lowest"]), cell(row["highest"]))
         kind = "limit" if row["kind"] == "check" else "paper"
@@ -96,7 +106,7 @@ def draw(file):
     with open(file, encoding="utf-8") as stream:
         picture = json.load(stream)
     panels, text = picture["panels"], table_of(picture["rows"])
-    below = LINE * (text.count("\n") + 1) + 0.15
+    below = LINE * (text.count("\n") + 1) + 0.1
     height = 1.9 * len(panels) + 1.0 + below
     shared = all(panel["from"] is None for panel in panels)
     figure, axes = plt.subplots(len(panels), 1, sharex=shared, squeeze=False, figsize=(9.0, height))

@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "fmbpc/base/input_error.hpp"
 #include "tool/reproduce/picture.hpp"
 #include "tool/reproduce/report.hpp"
 #include "tool/reproduce/runs.hpp"
+#include "tool/reproduce/sludge_printed.hpp"
 #include "tool/reproduce/taieb_steps.hpp"
 
 namespace fpc::tool {
@@ -117,6 +120,79 @@ TEST(Report, CountsFiguresAndStatementsApart) {
                   check("c", 0.5, Direction::kLower, 1.0, "-", "")};
   EXPECT_EQ(inWords(countsOf(rows)), "1 reproduced, 1 not reproduced, 1 holds");
   EXPECT_NE(reasonOf(rows).find("b: 100 % off"), std::string::npos) << reasonOf(rows);
+}
+
+TEST(Report, TellsAStatementsNumberFromItsLimitHoweverNearTheyAre) {
+  const auto shown = [](double here, Direction side) {
+    return hereText(check("c", here, side, 1.0, "-", ""));
+  };
+  EXPECT_EQ(shown(1.0000095, Direction::kLower), "1.0000095");
+  EXPECT_EQ(shown(0.99996, Direction::kLower), "0.99996");
+  EXPECT_EQ(shown(0.5, Direction::kLower), "0.5");
+  EXPECT_EQ(shown(1.0, Direction::kLower), "1");
+  EXPECT_EQ(hereText(figure("f", 1.0, 1.0000095, "-")), "1") << "figures are judged by a tolerance";
+}
+
+TEST(Report, NamesFailedRunsEvenWhereNoRowIsJudged) {
+  const std::vector<double> seeds{1.0, std::nan("")};
+  const std::vector<Outcome> judged_not{{{}, {incomparable("ISE", 1.0, seeds, "-", "other data")}}};
+  EXPECT_TRUE(failuresOf(judged_not, {}).empty());
+  EXPECT_EQ(failuresOf(judged_not, {"asp_case1, seed 2: why"}),
+            std::vector<std::string>{"failed: asp_case1, seed 2: why"});
+  const std::vector<Outcome> lost{{{}, {check("c", seeds, Direction::kLower, 2.0, "-", "")}}};
+  EXPECT_EQ(failuresOf(lost, {}), std::vector<std::string>{"1 rows without a result"});
+}
+
+TEST(Pictures, CloseUpsShowTheirPartOnly) {
+  const Panel panel =
+      closeUp({"T", {{"a", {0.0, 1.0, 2.0, 3.0}, {5.0, 6.0, 7.0, 8.0}}}}, {1.0, 2.5});
+  EXPECT_EQ(panel.curves[0].x, (std::vector<double>{1.0, 2.0}));
+  EXPECT_EQ(panel.curves[0].y, (std::vector<double>{6.0, 7.0}));
+  const auto json = toJson(Picture{"time [s]", {panel, {"T", {}, {{"printed", 4.0}}}}});
+  EXPECT_EQ(json["panels"][0]["from"], 1.0);
+  EXPECT_TRUE(json["panels"][1]["from"].is_null());
+  EXPECT_TRUE(json["panels"][1]["marks"][0]["x"].is_null());
+}
+
+TEST(Pictures, OfTheThreeTemperaturesAreOfThreeParts) {
+  std::set<double> from;
+  for (const char* figure : {"batch_figure_12", "batch_figure_13", "batch_figure_14"})
+    from.insert(pictureOf(figure).panels.at(1).span.from);
+  EXPECT_EQ(from.size(), 3U);
+}
+
+TEST(Pictures, OfTheColumnShowTheChangedGains) {
+  const Picture picture = pictureOf("column_figure_8");
+  const auto& curves = picture.panels.at(1).curves;  // setpoint, reference, three gains
+  ASSERT_EQ(curves.size(), 5U);
+  for (const std::size_t i : {3U, 4U}) {
+    double most = 0.0;
+    for (std::size_t k = 0; k < curves[i].y.size(); ++k)
+      most = std::max(most, std::abs(curves[i].y[k] - curves[2].y[k]));
+    EXPECT_GT(most, 0.01) << curves[i].label;  // mol%
+  }
+  EXPECT_EQ(picture.panels[1].marks.size(), 1U);
+}
+
+TEST(PrintedModels, HaveTheNumbersOfTheirTables) {
+  for (const auto& [model, coefficients, sets] :
+       {std::tuple{1, 62U, 51U}, std::tuple{2, 51U, 40U}}) {
+    std::size_t count = 0;
+    for (const auto& rule : printedConsequents(model)) count += rule.size();
+    EXPECT_EQ(count, coefficients);
+    EXPECT_EQ(printedSets(model).size(), sets);
+    for (const auto& set : printedSets(model)) EXPECT_EQ(set.size(), 4U);
+  }
+}
+
+TEST(PrintedModels, AreHeldAgainstAFileNumberByNumber) {
+  auto held = printedConsequents(1);
+  EXPECT_EQ(unlike(printedConsequents(1), held), 0.0);
+  held[3][2] *= 1.001;
+  EXPECT_EQ(unlike(printedConsequents(1), held), 1.0);
+  held[0].pop_back();
+  EXPECT_EQ(unlike(printedConsequents(1), held), 8.0) << "a row of seven is lost";
+  EXPECT_EQ(unlike(printedConsequents(1), {}), 62.0);
 }
 
 TEST(Report, HasNoMinusZeroAndAMarkForNoNumber) {

@@ -58,5 +58,13 @@ TEST(ResultsPage, IsWhatTheCommandPrints) {
         << written[i > 0 ? i - 1 : 0];
 }
 
+// Beside the page: what the same command says on standard error.
+TEST(ReproducePlots, OfASelectionWithoutFiguresDrawNothingAndWarnOfNothing) {
+  const Outcome outcome =
+      tool("reproduce cstr_propositions --plots " + ::testing::TempDir() + "/no_pictures", true);
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.printed, "");
+}
+
 }  // namespace tool_results_page_test
 }  // namespace fpc

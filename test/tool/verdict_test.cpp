@@ -12,6 +12,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "paths.hpp"
 #include "tool/reproduce/experiment.hpp"
+#include "tool/reproduce/runs.hpp"
 
 namespace fpc::tool {
 namespace tool_verdict_test {
@@ -98,6 +99,23 @@ TEST(Row, WithOneFailedRunHasNoResult) {
   const ReproduceRow row =
       check("ratio", std::vector<double>{0.5, std::nan(""), 0.9}, Direction::kLower, 1.0, "-", "");
   EXPECT_EQ(row.verdict(), Verdict::kNoResult);
+}
+
+TEST(Row, WithOneFailedRunHasNoRangeEither) {
+  const Values some(std::vector<double>{0.5, std::nan(""), 0.9}), none(std::vector<double>{});
+  for (const Values& values : {some, none}) {
+    EXPECT_TRUE(std::isnan(values.lowest()));
+    EXPECT_TRUE(std::isnan(values.highest()));
+  }
+  EXPECT_DOUBLE_EQ(Values(std::vector<double>{0.5, -1.0}).lowest(), -1.0);
+  EXPECT_DOUBLE_EQ(Values(std::vector<double>{0.5, -1.0}).highest(), 0.5);
+}
+
+TEST(Row, OfADifferenceIsPairedSeedBySeed) {
+  const Values a(std::vector<double>{1.0, 5.0, 9.0}), b(std::vector<double>{2.0, 3.0, 11.0});
+  EXPECT_EQ(difference(a, b).all(), (std::vector<double>{-1.0, 2.0, -2.0}));
+  EXPECT_DOUBLE_EQ(difference(a, b).median(), -1.0);  // that of the medians is 2
+  EXPECT_THROW(difference(a, Values(1.0)), InputError);
 }
 
 TEST(Row, ThatCannotBeComparedSaysWhy) {

@@ -106,4 +106,15 @@ const Table kTableA2{{40.44, 52.75, 57.79, 75.11},
 const Table& printedConsequents(int model) { return model == 1 ? kTable4 : kTable6; }
 const Table& printedSets(int model) { return model == 1 ? kTableA1 : kTableA2; }
 
+double unlike(const std::vector<std::vector<double>>& printed,
+              const std::vector<std::vector<double>>& held) {
+  double count = 0.0;
+  for (std::size_t r = 0; r < printed.size(); ++r) {
+    const bool shaped = r < held.size() && held[r].size() == printed[r].size();
+    for (std::size_t i = 0; i < printed[r].size(); ++i)
+      if (!shaped || held[r][i] != printed[r][i]) count += 1.0;
+  }
+  return count;
+}
+
 }  // namespace fpc::tool

@@ -11,5 +11,9 @@ const std::vector<std::vector<double>>& printedConsequents(int model);
 /// A row a set, four numbers each: output by output, in it variable by variable, in it rule by
 /// rule.
 const std::vector<std::vector<double>>& printedSets(int model);
+/// How many printed numbers a model file does not hold where it must; all of a row whose length
+/// differs.
+double unlike(const std::vector<std::vector<double>>& printed,
+              const std::vector<std::vector<double>>& held);
 
 }  // namespace fpc::tool

@@ -51,18 +51,6 @@ std::vector<std::vector<double>> setsOf(const TsModel& model) {
   return all;
 }
 
-/// How many printed numbers a model file does not hold where it must; all if the shape differs.
-double unlike(const std::vector<std::vector<double>>& printed,
-              const std::vector<std::vector<double>>& held) {
-  double count = 0.0;
-  for (std::size_t r = 0; r < printed.size(); ++r) {
-    const bool shaped = r < held.size() && held[r].size() == printed[r].size();
-    for (std::size_t i = 0; i < printed[r].size(); ++i)
-      if (!shaped || held[r][i] != printed[r][i]) count += 1.0;
-  }
-  return count;
-}
-
 ReproduceRow transcription(const std::vector<std::vector<double>>& printed,
                            const std::vector<std::vector<double>>& held) {
   std::size_t numbers = 0;
