@@ -1,7 +1,7 @@
 // A plugin whose controller has a name of ours.
 #include "fmbpc/control/registry.hpp"
 
-namespace config_plugin_taken_name {
+namespace {
 
 struct Params {};
 Params read(fpc::YamlSection&, const fpc::ControllerContext&) { return {}; }
@@ -11,4 +11,4 @@ std::unique_ptr<fpc::Controller> make(const Params&, const fpc::ControllerContex
 
 const bool kRegistered = fpc::registerController<Params>({{"pi", "not ours"}, &read, &make});
 
-}  // namespace config_plugin_taken_name
+}  // namespace

@@ -18,7 +18,7 @@
 #include "ros/conversions.hpp"
 
 namespace fpc::fuzz {
-namespace fuzz_bag_target {
+namespace {
 
 const RunRecord& example() {
   static const RunRecord record =
@@ -78,7 +78,7 @@ void checkTable(const CsvTable& table) {
       throw std::logic_error("times that do not increase");
 }
 
-}  // namespace fuzz_bag_target
+}  // namespace
 
 void bag(const std::string& text) {
   Bytes bytes(text);

@@ -11,7 +11,7 @@
 #include "ros/plant_check.hpp"
 
 namespace fpc::fuzz {
-namespace fuzz_message_target {
+namespace {
 
 const LoopFile& example() {
   static const LoopFile loop = readLoop("asp_case1_clp");
@@ -46,7 +46,7 @@ void plantInfo(Bytes& bytes) {
   tolerant([&] { plantMismatch(example().plant_info, fromMsg(message)); });
 }
 
-}  // namespace fuzz_message_target
+}  // namespace
 
 void message(const std::string& text) {
   Bytes bytes(text);

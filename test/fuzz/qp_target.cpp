@@ -9,7 +9,7 @@
 #include "fuzz/targets.hpp"
 
 namespace fpc::fuzz {
-namespace fuzz_qp_target {
+namespace {
 
 using Eigen::Index;
 
@@ -63,7 +63,7 @@ void check(const QpProblem& p, const QpResult& result, const char* how) {
   }
 }
 
-}  // namespace fuzz_qp_target
+}  // namespace
 
 void qp(const std::string& text) {
   Bytes bytes(text);

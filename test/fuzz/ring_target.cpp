@@ -21,7 +21,7 @@
 #include "ros/conversions.hpp"
 
 namespace fpc::fuzz {
-namespace fuzz_ring_target {
+namespace {
 
 constexpr std::uint64_t kRun = 7;
 constexpr int kMostTries = 400;
@@ -172,7 +172,7 @@ class FuzzedRing {
   bool finished_{false};
 };
 
-}  // namespace fuzz_ring_target
+}  // namespace
 
 void ring(const std::string& text) {
   Bytes bytes(text);

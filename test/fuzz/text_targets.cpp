@@ -15,7 +15,7 @@
 #include "fuzz/tolerant.hpp"
 
 namespace fpc::fuzz {
-namespace fuzz_text_targets {
+namespace {
 
 constexpr std::uint32_t kSamples = 30;
 
@@ -46,7 +46,7 @@ void runBriefly(const LoopFile& loop) {
   }
 }
 
-}  // namespace fuzz_text_targets
+}  // namespace
 
 void loopFile(const std::string& bytes) {
   tolerant([&] {

@@ -3,7 +3,7 @@
 #include <sstream>
 
 namespace fpc {
-namespace random_damage {
+namespace {
 
 const std::vector<std::string>& strangeValues() {
   static const std::vector<std::string> values{
@@ -68,7 +68,7 @@ void damageOnce(std::vector<std::string>& lines, Dice& dice) {
   }
 }
 
-}  // namespace random_damage
+}  // namespace
 
 std::string damaged(const std::string& text, Dice& dice) {
   auto lines = linesOf(text);

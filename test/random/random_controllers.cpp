@@ -5,7 +5,7 @@
 #include "random/random_parts.hpp"
 
 namespace fpc {
-namespace random_random_controllers {
+namespace {
 
 double spanOf(const Quantity& q) {
   const auto [lower, upper] = workingRange(q);
@@ -154,7 +154,7 @@ std::string adaptivePi(Dice& dice, RandomFrame&) {
   return text;
 }
 
-}  // namespace random_random_controllers
+}  // namespace
 
 std::string randomController(const std::string& type, Dice& dice, RandomFrame& frame) {
   using Maker = std::string (*)(Dice&, RandomFrame&);

@@ -5,7 +5,7 @@
 #include "random/random_parts.hpp"
 
 namespace fpc {
-namespace random_random_loop {
+namespace {
 
 /// What a controller with a model can run: plant and model belong together, as does the sample
 /// time.
@@ -63,7 +63,7 @@ std::string controllerFor(Dice& dice, RandomFrame& frame) {
   return dice.pick(types);
 }
 
-}  // namespace random_random_loop
+}  // namespace
 
 std::string RandomLoop::told() const {
   std::string all = "seed " + std::to_string(seed) +

@@ -2,7 +2,7 @@
 #include "random/random_parts.hpp"
 
 namespace fpc {
-namespace random_random_matrix {
+namespace {
 
 std::string quantity(const Quantity& q, double unit) {
   return "{name: " + q.name + ", unit: " + q.unit + ", nominal: " + exactText(q.nominal / unit) +
@@ -27,7 +27,7 @@ std::string values(const std::vector<Quantity>& signals, Dice& dice, double shar
   return text + "}";
 }
 
-}  // namespace random_random_matrix
+}  // namespace
 
 // Only the first output and the first input change their units, so that a mix-up of the others
 // shows.

@@ -4,7 +4,7 @@
 #include <cmath>
 
 namespace fpc {
-namespace random_random_parts {
+namespace {
 
 std::vector<std::string> namesOf(const std::vector<Quantity>& quantities) {
   std::vector<std::string> names;
@@ -84,7 +84,7 @@ std::string command(Dice& dice, const std::string& name, const Quantity& q, doub
   return text + ", value: " + exactText(dice.between(lower, upper)) + "}\n";
 }
 
-}  // namespace random_random_parts
+}  // namespace
 
 std::pair<double, double> workingRange(const Quantity& q) {
   const double reach = q.nominal != 0.0 ? 0.4 * std::abs(q.nominal) : 0.2;
