@@ -19,12 +19,6 @@ std::vector<std::string> weights(Dice& dice, const std::vector<Quantity>& signal
   return list;
 }
 
-std::vector<std::string> namesOf(const std::vector<Quantity>& quantities) {
-  std::vector<std::string> names;
-  for (const auto& q : quantities) names.push_back(q.name);
-  return names;
-}
-
 std::string costs(Dice& dice, const RandomFrame& frame, bool move_needed) {
   std::vector<std::string> poles;
   for (std::size_t i = 0; i < frame.outputs.size(); ++i) poles.push_back(dice.number(0.0, 0.98));

@@ -6,12 +6,6 @@
 namespace fpc {
 namespace {
 
-std::vector<std::string> namesOf(const std::vector<Quantity>& quantities) {
-  std::vector<std::string> names;
-  for (const auto& q : quantities) names.push_back(q.name);
-  return names;
-}
-
 /// Disturbances that are signals, not gains of a matrix.
 std::vector<Quantity> loadsOf(const PlantDescription& plant) {
   std::vector<Quantity> loads;

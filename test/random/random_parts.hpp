@@ -1,6 +1,7 @@
 // Sections of a random loop file.
 #pragma once
 
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/plant/plant.hpp"
 #include "random/dice.hpp"
 #include "random/random_loop.hpp"
