@@ -15,6 +15,9 @@ namespace loop_report_test {
 
 using Report = LoopFolder;
 
+/// What shortLoop() plays of the schedule of case 1: no entry lies beyond the run.
+const std::string kInRun = "[{time_h: 30, x: 2200}]";
+
 LoopFile shortLoop(const std::string& name, Overrides overrides = {}) {
   overrides.emplace_back("sampling.duration_h", "40");
   return readLoop(name, overrides);
@@ -135,7 +138,8 @@ TEST_F(Report, APlantThatCannotBeMovedIsTold) {
 }
 
 TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
-  const LoopFile loop = shortLoop("asp_case1_pi_s", {{"actuator.input_upper", "{q_r: 800}"}});
+  const LoopFile loop = shortLoop(
+      "asp_case1_pi_s", {{"actuator.input_upper", "{q_r: 800}"}, {"setpoint.schedule", kInRun}});
   RunRecord record = runLoop(loop);
   for (std::size_t k = 0; k < 200; ++k) {
     record.samples[k].action.input << (k < 170 ? 700.0 : 800.0);
@@ -218,7 +222,7 @@ TEST_F(Report, AFolderThatCannotBeMadeIsAnError) {
 }
 
 TEST_F(Report, TheTableHasALinePerOutputAndPerInput) {
-  const LoopFile loop = shortLoop("asp_case1_clp");
+  const LoopFile loop = shortLoop("asp_case1_clp", {{"setpoint.schedule", kInRun}});
   const Summary summary = summarize(loop, runLoop(loop), 0.0);
   const std::string table = toTable({summary, summary});
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'),
