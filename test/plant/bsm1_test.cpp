@@ -81,7 +81,9 @@ void expectAsIntegrated(const Plant& plant, const Vector& u, const Vector& d,
   Vector own = nominalOf(about.states), exact = own;
   const auto stepper = plant.makeStepper(900.0);
   stepper->reset(u, d);
-  Integrator cvode(plant, {});
+  IntegratorParams patient;
+  patient.max_steps = 500000;  // the fluxes of thin layers have kinks everywhere
+  Integrator cvode(plant, patient);
   for (int k = 0; k < 4; ++k) {
     stepper->advance(own, u, d);
     ASSERT_TRUE(cvode.advance(exact, u, d, 900.0).ok());
@@ -141,7 +143,7 @@ std::string troubleWith(const PlantParameters& parameters) {
   Simulation works(p);
   const Vector before = works.state().state;
   for (int k = 0; k < 8 && works.trouble().empty(); ++k) works.advance(p.actuator.initial);
-  if (!works.trouble().empty()) EXPECT_GE(works.state().state.minCoeff(), -1e-3);
+  if (!works.trouble().empty()) EXPECT_GE(works.state().state.head(145).minCoeff(), 0.0);
   return works.trouble();
 }
 
@@ -153,8 +155,9 @@ TEST(Bsm1, ThinLayersAndFastSludgeFollowTheDifferentialEquations) {
     SCOPED_TRACE(parameters.begin()->first);
     const auto plant = makePlant("bsm1", parameters);
     const auto& about = plant->description();
-    expectAsIntegrated(*plant, nominalOf(about.inputs), nominalOf(about.disturbances), {65, 75},
-                       2e-3);
+    Vector d = nominalOf(about.disturbances);
+    d[13] *= 1.5;
+    expectAsIntegrated(*plant, nominalOf(about.inputs), d, {65, 75}, 2e-3);
   }
 }
 
