@@ -16,6 +16,7 @@ COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a"]
 STYLES = {"setpoint": {"color": "black", "linestyle": "--", "linewidth": 1.0, "drawstyle": "steps-post", "zorder": 2},
           "reference": {"color": "#888888", "linestyle": ":", "linewidth": 1.2, "zorder": 2}}
 DASHES = [(0, (6, 2)), (0, (2, 2)), (0, (6, 2, 2, 2))]
+PRINTED = "#b0006d"
 MARKERS = ["o", "s", "^", "v", "D", "P"]
 ROWS = 12  # of the table below a picture
 LINE = 0.115  # height of a line of it [in]
@@ -37,7 +38,7 @@ def draw_curves(axis, curves):
 def draw_marks(axis, marks):
     """What the paper prints: a line across the panel, or a dot."""
     for number, mark in enumerate(marks):
-        style = {"color": "black", "label": mark["label"], "zorder": 9}
+        style = {"color": PRINTED, "label": mark["label"], "zorder": 9}
         if mark["x"] is None:
             axis.axhline(mark["y"], linewidth=1.0, linestyle=DASHES[number % len(DASHES)], **style)
         else:
@@ -60,7 +61,7 @@ def set_axes(axis, panel):
     if len(labels) > 1:
         columns = max(1, min(3, 100 // (8 + max(len(label) for label in labels))))
         lines = (len(labels) + columns - 1) // columns
-        axis.set_ylim(low, high + (0.06 + 0.11 * lines) * (high - low))  # room for the legend
+        axis.set_ylim(low, high + (0.06 + 0.13 * lines) * (high - low))  # room for the legend
         axis.legend(loc="upper right", ncol=columns, fontsize=7, framealpha=0.85, borderpad=0.3)
 
 
@@ -75,10 +76,10 @@ def cell(value):
 
 
 def here_text(row):
-    """Enough digits of a statement's number to tell it from its limit."""
+    """As many digits as tell the number of a statement that fails from its limit."""
     text = cell(row["here"])
     for digits in range(5, 18):
-        if row["kind"] != "check" or row["here"] in (None, row["paper"]) or text != cell(row["paper"]):
+        if row["verdict"] != "fails" or text != cell(row["paper"]):
             break
         text = "%.*g" % (digits, row["here"])
     return text

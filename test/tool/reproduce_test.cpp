@@ -126,8 +126,9 @@ TEST(Report, TellsAStatementsNumberFromItsLimitHoweverNearTheyAre) {
   const auto shown = [](double here, Direction side) {
     return hereText(check("c", here, side, 1.0, "-", ""));
   };
-  EXPECT_EQ(shown(1.0000095, Direction::kLower), "1.0000095");
-  EXPECT_EQ(shown(0.99996, Direction::kLower), "0.99996");
+  EXPECT_EQ(shown(1.0000095, Direction::kLower), "1.00001");
+  EXPECT_EQ(shown(0.99996, Direction::kHigher), "0.99996");
+  EXPECT_EQ(shown(0.99996, Direction::kLower), "1") << "it holds: nothing is hidden";
   EXPECT_EQ(shown(0.5, Direction::kLower), "0.5");
   EXPECT_EQ(shown(1.0, Direction::kLower), "1");
   EXPECT_EQ(hereText(figure("f", 1.0, 1.0000095, "-")), "1") << "figures are judged by a tolerance";

@@ -103,7 +103,7 @@ std::string figureText(double value) {
 std::string hereText(const ReproduceRow& row) {
   const double here = row.here.median();
   std::string text = figureText(here);
-  if (!row.statement || here == row.paper || !std::isfinite(row.paper - here)) return text;
+  if (row.verdict() != Verdict::kFails) return text;
   const std::string limit = figureText(row.paper);
   for (int digits = 5; text == limit && digits <= 17; ++digits)
     text = format(("%." + std::to_string(digits) + "g").c_str(), here);

@@ -27,8 +27,8 @@ std::string remarkOf(const ReproduceRow& row);
 /// Of the row that says most about what is not reached; empty if all is.
 std::string reasonOf(const Rows& rows);
 
-/// What a statement's `here` needs to be told from its limit: "1.0000095" where "1" would hide why
-/// it fails. Figures as figureText().
+/// As figureText(), but of a statement that fails with as many digits as tell it from its limit:
+/// "1.00001" where "1" would hide why.
 std::string hereText(const ReproduceRow& row);
 /// One line for each failed run and one that counts the rows without a result; empty: none.
 std::vector<std::string> failuresOf(const std::vector<Outcome>& outcomes,
