@@ -144,11 +144,18 @@ void findFilesHere(MergedLoop& loop) {
   });
 }
 
+std::string textOf(const YAML::Node& root) {
+  YAML::Emitter text;
+  text << root;
+  return std::string(text.c_str()) + "\n";
+}
+
 /// Reads everything once, so that errors name the line that a person wrote.
 void validate(const MergedLoop& merged, const std::string& file) {
   YamlSection root(merged.root, file, "", merged.trace());
-  const LoopFile loop = readSections(root, fs::path(file).stem().string());
+  LoopFile loop = readSections(root, fs::path(file).stem().string());
   if (loop.external_plant) return;
+  loop.resolved = textOf(merged.root);
   try {
     makeDisturbance(loop);
   } catch (const InputError& e) {
@@ -178,12 +185,11 @@ LoopFile parseLoop(const std::string& text, const std::string& name, const Overr
   MergedLoop merged;
   merged.root = detached(loadYaml(text, name));
   applyOverrides(merged, overrides);
-  YAML::Emitter emitted;
-  emitted << merged.root;
+  const std::string resolved = textOf(merged.root);
   findFilesHere(merged);
   YamlSection root(merged.root, name, "", merged.trace());
   LoopFile loop = readSections(root, name);
-  loop.resolved = std::string(emitted.c_str()) + "\n";
+  loop.resolved = resolved;
   return loop;
 }
 
@@ -194,9 +200,7 @@ std::string resolveLoop(const std::string& name_or_path, const Overrides& overri
   makeFilesAbsolute(merged);
   validate(merged, file);
   makeFilesPortable(merged);
-  YAML::Emitter text;
-  text << merged.root;
-  return std::string(text.c_str()) + "\n";
+  return textOf(merged.root);
 }
 
 }  // namespace fpc
