@@ -13,7 +13,11 @@ _fmbpc_env() {
   fi
   local strict=
   case $- in *u*) strict=1; set +u ;; esac  # catkin's script reads unset variables
-  export PATH=$top/scripts/bin:/usr/bin:$PATH
+  # `fmbpc` alone in a folder: below build/, for rosrun refuses a package in which it finds two of that name elsewhere.
+  if [ ! -e "$top/build/bin/fmbpc" ]; then
+    mkdir -p "$top/build/bin" && ln -s ../../scripts/fmbpc "$top/build/bin/fmbpc" 2>/dev/null || :  # another shell was first
+  fi
+  export PATH=$top/build/bin:/usr/bin:$PATH
   . "$top/devel/setup.bash"
   # Alone on this machine unless the caller says by which name or address others reach it (ROS_HOSTNAME wins over ROS_IP).
   if [ -z "${ROS_HOSTNAME:-}${ROS_IP:-}" ]; then export ROS_HOSTNAME=localhost; fi

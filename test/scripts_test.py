@@ -38,7 +38,7 @@ class Scripts(unittest.TestCase):
             top = pathlib.Path(os.path.realpath(folder)) / "tree"
             shutil.copytree(SCRIPTS, top / "scripts", symlinks=True)
             for shell, devel, words in (("sh", None, "is for bash"), ("bash", None, "not built yet"), ("bash", "/elsewhere" + str(top), "moved here"),
-                                        ("bash", str(top), "tree/scripts/bin/fmbpc")):
+                                        ("bash", str(top), "tree/build/bin/fmbpc")):
                 if devel:
                     (top / "devel").mkdir(exist_ok=True)
                     (top / "devel" / "setup.sh").write_text(f": ${{_CATKIN_SETUP_DIR:={devel}/devel}}\n")
@@ -49,6 +49,12 @@ class Scripts(unittest.TestCase):
                     self.assertEqual(status == 0, words.endswith("fmbpc"))
             (pathlib.Path(folder) / "link").symlink_to(top)
             self.assertEqual(self.source_env(pathlib.Path(folder) / "link")[0], 0)
+
+    def test_rosrun_finds_one_tool(self):
+        """It follows links and leaves out nothing but build/."""
+        found = [os.path.join(folder, name) for folder, _, names in os.walk(os.path.dirname(SCRIPTS), followlinks=True) for name in names
+                 if name == "fmbpc" and not folder.startswith(os.path.join(os.path.dirname(SCRIPTS), "build"))]
+        self.assertEqual(found, [os.path.join(SCRIPTS, "fmbpc")])
 
     def test_completion(self):
         """The names that bash offers, with a tool that knows two loops."""
