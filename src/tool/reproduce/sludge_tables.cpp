@@ -3,6 +3,7 @@
 // predictors of our plant.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/config/structure_file.hpp"
@@ -97,17 +98,28 @@ Rows identifiedBeside(int number) {
   return rows;
 }
 
-/// Over records with q_r 400..1600: root mean square of the error over one sample.
-Values oneStepError(const TsModel& model, int number, Eigen::Index output) {
+/// Records with q_r 400..1600 for the signals of a printed model, run once.
+const std::vector<DataSet>& records(int number) {
+  static std::map<int, std::vector<DataSet>> all;
+  const auto known = all.find(number);
+  if (known != all.end()) return known->second;
   const Structure structure = readStructure(findStructure(structureOf(number)));
-  std::vector<double> errors(kSeeds, notPrinted());
-  parallelFor(errors.size(), 0, [&](std::size_t i) {
-    const DataSet data = excited("asp_excite", structure, static_cast<int>(i) + 1,
-                                 {{"sampling.duration_h", "166"},
-                                  {"controller.signals.0.lower", "400"},
-                                  {"controller.signals.0.upper", "1600"}});
-    errors[i] = fitFigures(data.values.col(output), predictOneStep(model, data).col(output)).rmse;
+  std::vector<DataSet> data(kSeeds);
+  parallelFor(data.size(), 0, [&](std::size_t i) {
+    data[i] = excited("asp_excite", structure, static_cast<int>(i) + 1,
+                      {{"sampling.duration_h", "166"},
+                       {"controller.signals.0.lower", "400"},
+                       {"controller.signals.0.upper", "1600"}});
   });
+  return all.emplace(number, std::move(data)).first->second;
+}
+
+/// Root mean square of the error over one sample.
+Values oneStepError(const TsModel& model, int number, Eigen::Index output) {
+  std::vector<double> errors;
+  for (const DataSet& data : records(number))
+    errors.push_back(
+        fitFigures(data.values.col(output), predictOneStep(model, data).col(output)).rmse);
   return errors;
 }
 
