@@ -61,7 +61,7 @@ def set_axes(axis, panel):
     if len(labels) > 1:
         columns = max(1, min(3, 100 // (8 + max(len(label) for label in labels))))
         lines = (len(labels) + columns - 1) // columns
-        axis.set_ylim(low, high + (0.06 + 0.13 * lines) * (high - low))  # room for the legend
+        axis.set_ylim(low, high + (0.06 + 0.17 * lines) * (high - low))  # room for the legend
         axis.legend(loc="upper right", ncol=columns, fontsize=7, framealpha=0.85, borderpad=0.3)
 
 
