@@ -137,7 +137,7 @@ class Equal(unittest.TestCase):
             self.compare_case(*first_case(name))
 
     def test_the_case_of_a_type_is_its_first_loop(self):
-        self.assertEqual(first_case("pi"), ("asp_case1_pi_s", 40, ["sampling.duration_h=8"], "lockstep", 3600))
+        self.assertEqual(first_case("excitation"), ("asp_excite", 40, ["sampling.duration_h=8"], "lockstep", 3600))
 
 
 def add(name):

@@ -16,7 +16,7 @@ inline TsModel columnModel(double sample_time_s, bool feed) {
   const double infinite = std::numeric_limits<double>::infinity();
   TsModel names;
   names.name = feed ? "wood_berry_feed" : "wood_berry";
-  names.source = "Wood and Berry (1973), exact for inputs held over a sample of one minute.";
+  names.source = "wood1973, exact for inputs held over a sample of one minute.";
   names.sample_time_s = sample_time_s;
   names.outputs = {{"y_D", "mol%", -infinite, infinite}, {"x_B", "mol%", -infinite, infinite}};
   names.inputs = {{"L", "lb/min", -infinite, infinite}, {"V", "lb/min", -infinite, infinite}};

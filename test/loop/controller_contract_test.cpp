@@ -120,7 +120,7 @@ TEST_P(ControllerContract, MissingDataHoldTheInputAndTheNextSampleGoesOn) {
   plant.reset(1);
   run(plant, session, kSettle, [](const Measurement&) {});
   Measurement bad = plant.measurement();
-  bad.outputs[0] = std::nan("");
+  bad.outputs.setConstant(std::nan(""));  // also those that it needs
   ASSERT_EQ(session.receive(bad), Receipt::kAnswered);
   EXPECT_EQ(session.answer().base.input, bad.input_applied);
   EXPECT_EQ(session.answer().base.source, ActionSource::kHeld);

@@ -54,7 +54,7 @@ class Watch(unittest.TestCase):
 
     def test_signals_of_one_unit_share_a_plot_unless_their_sizes_are_far_apart(self):
         view = live_view.LiveView()
-        ring.wait_until(lambda: view.sample() and view.complete(), "all signals")
+        ring.wait_until(lambda: view.sample() and view.complete() and "x_setpoint" in view.values, "all signals, also what is tracked")
         self.assertEqual([["s", "s_setpoint", "s_reference"], ["x", "x_setpoint", "x_reference"], ["q_r"]],
                          [panel.names for panel in view.panels()])
         self.assertEqual(("h", 40.0, True), (view.axis.unit, view.axis.length, view.axis.endless))  # 200 samples

@@ -74,10 +74,8 @@ bool CoincidenceGains::computePublished(const AffineModel& model, int horizon) {
   return free_.allFinite() && sum_.allFinite();
 }
 
-Eigen::Index CoincidenceGains::idleInput() const {
-  for (Eigen::Index j = 0; j < effect_.cols(); ++j)
-    if ((effect_.col(j).array() == 0.0).all()) return j;
-  return -1;
+bool CoincidenceGains::isIdle(Eigen::Index input) const {
+  return (effect_.col(input).array() == 0.0).all();
 }
 
 bool CoincidenceGains::factor() {

@@ -57,13 +57,28 @@ bool PublishedLaw::computeGains(const AffineModel& model) {
   return gains_.computePublished(model, coincidence_steps_);
 }
 
+namespace {
+
+/// An input that no rule knows is left alone by whoever made the model.
+bool isModelled(const TsModel& model, int input) {
+  for (const OutputModel& submodel : model.submodels)
+    for (const Regressor& regressor : submodel.regressors)
+      if (regressor.kind == SignalKind::kInput && regressor.index == input) return true;
+  return false;
+}
+
+}  // namespace
+
 GeneralLaw::GeneralLaw(const InternalModel& model, const FmbpcParams& params, Eigen::Index n_u)
     : CoincidenceLaw(model, params, n_u),
       weight_output_(params.weight_output),
       weight_move_(params.weight_move) {
-  for (const auto& input : model.local().model().inputs)
-    idle_words_.push_back("input " + input.name +
-                          " has no effect at controller.coincidence_steps and rests");
+  const TsModel& rules = model.local().model();
+  for (std::size_t j = 0; j < rules.inputs.size(); ++j)
+    idle_words_.push_back(isModelled(rules, static_cast<int>(j))
+                              ? "input " + rules.inputs[j].name +
+                                    " has no effect at controller.coincidence_steps and rests"
+                              : "");
 }
 
 void GeneralLaw::retune(const FmbpcParams& params) {
@@ -78,8 +93,10 @@ bool GeneralLaw::computeGains(const AffineModel& model) {
 
 /// A weight of its moves makes an input solvable that cannot do anything.
 const char* GeneralLaw::remark() const {
-  const Eigen::Index idle = gains_.idleInput();
-  return idle < 0 ? "" : idle_words_[static_cast<std::size_t>(idle)].c_str();
+  for (std::size_t j = 0; j < idle_words_.size(); ++j)
+    if (!idle_words_[j].empty() && gains_.isIdle(static_cast<Eigen::Index>(j)))
+      return idle_words_[j].c_str();
+  return "";
 }
 
 void GeneralLaw::predict(const InternalModel& model, const Matrix& future,

@@ -79,7 +79,7 @@ class GeneralLaw final : public CoincidenceLaw {
   const char* remark() const override;
 
   Vector weight_output_, weight_move_;
-  std::vector<std::string> idle_words_;  ///< by input
+  std::vector<std::string> idle_words_;  ///< by input; empty: no rule knows it
 };
 
 /// The first input of the best path over the horizon; the local model is then that of its first

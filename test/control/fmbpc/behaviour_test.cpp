@@ -133,6 +133,18 @@ TEST(FmbpcLaw, AnInputThatActsAfterTheHorizonIsNamedBesideOneThatActs) {
   }
 }
 
+TEST(FmbpcLaw, AnInputThatNoRuleKnowsIsNoRemark) {
+  TsModel model = test::firstOrder(0.9, 0.1, 0.0);
+  model.inputs = {test::signal("early"), test::signal("unknown")};
+  const PlantInfo info = test::infoOf(model);
+  FmbpcLaw law(test::generalParams(1, 2, 5, 0.7, 0.1), test::wideLimits(2), info);
+  test::ModelPlant plant(model, one(0.0), Vector::Zero(2), Vector());
+  SetpointSource setpoint = test::setpointOf(info, one(2.0));
+  law.setModel(model);
+  test::start(law, plant, setpoint, 10,
+              [&](const Measurement&, const ControllerOutput& o) { EXPECT_STREQ(o.remark, ""); });
+}
+
 TEST(FmbpcLaw, AWeightOfMovesDoesNotHideThatNoInputActs) {
   Running loop(test::generalParams(1, 1, 5, 0.7, 0.1));
   loop.law.setModel(test::firstOrder(0.9, 0.1, 0.0, 9));

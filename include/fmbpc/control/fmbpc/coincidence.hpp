@@ -30,8 +30,8 @@ class CoincidenceGains {
   bool computeWeighted(const AffineModel& model, int horizon, VectorRef weight_output,
                        VectorRef weight_move);
 
-  /// The first input without an effect on any weighted output at the horizon, -1 if all have one.
-  Eigen::Index idleInput() const;
+  /// Whether an input has no effect on any weighted output at the horizon.
+  bool isIdle(Eigen::Index input) const;
 
   const Matrix& free() const { return free_; }           ///< P
   const Matrix& sum() const { return sum_; }             ///< S
