@@ -80,6 +80,10 @@ class ExamplePackage(unittest.TestCase):
         link = (ws / "build" / "two_tanks" / "CMakeFiles" / "two_tanks.dir" / "link.txt").read_text()
         self.assertIn("libfmbpc_core.so", link)
 
+    def test_lists_hold_what_it_brings(self):
+        self.assertIn("outflow", self.tool("controllers"))
+        self.assertIn("two_tanks", self.tool("plants"))
+
     def test_without_the_package_one_line_says_what_is_missing(self):
         text = run(self.fmbpc / "lib" / "fmbpc" / "fmbpc_tool", "run",
                    self.own / "share" / "two_tanks" / "config" / "loop" / "two_tanks_outflow.yaml", check=False,
