@@ -35,7 +35,17 @@ fs::path ownFolder() {
              : fs::path();
 }
 
+/// "two_tanks", not "libtwo_tanks.so".
+void requireBareName(const std::string& name, const std::string& where) {
+  require(!name.empty(), where, "a plugin's name, got ''");
+  const bool whole = name.rfind("lib", 0) == 0 && fs::path(name).extension() == ".so";
+  require(!whole, where,
+          "the plugin '" + fs::path(name).stem().string().substr(3) +
+              "', without lib and .so, or a path; got '" + name + "'");
+}
+
 std::string findLibrary(const std::string& name, const std::string& where) {
+  requireBareName(name, where);
   const std::string file = "lib" + name + ".so";
   const std::vector<std::string> folders = pluginFolders();
   std::error_code ignored;

@@ -58,6 +58,8 @@ TEST_F(Plugins, AMissingOneNamesTheFoldersThatWereSearched) {
                "/some/workspace/lib", "FMBPC_PLUGIN_PATH"});
   expectWords(errorWith("./nowhere.so"), {"p.yaml:12: plugins", "existing library", "nowhere.so"});
   unsetenv("CMAKE_PREFIX_PATH");
+  expectWords(errorWith("libtwo_tanks.so"), {"p.yaml:12: plugins", "'two_tanks', without lib"});
+  expectWords(errorWith("\"\""), {"p.yaml:12: plugins", "a plugin's name, got ''"});
 }
 
 TEST_F(Plugins, WhatIsNoPluginIsSaidSo) {
