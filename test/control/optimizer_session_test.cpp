@@ -25,7 +25,8 @@ ClpParams params() {
 }
 
 StepHeader header(std::uint32_t step, std::uint64_t run_id = 1) {
-  return {1234500000000 + step * 720000000000, run_id, step};
+  const std::uint64_t after_start = std::uint64_t{step} * 720000000000U;  // a forged step may wrap
+  return {1234500000000 + static_cast<std::int64_t>(after_start), run_id, step};
 }
 
 // The base law of the fixture asks for 804; `demand` more moves it towards the bound of 1600.

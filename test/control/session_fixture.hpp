@@ -46,7 +46,8 @@ inline SetpointParams setpoints() {
 }
 
 inline Measurement sample(std::uint32_t step, std::uint64_t run_id = 1, double applied = 570.0) {
-  return {{kStart + step * kSample, run_id, step},
+  const std::uint64_t after_start = std::uint64_t{step} * kSample;  // a forged step may wrap
+  return {{kStart + static_cast<std::int64_t>(after_start), run_id, step},
           of({56.0, 1990.0}),
           of({1300.0}),
           of({applied}),
