@@ -138,8 +138,9 @@ class Iteration {
       covariance.diagonal().array() += params_.regularisation * spread_;
       covariance = bounded(covariance);
       // A regularised shape is not the best one for the objective: it is taken only where it lowers
-      // it.
-      if (distanceSum(covariance, scatter) <= distanceSum(clusters_.covariances[i], scatter))
+      // it. Along a line no distance knows the shape, and rounding must not decide.
+      if (points_.rows() == 1 ||
+          distanceSum(covariance, scatter) <= distanceSum(clusters_.covariances[i], scatter))
         clusters_.covariances[i] = covariance;
     }
   }
