@@ -94,7 +94,7 @@ def first_case(kind):
     loops = json.loads(tool("loops", "--json"))["loops"]
     loop = next(entry["name"] for entry in loops if entry["controller"].split(" ")[0] == kind)
     hours = 40 * float(re.search(r"^ *sample_time_s: (.*)$", tool("resolve", loop), re.M)[1]) / 3600
-    return loop, 40, [f"sampling.duration_h={hours:.12g}"], "lockstep", 3600
+    return loop, 40, [f"sampling.duration_h={hours:.12g}", "report.record_from_h=0"], "lockstep", 3600
 
 
 class Equal(unittest.TestCase):
@@ -137,7 +137,7 @@ class Equal(unittest.TestCase):
             self.compare_case(*first_case(name))
 
     def test_the_case_of_a_type_is_its_first_loop(self):
-        self.assertEqual(first_case("excitation"), ("asp_excite", 40, ["sampling.duration_h=8"], "lockstep", 3600))
+        self.assertEqual(first_case("excitation"), ("asp_excite", 40, ["sampling.duration_h=8", "report.record_from_h=0"], "lockstep", 3600))
 
 
 def add(name):
