@@ -5,6 +5,7 @@
 #include <iostream>
 #include <optional>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/structure_file.hpp"
@@ -21,7 +22,7 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 using Row = std::vector<std::string>;
 
 struct AutoRecords {

@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "loop/bag_reader.hpp"
@@ -12,7 +12,7 @@
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 LoopFile loopOf(const ReplayArguments& a) {
   Overrides overrides;

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
@@ -16,7 +17,7 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 SearchParams searchOf(const TuneArguments& arguments, const TuningFile& tuning) {
   SearchParams search = tuning.search;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/record_remarks.hpp"
@@ -17,7 +18,7 @@
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 std::map<std::string, std::string> columnsOf(const std::vector<std::string>& pairs) {
   std::map<std::string, std::string> columns;

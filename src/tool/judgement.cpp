@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
 #include "fmbpc/fuzzy/record_remarks.hpp"
@@ -12,7 +13,7 @@ namespace fpc::tool {
 namespace {
 
 using Eigen::Index;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 using Row = std::vector<std::string>;
 
 std::string fixed(double value) {

@@ -1,11 +1,11 @@
 // What every kind of model in a file makes of one record, as tables, JSON and plots.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/config/identified_file.hpp"
 
 namespace fpc::tool {
@@ -40,9 +40,9 @@ RecordJudgement judgeRecord(const std::string& title, DataSet data, const Identi
 
 std::string toTable(const std::vector<RecordJudgement>& parts);
 /// <output>.{best, one_step, free_run, ahead, residual, interval, <kind>..}, linear.<output>..
-nlohmann::ordered_json toJson(const RecordJudgement& part);
+OrderedJson toJson(const RecordJudgement& part);
 /// Pictures and their data into a folder; `json` is what the command prints.
 void plotJudgements(const IdentifiedModel& model, const std::vector<RecordJudgement>& parts,
-                    nlohmann::ordered_json json, const std::string& folder);
+                    OrderedJson json, const std::string& folder);
 
 }  // namespace fpc::tool

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
@@ -14,7 +15,7 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::vector<double> valuesAfter(const TunedLoop& tuned) {

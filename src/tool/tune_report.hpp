@@ -1,11 +1,11 @@
 // What `fmbpc tune` prints and writes.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/study/tune.hpp"
 
 namespace fpc::tool {
@@ -26,8 +26,8 @@ bool isOutside(const TuningParameter& parameter, double own);
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned);
 
 /// Infinite numbers are null.
-nlohmann::ordered_json numberOrNull(double value);
-nlohmann::ordered_json toJson(const TuningObjective& objective, const TunedLoop& tuned);
+OrderedJson numberOrNull(double value);
+OrderedJson toJson(const TuningObjective& objective, const TunedLoop& tuned);
 std::string toTable(const TuningObjective& objective, const TunedLoop& tuned);
 /// LOOP_tuned.yaml: extends the loop. Returns the file's name.
 std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tuned,
@@ -42,8 +42,7 @@ struct CompareOptions {
   bool resume{false};
 };
 /// Every method with every seed. Prints nothing; state files in `out`. Stopped: `complete` false.
-nlohmann::ordered_json compareMethods(const TuningObjective& objective,
-                                      const CompareOptions& options);
-std::string comparisonTable(const nlohmann::ordered_json& comparison);
+OrderedJson compareMethods(const TuningObjective& objective, const CompareOptions& options);
+std::string comparisonTable(const OrderedJson& comparison);
 
 }  // namespace fpc::tool

@@ -36,7 +36,8 @@ std::vector<std::vector<double>> consequentsOf(const TsModel& model) {
   std::vector<std::vector<double>> all;
   for (const auto& output : model.submodels)
     for (const auto& rule : output.rules) {
-      all.emplace_back(rule.coefficients.begin(), rule.coefficients.end());
+      all.emplace_back(rule.coefficients.data(),
+                       rule.coefficients.data() + rule.coefficients.size());
       all.back().push_back(rule.offset);
     }
   return all;
