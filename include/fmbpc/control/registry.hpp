@@ -117,8 +117,9 @@ using ControllerReader = std::function<std::unique_ptr<ControllerConfig>(
 /// The registration without its types; false if the name is taken.
 bool registerControllerReader(ControllerType type, ControllerReader read);
 
-using ControllerLayout = LayoutOf<ControllerType, ControllerContext, ControllerConfig, Controller,
-                                  ControllerOutput, Measurement, SetpointSource, SettingInfo>;
+using ControllerLayout =
+    LayoutOf<ControllerType, ControllerContext, ControllerConfig, Controller, ControllerOutput,
+             Measurement, SetpointSource, SettingInfo, TsModel, OutputModel, Rule>;
 template <>
 void requireSameLayout<ControllerLayout>();
 
