@@ -28,6 +28,8 @@ std::vector<SignalInfo> disturbanceRanges(const LoopFile& loop) {
   const auto plant = makePlant(loop.simulation);
   for (const Quantity& q : plant->description().disturbances)
     ranges.push_back({q.name, q.unit, q.lower, q.upper});
+  for (const Quantity& q : plant->description().inputs)
+    ranges.push_back({"input/" + q.name, q.unit, q.lower, q.upper});
   return ranges;
 }
 

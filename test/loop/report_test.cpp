@@ -9,6 +9,7 @@
 #include "fmbpc/loop/recorder_session.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
+#include "loop/unplayed.hpp"
 
 namespace fpc {
 namespace loop_report_test {
@@ -192,6 +193,26 @@ TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {
   expectWords(with("4"), {"record of disturbance.csv never acts", "4 h"});
   expectWords(with("1, next: {file: " + path("d.csv") + ", after_h: 2.5}"),
               {"disturbance.csv.next never acts", "3.5 h"});
+}
+
+TEST_F(Report, AValveThatIsStuckBeyondTheActuatorsLimitsIsToldWhereItIs) {
+  const auto stuck = [](double position, const char* duration_h) {
+    return readLoop("heated_tank",
+                    {{"actuator.input_upper.heat", "10"},
+                     {"setpoint.schedule", "[]"},
+                     {"sampling.duration_h", duration_h},
+                     {"disturbance.commands",
+                      "[{time_h: 0.1, name: input/heat, value: " + exactText(position) + "}]"}});
+  };
+  const LoopFile beyond = stuck(15.0, "0.2");
+  const RunRecord record = runLoop(beyond);
+  EXPECT_EQ(record.samples.back().measurement.input_applied[0], 10.0);
+  const auto remarks = summarize(beyond, record, 0.0).remarks;
+  ASSERT_GE(remarks.size(), 1U);
+  expectWords(remarks.back().words,
+              {"disturbance.commands: input/heat at 15", "0..10 [kW]", "acts as 10"});
+  EXPECT_TRUE(unplayedIn(stuck(10.0, "0.2")).empty());
+  EXPECT_EQ(unplayedIn(stuck(15.0, "0")).size(), 1U) << "an endless run";
 }
 
 TEST_F(Report, TrajectoryHasTheColumnsOfAMatrixOfTheLoopFile) {
