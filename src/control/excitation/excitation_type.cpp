@@ -128,14 +128,14 @@ std::unique_ptr<Controller> makeExcitation(const ExcitationParams& params,
                                                 loop.plant);
 }
 
-ControllerType describeExcitation() {
+ControllerType describe() {
   ControllerType type{"excitation", "an experiment for identification: every input its own signal"};
   type.open_loop = true;
   return type;
 }
 
-const bool kExcitationRegistered =
-    registerController<ExcitationParams>({describeExcitation(), &readExcitation, &makeExcitation});
+const bool kRegistered =
+    registerController<ExcitationParams>({describe(), &readExcitation, &makeExcitation});
 
 }  // namespace
 }  // namespace fpc

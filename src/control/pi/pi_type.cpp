@@ -78,14 +78,14 @@ SignalUse usedByPi(const PiParams& params, const ControllerContext& loop) {
   return use;
 }
 
-ControllerType describePi() {
+ControllerType describe() {
   ControllerType type{"pi", "PI control, one loop per input, gains scheduled if asked"};
   type.settings = piSettings().infos();
   return type;
 }
 
-const bool kPiRegistered =
-    registerController<PiParams>({describePi(), &readPi, &makePi, nullptr, &usedByPi});
+const bool kRegistered =
+    registerController<PiParams>({describe(), &readPi, &makePi, nullptr, &usedByPi});
 
 }  // namespace
 }  // namespace fpc

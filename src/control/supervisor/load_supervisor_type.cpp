@@ -41,15 +41,15 @@ SignalUse usedBySupervisor(const LoadSupervisorParams& params, const ControllerC
   return use;
 }
 
-ControllerType describeLoadSupervisor() {
+ControllerType describe() {
   ControllerType type{"load_supervisor",
                       "PI control of one output with the measured load ahead of it"};
   type.settings = loadSupervisorSettings().infos();
   return type;
 }
 
-const bool kLoadSupervisorRegistered = registerController<LoadSupervisorParams>(
-    {describeLoadSupervisor(), &readSupervisor, &makeSupervisor, nullptr, &usedBySupervisor});
+const bool kRegistered = registerController<LoadSupervisorParams>(
+    {describe(), &readSupervisor, &makeSupervisor, nullptr, &usedBySupervisor});
 
 }  // namespace
 }  // namespace fpc

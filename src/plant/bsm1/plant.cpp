@@ -138,8 +138,7 @@ bool enlist(Front front) {
   });
 }
 
-const bool kBsm1PlantRegistered =
-    enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
+const bool kRegistered = enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
 
 }  // namespace
 }  // namespace fpc::bsm1
