@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/csv.hpp"
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
@@ -162,6 +163,36 @@ TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
   writeRun(loop, record, summary, path("told"));
   EXPECT_EQ(remarksOf(readSummary(path("told/summary.json"))), remarksOf(summary));
   EXPECT_FALSE(neverControlled(summary));
+}
+
+/// Inputs that are told locked in a run in which all inputs stand at their lower limits.
+std::vector<std::string> lockedAtTheLowerLimits(const LoopFile& loop) {
+  RunRecord record = recordLayout(loop).emptyRecord();
+  record.samples.resize(20);
+  for (SampleRecord& sample : record.samples) {
+    sample.has_action = true;
+    sample.action.source = ActionSource::kBase;
+    sample.action.input = loop.simulation.actuator.limits.lower;
+  }
+  std::vector<std::string> names;
+  for (const LockUp& lock : summarize(loop, record, 0.0).locked) names.push_back(lock.input);
+  return names;
+}
+
+TEST_F(Report, AnInputThatNobodyMovesIsNotLocked) {
+  using Names = std::vector<std::string>;
+  const char* both = "mimo_cstr_steps_pi";
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop(both)), (Names{"q", "qc"}));
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop(
+                both, {{"controller.loops", "[{input: qc, output: T, kp: 100, reverse: true}]"}})),
+            Names{"qc"});
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("column_excite")), (Names{"L", "V"}));
+  EXPECT_EQ(lockedAtTheLowerLimits(
+                readLoop("column_excite", {{"controller.signals", "[{input: L, signal: none}]"}})),
+            Names{});
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_fmbpc")), Names{"air"}) << "by its model";
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_supervisor")), Names{"air"});
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_open")), Names{}) << "open loop, at rest";
 }
 
 TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {

@@ -38,6 +38,7 @@ SignalUse usedBySupervisor(const LoadSupervisorParams& params, const ControllerC
   for (const int index : {params.output, n_y + params.concentration, n_y + params.flow})
     use.needed[static_cast<std::size_t>(index)] = true;
   use.followed = {params.output};
+  use.moved = theseInputs(loop, {params.input});
   return use;
 }
 
