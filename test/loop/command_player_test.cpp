@@ -201,6 +201,10 @@ TEST_F(Commands, ValuesBeyondTheRangesAreRefusedWithTheirPlace) {
                   commands("- {time_h: 0, manual: true}\n- {time_h: 1, " + text + "}\n", tank);
                 }),
                 {"commands.yaml:3", "commands[1]." + key, range});
+  const LoopFile narrow = readLoop("heated_tank", {{"actuator.input_upper.heat", "10"}});
+  commands("- {time_h: 1, disturbance: {input/heat: 10}}\n", narrow);
+  expectWords(errorOf([&] { commands("- {time_h: 1, disturbance: {input/heat: 11}}\n", narrow); }),
+              {"commands[0].disturbance.input/heat", "<= 10 [kW], the limits of the actuator"});
   commands("- {time_h: 1, setpoint: {T: 100}}\n- {time_h: 1, setpoint: {T: -300}, mode: offset}\n",
            tank);
   const LoopFile steady = readLoop("heated_tank", {{"setpoint.schedule", "[]"}});
