@@ -192,7 +192,7 @@ TEST_F(Report, AnInputThatNobodyMovesIsNotLocked) {
             Names{});
   EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_fmbpc")), Names{"air"}) << "by its model";
   EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_supervisor")), Names{"air"});
-  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_open")), Names{}) << "open loop, at rest";
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_open")), Names{"Qintr"}) << "its one signal";
 }
 
 TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {
