@@ -57,6 +57,7 @@ void OperatorNotes::refused(std::uint32_t step, const std::string& words) {
 }
 
 void OperatorNotes::look(const SetpointSource& setpoint, std::uint32_t step) {
+  clamped_now_.reset();
   const auto& active = setpoint.table().active();
   const bool any = std::any_of(active.begin(), active.end(),
                                [](const ActiveCommand& command) { return command.active; });
@@ -66,8 +67,15 @@ void OperatorNotes::look(const SetpointSource& setpoint, std::uint32_t step) {
   for (std::size_t i = 0; i < active.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double asked = setpoint.table().apply(i, asked_[k]);
-    if (asked < limits_.lower[k] || asked > limits_.upper[k]) count(clamped_[i], step);
+    if (asked >= limits_.lower[k] && asked <= limits_.upper[k]) continue;
+    count(clamped_[i], step);
+    if (!clamped_now_) clamped_now_ = i;
   }
+}
+
+const std::string& OperatorNotes::clamped() const {
+  static const std::string nothing;
+  return clamped_now_ ? clamped_[*clamped_now_].words : nothing;
 }
 
 std::vector<RunRemark> OperatorNotes::remarks() const {
