@@ -36,6 +36,10 @@ SampleRemarks::SampleRemarks(const LoopFile& loop)
                      exactText(limits_.lower[k]) + ".." + exactText(limits_.upper[k]) +
                      (output.unit.empty() ? "" : " [" + output.unit + "]") + ", and clamped");
   }
+  for (const Eigen::Index i : loop.report.without_setpoint) {
+    limits_.lower[i] = -kInfinity;
+    limits_.upper[i] = kInfinity;
+  }
 }
 
 const std::string& SampleRemarks::look(const ControllerSession& controller) {
@@ -50,18 +54,13 @@ const std::string& SampleRemarks::look(const ControllerSession& controller) {
 }
 
 void SampleRemarks::lookAtSetpoints(const SetpointSource& setpoint, std::uint32_t step) {
-  const auto& active = setpoint.table().active();
   std::swap(clamped_, were_);
-  clamped_.assign(clamped_.size(), false);
-  const bool any = std::any_of(active.begin(), active.end(),
-                               [](const ActiveCommand& command) { return command.active; });
-  if (!any) return;
   schedule_.restore(setpoint.recipe());
   schedule_.scheduled(step, asked_);
-  for (std::size_t i = 0; i < active.size(); ++i) {
+  for (std::size_t i = 0; i < clamped_.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double asked = setpoint.table().apply(i, asked_[k]);
-    clamped_[i] = active[i].active && (asked < limits_.lower[k] || asked > limits_.upper[k]);
+    clamped_[i] = asked < limits_.lower[k] || asked > limits_.upper[k];
     if (clamped_[i]) addLine(words_[i].c_str());
     newly_clamped_ = newly_clamped_ || (clamped_[i] && !were_[i]);
   }

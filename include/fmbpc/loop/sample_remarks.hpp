@@ -11,7 +11,8 @@
 
 namespace fpc {
 
-/// Only what commands ask is looked at; a schedule beyond the limits was refused when it was read.
+/// Of setpoints what schedule and commands ask is looked at, before the rate limit; outputs
+/// of report.without_setpoint are left out.
 class SampleRemarks {
  public:
   explicit SampleRemarks(const LoopFile& loop);
