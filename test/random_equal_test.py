@@ -25,7 +25,7 @@ def write_loops(folder):
 
 
 def in_process(loop, folder):
-    """What the tool says: a plant that could not be moved is a failure, and yet a run to be compared."""
+    """What the tool says: a run that fails (the plant could not be moved, every sample was held) is compared like others."""
     return subprocess.run([ring.program("fmbpc_tool"), "run", str(loop), "--no-plot", "--out", str(folder)],
                           capture_output=True, text=True, timeout=240, check=False)
 
@@ -77,7 +77,6 @@ class RandomEqual(unittest.TestCase):
             ring.assert_same_run(self, topics, process)
         except AssertionError as difference:
             raise AssertionError(f"{difference}\n{loop.read_text(encoding='utf-8')}") from None
-        self.assertEqual(ring.summary(topics)["complete"], said.returncode == 0, said.stderr)
 
 
 if __name__ == "__main__":
