@@ -1,12 +1,14 @@
 // Properties of every loop that a user could write, on seeded random loops (random_loop.hpp). A few
-// hundred run in every test; FMBPC_LONG_TESTS runs thousands, FMBPC_RANDOM_SEED=N one alone, and
-// FMBPC_RANDOM_DIR=folder leaves them all there as files.
+// hundred run in every test; FMBPC_LONG_TESTS runs thousands, FMBPC_RANDOM_FIRST=N begins with seed
+// N, FMBPC_RANDOM_SEED=N is one alone, and FMBPC_RANDOM_DIR=folder leaves them all there as files.
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/control/registry.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
@@ -23,7 +25,8 @@ std::vector<std::uint64_t> seeds(std::uint64_t quick = kQuick) {
   if (const char* one = std::getenv("FMBPC_RANDOM_SEED")) return {std::stoull(one)};
   std::vector<std::uint64_t> all(std::getenv("FMBPC_LONG_TESTS") != nullptr ? kLong * quick / kQuick
                                                                             : quick);
-  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  const char* first = std::getenv("FMBPC_RANDOM_FIRST");
+  std::iota(all.begin(), all.end(), first != nullptr ? std::stoull(first) : 0);
   return all;
 }
 
@@ -117,9 +120,10 @@ int firstDifference(const RunRecord& a, const RunRecord& b) {
 }
 
 TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
-  std::map<std::string, int> ran;
+  std::map<std::string, int> ran, plants;
   each(seeds(), [&](const RandomLoop& random, const LoopFile& loop, const RunRecord& record) {
     ++ran[random.controller];
+    ++plants[loop.simulation.plant];
     const Summary summary = summarize(loop, record, 0.0);
     EXPECT_EQ(record.samples.size(), loop.simulation.samples + std::size_t{1}) << random.told();
     EXPECT_TRUE(record.complete || !troubleOf(summary).empty()) << random.told();
@@ -138,9 +142,8 @@ TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
   for (const auto& [controller, count] : ran) std::cout << controller << ": " << count << " runs\n";
   if (seeds().size() < kQuick) return;
   EXPECT_LT(refused, seeds().size() / 20) << "the generator writes files that a user would not";
-  for (const char* type : {"pi", "excitation", "nmpc", "fmbpc", "fuzzy_optimal", "swarm_mpc",
-                           "hybrid_mpc", "adaptive_pi"})
-    EXPECT_GT(ran[type], 0) << type;
+  for (const auto& type : controllerNames()) EXPECT_GT(ran[type], 0) << type;
+  for (const auto& type : plantNames()) EXPECT_GT(plants[type], 0) << type;
 }
 
 TEST_F(RandomLoops, GiveTheSameBitsAgainFromTheirPrintedTextAndAtAnotherTime) {
