@@ -75,7 +75,8 @@ void SampleRemarks::addLine(const char* words) {
 
 std::string SampleRemarks::sentence() const {
   std::string text;
-  for (const char letter : lines_) text += letter == '\n' ? std::string("; ") : std::string(1, letter);
+  for (const char letter : lines_)
+    text += letter == '\n' ? std::string("; ") : std::string(1, letter);
   return text;
 }
 

@@ -31,8 +31,8 @@ TEST(SignalUse, APiNeedsItsOutputItsScheduleAndWhatItFeedsForward) {
   EXPECT_EQ(useOf("asp_case1_pi_x"), (Use{{false, true, false, false}, {1}}));
   EXPECT_EQ(useOf("asp_case1_pi_s"), (Use{{true, false, false, false}, {0}}));
   EXPECT_EQ(useOf("asp_case1_pi_x_best"), (Use{{false, true, true, true}, {1}}));
-  Overrides scheduled{{"controller.loops.0.gain_schedule",
-                       "[{output: 1, gain: 1}, {output: 1e4, gain: 2}]"}};
+  Overrides scheduled{
+      {"controller.loops.0.gain_schedule", "[{output: 1, gain: 1}, {output: 1e4, gain: 2}]"}};
   for (const auto& [signal, use] :
        {std::pair<const char*, Use>{"s", {{true, true, false, false}, {1}}},
         {"s_i", {{false, true, false, true}, {1}}},

@@ -119,8 +119,8 @@ std::string fmbpc(Dice& dice, RandomFrame& frame) {
       dice.pick<std::string>(single ? std::vector<std::string>{"published", "general", "iterated"}
                                     : std::vector<std::string>{"general", "iterated"});
   std::string text = "  law: " + law +
-                     "\n  coincidence_steps: " + std::to_string(dice.whole(1, 12)) +
-                     "\n" + costs(dice, frame, true);
+                     "\n  coincidence_steps: " + std::to_string(dice.whole(1, 12)) + "\n" +
+                     costs(dice, frame, true);
   const std::string observer = randomObserver(dice, frame);
   text += observer.empty()
               ? std::string("  realisation: ") + (dice.chance(0.7) ? "parallel\n" : "realigned\n")

@@ -37,11 +37,16 @@ const std::vector<Modelled>& modelledPlants() {
 
 /// At which a plant is usually sampled.
 double usualSampleTime(const PlantDescription& plant) {
-  static const std::map<std::string, double> known{
-      {"activated_sludge", 720},   {"batch_reactor", 10}, {"cstr", 6},
-      {"distillation_column", 60}, {"linear_2x2", 1},     {"mimo_cstr", 0.6},
-      {"surge_tank", 0.1},          {"bsm1", 60},         {"bsm1_pi", 300},
-      {"bsm1_air", 900}};
+  static const std::map<std::string, double> known{{"activated_sludge", 720},
+                                                   {"batch_reactor", 10},
+                                                   {"cstr", 6},
+                                                   {"distillation_column", 60},
+                                                   {"linear_2x2", 1},
+                                                   {"mimo_cstr", 0.6},
+                                                   {"surge_tank", 0.1},
+                                                   {"bsm1", 60},
+                                                   {"bsm1_pi", 300},
+                                                   {"bsm1_air", 900}};
   const auto found = known.find(plant.name);
   return found != known.end() ? found->second : 0.1 * plant.time_unit_s;
 }

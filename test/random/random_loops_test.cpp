@@ -200,7 +200,19 @@ TEST_F(RandomLoops, DoNotDependOnTheOrderOfTheOutputs) {
   if (seeds(40).size() >= 40) EXPECT_GT(compared, 8);
 }
 
-// Powers of two, so that not a single bit may differ.
+/// Largest difference, in parts of the range of the plain signal, of which the first is in `unit`.
+double farthest(const Vector& plain, const Vector& other, double unit,
+                const std::vector<SignalInfo>& signals) {
+  double most = 0.0;
+  for (Eigen::Index i = 0; i < plain.size(); ++i) {
+    const SignalInfo& info = signals[static_cast<std::size_t>(i)];
+    const double value = i == 0 ? unit * other[i] : other[i];
+    most = std::max(most, std::abs(plain[i] - value) / (info.upper - info.lower));
+  }
+  return most;
+}
+
+// Powers of two: under PI not a single bit may differ, and what searches may stop elsewhere.
 TEST_F(RandomLoops, DoNotDependOnTheUnitsOfAnOutputOrAnInput) {
   for (const std::uint64_t seed : seeds(40)) {
     const RandomLoop random = randomMatrixLoop(seed);
@@ -211,11 +223,13 @@ TEST_F(RandomLoops, DoNotDependOnTheUnitsOfAnOutputOrAnInput) {
       const RunRecord scaled = runLoop(read(other));
       for (std::size_t k = 0; k < plain.samples.size(); ++k) {
         const Measurement &a = plain.samples[k].measurement, &b = scaled.samples[k].measurement;
-        Vector y = b.outputs, u = b.input_applied;
-        y[0] *= output;
-        u[0] *= input;
-        ASSERT_EQ(a.outputs, y) << k << ", unit " << output << "\n" << other.told();
-        ASSERT_EQ(a.input_applied, u) << k << ", unit " << input << "\n" << other.told();
+        const double allowed = random.controller == "pi" ? 0.0 : 1e-7;
+        ASSERT_LE(farthest(a.outputs, b.outputs, output, plain.info.outputs), allowed)
+            << k << ", unit " << output << "\n"
+            << other.told();
+        ASSERT_LE(farthest(a.input_applied, b.input_applied, input, plain.info.inputs), allowed)
+            << k << ", unit " << input << "\n"
+            << other.told();
       }
     }
   }

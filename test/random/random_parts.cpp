@@ -130,8 +130,9 @@ std::string randomSetpoint(Dice& dice, const RandomFrame& frame) {
   const bool recipe = steps > 0 && dice.chance(0.15);
   for (int i = 0; recipe && i < steps; ++i) {
     std::string entry = byName(names, values());
-    entry.replace(0, 1, "{ramp_h: " + exactText(frame.hours(dice.whole(0, 8))) + ", hold_h: " +
-                            exactText(frame.hours(dice.whole(0, 12))) + ", ");
+    entry.replace(0, 1,
+                  "{ramp_h: " + exactText(frame.hours(dice.whole(0, 8))) +
+                      ", hold_h: " + exactText(frame.hours(dice.whole(0, 12))) + ", ");
     text += (i == 0 ? "  recipe:\n    - " : "    - ") + entry + "\n";
   }
   for (int i = 0; !recipe && i < steps; ++i) {

@@ -31,10 +31,10 @@ class SampleRemarks {
   void addLine(const char* words);
 
   SetpointParams limits_;
-  SetpointSource schedule_;          // without commands and limits
-  std::vector<std::string> words_;   // by output
+  SetpointSource schedule_;           // without commands and limits
+  std::vector<std::string> words_;    // by output
   std::vector<bool> clamped_, were_;  // by output: at this sample, at the one before
-  Vector asked_;                     // n_y
+  Vector asked_;                      // n_y
   std::string lines_;
   bool newly_clamped_{false};
   std::uint64_t clamped_samples_{};
