@@ -13,22 +13,22 @@
 namespace fpc {
 namespace {
 
-std::vector<std::string> disturbedNames(const LoopFile& loop) {
-  requireSimulated(loop);
-  std::vector<std::string> names = disturbanceNames(loop);
-  for (const SignalInfo& input : loop.plant_info.inputs) names.push_back("input/" + input.name);
-  for (const SignalInfo& output : loop.plant_info.outputs) names.push_back("output/" + output.name);
-  return names;
-}
-
-/// Ranges of what may be asked or disturbed.
-std::vector<SignalInfo> disturbanceRanges(const LoopFile& loop) {
-  requireSimulated(loop);
+/// What an entry may disturb: the plant's own, with their ranges, and every input and output.
+struct Disturbable {
+  std::vector<std::string> names;
   std::vector<SignalInfo> ranges;
-  const auto plant = makePlant(loop.simulation);
-  for (const Quantity& q : plant->description().disturbances)
-    ranges.push_back({q.name, q.unit, q.lower, q.upper});
-  return ranges;
+};
+
+Disturbable disturbableOf(const LoopFile& loop) {
+  Disturbable all;
+  for (const Quantity& q : disturbancesOf(loop)) {
+    all.names.push_back(q.name);
+    all.ranges.push_back({q.name, q.unit, q.lower, q.upper});
+  }
+  for (const SignalInfo& input : loop.plant_info.inputs) all.names.push_back("input/" + input.name);
+  for (const SignalInfo& output : loop.plant_info.outputs)
+    all.names.push_back("output/" + output.name);
+  return all;
 }
 
 void requireInRanges(const YamlSection& values, const Command& command,
@@ -147,8 +147,8 @@ const std::vector<Kind>& kinds() {
        }},
       {"disturbance",
        [](Entry entry, Key key, Loop loop) -> What {
-         return DisturbanceCommand{
-             readSignals(entry, key, disturbedNames(loop), disturbanceRanges(loop))};
+         const Disturbable known = disturbableOf(loop);
+         return DisturbanceCommand{readSignals(entry, key, known.names, known.ranges)};
        }},
       {"manual", [](Entry entry, Key key, Loop) -> What { return SetManual{readOn(entry, key)}; }},
       {"manual_input",
