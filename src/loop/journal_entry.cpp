@@ -7,8 +7,9 @@
 namespace fpc {
 namespace {
 
-constexpr std::size_t kTrouble = 16, kRemark = 32;  // doubles whose bytes hold words
-constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '3'};
+constexpr std::size_t kTrouble = 16, kRemark = (kMostRemark + 1) /
+                                               sizeof(double);  // doubles whose bytes hold words
+constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '4'};
 
 /// Numbers one after the other; a whole number of 64 bits travels by its bits.
 class Packer {

@@ -45,12 +45,10 @@ Health ControllerNode::health(double now_s) const {
   if (session_.fellBack()) return {LoopMode::kFallback, session_.output().remark, {}};
   if (session_.answer().base.source == ActionSource::kHeld)
     return {LoopMode::kHeld, session_.output().remark, {}};
-  if (*session_.output().remark != '\0') return {LoopMode::kDegraded, session_.output().remark, {}};
+  if (!remarks_.lines().empty()) return {LoopMode::kDegraded, remarks_.sentence(), {}};
   if (!plant_.remark().empty()) return {LoopMode::kDegraded, "controlling; " + plant_.remark(), {}};
   if (!model_problem_.empty())
     return {LoopMode::kDegraded, "controlling; refused: " + model_problem_, {}};
-  if (!notes_.clamped().empty())
-    return {LoopMode::kDegraded, "controlling; " + notes_.clamped(), {}};
   std::string words = "controlling";
   if (!session_.modelRemark().empty()) words += "; " + session_.modelRemark();
   const std::string refusal = refusedLately(now_s);
@@ -62,6 +60,7 @@ void ControllerNode::report(Diagnostics::Status& status) const {
   status.add("hand", session_.isManual() ? "manual" : "auto");
   status.add("recipe", session_.setpoint().held() ? "held" : "running");
   status.add("step", session_.answer().tracking.header.step);
+  status.add("samples with a setpoint clamped", remarks_.clampedSamples());
   addCounts(status, session_.counts());
   status.add("dropped: run not announced", plant_.foreign());
   if (session_.controller().needsModel()) {

@@ -26,7 +26,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(makeControllerSession(loop)),
-      notes_(loop),
+      remarks_(loop),
       inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
       desk_(node, loop, name(), session_),
       ready_(node, name()),
@@ -186,6 +186,7 @@ void ControllerNode::answer(const Measurement& measurement) {
   switch (session_.receive(measurement)) {
     case Receipt::kAnswered:
       if (first) settings_.publish();  // those that were restored
+      remarks_.look(session_);
       return publish(false);
     case Receipt::kRepeated:
       return publish(true);
@@ -197,16 +198,13 @@ void ControllerNode::answer(const Measurement& measurement) {
 
 void ControllerNode::publish(bool repeated) {
   const ControllerAnswer& answer = session_.answer();
-  if (!repeated && session_.controller().followsSetpoint())
-    notes_.look(session_.setpoint(), answer.tracking.header.step);
   if (answer.has_prediction && prediction_.getNumSubscribers() > 0)
     prediction_.publish(shared(toMsg(answer.prediction)));
   if (answer.has_action) base_.publish(shared(toMsg(answer.base)));
   if (standin_) standin_->asked(answer, repeated);
   if (tracking_.getNumSubscribers() > 0) {
     fmbpc::Tracking tracking = toMsg(answer.tracking);
-    if (answer.has_action) tracking.remark = session_.output().remark;
-    if (tracking.remark.empty()) tracking.remark = notes_.clamped();
+    tracking.remark = remarks_.lines();
     tracking_.publish(shared(std::move(tracking)));
   }
   if (repeated) return;
@@ -216,11 +214,16 @@ void ControllerNode::publish(bool repeated) {
   publishSignals();
   if (!session_.resetReason().empty())
     ROS_INFO("%s: reset: %s", name().c_str(), session_.resetReason().c_str());
+  log();
+}
+
+// At once, or the latest of each second of wall time.
+void ControllerNode::log() {
+  const ControllerAnswer& answer = session_.answer();
   const bool held = answer.has_action && answer.base.source == ActionSource::kHeld;
-  const bool remarkable = *session_.output().remark != '\0';
-  if ((held || remarkable) && log_.pass())
-    ROS_WARN("%s: sample %u: %s", name().c_str(), answer.tracking.header.step,
-             session_.output().remark);
+  if (!remarks_.newlyClamped() && !((held || !remarks_.lines().empty()) && log_.pass())) return;
+  ROS_WARN("%s: sample %u: %s", name().c_str(), answer.tracking.header.step,
+           remarks_.sentence().c_str());
 }
 
 void ControllerNode::publishSignals() {

@@ -17,7 +17,7 @@
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
 #include "fmbpc/loop/model_inbox.hpp"
-#include "loop/operator_notes.hpp"
+#include "fmbpc/loop/sample_remarks.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
@@ -65,6 +65,7 @@ class ControllerNode : public Node {
   void publish(bool repeated);
   void advertiseSignals();
   void publishSignals();
+  void log();
   void report(Diagnostics::Status& status) const;
   Health health(double now_s) const;
   std::string plantName() const;
@@ -72,7 +73,7 @@ class ControllerNode : public Node {
 
   LoopFile loop_;
   ControllerSession session_;
-  OperatorNotes notes_;
+  SampleRemarks remarks_;
   ModelInbox inbox_;
   OperatorDesk desk_;
   std::optional<OptimizerStandin> standin_;  // of a loop with an optimizer
