@@ -17,7 +17,8 @@ Health ControllerNode::health(double now_s) const {
   if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
   if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {plantName()}};
   if (!session_.ready()) return {LoopMode::kStarting, "waiting for fuzzy_model", {modelName()}};
-  if (parked_ && now_s - parked_since_s_ > kSilence)
+  const bool behind = parked_ && !inbox_.complete(parked_->header);
+  if (behind && now_s - parked_since_s_ > kSilence)
     return {LoopMode::kStalled,
             "waits for the identifier to be done with the sample before",
             {modelName()}};
@@ -48,8 +49,11 @@ Health ControllerNode::health(double now_s) const {
   if (!plant_.remark().empty()) return {LoopMode::kDegraded, "controlling; " + plant_.remark(), {}};
   if (!model_problem_.empty())
     return {LoopMode::kDegraded, "controlling; refused: " + model_problem_, {}};
-  const std::string& of_model = session_.modelRemark();
-  return {LoopMode::kAutomatic, of_model.empty() ? "controlling" : "controlling; " + of_model, {}};
+  std::string words = "controlling";
+  if (!session_.modelRemark().empty()) words += "; " + session_.modelRemark();
+  const std::string refusal = refusedLately(now_s);
+  if (!refusal.empty()) words += "; refused: " + refusal;
+  return {LoopMode::kAutomatic, words, {}};
 }
 
 void ControllerNode::report(Diagnostics::Status& status) const {
