@@ -90,7 +90,8 @@ void GuardedController::setModel(const TsModel& model) {
   inside_->setModel(model);
   model_ = matchToPlant(model, plant_);
   known_ = knowsDomain(model_);
-  for (std::size_t i = 0; i < moved_.size(); ++i) moved_[i] = knowsInput(model_, static_cast<int>(i));
+  for (std::size_t i = 0; i < moved_.size(); ++i)
+    moved_[i] = knowsInput(model_, static_cast<int>(i));
 }
 
 void GuardedController::reset(const Measurement& start) {
@@ -214,10 +215,7 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   if (!view_.acting) return;
   output.source = ActionSource::kFallback;
   output.predictive = false;
-  output.remark = fallback_          ? kFallback
-                  : drawn            ? kLocked
-                  : view_.swinging   ? kSwings
-                                     : kOutside;
+  output.remark = fallback_ ? kFallback : drawn ? kLocked : view_.swinging ? kSwings : kOutside;
 }
 
 void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,

@@ -9,7 +9,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kBlocks = 8;
-constexpr double kSurely = 4.0;  // standard deviations
+constexpr double kSurely = 8.0;  // standard deviations: the range of four means of noise is less
 
 }  // namespace
 
@@ -37,24 +37,31 @@ double SignalWindow::meanOf(Index signal, Index age, Index samples) const {
   return sum / static_cast<double>(samples);
 }
 
-double SignalWindow::varianceOf(Index signal, Index age, Index samples) const {
-  if (samples < 2) return 0.0;
-  const double mean = meanOf(signal, age, samples);
+double SignalWindow::variance(Index signal, Index samples) const {
+  const double about = mean(signal, samples);
   double sum = 0.0;
-  for (Index k = age; k < age + samples; ++k)
-    sum += (at(signal, k) - mean) * (at(signal, k) - mean);
+  for (Index k = 0; k < samples; ++k) sum += (at(signal, k) - about) * (at(signal, k) - about);
   return sum / static_cast<double>(samples - 1);
 }
 
-bool SignalWindow::meansMove(Index signal, Index samples, double part) const {
-  const Index block = std::max<Index>(1, samples / kBlocks);
-  double least = 0.0, most = 0.0, inside = 0.0;
-  for (Index age = samples / 2; age + block <= samples; age += block) {
-    const double mean = meanOf(signal, age, block);
-    least = age == samples / 2 ? mean : std::min(least, mean);
-    most = age == samples / 2 ? mean : std::max(most, mean);
-    inside = std::max(inside, varianceOf(signal, age, block));
+double SignalWindow::noiseOf(Index signal, Index age, Index samples) const {
+  double sum = 0.0;
+  for (Index k = age; k + 1 < age + samples; ++k) {
+    const double step = at(signal, k + 1) - at(signal, k);
+    sum += step * step;
   }
+  return sum / static_cast<double>(2 * (samples - 1));
+}
+
+bool SignalWindow::meansMove(Index signal, Index samples, double part) const {
+  const Index block = samples / kBlocks, half = samples / 2;
+  double least = meanOf(signal, half, block), most = least;
+  for (Index age = half + block; age + block <= samples; age += block) {
+    const double mean = meanOf(signal, age, block);
+    least = std::min(least, mean);
+    most = std::max(most, mean);
+  }
+  const double inside = noiseOf(signal, half, samples - half);
   const double noise = kSurely * std::sqrt(inside / static_cast<double>(block));
   return most - least > part * std::abs(meanOf(signal, 0, samples)) + noise;
 }

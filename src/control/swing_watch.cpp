@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kFirstSwing = 0.125;  // of the range
 constexpr double kLeastSwing = 0.02;
+constexpr double kAllOfIt = 0.999;  // of the move that is allowed
 constexpr int kTurns = 3;
 constexpr double kOpening = 1.5;  // in `release` samples
 
@@ -27,7 +28,8 @@ void SwingWatch::reset() {
 
 double SwingWatch::allow(double wish) {
   if (large_ <= 0.0 || !std::isfinite(wish)) return 1.0;
-  const int direction = std::abs(wish) <= large_ ? 0 : wish > 0.0 ? 1 : -1;
+  const double large = swings() ? std::min(large_, kAllOfIt * allowed_) : large_;
+  const int direction = std::abs(wish) <= large ? 0 : wish > 0.0 ? 1 : -1;
   turned_[at_] = direction * last_ < 0 && since_ < kWindow ? 1 : 0;
   const bool turned = turned_[at_] == 1;
   at_ = (at_ + 1) % kWindow;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/study_statistics.hpp"
 #include "study/tuning_fixture.hpp"
@@ -148,9 +149,10 @@ TEST_F(Study, OutputsWithoutASetpointHaveNoCost) {
   EXPECT_GT(result.runs[0]->cost, 0.0);
   EXPECT_TRUE(std::isfinite(result.runs[0]->cost));
   const auto named = [](const std::string& name) {
-    return parseStudy("loops: [{loop: asp_best}]\nseeds: 1\nfitness: {terms: [{index: ise, output: " +
-                          name + "}]}\n",
-                      "s.yaml");
+    return parseStudy(
+        "loops: [{loop: asp_best}]\nseeds: 1\nfitness: {terms: [{index: ise, output: " + name +
+            "}]}\n",
+        "s.yaml");
   };
   EXPECT_NO_THROW(StudyPlan(named("x")));
   expectWords(errorOf([&] { StudyPlan{named("x_r")}; }), {"fitness.terms[0]", "x_r", "s, x"});

@@ -18,12 +18,12 @@ class PiController;
 
 /// What the guard sees at one sample.
 struct GuardView {
-  double trust{1.0};    ///< least of now and of what the law wants
-  bool outside{false};  ///< trust below GuardParams::trust_low
-  double ahead{1.0};    ///< least trust over the horizon of what the law expects
-  bool locked{false};   ///< some input is locked up
+  double trust{1.0};     ///< least of now and of what the law wants
+  bool outside{false};   ///< trust below GuardParams::trust_low
+  double ahead{1.0};     ///< least trust over the horizon of what the law expects
+  bool locked{false};    ///< some input is locked up
   bool swinging{false};  ///< some input is thrown from end to end
-  bool acting{false};   ///< the input is not the law's
+  bool acting{false};    ///< the input is not the law's
 };
 
 /// Whether one input is locked up, found by trying. An input at a bound for `lock_samples` while

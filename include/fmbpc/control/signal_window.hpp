@@ -19,13 +19,14 @@ class SignalWindow {
   Eigen::Index capacity() const { return values_.cols(); }
 
   double span(Eigen::Index signal, Eigen::Index samples) const;
-  double mean(Eigen::Index signal, Eigen::Index samples) const { return meanOf(signal, 0, samples); }
-  /// Variance about the mean, over samples - 1.
-  double variance(Eigen::Index signal, Eigen::Index samples) const {
-    return varianceOf(signal, 0, samples);
+  double mean(Eigen::Index signal, Eigen::Index samples) const {
+    return meanOf(signal, 0, samples);
   }
+  /// Variance about the mean, over samples - 1.
+  double variance(Eigen::Index signal, Eigen::Index samples) const;
   /// Whether the means of the blocks (an eighth of the samples each) in the older half differ by
-  /// more than `part` of the mean and what the spread inside the blocks makes of such means.
+  /// more than `part` of the mean and what the noise, judged by the steps from sample to sample,
+  /// makes of such means. At least eight samples.
   bool meansMove(Eigen::Index signal, Eigen::Index samples, double part) const;
 
  private:
@@ -33,7 +34,7 @@ class SignalWindow {
     return values_(signal, (next_ + values_.cols() - 1 - age) % values_.cols());
   }
   double meanOf(Eigen::Index signal, Eigen::Index age, Eigen::Index samples) const;
-  double varianceOf(Eigen::Index signal, Eigen::Index age, Eigen::Index samples) const;
+  double noiseOf(Eigen::Index signal, Eigen::Index age, Eigen::Index samples) const;  ///< variance
 
   Matrix values_;  // a row per signal
   Eigen::Index known_{}, next_{};

@@ -8,8 +8,9 @@ namespace fpc {
 /// Watches what a law asks of one input, as moves from the applied one in parts of the range. Three
 /// changes of direction between moves above `large` within twelve samples are a swing: around a
 /// change of the gain's sign, or at a setpoint that the model holds for possible and the plant does
-/// not. Each sample of a swing halves the moves that are allowed, from an eighth of the range down
-/// to kLeastSwing; without one they open again by half in `release` samples.
+/// not. The third and every further turn halves the moves that are allowed, from an eighth of the
+/// range down to a fiftieth; while they are less than all, wishes for more than them count as
+/// large. Without a turn they open again by half in `release` samples.
 class SwingWatch {
  public:
   /// @param large in parts of the range; 0 never finds a swing.
