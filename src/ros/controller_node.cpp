@@ -28,7 +28,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       session_(makeControllerSession(loop)),
       remarks_(loop),
       inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
-      desk_(node, loop, name(), session_),
+      desk_(node, loop, name(), session_, [this] { answerParked(); }),
       ready_(node, name()),
       signals_(node),
       plant_(loop.plant_info),

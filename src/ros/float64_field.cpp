@@ -2,6 +2,8 @@
 
 #include <fmbpc/Setpoint.h>
 
+#include <cmath>
+
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -70,11 +72,19 @@ std::string Float64Field::problem() const {
 void Float64Field::forwardSetpoint(ros::NodeHandle& node, const std::string& topic,
                                    const std::string& output) {
   if (topic.empty()) return;
-  const boost::function<void(const std_msgs::Float64::ConstPtr&)> forward =
-      [this, output](const std_msgs::Float64::ConstPtr& msg) {
+  const boost::function<void(const ros::MessageEvent<const std_msgs::Float64>&)> forward =
+      [this, output](const ros::MessageEvent<const std_msgs::Float64>& event) {
+        const double value = event.getConstMessage()->data;
+        if (!std::isfinite(value)) {
+          ++strange_;
+          if (setpoint_log_.pass())
+            ROS_WARN("setpoint of %s by %s dropped: expected a finite number", output.c_str(),
+                     event.getPublisherName().c_str());
+          return;
+        }
         fmbpc::Setpoint setpoint;
         setpoint.name = {output};
-        setpoint.value = {msg->data};
+        setpoint.value = {value};
         setpoint.mode = fmbpc::Setpoint::OVERRIDE;
         setpoint_.publish(setpoint);
       };
@@ -101,7 +111,7 @@ void Float64Field::exchange(PlantGateway& gateway, bool automatic, double now_s)
 
 std::vector<std::pair<std::string, std::uint64_t>> Float64Field::counts() const {
   return {{"values received", heard_},
-          {"values of a second publisher refused", strange_},
+          {"values refused: a second publisher's, setpoints that are not finite", strange_},
           {"commands sent", told_}};
 }
 

@@ -42,7 +42,7 @@ class Float64Field : public Field {
   std::uint64_t told_{}, heard_{}, strange_{};
   double timeout_s_;
   std::deque<TagOwner> owners_;
-  WallThrottle log_{1.0};
+  WallThrottle log_{1.0}, setpoint_log_{1.0};
   ros::Publisher setpoint_;
   std::vector<ros::Publisher> efforts_;
   std::vector<ros::Subscriber> subscribers_;

@@ -29,9 +29,10 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
 }
 
 OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::string name,
-                           ControllerSession& session)
+                           ControllerSession& session, std::function<void()> known)
     : Node(node, loop, std::move(name)),
       session_(session),
+      known_(std::move(known)),
       keeper_expected_(!loop.external_plant || loop.gateway.enabled()),
       goes_on_(loop.gateway.enabled()),
       state_(node.advertise<fmbpc::OperatorState>(topics::kOperatorState, 10, true)),
@@ -39,7 +40,10 @@ OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::stri
           node.advertise<fmbpc::Setpoint>(topics::kSetpointActive, topics::kPairQueue, true)),
       subscriber_(subscribe(node, topics::kOperatorKept, 1, &OperatorDesk::onKept, this)) {}
 
-void OperatorDesk::onKept(const fmbpc::OperatorState::ConstPtr& msg) { kept_ = *msg; }
+void OperatorDesk::onKept(const fmbpc::OperatorState::ConstPtr& msg) {
+  kept_ = *msg;
+  known_();
+}
 
 bool OperatorDesk::mayStart(const Measurement& sample) {
   const bool first = session_.counts().accepted == 0;

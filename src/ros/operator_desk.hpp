@@ -6,6 +6,7 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "fmbpc/control/session.hpp"
@@ -19,9 +20,9 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg);
 
 class OperatorDesk : public Node {
  public:
-  /// `name`: of the controller.
+  /// `name`: of the controller. `known` is called when what was asked before may be known now.
   OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::string name,
-               ControllerSession& session);
+               ControllerSession& session, std::function<void()> known);
 
   /// False: the sample is not to be answered yet, since what was asked before is not known. The
   /// first one is answered after a second, held (see ControllerSession::holdUntilReleased); the
@@ -40,6 +41,7 @@ class OperatorDesk : public Node {
   void tellSetpoints();
 
   ControllerSession& session_;
+  std::function<void()> known_;
   bool keeper_expected_, goes_on_;  // the latter: the plant, without its gateway
   bool changed_{true};
   double deadline_s_{-1};
