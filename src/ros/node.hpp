@@ -91,6 +91,10 @@ class Node {
   WallThrottle refuse_log_{1.0};
 };
 
+/// For a node that cannot start: says why on loop_state and the diagnostics, stays long enough to
+/// be heard, and returns 1.
+int failToStart(ros::NodeHandle node, const std::string& why);
+
 /// The loop that the launch file gave as text: parameter `loop_text`, searched upwards.
 /// @throws InputError if there is none or it is no loop.
 LoopFile loopParameter(const ros::NodeHandle& private_node);
@@ -117,7 +121,7 @@ int runNode(int argc, char** argv, const std::string& name) {
     return instance.finish();
   } catch (const std::exception& error) {
     ROS_FATAL("%s: %s", name.c_str(), error.what());
-    return 1;
+    return failToStart(node, error.what());
   }
 }
 
