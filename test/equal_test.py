@@ -75,8 +75,8 @@ def environment():
 def launch(folder, loop, sets, pace, speedup):
     port = ring.free_port()
     done = subprocess.run(
-        ["roslaunch", "-p", port, "fmbpc", "loop.launch", f"loop:={loop}", "set:=" + " ".join(sets), f"pace:={pace}",
-         f"speedup:={speedup}", f"out:={folder}", "draw:=false"],
+        ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", f"loop:={loop}", "set:=" + " ".join(sets), f"pace:={pace}",
+                   f"speedup:={speedup}", f"out:={folder}", "draw:=false"]),
         env={**environment(), "ROS_MASTER_URI": f"http://localhost:{port}"}, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, text=True, timeout=240, check=False)
     return done.stdout

@@ -21,13 +21,19 @@ std::vector<std::string> disturbedNames(const LoopFile& loop) {
   return names;
 }
 
-/// Ranges of what may be asked or disturbed.
+const std::string kActuator = "the limits of the actuator";
+
+/// Ranges of what may be disturbed; a stuck valve stays inside the limits of the actuator.
 std::vector<SignalInfo> disturbanceRanges(const LoopFile& loop) {
   requireSimulated(loop);
   std::vector<SignalInfo> ranges;
   const auto plant = makePlant(loop.simulation);
   for (const Quantity& q : plant->description().disturbances)
     ranges.push_back({q.name, q.unit, q.lower, q.upper});
+  for (SignalInfo input : loop.plant_info.inputs) {
+    input.name = "input/" + input.name;
+    ranges.push_back(std::move(input));
+  }
   return ranges;
 }
 
@@ -37,7 +43,8 @@ void requireInRanges(const YamlSection& values, const Command& command,
   for (std::size_t i = 0; i < command.name.size(); ++i)
     for (const SignalInfo& range : ranges)
       if (range.name == command.name[i])
-        requireInRange(values, command.name[i], command.value[i], range, what);
+        requireInRange(values, range.name, command.value[i], range, what,
+                       range.name.rfind("input/", 0) == 0 ? kActuator : "the range of the plant");
 }
 
 /// {x: 1900, s: 50} with `mode`; a list of names suffices to release. What overrides lies in its
@@ -75,8 +82,7 @@ Vector readManualInput(YamlSection& entry, const std::string& key, const LoopFil
     SignalInfo range = loop.plant_info.inputs[static_cast<std::size_t>(i)];
     range.lower = limits.lower[i];
     range.upper = limits.upper[i];
-    requireInRange(entry, key + "." + range.name, input[i], range, "manual input",
-                   "the limits of the actuator");
+    requireInRange(entry, key + "." + range.name, input[i], range, "manual input", kActuator);
   }
   return input;
 }

@@ -1,4 +1,4 @@
-// Whether a sample is where the loop's model has no data.
+// What a loop makes of its model: where it has no data, and which inputs it moves.
 #pragma once
 
 #include "fmbpc/config/loop_file.hpp"
@@ -10,5 +10,8 @@ namespace fpc {
 bool hasDomain(const LoopFile& loop);
 /// Of a loop with a domain.
 bool isOutsideModel(const LoopFile& loop, const SampleRecord& sample);
+/// Inputs that the loop's controller may move: those of its type, and of a law whose model stays
+/// what it is those that the model knows.
+std::vector<bool> movedInputs(const LoopFile& loop);
 
 }  // namespace fpc

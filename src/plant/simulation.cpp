@@ -10,7 +10,6 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "plant/quantity_index.hpp"
-#include "plant/step_failure.hpp"
 
 namespace fpc {
 namespace {
@@ -27,8 +26,7 @@ std::vector<std::string> namesForCommands(const SimulationParams& params,
 /// Why the state after a stepper's step is not to be used; empty if it is.
 std::string troubleOf(const PlantStepper& stepper, const Vector& state) {
   if (!state.allFinite()) return "the state is not finite";
-  const auto* failing = dynamic_cast<const StepFailure*>(&stepper);
-  return failing ? failing->failure() : "";
+  return stepper.failure();
 }
 
 }  // namespace

@@ -80,10 +80,4 @@ LoopFile loopParameter(const ros::NodeHandle& private_node) {
   return parseLoop(text, std::filesystem::path(name).stem().string());
 }
 
-int stayIdle(const ros::NodeHandle& private_node, const std::string& reason) {
-  ROS_INFO("%s: nothing to do: %s", ros::this_node::getName().c_str(), reason.c_str());
-  if (private_node.param("stay", false)) ros::spin();
-  return 0;
-}
-
 }  // namespace fpc

@@ -82,7 +82,7 @@ class Plc:
 
     def start(self):
         command = ["/usr/bin/python3", os.path.join(SCRIPTS, "soft_plc.py"), "--port", str(self.port), "--log", self.log.name]
-        self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen(ring.tied(command), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def lines(self):
         with open(self.log.name, encoding="utf-8") as file:
@@ -97,8 +97,9 @@ class Modbus(unittest.TestCase):
         cls.wire = wire.Wire(cls.plc.port)
         sets = f"gateway.modbus.port={cls.wire.port} sampling.duration_h=0 setpoint.schedule=[]"
         cls.launch = subprocess.Popen(
-            ["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_modbus", f"set:={sets}", "draw:=false", "keep:=true",
-             "sim_time:=false", f"out:={tempfile.mkdtemp()}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_modbus", f"set:={sets}", "draw:=false",
+                       "keep:=true", "sim_time:=false", f"out:={tempfile.mkdtemp()}"]),
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         cls.addClassCleanup(cls.end_launch)
         cls.states = ring.Listener("loop_state", LoopState, "/plant_gateway")
         cls.measurements = ring.Listener("measurement", Measurement)

@@ -22,7 +22,7 @@ class Startup(unittest.TestCase):
             ring.killed(process)
 
     def start(self, name, *arguments, **options):
-        process = subprocess.Popen([ring.program(name), *arguments], **options)
+        process = subprocess.Popen(ring.tied([ring.program(name), *arguments]), **options)
         self.processes.append(process)
         return process
 
@@ -33,6 +33,17 @@ class Startup(unittest.TestCase):
             status = ring.diagnostics_of(message, name)
             return status is not None and status.level == level and words in status.message
         listener.wait(fits)
+
+    def test_what_a_test_starts_ends_with_it(self):
+        """Killed from outside, it cleans up nothing."""
+        lines = "import subprocess, sys; print(subprocess.Popen(sys.argv[1:]).pid, flush=True); sys.stdin.read()"
+        test = subprocess.Popen([sys.executable, "-c", lines, *ring.tied(["sleep", "600"])], stdin=subprocess.PIPE,
+                                stdout=subprocess.PIPE, text=True)
+        with test:
+            child = int(test.stdout.readline())
+            ring.wait_until(lambda: ring.threads(child) == ["sleep"], "the child to begin")
+            test.kill()
+        ring.wait_until(lambda: not ring.runs(child), "the child to end")
 
     def test_a_missing_node_is_named_and_the_plant_ends(self):
         ready = rospy.Publisher("impatient/ready", NodeReady, queue_size=1, latch=True)
