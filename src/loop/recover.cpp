@@ -41,7 +41,7 @@ bool hasRecord(const fs::path& folder) {
 
 struct Filled {
   Summary summary;
-  bool to_the_end;  ///< its last sample is final, nothing is missing
+  bool to_the_end;  ///< its last sample is final
 };
 
 /// trajectory.csv and summary.json in the folder.
@@ -55,7 +55,7 @@ Filled fill(const LoopFile& loop, const RecordLayout& layout, const std::string&
     file.add(sample);
   }
   file.close();
-  Filled filled{sums.finish(wall_s, reader.complete()), reader.complete()};
+  Filled filled{sums.finish(wall_s, reader.complete()), reader.ended()};
   writeSummary(filled.summary, (folder / "summary.json").string());
   return filled;
 }

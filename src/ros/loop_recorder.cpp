@@ -17,6 +17,7 @@ constexpr double kPollPeriod = 0.05;   // [s] of wall time
 constexpr double kFinalPatience = 10;  // [s] for stragglers after the final measurement
 constexpr double kWritePatience = 10;  // [s] for room on the disk at the end
 constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
 constexpr int kPollsConnected = 3;     // a connection is complete at both ends a moment later
 
 }  // namespace
@@ -28,6 +29,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       keep_(private_node.param("keep", false)),
       plot_(private_node.param("plot", true)),
       stay_(private_node.param("stay", false)),
+      started_s_(steadyNow()),
       store_(openStore(private_node.param<std::string>("out", ""))),
       session_(recordLayout(loop), [this](const SampleRecord& sample) { store_->append(sample); }),
       ready_(node, name()),
@@ -54,11 +56,9 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
   if (unusable_.empty()) return;
   ROS_FATAL("%s: %s", name().c_str(), unusable_.c_str());
   problem_ = unusable_;
-  end();
   health_.look();
 }
 
-// A folder that cannot be used ends the run before it begins, and this node lives to say so.
 std::unique_ptr<RecordStore> LoopRecorder::openStore(const std::string& folder) {
   try {
     return std::make_unique<RecordStore>(loop_, folder);
@@ -72,7 +72,7 @@ void LoopRecorder::poll() {
   if (!ready_.announced() && unusable_.empty()) announceIfConnected();
   if (!stay_ && ending_s_ >= 0 && steadyNow() - ending_s_ > kLastWords)
     return problem_.empty() ? done() : fail(problem_);
-  if (!unusable_.empty()) return;
+  if (!unusable_.empty()) return giveUp();
   store_->flush();
   if (written_) return;
   const double now_s = steadyNow();
@@ -81,6 +81,14 @@ void LoopRecorder::poll() {
   problem_ = "the final sample came, but the record has gaps: " + join(session_.gaps());
   session_.close();
   conclude();
+}
+
+// A folder that cannot be used ends the launch before the first sample; a run that is under way
+// goes on without this process, which a launch that respawns starts again.
+void LoopRecorder::giveUp() {
+  if (steadyNow() - started_s_ < kHeard) return;
+  if (run_under_way_) return fail(unusable_);
+  end();
 }
 
 void LoopRecorder::announceIfConnected() {
@@ -119,7 +127,10 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
 // Any message of the first sample may come first, and any of the last one may be the last.
 template <typename Take>
 void LoopRecorder::record(const char* topic, Take take) {
-  if (!unusable_.empty()) return;
+  if (!unusable_.empty()) {
+    run_under_way_ = true;
+    return;
+  }
   guarded(topic, [&] {
     if (began_s_ < 0) began_s_ = steadyNow();
     take();

@@ -49,6 +49,7 @@ class LoopRecorder : public Node {
 
   std::unique_ptr<RecordStore> openStore(const std::string& folder);
   void poll();
+  void giveUp();
   void announceIfConnected();
   void beginRun(std::uint64_t run_id);
   template <typename Take>
@@ -61,7 +62,9 @@ class LoopRecorder : public Node {
 
   LoopFile loop_;
   bool keep_, plot_, stay_;
-  std::string unusable_;  // why the folder is
+  std::string unusable_;       // why the folder is
+  double started_s_;           // this process
+  bool run_under_way_{false};  // heard of, while the folder is unusable
   std::unique_ptr<RecordStore> store_;
   RecorderSession session_;
   ReadyPublisher ready_;
