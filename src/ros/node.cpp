@@ -1,9 +1,13 @@
 #include "ros/node.hpp"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <fmbpc/LoopState.h>
+
 #include <filesystem>
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/health.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -70,6 +74,30 @@ void Node::mishap(const char* topic, const std::string& what) {
   ++refused_[topic];
   if (mayLog(std::string(topic) + " mishap"))
     ROS_ERROR("%s: %s: %s", name_.c_str(), topic, shortened(what).c_str());
+}
+
+int failToStart(ros::NodeHandle node, const std::string& why) {
+  constexpr double kHeard = 1.0;  // [s] in which others connect
+  fmbpc::LoopState state;
+  state.node = ros::this_node::getName();
+  state.mode = static_cast<std::uint8_t>(LoopMode::kFailed);
+  state.word = wordOf(LoopMode::kFailed);
+  state.reason = "cannot start: " + why;
+  diagnostic_msgs::DiagnosticArray diagnostics;
+  diagnostics.status.resize(1);
+  diagnostics.status[0].name = state.node.substr(1) + ": start";
+  diagnostics.status[0].level = diagnostic_msgs::DiagnosticStatus::ERROR;
+  diagnostics.status[0].message = state.reason;
+  const auto states = node.advertise<fmbpc::LoopState>(topics::kLoopState, 1, true);
+  const auto array = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1, true);
+  states.publish(state);
+  array.publish(diagnostics);
+  const double begun_s = steadyNow();
+  while (ros::ok() && steadyNow() - begun_s < kHeard) {
+    ros::spinOnce();
+    ros::WallDuration(0.05).sleep();
+  }
+  return 1;
 }
 
 LoopFile loopParameter(const ros::NodeHandle& private_node) {

@@ -100,6 +100,10 @@ class Node {
   double refusal_s_{};
 };
 
+/// For a node that cannot start: says why on loop_state and the diagnostics, stays long enough to
+/// be heard, and returns 1.
+int failToStart(ros::NodeHandle node, const std::string& why);
+
 /// The loop that the launch file gave as text: parameter `loop_text`, searched upwards.
 /// @throws InputError if there is none or it is no loop.
 LoopFile loopParameter(const ros::NodeHandle& private_node);
@@ -144,7 +148,7 @@ int runNode(int argc, char** argv, const std::string& name) {
     return running.finish();
   } catch (const std::exception& error) {
     ROS_FATAL("%s: %s", name.c_str(), error.what());
-    return 1;
+    return failToStart(node, error.what());
   }
 }
 

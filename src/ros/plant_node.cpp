@@ -16,6 +16,7 @@ constexpr double kPoll = 0.05;         // [s] of wall time
 constexpr double kIntroduceAgain = 1;  // [s], while nobody answers (in realtime samples go on)
 constexpr double kPatience = 1.0;      // [s] without an action before that is said
 constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr char kRecorder[] = "loop_recorder";
 
 std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
   std::vector<std::string> names = loop.ring.wait_for;
@@ -76,6 +77,7 @@ void PlantNode::beginRun() {
   publishers_.introduce(session_.process());
   introduced_s_ = steadyNow();
   tracking_subscriber_.shutdown();
+  recorded_ = false;
 }
 
 void PlantNode::start() {
@@ -138,6 +140,8 @@ void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::st
   keeper_.hear(*msg);
   watch_.hear(msg->node, {static_cast<LoopMode>(msg->mode), msg->reason, msg->missing},
               steadyNow());
+  const bool wrote = msg->mode == static_cast<std::uint8_t>(LoopMode::kFinished);
+  if (wrote && msg->node == node_.resolveName(kRecorder)) recorded_ = true;
 }
 
 void PlantNode::tryAdvance() {
@@ -212,14 +216,23 @@ Health PlantNode::health(double now_s) const {
             missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};
-  if (session_.phase() == PlantPhase::kFinished)
-    return session_.acknowledged() ? Health{LoopMode::kFinished, "finished", {}}
-                                   : Health{LoopMode::kFinished,
-                                            "finished; the final sample is sent again until it is "
-                                            "tracked",
-                                            watch_.silent(now_s)};
+  if (session_.phase() == PlantPhase::kFinished) return finishedHealth(now_s);
   if (session_.paused()) return {LoopMode::kHeld, topics::kPausedReason, {}};
   return runningHealth(now_s);
+}
+
+// A run that nobody has recorded is over, but not in order.
+Health PlantNode::finishedHealth(double now_s) const {
+  const std::vector<std::string> silent = watch_.silent(now_s);
+  const std::string recorder = node_.resolveName(kRecorder);
+  if (!recorded_ && std::find(silent.begin(), silent.end(), recorder) != silent.end())
+    return {LoopMode::kDegraded, "finished, not recorded yet: no word from " + recorder, silent};
+  const Health others = watch_.worst(now_s);
+  if (others.mode == LoopMode::kFailed)
+    return {LoopMode::kDegraded, "finished; " + others.words, others.missing};
+  if (session_.acknowledged()) return {LoopMode::kFinished, "finished", {}};
+  return {LoopMode::kFinished, "finished; the final sample is sent again until it is tracked",
+          silent};
 }
 
 // Nothing that stands still is "running".

@@ -25,6 +25,7 @@ struct RecordLayout {
   std::vector<std::string> states, state_units;
   std::size_t true_disturbances{};             ///< of the simulated plant
   std::vector<Eigen::Index> without_setpoint;  ///< outputs: setpoint and reference become NaN
+  std::string text;  ///< of the loop, for parseLoop(): a record tells what it is of
 
   bool fits(const Measurement& m) const;
   bool fits(const PlantState& s) const;
