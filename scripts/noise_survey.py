@@ -60,8 +60,10 @@ def of_paper(baseline):
 
 def study(family, seeds, percent):
     baseline, outputs, keys, loops = FAMILIES[family]
-    rival = {"loop": baseline, "name": baseline, "set": TUNED} if of_paper(baseline) else baseline
-    text = {"title": family, "loops": loops + [rival], "against": baseline, "set": keys,
+    rows = [{"loop": loop, "name": loop} for loop in [*loops, baseline]]
+    if of_paper(baseline):
+        rows[-1]["set"] = TUNED
+    text = {"title": family, "loops": rows, "against": baseline, "set": keys,
             "fitness": {"terms": [{"index": "ise", "output": output} for output in outputs]}}
     if percent:
         text.update(seeds=seeds, noise={"percent_of_span": percent})
