@@ -23,6 +23,8 @@ struct JournalHeader {
 };
 static_assert(sizeof(JournalHeader) == 80, "the header has no holes");
 
+constexpr std::size_t kMostRemark = 511;  ///< letters of a sample's remarks that an entry holds
+
 struct JournalSizes {
   std::size_t n_y, n_d, n_u, n_x, n_true;
   explicit JournalSizes(const RecordLayout& layout);

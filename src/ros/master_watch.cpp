@@ -43,23 +43,29 @@ class MasterEye {
   bool master_gone_{false};
   bool stop_{false};
   Nodes nodes_;
-  std::mutex mutex_;  // of nodes_ and stop_
+  std::set<std::string> reached_;  // addresses of members that have answered
+  std::mutex mutex_;               // of nodes_ and stop_
   std::condition_variable wake_;
   std::thread thread_;
 };
 
 namespace {
 
-constexpr std::chrono::seconds kPeriod{2};
+constexpr std::chrono::milliseconds kPeriod{2000}, kQuick{500};  // the latter: while one is silent
 
 std::mutex problem_mutex;
-std::string problem;
+NetworkProblem problem;
 
-void say(const std::string& words) {
+void log(const std::string& words, const std::string& before) {
+  if (!words.empty() && words != before)
+    ROS_ERROR("%s: %s", ros::this_node::getName().c_str(), words.c_str());
+}
+
+void say(const NetworkProblem& now) {
   const std::lock_guard<std::mutex> lock(problem_mutex);
-  if (words == problem) return;
-  problem = words;
-  if (!words.empty()) ROS_ERROR("%s: %s", ros::this_node::getName().c_str(), words.c_str());
+  log(now.here, problem.here);
+  log(now.there, problem.there);
+  problem = now;
 }
 
 bool ask(const char* method, const std::string& argument) {
@@ -71,7 +77,7 @@ bool ask(const char* method, const std::string& argument) {
 
 }  // namespace
 
-std::string networkProblem() {
+NetworkProblem networkProblem() {
   const std::lock_guard<std::mutex> lock(problem_mutex);
   return problem;
 }
@@ -106,7 +112,8 @@ void MasterEye::remove(const std::shared_ptr<const WatchedNode>& node) {
 
 void MasterEye::run() {
   std::unique_lock<std::mutex> lock(mutex_);
-  while (!wake_.wait_for(lock, kPeriod, [this] { return stop_; })) {
+  while (!wake_.wait_for(lock, networkProblem().there.empty() ? kPeriod : kQuick,
+                         [this] { return stop_; })) {
     const Nodes nodes = nodes_;
     lock.unlock();
     if (ros::ok() && !nodes.empty()) look(nodes);
@@ -116,13 +123,14 @@ void MasterEye::run() {
 
 void MasterEye::look(const Nodes& nodes) {
   lookAtMaster(nodes);
-  std::string words = ownAddressProblem(ros::network::getHost(), ros::master::getHost());
-  if (words.empty() && !master_gone_) {
+  NetworkProblem now;
+  now.here = ownAddressProblem(ros::network::getHost(), ros::master::getHost());
+  if (now.here.empty() && !master_gone_) {
     std::set<std::string> members;
     for (const auto& node : nodes) members.insert(node->members.begin(), node->members.end());
-    words = unreachable({members.begin(), members.end()});
+    now.there = unreachable({members.begin(), members.end()}, reached_);
   }
-  say(words);
+  say(now);
 }
 
 void MasterEye::lookAtMaster(const Nodes& nodes) {

@@ -31,6 +31,9 @@ class MasterWatch {
 };
 
 /// What is wrong with the network as this process sees it, in words; empty: nothing is known.
-std::string networkProblem();
+struct NetworkProblem {
+  std::string here, there;  ///< with this node's own address; with another member
+};
+NetworkProblem networkProblem();
 
 }  // namespace fpc

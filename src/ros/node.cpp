@@ -11,26 +11,47 @@
 #include "ros/topics.hpp"
 
 namespace fpc {
+namespace {
+
+constexpr double kShown = 5.0;             // [s] that a refusal stays in words
+constexpr std::size_t kMostLetters = 300;  // of them
+
+std::string shortened(const std::string& words) {
+  return words.size() <= kMostLetters ? words : words.substr(0, kMostLetters) + "...";
+}
+
+}  // namespace
 
 Node::Node(const ros::NodeHandle& node, const LoopFile& loop, std::string name)
     : name_(std::move(name)) {
   const std::string& process = ros::this_node::getName();
   Publishers publishers = loop.ring.publishers;
+  publishers[topics::kOperatorState] = publishers[topics::kTracking];  // both are the controller's
   for (auto& [topic, names] : publishers) {
     for (std::string& one : names) one = node.resolveName(one);
     // Nodelets all speak with the name of their manager.
     if (process != name_ && !names.empty()) names.push_back(process);
   }
-  authority_ = Authority(std::move(publishers));
+  authority_ = Authority(std::move(publishers), process != name_ ? process : "");
 }
 
 bool Node::mayPass(const char* topic, const std::string& publisher) {
   if (authority_.admits(topic, publisher)) return true;
-  if (refuse_log_.pass())
+  if (mayLog(std::string(topic) + " of others"))
     ROS_ERROR("%s: %s of %s dropped: the loop takes it only from %s", name_.c_str(), topic,
               publisher.c_str(), join(authority_.publishersOf(topic)).c_str());
   return false;
 }
+
+bool Node::speaksFor(const char* topic, const std::string& publisher, const std::string& node) {
+  if (authority_.speaksFor(topic, publisher, node)) return true;
+  if (mayLog(std::string(topic) + " for others"))
+    ROS_ERROR("%s: %s of %s dropped: it speaks for %s, which must do that itself", name_.c_str(),
+              topic, publisher.c_str(), shortened(node).c_str());
+  return false;
+}
+
+bool Node::mayLog(const std::string& what) { return logs_.emplace(what, 1.0).first->second.pass(); }
 
 void Node::fail(const std::string& what) {
   ROS_FATAL("%s: %s", name_.c_str(), what.c_str());
@@ -40,12 +61,19 @@ void Node::fail(const std::string& what) {
 
 void Node::refuse(const char* topic, const std::string& why) {
   ++refused_[topic];
-  if (refuse_log_.pass()) ROS_WARN("%s: message dropped: %s", topic, why.c_str());
+  refusal_ = std::string(topic) + ": " + shortened(why);
+  refusal_s_ = steadyNow();
+  if (mayLog(topic)) ROS_WARN("%s: message dropped: %s", topic, shortened(why).c_str());
+}
+
+std::string Node::refusedLately(double now_s) const {
+  return refusal_.empty() || now_s - refusal_s_ > kShown ? "" : refusal_;
 }
 
 void Node::mishap(const char* topic, const std::string& what) {
   ++refused_[topic];
-  ROS_ERROR("%s: %s: %s", name_.c_str(), topic, what.c_str());
+  if (mayLog(std::string(topic) + " mishap"))
+    ROS_ERROR("%s: %s: %s", name_.c_str(), topic, shortened(what).c_str());
 }
 
 int failToStart(ros::NodeHandle node, const std::string& why) {

@@ -47,6 +47,10 @@ class Node {
   }
   void refuse(const char* topic, const std::string& why);
   void mishap(const char* topic, const std::string& what);
+  /// The message refused last, in words, for some seconds after it came; then empty.
+  std::string refusedLately(double now_s) const;
+  /// False: the message says something of `node` but comes from another; it is dropped and counted.
+  bool speaksFor(const char* topic, const std::string& publisher, const std::string& node);
   const std::map<std::string, std::uint64_t>& refused() const { return refused_; }
   const Authority& authority() const { return authority_; }
   /// In full.
@@ -75,6 +79,7 @@ class Node {
 
  private:
   bool mayPass(const char* topic, const std::string& publisher);
+  bool mayLog(const std::string& what);
   template <typename Msg, typename Handler>
   ros::Subscriber subscribeGuarded(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
                                    Handler handler) {
@@ -90,7 +95,9 @@ class Node {
   Authority authority_;
   int exit_code_{0};
   std::map<std::string, std::uint64_t> refused_;
-  WallThrottle refuse_log_{1.0};
+  std::map<std::string, WallThrottle> logs_;  // by topic and reason: one flood silences no other
+  std::string refusal_;                       // the latest
+  double refusal_s_{};
 };
 
 /// For a node that cannot start: says why on loop_state and the diagnostics, stays long enough to

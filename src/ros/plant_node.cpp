@@ -41,7 +41,7 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
       session_(std::move(process), ringPolicy(loop)),
       publishers_(node, session_.process().info(), disturbances, loop.ring.publish_clock),
       keeper_(node, loop, name()),
-      ready_(node, namesToWaitFor(loop, private_node)),
+      ready_(node, loop, name(), namesToWaitFor(loop, private_node)),
       watch_(namesToWatch(loop, node)),
       begun_s_(steadyNow()),
       end_(node),
@@ -81,6 +81,8 @@ void PlantNode::beginRun() {
 }
 
 void PlantNode::start() {
+  keeper_.start();
+  watch_.begin(steadyNow());
   session_.start(steadyNow());
   ROS_INFO("%s: run %lu of %s starts", name().c_str(), run_id_, loop_.name.c_str());
   publishSample();
@@ -106,7 +108,8 @@ void PlantNode::waitForOthers() {
   missing_ = ready_.missing();
   const std::vector<std::string> own = plantMissing();
   missing_.insert(missing_.end(), own.begin(), own.end());
-  if (missing_.empty()) return start();
+  if (missing_.empty() && keeper_.knowsWhatStands(steadyNow())) return start();
+  if (missing_.empty()) return;
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
   failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
              " s: " + join(missing_);
@@ -132,7 +135,9 @@ void PlantNode::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
     session_.finish();
 }
 
-void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg) {
+void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher) {
+  if (!speaksFor(topics::kLoopState, publisher, msg->node)) return;
+  keeper_.hear(*msg);
   watch_.hear(msg->node, {static_cast<LoopMode>(msg->mode), msg->reason, msg->missing},
               steadyNow());
   const bool wrote = msg->mode == static_cast<std::uint8_t>(LoopMode::kFinished);
@@ -206,7 +211,9 @@ bool PlantNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response
 Health PlantNode::health(double now_s) const {
   if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
-    return {LoopMode::kStarting, "waiting for " + join(missing_), missing_};
+    return {LoopMode::kStarting,
+            "waiting for " + (missing_.empty() ? "what the controller was asked" : join(missing_)),
+            missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};
   if (session_.phase() == PlantPhase::kFinished) return finishedHealth(now_s);
@@ -275,6 +282,8 @@ void PlantNode::report(Diagnostics::Status& status) const {
   addValues(status);
   addRefused(status, refused());
   addRefused(status, authority().refused());
+  addRefused(status, ready_.authority().refused());
+  addRefused(status, keeper_.authority().refused());
 }
 
 }  // namespace fpc

@@ -60,7 +60,7 @@ class PlantNode : public Node {
  private:
   void onAction(const fmbpc::ControlAction::ConstPtr& msg);
   void onTracking(const fmbpc::Tracking::ConstPtr& msg);
-  void onLoopState(const fmbpc::LoopState::ConstPtr& msg);
+  void onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher);
   bool onPause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onStep(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);

@@ -136,6 +136,16 @@ TEST_F(Commands, AClampedSetpointIsRemarked) {
   expectWords(record.remarks[0].words, {"setpoint of T", "0..60", "degC", "clamped"});
 }
 
+TEST_F(Commands, AScheduleBeyondTheLimitsOfTheFileIsRemarkedAsWell) {
+  const LoopFile tank = readLoop("heated_tank", {{"setpoint.upper.T", "45"}});
+  const RunRecord record = runLoop(tank);
+  EXPECT_EQ(record.samples[40].tracking.setpoint[0], 45.0);
+  ASSERT_EQ(record.remarks.size(), 1U);
+  EXPECT_EQ(record.remarks[0].first, 30U);  // 50 from 0.25 h on
+  EXPECT_EQ(record.remarks[0].samples, 330U);
+  expectWords(record.remarks[0].words, {"setpoint of T", "0..45", "clamped"});
+}
+
 TEST_F(Commands, WhatLiesBeyondTheRunIsTold) {
   const RunRecord record = run(loop("asp_case1"),
                                "- {time_h: 5, setpoint: {x: 1900}}\n"

@@ -53,7 +53,7 @@ class RecorderSession {
   void resume(std::uint64_t run_id, std::uint32_t next_step);
   void receive(const Measurement& m);
   void receive(const PlantState& s);
-  void receive(const Tracking& t, const std::string& remark = {});
+  void receive(const Tracking& t, const std::string& remark = {});  ///< one remark a line
   void receiveBase(const ControlAction& a);
   void receiveAction(const ControlAction& a);
   void receive(const SolverReport& r);

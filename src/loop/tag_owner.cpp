@@ -1,0 +1,22 @@
+#include "fmbpc/loop/tag_owner.hpp"
+
+namespace fpc {
+
+bool TagOwner::admits(const std::string& publisher, double now_s) {
+  if (owner_.empty() || publisher == owner_ || now_s - owner_s_ > timeout_s_) {
+    if (publisher == second_) second_.clear();
+    owner_ = publisher;
+    owner_s_ = now_s;
+    return true;
+  }
+  second_ = publisher;
+  second_s_ = now_s;
+  return false;
+}
+
+std::string TagOwner::problem(double now_s) const {
+  if (second_.empty() || now_s - second_s_ > kShown) return "";
+  return tag_ + " has two publishers: " + owner_ + " counts, " + second_ + " is refused";
+}
+
+}  // namespace fpc
