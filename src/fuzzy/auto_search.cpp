@@ -23,6 +23,13 @@ class Search {
          const SearchLimits& limits)
       : data_(data), delay_(delay), seed_(seed), limits_(limits) {}
 
+  /// The lowest score of a few linear models.
+  double lowestOfLines() {
+    judge(delayCandidates(base()), 0.0, 0.0);
+    sortAll();
+    return result_.linear.empty() ? kInfinity : result_.linear.front().score;
+  }
+
   StructureSearch run(bool states) {
     judge(linearCandidates(base(), states), 0.0, 0.08);
     sortAll();
@@ -184,6 +191,19 @@ void Search::sortAll() {
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
                                  std::uint64_t seed, const SearchLimits& limits) {
   return Search(data, delay, seed, limits).run(states);
+}
+
+std::vector<int> bestDelays(const AutoData& data, const std::vector<std::vector<int>>& options,
+                            std::uint64_t seed, const SearchLimits& limits) {
+  std::size_t best = 0;
+  double lowest = kInfinity;
+  for (std::size_t i = 0; i < options.size(); ++i) {
+    const double score = Search(data, options[i], seed, limits).lowestOfLines();
+    if (!(score < lowest)) continue;
+    lowest = score;
+    best = i;
+  }
+  return options[best];
 }
 
 }  // namespace fpc

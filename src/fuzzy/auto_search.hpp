@@ -53,6 +53,10 @@ struct StructureSearch {
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
                                  std::uint64_t seed, const SearchLimits& limits);
 
+/// Of several sets of delays, the one with which simple linear models run best over the blocks.
+std::vector<int> bestDelays(const AutoData& data, const std::vector<std::vector<int>>& options,
+                            std::uint64_t seed, const SearchLimits& limits);
+
 /// Trimmed mean of what members say at each row (NaN: nobody).
 Vector averaged(const std::vector<const Judgement*>& members);
 

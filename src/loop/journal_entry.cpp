@@ -7,9 +7,9 @@
 namespace fpc {
 namespace {
 
-constexpr std::size_t kTrouble = 16, kRemark = (kMostRemark + 1) /
-                                               sizeof(double);  // doubles whose bytes hold words
-constexpr std::uint64_t kMostAbout = 1U << 26U;                 // bytes
+// Doubles whose bytes hold words.
+constexpr std::size_t kTrouble = 16, kRemark = (kMostRemark + 1) / sizeof(double);
+constexpr std::uint64_t kMostAbout = 1U << 26U;  // bytes
 constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '5'};
 
 /// Numbers one after the other; a whole number of 64 bits travels by its bits.

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fmbpc/fuzzy/domain.hpp"
+#include "fmbpc/fuzzy/process_trust.hpp"
 #include "fmbpc/loop/report.hpp"
 
 namespace fpc {
@@ -18,9 +19,7 @@ bool isOutsideModel(const LoopFile& loop, const SampleRecord& sample) {
   const Measurement& m = sample.measurement;
   Vector now(m.outputs.size() + m.input_applied.size() + m.disturbances.size());
   now << m.outputs, m.input_applied, m.disturbances;
-  Vector next = now;
-  next.segment(m.outputs.size(), m.input_applied.size()) = sample.action.input;
-  return std::min(trustOf(loop.model, now), trustOf(loop.model, next)) < loop.guard.trust_low;
+  return processTrustOf(loop.model, now) < loop.guard.trust_low;
 }
 
 std::uint64_t samplesOutsideModel(const LoopFile& loop, const RunRecord& record) {

@@ -8,7 +8,8 @@ namespace fpc {
 
 /// Whether the loop's law predicts with a model that knows its data.
 bool hasDomain(const LoopFile& loop);
-/// Of a loop with a domain.
+/// Of a loop with a domain: whether outputs or disturbances, as the law had them, are where its
+/// model has no data. Inputs beyond theirs are not counted: the bounds allow them.
 bool isOutsideModel(const LoopFile& loop, const SampleRecord& sample);
 /// Inputs that the loop's controller may move: those of its type, and of a law whose model stays
 /// what it is those that the model knows.

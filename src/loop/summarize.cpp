@@ -11,6 +11,7 @@
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/run_summary.hpp"
 #include "loop/model_use.hpp"
+#include "loop/overruled.hpp"
 #include "loop/run_tally.hpp"
 #include "loop/unplayed.hpp"
 
@@ -40,6 +41,7 @@ void countCells(const LoopFile& loop, Summary& summary) {
 
 void addUnplayed(const LoopFile& loop, Summary& summary) {
   for (RunRemark& remark : unplayedIn(loop)) summary.remarks.push_back(std::move(remark));
+  for (RunRemark& remark : overruledIn(loop)) summary.remarks.push_back(std::move(remark));
 }
 
 /// What stands in a summary before the first sample.

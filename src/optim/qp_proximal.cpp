@@ -22,12 +22,14 @@ constexpr double kShrinking = 0.1;
 bool QpSolver::Workspace::polish(const QpProblem& p) {
   if (!kkt.factor(p, sides, qp::kDependent)) return false;
   kkt.solve(p, sides, result);
-  return revise(p) == 0 && finish(p) == SolveStatus::kSolved;
+  return revise(p, true) == 0 && finish(p) == SolveStatus::kSolved;
 }
 
 SolveStatus QpSolver::Workspace::proximal(const QpProblem& p) {
   center = result.x;
   if (!center.allFinite()) center.setZero();
+  ++result.iterations;
+  if (polish(p)) return SolveStatus::kSolved;  // the first working set is often the right one
   bool fresh = true;
   double residual = std::numeric_limits<double>::infinity();
   for (int step = 1; step <= kMaxSteps; ++step) {

@@ -92,8 +92,9 @@ IntegrationResult SundialsMethod::explain(int flag) const {
     result.reason = "more integration steps than integrator.max_steps";
   } else {
     result.reason = "SUNDIALS error " + std::to_string(flag) + ": " + solver_error_;
-    if (!model_error_.empty()) result.reason += " (" + model_error_ + ")";
   }
+  if (result.status != IntegrationStatus::kModelFailed && !model_error_.empty())
+    result.reason += " (" + model_error_ + ")";
   return result;
 }
 

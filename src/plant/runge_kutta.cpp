@@ -37,10 +37,14 @@ class RungeKutta final : public SundialsMethod {
   void create(const IntegratorParams& params);
 
  private:
+  /// The whole sample is tried as one step; should that lead out of the model's range or too far
+  /// off, once more from a first step that ARKODE chooses, which is a short one.
   int move(Real t_end) override;
+  int moveFrom(Real first_step, Real t_end);
   long steps() const override;
 
   void* memory_{};
+  Vector start_;
 };
 
 void RungeKutta::create(const IntegratorParams& params) {
@@ -62,7 +66,17 @@ void RungeKutta::create(const IntegratorParams& params) {
 }
 
 int RungeKutta::move(Real t_end) {
+  Eigen::Map<Vector> y(NV_DATA_S(y_), n_);
+  start_ = y;
+  const int flag = moveFrom(t_end, t_end);
+  if (flag >= 0 || flag == kTooMuchWorkFlag) return flag;
+  y = start_;
+  return moveFrom(0.0, t_end);
+}
+
+int RungeKutta::moveFrom(Real first_step, Real t_end) {
   int flag = ERKStepReInit(memory_, derivatives, 0.0, y_);
+  if (flag == ARK_SUCCESS) flag = FPC_ARK(SetInitStep)(memory_, first_step);
   if (flag == ARK_SUCCESS) flag = FPC_ARK(SetStopTime)(memory_, t_end);
   Real t = 0.0;
   if (flag == ARK_SUCCESS) flag = FPC_ARK(Evolve)(memory_, t_end, y_, &t, ARK_NORMAL);

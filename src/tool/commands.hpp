@@ -52,7 +52,9 @@ struct IdentifyArguments {
   std::string kind{"best"};  ///< best, linear, regressors, state
   double budget_s{45.0};
   int blocks{4}, window{5};
-  std::string known;  ///< of the outputs: file or text, empty: nothing
+  int longest_delay{};      ///< [samples], 0: by the length of the record
+  bool keep_inputs{false};  ///< those that hardly moved too
+  std::string known;        ///< of the outputs: file or text, empty: nothing
   std::uint64_t seed{1};
 };
 

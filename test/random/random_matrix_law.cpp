@@ -27,6 +27,10 @@ std::string scaled(Dice& dice, const std::vector<Quantity>& signals, double unit
   return byName(namesOf(signals), list);
 }
 
+std::string delayedBy(const Quantity& signal, int delay) {
+  return signal.name + (delay > 0 ? "(k-" + std::to_string(delay) + ")" : "(k)");
+}
+
 /// "then" of a rule for output i: one lag, gains of the order of the spans.
 std::string consequent(Dice& dice, const MatrixSignals& s, std::size_t i,
                        const std::vector<int>& delays) {
@@ -36,8 +40,8 @@ std::string consequent(Dice& dice, const MatrixSignals& s, std::size_t i,
   for (std::size_t j = 0; j < s.inputs.size(); ++j) {
     const double gain = (1.0 - pole) * std::stod(dice.number(-2.0, 2.0));
     offset -= gain * s.inputs[j].nominal;
-    text += ", " + s.inputs[j].name + "(k-" + std::to_string(delays[j]) +
-            "): " + exactText(gain * unitAt(j, s.input_unit) / unit);
+    text += ", " + delayedBy(s.inputs[j], delays[j]) + ": " +
+            exactText(gain * unitAt(j, s.input_unit) / unit);
   }
   return text + ", offset: " + exactText(offset / unit) + "}\n";
 }
@@ -48,7 +52,7 @@ std::string submodel(Dice& dice, const MatrixSignals& s, std::size_t i, int rule
   std::string regressors = y.name + "(k)";
   for (const Quantity& u : s.inputs) {
     delays.push_back(dice.whole(0, 2));
-    regressors += ", " + u.name + "(k-" + std::to_string(delays.back()) + ")";
+    regressors += ", " + delayedBy(u, delays.back());
   }
   std::string text = "  " + y.name + ":\n    antecedents: [" +
                      (rules > 1 ? first.name + "(k)" : std::string()) + "]\n    regressors: [" +
