@@ -99,7 +99,7 @@ def page(families, seeds, percent):
              % (percent, seeds),
              "The aim is a ratio of at most %g; a loop file of which it is not reached says why. `_pi_x, tuned` is the paper's PI of that" % LIMIT,
              "case with the numbers of `asp_case1_pi_x_best`; the papers' laws (`asp_case*`, `asp_clp_*`) keep the papers' settings, which",
-             "aim along a slow reference: that, not the noise, puts them beyond the aim (compare the columns without and with noise).", "",
+             "aim along a slow reference: that, more than the noise, puts them beyond the aim (compare the columns without and with noise).", "",
              "| loop | baseline | without noise | with noise | baseline with noise | ratio | within |",
              "|---|---|---|---|---|---|---|"]
     above = []
