@@ -53,7 +53,7 @@ double SignalWindow::noiseOf(Index signal, Index age, Index samples) const {
   return sum / static_cast<double>(2 * (samples - 1));
 }
 
-bool SignalWindow::meansMove(Index signal, Index samples, double part) const {
+bool SignalWindow::meansMove(Index signal, Index samples, double change) const {
   const Index block = samples / kBlocks, half = samples / 2;
   double least = meanOf(signal, half, block), most = least;
   for (Index age = half + block; age + block <= samples; age += block) {
@@ -63,7 +63,7 @@ bool SignalWindow::meansMove(Index signal, Index samples, double part) const {
   }
   const double inside = noiseOf(signal, half, samples - half);
   const double noise = kSurely * std::sqrt(inside / static_cast<double>(block));
-  return most - least > part * std::abs(meanOf(signal, 0, samples)) + noise;
+  return most - least > change + noise;
 }
 
 }  // namespace fpc

@@ -96,13 +96,21 @@ bool StandstillWatch::showsTheSame(const WatchedSignal& signal) const {
          });
 }
 
+/// What a change is compared with: an input's range, since its mean may be near zero; otherwise, or
+/// without one, the mean.
+double StandstillWatch::scaleOf(Index row, Index samples) const {
+  const Index input = row - n_y_ - seen_.disturbances.size();
+  const double range = input < 0 ? kInfinity : limits_.upper[input] - limits_.lower[input];
+  return std::isfinite(range) ? range : std::abs(window_.mean(row, samples));
+}
+
 bool StandstillWatch::showsOnlyNoise(const WatchedSignal& signal) const {
   const Index n = params_.noise_window_samples;
   const double noise = signal.noise_std * signal.noise_std;
   return noise > 0.0 && window_.holds(n) &&
          window_.variance(rowOf(signal), n) < mostVariance(n) * noise &&
          othersMove(signal, [&](Index other) {
-           return window_.meansMove(other, n, params_.others_change);
+           return window_.meansMove(other, n, params_.others_change * scaleOf(other, n));
          });
 }
 

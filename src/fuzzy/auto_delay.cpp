@@ -71,19 +71,20 @@ void guessNear(const AutoData& p, int longest, double worth, DelayGuess& guess) 
 }
 
 /// Longer delays where they are worth as much more.
-void guessFar(const AutoData& p, int near, int longest, double worth, DelayGuess& guess) {
-  double best = oneStepError(p, guess.delay, longest);
-  for (std::size_t j = 0; j < guess.delay.size(); ++j) {
+std::vector<int> guessFar(const AutoData& p, std::vector<int> delay, int near, int longest,
+                          double worth) {
+  double best = oneStepError(p, delay, longest);
+  for (std::size_t j = 0; j < delay.size(); ++j) {
     if (isStill(p, j)) continue;
-    auto trial = guess.delay;
+    auto trial = delay;
     for (trial[j] = near + 1; trial[j] <= longest; ++trial[j]) {
       const double error = oneStepError(p, trial, longest);
-      if (!(error < (guess.delay[j] > near ? 1.0 : worth) * best)) continue;
-      guess.delay[j] = trial[j];
-      guess.doubt[j] = false;
+      if (!(error < (delay[j] > near ? 1.0 : worth) * best)) continue;
+      delay[j] = trial[j];
       best = error;
     }
   }
+  return delay;
 }
 
 /// First-order lag of an input: x(k + 1) = a x(k) + (1 - a) u(k); starts again after a gap.
@@ -166,12 +167,13 @@ DelayGuess guessDelays(const AutoData& p, int longest) {
   const int near = std::min<int>({kNear, longest, static_cast<int>(p.data->rows() / 20)});
   guessNear(p, near, worth, guess);
   if (longest <= near) return guess;
-  guessFar(p, near, longest, worth, guess);
+  const std::vector<int> far = guessFar(p, guess.delay, near, longest, worth);
   const std::vector<int> free = freeRunDelays(p, near, longest);
-  std::vector<int> other = guess.delay;
+  std::vector<int> running = far;
   for (std::size_t j = 0; j < m; ++j)
-    if (free[j] > near) other[j] = free[j];
-  if (other != guess.delay) guess.by_free_run = other;
+    if (free[j] > near) running[j] = free[j];
+  if (far != guess.delay) guess.longer.push_back(far);
+  if (running != far) guess.longer.push_back(running);
   return guess;
 }
 

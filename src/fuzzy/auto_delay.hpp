@@ -6,12 +6,13 @@
 namespace fpc {
 
 /// Delays of inputs and disturbances [samples], 0 = acts on the next output; by one-step least
-/// squares, one signal after the other, first up to 10 samples, then beyond where that lowers the
-/// error by as much as a delay must.
+/// squares, one signal after the other, up to 10 samples.
 struct DelayGuess {
   std::vector<int> delay;
-  std::vector<bool> doubt;       ///< the runner-up is as good
-  std::vector<int> by_free_run;  ///< of first-order lags that run freely, where these say otherwise
+  std::vector<bool> doubt;  ///< the runner-up is as good
+  /// With longer delays: by one-step least squares again, where that lowers the error by as much as
+  /// a delay must; and by first-order lags that run freely. None where these say nothing else.
+  std::vector<std::vector<int>> longer;
 };
 DelayGuess guessDelays(const AutoData& prepared, int longest);
 

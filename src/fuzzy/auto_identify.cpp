@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <mutex>
 
 #include "fmbpc/base/input_error.hpp"
@@ -42,6 +43,23 @@ TsModel emptyModel(const DataSet& data) {
   return model;
 }
 
+SignalInfo& causeOf(DataSet& data, Index column) {
+  const auto j = static_cast<std::size_t>(column) - data.outputs.size();
+  return j < data.inputs.size() ? data.inputs[j] : data.disturbances[j - data.inputs.size()];
+}
+
+/// A signal at rest has a range as well, so that another value is told to lie outside.
+void setRest(SignalInfo& signal, const Eigen::Ref<const Vector>& values) {
+  if (std::isfinite(signal.lower) || std::isfinite(signal.upper)) return;
+  for (const double v : values) {
+    if (!std::isfinite(v)) continue;
+    const double margin = v != 0.0 ? 1e-6 * std::abs(v) : 1e-9;
+    signal.lower = v - margin;
+    signal.upper = v + margin;
+    return;
+  }
+}
+
 /// The same without outliers; what tells nothing is marked as constant, with a remark. Signals that
 /// something is known of are kept; so are all if no other is left.
 DataSet prepared(const DataSet& given, const AutoParams& params,
@@ -56,14 +74,12 @@ DataSet prepared(const DataSet& given, const AutoParams& params,
   };
   if (static_cast<Index>(data.constant.size()) != data.values.cols())
     data.constant.assign(static_cast<std::size_t>(data.values.cols()), false);
+  for (Index c = n_y; c < data.values.cols(); ++c) setRest(causeOf(data, c), data.values.col(c));
   if (!params.keep_still)
     for (const Index c : stillCauses(data)) {
       if (isKnown(c) || data.constant[static_cast<std::size_t>(c)]) continue;
       data.constant[static_cast<std::size_t>(c)] = true;
-      const auto j = static_cast<std::size_t>(c - n_y);
-      const auto& signal =
-          j < data.inputs.size() ? data.inputs[j] : data.disturbances[j - data.inputs.size()];
-      remarks.push_back(signal.name +
+      remarks.push_back(causeOf(data, c).name +
                         " is left out: so few moves cannot be told from a coincidence "
                         "(--keep-inputs keeps it)");
     }

@@ -83,8 +83,8 @@ class OutputSearch {
             : usual;
     const DelayGuess guess = guessDelays(data_, longest);
     found_.delay = guess.delay;
-    if (!guess.by_free_run.empty())
-      found_.delay = bestDelays(data_, {guess.delay, guess.by_free_run}, params_.seed, limits_);
+    if (!guess.longer.empty())
+      found_.delay = bestDelays(data_, guess.delay, guess.longer, params_.seed, limits_);
     remarkDelays(guess, longest);
   }
 

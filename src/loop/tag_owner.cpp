@@ -2,8 +2,10 @@
 
 namespace fpc {
 
-bool TagOwner::admits(const std::string& publisher, double now_s) {
-  if (owner_.empty() || publisher == owner_ || now_s - owner_s_ > timeout_s_) {
+bool TagOwner::admits(const std::string& publisher, double now_s, bool claims) {
+  const bool free = owner_.empty() || now_s - owner_s_ > timeout_s_;
+  if (free && publisher != owner_ && !claims) return true;
+  if (free || publisher == owner_) {
     if (publisher == second_) second_.clear();
     owner_ = publisher;
     owner_s_ = now_s;

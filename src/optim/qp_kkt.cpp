@@ -209,7 +209,7 @@ bool KktSystem::factorRows(double dependent_tolerance) {
 bool KktSystem::factor(const QpProblem& p, const Sides& sides, double dependent_tolerance) {
   if (!factorFree(p, sides)) return false;
   if (gatherRows(p, sides)) return true;
-  rows_factored_ = n_rows_ <= n_free_ && factorRows(dependent_tolerance);
+  rows_factored_ = n_rows_ == 0 || (n_rows_ <= n_free_ && factorRows(dependent_tolerance));
   return rows_factored_;
 }
 

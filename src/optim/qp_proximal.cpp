@@ -30,7 +30,7 @@ SolveStatus QpSolver::Workspace::proximal(const QpProblem& p) {
   if (!center.allFinite()) center.setZero();
   ++result.iterations;
   if (polish(p)) return SolveStatus::kSolved;  // the first working set is often the right one
-  bool fresh = true;
+  bool fresh = true, renewed = false;
   double residual = std::numeric_limits<double>::infinity();
   for (int step = 1; step <= kMaxSteps; ++step) {
     gradient = p.g - kkt.shift().cwiseProduct(center);
@@ -38,6 +38,10 @@ SolveStatus QpSolver::Workspace::proximal(const QpProblem& p) {
       return SolveStatus::kNumericalError;
     const SolveStatus status = dual.run(p, settings, tolerance(), noise, sides, result.iterations);
     if (status == SolveStatus::kInfeasible) return infeasible();
+    if (status == SolveStatus::kNumericalError && !renewed) {
+      fresh = renewed = true;  // the factors may have gathered rounding: once more with new ones
+      continue;
+    }
     if (status != SolveStatus::kSolved) return status;
     result.x = center = dual.x();
     dual.multipliers(p.g.size(), result);

@@ -36,8 +36,9 @@ void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::
   TagOwner& owner = owners_.emplace_back(node.resolveName(topic), timeout_s_);
   const boost::function<void(const ros::MessageEvent<const std_msgs::Float64>&)> keep =
       [this, &to, &owner, index](const ros::MessageEvent<const std_msgs::Float64>& event) {
-        if (!admits(owner, event.getPublisherName())) return;
-        const Reading reading{index, event.getConstMessage()->data, steadyNow()};
+        const double value = event.getConstMessage()->data;
+        if (!admits(owner, event.getPublisherName(), value)) return;
+        const Reading reading{index, value, steadyNow()};
         for (Reading& known : to)
           if (known.index == index) {
             known = reading;
@@ -49,9 +50,9 @@ void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::
       topic, topics::kPairQueue, keep, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
 }
 
-bool Float64Field::admits(TagOwner& owner, const std::string& publisher) {
+bool Float64Field::admits(TagOwner& owner, const std::string& publisher, double value) {
   const double now_s = steadyNow();
-  if (owner.admits(publisher, now_s)) {
+  if (owner.admits(publisher, now_s, std::isfinite(value))) {
     ++heard_;
     return true;
   }

@@ -34,7 +34,7 @@ class Float64Field : public Field {
   };
   void listen(ros::NodeHandle& node, const std::string& topic, std::vector<Reading>& to,
               std::size_t index);
-  bool admits(TagOwner& owner, const std::string& publisher);
+  bool admits(TagOwner& owner, const std::string& publisher, double value);
   void forwardSetpoint(ros::NodeHandle& node, const std::string& topic, const std::string& output);
 
   std::vector<Reading> signals_, positions_;  // since the last exchange

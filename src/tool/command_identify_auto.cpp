@@ -184,11 +184,13 @@ std::vector<RecordJudgement> judgeAll(const AutoRecords& records, const Identifi
   return parts;
 }
 
-/// The model of what was found; validation rows may choose another kind unless one was asked for.
+/// The model of what was found; validation rows may refuse it unless it was asked for by --kind.
 IdentifiedModel settle(const IdentifyArguments& a, const AutoRecords& records,
                        AutoIdentification& found) {
   IdentifiedModel model = toIdentified(found);
-  if (!records.validation || kindOf(a.kind)) return model;
+  const auto kind = kindOf(a.kind);
+  const bool asked = kind == ModelKind::kState || kind == ModelKind::kLinear;
+  if (!records.validation || asked) return model;
   const auto validation = judgeRecord("validation", *records.validation, model, 1);
   return chooseByValidation(validation, found) ? toIdentified(found) : model;
 }

@@ -1,6 +1,6 @@
 #include "tool/identify_verdict.hpp"
 
-#include <cmath>
+#include <algorithm>
 
 #include "fmbpc/base/text.hpp"
 
@@ -16,7 +16,7 @@ const FitFigures* freeRunOf(const OutputJudgement& o, ModelKind kind) {
 /// Free runs of a kind, over those of the linear model; 0: one of the two is not there.
 double ratioToLinear(const OutputJudgement& o, ModelKind kind) {
   const FitFigures *own = freeRunOf(o, kind), *line = freeRunOf(o, ModelKind::kLinear);
-  return own != nullptr && line != nullptr && line->rmse > 0.0 ? own->rmse / line->rmse : 0.0;
+  return own != nullptr && line != nullptr ? own->rmse / std::max(line->rmse, 1e-300) : 0.0;
 }
 
 std::string besideText(const OutputJudgement& o, ModelKind kind) {
@@ -48,8 +48,9 @@ bool chooseByValidation(const RecordJudgement& validation, AutoIdentification& f
       o.verdict = "the fuzzy model is worse than the best linear one on the validation rows (" +
                   words + "): the " +
                   (o.fuzzy_model ? "model of the measured past" : "linear model") +
-                  " is written (so these rows helped to choose; --kind " + name(before) +
-                  " keeps the other; over held-out blocks: " + o.verdict + ")";
+                  " is written (these rows have helped to choose; a call without them keeps the "
+                  "other; over held-out blocks: " +
+                  o.verdict + ")";
     } else if (was_fuzzy && !o.fuzzy_model) {
       o.verdict += "; on the validation rows what control laws take is worse than linear (" +
                    besideText(judged, ModelKind::kRegressors) + "): they get the linear model";
@@ -65,7 +66,7 @@ std::vector<std::string> warnings(const RecordJudgement& part) {
     std::string text;
     const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
     for (const auto kind : {ModelKind::kState, ModelKind::kRegressors})
-      if (ratioToLinear(o, kind) > kWorse)
+      if ((kind == o.best || kind == ModelKind::kRegressors) && ratioToLinear(o, kind) > kWorse)
         add("the fuzzy model '" + name(kind) + "' is worse than the linear one (" +
             besideText(o, kind) + "): take the linear model of the file");
     const FitFigures* best = freeRunOf(o, o.best);

@@ -31,5 +31,14 @@ TEST(TagOwner, APlantThatComesBackUnderAnotherNameOwnsItsTagAfterTheTimeOut) {
   EXPECT_EQ(tag.problem(1.2), "/tank/state has two publishers: /tank_2 counts, /tank_1 is refused");
 }
 
+TEST(TagOwner, AValueThatIsNoNumberIsHeardButOwnsNothing) {
+  TagOwner tag("/tank/state", 1.0);
+  EXPECT_TRUE(tag.admits("/liar", 0.0, false));
+  EXPECT_TRUE(tag.admits("/tank", 0.1));
+  EXPECT_FALSE(tag.admits("/liar", 0.2, false));
+  EXPECT_TRUE(tag.admits("/tank", 0.3, false));  // the owner's own
+  EXPECT_FALSE(tag.admits("/other", 1.2));
+}
+
 }  // namespace loop_tag_owner_test
 }  // namespace fpc

@@ -42,6 +42,7 @@ TEST_P(EveryMethod, TheSameArgumentsGiveTheSameBitsWhateverCameBefore) {
   Vector a = start, b = start, between = other;
   ASSERT_TRUE(fresh.advance(a, u, d, 720.0).ok());
   ASSERT_TRUE(used.advance(between, 3.0 * u, 2.0 * d, 36000.0).ok());
+  ASSERT_TRUE(used.advance(between, 3.0 * u, 2.0 * d, 7.2).ok());
   ASSERT_TRUE(used.advance(b, u, d, 720.0).ok());
   EXPECT_EQ(a, b);
 }

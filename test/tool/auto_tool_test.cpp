@@ -184,7 +184,8 @@ TEST_F(AutoTool, AModelThatIsWorseThanLinearOnValidationRowsIsNotWritten) {
     y = next;
   }
   const std::string other = writeRecord("other.csv", table), written = path("written.yaml");
-  const std::string by_name = "identify " + other + " --auto --inputs u --outputs y --rows 1:200 ";
+  const std::string by_name =
+      "identify " + other + " --auto --inputs u --outputs y --kind regressors --rows 1:200 ";
   const Outcome outcome = tool(by_name + "--validate-rows 201:300 --json --out " + written);
   ASSERT_EQ(outcome.code, 0);
   const auto found = parsed(outcome.printed);

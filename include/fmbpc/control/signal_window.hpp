@@ -25,9 +25,9 @@ class SignalWindow {
   /// Variance about the mean, over samples - 1.
   double variance(Eigen::Index signal, Eigen::Index samples) const;
   /// Whether the means of the blocks (an eighth of the samples each) in the older half differ by
-  /// more than `part` of the mean and what the noise, judged by the steps from sample to sample,
+  /// more than `change` and what the noise, judged by the steps from sample to sample,
   /// makes of such means. At least eight samples.
-  bool meansMove(Eigen::Index signal, Eigen::Index samples, double part) const;
+  bool meansMove(Eigen::Index signal, Eigen::Index samples, double change) const;
 
  private:
   double at(Eigen::Index signal, Eigen::Index age) const {

@@ -40,6 +40,7 @@ class StandstillWatch final : public ControllerAround {
   double valueOf(const Measurement& now, const WatchedSignal& signal) const;
   template <class Moves>
   bool othersMove(const WatchedSignal& signal, Moves moves) const;
+  double scaleOf(Eigen::Index row, Eigen::Index samples) const;
   bool showsTheSame(const WatchedSignal& signal) const;
   bool showsOnlyNoise(const WatchedSignal& signal) const;
   void judge(std::size_t signal, double value);

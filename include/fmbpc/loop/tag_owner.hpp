@@ -12,8 +12,9 @@ namespace fpc {
 class TagOwner {
  public:
   TagOwner(std::string tag, double timeout_s) : tag_(std::move(tag)), timeout_s_(timeout_s) {}
-  /// False: the value is to be dropped.
-  bool admits(const std::string& publisher, double now_s);
+  /// False: the value is to be dropped. `claims`: it makes its publisher the owner of a free tag (a
+  /// value that is no number does not).
+  bool admits(const std::string& publisher, double now_s, bool claims = true);
   /// Who else publishes the tag, in words, while that goes on; empty: nobody.
   std::string problem(double now_s) const;
 

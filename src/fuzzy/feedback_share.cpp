@@ -1,4 +1,4 @@
-#include "fuzzy/feedback_test.hpp"
+#include "fuzzy/feedback_share.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -13,6 +13,7 @@ using Eigen::Index;
 constexpr Index kMostLags = 40;  // of the input's own past
 constexpr Index kRowsPerLag = 8;
 constexpr Index kOutputLags = 4;
+constexpr Index kFewestRows = 50;
 constexpr Index kMostRows = 4000;
 constexpr double kFromPast = 1e-8;  // an input whose past tells it to this share is periodic
 constexpr double kSure = 7.0;       // of F
@@ -99,7 +100,9 @@ double feedbackShare(VectorRef u_all, VectorRef y_all) {
   const Index own = lags + 1, all = own + kOutputLags;
   std::vector<Index> kept;
   for (Index i = 0; i < rows.target.size(); ++i) kept.push_back(i);
-  const auto enough = [&] { return static_cast<Index>(kept.size()) > 2 * all; };
+  const auto enough = [&] {
+    return static_cast<Index>(kept.size()) >= std::max(kFewestRows, 2 * all);
+  };
   if (lags < 1 || !enough()) return 0.0;
   Vector past = leftOver(rows, own, kept);
   if (squares(past, kept) < kFromPast * static_cast<double>(kept.size())) return 0.0;
