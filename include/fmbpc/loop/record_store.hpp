@@ -37,7 +37,7 @@ class RecordStore {
   std::uint64_t lost() const { return journal_.lost(); }
   std::uint64_t samples() const { return samples_; }
   std::uint64_t unwritten() const { return journal_.unwritten(); }  ///< that wait for the disk
-  double beganAt() const { return journal_.beganAt(); }  ///< see RecordJournal
+  double beganAt() const { return journal_.beganAt(); }             ///< see RecordJournal
 
  private:
   std::uint32_t tryOpen();
