@@ -44,6 +44,7 @@ class Recorder:
     def hear(self, state):
         if state.summary:
             self.plant_finished = state.reason.startswith("finished")
+            self.came = self.came or state.mode != LoopState.STARTING  # it was ready before sample 0
         if state.node == self.name:
             self.came, self.gone_since = True, None
 
