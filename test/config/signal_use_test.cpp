@@ -55,7 +55,8 @@ TEST(SignalUse, APredictiveLawNeedsAllAndFollowsWhatHasAWeight) {
 }
 
 TEST(SignalUse, OfWhatOnlySomeIsNeededTheRestMayFail) {
-  EXPECT_EQ(useOf("column_adaptive"), (Use{{true, true, false}, {0, 1}})) << "not the feed";
+  const Overrides fed{{"plant.measured_disturbances", "[F]"}};
+  EXPECT_EQ(useOf("column_adaptive", fed), (Use{{true, true, false}, {0, 1}})) << "not the feed";
   const Overrides constant{{"disturbance", "{}"}, {"plant.outputs", "[S_NO5, S_NH5]"}};
   EXPECT_EQ(useOf("bsm1_supervisor", constant), (Use{{false, true, true, true}, {1}}));
 }
