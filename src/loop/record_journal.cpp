@@ -66,7 +66,7 @@ std::uint32_t RecordJournal::open(const std::string& file, const RecordLayout& l
                                   std::uint64_t run_id) {
   if (entry_size_ == 0 || run_id != run_id_ || aboutOf(layout) != about_) start(layout, run_id);
   const bool waited = !unwritten_.empty();  // samples came before the file could be opened
-  if (!waited) next_ = lost_;
+  if (!waited) next_ = 0;
   lock(file);
   struct stat about {};
   try {

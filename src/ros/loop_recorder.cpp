@@ -237,7 +237,8 @@ Health LoopRecorder::health(double) const {
 
 void LoopRecorder::report(Diagnostics::Status& status) const {
   status.add("step", session_.latest().step);
-  status.add("samples on disk", store_->samples());
+  status.add("samples on disk", store_->samples() - store_->unwritten() - store_->lost());
+  status.add("samples that wait for the disk", store_->unwritten());
   status.add("samples lost", store_->lost());
   if (!store_->remark().empty()) status.add("run before", store_->remark());
   status.add("samples with gaps", session_.gapCount());

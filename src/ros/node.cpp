@@ -77,7 +77,7 @@ void Node::mishap(const char* topic, const std::string& what) {
 }
 
 int failToStart(ros::NodeHandle node, const std::string& why) {
-  constexpr double kHeard = 1.0;  // [s] in which others connect
+  constexpr double kHeard = 0.5, kPatience = 3.0;  // [s] after somebody has connected, and in all
   fmbpc::LoopState state;
   state.node = ros::this_node::getName();
   state.mode = static_cast<std::uint8_t>(LoopMode::kFailed);
@@ -93,7 +93,9 @@ int failToStart(ros::NodeHandle node, const std::string& why) {
   states.publish(state);
   array.publish(diagnostics);
   const double begun_s = steadyNow();
-  while (ros::ok() && steadyNow() - begun_s < kHeard) {
+  double alone_s = begun_s;  // until then
+  while (ros::ok() && steadyNow() - alone_s < kHeard && steadyNow() - begun_s < kPatience) {
+    if (states.getNumSubscribers() == 0) alone_s = steadyNow();
     ros::spinOnce();
     ros::WallDuration(0.05).sleep();
   }

@@ -55,8 +55,9 @@ TEST(SignalUse, APredictiveLawNeedsAllAndFollowsWhatHasAWeight) {
 }
 
 TEST(SignalUse, OfWhatOnlySomeIsNeededTheRestMayFail) {
-  const Overrides fed{{"plant.measured_disturbances", "[F]"}};
-  EXPECT_EQ(useOf("column_adaptive", fed), (Use{{true, true, false}, {0, 1}})) << "not the feed";
+  EXPECT_EQ(useOf("column_adaptive", {{"plant.measured_disturbances", "[F]"}}),
+            (Use{{true, true, false}, {0, 1}}))
+      << "not the feed";
   const Overrides constant{{"disturbance", "{}"}, {"plant.outputs", "[S_NO5, S_NH5]"}};
   EXPECT_EQ(useOf("bsm1_supervisor", constant), (Use{{false, true, true, true}, {1}}));
 }

@@ -130,7 +130,7 @@ TEST_F(InterruptedTest, EveryRunThatWasCutShortHasAFolderOfItsOwnAndIsOfItsOwnLo
 
 TEST_F(InterruptedTest, AJournalOfOtherSizesIsNotTruncated) {
   record(clp_, 11, 5);
-  record(readLoop("cstr_case1"), 12, 3);
+  record(readLoop("cstr_tracking"), 12, 3);
   EXPECT_EQ(rows("out/interrupted/11"), 5U);
   EXPECT_EQ(journalLabel(path("out/journal.bin"))->run_id, 12U);
 }

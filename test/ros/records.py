@@ -36,9 +36,6 @@ class Launch:
         self.log.seek(0)
         return re.sub(r"\x1b\[[0-9;]*m", "", self.log.read())
 
-    def wait_for(self, words):
-        ring.wait_until(lambda: words in self.text(), words)
-
     def pid(self, node):
         return ring.pid(node, rosgraph.Master("/records", self.uri))
 
@@ -87,8 +84,8 @@ class Records(unittest.TestCase):
 
     def test_a_recorder_that_dies_ends_the_launch_with_the_files_of_what_it_had(self):
         launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=15", "speedup:=14400", "out:=" + self.out)
-        launch.wait_for("starts")
         journal = os.path.join(self.out, "journal.bin")
+        ring.wait_until(lambda: "of asp_case1_clp starts" in launch.text(), "the plant to start")
         begun = os.path.getsize(journal)
         ring.wait_until(lambda: os.path.getsize(journal) > begun, "samples on disk")
         os.kill(launch.pid("/loop_recorder"), signal.SIGKILL)

@@ -36,7 +36,8 @@ class RecordStore {
   const std::string& remark() const { return remark_; }
   std::uint64_t lost() const { return journal_.lost(); }
   std::uint64_t samples() const { return samples_; }
-  double beganAt() const { return journal_.beganAt(); }  ///< see RecordJournal
+  std::uint64_t unwritten() const { return journal_.unwritten(); }  ///< that wait for the disk
+  double beganAt() const { return journal_.beganAt(); }             ///< see RecordJournal
 
  private:
   std::uint32_t tryOpen();
