@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fuzzy/known_stretches.hpp"
+
 namespace fpc {
 namespace {
 
@@ -66,20 +68,6 @@ void findRate(AutoData& p) {
   p.noise = m > 0.0 ? std::clamp(std::sqrt(bend / m / 20.0), 1e-3, 0.3) : 0.01;
 }
 
-/// Rows without gaps in which nothing at all is known.
-std::vector<Stretch> stretchesOf(const DataSet& data) {
-  std::vector<Stretch> found;
-  Index first = -1;
-  for (Index k = 0; k <= data.rows(); ++k) {
-    const bool known = k < data.rows() && data.values.row(k).array().isFinite().any();
-    if (known && first < 0) first = k;
-    if (known || first < 0) continue;
-    if (k - first >= kShortestStretch) found.push_back({first, k});
-    first = -1;
-  }
-  return found;
-}
-
 /// `count` windows of `length` rows, equally spaced over rows 0..rows.
 std::vector<Stretch> spread(Index rows, Index count, Index length) {
   std::vector<Stretch> windows;
@@ -120,7 +108,7 @@ AutoData prepareAuto(const DataSet& data, int output, int blocks, Index most, In
   findLimits(p);
   findRate(p);
   const Index length = std::max<Index>(1, (std::min(rows, most) + blocks - 1) / blocks);
-  const auto known = stretchesOf(data);
+  const auto known = knownStretches(data, kShortestStretch);
   p.windows = cut(spread(rows, blocks, rows <= most ? rows : length), known);
   p.all =
       rows <= most_last ? known : cut(spread(rows, 2 * blocks, most_last / (2 * blocks)), known);

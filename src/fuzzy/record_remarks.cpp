@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fuzzy/feedback_test.hpp"
+#include "fuzzy/feedback_share.hpp"
 
 namespace fpc {
 namespace {

@@ -132,8 +132,14 @@ struct EvaluateArguments {
   bool json{false};
 };
 
+struct RecoverArguments {
+  std::string folder;
+  bool no_plot{false};
+};
+
 struct ReplayArguments {
   std::string bag;
+  int run{0};                    ///< from 1; 0: the only one
   std::string loop;              ///< empty: the one in the bag
   std::vector<std::string> set;  ///< "path=value"
   bool json{false};
@@ -162,6 +168,7 @@ int tune(const TuneArguments& arguments);
 int study(const StudyArguments& arguments);
 int table(const std::vector<std::string>& folders);
 int replay(const ReplayArguments& arguments);
+int recover(const RecoverArguments& arguments);
 /// Becomes another program: returns only by throwing.
 int watch(const std::vector<std::string>& words);
 

@@ -223,6 +223,8 @@ int main(int argc, char** argv) {
   fpc::tool::addStudy(app, study, chosen);
   fpc::tool::ReplayArguments replay;
   fpc::tool::addReplay(app, replay, chosen);
+  fpc::tool::RecoverArguments recover;
+  fpc::tool::addRecover(app, recover, chosen);
   std::vector<std::string> watch_words;
   fpc::tool::addWatch(app, watch_words, chosen);
   fpc::tool::refuseEmptyNames(app);

@@ -1,4 +1,4 @@
-#include "fuzzy/feedback_test.hpp"
+#include "fuzzy/feedback_share.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // Records of a closed loop are told from those of an open one.
-#include "fuzzy/feedback_test.hpp"
+#include "fuzzy/feedback_share.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "base/random.hpp"
 
 namespace fpc {
-namespace fuzzy_feedback_test {
+namespace fuzzy_feedback_share_test {
 
 using Eigen::Index;
 
@@ -96,5 +96,5 @@ TEST(Feedback, OfTooShortOrEmptyRecordsIsNotJudged) {
   EXPECT_EQ(feedbackShare(Vector(), Vector()), 0.0);
 }
 
-}  // namespace fuzzy_feedback_test
+}  // namespace fuzzy_feedback_share_test
 }  // namespace fpc
