@@ -259,11 +259,14 @@ class OutputSearch {
 
   void keep(ModelKind kind, const std::string& text, Index parameters,
             const std::vector<double>& blocks, bool picked) {
-    const auto n = static_cast<double>(blocks.size());
-    double mean = 0.0, square = 0.0;
-    for (const double b : blocks) mean += b / n;
-    for (const double b : blocks) square += (b - mean) * (b - mean);
-    result_.trials.push_back({name(), kind, text, parameters, mean, std::sqrt(square / n), picked});
+    double n = 0.0, mean = 0.0, square = 0.0;
+    for (const double b : blocks)
+      if (std::isfinite(b)) n += 1.0, mean += b;
+    mean /= std::max(n, 1.0);
+    for (const double b : blocks)
+      if (std::isfinite(b)) square += (b - mean) * (b - mean);
+    result_.trials.push_back(
+        {name(), kind, text, parameters, mean, std::sqrt(square / std::max(n, 1.0)), picked});
   }
 
   AutoData data_;

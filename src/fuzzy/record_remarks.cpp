@@ -174,11 +174,11 @@ void addFeedback(const DataSet& data, std::vector<std::string>& remarks) {
     for (Index i = 0; i < n_y; ++i) {
       const double share = feedbackShare(u, data.values.col(i));
       if (share > 0.0)
-        remarks.push_back(data.inputs[j].name + " answers to " +
-                          data.outputs[static_cast<std::size_t>(i)].name + ", which explains " +
-                          shortNumber(100.0 * share) +
-                          " % of its moves: closed-loop data, whose gains may be biased (or an "
-                          "input that acts within the sample)");
+        remarks.push_back(
+            data.inputs[j].name + " answers to " + data.outputs[static_cast<std::size_t>(i)].name +
+            ", which explains " + shortNumber(100.0 * share) +
+            " % of what its own past does not: closed-loop data, whose gains may be biased (or an "
+            "input that acts within the sample)");
     }
   }
 }

@@ -136,7 +136,7 @@ TEST(AutoIdentify, OffersTheBestLinearModelOfItsTable) {
     if (t.kind == ModelKind::kLinear && first == nullptr) first = &t;
   ASSERT_NE(first, nullptr);
   EXPECT_TRUE(first->chosen) << first->structure;
-  EXPECT_EQ(first->free_run, found.outputs[0].linear.mean);
+  EXPECT_NEAR(first->free_run, found.outputs[0].linear.mean, 1e-12);
 }
 
 TEST(AutoIdentify, SameDataSameModelWhateverTheThreads) {
