@@ -12,14 +12,19 @@ import subprocess
 import sys
 import tempfile
 
+import yaml
+
 TOP = pathlib.Path(__file__).resolve().parent.parent
 TOOL = TOP / "scripts" / "fmbpc"
 LIMIT = 3.0
+LOOPS = TOP / "config" / "loop" / "activated_sludge"
+# The papers' PI of a case with the gains, preview and feed-forward that were tuned on case 1: the honest baseline of the family.
+TUNED = {"controller.loops": yaml.safe_load((LOOPS / "asp_case1_pi_x_best.yaml").read_text())["controller"]["loops"]}
 # family: baseline, terms of the cost, keys over all loops, loops
 FAMILIES = {
     "activated sludge, case 1": ("asp_case1_pi_x_best", ["x"], {}, [
         "asp_best", "asp_best_estimated", "asp_case1_linear", "asp_case1_nmpc"]),
-    "activated sludge, case 1, laws of the paper": ("asp_case1_pi_x", ["x"], {}, [
+    "activated sludge, case 1, laws of the paper": ("asp_case1_pi_x_best", ["x"], {}, [
         "asp_case1", "asp_case1_clp", "asp_case1_general", "asp_case1_own"]),
     "activated sludge, case 2": ("asp_case2_pi_x", ["x"], {}, ["asp_case2"]),
     "activated sludge, case 3": ("asp_case3_pi_x", ["x"], {}, ["asp_case3"]),
@@ -49,9 +54,16 @@ FAMILIES = {
 }
 
 
+def of_paper(baseline):
+    return baseline.startswith("asp_") and baseline.endswith("_pi_x")
+
+
 def study(family, seeds, percent):
     baseline, outputs, keys, loops = FAMILIES[family]
-    text = {"title": family, "loops": loops + [baseline], "against": baseline, "set": keys,
+    rows = [{"loop": loop, "name": loop} for loop in [*loops, baseline]]
+    if of_paper(baseline):
+        rows[-1]["set"] = TUNED
+    text = {"title": family, "loops": rows, "against": baseline, "set": keys,
             "fitness": {"terms": [{"index": "ise", "output": output} for output in outputs]}}
     if percent:
         text.update(seeds=seeds, noise={"percent_of_span": percent})
@@ -75,7 +87,8 @@ def rows(family, seeds, percent):
     for loop in FAMILIES[family][3]:
         cost, other = noisy[loop]["median"], noisy[baseline]["median"]
         ratio = cost / other if cost is not None and other else float("inf")
-        yield [loop, baseline, number(quiet[loop]["median"]), number(cost), number(other), "%.2f" % ratio,
+        other_loop = baseline + ", tuned" if of_paper(baseline) else baseline
+        yield [loop, other_loop, number(quiet[loop]["median"]), number(cost), number(other), "%.2f" % ratio,
                "yes" if ratio <= LIMIT else "no"], ratio
 
 
@@ -84,7 +97,9 @@ def page(families, seeds, percent):
              "`scripts/noise_survey.py --write` makes this page: every shipped predictive loop beside the baseline of its family,",
              "white noise of %g %% of the span of the setpoints on each output, seeds %s, ISE of the noise-free outputs, medians."
              % (percent, seeds),
-             "The aim is a ratio of at most %g; a loop file of which it is not reached says why." % LIMIT, "",
+             "The aim is a ratio of at most %g; a loop file of which it is not reached says why. `_pi_x, tuned` is the paper's PI of that" % LIMIT,
+             "case with the numbers of `asp_case1_pi_x_best`; the papers' laws (`asp_case*`, `asp_clp_*`) keep the papers' settings, which",
+             "aim along a slow reference: that, more than the noise, puts them beyond the aim (compare the columns without and with noise).", "",
              "| loop | baseline | without noise | with noise | baseline with noise | ratio | within |",
              "|---|---|---|---|---|---|---|"]
     above = []
@@ -94,7 +109,9 @@ def page(families, seeds, percent):
             lines.append("| " + " | ".join(row) + " |")
             if ratio > LIMIT:
                 above.append(row[0])
-    lines += ["", "Beyond it: %s." % (", ".join("`%s`" % name for name in above) or "none")]
+    lines += ["", "Beyond it: %s." % (", ".join("`%s`" % name for name in above) or "none"), "",
+              "The nonlinear MPC of the reactor that is measured late (`cstr_*_nmpc`) takes its disturbance from raw differences, loses to FMBPC",
+              "without noise on two of three runs and is of no use with it: that plant has no upper baseline under noise."]
     return "\n".join(lines) + "\n"
 
 

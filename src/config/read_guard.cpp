@@ -8,7 +8,10 @@ namespace fpc {
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("guard");
   GuardParams& guard = loop.guard;
-  if (!root.has("guard")) guard.lock_samples = 0;
+  if (!root.has("guard")) {
+    guard.lock_samples = 0;
+    guard.swing_move = 0.0;
+  }
   section.boolean("enabled", guard.enabled);
   section.number("trust_low", guard.trust_low, {0.0, 1.0});
   section.number("trust_high", guard.trust_high, {0.0, 1.0});
@@ -18,6 +21,8 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.number("lock_error", guard.lock_error, kFinitePositive);
   section.number("lock_step", guard.lock_step, {0.0, 1.0, true});
   section.integer("lock_release", guard.lock_release, 1);
+  section.number("swing_move", guard.swing_move, {0.0, 1.0});
+  section.integer("swing_release", guard.swing_release, 1);
   guard.lock_outputs = loop.controller->signalUse(controllerContext(loop)).followed;
   std::vector<std::string> outputs;
   section.subset("lock_outputs", outputs, names.outputs);

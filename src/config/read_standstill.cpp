@@ -27,6 +27,39 @@ void readWatched(YamlSection& section, const std::vector<std::string>& names, bo
   }
 }
 
+/// Variance of the noise of what the ring sees of an instrument: less in a mean over the sample.
+double varianceOf(const LoopFile& loop, const std::string& name) {
+  const InstrumentParams& instruments = loop.simulation.instruments;
+  const auto found = instruments.sensors.find(name);
+  if (found == instruments.sensors.end()) return 0.0;
+  const SensorParams& sensor = found->second;
+  const double between_s = std::max(instruments.step_s, sensor.interval_s);
+  const double share = std::min(1.0, between_s / loop.plant_info.sample_time_s);
+  return sensor.noise_std * sensor.noise_std * (sensor.average ? share : 1.0);
+}
+
+/// Noise of all measured signals, outputs first, as the loop file has it elsewhere.
+Vector declaredNoise(const LoopFile& loop, const std::vector<std::string>& measured) {
+  Vector std = Vector::Zero(static_cast<Index>(measured.size()));
+  const Vector& over = loop.simulation.noise_std;
+  for (Index i = 0; i < std.size(); ++i) {
+    const double more = i < over.size() ? over[i] : 0.0;
+    std[i] = std::sqrt(varianceOf(loop, measured[static_cast<std::size_t>(i)]) + more * more);
+  }
+  return std;
+}
+
+void readNoiseOf(YamlSection& section, const LoopFile& loop, const Names& names,
+                 std::vector<WatchedSignal>& signals) {
+  std::vector<std::string> measured = names.outputs;
+  measured.insert(measured.end(), names.disturbances.begin(), names.disturbances.end());
+  Vector std = declaredNoise(loop, measured);
+  section.byName("noise_std", std, measured, kFiniteNotNegative);
+  const auto n_y = static_cast<Index>(names.outputs.size());
+  for (WatchedSignal& signal : signals)
+    signal.noise_std = std[signal.is_output ? signal.place : n_y + signal.place];
+}
+
 /// A term of the fallback: what is measured adds to an input.
 AffineTerm readTerm(YamlSection& item, const Names& names) {
   AffineTerm term;
@@ -63,13 +96,18 @@ void readStandstill(YamlSection& root, LoopFile& loop) {
   double window_h = 6.0;
   section.boolean("enabled", enabled);
   section.number("window_h", window_h, kFinitePositive);
+  double noise_window_h = 4.0 * window_h;
+  section.number("noise_window_h", noise_window_h, kFinitePositive);
   section.number("others_change", params.others_change, kFinitePositive);
   params.window_samples =
       std::max(2, static_cast<int>(std::lround(window_h * 3600.0 / plant.sample_time_s)));
+  params.noise_window_samples =
+      std::max(8, static_cast<int>(std::lround(noise_window_h * 3600.0 / plant.sample_time_s)));
   YamlSection signals = section.section("signals");
   readWatched(signals, names.outputs, true, params.signals);
   readWatched(signals, names.disturbances, false, params.signals);
   signals.finish();
+  readNoiseOf(section, loop, names, params.signals);
   params.usual = loop.disturbance_nominal;
   section.byName("usual", params.usual, names.disturbances, kFinite);
   params.fallback = loop.simulation.actuator.initial;

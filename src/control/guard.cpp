@@ -19,6 +19,7 @@ constexpr const char* kOutside = "outside the model: moves shrink";
 constexpr const char* kFallback = "outside the model: the fallback acts";
 constexpr const char* kOutsideOnly = "outside the model";
 constexpr const char* kOutsideAhead = "what the law expects leaves the model";
+constexpr const char* kSwings = "swings from end to end: moves shrink";
 constexpr const char* kLocked = "locked up: the input's bound is drawn in";
 
 /// Outputs, an input and disturbances, as models have them.
@@ -30,6 +31,14 @@ void place(const Measurement& now, VectorRef input, Vector& point) {
 }
 
 constexpr double kHalf = 0.5;  // of an input's range
+
+bool knowsInput(const TsModel& model, int input) {
+  return std::any_of(model.submodels.begin(), model.submodels.end(), [&](const OutputModel& m) {
+    return std::any_of(m.regressors.begin(), m.regressors.end(), [&](const Regressor& r) {
+      return r.kind == SignalKind::kInput && r.index == input;
+    });
+  });
+}
 
 bool isLaws(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kClipped;
@@ -46,6 +55,8 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
   require(lock_samples >= 0, "guard.lock_samples", "an integer >= 0");
   require(lock_error > 0.0 && std::isfinite(lock_error), "guard.lock_error", "a number > 0");
   require(lock_step > 0.0 && lock_step <= 1.0, "guard.lock_step", "a number > 0 and <= 1");
+  require(swing_move >= 0.0 && swing_move <= 1.0, "guard.swing_move", "a number from 0 to 1");
+  require(swing_release >= 1, "guard.swing_release", "an integer >= 1");
   require(lock_release >= 1, "guard.lock_release", "an integer >= 1");
   for (const Index i : lock_outputs)
     require(i >= 0 && i < n_y, "guard.lock_outputs", "outputs of the plant");
@@ -65,6 +76,8 @@ GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardPa
   limits_.validate(n_u);
   if (params_.pi) pi_ = std::make_unique<PiController>(*params_.pi, limits_, plant_);
   for (Index i = 0; i < n_u; ++i) locks_.emplace_back(params_, limits_.lower[i], limits_.upper[i]);
+  moved_.assign(locks_.size(), true);
+  swings_.assign(locks_.size(), SwingWatch(params_.swing_move, params_.swing_release));
   if (params_.lock_outputs.empty())
     for (Index i = 0; i < n_y; ++i) params_.lock_outputs.push_back(i);
   point_ = Vector::Zero(n_y + n_u + countOf(plant_.disturbances));
@@ -77,12 +90,15 @@ void GuardedController::setModel(const TsModel& model) {
   inside_->setModel(model);
   model_ = matchToPlant(model, plant_);
   known_ = knowsDomain(model_);
+  for (std::size_t i = 0; i < moved_.size(); ++i)
+    moved_[i] = knowsInput(model_, static_cast<int>(i));
 }
 
 void GuardedController::reset(const Measurement& start) {
   inside_->reset(start);
   if (pi_) pi_->reset(start);
   for (LockUpWatch& lock : locks_) lock.reset();
+  for (SwingWatch& swing : swings_) swing.reset();
   fallback_ = false;
   above_ = 0;
   ahead_.reset();
@@ -129,6 +145,7 @@ void GuardedController::watchLocks(const Measurement& now, const SetpointSource&
   const double error = worstError(now, setpoint);
   view_.locked = false;
   for (std::size_t i = 0; i < locks_.size(); ++i) {
+    if (!moved_[i]) continue;
     const auto k = static_cast<Index>(i);
     view_.locked = locks_[i].observe(now.input_applied[k], error) || view_.locked;
     shrunk_.lower[k] = locks_[i].lower();
@@ -151,6 +168,19 @@ void GuardedController::shrink(double trust) {
   }
 }
 
+/// What is thrown from end to end moves less.
+void GuardedController::calm(const Measurement& now) {
+  for (Index i = 0; i < shrunk_.move.size(); ++i) {
+    const double range = limits_.upper[i] - limits_.lower[i];
+    if (!std::isfinite(range) || range <= 0.0) continue;
+    SwingWatch& swing = swings_[static_cast<std::size_t>(i)];
+    const double share = swing.allow((proposed_[i] - now.input_applied[i]) / range);
+    if (!swing.swings()) continue;
+    shrunk_.move[i] = std::min(shrunk_.move[i], share * range);
+    view_.swinging = true;
+  }
+}
+
 /// Limits that are drawn in are reached by allowed moves only.
 void GuardedController::act(const Measurement& now, const SetpointSource& setpoint,
                             ControllerOutput& output) {
@@ -162,6 +192,7 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   shrink(fallback_ || !known_ ? 1.0 : processTrustOf(model_, point_));
   bool drawn = false;
   proposed_ = output.input;
+  calm(now);
   for (Index i = 0; i < output.input.size(); ++i) {
     const double before = now.input_applied[i];
     const double proposed = proposed_[i];
@@ -184,7 +215,7 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   if (!view_.acting) return;
   output.source = ActionSource::kFallback;
   output.predictive = false;
-  output.remark = fallback_ ? kFallback : drawn ? kLocked : kOutside;
+  output.remark = fallback_ ? kFallback : drawn ? kLocked : view_.swinging ? kSwings : kOutside;
 }
 
 void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,

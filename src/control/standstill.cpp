@@ -11,6 +11,7 @@ using Eigen::Index;
 
 void StandstillParams::validate(Index n_y, Index n_u, Index n_d) const {
   require(window_samples >= 2, "standstill.window_h", "at least two samples");
+  require(noise_window_samples >= 8, "standstill.noise_window_h", "at least eight samples");
   require(others_change > 0.0 && std::isfinite(others_change), "standstill.others_change",
           "a number > 0");
   require(usual.size() == n_d && usual.allFinite(), "standstill.usual",
@@ -22,24 +23,19 @@ void StandstillParams::validate(Index n_y, Index n_u, Index n_d) const {
             "standstill.signals", "measured signals");
     require(signal.least_change > 0.0 && std::isfinite(signal.least_change),
             "standstill.signals." + signal.name, "a number > 0");
+    require(signal.noise_std >= 0.0 && std::isfinite(signal.noise_std),
+            "standstill.noise_std." + signal.name, "a number >= 0");
   }
 }
 
-void SignalWindow::add(const Measurement& now) {
-  const Index n_y = now.outputs.size(), n_d = now.disturbances.size();
-  values_.col(next_).head(n_y) = now.outputs;
-  values_.col(next_).segment(n_y, n_d) = now.disturbances;
-  values_.col(next_).tail(now.input_applied.size()) = now.input_applied;
-  next_ = (next_ + 1) % values_.cols();
-  known_ = std::min(known_ + 1, values_.cols());
-}
+namespace {
 
-double SignalWindow::span(Index signal) const {
-  const auto row = values_.row(signal).head(known_);
-  return row.maxCoeff() - row.minCoeff();
-}
+constexpr double kFarFromNoise = 5.0;  // standard deviations: no noise in years of samples
 
-double SignalWindow::mean(Index signal) const { return values_.row(signal).head(known_).mean(); }
+/// Spread of n samples of noise is hardly ever above this part of its variance.
+double mostVariance(Index n) { return 1.0 + 3.0 * std::sqrt(2.0 / static_cast<double>(n - 1)); }
+
+}  // namespace
 
 StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillParams params,
                                  InputLimits limits, PlantInfo plant)
@@ -48,12 +44,14 @@ StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillP
       limits_(std::move(limits)),
       n_y_(static_cast<Index>(plant.outputs.size())),
       still_(params_.signals.size(), false),
-      stood_at_(params_.signals.size(), 0.0) {
+      stood_at_(params_.signals.size(), 0.0),
+      allowed_(params_.signals.size(), 0.0) {
   const auto n_u = static_cast<Index>(plant.inputs.size());
   const auto n_d = static_cast<Index>(plant.disturbances.size());
   params_.validate(n_y_, n_u, n_d);
   limits_.validate(n_u);
-  window_ = SignalWindow(n_y_ + n_d + n_u, params_.window_samples);
+  window_ = SignalWindow(n_y_ + n_d + n_u,
+                         std::max(params_.window_samples, params_.noise_window_samples));
   plan_ = AffineLaw(params_.fallback_plan, n_u, plant.sample_time_s / 3600.0);
   for (const WatchedSignal& signal : params_.signals)
     remarks_.push_back(signal.name + (signal.is_output ? " stands still: the fallback acts"
@@ -77,31 +75,63 @@ double StandstillWatch::valueOf(const Measurement& now, const WatchedSignal& sig
 }
 
 /// Whether something else that drives the plant, and is not known to stand still, has moved.
-bool StandstillWatch::othersMove(const WatchedSignal& signal) const {
+template <class Moves>
+bool StandstillWatch::othersMove(const WatchedSignal& signal, Moves moves) const {
   const Index last = n_y_ + seen_.disturbances.size();
   const Index end = signal.is_output ? last + seen_.input_applied.size() : last;
   for (Index other = n_y_; other < end; ++other) {
     bool trusted = other != rowOf(signal);
     for (std::size_t i = 0; i < still_.size(); ++i)
       trusted = trusted && !(still_[i] && rowOf(params_.signals[i]) == other);
-    if (trusted && window_.span(other) > params_.others_change * std::abs(window_.mean(other)))
-      return true;
+    if (trusted && moves(other)) return true;
   }
   return false;
 }
 
+bool StandstillWatch::showsTheSame(const WatchedSignal& signal) const {
+  const Index n = params_.window_samples;
+  return window_.holds(n) && window_.span(rowOf(signal), n) < signal.least_change &&
+         othersMove(signal, [&](Index other) {
+           return window_.span(other, n) > params_.others_change * std::abs(window_.mean(other, n));
+         });
+}
+
+/// What a change is compared with: an input's range, since its mean may be near zero; otherwise, or
+/// without one, the mean.
+double StandstillWatch::scaleOf(Index row, Index samples) const {
+  const Index input = row - n_y_ - seen_.disturbances.size();
+  const double range = input < 0 ? kInfinity : limits_.upper[input] - limits_.lower[input];
+  return std::isfinite(range) ? range : std::abs(window_.mean(row, samples));
+}
+
+bool StandstillWatch::showsOnlyNoise(const WatchedSignal& signal) const {
+  const Index n = params_.noise_window_samples;
+  const double noise = signal.noise_std * signal.noise_std;
+  return noise > 0.0 && window_.holds(n) &&
+         window_.variance(rowOf(signal), n) < mostVariance(n) * noise &&
+         othersMove(signal, [&](Index other) {
+           return window_.meansMove(other, n, params_.others_change * scaleOf(other, n));
+         });
+}
+
+void StandstillWatch::judge(std::size_t i, double value) {
+  const WatchedSignal& signal = params_.signals[i];
+  if (still_[i]) {
+    still_[i] = std::abs(value - stood_at_[i]) < allowed_[i];
+  } else if (showsOnlyNoise(signal)) {
+    still_[i] = true;
+    stood_at_[i] = window_.mean(rowOf(signal), params_.noise_window_samples);
+    allowed_[i] = std::max(signal.least_change, kFarFromNoise * signal.noise_std);
+  } else if (showsTheSame(signal)) {
+    still_[i] = true;
+    stood_at_[i] = value;
+    allowed_[i] = signal.least_change;
+  }
+}
+
 void StandstillWatch::watch(const Measurement& now) {
   window_.add(now);
-  for (std::size_t i = 0; i < still_.size(); ++i) {
-    const WatchedSignal& signal = params_.signals[i];
-    if (still_[i]) {
-      still_[i] = std::abs(valueOf(now, signal) - stood_at_[i]) < signal.least_change;
-    } else if (window_.full() && window_.span(rowOf(signal)) < signal.least_change &&
-               othersMove(signal)) {
-      still_[i] = true;
-      stood_at_[i] = valueOf(now, signal);
-    }
-  }
+  for (std::size_t i = 0; i < still_.size(); ++i) judge(i, valueOf(now, params_.signals[i]));
 }
 
 void StandstillWatch::fallBack(const Measurement& now, const SetpointSource& setpoint,

@@ -2,15 +2,15 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/report.hpp"
 
 namespace fpc {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 /// An index that a run does not have (no setpoint was followed) is null.
 double numberOf(const Json& y, const char* key) {

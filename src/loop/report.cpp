@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/run_summary.hpp"
 #include "fmbpc/loop/trajectory.hpp"
@@ -12,7 +12,7 @@
 namespace fpc {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 /// As much of a layout as a trajectory needs.
 RecordLayout layoutOf(const RunRecord& record) {

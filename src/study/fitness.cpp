@@ -81,6 +81,12 @@ const std::map<std::string, OfEffluent>& effluentTable() {
   return table;
 }
 
+bool hasSetpoint(const LoopFile& loop, std::size_t output) {
+  const auto& without = loop.report.without_setpoint;
+  return std::find(without.begin(), without.end(), static_cast<Eigen::Index>(output)) ==
+         without.end();
+}
+
 /// All steps of output i.
 std::vector<StepIndices> stepsOf(const FitnessParams& fitness, const LoopFile& loop,
                                  const RunRecord& record, Eigen::Index i) {
@@ -100,16 +106,19 @@ double sumOf(const FitnessParams& fitness, const FitnessTerm& term, const LoopFi
   const auto meant = [&](const std::string& name) {
     return term.signal.empty() || term.signal == name;
   };
+  const auto judged = [&](std::size_t i) {
+    return hasSetpoint(loop, i) && meant(summary.output_names[i]);
+  };
   double sum = 0.0;
   std::size_t steps = 0;
   switch (kindOf(term.index)) {
     case IndexOf::kOutput:
       for (std::size_t i = 0; i < summary.outputs.size(); ++i)
-        if (meant(summary.output_names[i])) sum += summary.outputs[i].*outputTable().at(term.index);
+        if (judged(i)) sum += summary.outputs[i].*outputTable().at(term.index);
       return sum;
     case IndexOf::kStep:
       for (std::size_t i = 0; i < summary.output_names.size(); ++i) {
-        if (!meant(summary.output_names[i])) continue;
+        if (!judged(i)) continue;
         for (const auto& step : stepsOf(fitness, loop, record, static_cast<Eigen::Index>(i))) {
           sum += stepTable().at(term.index)(step);
           ++steps;
@@ -131,11 +140,13 @@ double sumOf(const FitnessParams& fitness, const FitnessTerm& term, const LoopFi
   return runTable().at(term.index)(summary);
 }
 
+/// What a term may name; of outputs those that are asked something of.
 std::vector<std::string> signalsOf(const FitnessTerm& term, const LoopFile& loop) {
   std::vector<std::string> names;
   const IndexOf kind = kindOf(term.index);
   if (kind == IndexOf::kOutput || kind == IndexOf::kStep)
-    for (const auto& output : loop.plant_info.outputs) names.push_back(output.name);
+    for (std::size_t i = 0; i < loop.plant_info.outputs.size(); ++i)
+      if (hasSetpoint(loop, i)) names.push_back(loop.plant_info.outputs[i].name);
   if (kind == IndexOf::kInput)
     for (const auto& input : loop.plant_info.inputs) names.push_back(input.name);
   if (kind == IndexOf::kConsumption)

@@ -150,6 +150,7 @@ std::uint64_t lockedSamples(const LoopFile& loop, const RunRecord& record, int l
 }
 
 RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord record) {
+  const std::uint64_t outside_model = samplesOutsideModel(loop, record);  // as the law saw it
   if (study.noise_free) record = withoutNoise(std::move(record));
   const Summary summary = summarize(loop, record, 0.0);
   RunJudgement judged;
@@ -168,7 +169,7 @@ RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord re
   note(RunFailure::kViolated) =
       summary.input_violations + summary.move_violations + summary.output_violations;
   note(RunFailure::kHeld) = summary.sources[static_cast<std::size_t>(ActionSource::kHeld)];
-  note(RunFailure::kOutOfModel) = summary.outside_model;
+  note(RunFailure::kOutOfModel) = outside_model;
   return judged;
 }
 

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "study/replace_file.hpp"
 
 namespace fpc {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 Json toJson(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
@@ -17,7 +17,7 @@
 namespace fpc {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 /// Where a scenario's seed goes: the disturbance pattern and the noise, if the loop has them.
 Overrides seedOverrides(const std::string& loop, const TuningScenario& scenario,

@@ -1,7 +1,7 @@
 // fmbpc controllers: what a loop file may name as controller.type.
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/control/registry.hpp"
 #include "tool/commands.hpp"
@@ -9,7 +9,7 @@
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 std::vector<std::string> settingsOf(const ControllerType& type) {
   std::vector<std::string> keys;

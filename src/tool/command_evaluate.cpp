@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
@@ -16,7 +16,7 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 /// A recorded run, or one that is made now.
 CsvTable trajectory(const std::string& run, const Overrides& overrides) {

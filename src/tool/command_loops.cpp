@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <exception>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
@@ -15,7 +15,7 @@
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 struct Entry {
   std::string name, title, plant, controller;

@@ -1,8 +1,8 @@
 // fmbpc model FILE: what a model file holds and where it should not be trusted.
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/loop_file.hpp"
@@ -13,7 +13,7 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 void print(const TsModel& model, const std::vector<RuleRemark>& remarks) {
   std::cout << model.name << ": " << model.source << "\nsample time " << model.sample_time_s

@@ -2,15 +2,15 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/plant/plant.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 using Groups = std::vector<std::pair<std::string, const std::vector<Quantity>*>>;
 
 Groups groupsOf(const PlantDescription& plant) {

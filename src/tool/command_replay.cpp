@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "loop/bag_reader.hpp"
@@ -12,7 +12,7 @@
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 LoopFile loopOf(const ReplayArguments& a) {
   Overrides overrides;
@@ -61,7 +61,7 @@ void print(const ReplayResult& result) {
 int replay(const ReplayArguments& arguments) {
   require(std::filesystem::is_regular_file(arguments.bag), arguments.bag, "an existing bag");
   const LoopFile loop = loopOf(arguments);
-  const ReplayResult result = replay(loop, readBagRun(arguments.bag, loop));
+  const ReplayResult result = replay(loop, readBagRun(arguments.bag, loop, arguments.run));
   if (arguments.json)
     std::cout << jsonOf(arguments, result).dump(2) << "\n";
   else

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/plot.hpp"
 #include "tool/commands.hpp"
@@ -19,7 +20,7 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 /// `word` in `text` with neither letter, digit nor underscore beside it.
 bool containsWord(const std::string& text, const std::string& word) {

@@ -2,19 +2,19 @@
 #pragma once
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
 
 namespace fpc::tool {
 
-inline nlohmann::ordered_json finiteJson(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+inline OrderedJson finiteJson(double value) {
+  return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
 }
 
-inline nlohmann::ordered_json figuresJson(const FitFigures& figures) {
+inline OrderedJson figuresJson(const FitFigures& figures) {
   const auto known = [&](double value) {
-    return figures.samples > 0 ? finiteJson(value) : nlohmann::ordered_json(nullptr);
+    return figures.samples > 0 ? finiteJson(value) : OrderedJson(nullptr);
   };
   return {{"rmse", known(figures.rmse)},
           {"mse", known(figures.mse)},

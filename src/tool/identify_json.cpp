@@ -1,13 +1,13 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "tool/figures_json.hpp"
 #include "tool/identify_report.hpp"
 
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 Json finite(double value) { return finiteJson(value); }
 Json toJson(const FitFigures& figures) { return figuresJson(figures); }

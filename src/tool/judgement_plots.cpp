@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/csv.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/plot.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Index;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 std::vector<double> listOf(const Vector& values) {
   return {values.data(), values.data() + values.size()};

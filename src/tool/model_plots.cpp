@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/plot.hpp"
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Index;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 constexpr int kPoints = 301;
 constexpr double kMargin = 0.05;  // of the data's range, on both sides

@@ -3,8 +3,7 @@
 
 #include <string>
 
-#include <nlohmann/json.hpp>
-
+#include "base/ordered_json.hpp"
 #include "tool/identify_report.hpp"
 
 namespace fpc::tool {
@@ -16,6 +15,6 @@ namespace fpc::tool {
 void writeModelPlots(const IdentifyReport& report, const std::string& folder);
 
 /// Per output, per antecedent: the degrees of all rules over the range of the data.
-nlohmann::ordered_json membershipsJson(const TsModel& model);
+OrderedJson membershipsJson(const TsModel& model);
 
 }  // namespace fpc::tool

@@ -1,12 +1,13 @@
 // The report of `fmbpc stability` as a person reads it.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "base/ordered_json.hpp"
 
 namespace fpc::tool {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 std::string stabilityTable(const Json& report);
 

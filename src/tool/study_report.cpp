@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "tool/tune_report.hpp"
@@ -10,7 +11,7 @@
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 using Rows = std::vector<std::vector<std::string>>;
 
 constexpr std::size_t kNamedCases = 12;

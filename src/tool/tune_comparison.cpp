@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "tool/progress_bar.hpp"
@@ -11,7 +12,7 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 double numberOf(const Json& json) { return json.is_null() ? kInfinity : json.get<double>(); }
 

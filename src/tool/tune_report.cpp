@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
@@ -14,7 +15,7 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::vector<double> valuesAfter(const TunedLoop& tuned) {
@@ -95,6 +96,7 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned) {
             {"evaluations_per_s", numberOrNull(fresh / result.seconds)},
             {"failures", result.failures},
             {"trouble", result.trouble},
+            {"worse", !worsening(objective, tuned).empty()},
             {"parameters", parametersJson(objective, tuned)},
             {"remarks", remarksOf(objective, tuned)}};
   const TuningScore& before = objective.untouched();
@@ -114,7 +116,9 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned) {
 std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   const TuningFile& tuning = objective.tuning();
   const TuneResult& result = tuned.result;
+  const std::string worse = worsening(objective, tuned);
   std::ostringstream text;
+  if (!worse.empty()) text << worse << "\n\n";
   text << tuned.loop << ", " << wordOf(result.search.method) << ", seed " << result.search.seed
        << ": " << result.history.size() << " evaluations of " << tuning.scenarios.size()
        << (tuning.scenarios.size() == 1 ? " run" : " runs") << " in " << shortText(result.seconds)
@@ -140,8 +144,10 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
     addScores(scores, "held out: " + wordOf(tuning.fitness.across), tuning.held_out,
               objective.untouchedHeldOut(), *tuned.held_out);
   text << alignedTable(scores);
-  for (const auto& remark : remarksOf(objective, tuned)) text << "\n" << remark;
-  return text.str() + (remarksOf(objective, tuned).empty() ? "" : "\n");
+  std::string remarks;
+  for (const auto& remark : remarksOf(objective, tuned))
+    if (remark != worse) remarks += "\n" + remark;
+  return text.str() + remarks + (remarks.empty() ? "" : "\n");
 }
 
 std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tuned,

@@ -1,11 +1,11 @@
 // What `fmbpc tune` prints and writes.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/study/tune.hpp"
 
 namespace fpc::tool {
@@ -21,13 +21,17 @@ struct TunedLoop {
 std::string boundOf(const TuningParameter& parameter, double value);
 /// What the untouched loop has, if it lies outside the range.
 bool isOutside(const TuningParameter& parameter, double own);
+/// That the tuned loop costs more than the untouched one, on the held-out scenarios or, without
+/// them, on those that it was tuned on; in words, empty if it does not.
+std::string worsening(const TuningObjective& objective, const TunedLoop& tuned);
+inline constexpr int kTunedWorse = 3;  ///< exit code of such a tuning
 /// Parameters that stand at a bound or began outside their range, costs that got worse; a line
 /// each.
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned);
 
 /// Infinite numbers are null.
-nlohmann::ordered_json numberOrNull(double value);
-nlohmann::ordered_json toJson(const TuningObjective& objective, const TunedLoop& tuned);
+OrderedJson numberOrNull(double value);
+OrderedJson toJson(const TuningObjective& objective, const TunedLoop& tuned);
 std::string toTable(const TuningObjective& objective, const TunedLoop& tuned);
 /// LOOP_tuned.yaml: extends the loop. Returns the file's name.
 std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tuned,
@@ -42,8 +46,7 @@ struct CompareOptions {
   bool resume{false};
 };
 /// Every method with every seed. Prints nothing; state files in `out`. Stopped: `complete` false.
-nlohmann::ordered_json compareMethods(const TuningObjective& objective,
-                                      const CompareOptions& options);
-std::string comparisonTable(const nlohmann::ordered_json& comparison);
+OrderedJson compareMethods(const TuningObjective& objective, const CompareOptions& options);
+std::string comparisonTable(const OrderedJson& comparison);
 
 }  // namespace fpc::tool

@@ -250,6 +250,8 @@ std::map<std::string, std::string> structDefaults() {
           {"guard.lock_error", exactText(loop.guard.lock_error)},
           {"guard.lock_step", exactText(loop.guard.lock_step)},
           {"guard.lock_release", std::to_string(loop.guard.lock_release)},
+          {"guard.swing_move", exactText(loop.guard.swing_move)},
+          {"guard.swing_release", std::to_string(loop.guard.swing_release)},
           {"controller.loops[].anti_windup", wordOf(pi.anti_windup)},
           {"controller.loops[].start", wordOf(pi.start)},
           {"controller.seed", std::to_string(ExcitationParams{}.seed)},

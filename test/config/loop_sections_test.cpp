@@ -30,7 +30,7 @@ const OptionKey kOptions[] = {
     {"asp_case1_clp", "clp.action", {"eq26", "eq27"}},
     {"asp_case1_clp", "loop.pace", {"lockstep", "paced", "realtime"}},
     {"asp_case1_clp", "disturbance.source", {"constant", "pattern", "csv"}},
-    {"asp_case1_clp", "plant.integrator.method", {"bdf", "adams"}},
+    {"asp_case1_clp", "plant.integrator.method", {"bdf", "adams", "runge_kutta"}},
     {"asp_case1_clp", "sensors.x.class", {"none", "A", "B0", "B1", "C0", "C1", "D"}},
     {"asp_case1_clp", "plausibility.signals.x.substitute", {"hold", "last_good", "model"}},
     {"asp_case1_pi_x", "controller.loops.0.anti_windup", {"none", "clamp", "tracking"}},
@@ -72,8 +72,20 @@ TEST(LoopSections, WatchesAreHandedOn) {
   ASSERT_EQ(watched.standstill.signals.size(), 1U);
   EXPECT_EQ(watched.standstill.signals[0].name, "x");
   EXPECT_EQ(watched.standstill.signals[0].least_change, 3.0);
+  EXPECT_EQ(watched.standstill.signals[0].noise_std, 0.0);
+  EXPECT_EQ(watched.standstill.noise_window_samples, 4 * watched.standstill.window_samples);
   EXPECT_EQ(watched.standstill.fallback, watched.simulation.actuator.initial);
   EXPECT_EQ(watched.stuck.samples, 7);
+  const LoopFile noisy =
+      readLoop("asp_case1_pi_x", {{"standstill.signals.x", "3"},
+                                  {"noise.std.x", "4"},
+                                  {"sensors.x", "{noise_std: 6, average: true, interval_s: 180}"}});
+  EXPECT_NEAR(noisy.standstill.signals[0].noise_std, 5.0, 1e-12) << "a mean of 4 readings";
+  const LoopFile told = readLoop("asp_case1_pi_x", {{"standstill.signals.x", "3"},
+                                                    {"standstill.noise_window_h", "10"},
+                                                    {"standstill.noise_std.x", "2"}});
+  EXPECT_EQ(told.standstill.signals[0].noise_std, 2.0);
+  EXPECT_EQ(told.standstill.noise_window_samples, 50);
   const LoopFile off =
       readLoop("asp_case1_pi_x", {{"standstill.signals.x", "3"}, {"standstill.enabled", "false"}});
   EXPECT_TRUE(off.standstill.signals.empty());

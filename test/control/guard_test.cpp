@@ -137,6 +137,50 @@ TEST_F(Guard, ThePiTakesOverWithoutABumpAndTheLawComesBackWithoutOne) {
   EXPECT_EQ(out.source, ActionSource::kBase);
 }
 
+TEST_F(Guard, AnInputThatTheModelDoesNotKnowIsNeverLockedUp) {
+  GuardParams p = params();
+  p.lock_samples = 8;
+  for (const bool known : {true, false}) {
+    make(p);
+    TsModel model = boxModel();
+    if (!known)
+      for (OutputModel& sub : model.submodels)
+        for (auto* of : {&sub.regressors, &sub.antecedents})
+          for (Regressor& r : *of)
+            if (r.kind == SignalKind::kInput) r = {SignalKind::kOutput, 0, 3};
+    guard->setModel(model);
+    law->wish = limits().lower[0];
+    bool acted = false;
+    double applied = law->wish;
+    for (std::uint32_t k = 1; k < 200; ++k) {
+      applied = step(k, 900.0 - k, applied);  // further and further from its setpoint
+      acted = acted || applied != law->wish;
+    }
+    EXPECT_EQ(acted, known);
+  }
+}
+
+TEST_F(Guard, WhatSwingsFromEndToEndMovesLess) {
+  GuardParams p = params();
+  make(p);
+  double applied = 700.0, largest = 0.0;
+  for (std::uint32_t k = 1; k < 60; ++k) {
+    law->wish = k % 2 == 0 ? limits().lower[0] : limits().upper[0];
+    const double next = step(k, 1800.0, applied);
+    if (k > 20) {
+      largest = std::max(largest, std::abs(next - applied));
+      EXPECT_STREQ(out.remark, "swings from end to end: moves shrink");
+    }
+    applied = next;
+  }
+  EXPECT_LE(largest, 0.021 * (limits().upper[0] - limits().lower[0]));
+  EXPECT_GT(largest, 0.0);
+  p.swing_move = 0.0;
+  make(p);
+  law->wish = limits().upper[0];
+  EXPECT_EQ(step(1, 1800.0, 0.0), limits().upper[0]);
+}
+
 TEST_F(Guard, MistakesNameTheirKey) {
   const auto errorWith = [](const std::function<void(GuardParams&)>& change) -> std::string {
     GuardParams p = params();

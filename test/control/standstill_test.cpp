@@ -3,6 +3,7 @@
 #include "fmbpc/control/standstill.hpp"
 
 #include <cmath>
+#include <random>
 
 #include "control/session_fixture.hpp"
 
@@ -109,6 +110,70 @@ TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsItsPlan) {
   make(p);
   for (int k = 0; k < kWindow + 1; ++k) see(58.0, q_i(k));
   EXPECT_NEAR(output.input[0], 1600.0, 1e-9) << "800 + 5000 * 0.2 at the bound";
+}
+
+/// Watched with noise of these standard deviations, over 32 samples.
+StandstillParams noisy(StandstillParams p, double s, double q_i) {
+  p.signals[0].least_change = p.signals[1].least_change = 1e-6;
+  p.signals[0].noise_std = s;
+  p.signals[1].noise_std = q_i;
+  p.noise_window_samples = 32;
+  return p;
+}
+
+TEST_F(Standstill, NoiseDoesNotHideASensorThatStands) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> noise(0.0, 0.3);
+    make(noisy(params(), 0.3, 0.0));
+    const auto load = [](int k) { return 1300.0 + 400.0 * std::sin(0.2 * k); };
+    for (int k = 0; k < 40; ++k) {
+      see(56.0 + 3.0 * std::sin(0.2 * k - 1.0) + noise(engine), load(k));
+      ASSERT_EQ(remark(), "") << "seed " << seed << " sample " << k;
+    }
+    int first = -1;
+    for (int k = 0; k < 200; ++k) {
+      see(57.0 + noise(engine), load(k));
+      if (first < 0 && output.source == ActionSource::kFallback) first = k;
+      const std::string told = first < 0 ? "" : "s stands still: the fallback acts";
+      ASSERT_EQ(remark(), told) << "seed " << seed;
+    }
+    EXPECT_GE(first, 8) << "seed " << seed;
+    EXPECT_LE(first, 40) << "seed " << seed;
+    see(61.0 + noise(engine), load(0));
+    EXPECT_EQ(output.source, ActionSource::kBase) << "it moves again";
+  }
+}
+
+TEST_F(Standstill, LessNoiseThanDeclaredIsNoSignOfLife) {
+  make(noisy(params(), 0.3, 0.0));
+  for (int k = 0; k < 40; ++k)
+    see(57.0 + 0.01 * std::cos(3.0 * k), 1300.0 + 400.0 * std::sin(0.2 * k));
+  EXPECT_EQ(remark(), "s stands still: the fallback acts");
+}
+
+TEST_F(Standstill, NoiseOnAPlantAtRestIsNoFault) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> noise(0.0, 1.0);
+    make(noisy(params(), 0.3, 200.0));
+    law->spoil = [&](ControllerOutput& out) { out.input[0] = 570.0 + 200.0 * noise(engine); };
+    for (int k = 0; k < 300; ++k) {
+      see(56.0 + 0.3 * noise(engine), 1300.0 + 200.0 * noise(engine), 40.0);
+      ASSERT_EQ(remark(), "") << "seed " << seed << " sample " << k;
+    }
+  }
+}
+
+TEST_F(Standstill, ANoisyDisturbanceThatStandsIsReplaced) {
+  std::mt19937_64 engine(7);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  make(noisy(params(), 0.3, 20.0));
+  for (int k = 0; k < 80; ++k)
+    see(56.0 + 10.0 * std::sin(0.2 * k), 900.0 + 20.0 * noise(engine),
+        40.0 + 20.0 * std::sin(0.2 * k));
+  EXPECT_EQ(remark(), "q_i stands still: its usual value is used");
+  EXPECT_EQ(output.source, ActionSource::kBase);
 }
 
 TEST_F(Standstill, MistakesAreNamed) {

@@ -57,6 +57,23 @@ TEST(Bsm1Faults, AnAmmoniumAnalyserThatSticksForEightDays) {
   expectNoWorse(stuck("S_NH5"), "S_NH5 stands still: the fallback acts");
 }
 
+// Noise that goes on while the analyser sticks: it never shows the same number twice.
+TEST(Bsm1Faults, AnAmmoniumAnalyserThatSticksUnderItsNoise) {
+  for (const char* noise : {"0.05", "0.3"}) {
+    Overrides fault = stuck("S_NH5");
+    fault.emplace_back("noise.std.S_NH5", noise);
+    expectNoWorse(fault, "S_NH5 stands still: the fallback acts");
+  }
+}
+
+TEST(Bsm1Faults, AHealthyNoisyAnalyserIsNotAccused) {
+  for (const char* noise : {"0.05", "0.3"})
+    for (const char* seed : {"1", "2", "3"})
+      EXPECT_FALSE(run("bsm1_own_fmbpc", {{"noise.std.S_NH5", noise}, {"noise.seed", seed}})
+                       .says("stands still"))
+          << noise << ", seed " << seed;
+}
+
 TEST(Bsm1Faults, AFlowMeterThatIsLost) {
   expectNoWorse(stuck("Q_in"), "Q_in stands still: its usual value is used");
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/study_statistics.hpp"
 #include "study/tuning_fixture.hpp"
@@ -136,6 +137,39 @@ TEST_F(Study, ARunWithoutACostSaysWhy) {
   const StudyStatistics statistics = statisticsOf(study, runStudy(study));
   EXPECT_TRUE(noneSucceeded(statistics.loops[0]));
   expectWords(statistics.loops[0].trouble, {"sample 0", "integration"});
+}
+
+TEST_F(Study, OutputsWithoutASetpointHaveNoCost) {
+  const StudyPlan study(
+      parseStudy("loops: [{loop: asp_best}]\nseeds: 1\nfitness: {terms: [{index: ise}]}\n"
+                 "set: {sampling.duration_h: 4}\n",
+                 "s.yaml"));
+  const StudyResult result = runStudy(study);
+  EXPECT_EQ(result.runs[0]->trouble, "");
+  EXPECT_GT(result.runs[0]->cost, 0.0);
+  EXPECT_TRUE(std::isfinite(result.runs[0]->cost));
+  const auto named = [](const std::string& name) {
+    return parseStudy(
+        "loops: [{loop: asp_best}]\nseeds: 1\nfitness: {terms: [{index: ise, output: " + name +
+            "}]}\n",
+        "s.yaml");
+  };
+  EXPECT_NO_THROW(StudyPlan(named("x")));
+  expectWords(errorOf([&] { StudyPlan{named("x_r")}; }), {"fitness.terms[0]", "x_r", "s, x"});
+}
+
+TEST_F(Study, OutsideTheModelIsCountedAsTheLawSawIt) {
+  const StudyPlan study(
+      parseStudy("loops: [{loop: asp_best}]\nseeds: 1\nfitness: {terms: [{index: ise}]}\n"
+                 "set: {sampling.duration_h: 10, noise.std.x: 600}\n",
+                 "s.yaml"));
+  const LoopFile loop = study.loop(0);
+  const RunRecord record = runLoop(loop);
+  const std::uint64_t seen = summarize(loop, record, 0.0).outside_model;
+  EXPECT_GT(seen, 0U);
+  EXPECT_LT(summarize(loop, withoutNoise(record), 0.0).outside_model, seen);
+  const auto kind = static_cast<std::size_t>(RunFailure::kOutOfModel);
+  EXPECT_EQ(runStudy(study).runs[0]->failures[kind], seen);
 }
 
 TEST_F(Study, ChangedRecordsAndModelsMakeAnotherStudy) {

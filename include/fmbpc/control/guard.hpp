@@ -10,6 +10,7 @@
 #include "fmbpc/control/controller_around.hpp"
 #include "fmbpc/control/guard_params.hpp"
 #include "fmbpc/control/horizon_trust.hpp"
+#include "fmbpc/control/swing_watch.hpp"
 
 namespace fpc {
 
@@ -17,11 +18,12 @@ class PiController;
 
 /// What the guard sees at one sample.
 struct GuardView {
-  double trust{1.0};    ///< least of now and of what the law wants
-  bool outside{false};  ///< trust below GuardParams::trust_low
-  double ahead{1.0};    ///< least trust over the horizon of what the law expects
-  bool locked{false};   ///< some input is locked up
-  bool acting{false};   ///< the input is not the law's
+  double trust{1.0};     ///< least of now and of what the law wants
+  bool outside{false};   ///< trust below GuardParams::trust_low
+  double ahead{1.0};     ///< least trust over the horizon of what the law expects
+  bool locked{false};    ///< some input is locked up
+  bool swinging{false};  ///< some input is thrown from end to end
+  bool acting{false};    ///< the input is not the law's
 };
 
 /// Whether one input is locked up, found by trying. An input at a bound for `lock_samples` while
@@ -59,13 +61,15 @@ class LockUpWatch {
   Eigen::Index known_{};
 };
 
-/// The law `inside`, and four rules:
+/// The law `inside`, and five rules:
 /// - trust at the measured outputs, disturbances and the input in force, and at the input that the
 ///   law wants: the smaller is said; what is done depends on outputs and disturbances only
 ///   (processTrustOf), as the bounds say which inputs are allowed: between trust_high and trust_low
 ///   moves shrink from half the range to `least_move`; below trust_low a PI, if there is one, acts
 ///   (bumplessly) until trust has been above trust_high for `return_samples`;
-/// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in;
+/// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in, if the
+///   model knows the input: others stand where the plant has them;
+/// - an input that the law throws from end to end of its range (see SwingWatch) moves less;
 /// - where the guard changes an input the source is `fallback`, there is no prediction, and remark
 ///   says why.
 /// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
@@ -90,6 +94,7 @@ class GuardedController final : public ControllerAround {
   void watchLocks(const Measurement& now, const SetpointSource& setpoint);
   double worstError(const Measurement& now, const SetpointSource& setpoint) const;
   void shrink(double trust);
+  void calm(const Measurement& now);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
   void lookAhead(const Measurement& now, const ControllerOutput& output);
   void refreshSignals();
@@ -101,6 +106,8 @@ class GuardedController final : public ControllerAround {
   std::unique_ptr<PiController> pi_;
   ControllerOutput pi_output_;
   std::vector<LockUpWatch> locks_;  // one per input
+  std::vector<SwingWatch> swings_;  // one per input
+  std::vector<bool> moved_;         // by input: the model knows it, so the law may move it
   TsModel model_;
   bool known_{false};  // the model says where its data were
   bool fallback_{false};

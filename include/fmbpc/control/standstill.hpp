@@ -9,30 +9,18 @@
 
 #include "fmbpc/control/affine_law.hpp"
 #include "fmbpc/control/controller_around.hpp"
+#include "fmbpc/control/signal_window.hpp"
 #include "fmbpc/control/standstill_params.hpp"
 
 namespace fpc {
 
-/// Smallest and largest value of each signal over the newest samples. No allocation in add().
-class SignalWindow {
- public:
-  SignalWindow() = default;
-  SignalWindow(Eigen::Index signals, int samples) : values_(signals, samples) {}
-  void clear() { known_ = next_ = 0; }
-  void add(const Measurement& now);  ///< outputs, disturbances, applied inputs
-  bool full() const { return known_ == values_.cols(); }
-  double span(Eigen::Index signal) const;
-  double mean(Eigen::Index signal) const;
-
- private:
-  Matrix values_;  // a row per signal
-  Eigen::Index known_{}, next_{};
-};
-
 /// A watched signal stands still from the sample at which it has changed by less than
 /// `least_change` over the window while what drives the plant has moved: another measured
 /// disturbance that does not stand still itself, for outputs also an applied input; until it has
-/// moved by that much. Meanwhile
+/// moved by that much. A signal with noise also stands still once its spread over the longer window
+/// is explained by that noise alone, while the means of what drives the plant (a block of the
+/// window each, in its older half) have moved by more than their own noise; until one value is
+/// farther from the mean of that window than noise gets. Meanwhile
 /// - a disturbance has its usual value for the law, which goes on;
 /// - an output makes the fallback act (source fallback, no prediction) inside the limits; the law
 /// is
@@ -50,7 +38,12 @@ class StandstillWatch final : public ControllerAround {
  private:
   Eigen::Index rowOf(const WatchedSignal& signal) const;
   double valueOf(const Measurement& now, const WatchedSignal& signal) const;
-  bool othersMove(const WatchedSignal& signal) const;
+  template <class Moves>
+  bool othersMove(const WatchedSignal& signal, Moves moves) const;
+  double scaleOf(Eigen::Index row, Eigen::Index samples) const;
+  bool showsTheSame(const WatchedSignal& signal) const;
+  bool showsOnlyNoise(const WatchedSignal& signal) const;
+  void judge(std::size_t signal, double value);
   void watch(const Measurement& now);
   void fallBack(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
 
@@ -61,7 +54,8 @@ class StandstillWatch final : public ControllerAround {
   AffineLaw plan_;
   Measurement seen_;
   std::vector<bool> still_;           // by watched signal
-  std::vector<double> stood_at_;      // the value at which each stands
+  std::vector<double> stood_at_;      // the value at which each stands ...
+  std::vector<double> allowed_;       // ... and how far from it is still there
   std::vector<std::string> remarks_;  // by watched signal
   bool away_{false};                  // the fallback acted at the last sample
 };

@@ -3,12 +3,13 @@
 #include <cmath>
 #include <map>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 constexpr int kPoints = 400;
 
 std::map<std::string, std::function<Picture()>>& registry() {

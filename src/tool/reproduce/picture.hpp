@@ -4,10 +4,10 @@
 
 #include <functional>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/fuzzy/ts_model.hpp"
 #include "fmbpc/loop/record.hpp"
 
@@ -62,6 +62,6 @@ bool hasPicture(const std::string& experiment);
 Picture pictureOf(const std::string& experiment);
 /// For pictures that do not come from runs alone. @return true
 bool registerPicture(const std::string& experiment, std::function<Picture()> picture);
-nlohmann::ordered_json toJson(const Picture& picture);
+OrderedJson toJson(const Picture& picture);
 
 }  // namespace fpc::tool

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/ordered_json.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc::tool {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = OrderedJson;
 
 std::string format(const char* pattern, double value) {
   char text[60];

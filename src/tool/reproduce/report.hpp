@@ -2,10 +2,10 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "base/ordered_json.hpp"
 #include "tool/reproduce/experiment.hpp"
 
 namespace fpc::tool {
@@ -36,7 +36,7 @@ std::vector<std::string> failuresOf(const std::vector<Outcome>& outcomes,
 
 std::string summaryText(const std::vector<Outcome>& outcomes);
 std::string detailsText(const Outcome& outcome);
-nlohmann::ordered_json toJson(const std::vector<Outcome>& outcomes);
+OrderedJson toJson(const std::vector<Outcome>& outcomes);
 std::string markdown(const std::vector<Outcome>& outcomes);
 
 }  // namespace fpc::tool

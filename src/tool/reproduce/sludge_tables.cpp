@@ -36,7 +36,8 @@ std::vector<std::vector<double>> consequentsOf(const TsModel& model) {
   std::vector<std::vector<double>> all;
   for (const auto& output : model.submodels)
     for (const auto& rule : output.rules) {
-      all.emplace_back(rule.coefficients.begin(), rule.coefficients.end());
+      all.emplace_back(rule.coefficients.data(),
+                       rule.coefficients.data() + rule.coefficients.size());
       all.back().push_back(rule.offset);
     }
   return all;
@@ -198,7 +199,7 @@ Experiment entry(const std::string& item, int model, const char* shows, const ch
           [model] { return rows(model); }};
 }
 
-const bool kSludgeTablesRegistered =
+const bool kRegistered =
     registerExperiments({entry<names>("table 3", 1, "names of the sets", "none"),
                          entry<coefficients>("table 4", 1, "consequents", "62 numbers"),
                          entry<names>("table 5", 2, "names of the sets", "none"),
