@@ -1,6 +1,6 @@
 // Our QP solver beside others' in one run: the public MPC set (with FMBPC_DATA) and a controller's
-// problems of 42 inputs, cold with a new Hessian each time and warm. One line of JSON per pair; a
-// family's time is that of one pass over its problems.
+// problems of 42 inputs, cold and warm with a new Hessian each time, and warm with the same. One
+// line of JSON per pair; a family's time is that of one pass over its problems.
 #include <cmath>
 #include <limits>
 
@@ -19,16 +19,22 @@ struct Family {
   std::vector<QpProblem> problems;
 };
 
+enum class Mode { kCold, kWarm, kSameHessian };
+
+std::string nameOf(Mode mode) {
+  return mode == Mode::kCold ? ", cold" : mode == Mode::kWarm ? ", warm" : ", warm, same Hessian";
+}
+
 /// Two copies of a problem in turn, the Hessians a rounding apart, so that nothing is reused that a
-/// new Hessian would not allow.
+/// new Hessian would not allow; or one of them again and again.
 class Ours {
  public:
   explicit Ours(const QpProblem& p) : solver_(p.g.size(), p.a_lower.size()), problems_{p, p} {
     problems_[1].H *= 1.0 + 1e-15;
   }
-  const QpResult& solve(bool warm) {
-    turn_ = 1 - turn_;
-    return solver_.solve(problems_[turn_], warm);
+  const QpResult& solve(Mode mode) {
+    if (mode != Mode::kSameHessian) turn_ = 1 - turn_;
+    return solver_.solve(problems_[turn_], mode != Mode::kCold);
   }
 
  private:
@@ -82,8 +88,9 @@ class Beside {
            ", error " + text(worst) + ")";
   }
   bool canWarm() const { return solvers_.front()->canWarm(); }
-  void pass(bool warm) {
-    for (auto& one : solvers_) warm ? one->solveWarm() : one->solve();
+  void pass(Mode mode) {
+    for (auto& one : solvers_)
+      mode == Mode::kCold ? one->solve() : one->solveWarm(mode == Mode::kWarm);
   }
 
  private:
@@ -91,33 +98,33 @@ class Beside {
   std::vector<std::unique_ptr<BaselineQp>> solvers_;
 };
 
-void compare(const Family& family, bool warm) {
+void compare(const Family& family, Mode mode) {
   std::vector<Ours> ours;
   std::vector<Vector> answers;
   int solved = 0;
   for (const QpProblem& p : family.problems) {
     ours.emplace_back(p);
-    const QpResult& r = ours.back().solve(false);
+    const QpResult& r = ours.back().solve(Mode::kCold);
     answers.push_back(r.x);
     solved += r.usable() && r.kkt_residual <= 1e-9;
   }
-  if (!warm)
+  if (mode == Mode::kCold)
     std::printf("{\"family\": \"%s\", \"solved\": %d, \"problems\": %zu}\n", family.name.c_str(),
                 solved, family.problems.size());
   std::vector<Baseline> others;
   for (const BaselineType& type : baselines()) {
     const auto beside = std::make_shared<Beside>(family, type);
-    if (warm && !beside->canWarm()) continue;
-    others.push_back({beside->judge(family, answers), [beside, warm] { beside->pass(warm); }});
+    if (mode != Mode::kCold && !beside->canWarm()) continue;
+    others.push_back({beside->judge(family, answers), [beside, mode] { beside->pass(mode); }});
   }
   Effort effort = Effort::fromEnvironment();
   effort.seconds *= 0.5;  // hundreds of passes all the same
   printRounds(
-      "QP " + family.name + (warm ? ", warm" : ", cold") + " (" + std::to_string(solved) + " of " +
+      "QP " + family.name + nameOf(mode) + " (" + std::to_string(solved) + " of " +
           std::to_string(family.problems.size()) + " solved)",
       family.aim,
       [&] {
-        for (Ours& one : ours) one.solve(warm);
+        for (Ours& one : ours) one.solve(mode);
       },
       others, effort);
 }
@@ -156,6 +163,6 @@ std::vector<Family> families() {
 int main() {
   using namespace fpc::bench;
   for (const Family& family : families())
-    for (const bool warm : {false, true}) compare(family, warm);
+    for (const Mode mode : {Mode::kCold, Mode::kWarm, Mode::kSameHessian}) compare(family, mode);
   return 0;
 }

@@ -1,8 +1,9 @@
 # SUNDIALS::cvode and SUNDIALS::nvecserial: from SUNDIALS' own package (5 and newer), else (3 and 4 have none) by file names.
+# FMBPC_ARKODE: what to link for the integrator method runge_kutta; empty where ARKODE is missing or older than 4.
 find_package(SUNDIALS QUIET)
 if(NOT TARGET SUNDIALS::cvode)
   find_path(FMBPC_SUNDIALS_INCLUDE cvode/cvode.h)
-  foreach(library cvode nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)
+  foreach(library cvode arkode nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)
     find_library(FMBPC_SUNDIALS_${library} sundials_${library})
   endforeach()
   if(NOT FMBPC_SUNDIALS_INCLUDE OR NOT FMBPC_SUNDIALS_cvode OR NOT FMBPC_SUNDIALS_nvecserial)
@@ -22,4 +23,12 @@ if(NOT TARGET SUNDIALS::cvode)
   #catkin_lint: ignore_once order_violation
   #catkin_lint: ignore_once catkin_order_violation
   add_library(SUNDIALS::nvecserial INTERFACE IMPORTED)
+endif()
+set(FMBPC_ARKODE "")
+get_target_property(FMBPC_SUNDIALS_INCLUDES SUNDIALS::cvode INTERFACE_INCLUDE_DIRECTORIES)
+find_path(FMBPC_ARKODE_INCLUDE arkode/arkode_erkstep.h HINTS ${FMBPC_SUNDIALS_INCLUDES})
+if(FMBPC_ARKODE_INCLUDE AND TARGET SUNDIALS::arkode)
+  set(FMBPC_ARKODE SUNDIALS::arkode)
+elseif(FMBPC_ARKODE_INCLUDE AND FMBPC_SUNDIALS_arkode)
+  set(FMBPC_ARKODE ${FMBPC_SUNDIALS_arkode})
 endif()

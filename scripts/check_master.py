@@ -1,6 +1,10 @@
 #!/usr/bin/python3
 """Fails if one of the nodes named lives on the master already: a launch that starts a loop beside another one of the same
-names would shut that one down. Usage: check_master.py NODE...; prints one word, or says who is there."""
+names would shut that one down; or if nothing can be recorded in the folder. Usage: check_master.py [--out FOLDER] NODE...;
+prints one word, or says who is there or what is wrong with the folder."""
+import argparse
+import fcntl
+import os
 import socket
 import sys
 import xmlrpc.client
@@ -39,11 +43,40 @@ def living(names):
     return found
 
 
+def wrong_with(folder):
+    """Why a recorder could not use it, empty if it could. Nothing is made or changed."""
+    there = os.path.abspath(folder)
+    while not os.path.lexists(there):
+        there = os.path.dirname(there)
+    if not os.path.isdir(there):
+        return f"{there} is no folder"
+    if not os.access(there, os.W_OK | os.X_OK):
+        return f"{there} cannot be written"
+    journal = os.path.join(folder, "journal.bin")
+    if not os.path.exists(journal):
+        return ""
+    try:
+        with open(journal, "r+b") as file:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return "another loop is running with this folder"
+    except OSError as error:
+        return f"{journal}: {error.strerror}"
+    return ""
+
+
 def main():
     socket.setdefaulttimeout(3.0)
-    found = living([rosgraph.names.resolve_name(name, "/") for name in sys.argv[1:]])
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--out", default="")
+    parser.add_argument("nodes", nargs="*")
+    arguments = parser.parse_args()
+    found = living([rosgraph.names.resolve_name(name, "/") for name in arguments.nodes])
     if found:
         sys.exit("fmbpc: another loop is running here and is left alone: " + ", ".join(found))
+    wrong = wrong_with(arguments.out) if arguments.out else ""
+    if wrong:
+        sys.exit(f"fmbpc: out:={arguments.out}: expected a folder that can be written: {wrong}")
     print("free")
 
 

@@ -1,17 +1,24 @@
 #!/usr/bin/python3
 """Node end_launch: ends the launch that started it, as Ctrl-C does, when the run is over (topic run_end). roslaunch with
-a master of its own never ends by itself, and a node that is `required` is announced in red as having died."""
+a master of its own never ends by itself, and a node that is `required` is announced in red as having died. Where the
+recorder is gone, it makes the run's files of the journal (`fmbpc recover`) in the folder ~out, and ends the launch when
+the plant has finished and the recorder has been gone for ~patience seconds."""
 import os
 import queue
 import signal
+import socket
+import subprocess
 import sys
+import time
 import xmlrpc.client
 
 if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
     print(__doc__.strip())
     sys.exit(0)
 
+import rosgraph
 import rospy
+from fmbpc.msg import LoopState
 from std_msgs.msg import String
 
 
@@ -27,24 +34,81 @@ def launcher():
     return 0
 
 
+class Recorder:
+    """Whether the run has ended, and whether the one who should record it still lives."""
+
+    def __init__(self):
+        self.name, self.plant_finished, self.gone_since, self.came = rospy.resolve_name("loop_recorder"), False, None, False
+        rospy.Subscriber("loop_state", LoopState, self.hear)
+
+    def hear(self, state):
+        if state.summary:
+            self.plant_finished = state.reason.startswith("finished")
+            self.came = self.came or state.mode != LoopState.STARTING  # it was ready before sample 0
+        if state.node == self.name:
+            self.came, self.gone_since = True, None
+
+    def look(self):
+        """Silent is not gone: one that writes a long record does not speak, but its process answers."""
+        if lives(self.name):
+            self.came, self.gone_since = True, None
+        elif self.came:
+            self.gone_since = self.gone_since or time.monotonic()
+
+    def gone_for(self):
+        return time.monotonic() - self.gone_since if self.gone_since else 0.0
+
+
+def lives(node):
+    try:
+        uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
+        return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[0] == 1
+    except socket.timeout:
+        return True  # it hangs, or its machine is slow
+    except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
+        return False
+
+
+def recover(folder):
+    """The files of a journal that its recorder left behind."""
+    if not os.path.isfile(os.path.join(folder, "journal.bin")):
+        rospy.logerr("end_launch: the run is not recorded: %s holds no journal.bin on this machine", folder or "no folder")
+        return
+    done = subprocess.run(["rosrun", "fmbpc", "fmbpc", "recover", folder], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          text=True, check=False, start_new_session=True)  # Ctrl-C is not for it
+    rospy.logerr("end_launch: the recorder was gone; its journal: %s", done.stdout.strip())
+
+
 def main():
     rospy.init_node("end_launch")
     parent = launcher()
     if not parent:
         rospy.logwarn("end_launch: no roslaunch has started this node: there is nothing to end")
         return 0
-    words = queue.Queue()
+    socket.setdefaulttimeout(5.0)
+    words, recorder = queue.Queue(), Recorder()
     rospy.Subscriber("run_end", String, words.put)
     names = ["loop_recorder", "plant_simulator", rospy.get_param("~manager", "")]  # nodelets speak with their manager's name
     ours = {rospy.resolve_name(name) for name in names if name}
+    patience, folder = rospy.get_param("~patience", 5.0), rospy.get_param("~out", "")
+    if rospy.get_param("~manager", ""):
+        recorder.name = rospy.resolve_name(rospy.get_param("~manager"))
     while not rospy.is_shutdown():
         try:
             message = words.get(timeout=0.5)
         except queue.Empty:
-            continue
+            recorder.look()
+            if not recorder.plant_finished or recorder.gone_for() < patience:
+                continue
+            rospy.logerr("end_launch: the run is over, but %s is gone: the launch ends", recorder.name)
+            recover(folder)
+            os.kill(parent, signal.SIGINT)
+            return 0
         if end(message._connection_header["callerid"], message.data, ours):
             os.kill(parent, signal.SIGINT)
             break
+    if recorder.gone_for() > 1.0:  # not one that ends with the launch, as this node does
+        recover(folder)
     return 0
 
 

@@ -87,8 +87,8 @@ def rows(family, seeds, percent):
     for loop in FAMILIES[family][3]:
         cost, other = noisy[loop]["median"], noisy[baseline]["median"]
         ratio = cost / other if cost is not None and other else float("inf")
-        rival = baseline + ", tuned" if of_paper(baseline) else baseline
-        yield [loop, rival, number(quiet[loop]["median"]), number(cost), number(other), "%.2f" % ratio,
+        other_loop = baseline + ", tuned" if of_paper(baseline) else baseline
+        yield [loop, other_loop, number(quiet[loop]["median"]), number(cost), number(other), "%.2f" % ratio,
                "yes" if ratio <= LIMIT else "no"], ratio
 
 
@@ -111,7 +111,7 @@ def page(families, seeds, percent):
                 above.append(row[0])
     lines += ["", "Beyond it: %s." % (", ".join("`%s`" % name for name in above) or "none"), "",
               "The nonlinear MPC of the reactor that is measured late (`cstr_*_nmpc`) takes its disturbance from raw differences, loses to FMBPC",
-              "without noise on two of three runs and is of no use with it: there is no upper rival under noise on that plant."]
+              "without noise on two of three runs and is of no use with it: that plant has no upper baseline under noise."]
     return "\n".join(lines) + "\n"
 
 

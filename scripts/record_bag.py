@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Node bag_recorder: records every topic (in a namespace: of it) with rosbag and says `ready` when rosbag listens to all of them, so that
-the bag begins with sample 0. Usage: record_bag.py FILE.bag"""
+the bag begins with sample 0. Usage: record_bag.py FILE.bag, or the parameter ~file"""
 import os
 import signal
 import subprocess
@@ -33,9 +33,15 @@ def listens_to_all(master):
 
 def bag_file(arguments):
     """The one argument; words of a name with spaces that nobody quoted are an error, not another name."""
+    arguments = arguments or [name for name in [rospy.get_param("~file", "")] if name]
     if len(arguments) != 1:
         raise SystemExit(f"record_bag.py: expected one file, got {len(arguments)}: {arguments}")
     return os.path.abspath(arguments[0])
+
+
+def remaps(arguments):
+    """What the launch has renamed (/clock, /tf), for rosbag as well: with simulated time it waits for the clock."""
+    return [word for word in arguments if ":=" in word and not word.startswith("_")]
 
 
 def main():
@@ -51,7 +57,7 @@ def main():
     space = rospy.get_namespace()
     what = ["--all"] if space == "/" else ["--regex", space + ".*"]  # of several loops ours
     rosbag = subprocess.Popen(["rosbag", "record", *what, "--buffsize=0", "--tcpnodelay", "--output-name", bag,
-                               "__name:=" + RECORDER], start_new_session=True)
+                               "__name:=" + RECORDER, *remaps(sys.argv[1:])], start_new_session=True)
     master, said, quiet = rosgraph.Master(rospy.get_name()), False, 0
     while rosbag.poll() is None and not stop.wait(0.1):
         quiet = quiet + 1 if not said and listens_to_all(master) else 0

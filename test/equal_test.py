@@ -64,6 +64,8 @@ CASES = {
                         "lockstep", 3600),
     "plugin": ("two_tanks_outflow", 360, [], "lockstep", 3600),
 }
+CLAMPED = ("heated_tank", 360, ["setpoint.upper.T=55", "setpoint.commands=[{time_h: 1, name: T, mode: offset, value: 9}]"],
+           "lockstep", 3600)
 
 
 def environment():
@@ -75,8 +77,8 @@ def environment():
 def launch(folder, loop, sets, pace, speedup):
     port = ring.free_port()
     done = subprocess.run(
-        ["roslaunch", "-p", port, "fmbpc", "loop.launch", f"loop:={loop}", "set:=" + " ".join(sets), f"pace:={pace}",
-         f"speedup:={speedup}", f"out:={folder}", "draw:=false"],
+        ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", f"loop:={loop}", "set:=" + " ".join(sets), f"pace:={pace}",
+                   f"speedup:={speedup}", f"out:={folder}", "draw:=false"]),
         env={**environment(), "ROS_MASTER_URI": f"http://localhost:{port}"}, stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT, text=True, timeout=240, check=False)
     return done.stdout
@@ -114,6 +116,7 @@ class Equal(unittest.TestCase):
             else:
                 ring.assert_same_run(self, topics, process)
             self.assertEqual(steps, ring.summary(topics)["steps"])
+            return ring.summary(topics)
 
     def compare_realtime(self, topics, process, steps):
         """A machine may be too slow for a sample: up to the first action that came too late the runs are the same, and the
@@ -128,6 +131,11 @@ class Equal(unittest.TestCase):
         self.assertEqual(there[:same], here[:same])
         self.assertEqual(len(there), len(here))
         print(f"realtime: {same - 1} of {steps + 1} rows compared, {len(late)} actions too late")
+
+    def test_a_setpoint_clamped_is_remarked_in_both_ways(self):
+        remark, = self.compare_case(*CLAMPED)["remarks"]
+        self.assertEqual((240, 120), (remark["samples"], remark["first"]))
+        self.assertIn("beyond its limits, 0..55", remark["words"])
 
     def test_types_without_a_case_run_their_first_loop(self):
         """A new type is compared by the loop that it brings."""

@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -31,7 +32,7 @@ class ExamplePackage(unittest.TestCase):
         shutil.copytree(TOP / "examples" / "two_tanks", cls.folder / "source")
         run("cmake", "-S", cls.folder / "source", "-B", cls.folder / "build", "-DCMAKE_BUILD_TYPE=Release",
             f"-DCMAKE_INSTALL_PREFIX={cls.own}", f"-DCATKIN_DEVEL_PREFIX={cls.folder}/devel",
-            f"-DCMAKE_PREFIX_PATH={cls.fmbpc}", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+            f"-DCMAKE_PREFIX_PATH={cls.fmbpc}", "-DTWO_TANKS_TEST=ON", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
             "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
         run("cmake", "--build", cls.folder / "build", "--target", "install")
 
@@ -51,6 +52,28 @@ class ExamplePackage(unittest.TestCase):
         cache = (self.folder / "build" / "CMakeCache.txt").read_text()
         self.assertIn(f"fmbpc_DIR:PATH={self.fmbpc}", cache)
         self.assertTrue((self.own / "lib" / "libtwo_tanks.so").is_file())
+
+    def test_its_own_test_passes(self):
+        text = run("cmake", "--build", self.folder / "build", "--target", "test")
+        self.assertIn("two_tanks_test", text)
+        self.assertIn("100% tests passed", text)
+
+    def test_the_public_headers_are_installed_and_enough(self):
+        """They compile with Eigen and nothing of the source tree."""
+        include = self.fmbpc / "include"
+        listed = (TOP / "cmake" / "public_headers.cmake").read_text().split("HEADERS\n", 1)[1].split(")", 1)[0].split()
+        found = sorted(str(p.relative_to(include / "fmbpc")) for p in (include / "fmbpc").rglob("*.hpp"))
+        self.assertEqual(sorted(listed), found)
+        unit = self.folder / "all.cpp"
+        unit.write_text("".join(f"#include <fmbpc/{header}>\n" for header in found))
+        flags = re.findall(r"-isystem (\S+)", (self.folder / "build" / "CMakeFiles" / "two_tanks.dir" / "flags.make").read_text())
+        self.assertIn(str(include), flags)
+        self.assertNotIn(str(TOP / "include"), flags)
+        compile_it = ["c++", "-std=c++17", "-fsyntax-only", *(word for folder in flags for word in ("-isystem", folder))]
+        run(*compile_it, unit)
+        for header in found if os.environ.get("FMBPC_LONG_TESTS") else []:  # each alone, a minute; check_core does it in the tree
+            unit.write_text(f"#include <fmbpc/{header}>\n")
+            run(*compile_it, unit)
 
     def test_the_tour_of_its_readme(self):
         results = self.folder / "results"

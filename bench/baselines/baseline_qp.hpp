@@ -17,8 +17,8 @@ class BaselineQp {
   virtual void prepare(const QpProblem& problem) = 0;
   /// Solves the prepared problem without knowledge of the solve before. @return whether it says so
   virtual bool solve() = 0;
-  /// The same with the active set of the solve before.
-  virtual bool solveWarm() { return solve(); }
+  /// The same with the active set of the solve before; with a new Hessian no factor of it.
+  virtual bool solveWarm(bool /*new_hessian*/) { return solve(); }
   virtual bool canWarm() const { return false; }
   virtual Vector x() const = 0;
 };

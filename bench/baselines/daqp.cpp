@@ -58,13 +58,18 @@ class Daqp final : public BaselineQp {
     reset_daqp_workspace(&work_);
     return update(kEverything | DAQP_UPDATE_sense);
   }
-  bool solveWarm() override { return ready_ && update(kEverything); }
+  bool solveWarm(bool new_hessian) override { return ready_ && update(kEverything, new_hessian); }
   bool canWarm() const override { return true; }
   Vector x() const override { return x_; }
 
  private:
-  bool update(int mask) {
+  /// An update takes a new Hessian in but keeps the factor of the working set, that of the old one.
+  bool update(int mask, bool factor_anew = false) {
     if (daqp_update_ldp(mask, &work_, &data_) < 0) return false;
+    if (factor_anew) {
+      reset_daqp_workspace(&work_);
+      if (daqp_activate_constraints(&work_) < 0) return false;
+    }
     daqp_solve(&result_, &work_);
     return result_.exitflag > 0;
   }

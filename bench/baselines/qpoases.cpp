@@ -37,7 +37,7 @@ class QpOases final : public BaselineQp {
                                       x_upper_.data(), a_lower_.data(), a_upper_.data(), steps);
     return finish(status);
   }
-  bool solveWarm() override {
+  bool solveWarm(bool /*new_hessian*/) override {
     if (!solved_) return solve();
     int steps = kSteps;
     return finish(solver_->hotstart(H_.data(), g_.data(), A_.data(), x_lower_.data(),

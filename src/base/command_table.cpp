@@ -7,13 +7,22 @@
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
+namespace {
+
+constexpr std::size_t kMostLetters = 60;  // of a name in a message
+
+std::string shown(const std::string& name) {
+  return name.size() <= kMostLetters ? name : name.substr(0, kMostLetters) + "...";
+}
+
+}  // namespace
 
 CommandTable::CommandTable(std::vector<std::string> names)
     : names_(std::move(names)), active_(names_.size()) {}
 
 std::size_t CommandTable::indexOf(const std::string& name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
-  require(found != names_.end(), "name '" + name + "'", "one of " + join(names_));
+  require(found != names_.end(), "name '" + shown(name) + "'", "one of " + join(names_));
   return static_cast<std::size_t>(found - names_.begin());
 }
 
@@ -22,9 +31,17 @@ void CommandTable::accept(const Command& command, std::uint32_t step) {
   require(release || command.mode == CommandMode::kOverride || command.mode == CommandMode::kOffset,
           "mode", "1 (override), 2 (offset) or 3 (release)");
   require(!command.name.empty(), "name", "at least one name");
+  require(command.name.size() <= names_.size(), "name",
+          "at most " + std::to_string(names_.size()) + " names, not " +
+              std::to_string(command.name.size()));
   require((release && command.value.empty()) || command.value.size() == command.name.size(),
           "value", "as many values as names");
-  for (const auto& name : command.name) indexOf(name);
+  std::vector<bool> named(names_.size());
+  for (const auto& name : command.name) {
+    const std::size_t index = indexOf(name);
+    require(!named[index], "name '" + name + "'", "each name once");
+    named[index] = true;
+  }
   for (const double value : command.value) require(std::isfinite(value), "value", "finite numbers");
   pending_.push_back({step, command});
   std::stable_sort(pending_.begin(), pending_.end(),
@@ -66,6 +83,10 @@ std::vector<Command> CommandTable::waiting() const {
   std::vector<Command> commands;
   for (const Pending& pending : pending_) commands.push_back(pending.command);
   return commands;
+}
+
+void CommandTable::carryOver(std::uint32_t passed) {
+  for (Pending& pending : pending_) pending.step -= std::min(pending.step, passed);
 }
 
 void CommandTable::clear() {

@@ -13,22 +13,27 @@
 namespace fpc {
 namespace {
 
-std::vector<std::string> disturbedNames(const LoopFile& loop) {
-  requireSimulated(loop);
-  std::vector<std::string> names = disturbanceNames(loop);
-  for (const SignalInfo& input : loop.plant_info.inputs) names.push_back("input/" + input.name);
-  for (const SignalInfo& output : loop.plant_info.outputs) names.push_back("output/" + output.name);
-  return names;
-}
+const std::string kActuator = "the limits of the actuator";
 
-/// Ranges of what may be asked or disturbed.
-std::vector<SignalInfo> disturbanceRanges(const LoopFile& loop) {
-  requireSimulated(loop);
+/// What an entry may disturb: the plant's own and the inputs with their ranges (a stuck valve stays
+/// inside the limits of the actuator), and every output.
+struct Disturbable {
+  std::vector<std::string> names;
   std::vector<SignalInfo> ranges;
-  const auto plant = makePlant(loop.simulation);
-  for (const Quantity& q : plant->description().disturbances)
-    ranges.push_back({q.name, q.unit, q.lower, q.upper});
-  return ranges;
+};
+
+Disturbable disturbableOf(const LoopFile& loop) {
+  Disturbable all;
+  for (const Quantity& q : disturbancesOf(loop))
+    all.ranges.push_back({q.name, q.unit, q.lower, q.upper});
+  for (SignalInfo input : loop.plant_info.inputs) {
+    input.name = "input/" + input.name;
+    all.ranges.push_back(std::move(input));
+  }
+  all.names = namesOf(all.ranges);
+  for (const SignalInfo& output : loop.plant_info.outputs)
+    all.names.push_back("output/" + output.name);
+  return all;
 }
 
 void requireInRanges(const YamlSection& values, const Command& command,
@@ -37,7 +42,8 @@ void requireInRanges(const YamlSection& values, const Command& command,
   for (std::size_t i = 0; i < command.name.size(); ++i)
     for (const SignalInfo& range : ranges)
       if (range.name == command.name[i])
-        requireInRange(values, command.name[i], command.value[i], range, what);
+        requireInRange(values, range.name, command.value[i], range, what,
+                       range.name.rfind("input/", 0) == 0 ? kActuator : "the range of the plant");
 }
 
 /// {x: 1900, s: 50} with `mode`; a list of names suffices to release. What overrides lies in its
@@ -75,8 +81,7 @@ Vector readManualInput(YamlSection& entry, const std::string& key, const LoopFil
     SignalInfo range = loop.plant_info.inputs[static_cast<std::size_t>(i)];
     range.lower = limits.lower[i];
     range.upper = limits.upper[i];
-    requireInRange(entry, key + "." + range.name, input[i], range, "manual input",
-                   "the limits of the actuator");
+    requireInRange(entry, key + "." + range.name, input[i], range, "manual input", kActuator);
   }
   return input;
 }
@@ -147,8 +152,8 @@ const std::vector<Kind>& kinds() {
        }},
       {"disturbance",
        [](Entry entry, Key key, Loop loop) -> What {
-         return DisturbanceCommand{
-             readSignals(entry, key, disturbedNames(loop), disturbanceRanges(loop))};
+         const Disturbable known = disturbableOf(loop);
+         return DisturbanceCommand{readSignals(entry, key, known.names, known.ranges)};
        }},
       {"manual", [](Entry entry, Key key, Loop) -> What { return SetManual{readOn(entry, key)}; }},
       {"manual_input",

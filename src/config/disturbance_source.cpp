@@ -3,6 +3,7 @@
 #include "config/csv_checks.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
+#include "fmbpc/base/signals.hpp"
 
 namespace fpc {
 namespace {
@@ -16,11 +17,9 @@ void requireSimulated(const LoopFile& loop) {
           "a plant that can be simulated; an external one runs over topics only");
 }
 
-std::vector<std::string> disturbanceNames(const LoopFile& loop) {
-  std::vector<std::string> names;
-  const auto plant = makePlant(loop.simulation);
-  for (const auto& quantity : plant->description().disturbances) names.push_back(quantity.name);
-  return names;
+std::vector<Quantity> disturbancesOf(const LoopFile& loop) {
+  requireSimulated(loop);
+  return makePlant(loop.simulation)->description().disturbances;
 }
 
 DisturbanceRecord makeDisturbance(const LoopFile& loop) {
@@ -33,11 +32,11 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
               " (an endless run needs constant)");
   require(sim.samples <= kMostSamples, loop.name + ": sampling.duration_h",
           "at most 10000000 samples with disturbance.source " + wordOf(params.source));
-  const auto names = disturbanceNames(loop);
+  const auto disturbances = disturbancesOf(loop);
+  const auto names = namesOf(disturbances);
   if (params.source == DisturbanceSource::kPattern)
     return makePattern(params.pattern, names, sim.disturbance_nominal, sim.sample_time_s,
                        sim.samples);
-  const auto disturbances = makePlant(sim)->description().disturbances;
   checkCsvUnits(loop, disturbances);
   DisturbanceRecord record = readDisturbanceSequence(params.csv, names, sim.disturbance_nominal,
                                                      sim.sample_time_s, sim.samples);

@@ -5,6 +5,9 @@
 
 namespace fpc {
 
+template <>
+void requireSameLayout<LawLayout>() {}
+
 PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimits& limits,
                              const PlantInfo& plant, const std::vector<std::string>& output_signals)
     : limits_(limits),

@@ -37,7 +37,8 @@ template <>
 void requireSameLayout<ControllerLayout>() {}
 
 SignalUse noSignal(const ControllerContext& loop) {
-  return {std::vector<bool>(loop.plant.outputs.size() + loop.plant.disturbances.size(), false), {}};
+  return {
+      std::vector<bool>(loop.plant.outputs.size() + loop.plant.disturbances.size(), false), {}, {}};
 }
 
 SignalUse everySignal(const ControllerContext& loop) {
@@ -45,6 +46,12 @@ SignalUse everySignal(const ControllerContext& loop) {
   use.needed.assign(use.needed.size(), true);
   for (Eigen::Index i = 0; i < loop.outputCount(); ++i) use.followed.push_back(i);
   return use;
+}
+
+std::vector<bool> theseInputs(const ControllerContext& loop, const std::vector<int>& inputs) {
+  std::vector<bool> these(loop.plant.inputs.size(), false);
+  for (const int input : inputs) these[static_cast<std::size_t>(input)] = true;
+  return these;
 }
 
 std::vector<Eigen::Index> weighted(VectorRef weight_output) {

@@ -107,7 +107,7 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   if (arrival == Arrival::kGap) arrival_reason_ = missingSamples(before.step + 1, step - 1);
   if (arrival == Arrival::kResync)
     arrival_reason_ = "back to sample " + std::to_string(step) + ", where the plant is";
-  if (arrival == Arrival::kNewRun) setpoint_.restart();
+  if (arrival == Arrival::kNewRun) beginAnew();
   if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) setpoint_.anchor(m.header);
 
   answer_.base.header = answer_.tracking.header = m.header;

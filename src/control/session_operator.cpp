@@ -1,6 +1,7 @@
 // What an operator asks of a controller: manual, adaptation, settings; kept by others for one that
 // comes back.
 #include <algorithm>
+#include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/control/reaction_watch.hpp"
@@ -12,7 +13,13 @@ void ControllerSession::manual(bool on) {
   if (on && !manual_) manual_given_ = false;
   if (!on && manual_ && reaction_) reaction_->reset();  // a person has seen to it
   manual_ = on;
+  manual_asked_ = true;
   unreleased_ = false;
+}
+
+void ControllerSession::holdRecipe(bool on) {
+  setpoint_.hold(on);
+  recipe_asked_ = true;
 }
 
 void ControllerSession::manualInput(VectorRef input) {
@@ -51,15 +58,33 @@ OperatorWishes ControllerSession::wishes() const {
 
 void ControllerSession::restore(const OperatorWishes& wishes) {
   if (gate_.counts().accepted > 0) return;
+  if (!manual_asked_) restoreManual(wishes);
+  const bool hold = recipe_asked_ ? setpoint_.held() : wishes.recipe.held;
+  setpoint_.restore(wishes.recipe);
+  setpoint_.hold(hold);
+  for (const Command& command : wishes.setpoints) setpoint_.restore(command);
+  if (wishes.adapt && !adapt_) adapt(*wishes.adapt);
+  Settings older;
+  for (const auto& setting : wishes.settings)
+    if (std::none_of(settings_.begin(), settings_.end(),
+                     [&](const auto& asked) { return asked.first == setting.first; }))
+      older.push_back(setting);
+  if (!older.empty()) retune(older);
+}
+
+void ControllerSession::beginAnew() {
+  if (std::exchange(carries_, false))
+    setpoint_.carryOver();
+  else
+    setpoint_.restart();
+}
+
+void ControllerSession::restoreManual(const OperatorWishes& wishes) {
   manual_ = wishes.manual;
   manual_given_ = wishes.manual_given && wishes.manual_input.size() == last_input_.size() &&
                   wishes.manual_input.allFinite();
   if (manual_given_)
     manual_input_ = wishes.manual_input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
-  setpoint_.restore(wishes.recipe);
-  for (const Command& command : wishes.setpoints) setpoint_.restore(command);
-  if (wishes.adapt) adapt(*wishes.adapt);
-  if (!wishes.settings.empty()) retune(wishes.settings);
 }
 
 }  // namespace fpc

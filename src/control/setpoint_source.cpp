@@ -97,11 +97,18 @@ void SetpointSource::reset() { fresh_ = true; }
 void SetpointSource::restart() {
   commands_.clear();
   waiting_.clear();
+  restored_ = 0;
   effects_.clear();
   playParams();
   next_step_ = shift_ = 0;
   started_ = hold_asked_ = held_ = false;
   fresh_ = true;
+}
+
+void SetpointSource::carryOver() {
+  commands_.carryOver(next_step_);
+  shift_ -= next_step_;
+  next_step_ = 0;
 }
 
 void SetpointSource::anchor(const StepHeader& sample) {
@@ -121,7 +128,8 @@ std::uint32_t SetpointSource::command(const Command& command) {
 
 bool SetpointSource::restore(const Command& command) {
   if (started_) return false;
-  this->command(command);
+  CommandTable(commands_.names()).accept(command, 0);  // throws what is to be thrown
+  waiting_.insert(waiting_.begin() + restored_++, command);
   return true;
 }
 
@@ -133,6 +141,7 @@ void SetpointSource::acceptWaiting(std::uint32_t step) {
                                   ? step
                                   : clock_.firstStepAt(command.time_ns - clock_shift_ns_));
   waiting_.clear();
+  restored_ = 0;
 }
 
 const Vector& SetpointSource::advance(std::uint32_t step) {
@@ -166,7 +175,8 @@ void SetpointSource::settleHold(std::uint32_t step) {
 
 std::uint32_t SetpointSource::recipeStep(std::uint32_t step) const {
   if (held_) return held_at_;
-  return step >= shift_ ? step - shift_ : 0;
+  const std::int64_t at = std::int64_t{step} - static_cast<std::int32_t>(shift_);
+  return static_cast<std::uint32_t>(std::max<std::int64_t>(at, 0));
 }
 
 void SetpointSource::scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const {

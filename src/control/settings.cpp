@@ -6,6 +6,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/number.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -27,7 +28,7 @@ void readNamed(const std::vector<std::string>& words, const std::vector<SignalIn
       return equals != std::string::npos && s.name == word.substr(0, equals);
     });
     require(place != signals.end(), where,
-            "NAME=number with names of the plant, got '" + word + "'");
+            "NAME=number, NAME one of " + join(namesOf(signals)) + ", got '" + word + "'");
     values[place - signals.begin()] = settingNumber(word.substr(equals + 1), where);
   }
 }

@@ -26,15 +26,16 @@ std::string number(double value) {
   return text;
 }
 
-/// Inputs first, disturbances after them, each from its delay on.
+/// Inputs, then disturbances, each from its delay on; none that tell nothing.
 std::vector<Regressor> exogenousOf(const DataSet& data, const Candidate& c) {
   std::vector<Regressor> v;
   const int n_u = static_cast<int>(data.inputs.size());
-  const int m = n_u + static_cast<int>(data.disturbances.size());
-  for (int j = 0; j < m; ++j)
+  for (int j = 0; j < n_u + static_cast<int>(data.disturbances.size()); ++j) {
+    if (data.constant.at(data.outputs.size() + static_cast<std::size_t>(j))) continue;
     for (int lag = 0; lag < (c.hidden ? 1 : c.input_terms); ++lag)
       v.push_back({j < n_u ? SignalKind::kInput : SignalKind::kDisturbance, j < n_u ? j : j - n_u,
                    std::max(c.delay[static_cast<std::size_t>(j)] + c.later, 0) + lag});
+  }
   return v;
 }
 

@@ -101,13 +101,14 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
   f.fit = free.fit;
   f.one_step = one.samples > 0 ? one.rmse : kNaN;
   f.blocks = blockErrors(data, free_run);
+  f.mean = meanBlockError(data, free_run);
   f.pieces = pieceErrors(data, free_run);
   f.width = widthOf(measured - free_run);
   f.one_step_width = widthOf(measured - one_step);
   return f;
 }
 
-Fitted fitWhole(const AutoData& data, const Judgement& judged, int window) {
+Fitted fitWhole(const AutoData& data, const Judgement& judged, int window, double most) {
   Candidate c = judged.candidate;
   c.iterations = kLastIterations;
   Fitted best;
@@ -119,7 +120,7 @@ Fitted fitWhole(const AutoData& data, const Judgement& judged, int window) {
     if (fitted.error < best.error) best = std::move(fitted);
     if (best.error < kSuspicious * judged.rmse) return best;
   }
-  best.finite = best.finite && best.error < 2.0 * judged.rmse;
+  best.finite = best.finite && best.error < most * judged.rmse;
   return best;
 }
 
@@ -137,7 +138,7 @@ void dropStuck(const Committee& committee, std::vector<Fitted>& fitted) {
 }
 
 bool beyondSpread(const AutoFigures& other, const AutoFigures& linear) {
-  if (!(other.free_run < linear.free_run)) return false;
+  if (!(other.mean < linear.mean)) return false;
   std::vector<double> ratios;
   for (std::size_t b = 0; b < std::min(other.pieces.size(), linear.pieces.size()); ++b) {
     const double ratio = std::log(other.pieces[b] / linear.pieces[b]);

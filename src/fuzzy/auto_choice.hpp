@@ -17,8 +17,8 @@ Committee chooseCommittee(const AutoData& data, const StructureSearch& found);
 AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step);
 
 /// Fits a candidate to all rows; from other seeds where that fails by the measure of its held-out
-/// error. Not finite: none came near.
-Fitted fitWhole(const AutoData& data, const Judgement& judged, int window);
+/// error. Not finite: none came within `most` times that error.
+Fitted fitWhole(const AutoData& data, const Judgement& judged, int window, double most = 2.0);
 
 /// Of several starts of one structure, those that got stuck in the fit to all rows become not
 /// finite.

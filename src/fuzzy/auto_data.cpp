@@ -1,9 +1,10 @@
 #include "fuzzy/auto_data.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "fuzzy/known_stretches.hpp"
 
 namespace fpc {
 namespace {
@@ -67,20 +68,6 @@ void findRate(AutoData& p) {
   p.noise = m > 0.0 ? std::clamp(std::sqrt(bend / m / 20.0), 1e-3, 0.3) : 0.01;
 }
 
-/// Rows without gaps in which nothing at all is known.
-std::vector<Stretch> stretchesOf(const DataSet& data) {
-  std::vector<Stretch> found;
-  Index first = -1;
-  for (Index k = 0; k <= data.rows(); ++k) {
-    const bool known = k < data.rows() && data.values.row(k).array().isFinite().any();
-    if (known && first < 0) first = k;
-    if (known || first < 0) continue;
-    if (k - first >= kShortestStretch) found.push_back({first, k});
-    first = -1;
-  }
-  return found;
-}
-
 /// `count` windows of `length` rows, equally spaced over rows 0..rows.
 std::vector<Stretch> spread(Index rows, Index count, Index length) {
   std::vector<Stretch> windows;
@@ -121,7 +108,7 @@ AutoData prepareAuto(const DataSet& data, int output, int blocks, Index most, In
   findLimits(p);
   findRate(p);
   const Index length = std::max<Index>(1, (std::min(rows, most) + blocks - 1) / blocks);
-  const auto known = stretchesOf(data);
+  const auto known = knownStretches(data, kShortestStretch);
   p.windows = cut(spread(rows, blocks, rows <= most ? rows : length), known);
   p.all =
       rows <= most_last ? known : cut(spread(rows, 2 * blocks, most_last / (2 * blocks)), known);
@@ -153,64 +140,6 @@ std::vector<Stretch> trainingStretches(const AutoData& p, int left_out) {
       kept.push_back(w);
   }
   return kept;
-}
-
-namespace {
-
-/// Mean squared one-step error of y(k), y(k-1) and u_j(k - d_j), u_j(k - d_j - 1) for all j, from
-/// where even the longest delay has a past.
-double oneStepError(const AutoData& p, const std::vector<int>& delay, Index longest) {
-  const Index m = static_cast<Index>(delay.size()), q = 3 + 2 * m;
-  const Index n_y = static_cast<Index>(p.data->outputs.size());
-  Matrix H = 1e-6 * Matrix::Identity(q, q);
-  Vector g = Vector::Zero(q), x(q);
-  double yy = 0.0, n = 0.0;
-  for (const auto& w : p.windows)
-    for (Index k = std::max(w.first, longest) + 1; k + 1 < w.last; ++k) {
-      x[0] = p.y(k), x[1] = p.y(k - 1), x[2] = 1.0;
-      for (Index j = 0; j < m; ++j)
-        for (Index lag = 0; lag < 2; ++lag)
-          x[3 + 2 * j + lag] =
-              p.scaled(std::max<Index>(k - delay[static_cast<std::size_t>(j)] - lag, 0), n_y + j);
-      const double y = p.y(k + 1);
-      if (!x.allFinite() || !std::isfinite(y)) continue;
-      H.selfadjointView<Eigen::Lower>().rankUpdate(x);
-      g += x * y;
-      yy += y * y, n += 1.0;
-    }
-  if (n == 0.0) return 0.0;
-  const Vector theta = H.selfadjointView<Eigen::Lower>().ldlt().solve(g);
-  return std::max(yy - g.dot(theta), 0.0) / n;
-}
-
-}  // namespace
-
-DelayGuess guessDelays(const AutoData& p, int longest) {
-  constexpr double kAlike = 1.005;  // two delays within it are not told apart
-  // a delay must lower the error by more than chance does
-  const double worth = 1.0 - std::max(0.03, 10.0 / static_cast<double>(p.scaled.rows()));
-  const std::size_t m = p.data->inputs.size() + p.data->disturbances.size();
-  DelayGuess guess{std::vector<int>(m, 0), std::vector<bool>(m, false)};
-  double best = oneStepError(p, guess.delay, longest);
-  for (int pass = 0; pass < 2; ++pass)
-    for (std::size_t j = 0; j < m; ++j) {
-      std::vector<double> errors;
-      auto trial = guess.delay;
-      for (trial[j] = 0; trial[j] <= longest; ++trial[j])
-        errors.push_back(oneStepError(p, trial, longest));
-      const auto lowest = std::min_element(errors.begin(), errors.end());
-      if (*lowest < worth * best) {
-        guess.delay[j] = static_cast<int>(lowest - errors.begin());
-        best = *lowest;
-      }
-      const double chosen = errors[static_cast<std::size_t>(guess.delay[j])];
-      guess.doubt[j] = false;
-      for (std::size_t d = 0; d < errors.size(); ++d)
-        if (std::abs(static_cast<int>(d) - guess.delay[j]) > 1 && errors[d] < kAlike * chosen &&
-            errors.front() > 1.02 * chosen)
-          guess.doubt[j] = true;
-    }
-  return guess;
 }
 
 }  // namespace fpc

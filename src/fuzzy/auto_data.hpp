@@ -40,12 +40,4 @@ RecurrentData recurrentData(const AutoData& prepared, const std::vector<Regresso
 /// Stretches without the block `left_out` (-1: none), neighbours joined.
 std::vector<Stretch> trainingStretches(const AutoData& prepared, int left_out);
 
-/// Transport delays of inputs and disturbances [samples], 0 = acts on the next output; by one-step
-/// least squares, one signal after the other. `doubt` is true where the runner-up is as good.
-struct DelayGuess {
-  std::vector<int> delay;
-  std::vector<bool> doubt;
-};
-DelayGuess guessDelays(const AutoData& prepared, int longest);
-
 }  // namespace fpc

@@ -8,6 +8,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fuzzy/auto_choice.hpp"
+#include "fuzzy/auto_delay.hpp"
 
 namespace fpc {
 namespace {
@@ -16,6 +17,9 @@ using Eigen::Index;
 
 constexpr double kWorth = 0.97;    // a fuzzy model must lower the held-out error by this
 constexpr std::size_t kShown = 5;  // trials of each kind in the report
+constexpr double kTells = 10.0;    // [%] of fit: less is hardly more than the mean
+constexpr int kLongestDelay = 100;
+constexpr Index kRowsPerDelay = 10;
 
 std::string shortNumber(double value) {
   char text[32];
@@ -37,17 +41,15 @@ class OutputSearch {
 
   void run() {
     found_.output = name();
-    const int longest =
-        std::min<int>(params_.longest_delay, static_cast<int>(data_.data->rows() / 20));
-    const DelayGuess guess = guessDelays(data_, longest);
-    found_.delay = guess.delay;
-    remarkDelays(guess);
-    searched_ = searchStructures(data_, guess.delay, params_.states, params_.seed, limits_);
+    findDelays();
+    searched_ = searchStructures(data_, found_.delay, params_.states, params_.seed, limits_);
     if (searched_.skipped > 0)
       remark("the time budget left out " + std::to_string(searched_.skipped) +
              " of the structures; a longer --budget may find better ones");
     require(!searched_.linear.empty(), data_.data->source + ": output '" + name() + "'",
-            "a linear model that runs freely without leaving the data; none did");
+            "a linear model that runs freely without leaving the data; none did in all of " +
+                std::to_string(data_.windows.size()) +
+                " blocks (fewer --blocks or a smaller --window, if a block has only few rows)");
     chooseModels();
     chooseState();
     decide();
@@ -72,22 +74,44 @@ class OutputSearch {
     return data_.shift[data_.output] + data_.scale[data_.output] * scaled;
   }
 
-  void remarkDelays(const DelayGuess& guess) {
+  void findDelays() {
+    const auto usual =
+        static_cast<int>(std::min<Index>(kLongestDelay, data_.data->rows() / kRowsPerDelay));
+    const int longest =
+        params_.longest_delay > 0
+            ? std::min<int>(params_.longest_delay, static_cast<int>(data_.data->rows() / 2))
+            : usual;
+    const DelayGuess guess = guessDelays(data_, longest);
+    found_.delay = guess.delay;
+    if (!guess.longer.empty())
+      found_.delay = bestDelays(data_, guess.delay, guess.longer, params_.seed, limits_);
+    remarkDelays(guess, longest);
+  }
+
+  void remarkDelays(const DelayGuess& guess, int longest) {
     for (std::size_t j = 0; j < guess.delay.size(); ++j) {
-      if (!guess.doubt[j]) continue;
       const std::size_t n_u = data_.data->inputs.size();
       const auto& signal = j < n_u ? data_.data->inputs[j] : data_.data->disturbances[j - n_u];
-      remark("delay of " + signal.name + " doubtful: " + std::to_string(guess.delay[j]) +
-             " samples fit best, others as well");
+      const std::string words = std::to_string(found_.delay[j]) + " samples fit best, ";
+      if (found_.delay[j] >= longest)
+        remark("delay of " + signal.name + ": " + words +
+               "the longest that was tried (--longest-delay)");
+      else if (guess.doubt[j] && found_.delay[j] == guess.delay[j])
+        remark("delay of " + signal.name + " doubtful: " + words + "others as well");
     }
   }
 
-  /// The best of a kind whose fit to all rows comes near its held-out error; -1: none.
-  int settle(const std::vector<Judgement>& judged, OutputModel& model) {
+  /// The best of a kind whose fit to all rows comes within `most` times its held-out error; -1:
+  /// none.
+  int settle(const std::vector<Judgement>& judged, OutputModel& model, double most) {
     for (std::size_t i = 0; i < std::min<std::size_t>(judged.size(), 4); ++i) {
       if (judged[i].candidate.hidden) continue;
-      const Fitted whole = fitWhole(data_, judged[i], params_.window);
-      if (!whole.finite) continue;
+      const Fitted whole = fitWhole(data_, judged[i], params_.window, most);
+      if (!whole.finite) {
+        remark("'" + judged[i].candidate.text() + "' is passed over: fitted to all rows, it runs " +
+               (std::isfinite(whole.error) ? "more than twice as far off as held out" : "away"));
+        continue;
+      }
       model = toSubmodel(data_, whole);
       for (auto& rule : model.rules)
         rule.data_count = static_cast<std::uint64_t>(data_.data->rows()) / model.rules.size();
@@ -101,20 +125,20 @@ class OutputSearch {
     for (const auto& j : searched_.linear)
       if (!j.candidate.hidden) lines.push_back(j);
     OutputModel linear, fuzzy;
-    const int line = settle(lines, linear);
+    const int line = settle(lines, linear, kInfinity);
     require(line >= 0, data_.data->source + ": output '" + name() + "'",
             "a linear model that can be fitted to all rows");
     const Judgement& l = lines[static_cast<std::size_t>(line)];
     found_.linear = figuresOf(data_, l.free_run, l.one_step);
     linear_text_ = l.candidate.text();
     result_.linear.submodels.push_back(linear);
-    const int rules = settle(searched_.regressors, fuzzy);
+    const int rules = settle(searched_.regressors, fuzzy, 2.0);
     fuzzy_chosen_ = false;
     if (rules >= 0) {
       const Judgement& r = searched_.regressors[static_cast<std::size_t>(rules)];
       found_.regressors = figuresOf(data_, r.free_run, r.one_step);
       fuzzy_chosen_ = found_.regressors.fit > 0.0 &&
-                      found_.regressors.free_run < kWorth * found_.linear.free_run &&
+                      found_.regressors.mean < kWorth * found_.linear.mean &&
                       beyondSpread(found_.regressors, found_.linear);
       fuzzy_text_ = r.candidate.text();
     }
@@ -158,18 +182,22 @@ class OutputSearch {
       found_.best = ModelKind::kRegressors;
     }
     const AutoFigures& own = found_.state;
-    if (!own.blocks.empty() && own.fit > 0.0 && own.free_run < kWorth * best->free_run &&
+    if (!own.blocks.empty() && own.fit > 0.0 && own.mean < kWorth * best->mean &&
         beyondSpread(own, line)) {
       best = &own;
       found_.best = ModelKind::kState;
     }
     found_.beats_linear = best != &line;
     found_.fuzzy_model = fuzzy_chosen_;
-    found_.verdict = best->fit > 0.0
-                         ? verdictOf(*best)
+    found_.verdict = verdictOf(*best);
+    if (best->fit > kTells) return;
+    found_.verdict =
+        (best->fit > 0.0 ? "no model says much more than the mean of the record in free run over "
+                           "held-out blocks (fit " +
+                               shortNumber(best->fit) + " %): "
                          : "no model says more than the mean of the record in free run over "
-                           "held-out blocks: do not trust any of them there (" +
-                               verdictOf(*best) + ")";
+                           "held-out blocks: ") +
+        "do not trust any of them there (" + found_.verdict + ")";
   }
 
   std::string verdictOf(const AutoFigures& best) const {
@@ -177,16 +205,15 @@ class OutputSearch {
     if (!found_.beats_linear)
       return "no fuzzy model beats the best linear one beyond the spread over held-out blocks "
              "(" +
-             lowestFuzzyText() + ", beside " + shortNumber(line.free_run) +
+             lowestFuzzyText() + ", beside " + shortNumber(line.mean) +
              "): the linear model is written";
     std::string words =
         "the fuzzy model beats linear beyond the spread over held-out blocks: free "
         "run " +
-        shortNumber(best.free_run) + " beside " + shortNumber(line.free_run) +
-        " of the best linear one";
+        shortNumber(best.mean) + " beside " + shortNumber(line.mean) + " of the best linear one";
     if (found_.best == ModelKind::kState)
       words += "; it has a state of its own, for simulation; what control laws take reaches " +
-               shortNumber(fuzzy_chosen_ ? found_.regressors.free_run : line.free_run) +
+               shortNumber(fuzzy_chosen_ ? found_.regressors.mean : line.mean) +
                (fuzzy_chosen_ ? "" : " (linear)");
     return words;
   }
@@ -199,7 +226,7 @@ class OutputSearch {
   double lowestFuzzy() const {
     double lowest = std::numeric_limits<double>::infinity();
     for (const auto* f : {&found_.regressors, &found_.state})
-      if (!f->blocks.empty()) lowest = std::min(lowest, f->free_run);
+      if (!f->blocks.empty()) lowest = std::min(lowest, f->mean);
     return lowest;
   }
 
@@ -215,7 +242,7 @@ class OutputSearch {
           std::find(members_.begin(), members_.end(), first.candidate.text()) != members_.end();
       keep(ModelKind::kState,
            first.candidate.text() + ", " + std::to_string(group.members.size()) + " starts",
-           first.parameters, group.rmse, blockErrors(data_, group.free_run), picked);
+           first.parameters, blockErrors(data_, group.free_run), picked);
     }
   }
 
@@ -225,18 +252,21 @@ class OutputSearch {
     for (const auto& j : judged) {
       if (j.candidate.hidden != hidden || shown++ >= kShown) continue;
       const std::string text = j.candidate.text();
-      keep(kind, text, j.parameters, j.rmse, j.blocks,
+      keep(kind, text, j.parameters, j.blocks,
            std::find(chosen.begin(), chosen.end(), text) != chosen.end());
     }
   }
 
-  void keep(ModelKind kind, const std::string& text, Index parameters, double rmse,
+  void keep(ModelKind kind, const std::string& text, Index parameters,
             const std::vector<double>& blocks, bool picked) {
-    const auto n = static_cast<double>(blocks.size());
-    double mean = 0.0, square = 0.0;
-    for (const double b : blocks) mean += b / n;
-    for (const double b : blocks) square += (b - mean) * (b - mean);
-    result_.trials.push_back({name(), kind, text, parameters, rmse, std::sqrt(square / n), picked});
+    double n = 0.0, mean = 0.0, square = 0.0;
+    for (const double b : blocks)
+      if (std::isfinite(b)) n += 1.0, mean += b;
+    mean /= std::max(n, 1.0);
+    for (const double b : blocks)
+      if (std::isfinite(b)) square += (b - mean) * (b - mean);
+    result_.trials.push_back(
+        {name(), kind, text, parameters, mean, std::sqrt(square / std::max(n, 1.0)), picked});
   }
 
   AutoData data_;

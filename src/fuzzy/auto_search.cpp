@@ -23,6 +23,13 @@ class Search {
          const SearchLimits& limits)
       : data_(data), delay_(delay), seed_(seed), limits_(limits) {}
 
+  /// The lowest score of a few linear models.
+  double lowestOfLines() {
+    judge(delayCandidates(base()), 0.0, 0.0);
+    sortAll();
+    return result_.linear.empty() ? kInfinity : result_.linear.front().score;
+  }
+
   StructureSearch run(bool states) {
     judge(linearCandidates(base(), states), 0.0, 0.08);
     sortAll();
@@ -184,6 +191,21 @@ void Search::sortAll() {
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
                                  std::uint64_t seed, const SearchLimits& limits) {
   return Search(data, delay, seed, limits).run(states);
+}
+
+std::vector<int> bestDelays(const AutoData& data, const std::vector<int>& usual,
+                            const std::vector<std::vector<int>>& others, std::uint64_t seed,
+                            const SearchLimits& limits) {
+  constexpr double kWorth = 0.97;
+  std::vector<int> best = usual;
+  double lowest = kWorth * Search(data, usual, seed, limits).lowestOfLines();
+  for (const auto& delay : others) {
+    const double score = Search(data, delay, seed, limits).lowestOfLines();
+    if (!(score < lowest)) continue;
+    lowest = score;
+    best = delay;
+  }
+  return best;
 }
 
 }  // namespace fpc

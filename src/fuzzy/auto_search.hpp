@@ -53,6 +53,12 @@ struct StructureSearch {
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
                                  std::uint64_t seed, const SearchLimits& limits);
 
+/// The delays with which simple linear models run best over the blocks: `usual` unless `others` do
+/// better by 3 %.
+std::vector<int> bestDelays(const AutoData& data, const std::vector<int>& usual,
+                            const std::vector<std::vector<int>>& others, std::uint64_t seed,
+                            const SearchLimits& limits);
+
 /// Trimmed mean of what members say at each row (NaN: nobody).
 Vector averaged(const std::vector<const Judgement*>& members);
 

@@ -26,6 +26,20 @@ Candidates fresh(const Candidates& list, std::vector<std::string> known) {
 
 }  // namespace
 
+Candidates delayCandidates(const Candidate& base) {
+  Candidates list;
+  Candidate c = base;
+  c.iterations = kSearchIterations;
+  for (const auto& [n, m] : std::vector<std::pair<int, int>>{{1, 1}, {2, 2}})
+    for (const bool free : {false, true}) {
+      c.order = n;
+      c.input_terms = m;
+      c.free_run = free;
+      list.push_back(c);
+    }
+  return list;
+}
+
 Candidates linearCandidates(const Candidate& base, bool states) {
   Candidates list;
   Candidate c = base;

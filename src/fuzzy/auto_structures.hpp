@@ -7,6 +7,8 @@ namespace fpc {
 
 using Candidates = std::vector<Candidate>;
 
+/// A few simple linear models, enough to tell delays apart.
+Candidates delayCandidates(const Candidate& base);
 Candidates linearCandidates(const Candidate& base, bool states);
 /// Two and three rules on the orders of the best linear models.
 Candidates ruleCandidates(const Candidate& base, const std::vector<Judgement>& linear);

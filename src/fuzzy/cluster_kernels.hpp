@@ -1,29 +1,42 @@
 // Private: the arithmetic of fuzzy clustering on blocks of samples, dimension by dimension with the
-// samples of a block side by side, so that the compiler's vectors hold samples.
-// Shapes: points, away, scaled padded(n) kBlock; M, scatter padded(n) padded(n); all row by
-// row, rows beyond n zero.
+// samples of a block side by side, so that the compiler's vectors hold samples. What is summed over
+// samples is kept as kLanes partial sums until lanesSum().
+// Shapes: points n kBlock; scaled padded(n) kBlock; M padded(n) padded(n), scatter
+// padded(n) padded(n) kLanes, offset padded(n) kLanes; all row by row, rows beyond n zero.
 #pragma once
 
 #include <cstddef>
 
 namespace fpc::clusters {
 
-constexpr std::size_t kBlock = 128;  // samples; a buffer row holds that many
-constexpr std::size_t kTile = 4;     // rows are padded with zeros to a multiple of it
+constexpr std::size_t kBlock = 64;  // samples; what a block needs fits into the first cache
+constexpr std::size_t kLanes = 4;   // partial sums
+constexpr std::size_t kTile = 4;    // rows are padded with zeros to a multiple of it
 
 inline std::size_t padded(std::size_t rows) { return (rows + kTile - 1) / kTile * kTile; }
 
-/// away(s) = points(s) - center
-void subtract(const double* points, const double* center, std::size_t n, double* away);
+/// Sum of the partial sums.
+inline double lanesSum(const double* lanes) {
+  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
 
-/// squared(s) = |M away(s)|^2, M lower triangular.
-void squaredNorms(const double* away, const double* M, std::size_t n, double* squared);
+/// squared(s) = |M (points(s) - center)|^2, M lower triangular.
+void squaredNorms(const double* points, const double* center, const double* M, std::size_t n,
+                  double* squared);
 
-/// scaled(s) = weight(s) away(s), and sum += sum_s scaled(s).
-void scaleBlock(const double* away, const double* weight, std::size_t n, double* scaled,
-                double* sum);
+/// nearest(s) = min(nearest(s), |points(s) - center|^2)
+void approach(const double* points, const double* center, std::size_t n, double* nearest);
 
-/// scatter += sum_s scaled(s) away(s)', the lower triangle.
-void addScatter(const double* away, const double* scaled, std::size_t n, double* scatter);
+/// Memberships u of fuzziness 2 from squared distances, c kBlock each: member = u = present. A
+/// point in a centre belongs to it alone. @return the largest move |u - present|
+double shareOut(const double* squared, std::size_t clusters, double* member, double* present);
+
+/// scaled(s) = root(s) (points(s) - center), offset += sum_s root(s) scaled(s); sums[0] += sum_s
+/// root(s)^2 and sums[1] += sum_s root(s)^2 squared(s), kLanes each.
+void scaleBlock(const double* points, const double* center, const double* root,
+                const double* squared, std::size_t n, double* scaled, double* offset, double* sums);
+
+/// scatter += sum_s scaled(s) scaled(s)', the lower triangle.
+void addScatter(const double* scaled, std::size_t n, double* scatter);
 
 }  // namespace fpc::clusters

@@ -1,7 +1,7 @@
 #include "fuzzy/cluster_pass.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
 #include "fmbpc/base/parallel.hpp"
 #include "fuzzy/cluster_kernels.hpp"
@@ -11,51 +11,142 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kChunk =
-    32 * static_cast<Index>(kBlock);  // samples that one thread takes at a time
 constexpr Index kWidth = static_cast<Index>(kBlock);
+constexpr Index kChunk = 64 * kWidth;  // samples that one thread takes at a time
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-using Row = Eigen::Map<Eigen::Array<double, 1, kWidth>, Eigen::Aligned16>;
+using Row = Eigen::Map<Eigen::Array<double, 1, kWidth>, Eigen::Aligned64>;
 
 Row rowOf(Buffer& buffer, Index i) { return Row(buffer.data() + i * kWidth); }
 
+Index blocksOf(Index samples) { return (samples + kWidth - 1) / kWidth; }
+
 }  // namespace
 
+template <class Work>
+void Pass::overChunks(const Work& work) {
+  parallelFor(chunks_.size(), threads_, [&](std::size_t i) { work(chunks_[i]); });
+}
+
 Pass::Pass(MatrixRef points, Index clusters, double fuzziness, int threads)
-    : points_(points), clusters_(clusters), fuzziness_(fuzziness), threads_(threads) {
-  const Index n = points.rows(), samples = points.cols();
-  const std::size_t rows = padded(at(n)), c = at(clusters);
+    : rows_(points.rows()),
+      samples_(points.cols()),
+      clusters_(clusters),
+      fuzziness_(fuzziness),
+      threads_(threads) {
+  const std::size_t rows = padded(at(rows_)), c = at(clusters);
   centers_.assign(rows * c, 0.0);
   roots_.assign(rows * rows * c, 0.0);
-  chunks_.resize(at((samples + kChunk - 1) / kChunk));
+  chunks_.resize(at((samples_ + kChunk - 1) / kChunk));
   for (std::size_t i = 0; i < chunks_.size(); ++i) {
-    Chunk& chunk = chunks_[i];
-    chunk.from = static_cast<Index>(i) * kChunk;
-    chunk.size = std::min(kChunk, samples - chunk.from);
-    chunk.present.assign(at((chunk.size + kWidth - 1) / kWidth) * c * kBlock, 0.0);
-    chunk.scatter.assign(rows * rows * c, 0.0);
-    chunk.offset.assign(rows * c, 0.0);
-    chunk.total.assign(c, 0.0);
+    chunks_[i].from = static_cast<Index>(i) * kChunk;
+    chunks_[i].size = std::min(kChunk, samples_ - chunks_[i].from);
   }
+  overChunks([&](Chunk& chunk) { load(points, chunk); });
+  restart();
   moments_.weight.setZero(clusters);
-  moments_.offset.setZero(n, clusters);
-  moments_.scatter.assign(c, Matrix::Zero(n, n));
+  moments_.offset.setZero(rows_, clusters);
+  moments_.scatter.assign(c, Matrix::Zero(rows_, rows_));
 }
 
 /// The samples of a block side by side; behind the last one, copies of it that weigh nothing.
-void Pass::loadBlock(Index from, Index size, Chunk& chunk) const {
-  const Index n = points_.rows();
-  for (Index s = 0; s < kWidth; ++s) {
-    const double* point = points_.col(from + std::min(s, size - 1)).data();
-    for (Index j = 0; j < n; ++j) chunk.points[at(j * kWidth + s)] = point[j];
+void Pass::load(MatrixRef points, Chunk& chunk) const {
+  const Index blocks = blocksOf(chunk.size);
+  chunk.present.assign(at(blocks * clusters_ * kWidth), 0.0);
+  chunk.points.resize(at(blocks * rows_ * kWidth));
+  double* to = chunk.points.data();
+  for (Index block = 0; block < blocks; ++block, to += rows_ * kWidth) {
+    for (Index s = 0; s < kWidth; ++s) {
+      const Index k = std::min(block * kWidth + s, chunk.size - 1);
+      const double* point = points.col(chunk.from + k).data();
+      for (Index j = 0; j < rows_; ++j) to[j * kWidth + s] = point[j];
+    }
   }
 }
 
-void Pass::moveFrom(Index cluster, Chunk& chunk) const {
-  const std::size_t n = at(points_.rows());
-  subtract(chunk.points.data(), centers_.data() + at(cluster) * padded(n), n, chunk.away.data());
+void Pass::takeRoom(Chunk& chunk) const {
+  const std::size_t rows = padded(at(rows_)), c = at(clusters_);
+  chunk.scaled.assign(rows * kBlock, 0.0);
+  chunk.squared.assign(c * kBlock, 0.0);
+  chunk.member.assign(c * kBlock, 0.0);
+  chunk.scatter.assign(rows * rows * c * kLanes, 0.0);
+  chunk.offset.assign(rows * c * kLanes, 0.0);
+  chunk.sums.assign(2 * c * kLanes, 0.0);
+}
+
+/// Of the partial sums only the sums are kept.
+void Pass::giveBack(Chunk& chunk) const {
+  for (Buffer* buffer : {&chunk.scaled, &chunk.squared, &chunk.member}) Buffer().swap(*buffer);
+  for (Buffer* buffer : {&chunk.scatter, &chunk.offset, &chunk.sums}) {
+    Buffer kept(buffer->size() / kLanes);
+    for (std::size_t i = 0; i < kept.size(); ++i) kept[i] = lanesSum(buffer->data() + i * kLanes);
+    kept.swap(*buffer);
+  }
+}
+
+void Pass::scatterChunk(const double* center, Chunk& chunk) const {
+  const std::size_t n = at(rows_);
+  takeRoom(chunk);
+  const double* points = chunk.points.data();
+  for (Index from = 0; from < chunk.size; from += kWidth, points += rows_ * kWidth) {
+    const Index size = std::min(kWidth, chunk.size - from);
+    Row weight = rowOf(chunk.member, 0);
+    weight.setOnes();
+    weight.tail(kWidth - size).setZero();
+    scaleBlock(points, center, weight.data(), chunk.squared.data(), n, chunk.scaled.data(),
+               chunk.offset.data(), chunk.sums.data());
+    addScatter(chunk.scaled.data(), n, chunk.scatter.data());
+  }
+  giveBack(chunk);
+}
+
+Matrix Pass::scatterAround(const Vector& center) {
+  overChunks([&](Chunk& chunk) { scatterChunk(center.data(), chunk); });
+  const auto rows = static_cast<Index>(padded(at(rows_)));
+  Matrix sum = Matrix::Zero(rows_, rows_);
+  for (const Chunk& chunk : chunks_) {
+    for (Index j = 0; j < rows_; ++j) {
+      for (Index k = 0; k <= j; ++k) sum(j, k) += chunk.scatter[at(j * rows + k)];
+    }
+  }
+  sum.triangularView<Eigen::StrictlyUpper>() = sum.transpose();
+  return sum;
+}
+
+void Pass::restart() {
+  overChunks([&](Chunk& chunk) {
+    chunk.nearest.assign(at(blocksOf(chunk.size) * kWidth), 0.0);
+    std::fill_n(chunk.nearest.begin(), chunk.size, std::numeric_limits<double>::infinity());
+  });
+}
+
+void Pass::approachIn(const double* center, Chunk& chunk) const {
+  double sum[kLanes] = {};
+  for (Index block = 0; block < blocksOf(chunk.size); ++block) {
+    double* nearest = chunk.nearest.data() + block * kWidth;
+    clusters::approach(chunk.points.data() + block * rows_ * kWidth, center, at(rows_), nearest);
+    for (std::size_t s = 0; s < kBlock; ++s) sum[s % kLanes] += nearest[s];
+  }
+  chunk.nearest_sum = lanesSum(sum);
+}
+
+double Pass::approach(const Vector& point) {
+  overChunks([&](Chunk& chunk) { approachIn(point.data(), chunk); });
+  double sum = 0.0;
+  for (const Chunk& chunk : chunks_) sum += chunk.nearest_sum;
+  return sum;
+}
+
+Index Pass::sampleAt(double distance_sum) const {
+  double left = distance_sum;
+  std::size_t i = 0;
+  for (; i + 1 < chunks_.size() && left - chunks_[i].nearest_sum > 0.0; ++i)
+    left -= chunks_[i].nearest_sum;
+  const auto distance = [&](Index k) { return chunks_[at(k / kChunk)].nearest[at(k % kChunk)]; };
+  Index k = chunks_[i].from;
+  while (k + 1 < samples_ && (left -= distance(k)) > 0.0) ++k;
+  return k;
 }
 
 /// Squared distances into memberships; a point in a centre belongs to it alone.
@@ -70,7 +161,7 @@ void Pass::toMemberships(Chunk& chunk) const {
     member = (squared <= nearest).select(1.0, nearest / squared);
     if (exponent == 2.0) {
       member = member.square().eval();
-    } else if (exponent != 1.0) {
+    } else {
       member = (member > 0.0).select((exponent * member.log()).exp(), 0.0).eval();
     }
     sum += member;
@@ -79,88 +170,83 @@ void Pass::toMemberships(Chunk& chunk) const {
   for (Index i = 0; i < clusters_; ++i) rowOf(chunk.member, i) *= sum;
 }
 
-/// u^m
-void Pass::toWeights(Chunk& chunk) const {
+/// sqrt(u^m), into `member`
+void Pass::toRoots(Chunk& chunk) const {
   for (Index i = 0; i < clusters_; ++i) {
-    const Row member = rowOf(chunk.member, i);
-    Row weight = rowOf(chunk.weight, i);
-    if (fuzziness_ == 2.0) {
-      weight = member.square();
-    } else if (fuzziness_ == 1.5) {
-      weight = member * member.sqrt();
-    } else {
-      weight = (member > 0.0).select((fuzziness_ * member.log()).exp(), 0.0);
+    Row root = rowOf(chunk.member, i);
+    if (fuzziness_ == 1.5) {
+      root = (root * root.sqrt()).sqrt().eval();
+    } else if (fuzziness_ != 2.0) {
+      root = (root > 0.0).select((0.5 * fuzziness_ * root.log()).exp(), 0.0).eval();
     }
   }
 }
 
 /// Keeps the memberships of a block and how far they moved.
-void Pass::store(Index size, double* present, Chunk& chunk) const {
+void Pass::store(double* present, Chunk& chunk) const {
   for (Index i = 0; i < clusters_; ++i) {
     Row old(present + i * kWidth);
     const Row fresh = rowOf(chunk.member, i);
-    chunk.change = std::max(chunk.change, (fresh - old).abs().head(size).maxCoeff());
+    chunk.change = std::max(chunk.change, (fresh - old).abs().maxCoeff());
     old = fresh;
   }
 }
 
 void Pass::copyMemberships(Matrix& memberships) const {
-  memberships.resize(clusters_, points_.cols());
-  for (Index k = 0; k < points_.cols(); ++k) {
-    const Chunk& chunk = chunks_[at(k / kChunk)];
-    const Index block = k % kChunk / kWidth, s = k % kWidth;
-    const double* present = chunk.present.data() + block * clusters_ * kWidth + s;
-    for (Index i = 0; i < clusters_; ++i) memberships(i, k) = present[i * kWidth];
-  }
+  memberships.resize(clusters_, samples_);
+  parallelFor(chunks_.size(), threads_, [&](std::size_t c) {
+    const Chunk& chunk = chunks_[c];
+    for (Index k = 0; k < chunk.size; ++k) {
+      const double* present = chunk.present.data() + k / kWidth * clusters_ * kWidth + k % kWidth;
+      double* to = memberships.data() + (chunk.from + k) * clusters_;
+      for (Index i = 0; i < clusters_; ++i) to[i] = present[i * kWidth];
+    }
+  });
 }
 
-void Pass::addBlock(Index size, Chunk& chunk) const {
-  const std::size_t n = at(points_.rows()), rows = padded(n);
-  for (Index i = 0; i < clusters_; ++i) {
-    Row weight = rowOf(chunk.weight, i);
-    if (size < kWidth) weight.tail(kWidth - size).setZero();
-    chunk.total[at(i)] += weight.sum();
-    chunk.objective += (weight * rowOf(chunk.squared, i)).sum();
-    moveFrom(i, chunk);
-    scaleBlock(chunk.away.data(), weight.data(), n, chunk.scaled.data(),
-               chunk.offset.data() + at(i) * rows);
+void Pass::addBlock(const double* points, Index size, Chunk& chunk) const {
+  const std::size_t n = at(rows_), rows = padded(n);
+  for (std::size_t i = 0; i < at(clusters_); ++i) {
+    Row root = rowOf(chunk.member, static_cast<Index>(i));
+    if (size < kWidth) root.tail(kWidth - size).setZero();
+    scaleBlock(points, centers_.data() + i * rows, root.data(), chunk.squared.data() + i * kBlock,
+               n, chunk.scaled.data(), chunk.offset.data() + i * rows * kLanes,
+               chunk.sums.data() + 2 * i * kLanes);
     if (scatter_)
-      addScatter(chunk.away.data(), chunk.scaled.data(), n,
-                 chunk.scatter.data() + at(i) * rows * rows);
+      addScatter(chunk.scaled.data(), n, chunk.scatter.data() + i * rows * rows * kLanes);
   }
 }
 
 void Pass::runChunk(Chunk& chunk) const {
-  const std::size_t n = at(points_.rows()), rows = padded(n), c = at(clusters_);
-  for (Buffer* buffer : {&chunk.points, &chunk.away, &chunk.scaled})
-    buffer->assign(rows * kBlock, 0.0);
-  for (Buffer* buffer : {&chunk.squared, &chunk.member, &chunk.weight})
-    buffer->assign(c * kBlock, 0.0);
-  for (Buffer* buffer : {&chunk.scatter, &chunk.offset, &chunk.total})
-    std::fill(buffer->begin(), buffer->end(), 0.0);
-  chunk.objective = chunk.change = 0.0;
+  const std::size_t n = at(rows_), rows = padded(n);
+  takeRoom(chunk);
+  chunk.change = 0.0;
+  const double* points = chunk.points.data();
   double* present = chunk.present.data();
-  for (Index from = chunk.from; from < chunk.from + chunk.size; from += kWidth) {
-    const Index size = std::min(kWidth, chunk.from + chunk.size - from);
-    loadBlock(from, size, chunk);
-    for (Index i = 0; i < clusters_; ++i) {
-      moveFrom(i, chunk);
-      squaredNorms(chunk.away.data(), roots_.data() + at(i) * rows * rows, n,
-                   chunk.squared.data() + at(i) * kBlock);
+  for (Index from = 0; from < chunk.size; from += kWidth) {
+    for (std::size_t i = 0; i < at(clusters_); ++i) {
+      squaredNorms(points, centers_.data() + i * rows, roots_.data() + i * rows * rows, n,
+                   chunk.squared.data() + i * kBlock);
     }
-    toMemberships(chunk);
-    store(size, present, chunk);
+    if (fuzziness_ == 2.0) {
+      chunk.change = std::max(chunk.change, shareOut(chunk.squared.data(), at(clusters_),
+                                                     chunk.member.data(), present));
+    } else {
+      toMemberships(chunk);
+      store(present, chunk);
+      toRoots(chunk);
+    }
+    addBlock(points, std::min(kWidth, chunk.size - from), chunk);
+    points += rows_ * kWidth;
     present += clusters_ * kWidth;
-    toWeights(chunk);
-    addBlock(size, chunk);
   }
-  for (Buffer* buffer :
-       {&chunk.points, &chunk.away, &chunk.scaled, &chunk.squared, &chunk.member, &chunk.weight})
-    Buffer().swap(*buffer);
+  giveBack(chunk);
+  chunk.objective = 0.0;
+  for (std::size_t i = 0; i < at(clusters_); ++i) chunk.objective += chunk.sums[2 * i + 1];
 }
 
 void Pass::prepare(const Metric& metric) {
-  const Index n = points_.rows();
+  const Index n = rows_;
   const auto rows = static_cast<Index>(padded(at(n)));
   for (Index i = 0; i < clusters_; ++i) {
     for (Index j = 0; j < n; ++j) {
@@ -172,7 +258,7 @@ void Pass::prepare(const Metric& metric) {
 }
 
 void Pass::collect() {
-  const Index n = points_.rows();
+  const Index n = rows_;
   const auto rows = static_cast<Index>(padded(at(n)));
   moments_.objective = moments_.change = 0.0;
   moments_.weight.setZero();
@@ -182,7 +268,7 @@ void Pass::collect() {
     moments_.objective += chunk.objective;
     moments_.change = std::max(moments_.change, chunk.change);
     for (Index i = 0; i < clusters_; ++i) {
-      moments_.weight(i) += chunk.total[at(i)];
+      moments_.weight(i) += chunk.sums[at(2 * i)];
       for (Index j = 0; j < n; ++j) {
         moments_.offset(j, i) += chunk.offset[at(i * rows + j)];
         for (Index k = 0; k <= j; ++k)
@@ -197,7 +283,7 @@ void Pass::collect() {
 const Moments& Pass::run(const Metric& metric, bool scatter) {
   scatter_ = scatter;
   prepare(metric);
-  parallelFor(chunks_.size(), threads_, [&](std::size_t i) { runChunk(chunks_[i]); });
+  overChunks([&](Chunk& chunk) { runChunk(chunk); });
   collect();
   return moments_;
 }

@@ -3,14 +3,31 @@
 // do not depend on the number of threads: same data, same bits.
 #pragma once
 
+#include <cstddef>
+#include <new>
 #include <vector>
 
 #include "fmbpc/base/types.hpp"
 
 namespace fpc::clusters {
 
-/// Doubles aligned for the kernels.
-using Buffer = std::vector<double, Eigen::aligned_allocator<double>>;
+/// Doubles on whole cache lines, so that no load of the kernels crosses two.
+template <class Number>
+struct LineAllocator {
+  using value_type = Number;
+  static constexpr std::align_val_t kLine{64};
+
+  LineAllocator() = default;
+  template <class Other>
+  LineAllocator(const LineAllocator<Other>& /*other*/) {}
+  Number* allocate(std::size_t n) {
+    return static_cast<Number*>(::operator new(n * sizeof(Number), kLine));
+  }
+  void deallocate(Number* p, std::size_t /*n*/) { ::operator delete(p, kLine); }
+  friend bool operator==(const LineAllocator&, const LineAllocator&) { return true; }
+  friend bool operator!=(const LineAllocator&, const LineAllocator&) { return false; }
+};
+using Buffer = std::vector<double, LineAllocator<double>>;
 
 /// Sums over samples for each cluster, away from the centre that the distances were measured from.
 struct Moments {
@@ -29,8 +46,16 @@ struct Metric {
 
 class Pass {
  public:
-  /// `points` n samples, kept by reference. @param threads 0: all cores
+  /// Copies `points` (n samples) into blocks. @param threads 0: all cores
   Pass(MatrixRef points, Eigen::Index clusters, double fuzziness, int threads);
+  /// sum (z - center)(z - center)' of all samples.
+  Matrix scatterAround(const Vector& center);
+  /// Takes another point into account. @return the sum over samples of the squared distance to the
+  /// nearest of the points since restart()
+  double approach(const Vector& point);
+  /// The sample at which the squared distances to the nearest point add up to that.
+  Eigen::Index sampleAt(double distance_sum) const;
+  void restart();  ///< forgets the points of approach()
   /// Moves the memberships and sums up; without `scatter` the moments have none.
   const Moments& run(const Metric& metric, bool scatter);
   void copyMemberships(Matrix& memberships) const;  ///< c samples
@@ -38,24 +63,29 @@ class Pass {
  private:
   struct Chunk {
     Eigen::Index from{}, size{};
-    Buffer present;  // memberships, block by block
-    Buffer points, away, scaled, squared, member, weight;
-    Buffer scatter, offset, total;  // of all clusters, padded
-    double objective{}, change{};
+    Buffer points, present;  // and memberships, block by block
+    Buffer nearest;          // squared distance to the nearest point of approach()
+    Buffer scaled, squared, member;
+    Buffer scatter, offset, sums;  // of all clusters, padded, partial sums
+    double objective{}, change{}, nearest_sum{};
   };
 
+  void load(MatrixRef points, Chunk& chunk) const;
+  void takeRoom(Chunk& chunk) const;
+  void giveBack(Chunk& chunk) const;
   void runChunk(Chunk& chunk) const;
-  void loadBlock(Eigen::Index from, Eigen::Index size, Chunk& chunk) const;
-  void moveFrom(Eigen::Index cluster, Chunk& chunk) const;
+  void scatterChunk(const double* center, Chunk& chunk) const;
+  void approachIn(const double* center, Chunk& chunk) const;
   void toMemberships(Chunk& chunk) const;
-  void toWeights(Chunk& chunk) const;
-  void store(Eigen::Index size, double* present, Chunk& chunk) const;
-  void addBlock(Eigen::Index size, Chunk& chunk) const;
+  void toRoots(Chunk& chunk) const;
+  void store(double* present, Chunk& chunk) const;
+  void addBlock(const double* points, Eigen::Index size, Chunk& chunk) const;
   void prepare(const Metric& metric);
   void collect();
+  template <class Work>
+  void overChunks(const Work& work);
 
-  MatrixRef points_;
-  Eigen::Index clusters_;
+  Eigen::Index rows_, samples_, clusters_;
   double fuzziness_;
   int threads_;
   bool scatter_{};

@@ -69,11 +69,7 @@ class Iteration {
         params_(params),
         pass_(points, params.clusters, params.fuzziness, params.threads) {
     const Vector mean = points.rowwise().mean();
-    Matrix spread = Matrix::Zero(points.rows(), points.rows());
-    for (Index k = 0; k < points.cols(); ++k) {
-      const Vector away = points.col(k) - mean;
-      spread.noalias() += away * away.transpose();
-    }
+    const Matrix spread = pass_.scatterAround(mean);
     spread_ = meanSpread(bounded(spread / static_cast<double>(points.cols())));
   }
 
@@ -105,15 +101,12 @@ class Iteration {
   void spreadCenters(std::mt19937_64& generator) {
     const Index samples = points_.cols();
     clusters_.centers.resize(points_.rows(), params_.clusters);
-    Vector nearest = Vector::Constant(samples, std::numeric_limits<double>::infinity());
+    pass_.restart();
     Index chosen = std::min(samples - 1,
                             static_cast<Index>(uniform(generator) * static_cast<double>(samples)));
     for (Index i = 0; i < params_.clusters; ++i) {
       clusters_.centers.col(i) = points_.col(chosen);
-      nearest = nearest.cwiseMin(
-          (points_.colwise() - points_.col(chosen)).colwise().squaredNorm().transpose());
-      double left = uniform(generator) * nearest.sum();
-      for (chosen = 0; chosen + 1 < samples && (left -= nearest[chosen]) > 0.0;) ++chosen;
+      chosen = pass_.sampleAt(uniform(generator) * pass_.approach(points_.col(chosen)));
     }
   }
 
@@ -209,9 +202,12 @@ Clusters findClusters(MatrixRef points, const ClusteringParams& params,
       now.converged = iteration.change() <= params.tolerance;
       now.cancelled = progress && !progress(++iterations, now.objective.back());
     }
-    iteration.copyMemberships();
-    if (best.objective.empty() || now.objective.back() < best.objective.back()) best = now;
-    best.cancelled = now.cancelled;
+    const bool cancelled = now.cancelled;
+    if (best.objective.empty() || now.objective.back() < best.objective.back()) {
+      iteration.copyMemberships();
+      best = std::move(now);
+    }
+    best.cancelled = cancelled;
   }
   return best;
 }

@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kFarthestFit = 100.0;  // spans of the data: a run that leaves further has failed
-constexpr double kNudge = 1e-6;         // spans, for derivatives by differences
+constexpr double kFarthest = 100.0;  // spans of the data: a run that leaves further has failed
+constexpr double kNudge = 1e-6;      // spans, for derivatives by differences
 constexpr double kEnough = 1e-6;  // relative fall of the objective below which the fit has settled
 constexpr double kFirstDamping = 1e-3;  // of the number of rows
 constexpr double kMostDamping = 1e6;
@@ -146,7 +146,7 @@ double Simulator::run(const Vector& theta, bool free, double unit, double weight
       newest.setZero();
       continue;
     }
-    if (std::abs(predicted - center_) > kFarthestFit * span_)
+    if (std::abs(predicted - center_) > kFarthest * span_)
       return std::numeric_limits<double>::infinity();
     if (squares != nullptr) {
       differentiate(theta, k, free);

@@ -12,6 +12,8 @@
 namespace fpc {
 namespace {
 
+constexpr double kSameTime = 1e-3;  // of the sample time: records round and jitter
+
 int indexOf(const std::vector<SignalInfo>& signals, const std::string& name) {
   const auto found =
       std::find_if(signals.begin(), signals.end(), [&](const auto& s) { return s.name == name; });
@@ -76,7 +78,7 @@ TsModel matchToPlant(const TsModel& model, const PlantInfo& plant) {
   model.validate();
   const std::string where = "model '" + model.name + "'";
   require(
-      std::abs(model.sample_time_s - plant.sample_time_s) <= 1e-9 * plant.sample_time_s,
+      std::abs(model.sample_time_s - plant.sample_time_s) <= kSameTime * plant.sample_time_s,
       where + " sample_time_s",
       "the plant's " + exactText(plant.sample_time_s) + ", got " + exactText(model.sample_time_s));
   const std::vector<int> outputs = places(where + " outputs", model.outputs, plant.outputs);
@@ -88,6 +90,7 @@ TsModel matchToPlant(const TsModel& model, const PlantInfo& plant) {
             "also the plant's output " + output.name);
 
   TsModel matched = model;
+  matched.sample_time_s = plant.sample_time_s;
   matched.outputs = reordered(model.outputs, plant.outputs);
   matched.inputs = reordered(model.inputs, plant.inputs);
   matched.disturbances = reordered(model.disturbances, plant.disturbances);

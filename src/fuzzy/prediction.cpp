@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kFarthestOutput = 100.0;  // spans of the data
+constexpr double kFarthest = 100.0;  // spans of the data
 
 /// Evaluates submodels on a table of pasts.
 class Predictor {
@@ -71,7 +71,7 @@ class Predictor {
 
 double clampToData(double value, const SignalInfo& signal) {
   if (!std::isfinite(signal.lower) || !std::isfinite(signal.upper)) return value;
-  const double reach = kFarthestOutput * (signal.upper - signal.lower);
+  const double reach = kFarthest * (signal.upper - signal.lower);
   return std::clamp(value, signal.lower - reach, signal.upper + reach);
 }
 

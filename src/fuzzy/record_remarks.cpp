@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
+
+#include "fuzzy/feedback_share.hpp"
 
 namespace fpc {
 namespace {
@@ -12,13 +13,12 @@ using Eigen::Index;
 
 constexpr double kHardly = 0.01;  // share of rows in which an input must move
 constexpr Index kFewMoves = 10;
-constexpr double kSpike = 12.0;  // robust deviations of a sample from its neighbours
+constexpr Index kStill = 4;      // fewer moves tell nothing beside inputs that move
 constexpr double kSlow = 300.0;  // samples per time constant: too many
 constexpr double kFast = 0.5;    // too few
 constexpr double kUnstable = 1.002;
 constexpr double kLeft = 1.0;      // spans beyond the data: a free run has gone
-constexpr double kFeedback = 2.0;  // bounds
-constexpr Index kFeedbackLags = 10;
+constexpr double kDrift = 0.7;     // correlation of a residual with the one before
 constexpr double kMatters = 0.05;  // a correlation below it is true of a long record and no trouble
 
 std::string shortNumber(double value) {
@@ -31,13 +31,6 @@ std::vector<SignalInfo> causesOf(const DataSet& data) {
   std::vector<SignalInfo> causes = data.inputs;
   causes.insert(causes.end(), data.disturbances.begin(), data.disturbances.end());
   return causes;
-}
-
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 Index movesOf(const Eigen::Ref<const Vector>& u) {
@@ -65,19 +58,6 @@ void addSampleTime(const DataSet& data, const TsModel& linear, std::vector<std::
                         " s looks long: the slowest time constant is " + shortNumber(samples) +
                         " samples");
   }
-}
-
-/// Correlation of e(k) with u(k + lag), both without their means.
-double laterCorrelation(const Eigen::Ref<const Vector>& e, const Eigen::Ref<const Vector>& u,
-                        Index lag) {
-  double n = 0.0, se = 0.0, su = 0.0, see = 0.0, suu = 0.0, seu = 0.0;
-  for (Index k = 0; k + lag < e.size(); ++k) {
-    const double a = e[k], b = u[k + lag];
-    if (!std::isfinite(a) || !std::isfinite(b)) continue;
-    n += 1.0, se += a, su += b, see += a * a, suu += b * b, seu += a * b;
-  }
-  const double spread = (see - se * se / std::max(n, 1.0)) * (suu - su * su / std::max(n, 1.0));
-  return spread > 0.0 ? (seu - se * su / n) / std::sqrt(spread) : 0.0;
 }
 
 void addLeft(const std::string& name, const SignalInfo& range, const Eigen::Ref<const Vector>& run,
@@ -112,60 +92,98 @@ void addExtrapolation(const DataSet& data, SignalKind kind, const std::vector<Si
   }
 }
 
+/// Bartlett: how much wider the bound of a correlation is where both signals are coloured.
+double colour(const Vector& e, const Vector& u) {
+  double sum = 1.0;
+  for (Index lag = 0; lag < std::min(e.size(), u.size()); ++lag) {
+    const double product = e[lag] * u[lag];
+    if (product <= 0.0) break;
+    sum += 2.0 * product;
+  }
+  return std::sqrt(sum);
+}
+
 void addResidual(const std::string& name, const DataSet& data,
                  const Eigen::Ref<const Vector>& residual, const ValidationParams& params,
                  std::vector<std::string>& remarks) {
   const ResidualCorrelation c = residualCorrelation(data, residual, params);
+  const bool drifts = c.autocorrelation.size() > 0 && c.autocorrelation[0] > kDrift;
+  if (drifts)
+    remarks.push_back(name + ": residuals drift (correlation " + shortNumber(c.autocorrelation[0]) +
+                      " with the one before): something acts that was not recorded, or the model "
+                      "is off here");
+  std::string others;
+  double strongest = 0.0;
+  std::string words;
   for (std::size_t j = 0; j < c.signals.size(); ++j) {
     const auto row = c.cross.row(static_cast<Index>(j));
     Index lag = 0;
     const double largest = row.cwiseAbs().maxCoeff(&lag);
-    if (largest > std::max(1.5 * c.bound, kMatters))
-      remarks.push_back(name + ": residual correlated with " + c.signals[j] + " at lag " +
-                        std::to_string(lag + 1) + " (" + shortNumber(row[lag]) + ", bound " +
-                        shortNumber(c.bound) + "): a lag or delay is missing");
-    double later = 0.0;
     const auto u = data.values.col(static_cast<Index>(data.outputs.size() + j));
-    for (Index ahead = 0; ahead <= kFeedbackLags; ++ahead)
-      later = std::max(later, std::abs(laterCorrelation(residual, u, ahead)));
-    if (later > std::max(kFeedback * c.bound, kMatters) && c.bound > 0.0)
-      remarks.push_back(
-          name + ": " + c.signals[j] + " follows residuals (correlation " + shortNumber(later) +
-          "): closed-loop data, whose gains may be biased, or an input that acts within the "
-          "sample");
+    const double bound = c.bound * colour(c.autocorrelation, autocorrelation(u, params));
+    if (!(largest > std::max(1.5 * bound, kMatters))) continue;
+    others += " " + c.signals[j];
+    if (largest <= strongest) continue;
+    strongest = largest;
+    words = name + ": residual correlated with " + c.signals[j] + " at lag " +
+            std::to_string(lag + 1) + " (" + shortNumber(row[lag]) + ", bound " +
+            shortNumber(bound) + "): a lag, a delay or a bend is missing";
   }
+  if (words.empty()) return;
+  if (others.find(' ', 1) != std::string::npos) words += "; of all inputs:" + others;
+  remarks.push_back(words);
 }
 
 }  // namespace
 
-std::vector<Index> outliersOf(const Eigen::Ref<const Vector>& y) {
-  const auto bend = [&](Index k) { return y[k] - 0.5 * (y[k - 1] + y[k + 1]); };
-  std::vector<double> bends;
-  for (Index k = 1; k + 1 < y.size(); ++k)
-    if (std::isfinite(bend(k)) && bend(k) != 0.0) bends.push_back(std::abs(bend(k)));
-  const double usual = 1.4826 * medianOf(bends);
-  // a neighbour of a spike bends the other way; those of a corner hardly bend
-  const auto bendsBack = [&](Index k, double size) {
-    if (k < 1 || k + 1 >= y.size() || !std::isfinite(bend(k))) return true;
-    return bend(k) * size < 0.0 && std::abs(bend(k)) > 0.3 * std::abs(size);
-  };
-  std::vector<Index> found;
-  for (Index k = 1; usual > 0.0 && k + 1 < y.size(); ++k) {
-    const double size = bend(k);
-    if (!(std::abs(size) > kSpike * usual)) continue;
-    if (std::abs(y[k + 1] - y[k - 1]) > 0.3 * std::abs(size)) continue;
-    if (bendsBack(k - 1, size) && bendsBack(k + 1, size)) found.push_back(k);
+std::vector<Index> stillCauses(const DataSet& data) {
+  std::vector<Index> still;
+  bool others = false;
+  for (auto c = static_cast<Index>(data.outputs.size()); c < data.values.cols(); ++c) {
+    const Index moves = movesOf(data.values.col(c));
+    others = others || moves >= kFewMoves;
+    if (moves < kStill) still.push_back(c);
   }
-  return found;
+  if (!others) still.clear();
+  return still;
 }
 
-DataSet withoutOutliers(const DataSet& data) {
-  DataSet clean = data;
-  for (Index i = 0; i < static_cast<Index>(data.outputs.size()); ++i)
-    for (const Index k : outliersOf(data.values.col(i)))
-      clean.values(k, i) = std::numeric_limits<double>::quiet_NaN();
-  return clean;
+namespace {
+
+void addOutliers(const DataSet& data, std::vector<std::string>& remarks) {
+  const auto found = outliersOf(data);
+  const auto causes = causesOf(data);
+  const std::size_t n_y = data.outputs.size();
+  for (std::size_t c = 0; c < found.size(); ++c) {
+    const auto n = found[c].size();
+    if (n == 0) continue;
+    const std::string& name = c < n_y ? data.outputs[c].name : causes[c - n_y].name;
+    remarks.push_back(name + ": " + std::to_string(n) + (n == 1 ? " outlier" : " outliers") +
+                      (n == 1 ? " in row " : ", the first in row ") +
+                      std::to_string(found[c].front() + 1) +
+                      (c < n_y ? ": left out of fits and figures"
+                               : ": no output notices; a straight line instead"));
+  }
 }
+
+void addFeedback(const DataSet& data, std::vector<std::string>& remarks) {
+  const auto n_y = static_cast<Index>(data.outputs.size());
+  for (std::size_t j = 0; j < data.inputs.size(); ++j) {
+    const auto u = data.values.col(n_y + static_cast<Index>(j));
+    if (movesOf(u) < kFewMoves) continue;
+    for (Index i = 0; i < n_y; ++i) {
+      const double share = feedbackShare(u, data.values.col(i));
+      if (share > 0.0)
+        remarks.push_back(
+            data.inputs[j].name + " answers to " + data.outputs[static_cast<std::size_t>(i)].name +
+            ", which explains " + shortNumber(100.0 * share) +
+            " % of what its own past does not: closed-loop data, whose gains may be biased (or an "
+            "input that acts within the sample)");
+    }
+  }
+}
+
+}  // namespace
 
 std::vector<std::string> recordRemarks(const DataSet& data, const TsModel* linear) {
   std::vector<std::string> remarks;
@@ -175,16 +193,12 @@ std::vector<std::string> recordRemarks(const DataSet& data, const TsModel* linea
     const Index moves = movesOf(data.values.col(n_y + static_cast<Index>(j)));
     if (moves < kFewMoves ||
         static_cast<double>(moves) < kHardly * static_cast<double>(data.rows()))
-      remarks.push_back(causes[j].name + " hardly moved: " + std::to_string(moves) + " moves in " +
-                        std::to_string(data.rows()) + " rows");
+      remarks.push_back(causes[j].name + " hardly moved: " + std::to_string(moves) +
+                        (moves == 1 ? " move in " : " moves in ") + std::to_string(data.rows()) +
+                        " rows");
   }
-  for (Index i = 0; i < n_y; ++i) {
-    const auto found = outliersOf(data.values.col(i));
-    if (!found.empty())
-      remarks.push_back(data.outputs[static_cast<std::size_t>(i)].name + ": " +
-                        std::to_string(found.size()) + " outliers, the first in row " +
-                        std::to_string(found.front() + 1));
-  }
+  addOutliers(data, remarks);
+  addFeedback(withoutOutliers(data), remarks);
   if (linear != nullptr) addSampleTime(data, *linear, remarks);
   return remarks;
 }

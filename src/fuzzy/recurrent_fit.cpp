@@ -9,8 +9,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kFarthestRun =
-    30.0;  // deviations of the data: a run that leaves further has failed
+constexpr double kFarthest = 30.0;  // deviations of the data: a run that leaves further has failed
 constexpr double kMostDamping = 1e8;
 
 /// Error of a prediction and its derivative to x1. A limit reached by both is no error; a limit
@@ -179,7 +178,7 @@ double Objective::free(const Vector& p, std::size_t s, Normal* normal) {
     step_.predict(theta, x, data_.v.col(k), next);
     if (normal != nullptr) step_.differentiate(theta, sensitivity);
     x = next;
-    if (!(x.cwiseAbs().maxCoeff() < kFarthestRun)) return kInfinity;
+    if (!(x.cwiseAbs().maxCoeff() < kFarthest)) return kInfinity;
     judge(k + 1);
   }
   if (normal != nullptr) rows.addTo(*normal, n_theta, startAt(s));

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fuzzy/known_stretches.hpp"
 
 namespace fpc {
 namespace {
@@ -32,23 +33,9 @@ RecurrentData recordOf(const StateOutput& model, const StateMember& member, cons
   return record;
 }
 
-/// Stretches in which something is known.
-std::vector<Stretch> stretchesOf(const DataSet& data) {
-  std::vector<Stretch> found;
-  Index first = -1;
-  for (Index k = 0; k <= data.rows(); ++k) {
-    const bool known = k < data.rows() && data.values.row(k).array().isFinite().any();
-    if (known && first < 0) first = k;
-    if (known || first < 0) continue;
-    found.push_back({first, k});
-    first = -1;
-  }
-  return found;
-}
-
 Vector freeRunOf(const StateOutput& model, const DataSet& data, Index output, int window) {
   std::vector<Vector> runs;
-  const auto stretches = stretchesOf(data);
+  const auto stretches = knownStretches(data);
   for (const auto& member : model.members) {
     const RecurrentData record = recordOf(model, member, data, output);
     Vector run = Vector::Constant(data.rows(), kNaN);

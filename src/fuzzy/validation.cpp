@@ -1,5 +1,6 @@
 #include "fmbpc/fuzzy/validation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
@@ -20,30 +21,21 @@ double normalQuantile(double confidence) {
   return z;
 }
 
-/// Mean 0, mean square 1 over the finite elements; what is missing stays NaN.
-Vector normalised(const Eigen::Ref<const Vector>& values) {
-  double n = 0.0, sum = 0.0, square = 0.0;
-  for (const double v : values)
-    if (std::isfinite(v)) n += 1.0, sum += v;
-  const double mean = n > 0.0 ? sum / n : 0.0;
-  for (const double v : values)
-    if (std::isfinite(v)) square += (v - mean) * (v - mean);
-  const double deviation = n > 0.0 ? std::sqrt(square / n) : 0.0;
-  Vector result = Vector::Constant(values.size(), kNaN);
-  for (Index k = 0; k < values.size(); ++k)
-    if (std::isfinite(values[k]))
-      result[k] = deviation > 0.0 ? (values[k] - mean) / deviation : 0.0;
-  return result;
-}
-
-/// Mean of a(k) b(k - lag) over the samples where both are known.
-double correlation(const Vector& a, const Vector& b, Index lag) {
-  double n = 0.0, sum = 0.0;
+/// Correlation of a(k) with b(k - lag) over the samples where both are known, each without its mean
+/// over these: within -1..1. Its deviation shrinks with the samples as that of lag 0: `known` is
+/// what the bound was made for.
+double correlation(const Eigen::Ref<const Vector>& a, const Eigen::Ref<const Vector>& b, Index lag,
+                   double known) {
+  double n = 0.0, sa = 0.0, sb = 0.0;
+  for (Index k = lag; k < a.size(); ++k)
+    if (std::isfinite(a[k]) && std::isfinite(b[k - lag])) n += 1.0, sa += a[k], sb += b[k - lag];
+  double aa = 0.0, bb = 0.0, ab = 0.0;
   for (Index k = lag; k < a.size(); ++k) {
-    const double product = a[k] * b[k - lag];
-    if (std::isfinite(product)) n += 1.0, sum += product;
+    const double x = a[k] - sa / n, y = b[k - lag] - sb / n;
+    if (std::isfinite(x) && std::isfinite(y)) aa += x * x, bb += y * y, ab += x * y;
   }
-  return n > 0.0 ? sum / n : 0.0;
+  const double spread = std::sqrt(aa) * std::sqrt(bb);
+  return spread > 0.0 ? ab / spread * std::sqrt(std::min(1.0, n / known)) : 0.0;
 }
 
 std::vector<std::string> causeNames(const DataSet& data) {
@@ -55,23 +47,29 @@ std::vector<std::string> causeNames(const DataSet& data) {
 
 }  // namespace
 
+Vector autocorrelation(const Eigen::Ref<const Vector>& values, const ValidationParams& params) {
+  const auto known = static_cast<double>(values.array().isFinite().count());
+  Vector result(params.correlation_lags);
+  for (Index lag = 1; lag <= result.size(); ++lag)
+    result[lag - 1] = correlation(values, values, lag, known);
+  return result;
+}
+
 ResidualCorrelation residualCorrelation(const DataSet& data,
                                         const Eigen::Ref<const Vector>& residual,
                                         const ValidationParams& params) {
   const Index n_lags = params.correlation_lags;
-  const Vector e = normalised(residual);
-  const auto known = static_cast<double>(e.array().isFinite().count());
+  const auto known = static_cast<double>(residual.array().isFinite().count());
   ResidualCorrelation result;
   result.bound = known > 0.0 ? normalQuantile(params.confidence) / std::sqrt(known) : 0.0;
-  result.autocorrelation.resize(n_lags);
-  for (Index lag = 1; lag <= n_lags; ++lag)
-    result.autocorrelation[lag - 1] = correlation(e, e, lag);
+  result.autocorrelation = autocorrelation(residual, params);
   result.signals = causeNames(data);
   const auto n_causes = static_cast<Index>(result.signals.size());
   result.cross.resize(n_causes, n_lags + 1);
   for (Index j = 0; j < n_causes; ++j) {
-    const Vector u = normalised(data.values.col(static_cast<Index>(data.outputs.size()) + j));
-    for (Index lag = 0; lag <= n_lags; ++lag) result.cross(j, lag) = correlation(e, u, lag + 1);
+    const auto u = data.values.col(static_cast<Index>(data.outputs.size()) + j);
+    for (Index lag = 0; lag <= n_lags; ++lag)
+      result.cross(j, lag) = correlation(residual, u, lag + 1, known);
   }
   const auto beyond = (result.autocorrelation.array().abs() > result.bound).count() +
                       (result.cross.array().abs() > result.bound).count();

@@ -15,11 +15,22 @@ bool Authority::guards(const std::string& topic) const { return !publishersOf(to
 bool Authority::admits(const std::string& topic, const std::string& publisher) {
   const auto& names = publishersOf(topic);
   if (names.empty() || std::find(names.begin(), names.end(), publisher) != names.end()) return true;
+  refuse(topic, publisher);
+  return false;
+}
+
+bool Authority::speaksFor(const std::string& topic, const std::string& publisher,
+                          const std::string& node) {
+  if (publisher == node || (!manager_.empty() && publisher == manager_)) return true;
+  refuse(topic, publisher);
+  return false;
+}
+
+void Authority::refuse(const std::string& topic, const std::string& publisher) {
   std::string what = topic + " from " + publisher;
   latest_ = what;
   if (refused_.size() >= kMostNamed && refused_.count(what) == 0) what = topic + " from others";
   ++refused_[what];
-  return false;
 }
 
 bool RateLimit::pass(double now_s) {

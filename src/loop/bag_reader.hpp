@@ -22,8 +22,9 @@ CsvTable readBag(const std::string& file);
 /// @throws InputError if the bag cannot be read, or holds none or several.
 std::string loopTextOf(const std::string& bag);
 
-/// What the bag holds of one run of the loop, for replay(). @throws InputError if it cannot be
-/// read, or holds several plants or several runs.
-RecordedRun readBagRun(const std::string& bag, const LoopFile& loop);
+/// What the bag holds of one run of the loop, for replay(): of its `run`-th, from 1; 0: of the only
+/// one. @throws InputError if it cannot be read, holds several plants, several runs and `run` is 0,
+/// or fewer than `run`.
+RecordedRun readBagRun(const std::string& bag, const LoopFile& loop, int run = 0);
 
 }  // namespace fpc

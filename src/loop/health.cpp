@@ -57,6 +57,12 @@ const Health& Hysteresis::show(const Health& now, double now_s) {
   return shown_;
 }
 
+namespace {
+
+LoopMode gravity(LoopMode mode) { return mode == LoopMode::kStarting ? LoopMode::kDegraded : mode; }
+
+}  // namespace
+
 void RingWatch::hear(const std::string& node, const Health& health, double now_s) {
   beats_[node] = {health, now_s};
 }
@@ -76,8 +82,12 @@ Health RingWatch::worst(double now_s) const {
     const auto beat = beats_.find(node);
     if (beat == beats_.end() || now_s - beat->second.at_s > kSilence) continue;
     const Health& health = beat->second.health;
-    if (health.mode <= worst.mode || health.mode == LoopMode::kFinished) continue;
-    worst = {health.mode, node + ": " + health.words, health.missing};
+    const bool starting = health.mode == LoopMode::kStarting;
+    if (starting && now_s - begun_s_ <= kGrace) continue;
+    if (gravity(health.mode) <= gravity(worst.mode) || health.mode == LoopMode::kFinished) continue;
+    worst = {health.mode,
+             node + ": " + (starting ? sentence({health.mode, health.words, {}}) : health.words),
+             health.missing};
   }
   return worst;
 }

@@ -7,8 +7,10 @@
 namespace fpc {
 namespace {
 
-constexpr std::size_t kTrouble = 16, kRemark = 32;  // doubles whose bytes hold words
-constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '3'};
+// Doubles whose bytes hold words.
+constexpr std::size_t kTrouble = 16, kRemark = (kMostRemark + 1) / sizeof(double);
+constexpr std::uint64_t kMostAbout = 1U << 26U;  // bytes
+constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '5'};
 
 /// Numbers one after the other; a whole number of 64 bits travels by its bits.
 class Packer {
@@ -89,14 +91,33 @@ std::size_t JournalSizes::entry() const {
 
 JournalHeader headerOf(const RecordLayout& layout, std::uint64_t run_id) {
   const JournalSizes s(layout);
-  JournalHeader header{{}, run_id, {s.n_y, s.n_d, s.n_u, s.n_x, s.n_true}, 0};
+  JournalHeader header{{}, run_id, {s.n_y, s.n_d, s.n_u, s.n_x, s.n_true}, aboutOf(layout).size(),
+                       0,  0};
   std::memcpy(header.magic, kMagic, sizeof kMagic);
   return header;
 }
 
 bool sameLoop(const JournalHeader& a, const JournalHeader& b) {
   return std::memcmp(a.magic, b.magic, sizeof a.magic) == 0 &&
-         std::memcmp(a.sizes, b.sizes, sizeof a.sizes) == 0;
+         std::memcmp(a.sizes, b.sizes, sizeof a.sizes) == 0 && a.about_bytes == b.about_bytes;
+}
+
+std::string aboutOf(const RecordLayout& layout) {
+  std::string signals;
+  for (const auto* part : {&layout.info.outputs, &layout.info.inputs, &layout.info.disturbances}) {
+    for (const SignalInfo& signal : *part) signals += signal.name + " ";
+    signals += "| ";
+  }
+  for (const std::string& state : layout.states) signals += state + " ";
+  return layout.loop + "\n" + signals + "\n" + layout.text;
+}
+
+bool readHead(std::istream& stream, JournalHeader& header, std::string& about) {
+  if (!stream.read(reinterpret_cast<char*>(&header), sizeof header)) return false;
+  if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.about_bytes > kMostAbout)
+    return false;
+  about.resize(header.about_bytes);
+  return static_cast<bool>(stream.read(about.data(), static_cast<std::streamsize>(about.size())));
 }
 
 std::vector<double> packEntry(const SampleRecord& s, const JournalSizes& n) {

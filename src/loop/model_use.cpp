@@ -1,4 +1,4 @@
-// How often a run was where its model has no data.
+// How often a run was where its model has no data; which inputs a model knows.
 #include "loop/model_use.hpp"
 
 #include <algorithm>
@@ -27,6 +27,29 @@ std::uint64_t samplesOutsideModel(const LoopFile& loop, const RunRecord& record)
   return static_cast<std::uint64_t>(
       std::count_if(record.samples.begin(), record.samples.end(),
                     [&](const SampleRecord& sample) { return isOutsideModel(loop, sample); }));
+}
+
+namespace {
+
+bool knowsInput(const TsModel& model, int input) {
+  return std::any_of(model.submodels.begin(), model.submodels.end(), [&](const OutputModel& m) {
+    return std::any_of(m.regressors.begin(), m.regressors.end(), [&](const Regressor& r) {
+      return r.kind == SignalKind::kInput && r.index == input;
+    });
+  });
+}
+
+}  // namespace
+
+std::vector<bool> movedInputs(const LoopFile& loop) {
+  std::vector<bool> moved(loop.plant_info.inputs.size(), true);
+  if (!loop.controller) return moved;
+  const SignalUse use = loop.controller->signalUse(controllerContext(loop));
+  if (use.moved.size() == moved.size()) moved = use.moved;
+  if (!loop.controllerType().needs_model || !loop.has_model || loop.has_identify) return moved;
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    moved[i] = moved[i] && knowsInput(loop.model, static_cast<int>(i));
+  return moved;
 }
 
 }  // namespace fpc

@@ -57,6 +57,7 @@ void conclude(RunRecord& record, bool nothing_missing) {
 RecordLayout recordLayout(const LoopFile& loop) {
   RecordLayout layout;
   layout.loop = loop.name;
+  layout.text = loop.resolved;
   layout.info = loop.plant_info;
   layout.has_optimizer = loop.has_clp;
   layout.has_state = !loop.external_plant;

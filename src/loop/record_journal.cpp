@@ -6,7 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <cstddef>
 #include <cstring>
+#include <fstream>
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
@@ -16,10 +19,12 @@
 namespace fpc {
 namespace {
 
-constexpr std::size_t kHeaderSize = sizeof(JournalHeader);
+std::int64_t steadyNs() {
+  return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
 
-bool readHeader(std::istream& stream, JournalHeader& header) {
-  return static_cast<bool>(stream.read(reinterpret_cast<char*>(&header), sizeof header));
+bool writeAt(int file, const void* bytes, std::size_t count, std::uint64_t offset) {
+  return ::pwrite(file, bytes, count, static_cast<off_t>(offset)) == static_cast<ssize_t>(count);
 }
 
 }  // namespace
@@ -33,52 +38,99 @@ void RecordJournal::close() {
   file_ = -1;
 }
 
-std::uint32_t RecordJournal::open(const std::string& file, const RecordLayout& layout,
-                                  std::uint64_t run_id) {
+void RecordJournal::lock(const std::string& file) {
   close();
-  name_ = file;
-  layout_ = layout;
-  entry_size_ = JournalSizes(layout).entry();
-  written_ = lost_ = 0;
-  unwritten_.clear();
-  const JournalHeader mine = headerOf(layout, run_id);
-  JournalHeader found{};
-  file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  require(file_ >= 0, file, std::string("a file that can be written (") + strerror(errno) + ")");
-  require(flock(file_, LOCK_EX | LOCK_NB) == 0, file,
+  const int opened = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  require(opened >= 0, file, std::string("a file that can be written (") + strerror(errno) + ")");
+  const bool mine = flock(opened, LOCK_EX | LOCK_NB) == 0;
+  if (!mine) ::close(opened);
+  require(mine, file,
           "that no other recorder writes here: another loop is running with this folder");
-  const bool known = ::pread(file_, &found, sizeof found, 0) == sizeof found &&
-                     sameLoop(found, mine) && found.run_id == run_id;
-  struct stat about {};
-  if (known && fstat(file_, &about) == 0)
-    written_ =
-        (static_cast<std::uint64_t>(about.st_size) - kHeaderSize) / (entry_size_ * sizeof(double));
-  const bool fresh =
-      known || (ftruncate(file_, 0) == 0 && ::pwrite(file_, &mine, sizeof mine, 0) == sizeof mine);
-  require(fresh, file, std::string("room on the disk (") + strerror(errno) + ")");
-  return static_cast<std::uint32_t>(written_);
+  name_ = file;
+  file_ = opened;
 }
 
-bool RecordJournal::write(const std::vector<double>& entry) {
-  const std::size_t bytes = entry.size() * sizeof(double);
-  const auto offset = static_cast<off_t>(kHeaderSize + written_ * bytes);
-  const ssize_t done = ::pwrite(file_, entry.data(), bytes, offset);
-  if (done == static_cast<ssize_t>(bytes)) {
-    ++written_;
+void RecordJournal::start(const RecordLayout& layout, std::uint64_t run_id) {
+  close();
+  layout_ = layout;
+  run_id_ = run_id;
+  about_ = aboutOf(layout);
+  entry_size_ = JournalSizes(layout).entry();
+  next_ = lost_ = 0;
+  began_ns_ = steadyNs();
+  unwritten_.clear();
+  problem_.clear();
+}
+
+std::uint32_t RecordJournal::open(const std::string& file, const RecordLayout& layout,
+                                  std::uint64_t run_id) {
+  if (entry_size_ == 0 || run_id != run_id_ || aboutOf(layout) != about_) start(layout, run_id);
+  const bool waited = !unwritten_.empty();  // samples came before the file could be opened
+  if (!waited) next_ = 0;
+  lock(file);
+  struct stat about {};
+  try {
+    require(fstat(file_, &about) == 0, file, strerror(errno));
+    if (!goesOn(static_cast<std::uint64_t>(about.st_size))) writeHead();
+  } catch (const InputError&) {
+    ::close(file_);
+    file_ = -1;
+    throw;
+  }
+  flush();
+  return waited ? 0 : static_cast<std::uint32_t>(next_);
+}
+
+// False: the file holds no sample, and may be begun.
+bool RecordJournal::goesOn(std::uint64_t size) {
+  std::ifstream stream(name_, std::ios::binary);
+  const JournalHeader mine = headerOf(layout_, run_id_);
+  JournalHeader found{};
+  std::string about;
+  const bool known = readHead(stream, found, about);
+  const std::uint64_t head = sizeof found + about_.size();
+  const bool same = known && sameLoop(found, mine) && about == about_ && found.run_id == run_id_;
+  require(same || size <= sizeof found || (known && size <= sizeof found + about.size()), name_,
+          "a journal of this run, or an empty one");
+  if (!same) return false;
+  if (next_ > 0) return true;  // what waits has its place
+  began_ns_ = found.began_ns;
+  next_ = (size - head) / (entry_size_ * sizeof(double));
+  return true;
+}
+
+void RecordJournal::writeHead() {
+  JournalHeader mine = headerOf(layout_, run_id_);
+  mine.began_ns = began_ns_;
+  const bool done = ftruncate(file_, 0) == 0 && writeAt(file_, &mine, sizeof mine, 0) &&
+                    writeAt(file_, about_.data(), about_.size(), sizeof mine);
+  require(done, name_, std::string("room on the disk (") + strerror(errno) + ")");
+}
+
+bool RecordJournal::write(const Entry& entry) {
+  const std::size_t bytes = entry_size_ * sizeof(double);
+  const std::uint64_t offset = sizeof(JournalHeader) + about_.size() + entry.first * bytes;
+  errno = ENOSPC;  // a write that ends early says nothing
+  if (writeAt(file_, entry.second.data(), bytes, offset)) {
     problem_.clear();
     return true;
   }
-  problem_ = name_ + " cannot be written: " + (done < 0 ? strerror(errno) : "the disk is full");
+  problem_ = name_ + " cannot be written: " + strerror(errno);
   return false;
 }
 
 void RecordJournal::append(const SampleRecord& sample) {
-  if (file_ < 0) return;
-  unwritten_.push_back(packEntry(sample, JournalSizes(layout_)));
+  if (entry_size_ == 0) return;
+  if (next_ == 0) {
+    began_ns_ = steadyNs();
+    if (file_ >= 0) writeAt(file_, &began_ns_, sizeof began_ns_, offsetof(JournalHeader, began_ns));
+  }
+  const std::uint64_t place = next_++;
+  if (unwritten_.size() < kMostUnwritten)
+    unwritten_.emplace_back(place, packEntry(sample, JournalSizes(layout_)));
+  else
+    ++lost_;
   if (problem_.empty()) flush();
-  if (unwritten_.size() <= kMostUnwritten) return;
-  unwritten_.pop_back();  // those before it still fit their places
-  ++lost_;
 }
 
 void RecordJournal::flush() {
@@ -88,15 +140,29 @@ void RecordJournal::flush() {
 std::uint64_t journalRun(const std::string& file, const RecordLayout& layout) {
   std::ifstream stream(file, std::ios::binary);
   JournalHeader header{};
-  if (!stream || !readHeader(stream, header)) return 0;
-  return sameLoop(header, headerOf(layout, 0)) ? header.run_id : 0;
+  std::string about;
+  return readHead(stream, header, about) && about == aboutOf(layout) ? header.run_id : 0;
+}
+
+std::optional<JournalLabel> journalLabel(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  JournalHeader header{};
+  std::string about;
+  if (!readHead(stream, header, about)) return {};
+  const std::size_t name = about.find('\n');
+  const std::size_t signals = name == std::string::npos ? name : about.find('\n', name + 1);
+  if (signals == std::string::npos) return {};
+  return JournalLabel{header.run_id, about.substr(0, name), about.substr(signals + 1),
+                      stream.peek() == std::ifstream::traits_type::eof()};
 }
 
 JournalReader::JournalReader(const std::string& file, const RecordLayout& layout)
     : layout_(layout), stream_(file, std::ios::binary) {
   JournalHeader header{};
-  require(stream_ && readHeader(stream_, header) && sameLoop(header, headerOf(layout, 0)), file,
-          "a journal of the loop " + layout.loop);
+  std::string about;
+  require(readHead(stream_, header, about) && sameLoop(header, headerOf(layout, 0)) &&
+              about == aboutOf(layout),
+          file, "a journal of the loop " + layout.loop);
   entry_.resize(JournalSizes(layout).entry());
 }
 

@@ -4,24 +4,20 @@
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/loop/journal_reader.hpp"
-#include "fmbpc/loop/run_summary.hpp"
-#include "fmbpc/loop/trajectory.hpp"
+#include "fmbpc/loop/recover.hpp"
 
 namespace fpc {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// Files that were written beside take the place of those of the run before.
-void moveIn(const fs::path& beside, const fs::path& folder) {
+/// True if there is something that a new journal would overwrite.
+bool holdsSomething(const std::string& file) {
   std::error_code error;
-  fs::remove(folder / "plot.png", error);  // of the run before
-  for (const char* name : {"trajectory.csv", "summary.json"}) {
-    fs::rename(beside / name, folder / name, error);
-    require(!error, (folder / name).string(), "a writable file: " + error.message());
-  }
-  fs::remove_all(beside, error);
+  const auto size = fs::file_size(file, error);
+  if (error || size == 0) return false;
+  const auto label = journalLabel(file);
+  return !label || !label->empty;
 }
 
 }  // namespace
@@ -33,7 +29,10 @@ RecordStore::RecordStore(const LoopFile& loop, std::string folder)
   fs::create_directories(folder_, error);
   require(!error, folder_, "a folder that can be made (" + error.message() + ")");
   const std::uint64_t left = journalRun(journalFile(), layout_);
-  journal_.open(journalFile(), layout_, left);  // nobody else may write from now on
+  if (left == 0 && holdsSomething(journalFile()))
+    journal_.lock(journalFile());  // nobody else may write from now on
+  else
+    journal_.open(journalFile(), layout_, left);
 }
 
 std::string RecordStore::journalFile() const {
@@ -42,12 +41,30 @@ std::string RecordStore::journalFile() const {
 
 std::uint32_t RecordStore::begin(std::uint64_t run_id) {
   samples_ = actions_ = 0;
+  run_id_ = run_id;
+  begun_ = true;
+  problem_.clear();
+  remark_.clear();
   if (folder_.empty()) return 0;
-  const std::uint64_t left = journalRun(journalFile(), layout_);
-  if (left != 0 && left != run_id) setAside();
-  const std::uint32_t here = journal_.open(journalFile(), layout_, run_id);
+  if (journal_.unwritten() > 0) journal_.flush();
+  if (journal_.unwritten() > 0)
+    remark_ = std::to_string(journal_.unwritten()) + " samples of the run before had no room";
+  journal_.start(layout_, run_id);
+  const std::uint32_t here = tryOpen();
   samples_ = here;
   return here;
+}
+
+std::uint32_t RecordStore::tryOpen() {
+  try {
+    if (journalRun(journalFile(), layout_) != run_id_ && holdsSomething(journalFile())) setAside();
+    const std::uint32_t here = journal_.open(journalFile(), layout_, run_id_);
+    problem_.clear();
+    return here;
+  } catch (const InputError& error) {
+    problem_ = std::string("not recorded: ") + error.what();
+    return 0;
+  }
 }
 
 void RecordStore::append(const SampleRecord& sample) {
@@ -56,23 +73,9 @@ void RecordStore::append(const SampleRecord& sample) {
   if (!folder_.empty()) journal_.append(sample);
 }
 
-Summary RecordStore::write(double wall_s, const std::string& folder) const {
-  const fs::path beside = fs::path(folder) / "unfinished";
-  std::error_code error;
-  fs::create_directories(beside, error);
-  require(!error, beside.string(), "a folder that can be made (" + error.message() + ")");
-  JournalReader reader(journalFile(), layout_);
-  RunSummary sums(loop_);
-  TrajectoryFile file(loop_, layout_, (beside / "trajectory.csv").string());
-  for (SampleRecord sample; reader.next(sample);) {
-    sums.add(sample);
-    file.add(sample);
-  }
-  file.close();
-  const Summary summary = sums.finish(wall_s, reader.complete());
-  writeSummary(summary, (beside / "summary.json").string());
-  moveIn(beside, folder);
-  return summary;
+void RecordStore::flush() {
+  if (!problem_.empty() && begun_) tryOpen();
+  journal_.flush();
 }
 
 Summary RecordStore::finish(double wall_s) {
@@ -80,23 +83,34 @@ Summary RecordStore::finish(double wall_s) {
   summary.steps = static_cast<std::uint32_t>(actions_);
   summary.wall_s = wall_s;
   if (folder_.empty()) return summary;
-  journal_.flush();
-  require(journal_.problem().empty(), journalFile(), "room on the disk");
-  summary = write(wall_s, folder_);
-  journal_.close();
+  flush();
+  require(problem().empty(), journalFile(), "room on the disk: " + problem());
+  WrittenRecord record = writeRecord(loop_, layout_, journalFile(), wall_s, folder_);
+  written_ = std::move(record.folder);
+  begun_ = false;
   std::error_code error;
   fs::remove(journalFile(), error);
-  return summary;
+  journal_.close();
+  return record.summary;
 }
 
 void RecordStore::setAside() {
-  journal_.flush();
-  SampleRecord first;
-  if (!JournalReader(journalFile(), layout_).next(first)) return;
-  const fs::path aside = fs::path(folder_) / "interrupted";
+  RecordJournal guard;
+  guard.lock(journalFile());  // it is nobody's
+  const auto label = journalLabel(journalFile());
+  const std::string aside = freshAside(folder_, label ? label->run_id : 0);
+  const std::string moved = (fs::path(aside) / "journal.bin").string();
   std::error_code error;
-  fs::create_directories(aside, error);
-  write(0.0, aside.string());
+  fs::rename(journalFile(), moved, error);
+  if (std::error_code ignored; error) fs::remove(aside, ignored);
+  require(!error, moved,
+          "a file that the journal of the run before can become: " + error.message());
+  guard.close();
+  if (!remark_.empty()) remark_ += "; ";
+  const Recovered run = recoverJournal(moved, aside);
+  remark_ += run.problem.empty()
+                 ? "the run before was interrupted: its files are in " + aside
+                 : "the run before was interrupted: " + moved + " stays as it is: " + run.problem;
 }
 
 }  // namespace fpc

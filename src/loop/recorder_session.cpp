@@ -3,11 +3,21 @@
 #include <algorithm>
 #include <utility>
 
+#include "loop/journal_entry.hpp"
+
 namespace fpc {
 namespace {
 
 constexpr std::size_t kMostGaps = 100;  // that are named
 constexpr std::uint32_t kBelieved = 5;  // measurements far ahead that follow each other
+
+/// The whole lines for which a journal has room, so that a run on disk and one in memory say the
+/// same.
+std::string kept(const std::string& remark) {
+  if (remark.size() <= kMostRemark) return remark;
+  const std::size_t end = remark.rfind('\n', kMostRemark);
+  return remark.substr(0, end == std::string::npos ? kMostRemark : end);
+}
 
 }  // namespace
 
@@ -113,7 +123,7 @@ void RecorderSession::receive(const PlantState& s) {
 void RecorderSession::receive(const Tracking& t, const std::string& remark) {
   const auto place = [this, remark](SampleRecord& sample, const Tracking& item) {
     sample.tracking = item;
-    sample.remark = remark;
+    sample.remark = kept(remark);
     for (const Eigen::Index i : layout_.without_setpoint)
       sample.tracking.setpoint[i] = sample.tracking.reference[i] = kNaN;
   };

@@ -10,6 +10,7 @@
 #include "fmbpc/loop/identifier_session.hpp"
 #include "fmbpc/loop/plant_session.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
+#include "fmbpc/loop/sample_remarks.hpp"
 #include "loop/operator_notes.hpp"
 
 namespace fpc {
@@ -31,7 +32,7 @@ class Ring {
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
-        notes_(loop),
+        remarks_(loop),
         targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
                  [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
@@ -53,9 +54,7 @@ class Ring {
     recorder_.receive(simulation_.state());
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    if (controller_.controller().followsSetpoint())
-      notes_.look(controller_.setpoint(), now.header.step);
-    recorder_.receive(answer.tracking, now.final ? "" : controller_.output().remark);
+    recorder_.receive(answer.tracking, remarks_.look(controller_));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimizer_ ? optimize(answer) : answer.base);
@@ -148,6 +147,7 @@ class Ring {
   CommandPlayer player_;
   RunRecord record_;
   RecorderSession recorder_;
+  SampleRemarks remarks_;
   OperatorNotes notes_;
   CommandTargets targets_;
 };

@@ -22,7 +22,12 @@ void RunTally::keep(const std::string& words) {
 }
 
 void RunTally::add(const SampleRecord& sample) {
-  if (!sample.remark.empty()) keep(sample.remark);
+  const std::string& lines = sample.remark;
+  for (std::size_t from = 0; from < lines.size();) {
+    const std::size_t to = std::min(lines.find('\n', from), lines.size());
+    keep(lines.substr(from, to - from));
+    from = to + 1;
+  }
   if (!sample.state.trouble.empty() && failed_samples++ == 0) trouble = sample.state.trouble;
   ++step_;
 }

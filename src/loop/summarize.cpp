@@ -80,7 +80,8 @@ struct RunSummary::Sums {
         summary(blank(of)),
         outputs(of.plant_info.outputs.size(), RunningOutput(sample_time_h)),
         at_lower(of.plant_info.inputs.size()),
-        at_upper(at_lower) {}
+        at_upper(at_lower),
+        moved(movedInputs(of)) {}
 
   void followOutputs(const SampleRecord& sample);
   void followWindows(const SampleRecord& sample);
@@ -97,6 +98,7 @@ struct RunSummary::Sums {
   std::vector<RunningOutput> outputs;
   std::vector<RunningInput> inputs;               // from sample 0 on
   std::vector<std::uint32_t> at_lower, at_upper;  // last actions in a row at a limit
+  std::vector<bool> moved;                        // the others stand where they stand
   LogHistogram solve_us;
   RunTally tally;
   std::uint32_t step{};
@@ -188,7 +190,8 @@ void RunSummary::Sums::findLockUps(Summary& result) const {
   for (std::size_t i = 0; i < at_lower.size(); ++i)
     for (const bool upper : {false, true}) {
       const std::uint32_t samples = upper ? at_upper[i] : at_lower[i];
-      if (samples >= least) result.locked.push_back({result.input_names[i], upper, samples});
+      if (moved[i] && samples >= least)
+        result.locked.push_back({result.input_names[i], upper, samples});
     }
 }
 

@@ -120,7 +120,7 @@ std::unique_ptr<PopulationSearch> make(const SearchParams& params, const Matrix&
   return std::make_unique<PagmoSearch>(params, first, lower, upper);
 }
 
-const bool kPagmoSearchRegistered = registerPagmo(&make);
+const bool kRegistered = registerPagmo(&make);
 
 }  // namespace
 }  // namespace fpc

@@ -23,7 +23,9 @@ void DualActiveSet::resize(Index n, Index m) {
   proof_x_.setZero(n);
   proof_a_.setZero(m);
   proof_error_.setZero(n);
-  row_norm_.setZero(m);
+  error_.setZero(n);
+  inverse_scale_.setZero(n);
+  row_metric_.setZero(m);
   active_.assign(at(n), 0);
   active_side_.assign(at(n), kOff);
   ignored_.assign(at(n + m), 0);
@@ -34,7 +36,8 @@ bool DualActiveSet::start(const QpProblem& p, const Vector& g, KktSystem& kkt, S
   if (!kkt.factorFree(p, sides) || !kkt.complete()) return false;
   const Index n = p.g.size(), m = p.a_lower.size();
   scale_ = (p.H.diagonal() + kkt.shift()).cwiseSqrt();
-  row_norm_.setConstant(-1.0);
+  inverse_scale_ = scale_.cwiseInverse();
+  rows_measured_ = false;
   culprit_ = -1;
   seed(p, kkt, sides);
   for (const bool equalities :
@@ -76,9 +79,12 @@ void DualActiveSet::dropWrongSigns(const QpProblem& p, const Vector& g, Sides& s
   }
 }
 
-double DualActiveSet::rowNorm(const QpProblem& p, Index row) {
-  if (row_norm_(row) < 0.0) row_norm_(row) = p.A.row(row).transpose().cwiseQuotient(scale_).norm();
-  return row_norm_(row);
+void DualActiveSet::measureRows(const QpProblem& p) {
+  if (rows_measured_) return;
+  row_metric_.setZero();
+  addSquares(p.A.data(), p.A.rows(), p.A.cols(), inverse_scale_.data(), row_metric_.data());
+  row_metric_ = row_metric_.cwiseSqrt().cwiseInverse();
+  rows_measured_ = true;
 }
 
 /// The constraint outside the working set that is violated most in the metric diag(H)^-1; -1 if
@@ -86,29 +92,25 @@ double DualActiveSet::rowNorm(const QpProblem& p, Index row) {
 Index DualActiveSet::mostViolated(const QpProblem& p, double tolerance, RowNoise& noise,
                                   const Sides& sides, Side& side) {
   const Index n = p.g.size(), m = p.a_lower.size();
+  const double x_largest = x_.lpNorm<Eigen::Infinity>();
   Index worst = -1;
   double most = 0.0;
-  const auto consider = [&](Index id, double value, double metric) {
-    const double below = lowerOf(p, id) - value, above = value - upperOf(p, id);
+  const auto consider = [&](Index id, double below, double above, double metric) {
     const double violation = std::max(below, above);
-    if (!(violation * metric > most) || ignored_[at(id)]) return;
+    if (!(violation * metric > most) || sides[at(id)] != kOff || ignored_[at(id)]) return;
     const Side violated = below > above ? kLower : kUpper;
-    if (violation <= tolerance * feasibilityScale(p, id, x_, limitOf(p, id, violated))) return;
+    if (noise.within(p, id, violation, tolerance, x_, x_largest, limitOf(p, id, violated))) return;
     if (noise.covers(p, id, violation, x_)) return;
     most = violation * metric;
     worst = id;
     side = violated;
   };
-  for (Index i = 0; i < n; ++i) {
-    if (sides[at(i)] == kOff) consider(i, x_(i), scale_(i));
-  }
-  if (worst >= 0) return worst;
-  if (m > 0) product(p.A, x_, ax_);
-  for (Index row = 0; row < m; ++row) {
-    if (sides[at(n + row)] != kOff || (ax_(row) >= p.a_lower(row) && ax_(row) <= p.a_upper(row)))
-      continue;
-    consider(n + row, ax_(row), 1.0 / rowNorm(p, row));
-  }
+  for (Index i = 0; i < n; ++i) consider(i, p.x_lower(i) - x_(i), x_(i) - p.x_upper(i), scale_(i));
+  if (worst >= 0 || m == 0) return worst;
+  product(p.A, x_, ax_);
+  measureRows(p);
+  for (Index row = 0; row < m; ++row)
+    consider(n + row, p.a_lower(row) - ax_(row), ax_(row) - p.a_upper(row), row_metric_(row));
   return worst;
 }
 

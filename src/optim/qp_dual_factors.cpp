@@ -32,20 +32,16 @@ bool DualActiveSet::dependent(double tolerance) const {
 void DualActiveSet::seed(const QpProblem& p, const KktSystem& kkt, const Sides& sides) {
   const Index n = p.g.size();
   const Matrix& L = kkt.cholesky();
-  Matrix& inverse = R_;  // L^-T, upper triangular, for the moment
-  for (Index j = 0; j < n; ++j) {
-    auto column = inverse.col(j);
-    column.tail(n - j).setZero();
-    const double diagonal = 1.0 / L(j, j);
-    if (j > 0) {
-      product(inverse.topLeftCorner(j, j), L.row(j).head(j), column.head(j));
-      column.head(j) *= -diagonal;
+  if (kkt.diagonal()) {
+    J_.setZero();
+    for (Index j = 0; j < n; ++j) J_(kkt.order()[at(j)], n - 1 - j) = 1.0 / L(j, j);
+  } else {
+    Matrix& inverse = R_;  // L^-T, upper triangular, for the moment
+    inverseTransposed(L.data(), n, inverse.data());
+    for (Index j = 0; j < n; ++j) {
+      double* column = J_.data() + (n - 1 - j) * n;
+      for (Index i = 0; i < n; ++i) column[kkt.order()[at(i)]] = inverse(i, j);
     }
-    column(j) = diagonal;
-  }
-  for (Index j = 0; j < n; ++j) {
-    double* column = J_.data() + (n - 1 - j) * n;
-    for (Index i = 0; i < n; ++i) column[kkt.order()[at(i)]] = inverse(i, j);
   }
   q_ = 0;
   for (Index j = n; j-- > kkt.freeCount();) {
@@ -54,7 +50,6 @@ void DualActiveSet::seed(const QpProblem& p, const KktSystem& kkt, const Sides& 
     active_side_[at(q_)] = sides[at(i)];
     ++q_;
   }
-  R_.setZero();
   for (Index k = 0; k < q_; ++k) {
     R_.col(k).head(k + 1) =
         static_cast<double>(active_side_[at(k)]) * J_.row(active_[at(k)]).head(k + 1).transpose();
@@ -92,9 +87,7 @@ void DualActiveSet::append(Index id, Side side) {
   const double beta = 1.0 / (norm * (norm + std::abs(v(0))));
   c_ = beta * (z_ - alpha * J_.col(q_));  // beta J_2 v
   v(0) -= alpha;
-  for (Index j = 0; j < null_size; ++j) {
-    if (v(j) != 0.0) J_.col(q_ + j) -= v(j) * c_;
-  }
+  subtractOuter(c_.data(), n, v.data(), null_size, J_.data() + q_ * n, n);
   active_[at(q_)] = id;
   active_side_[at(q_)] = side;
   ++q_;
@@ -120,13 +113,7 @@ void DualActiveSet::remove(Index k, Sides& sides) {
       R_(j, l) = c * a + s * b;
       R_(j + 1, l) = c * b - s * a;
     }
-    double* first = J_.data() + j * n;
-    double* second = first + n;
-    for (Index i = 0; i < n; ++i) {
-      const double a = first[i], b = second[i];
-      first[i] = c * a + s * b;
-      second[i] = c * b - s * a;
-    }
+    rotate(J_.data() + j * n, J_.data() + (j + 1) * n, n, c, s);
   }
 }
 

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "optim/qp_kernels.hpp"
 #include "optim/qp_workspace.hpp"
@@ -15,13 +14,19 @@ namespace fpc::qp {
 namespace {
 
 constexpr double kPivotTolerance =
-    1e-14;  // of H_ii: below it H is not positive definite in this arithmetic
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr int kMaxCorrections = 4;
-constexpr int kMaxShiftedCorrections = 30;
+    1e-14;                   // of H_ii: below it H is not positive definite in this arithmetic
+constexpr Index kStrip = 8;  // numbers in a cache line
 
 bool sameBits(const double* a, const double* b, Index count) {
   return std::memcmp(a, b, static_cast<std::size_t>(count) * sizeof(double)) == 0;
+}
+
+bool isDiagonal(const Matrix& H) {
+  for (Index j = 0; j < H.cols(); ++j) {
+    for (Index i = 0; i < H.rows(); ++i)
+      if (i != j && H(i, j) != 0.0) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -29,22 +34,24 @@ bool sameBits(const double* a, const double* b, Index count) {
 void KktSystem::resize(Index n, Index m) {
   const auto size = static_cast<std::size_t>(n);
   for (Matrix* M : {&H_, &L_, &At_, &Vt_, &Q_, &R_}) M->setZero(n, n);
-  for (Vector* v :
-       {&y_, &hx_, &aty_, &residual_free_, &residual_row_, &work_, &work_row_, &norm_, &shift_})
+  for (Vector* v : {&y_, &hx_, &aty_, &residual_free_, &residual_row_, &work_, &work_row_, &norm_,
+                    &shift_, &least_pivot_})
     v->setZero(n);
   row_scale_.setZero(m);
+  row_largest_.setZero(m);
   shift_size_ = 0.0;
   order_.assign(size, 0);
   fixed_.assign(size, 0);
   rows_.assign(size, 0);
   row_side_.assign(size, kOff);
   n_free_ = n_rows_ = 0;
-  factored_ = rows_factored_ = complete_ = definite_ = false;
+  factored_ = rows_factored_ = complete_ = definite_ = diagonal_ = false;
 }
 
 void KktSystem::setHessian(const Matrix& H) {
   if (sameBits(H.data(), H_.data(), H.size())) return;
   H_ = H;
+  diagonal_ = isDiagonal(H);
   shift_.setZero();
   shift_size_ = 0.0;
   forgetFactors();
@@ -59,7 +66,8 @@ bool KktSystem::cholesky(Index column_begin, Index column_end, Index row_begin, 
     const Index unknown = order_[static_cast<std::size_t>(j)];
     const double H_jj = H_(unknown, unknown) + shift_(unknown);
     auto column = L_.col(j).segment(first, count);
-    if (j > 0) addProduct(-1.0, L_.block(first, 0, count, j), L_.row(j).head(j), column);
+    if (j > 0 && !diagonal_)
+      addProduct(-1.0, L_.block(first, 0, count, j), L_.row(j).head(j), column);
     if (first == j) {
       const double pivot = L_(j, j);
       if (!(pivot > kPivotTolerance * H_jj) || !std::isfinite(pivot)) return false;
@@ -69,6 +77,14 @@ bool KktSystem::cholesky(Index column_begin, Index column_end, Index row_begin, 
     }
   }
   return true;
+}
+
+bool KktSystem::choleskyOfFree() {
+  for (Index j = 0; j < n_free_; ++j) {
+    const Index unknown = order_[static_cast<std::size_t>(j)];
+    least_pivot_(j) = kPivotTolerance * (H_(unknown, unknown) + shift_(unknown));
+  }
+  return choleskyInPlace(L_.data(), L_.rows(), n_free_, least_pivot_.data());
 }
 
 bool KktSystem::factorFree(const QpProblem& p, const Sides& sides) {
@@ -93,7 +109,7 @@ bool KktSystem::factorFree(const QpProblem& p, const Sides& sides) {
     for (Index i = j; i < free; ++i) L_(i, j) = column[order_[static_cast<std::size_t>(i)]];
     L_(j, j) += shift_(order_[static_cast<std::size_t>(j)]);
   }
-  factored_ = cholesky(0, free, 0, free);
+  factored_ = diagonal_ ? cholesky(0, free, 0, free) : choleskyOfFree();
   return factored_;
 }
 
@@ -101,13 +117,14 @@ bool KktSystem::complete() {
   if (complete_) return true;
   if (!factored_) return false;
   const Index n = H_.rows();
-  for (Index j = 0; j < n; ++j) {
+  for (Index j = 0; j < n && n_free_ < n; ++j) {
     const double* column = H_.data() + order_[static_cast<std::size_t>(j)] * n;
     for (Index i = std::max(j, n_free_); i < n; ++i)
       L_(i, j) = column[order_[static_cast<std::size_t>(i)]];
     if (j >= n_free_) L_(j, j) += shift_(order_[static_cast<std::size_t>(j)]);
   }
-  complete_ = cholesky(0, n_free_, n_free_, n) && cholesky(n_free_, n, n_free_, n);
+  complete_ =
+      n_free_ == n || (cholesky(0, n_free_, n_free_, n) && cholesky(n_free_, n, n_free_, n));
   definite_ = definite_ || complete_;
   return complete_;
 }
@@ -128,22 +145,35 @@ bool KktSystem::gatherRows(const QpProblem& p, const Sides& sides) {
     same = same && count < n_rows_ && rows_[k] == row;
     rows_[k] = row;
     row_side_[k] = side;
-    for (Index j = 0; j < n; ++j) {
-      const double a = p.A(row, j);
-      same = same && At_(j, count) == a;
-      At_(j, count) = a;
-    }
     ++count;
   }
   same = same && count == n_rows_;
+  // In strips of columns of A, so that neither A nor its copy is read against the grain.
+  for (Index strip = 0; strip < n; strip += kStrip) {
+    const Index end = std::min(strip + kStrip, n);
+    for (Index k = 0; k < count; ++k) {
+      const Index row = rows_[static_cast<std::size_t>(k)];
+      for (Index j = strip; j < end; ++j) {
+        const double a = p.A(row, j);
+        same = same && At_(j, k) == a;
+        At_(j, k) = a;
+      }
+    }
+  }
   n_rows_ = count;
   return same;
 }
 
-/// Q R = L^-1 A_wf' by modified Gram-Schmidt.
-bool KktSystem::factorRows(double dependent_tolerance) {
+/// Q = L^-1 A_wf'
+void KktSystem::transformRows() {
   const Index n_f = n_free_, n_r = n_rows_;
-  if (n_r > n_f) return false;
+  if (diagonal_) {
+    for (Index k = 0; k < n_r; ++k) {
+      for (Index j = 0; j < n_f; ++j)
+        Q_(j, k) = At_(order_[static_cast<std::size_t>(j)], k) / L_(j, j);
+    }
+    return;
+  }
   for (Index j = 0; j < n_f; ++j) {  // V' = A_wf L^-T, column by column
     const Index unknown = order_[static_cast<std::size_t>(j)];
     auto column = Vt_.col(j).head(n_r);
@@ -152,6 +182,13 @@ bool KktSystem::factorRows(double dependent_tolerance) {
     column *= 1.0 / L_(j, j);
   }
   Q_.topLeftCorner(n_f, n_r) = Vt_.topLeftCorner(n_r, n_f).transpose();
+}
+
+/// Q R = L^-1 A_wf' by modified Gram-Schmidt.
+bool KktSystem::factorRows(double dependent_tolerance) {
+  const Index n_f = n_free_, n_r = n_rows_;
+  if (n_r > n_f) return false;
+  transformRows();
   for (Index k = 0; k < n_r; ++k) norm_(k) = Q_.col(k).head(n_f).norm();
   for (Index k = 0; k < n_r; ++k) {
     auto q = Q_.col(k).head(n_f);
@@ -159,11 +196,12 @@ bool KktSystem::factorRows(double dependent_tolerance) {
     if (!(norm > dependent_tolerance * norm_(k))) return false;
     q *= 1.0 / norm;
     R_(k, k) = norm;
-    for (Index l = k + 1; l < n_r; ++l) {
-      const double projection = q.dot(Q_.col(l).head(n_f));
-      R_(k, l) = projection;
-      Q_.col(l).head(n_f) -= projection * q;
-    }
+    const Index rest = n_r - k - 1;
+    if (rest == 0) break;
+    const auto columns = Q_.block(0, k + 1, n_f, rest);
+    transposedProduct(columns, q, work_row_);
+    R_.row(k).segment(k + 1, rest) = work_row_.head(rest).transpose();
+    subtractOuter(q.data(), n_f, work_row_.data(), rest, Q_.col(k + 1).data(), Q_.rows());
   }
   return true;
 }
@@ -171,85 +209,8 @@ bool KktSystem::factorRows(double dependent_tolerance) {
 bool KktSystem::factor(const QpProblem& p, const Sides& sides, double dependent_tolerance) {
   if (!factorFree(p, sides)) return false;
   if (gatherRows(p, sides)) return true;
-  rows_factored_ = n_rows_ <= n_free_ && factorRows(dependent_tolerance);
+  rows_factored_ = n_rows_ == 0 || (n_rows_ <= n_free_ && factorRows(dependent_tolerance));
   return rows_factored_;
-}
-
-/// Errors of the KKT equations. @return whether they are down to rounding
-bool KktSystem::residual(const QpProblem& p, QpResult& result) {
-  const Index n_r = n_rows_;
-  product(p.H, result.x, hx_);
-  if (n_r > 0) {
-    product(At_.leftCols(n_r), y_, aty_);
-    transposedProduct(At_.leftCols(n_r), result.x, residual_row_);
-    residual_row_.head(n_r) *= -1.0;
-  } else {
-    aty_.setZero();
-  }
-  double worst = 0.0, largest = 0.0;
-  for (Index j = 0; j < n_free_; ++j) {
-    const Index i = order_[static_cast<std::size_t>(j)];
-    const double error = aty_(i) - hx_(i) - p.g(i);
-    residual_free_(j) = error;
-    worst = std::max(worst, std::abs(error));
-    largest = std::max(largest, std::abs(hx_(i)) + std::abs(p.g(i)) + std::abs(aty_(i)));
-  }
-  bool small = worst <= 4.0 * kEpsilon * largest;
-  for (Index k = 0; k < n_r; ++k) {
-    const Index row = rows_[static_cast<std::size_t>(k)];
-    const double limit = limitOf(p, p.g.size() + row, row_side_[static_cast<std::size_t>(k)]);
-    residual_row_(k) += limit;
-    small = small &&
-            std::abs(residual_row_(k)) <=
-                4.0 * kEpsilon * (std::abs(limit) + At_.col(k).cwiseAbs().dot(result.x.cwiseAbs()));
-  }
-  return small;
-}
-
-void KktSystem::correct(QpResult& result) {
-  const Index n_f = n_free_, n_r = n_rows_;
-  auto w = work_.head(n_f);
-  w = residual_free_.head(n_f);
-  const auto L = L_.topLeftCorner(n_f, n_f).triangularView<Eigen::Lower>();
-  if (n_f > 0) L.solveInPlace(w);
-  if (n_r > 0) {
-    const auto R = R_.topLeftCorner(n_r, n_r).triangularView<Eigen::Upper>();
-    auto step = residual_row_.head(n_r);
-    auto projection = work_row_.head(n_r);
-    R.transpose().solveInPlace(step);
-    transposedProduct(Q_.topLeftCorner(n_f, n_r), w, projection);
-    step -= projection;
-    addProduct(1.0, Q_.topLeftCorner(n_f, n_r), step, w);
-    R.solveInPlace(step);
-    y_.head(n_r) += step;
-  }
-  if (n_f > 0) L.transpose().solveInPlace(w);
-  for (Index j = 0; j < n_f; ++j) result.x(order_[static_cast<std::size_t>(j)]) += w(j);
-}
-
-void KktSystem::solve(const QpProblem& p, const Sides& sides, QpResult& result) {
-  const Index n = p.g.size();
-  for (Index j = n_free_; j < n; ++j) {
-    const Index i = order_[static_cast<std::size_t>(j)];
-    result.x(i) = limitOf(p, i, sides[static_cast<std::size_t>(i)]);
-  }
-  for (Index k = 0; k < n_rows_; ++k) y_(k) = result.y_a(rows_[static_cast<std::size_t>(k)]);
-  const int corrections = shifted() ? kMaxShiftedCorrections : kMaxCorrections;
-  for (int correction = 0; !residual(p, result) && correction < corrections; ++correction)
-    correct(result);
-  result.y_x.setZero();
-  result.y_a.setZero();
-  for (Index k = 0; k < n_rows_; ++k) result.y_a(rows_[static_cast<std::size_t>(k)]) = y_(k);
-  for (Index j = n_free_; j < n; ++j) {
-    const Index i = order_[static_cast<std::size_t>(j)];
-    result.y_x(i) = hx_(i) + p.g(i) - aty_(i);
-  }
-}
-
-void KktSystem::evaluate(const QpProblem& p, const QpResult& result) {
-  product(p.H, result.x, hx_);
-  aty_.setZero();
-  if (p.a_lower.size() > 0) transposedProduct(p.A, result.y_a, aty_);
 }
 
 }  // namespace fpc::qp

@@ -22,13 +22,15 @@ constexpr double kShrinking = 0.1;
 bool QpSolver::Workspace::polish(const QpProblem& p) {
   if (!kkt.factor(p, sides, qp::kDependent)) return false;
   kkt.solve(p, sides, result);
-  return revise(p) == 0 && finish(p) == SolveStatus::kSolved;
+  return revise(p, true) == 0 && finish(p) == SolveStatus::kSolved;
 }
 
 SolveStatus QpSolver::Workspace::proximal(const QpProblem& p) {
   center = result.x;
   if (!center.allFinite()) center.setZero();
-  bool fresh = true;
+  ++result.iterations;
+  if (polish(p)) return SolveStatus::kSolved;  // the first working set is often the right one
+  bool fresh = true, renewed = false;
   double residual = std::numeric_limits<double>::infinity();
   for (int step = 1; step <= kMaxSteps; ++step) {
     gradient = p.g - kkt.shift().cwiseProduct(center);
@@ -36,6 +38,10 @@ SolveStatus QpSolver::Workspace::proximal(const QpProblem& p) {
       return SolveStatus::kNumericalError;
     const SolveStatus status = dual.run(p, settings, tolerance(), noise, sides, result.iterations);
     if (status == SolveStatus::kInfeasible) return infeasible();
+    if (status == SolveStatus::kNumericalError && !renewed) {
+      fresh = renewed = true;  // the factors may have gathered rounding: once more with new ones
+      continue;
+    }
     if (status != SolveStatus::kSolved) return status;
     result.x = center = dual.x();
     dual.multipliers(p.g.size(), result);

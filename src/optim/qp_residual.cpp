@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
+#include "optim/qp_kernels.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc {
@@ -46,6 +47,15 @@ double feasibilityScale(const QpProblem& p, Index id, VectorRef x, double limit)
   return std::max(scale, std::numeric_limits<double>::min());
 }
 
+bool RowNoise::within(const QpProblem& p, Index id, double violation, double tolerance, VectorRef x,
+                      double x_largest, double limit) {
+  if (id >= p.g.size()) {
+    const double bound = std::abs(limit) + rowSum(p, id - p.g.size()) * (1.0 + x_largest);
+    if (violation > 2.0 * tolerance * bound) return false;  // the scale is no more than that
+  }
+  return violation <= tolerance * feasibilityScale(p, id, x, limit);
+}
+
 double gradientScale(const QpProblem& p, VectorRef Hx, VectorRef y_x, VectorRef Aty) {
   return 1.0 + std::max({largest(Hx), largest(p.g), largest(y_x), largest(Aty)});
 }
@@ -55,9 +65,20 @@ double RowNoise::rounding(const QpProblem& p) {
   return kRowRounding * largest_;
 }
 
+double RowNoise::rowSum(const QpProblem& p, Index row) {
+  if (largest_sum_ < 0.0) {
+    sum_.setZero(p.A.rows());
+    addAbsolute(p.A.data(), p.A.rows(), p.A.cols(), sum_.data());
+    largest_sum_ = sum_.maxCoeff();
+  }
+  return sum_(row);
+}
+
 bool RowNoise::covers(const QpProblem& p, Index id, double violation, VectorRef x) {
   const Index n = p.g.size();
   if (id < n) return false;
+  // A coefficient is at least the mean of its row, and the largest of A at most a row's sum.
+  if (rowSum(p, id - n) > 2.0 * static_cast<double>(n) * kRowRounding * largest_sum_) return false;
   const double limit = rounding(p);
   bool zero = true;
   for (Index j = 0; j < n; ++j) {
@@ -79,11 +100,15 @@ double scaledResidual(const QpProblem& p, RowNoise& noise, VectorRef x, VectorRe
   double error = 0.0;
   for (Index i = 0; i < n; ++i) error = std::max(error, std::abs(Hx(i) + p.g(i) - y_x(i) - Aty(i)));
   error /= gradient;
-  for (Index i = 0; i < n; ++i)
+  for (Index i = 0; i < n; ++i) {
+    if (y_x(i) == 0.0 && x(i) >= p.x_lower(i) && x(i) <= p.x_upper(i)) continue;
     error = std::max(error, constraintError(p, noise, i, x, x(i), y_x(i), gradient));
+  }
   const double y_scale = 1.0 + largest(y_a);
-  for (Index i = 0; i < m; ++i)
+  for (Index i = 0; i < m; ++i) {
+    if (y_a(i) == 0.0 && Ax(i) >= p.a_lower(i) && Ax(i) <= p.a_upper(i)) continue;
     error = std::max(error, constraintError(p, noise, n + i, x, Ax(i), y_a(i), y_scale));
+  }
   return error;
 }
 

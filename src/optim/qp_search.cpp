@@ -23,6 +23,7 @@ void QpSolver::Workspace::resize(Index n, Index m) {
   next = sides;
   kkt.resize(n, m);
   dual.resize(n, m);
+  noise.resize(m);
   ax.setZero(m);
   center.setZero(n);
   gradient.setZero(n);
@@ -56,13 +57,14 @@ void QpSolver::Workspace::begin(const QpProblem& p, bool warm) {
 }
 
 /// Compares the polished point with the constraints. @return the number of changes that `next`
-/// makes to `sides`
-Index QpSolver::Workspace::revise(const QpProblem& p) {
+/// makes to `sides`, or 1 where only the `first` counts
+Index QpSolver::Workspace::revise(const QpProblem& p, bool first) {
   const Index n = p.g.size(), m = p.a_lower.size();
   const QpResult& r = result;
   const double x_scale = tolerance() * qp::gradientScale(p, kkt.hx(), r.y_x, kkt.aty());
   const double a_scale = m > 0 ? tolerance() * (1.0 + r.y_a.lpNorm<Eigen::Infinity>()) : 0.0;
   if (m > 0) qp::product(p.A, r.x, ax);
+  const double x_largest = r.x.lpNorm<Eigen::Infinity>();
   Index changes = 0;
   next = sides;
   for (Index id = 0; id < n + m; ++id) {
@@ -77,13 +79,14 @@ Index QpSolver::Workspace::revise(const QpProblem& p) {
       const double violation = std::max(below, above);
       if (violation <= 0.0) continue;
       const Side violated = below > above ? qp::kLower : qp::kUpper;
-      if (violation <=
-              tolerance() * qp::feasibilityScale(p, id, r.x, qp::limitOf(p, id, violated)) ||
-          noise.covers(p, id, violation, result.x))
+      if (noise.within(p, id, violation, tolerance(), r.x, x_largest,
+                       qp::limitOf(p, id, violated)) ||
+          noise.covers(p, id, violation, r.x))
         continue;
       side = violated;
     }
     ++changes;
+    if (first) break;
   }
   return changes;
 }
@@ -98,7 +101,7 @@ bool QpSolver::Workspace::guess(const QpProblem& p, bool warm) {
     if (k > 0) sides.swap(next);
     ++result.iterations;
     kkt.solve(p, sides, result);
-    if (revise(p) == 0) return true;
+    if (revise(p, k + 1 == count) == 0) return true;
   }
   return false;
 }
@@ -133,13 +136,15 @@ SolveStatus QpSolver::Workspace::search(const QpProblem& p) {
     dual.multipliers(p.g.size(), result);
     if (status == SolveStatus::kIterationLimit || status == SolveStatus::kNumericalError)
       return status;
+    if (status == SolveStatus::kSolved && dual.refine(p, kkt, result, ax) && revise(p, true) == 0)
+      break;
     // Rows so close to dependent that only the factors of the dual method stand them.
     if (!kkt.factor(p, sides, qp::kDependent)) {
       evaluate(p);
       return status == SolveStatus::kInfeasible ? infeasible() : status;
     }
     kkt.solve(p, sides, result);
-    const Index changes = revise(p);
+    const Index changes = revise(p, true);
     if (status == SolveStatus::kInfeasible && stillViolated(p, dual.culprit())) return infeasible();
     if (changes == 0) break;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "optim/qp_kernels.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc::qp {
@@ -25,17 +26,16 @@ void KktSystem::equilibrate(const QpProblem& p) {
   shift_.setOnes();
   row_scale_.setOnes();
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
+    row_largest_.setZero();
     for (Index j = 0; j < n; ++j) {
-      double largest = H_.col(j).cwiseAbs().cwiseProduct(shift_).maxCoeff();
-      if (m > 0)
-        largest = std::max(largest, p.A.col(j).cwiseAbs().cwiseProduct(row_scale_).maxCoeff());
-      work_(j) = largest * shift_(j);
+      const double cost = diagonal_ ? std::abs(H_(j, j)) * shift_(j)
+                                    : H_.col(j).cwiseAbs().cwiseProduct(shift_).maxCoeff();
+      const double row =
+          m > 0 ? largestOf(p.A.col(j).data(), m, row_scale_.data(), shift_(j), row_largest_.data())
+                : 0.0;
+      work_(j) = std::max(cost, row) * shift_(j);
     }
-    for (Index i = 0; i < m; ++i) {
-      double largest = 0.0;
-      for (Index j = 0; j < n; ++j) largest = std::max(largest, std::abs(p.A(i, j)) * shift_(j));
-      divideByRoot(row_scale_(i), largest * row_scale_(i));
-    }
+    for (Index i = 0; i < m; ++i) divideByRoot(row_scale_(i), row_largest_(i) * row_scale_(i));
     for (Index j = 0; j < n; ++j) divideByRoot(shift_(j), work_(j));
   }
 }

@@ -24,7 +24,7 @@ struct QpSolver::Workspace {
   SolveStatus proximal(const QpProblem& p);
   bool polish(const QpProblem& p);
   void evaluate(const QpProblem& p);
-  qp::Index revise(const QpProblem& p);
+  qp::Index revise(const QpProblem& p, bool first);
   SolveStatus finish(const QpProblem& p);
   bool stillViolated(const QpProblem& p, qp::Index id);
   SolveStatus infeasible();

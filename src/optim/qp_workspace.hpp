@@ -43,13 +43,19 @@ double feasibilityScale(const QpProblem& p, Index id, VectorRef x, double limit)
 /// (0 x <= -2.8e-17) say nothing: a violation below the rounding is none.
 class RowNoise {
  public:
-  void reset() { largest_ = -1.0; }  ///< for another problem
+  void resize(Index m) { sum_.setZero(m); }
+  void reset() { largest_ = largest_sum_ = -1.0; }  ///< for another problem
   bool covers(const QpProblem& p, Index id, double violation, VectorRef x);
+  /// Whether a violation is within tolerance * feasibilityScale(). @param x_largest of |x|
+  bool within(const QpProblem& p, Index id, double violation, double tolerance, VectorRef x,
+              double x_largest, double limit);
 
  private:
   double rounding(const QpProblem& p);
+  double rowSum(const QpProblem& p, Index row);  ///< sum_j |a_j|
 
-  double largest_{-1.0};  // |a_ij|, negative while unknown
+  double largest_{-1.0}, largest_sum_{-1.0};  // |a_ij| and row sum, negative while unknown
+  Vector sum_;
 };
 
 /// max(1 + the terms of stationarity): what an error in the gradient is measured against.
@@ -67,8 +73,8 @@ double scaledResidual(const QpProblem& p, RowNoise& noise, VectorRef x, VectorRe
 class KktSystem {
  public:
   void resize(Index n, Index m);
-  void setHessian(
-      const Matrix& H);  ///< forgets factors and shift unless H is bitwise the one before
+  /// Forgets factors and shift unless H is bitwise the one before.
+  void setHessian(const Matrix& H);
   /// Sets the shift that equilibrates H and A. @return false if H is not positive semidefinite
   bool regularise(const QpProblem& p);
   /// Divides the shift by that; @return false, and nothing is changed, if it is at its least
@@ -82,6 +88,7 @@ class KktSystem {
   /// Extends L to all unknowns, free ones first. @return false if H is not positive definite
   bool complete();
   bool definite() const { return definite_; }  ///< the whole of H has been factored once
+  bool diagonal() const { return diagonal_; }
   /// Iterative refinement from the x and y_a given; x is exactly at the active bounds. Needs
   /// factor().
   void solve(const QpProblem& p, const Sides& sides, QpResult& result);
@@ -94,6 +101,9 @@ class KktSystem {
 
  private:
   bool cholesky(Index column_begin, Index column_end, Index row_begin, Index row_end);
+  bool choleskyOfFree();
+  void transformRows();
+  void applyHessian(const QpProblem& p, const Vector& x);
   bool gatherRows(const QpProblem& p, const Sides& sides);
   bool factorRows(double dependent_tolerance);
   bool residual(const QpProblem& p, QpResult& result);
@@ -103,7 +113,7 @@ class KktSystem {
   void forgetFactors();
 
   Matrix H_, L_;
-  Vector shift_, row_scale_;
+  Vector shift_, row_scale_, row_largest_, least_pivot_;
   double shift_size_{};       // of the shift, relative to the equilibrated problem
   std::vector<Index> order_;  // free unknowns, then fixed ones, each ascending
   std::vector<char> fixed_;
@@ -111,7 +121,8 @@ class KktSystem {
   std::vector<Side> row_side_;
   Index n_free_{}, n_rows_{};
   bool factored_{}, rows_factored_{}, complete_{}, definite_{};
-  Matrix At_;  // n n_rows, the working rows as columns
+  bool diagonal_{};  // H
+  Matrix At_;        // n n_rows, the working rows as columns
   Matrix Vt_, Q_, R_;
   Vector y_, hx_, aty_, residual_free_, residual_row_, work_, work_row_, norm_;
 };
@@ -132,6 +143,10 @@ class DualActiveSet {
   SolveStatus run(const QpProblem& p, const QpSettings& settings, double tolerance, RowNoise& noise,
                   Sides& sides, int& iterations);
   const Vector& x() const { return x_; }
+  /// Iterative refinement of x() and the multipliers with J and R, on the data as given, for an H
+  /// without a shift. Leaves them in the result, x exactly at the active bounds, and the products
+  /// in kkt and Ax. @return whether the errors are down to rounding
+  bool refine(const QpProblem& p, KktSystem& kkt, QpResult& result, Vector& Ax);
   void multipliers(Index n, QpResult& result) const;
   Index culprit() const {
     return culprit_;
@@ -145,6 +160,8 @@ class DualActiveSet {
                   Side side, Sides& sides, int& iterations);
   SolveStatus contradiction(const QpProblem& p, Index id, Side side);
   void combineActive();
+  bool refineErrors(const QpProblem& p, const KktSystem& kkt, QpResult& result, const Vector& Ax);
+  void refineStep(QpResult& result);
   void absorbIntoBounds(const QpProblem& p);
   void seed(const QpProblem& p, const KktSystem& kkt, const Sides& sides);
   void setNormal(const QpProblem& p, Index id, Side side);
@@ -155,7 +172,7 @@ class DualActiveSet {
   void remove(Index k, Sides& sides);
   void minimise(const QpProblem& p, const Vector& g);
   void dropWrongSigns(const QpProblem& p, const Vector& g, Sides& sides);
-  double rowNorm(const QpProblem& p, Index row);
+  void measureRows(const QpProblem& p);
 
   Matrix J_, R_;
   std::vector<Index> active_;
@@ -163,8 +180,11 @@ class DualActiveSet {
   std::vector<char> ignored_;  // redundant but for rounding
   Index q_{}, culprit_{-1};
   Vector x_, u_, normal_, d_, z_, r_, c_, ax_;
-  Vector scale_;     // sqrt(H_ii)
-  Vector row_norm_;  // of a row in the metric diag(H)^-1, negative while unknown
+  Vector scale_;  // sqrt(H_ii)
+  Vector error_;  // of the gradient
+  Vector inverse_scale_;
+  Vector row_metric_;  // 1 / the norm of a row in the metric diag(H)^-1
+  bool rows_measured_{};
   Vector proof_x_, proof_a_, proof_error_;  // Farkas certificate and A'y_a + y_x of it
 };
 

@@ -19,7 +19,7 @@
 namespace fpc {
 namespace {
 
-PlantDescription describeCstr() {
+PlantDescription describe() {
   PlantDescription p;
   p.name = "cstr";
   p.title = "Stirred-tank reactor with coolant jacket, 2 states (blazic2007)";
@@ -69,7 +69,7 @@ class Cstr final : public Plant {
   double q_, CA0_, T0_, Tc0_, V_, hA_, k0_, E_R_, dH_, rho_, rho_c_, Cp_, Cpc_, K_;
 };
 
-Cstr::Cstr(const PlantParameters& parameters) : description_(describeCstr()) {
+Cstr::Cstr(const PlantParameters& parameters) : description_(describe()) {
   const Vector p = parameterValues(description_, parameters);
   Eigen::Index i = 0;
   for (double* value :
@@ -88,7 +88,7 @@ void Cstr::derivatives(VectorRef state, VectorRef u, VectorRef d, Eigen::Ref<Vec
             cooling / (rho_ * Cp_ * V_) * (Tc0_ - T);
 }
 
-const bool kCstrRegistered = registerPlant(
+const bool kRegistered = registerPlant(
     "cstr", [](const PlantParameters& parameters) { return std::make_unique<Cstr>(parameters); });
 
 }  // namespace

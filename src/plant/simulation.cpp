@@ -10,7 +10,6 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "plant/quantity_index.hpp"
-#include "plant/step_failure.hpp"
 
 namespace fpc {
 namespace {
@@ -27,8 +26,7 @@ std::vector<std::string> namesForCommands(const SimulationParams& params,
 /// Why the state after a stepper's step is not to be used; empty if it is.
 std::string troubleOf(const PlantStepper& stepper, const Vector& state) {
   if (!state.allFinite()) return "the state is not finite";
-  const auto* failing = dynamic_cast<const StepFailure*>(&stepper);
-  return failing ? failing->failure() : "";
+  return stepper.failure();
 }
 
 }  // namespace
@@ -215,11 +213,18 @@ void Simulation::measure() {
 }
 
 void Simulation::checkRanges(const Command& command) const {
-  if (command.mode != CommandMode::kOverride) return;
+  if (command.mode == CommandMode::kRelease) return;
   const auto& ranges = plant_->description().disturbances;
   for (std::size_t i = 0; i < std::min(command.name.size(), command.value.size()); ++i) {
     const auto row = static_cast<std::size_t>(indexOf(ranges, command.name[i]));
     if (row == ranges.size()) continue;  // an input or output, or unknown, which the table says
+    if (command.mode == CommandMode::kOffset) {
+      const double span = ranges[row].upper - ranges[row].lower;
+      require(std::abs(command.value[i]) <= span, "value of " + command.name[i],
+              "an offset of at most " + exactText(span) + " [" + ranges[row].unit +
+                  "], the width of its range");
+      continue;
+    }
     const bool inside =
         command.value[i] >= ranges[row].lower && command.value[i] <= ranges[row].upper;
     require(inside, "value of " + command.name[i],

@@ -67,6 +67,22 @@ void checkActuator(const ActuatorParams& actuator, const PlantDescription& plant
   requireInside(actuator.limits.upper, plant.inputs, "actuator.input_upper");
 }
 
+/// A valve of the file is stuck where the plant could have it.
+void checkStuckValves(const SimulationParams& params, const PlantDescription& plant) {
+  for (std::size_t n = 0; n < params.disturbance_commands.size(); ++n) {
+    const Command& command = params.disturbance_commands[n].command;
+    if (command.mode != CommandMode::kOverride) continue;
+    for (std::size_t i = 0; i < std::min(command.name.size(), command.value.size()); ++i)
+      for (const Quantity& q : plant.inputs)
+        require(command.name[i] != "input/" + q.name ||
+                    (command.value[i] >= q.lower && command.value[i] <= q.upper),
+                "disturbance.commands[" + std::to_string(n) + "].value",
+                "a number >= " + exactText(q.lower) + " and <= " + exactText(q.upper) + " [" +
+                    q.unit + "], the range of the plant's input " + q.name + ", got " +
+                    exactText(command.value[i]));
+  }
+}
+
 void checkSensors(SimulationParams& params) {
   const std::size_t n_y = params.outputs.size();
   if (params.output_delay_s.empty()) params.output_delay_s.assign(n_y, 0.0);
@@ -96,6 +112,7 @@ SimulationParams checked(SimulationParams params, const Plant& plant) {
   checkActuator(params.actuator, description);
   checkRecord(params, description);
   checkSensors(params);
+  checkStuckValves(params, description);
   params.integrator.validate();
   for (const auto& scheduled : params.disturbance_commands)
     require(scheduled.time_h >= 0.0 && scheduled.time_h <= kLatestCommandH,

@@ -11,6 +11,8 @@
 #include <std_msgs/String.h>
 
 #include <algorithm>
+#include <iterator>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -58,9 +60,10 @@ class Reader {
  public:
   Reader(const LoopFile& loop, std::string file) : loop_(loop), file_(std::move(file)) {}
 
-  RecordedRun read(const rosbag::Bag& bag) {
+  RecordedRun read(const rosbag::Bag& bag, int run) {
     const std::string space = spaceOf(bag, file_, topics::kMeasurement);
     const auto topic = [&](const char* name) { return space + name; };
+    choose(bag, topic(topics::kMeasurement), run);
     rosbag::View view(bag, rosbag::TopicQuery(std::vector<std::string>{
                                topic(topics::kMeasurement), topic(topics::kBaseAction),
                                topic(topics::kControlAction), topic(topics::kSetpointEffect),
@@ -75,20 +78,50 @@ class Reader {
       if (const auto msg = item.instantiate<fmbpc::FuzzyModel>())
         take(*msg, static_cast<std::int64_t>(item.getTime().toNSec()));
     }
-    require(!run_.measurements.empty(), file_, "measurements of this version's messages");
+    bringAlong();
     return std::move(run_);
   }
 
  private:
+  /// By their numbers, which grow: with simulated time a bag mixes its runs.
+  void choose(const rosbag::Bag& bag, const std::string& topic, int run) {
+    std::set<std::uint64_t> runs;
+    rosbag::View view(bag, rosbag::TopicQuery(topic));
+    for (const rosbag::MessageInstance& item : view)
+      if (const auto msg = item.instantiate<fmbpc::Measurement>()) runs.insert(msg->run_id);
+    require(!runs.empty(), file_, "measurements of this version's messages");
+    const std::string number = std::to_string(runs.size());
+    require(run > 0 || runs.size() == 1, file_,
+            "one run, got " + number +
+                ": the plant was started or reset while recording; fmbpc replay --run N takes one");
+    require(run <= static_cast<int>(runs.size()), file_,
+            "run " + std::to_string(run) + ", got " + number + " of them");
+    chosen_ = *std::next(runs.begin(), std::max(run, 1) - 1);
+  }
+
+  /// What stood before the run began, unless it says something else itself.
+  void bringAlong() {
+    if (wishes_before_)
+      run_.wishes.emplace_hint(run_.wishes.begin(), 0, std::move(wishes_before_->second));
+    if (model_before_)
+      run_.models.emplace_hint(run_.models.begin(), 0, std::move(model_before_->second));
+  }
+
+  template <typename Item>
+  bool ofBefore(std::uint64_t run_id, std::optional<std::pair<std::uint64_t, Item>>& before,
+                const Item& item) const {
+    if (run_id < chosen_ && (!before || run_id >= before->first)) before.emplace(run_id, item);
+    return run_id != chosen_;
+  }
+
   void take(const fmbpc::Measurement& msg) {
-    require(
-        run_.measurements.empty() || run_.measurements.begin()->second.header.run_id == msg.run_id,
-        file_, "one run: the plant was started or reset while recording");
+    if (msg.run_id != chosen_) return;
     run_.measurements.emplace(msg.step, fromMsg(msg));
     newest_ = run_.measurements.rbegin()->first + 1;
   }
 
   void take(const fmbpc::ControlAction& msg, bool base) {
+    if (msg.run_id != chosen_) return;
     if (base)
       run_.base.emplace(msg.step, fromMsg(msg));
     else
@@ -96,6 +129,7 @@ class Reader {
   }
 
   void take(const fmbpc::CommandEffect& msg) {
+    if (msg.run_id != chosen_) return;
     CommandEffect effect = fromMsg(msg);
     effect.command.time_ns = 0;
     run_.setpoints.emplace(msg.step, std::move(effect.command));
@@ -103,6 +137,7 @@ class Reader {
 
   /// What was asked after sample k acts from k + 1 on; what was asked before the first, from it on.
   void take(const fmbpc::OperatorState& msg) {
+    if (ofBefore(msg.run_id, wishes_before_, wishesOf(msg))) return;
     const std::int64_t t = fromStamp(msg.header.stamp);
     const auto answered = std::find_if(run_.measurements.begin(), run_.measurements.end(),
                                        [t](const auto& m) { return m.second.header.time_ns >= t; });
@@ -114,17 +149,21 @@ class Reader {
   /// In lockstep from the sample after the one it was made from, else when it came: before sample 0
   /// if not later than that (the bag has no order within one time of /clock).
   void take(const fmbpc::FuzzyModel& msg, std::int64_t came_ns) {
+    const TsModel model = matchToPlant(fromMsg(msg), loop_.plant_info);
+    if (msg.run_id != 0 && ofBefore(msg.run_id, model_before_, model)) return;
     const bool at_start =
         run_.measurements.empty() || came_ns <= run_.measurements.begin()->second.header.time_ns;
     const std::uint32_t made = msg.run_id == 0 ? 0 : msg.step + 1;
     const bool exact = msg.run_id != 0 && loop_.ring.pace == Pace::kLockstep;
-    run_.models.emplace(exact || at_start ? made : std::max(made, newest_),
-                        matchToPlant(fromMsg(msg), loop_.plant_info));
+    run_.models.emplace(exact || at_start ? made : std::max(made, newest_), model);
   }
 
   const LoopFile& loop_;
   std::string file_;
   RecordedRun run_;
+  std::uint64_t chosen_{};
+  std::optional<std::pair<std::uint64_t, OperatorWishes>> wishes_before_;  // with their run
+  std::optional<std::pair<std::uint64_t, TsModel>> model_before_;
   std::uint32_t newest_{};  // the step after the newest measurement so far
 };
 
@@ -142,8 +181,8 @@ std::string loopTextOf(const std::string& bag) {
   });
 }
 
-RecordedRun readBagRun(const std::string& bag, const LoopFile& loop) {
-  return withBag(bag, [&](const rosbag::Bag& open) { return Reader(loop, bag).read(open); });
+RecordedRun readBagRun(const std::string& bag, const LoopFile& loop, int run) {
+  return withBag(bag, [&](const rosbag::Bag& open) { return Reader(loop, bag).read(open, run); });
 }
 
 }  // namespace fpc

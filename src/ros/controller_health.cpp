@@ -17,7 +17,8 @@ Health ControllerNode::health(double now_s) const {
   if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
   if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {plantName()}};
   if (!session_.ready()) return {LoopMode::kStarting, "waiting for fuzzy_model", {modelName()}};
-  if (parked_ && now_s - parked_since_s_ > kSilence)
+  const bool behind = parked_ && !inbox_.complete(parked_->header);
+  if (behind && now_s - parked_since_s_ > kSilence)
     return {LoopMode::kStalled,
             "waits for the identifier to be done with the sample before",
             {modelName()}};
@@ -44,18 +45,22 @@ Health ControllerNode::health(double now_s) const {
   if (session_.fellBack()) return {LoopMode::kFallback, session_.output().remark, {}};
   if (session_.answer().base.source == ActionSource::kHeld)
     return {LoopMode::kHeld, session_.output().remark, {}};
-  if (*session_.output().remark != '\0') return {LoopMode::kDegraded, session_.output().remark, {}};
+  if (!remarks_.lines().empty()) return {LoopMode::kDegraded, remarks_.sentence(), {}};
   if (!plant_.remark().empty()) return {LoopMode::kDegraded, "controlling; " + plant_.remark(), {}};
   if (!model_problem_.empty())
     return {LoopMode::kDegraded, "controlling; refused: " + model_problem_, {}};
-  const std::string& of_model = session_.modelRemark();
-  return {LoopMode::kAutomatic, of_model.empty() ? "controlling" : "controlling; " + of_model, {}};
+  std::string words = "controlling";
+  if (!session_.modelRemark().empty()) words += "; " + session_.modelRemark();
+  const std::string refusal = refusedLately(now_s);
+  if (!refusal.empty()) words += "; refused: " + refusal;
+  return {LoopMode::kAutomatic, words, {}};
 }
 
 void ControllerNode::report(Diagnostics::Status& status) const {
   status.add("hand", session_.isManual() ? "manual" : "auto");
   status.add("recipe", session_.setpoint().held() ? "held" : "running");
   status.add("step", session_.answer().tracking.header.step);
+  status.add("samples with a setpoint clamped", remarks_.clampedSamples());
   addCounts(status, session_.counts());
   status.add("dropped: run not announced", plant_.foreign());
   if (session_.controller().needsModel()) {

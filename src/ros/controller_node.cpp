@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
@@ -12,7 +11,8 @@
 namespace fpc {
 namespace {
 
-constexpr double kBurst = 200;  // commands at once
+constexpr double kBurst = 200;       // commands at once
+constexpr double kLookAgain = 0.05;  // [s] at what a parked sample waits for
 
 const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_node) {
   const bool answers_plant = private_node.param("final_action", !loop.has_clp);
@@ -26,8 +26,9 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(makeControllerSession(loop)),
+      remarks_(loop),
       inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
-      desk_(node, loop, name(), session_),
+      desk_(node, loop, name(), session_, [this] { answerParked(); }),
       ready_(node, name()),
       signals_(node),
       plant_(loop.plant_info),
@@ -51,13 +52,17 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                                                   &ControllerNode::onManualInput, this)),
       hold_(private_node.advertiseService(topics::kHold, &ControllerNode::onHold, this)),
       adapt_(private_node.advertiseService(topics::kAdapt, &ControllerNode::onAdapt, this)),
+      parked_timer_(node.createSteadyTimer(
+          ros::WallDuration(kLookAgain), [this](const ros::SteadyTimerEvent&) { answerParked(); },
+          false, false)),
       settings_(
           private_node, loop.controllerType().settings,
           [this] { return session_.controller().settings(); },
           [this](const Settings& settings) {
             session_.retune(settings);
             tell();
-          }),
+          },
+          [this](const std::string& why) { refuse(topics::kSettings, why); }),
       summary_(node, loop, name()),
       commands_(loop.ring.commands_per_s, kBurst),
       health_(node, private_node, "controller", loop.name, false,
@@ -85,6 +90,7 @@ void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
     session_.announce(plant_.runId());
     inbox_.announce(plant_.runId());
     announceIfReady();
+    answerParked();
   });
 }
 
@@ -141,25 +147,36 @@ void ControllerNode::announceIfReady() {
 void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   guarded(topics::kMeasurement, [&] {
     const Measurement measurement = fromMsg(*msg);
-    if (!plant_.admits(measurement.header.run_id)) return;
+    if (plant_.open() && !plant_.admits(measurement.header.run_id)) return;
     session_.plantTakesActions(!msg->local);
+    if (!mayAnswer(measurement)) return park(measurement);
     parked_.reset();
-    if (!listeners_.open() || !session_.ready() || !desk_.mayStart(measurement))
-      return;  // the plant will send it again
-    if (!inbox_.complete(measurement.header)) {
-      parked_ = measurement;
-      parked_since_s_ = steadyNow();
-      return;
-    }
     answer(measurement);
   });
 }
 
-// What the sample waited for has come.
+bool ControllerNode::mayAnswer(const Measurement& measurement) {
+  return plant_.open() && plant_.runId() == measurement.header.run_id && session_.ready() &&
+         listeners_.open() && inbox_.complete(measurement.header) && desk_.mayStart(measurement);
+}
+
+// Kept, since the plant does not send a sample again that somebody has answered: a controller that
+// comes back would have nothing to do until the next one.
+void ControllerNode::park(const Measurement& measurement) {
+  const bool known = parked_ && parked_->header.run_id == measurement.header.run_id &&
+                     parked_->header.step == measurement.header.step;
+  if (!known) parked_since_s_ = steadyNow();
+  parked_ = measurement;
+  parked_timer_.start();
+}
+
+// What the sample waited for may have come.
 void ControllerNode::answerParked() {
-  if (!parked_ || !inbox_.complete(parked_->header)) return;
+  if (!parked_) return parked_timer_.stop();
+  if (plant_.open() && plant_.runId() != parked_->header.run_id) return parked_.reset();
+  if (!mayAnswer(*parked_)) return;
   const Measurement measurement = std::move(*std::exchange(parked_, std::nullopt));
-  answer(measurement);
+  guarded(topics::kMeasurement, [&] { answer(measurement); });
 }
 
 void ControllerNode::answer(const Measurement& measurement) {
@@ -169,6 +186,7 @@ void ControllerNode::answer(const Measurement& measurement) {
   switch (session_.receive(measurement)) {
     case Receipt::kAnswered:
       if (first) settings_.publish();  // those that were restored
+      remarks_.look(session_);
       return publish(false);
     case Receipt::kRepeated:
       return publish(true);
@@ -176,59 +194,6 @@ void ControllerNode::answer(const Measurement& measurement) {
     case Receipt::kNotReady:
       return;
   }
-}
-
-void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
-  if (!commands_.pass(steadyNow())) return;
-  guarded(topics::kSetpoint, [&] {
-    const Command command = fromMsg(*msg);
-    const std::uint32_t step = session_.command(command);
-    ROS_INFO("%s: setpoint of %s from sample %u on", name().c_str(), join(command.name).c_str(),
-             step);
-    tell();
-  });
-}
-
-bool ControllerNode::onManual(std_srvs::SetBool::Request& request,
-                              std_srvs::SetBool::Response& response) {
-  session_.manual(request.data != 0);
-  tell();
-  response.success = true;
-  response.message = session_.isManual() ? "manual" : "auto";
-  return true;
-}
-
-bool ControllerNode::onAdapt(std_srvs::SetBool::Request& request,
-                             std_srvs::SetBool::Response& response) {
-  response.success = session_.adapt(request.data != 0);
-  tell();
-  response.message = !response.success   ? "this controller does not adapt"
-                     : request.data != 0 ? "adapting"
-                                         : "frozen";
-  return true;
-}
-
-bool ControllerNode::onManualInput(fmbpc::ManualInput::Request& request,
-                                   fmbpc::ManualInput::Response& response) {
-  try {
-    session_.manualInput(Eigen::Map<const Vector>(request.input.data(),
-                                                  static_cast<Eigen::Index>(request.input.size())));
-    tell();
-    response.success = true;
-  } catch (const InputError& error) {
-    response.message = error.what();
-  }
-  return true;
-}
-
-bool ControllerNode::onHold(std_srvs::SetBool::Request& request,
-                            std_srvs::SetBool::Response& response) {
-  session_.holdRecipe(request.data != 0);
-  tell();
-  response.success = true;
-  response.message = session_.setpoint().held() ? "recipe held" : "recipe running";
-  ROS_INFO("%s: %s", name().c_str(), response.message.c_str());
-  return true;
 }
 
 void ControllerNode::publish(bool repeated) {
@@ -239,7 +204,7 @@ void ControllerNode::publish(bool repeated) {
   if (standin_) standin_->asked(answer, repeated);
   if (tracking_.getNumSubscribers() > 0) {
     fmbpc::Tracking tracking = toMsg(answer.tracking);
-    if (answer.has_action) tracking.remark = session_.output().remark;
+    tracking.remark = remarks_.lines();
     tracking_.publish(shared(std::move(tracking)));
   }
   if (repeated) return;
@@ -249,11 +214,16 @@ void ControllerNode::publish(bool repeated) {
   publishSignals();
   if (!session_.resetReason().empty())
     ROS_INFO("%s: reset: %s", name().c_str(), session_.resetReason().c_str());
+  log();
+}
+
+// At once, or the latest of each second of wall time.
+void ControllerNode::log() {
+  const ControllerAnswer& answer = session_.answer();
   const bool held = answer.has_action && answer.base.source == ActionSource::kHeld;
-  const bool remarkable = *session_.output().remark != '\0';
-  if ((held || remarkable) && log_.pass())
-    ROS_WARN("%s: sample %u: %s", name().c_str(), answer.tracking.header.step,
-             session_.output().remark);
+  if (!remarks_.newlyClamped() && !((held || !remarks_.lines().empty()) && log_.pass())) return;
+  ROS_WARN("%s: sample %u: %s", name().c_str(), answer.tracking.header.step,
+           remarks_.sentence().c_str());
 }
 
 void ControllerNode::publishSignals() {
@@ -269,11 +239,6 @@ void ControllerNode::publishSignals() {
     if (index == signals_.size()) signals_.add(name);
     signals_.publish(index++, tracking.header.time_ns, value);
   }
-}
-
-void ControllerNode::tell() {
-  desk_.changed();
-  desk_.tell(session_.answer().tracking.header);
 }
 
 }  // namespace fpc

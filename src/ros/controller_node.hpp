@@ -17,6 +17,7 @@
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
 #include "fmbpc/loop/model_inbox.hpp"
+#include "fmbpc/loop/sample_remarks.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
@@ -56,12 +57,15 @@ class ControllerNode : public Node {
   void announceIfReady();
   void useModels(const StepHeader& next);
   StepHeader nextSample() const;
+  bool mayAnswer(const Measurement& measurement);
+  void park(const Measurement& measurement);
   void answer(const Measurement& measurement);
   void answerParked();
   void tell();  ///< what the operator asks has changed
   void publish(bool repeated);
   void advertiseSignals();
   void publishSignals();
+  void log();
   void report(Diagnostics::Status& status) const;
   Health health(double now_s) const;
   std::string plantName() const;
@@ -69,10 +73,11 @@ class ControllerNode : public Node {
 
   LoopFile loop_;
   ControllerSession session_;
+  SampleRemarks remarks_;
   ModelInbox inbox_;
   OperatorDesk desk_;
   std::optional<OptimizerStandin> standin_;  // of a loop with an optimizer
-  std::optional<Measurement> parked_;        // waits for a model that belongs before it
+  std::optional<Measurement> parked_;        // waits for what must be known before it
   double parked_since_s_{}, heard_s_{};
   ReadyPublisher ready_;
   SignalPublishers signals_;
@@ -86,6 +91,7 @@ class ControllerNode : public Node {
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       identified_subscriber_, setpoint_subscriber_;
   ros::ServiceServer manual_, manual_input_, hold_, adapt_;
+  ros::SteadyTimer parked_timer_;
   SettingsServer settings_;
   SummaryListener summary_;
   RateLimit commands_;

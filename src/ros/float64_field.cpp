@@ -2,13 +2,15 @@
 
 #include <fmbpc/Setpoint.h>
 
+#include <cmath>
+
 #include "ros/topics.hpp"
-#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 
 Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
-    : setpoint_(node.advertise<fmbpc::Setpoint>(topics::kSetpoint, topics::kViewQueue)) {
+    : timeout_s_(loop.gateway.stale_s),
+      setpoint_(node.advertise<fmbpc::Setpoint>(topics::kSetpoint, topics::kViewQueue)) {
   const GatewayParams& gateway = loop.gateway;
   const std::size_t n_y = gateway.outputs.size();
   for (std::size_t i = 0; i < n_y; ++i) {
@@ -31,29 +33,59 @@ Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
 void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::vector<Reading>& to,
                           std::size_t index) {
   if (topic.empty()) return;
-  const boost::function<void(const std_msgs::Float64::ConstPtr&)> keep =
-      [this, &to, index](const std_msgs::Float64::ConstPtr& msg) {
-        ++heard_;
+  TagOwner& owner = owners_.emplace_back(node.resolveName(topic), timeout_s_);
+  const boost::function<void(const ros::MessageEvent<const std_msgs::Float64>&)> keep =
+      [this, &to, &owner, index](const ros::MessageEvent<const std_msgs::Float64>& event) {
+        const double value = event.getConstMessage()->data;
+        if (!admits(owner, event.getPublisherName(), value)) return;
+        const Reading reading{index, value, steadyNow()};
         for (Reading& known : to)
           if (known.index == index) {
-            known = {index, msg->data, steadyNow()};
+            known = reading;
             return;
           }
-        to.push_back({index, msg->data, steadyNow()});
+        to.push_back(reading);
       };
   subscribers_.push_back(node.subscribe<std_msgs::Float64>(
       topic, topics::kPairQueue, keep, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+}
+
+bool Float64Field::admits(TagOwner& owner, const std::string& publisher, double value) {
+  const double now_s = steadyNow();
+  if (owner.admits(publisher, now_s, std::isfinite(value))) {
+    ++heard_;
+    return true;
+  }
+  ++strange_;
+  if (log_.pass()) ROS_ERROR("%s", owner.problem(now_s).c_str());
+  return false;
+}
+
+std::string Float64Field::problem() const {
+  for (const TagOwner& owner : owners_) {
+    std::string words = owner.problem(steadyNow());
+    if (!words.empty()) return words;
+  }
+  return "";
 }
 
 /// What others ask in the way of the pid package becomes a setpoint of the ring.
 void Float64Field::forwardSetpoint(ros::NodeHandle& node, const std::string& topic,
                                    const std::string& output) {
   if (topic.empty()) return;
-  const boost::function<void(const std_msgs::Float64::ConstPtr&)> forward =
-      [this, output](const std_msgs::Float64::ConstPtr& msg) {
+  const boost::function<void(const ros::MessageEvent<const std_msgs::Float64>&)> forward =
+      [this, output](const ros::MessageEvent<const std_msgs::Float64>& event) {
+        const double value = event.getConstMessage()->data;
+        if (!std::isfinite(value)) {
+          ++strange_;
+          if (setpoint_log_.pass())
+            ROS_WARN("setpoint of %s by %s dropped: expected a finite number", output.c_str(),
+                     event.getPublisherName().c_str());
+          return;
+        }
         fmbpc::Setpoint setpoint;
         setpoint.name = {output};
-        setpoint.value = {msg->data};
+        setpoint.value = {value};
         setpoint.mode = fmbpc::Setpoint::OVERRIDE;
         setpoint_.publish(setpoint);
       };
@@ -79,7 +111,9 @@ void Float64Field::exchange(PlantGateway& gateway, bool automatic, double now_s)
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> Float64Field::counts() const {
-  return {{"values received", heard_}, {"commands sent", told_}};
+  return {{"values received", heard_},
+          {"values refused: a second publisher's, setpoints that are not finite", strange_},
+          {"commands sent", told_}};
 }
 
 }  // namespace fpc

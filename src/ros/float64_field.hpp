@@ -6,11 +6,14 @@
 #include <std_msgs/Bool.h>
 #include <std_msgs/Float64.h>
 
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "fmbpc/loop/tag_owner.hpp"
 #include "ros/field.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 
@@ -20,6 +23,8 @@ class Float64Field : public Field {
  public:
   Float64Field(ros::NodeHandle node, const LoopFile& loop);
   void exchange(PlantGateway& gateway, bool automatic, double now_s) override;
+  /// A tag that two nodes publish.
+  std::string problem() const override;
   std::vector<std::pair<std::string, std::uint64_t>> counts() const override;
 
  private:
@@ -29,11 +34,15 @@ class Float64Field : public Field {
   };
   void listen(ros::NodeHandle& node, const std::string& topic, std::vector<Reading>& to,
               std::size_t index);
+  bool admits(TagOwner& owner, const std::string& publisher, double value);
   void forwardSetpoint(ros::NodeHandle& node, const std::string& topic, const std::string& output);
 
   std::vector<Reading> signals_, positions_;  // since the last exchange
   std::optional<bool> enabled_;
-  std::uint64_t told_{}, heard_{};
+  std::uint64_t told_{}, heard_{}, strange_{};
+  double timeout_s_;
+  std::deque<TagOwner> owners_;
+  WallThrottle log_{1.0}, setpoint_log_{1.0};
   ros::Publisher setpoint_;
   std::vector<ros::Publisher> efforts_;
   std::vector<ros::Subscriber> subscribers_;

@@ -18,13 +18,16 @@ bool same(const Health& a, const Health& b) {
   return a.mode == b.mode && a.words == b.words && a.missing == b.missing;
 }
 
-/// A node that cannot be reached, or cannot reach others, is not in order, whatever it does.
-Health withNetwork(Health health) {
-  const std::string problem = networkProblem();
+/// A node that cannot be reached is not in order, whatever it does; nor is a loop with a member
+/// that cannot be, which the plant says for all. Other members say it without being worse for it.
+Health withNetwork(Health health, bool summary) {
+  const NetworkProblem network = networkProblem();
+  const std::string& problem = network.here.empty() ? network.there : network.here;
   if (problem.empty() || health.mode == LoopMode::kFinished) return health;
-  if (health.mode == LoopMode::kAutomatic || health.mode == LoopMode::kManual)
-    return {LoopMode::kDegraded, health.words + "; " + problem, health.missing};
-  health.words += "; " + problem;
+  const bool its_own = summary || !network.here.empty();
+  if (its_own && (health.mode == LoopMode::kAutomatic || health.mode == LoopMode::kManual))
+    health.mode = LoopMode::kDegraded;
+  if (health.words.find(problem) == std::string::npos) health.words += "; " + problem;
   return health;
 }
 
@@ -45,7 +48,7 @@ HealthReporter::HealthReporter(ros::NodeHandle node, const ros::NodeHandle& priv
 void HealthReporter::look() {
   const double now_s = steadyNow();
   const Health before = shown_;
-  shown_ = hysteresis_.show(withNetwork(source_.health(now_s)), now_s);
+  shown_ = hysteresis_.show(withNetwork(source_.health(now_s), summary_), now_s);
   const bool changed = before.mode != shown_.mode || before.missing != shown_.missing;
   if (same(before, shown_) && now_s - published_s_ < RingWatch::kBeat - 0.5 * kLook) return;
   published_s_ = now_s;

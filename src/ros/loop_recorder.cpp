@@ -17,6 +17,7 @@ constexpr double kPollPeriod = 0.05;   // [s] of wall time
 constexpr double kFinalPatience = 10;  // [s] for stragglers after the final measurement
 constexpr double kWritePatience = 10;  // [s] for room on the disk at the end
 constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
 constexpr int kPollsConnected = 3;     // a connection is complete at both ends a moment later
 
 }  // namespace
@@ -28,8 +29,9 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       keep_(private_node.param("keep", false)),
       plot_(private_node.param("plot", true)),
       stay_(private_node.param("stay", false)),
-      store_(loop, private_node.param<std::string>("out", "")),
-      session_(recordLayout(loop), [this](const SampleRecord& sample) { store_.append(sample); }),
+      started_s_(steadyNow()),
+      store_(openStore(private_node.param<std::string>("out", ""))),
+      session_(recordLayout(loop), [this](const SampleRecord& sample) { store_->append(sample); }),
       ready_(node, name()),
       plant_(loop.plant_info),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
@@ -47,16 +49,31 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
   listen(topics::kTracking, &LoopRecorder::onTracking);
   listen(topics::kControlAction, &LoopRecorder::onAction);
   if (!loop.external_plant) listen(topics::kPlantState, &LoopRecorder::onState);
-  if (!loop.has_clp) return;
-  listen(topics::kBaseAction, &LoopRecorder::onBase);
-  listen(topics::kSolverReport, &LoopRecorder::onReport);
+  if (loop.has_clp) {
+    listen(topics::kBaseAction, &LoopRecorder::onBase);
+    listen(topics::kSolverReport, &LoopRecorder::onReport);
+  }
+  if (unusable_.empty()) return;
+  ROS_FATAL("%s: %s", name().c_str(), unusable_.c_str());
+  problem_ = unusable_;
+  health_.look();
+}
+
+std::unique_ptr<RecordStore> LoopRecorder::openStore(const std::string& folder) {
+  try {
+    return std::make_unique<RecordStore>(loop_, folder);
+  } catch (const InputError& error) {
+    unusable_ = std::string("cannot record: ") + error.what();
+    return std::make_unique<RecordStore>(loop_, "");
+  }
 }
 
 void LoopRecorder::poll() {
-  if (!ready_.announced()) announceIfConnected();
+  if (!ready_.announced() && unusable_.empty()) announceIfConnected();
   if (!stay_ && ending_s_ >= 0 && steadyNow() - ending_s_ > kLastWords)
     return problem_.empty() ? done() : fail(problem_);
-  store_.flush();
+  if (!unusable_.empty()) return giveUp();
+  store_->flush();
   if (written_) return;
   const double now_s = steadyNow();
   if (closed_s_ >= 0) return conclude();  // the disk had no room
@@ -64,6 +81,14 @@ void LoopRecorder::poll() {
   problem_ = "the final sample came, but the record has gaps: " + join(session_.gaps());
   session_.close();
   conclude();
+}
+
+// A folder that cannot be used ends the launch before the first sample; a run that is under way
+// goes on without this process, which a launch that respawns starts again.
+void LoopRecorder::giveUp() {
+  if (steadyNow() - started_s_ < kHeard) return;
+  if (run_under_way_) return fail(unusable_);
+  end();
 }
 
 void LoopRecorder::announceIfConnected() {
@@ -85,9 +110,13 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
   if (session_.running() && !written_) session_.close();
   written_ = false;
   began_s_ = final_seen_s_ = closed_s_ = -1;
-  problem_.clear();
-  const std::uint32_t here = store_.begin(run_id);
+  problem_ = unusable_;
+  const std::uint32_t here = store_->begin(run_id);
+  if (!store_->problem().empty())
+    ROS_ERROR("loop_recorder: %s (tried again)", store_->problem().c_str());
+  if (!store_->remark().empty()) ROS_WARN("loop_recorder: %s", store_->remark().c_str());
   if (here > 0) {
+    began_s_ = std::min(store_->beganAt(), steadyNow());
     session_.resume(run_id, here);
     ROS_INFO("loop_recorder: goes on after the %u samples that are on disk", here);
   } else {
@@ -98,6 +127,10 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
 // Any message of the first sample may come first, and any of the last one may be the last.
 template <typename Take>
 void LoopRecorder::record(const char* topic, Take take) {
+  if (!unusable_.empty()) {
+    run_under_way_ = true;
+    return;
+  }
   guarded(topic, [&] {
     if (began_s_ < 0) began_s_ = steadyNow();
     take();
@@ -142,6 +175,7 @@ void LoopRecorder::conclude() {
     if (steadyNow() - closed_s_ > kWritePatience) end();
     return;
   }
+  health_.look();
   end();
 }
 
@@ -154,7 +188,7 @@ void LoopRecorder::end() {
 
 bool LoopRecorder::tryWrite() {
   try {
-    const Summary summary = store_.finish(steadyNow() - began_s_);
+    const Summary summary = store_->finish(steadyNow() - began_s_);
     written_ = true;
     trouble_ = troubleOf(summary);
     ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, summary.wall_s);
@@ -163,13 +197,13 @@ bool LoopRecorder::tryWrite() {
     return false;
   }
   if (session_.complete()) problem_ = trouble_;
-  if (!store_.folder().empty()) {
-    const PlotResult plot = plot_ ? drawPlot(store_.folder()) : PlotResult{};
+  if (!store_->folder().empty()) {
+    const PlotResult plot = plot_ ? drawPlot(store_->written()) : PlotResult{};
     if (!plot.warning.empty()) ROS_WARN("loop_recorder: %s", plot.warning.c_str());
-    ROS_INFO("loop_recorder: written: %s", store_.folder().c_str());
+    ROS_INFO("loop_recorder: written: %s", store_->written().c_str());
   }
   std_msgs::String folder;
-  folder.data = store_.folder();
+  folder.data = store_->written();
   if (ros::ok() && session_.complete()) recorded_.publish(folder);
   return true;
 }
@@ -192,7 +226,7 @@ int LoopRecorder::finish() {
 
 Health LoopRecorder::health(double) const {
   if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
-  if (!store_.problem().empty()) return {LoopMode::kFailed, store_.problem(), {}};
+  if (!store_->problem().empty()) return {LoopMode::kFailed, store_->problem(), {}};
   if (!problem_.empty()) return {LoopMode::kFailed, problem_, {}};
   if (!ready_.announced()) return {LoopMode::kStarting, "waiting for publishers of the ring", {}};
   if (written_) return {LoopMode::kFinished, "written", {}};
@@ -203,8 +237,10 @@ Health LoopRecorder::health(double) const {
 
 void LoopRecorder::report(Diagnostics::Status& status) const {
   status.add("step", session_.latest().step);
-  status.add("samples on disk", store_.samples());
-  status.add("samples lost", store_.lost());
+  status.add("samples on disk", store_->samples() - store_->unwritten() - store_->lost());
+  status.add("samples that wait for the disk", store_->unwritten());
+  status.add("samples lost", store_->lost());
+  if (!store_->remark().empty()) status.add("run before", store_->remark());
   status.add("samples with gaps", session_.gapCount());
   status.add("waiting for what belongs to them", session_.waiting());
   status.add("dropped: other run", session_.strays());

@@ -9,6 +9,7 @@
 #include <fmbpc/Tracking.h>
 #include <ros/ros.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,7 +26,8 @@ namespace fpc {
 
 /// Ready when every publisher of the ring is connected. What it records is on disk at once (see
 /// RecordStore) and becomes the run's files at its end, at Ctrl-C, and in the next run if the
-/// process was killed. Ends with the run: exit code 0 when it is complete and written (then
+/// process was killed. With a folder that it cannot use it is failed, says why on run_end, and is
+/// never ready. Ends with the run: exit code 0 when it is complete and written (then
 /// `recorded`, latched, names the folder); otherwise 1, naming the gaps. Parameters: ~out, folder
 /// of the files (nothing is written without it); ~keep, the launch goes on after the run (run_end
 /// is not said); ~stay, this node goes on until it is stopped, as in a launch, which ends by
@@ -33,7 +35,6 @@ namespace fpc {
 class LoopRecorder : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }
-  /// @throws InputError, also if the folder cannot be written.
   LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_node, const LoopFile& loop);
   int finish() override;
 
@@ -46,7 +47,9 @@ class LoopRecorder : public Node {
   void onAction(const fmbpc::ControlAction::ConstPtr& msg);
   void onReport(const fmbpc::SolverReport::ConstPtr& msg);
 
+  std::unique_ptr<RecordStore> openStore(const std::string& folder);
   void poll();
+  void giveUp();
   void announceIfConnected();
   void beginRun(std::uint64_t run_id);
   template <typename Take>
@@ -59,7 +62,10 @@ class LoopRecorder : public Node {
 
   LoopFile loop_;
   bool keep_, plot_, stay_;
-  RecordStore store_;
+  std::string unusable_;       // why the folder is
+  double started_s_;           // this process
+  bool run_under_way_{false};  // heard of, while the folder is unusable
+  std::unique_ptr<RecordStore> store_;
   RecorderSession session_;
   ReadyPublisher ready_;
   PlantGate plant_;

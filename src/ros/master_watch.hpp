@@ -4,20 +4,19 @@
 
 #include <ros/ros.h>
 
-#include <condition_variable>
-#include <mutex>
+#include <memory>
 #include <string>
-#include <thread>
-#include <vector>
 
 #include "fmbpc/config/loop_file.hpp"
-#include "ros/registration.hpp"
 
 namespace fpc {
 
-/// Every few seconds: a master that was started anew is told again what this node publishes,
+class MasterEye;
+struct WatchedNode;
+
+/// As long as it lives: a master that was started anew is told again what this node publishes,
 /// subscribes and serves, and gets its parameters back; a wrong ROS_IP here or at a member of the
-/// loop is said (networkProblem()).
+/// loop is said (networkProblem()). Looked at every few seconds, once for all nodes of a process.
 class MasterWatch {
  public:
   MasterWatch(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
@@ -27,21 +26,14 @@ class MasterWatch {
   MasterWatch& operator=(const MasterWatch&) = delete;
 
  private:
-  void run();
-  void look();
-  void lookAtMaster();
-
-  const KeptParameters parameters_;
-  const std::string space_;  // of the node
-  std::vector<std::string> members_;
-  bool master_gone_{false};
-  bool stop_{false};
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::thread thread_;
+  std::shared_ptr<MasterEye> eye_;  // of the process: the first one opens it, the last one shuts it
+  std::shared_ptr<const WatchedNode> node_;
 };
 
 /// What is wrong with the network as this process sees it, in words; empty: nothing is known.
-std::string networkProblem();
+struct NetworkProblem {
+  std::string here, there;  ///< with this node's own address; with another member
+};
+NetworkProblem networkProblem();
 
 }  // namespace fpc

@@ -98,13 +98,18 @@ bool answersAt(const std::string& uri, double patience_s) {
   return to && connects(*to, patience_s);
 }
 
-std::string unreachable(const std::vector<std::string>& nodes) {
+std::string unreachable(const std::vector<std::string>& nodes, std::set<std::string>& reached) {
   for (const std::string& node : nodes) {
     if (node == ros::this_node::getName()) continue;
     const std::string uri = uriOf(node);
-    if (!uri.empty() && !answersAt(uri, kPatience))
-      return node + " is registered at " + uri +
-             ", where nobody answers: it is dead, its ROS_IP is wrong, or a firewall is between";
+    if (uri.empty()) continue;
+    if (answersAt(uri, kPatience)) {
+      reached.insert(uri);
+      continue;
+    }
+    const std::string who = node + " is registered at " + uri + ", where nobody answers";
+    if (reached.count(uri) > 0) return who + " any more: it hangs, is dead, or the link is cut";
+    return who + ": it is dead, its ROS_IP is wrong, or a firewall is between";
   }
   return "";
 }

@@ -2,6 +2,7 @@
 // by the node that has it, and by those who look for that node.
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,9 @@ namespace fpc {
 std::string ownAddressProblem(const std::string& own_host, const std::string& master_host);
 
 /// Which of the nodes are known to the master by an address that nobody answers at, in words; empty
-/// if there is none. A node that the master does not know is none.
-std::string unreachable(const std::vector<std::string>& nodes);
+/// if there is none. A node that the master does not know is none. `reached`: addresses that have
+/// answered, which are therefore not wrong; it is added to.
+std::string unreachable(const std::vector<std::string>& nodes, std::set<std::string>& reached);
 
 /// "http://host:port/" -> true if somebody accepts connections there within the time.
 bool answersAt(const std::string& uri, double patience_s);

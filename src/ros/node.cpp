@@ -1,32 +1,57 @@
 #include "ros/node.hpp"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <fmbpc/LoopState.h>
+
 #include <filesystem>
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/loop/health.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
+namespace {
+
+constexpr double kShown = 5.0;             // [s] that a refusal stays in words
+constexpr std::size_t kMostLetters = 300;  // of them
+
+std::string shortened(const std::string& words) {
+  return words.size() <= kMostLetters ? words : words.substr(0, kMostLetters) + "...";
+}
+
+}  // namespace
 
 Node::Node(const ros::NodeHandle& node, const LoopFile& loop, std::string name)
     : name_(std::move(name)) {
   const std::string& process = ros::this_node::getName();
   Publishers publishers = loop.ring.publishers;
+  publishers[topics::kOperatorState] = publishers[topics::kTracking];  // both are the controller's
   for (auto& [topic, names] : publishers) {
     for (std::string& one : names) one = node.resolveName(one);
     // Nodelets all speak with the name of their manager.
     if (process != name_ && !names.empty()) names.push_back(process);
   }
-  authority_ = Authority(std::move(publishers));
+  authority_ = Authority(std::move(publishers), process != name_ ? process : "");
 }
 
 bool Node::mayPass(const char* topic, const std::string& publisher) {
   if (authority_.admits(topic, publisher)) return true;
-  if (refuse_log_.pass())
+  if (mayLog(std::string(topic) + " of others"))
     ROS_ERROR("%s: %s of %s dropped: the loop takes it only from %s", name_.c_str(), topic,
               publisher.c_str(), join(authority_.publishersOf(topic)).c_str());
   return false;
 }
+
+bool Node::speaksFor(const char* topic, const std::string& publisher, const std::string& node) {
+  if (authority_.speaksFor(topic, publisher, node)) return true;
+  if (mayLog(std::string(topic) + " for others"))
+    ROS_ERROR("%s: %s of %s dropped: it speaks for %s, which must do that itself", name_.c_str(),
+              topic, publisher.c_str(), shortened(node).c_str());
+  return false;
+}
+
+bool Node::mayLog(const std::string& what) { return logs_.emplace(what, 1.0).first->second.pass(); }
 
 void Node::fail(const std::string& what) {
   ROS_FATAL("%s: %s", name_.c_str(), what.c_str());
@@ -36,12 +61,45 @@ void Node::fail(const std::string& what) {
 
 void Node::refuse(const char* topic, const std::string& why) {
   ++refused_[topic];
-  if (refuse_log_.pass()) ROS_WARN("%s: message dropped: %s", topic, why.c_str());
+  refusal_ = std::string(topic) + ": " + shortened(why);
+  refusal_s_ = steadyNow();
+  if (mayLog(topic)) ROS_WARN("%s: message dropped: %s", topic, shortened(why).c_str());
+}
+
+std::string Node::refusedLately(double now_s) const {
+  return refusal_.empty() || now_s - refusal_s_ > kShown ? "" : refusal_;
 }
 
 void Node::mishap(const char* topic, const std::string& what) {
   ++refused_[topic];
-  ROS_ERROR("%s: %s: %s", name_.c_str(), topic, what.c_str());
+  if (mayLog(std::string(topic) + " mishap"))
+    ROS_ERROR("%s: %s: %s", name_.c_str(), topic, shortened(what).c_str());
+}
+
+int failToStart(ros::NodeHandle node, const std::string& why) {
+  constexpr double kHeard = 0.5, kPatience = 3.0;  // [s] after somebody has connected, and in all
+  fmbpc::LoopState state;
+  state.node = ros::this_node::getName();
+  state.mode = static_cast<std::uint8_t>(LoopMode::kFailed);
+  state.word = wordOf(LoopMode::kFailed);
+  state.reason = "cannot start: " + why;
+  diagnostic_msgs::DiagnosticArray diagnostics;
+  diagnostics.status.resize(1);
+  diagnostics.status[0].name = state.node.substr(1) + ": start";
+  diagnostics.status[0].level = diagnostic_msgs::DiagnosticStatus::ERROR;
+  diagnostics.status[0].message = state.reason;
+  const auto states = node.advertise<fmbpc::LoopState>(topics::kLoopState, 1, true);
+  const auto array = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1, true);
+  states.publish(state);
+  array.publish(diagnostics);
+  const double begun_s = steadyNow();
+  double alone_s = begun_s;  // until then
+  while (ros::ok() && steadyNow() - alone_s < kHeard && steadyNow() - begun_s < kPatience) {
+    if (states.getNumSubscribers() == 0) alone_s = steadyNow();
+    ros::spinOnce();
+    ros::WallDuration(0.05).sleep();
+  }
+  return 1;
 }
 
 LoopFile loopParameter(const ros::NodeHandle& private_node) {
@@ -50,12 +108,6 @@ LoopFile loopParameter(const ros::NodeHandle& private_node) {
           std::string("parameter ") + topics::kLoopText, "the output of `fmbpc resolve LOOP`");
   if (private_node.searchParam(topics::kLoopName, key)) private_node.getParam(key, name);
   return parseLoop(text, std::filesystem::path(name).stem().string());
-}
-
-int stayIdle(const ros::NodeHandle& private_node, const std::string& reason) {
-  ROS_INFO("%s: nothing to do: %s", ros::this_node::getName().c_str(), reason.c_str());
-  if (private_node.param("stay", false)) ros::spin();
-  return 0;
 }
 
 }  // namespace fpc

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <exception>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 
 #include "fmbpc/base/input_error.hpp"
@@ -45,6 +47,10 @@ class Node {
   }
   void refuse(const char* topic, const std::string& why);
   void mishap(const char* topic, const std::string& what);
+  /// The message refused last, in words, for some seconds after it came; then empty.
+  std::string refusedLately(double now_s) const;
+  /// False: the message says something of `node` but comes from another; it is dropped and counted.
+  bool speaksFor(const char* topic, const std::string& publisher, const std::string& node);
   const std::map<std::string, std::uint64_t>& refused() const { return refused_; }
   const Authority& authority() const { return authority_; }
   /// In full.
@@ -73,6 +79,7 @@ class Node {
 
  private:
   bool mayPass(const char* topic, const std::string& publisher);
+  bool mayLog(const std::string& what);
   template <typename Msg, typename Handler>
   ros::Subscriber subscribeGuarded(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
                                    Handler handler) {
@@ -88,36 +95,60 @@ class Node {
   Authority authority_;
   int exit_code_{0};
   std::map<std::string, std::uint64_t> refused_;
-  WallThrottle refuse_log_{1.0};
+  std::map<std::string, WallThrottle> logs_;  // by topic and reason: one flood silences no other
+  std::string refusal_;                       // the latest
+  double refusal_s_{};
 };
+
+/// For a node that cannot start: says why on loop_state and the diagnostics, stays long enough to
+/// be heard, and returns 1.
+int failToStart(ros::NodeHandle node, const std::string& why);
 
 /// The loop that the launch file gave as text: parameter `loop_text`, searched upwards.
 /// @throws InputError if there is none or it is no loop.
 LoopFile loopParameter(const ros::NodeHandle& private_node);
 
-/// For a node that the loop does not need: says why and returns 0; with ~stay true (a launch that
-/// respawns) only after a shutdown.
-int stayIdle(const ros::NodeHandle& private_node, const std::string& reason);
+/// A node that lives, in a process or a nodelet, or that its loop does not need, which is logged.
+/// `Class` has `static std::string idleReason(const LoopFile&)`, empty if the loop needs the node,
+/// and a constructor (NodeHandle, private NodeHandle, const LoopFile&).
+template <typename Class>
+class Running {
+ public:
+  /// @throws what reading the loop and making the node throw.
+  Running(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+          const std::string& name) {
+    const LoopFile loop = loopParameter(private_node);
+    const std::string idle = Class::idleReason(loop);
+    if (!idle.empty()) {
+      ROS_INFO("%s: nothing to do: %s", name.c_str(), idle.c_str());
+      return;
+    }
+    watch_.emplace(node, private_node, loop);
+    instance_ = std::make_unique<Class>(node, private_node, loop);
+  }
+  bool needed() const { return instance_ != nullptr; }
+  /// The exit code of its process.
+  int finish() { return instance_ ? instance_->finish() : 0; }
 
-/// Everything a main() does (nodelets: ros/nodelets.cpp). `Class` has `static std::string
-/// idleReason(const LoopFile&)`, empty if the loop needs the node, and a constructor (NodeHandle,
-/// private NodeHandle, const LoopFile&).
+ private:
+  std::optional<MasterWatch> watch_;  // lives longer than the node
+  std::unique_ptr<Class> instance_;
+};
+
+/// Everything a main() does. A node that its loop does not need ends, or with ~stay true (a launch
+/// that respawns) waits for the shutdown.
 template <typename Class>
 int runNode(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name);
   const ros::NodeHandle node,
       private_node("~");  // outlives the catch: without a node nothing is logged
   try {
-    const LoopFile loop = loopParameter(private_node);
-    const std::string idle = Class::idleReason(loop);
-    if (!idle.empty()) return stayIdle(private_node, idle);
-    const MasterWatch watch(node, private_node, loop);
-    Class instance{node, private_node, loop};
-    ros::spin();
-    return instance.finish();
+    Running<Class> running(node, private_node, ros::this_node::getName());
+    if (running.needed() || private_node.param("stay", false)) ros::spin();
+    return running.finish();
   } catch (const std::exception& error) {
     ROS_FATAL("%s: %s", name.c_str(), error.what());
-    return 1;
+    return failToStart(node, error.what());
   }
 }
 

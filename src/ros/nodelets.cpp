@@ -5,7 +5,6 @@
 #include <ros/spinner.h>
 #include <pluginlib/class_list_macros.hpp>
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -14,19 +13,18 @@
 #include "ros/fuzzy_identifier.hpp"
 #include "ros/gateway_node.hpp"
 #include "ros/loop_recorder.hpp"
-#include "ros/master_watch.hpp"
 #include "ros/plant_simulator.hpp"
 
 namespace fpc {
 
-/// What runNode() does for a process. A nodelet that cannot start ends its manager, as a node that
-/// cannot start ends its process: a loop without it would stand still.
+/// A nodelet that cannot start ends its manager, as a node that cannot start ends its process
+/// (runNode): a loop without it would stand still.
 template <typename Class>
 class Hosted : public nodelet::Nodelet {
  public:
   ~Hosted() override {
     spinner_.reset();
-    if (instance_) instance_->finish();
+    if (running_) running_->finish();
   }
 
  private:
@@ -37,14 +35,8 @@ class Hosted : public nodelet::Nodelet {
     node.setCallbackQueue(&queue_);
     private_node.setCallbackQueue(&queue_);
     try {
-      const LoopFile loop = loopParameter(private_node);
-      const std::string idle = Class::idleReason(loop);
-      if (!idle.empty()) {
-        ROS_INFO("%s: nothing to do: %s", getName().c_str(), idle.c_str());
-        return;
-      }
-      watch_.emplace(node, private_node, loop);
-      instance_ = std::make_unique<Class>(node, private_node, loop);
+      running_.emplace(node, private_node, getName());
+      if (!running_->needed()) return;
       spinner_.emplace(1, &queue_);
       spinner_->start();
     } catch (const std::exception& error) {
@@ -54,8 +46,7 @@ class Hosted : public nodelet::Nodelet {
   }
 
   ros::CallbackQueue queue_;
-  std::optional<MasterWatch> watch_;
-  std::unique_ptr<Class> instance_;
+  std::optional<Running<Class>> running_;
   std::optional<ros::AsyncSpinner> spinner_;
 };
 

@@ -29,30 +29,47 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg) {
 }
 
 OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::string name,
-                           ControllerSession& session)
+                           ControllerSession& session, std::function<void()> known)
     : Node(node, loop, std::move(name)),
       session_(session),
+      known_(std::move(known)),
       keeper_expected_(!loop.external_plant || loop.gateway.enabled()),
+      goes_on_(loop.gateway.enabled()),
       state_(node.advertise<fmbpc::OperatorState>(topics::kOperatorState, 10, true)),
       setpoint_active_(
           node.advertise<fmbpc::Setpoint>(topics::kSetpointActive, topics::kPairQueue, true)),
       subscriber_(subscribe(node, topics::kOperatorKept, 1, &OperatorDesk::onKept, this)) {}
 
 void OperatorDesk::onKept(const fmbpc::OperatorState::ConstPtr& msg) {
-  if (session_.counts().accepted == 0) kept_ = *msg;
+  kept_ = *msg;
+  known_();
 }
 
-bool OperatorDesk::mayStart(const Measurement& first) {
-  if (session_.counts().accepted > 0 || first.header.step == 0) return true;
-  if (kept_ && kept_->run_id == first.header.run_id) {
-    guarded(topics::kOperatorKept, [this] { restore(*kept_); });
+bool OperatorDesk::mayStart(const Measurement& sample) {
+  const bool first = session_.counts().accepted == 0;
+  if (first && sample.header.step == 0 && !keeper_expected_) return true;
+  if (!first && (!goes_on_ || sample.header.run_id == session_.answer().base.header.run_id))
+    return true;
+  if (kept_ && kept_->run_id == sample.header.run_id) {
+    takeUp(*kept_);
     return true;
   }
   const double now_s = steadyNow();
   if (deadline_s_ < 0) deadline_s_ = now_s + kPatience;
   if (now_s < deadline_s_) return false;
-  if (keeper_expected_) session_.holdUntilReleased();
+  deadline_s_ = -1;
+  if (first && sample.header.step > 0 && keeper_expected_) session_.holdUntilReleased();
   return true;
+}
+
+void OperatorDesk::takeUp(const fmbpc::OperatorState& msg) {
+  deadline_s_ = -1;
+  changed_ = true;
+  if (msg.node.empty()) return;  // nothing was asked
+  if (session_.counts().accepted == 0)
+    guarded(topics::kOperatorKept, [&] { restore(msg); });
+  else
+    session_.carryOver();
 }
 
 void OperatorDesk::restore(const fmbpc::OperatorState& msg) {
@@ -66,9 +83,10 @@ void OperatorDesk::restore(const fmbpc::OperatorState& msg) {
 
 void OperatorDesk::tell(const StepHeader& sample) {
   if (!changed_) return;
-  changed_ = false;
-  if (session_.counts().accepted > 0) state_.publish(message(sample));
   tellSetpoints();
+  if (session_.counts().accepted == 0) return;  // of which run, is not known yet: it is said then
+  changed_ = false;
+  state_.publish(message(sample));
 }
 
 fmbpc::OperatorState OperatorDesk::message(const StepHeader& sample) const {

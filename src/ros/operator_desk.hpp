@@ -6,6 +6,7 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 #include "fmbpc/control/session.hpp"
@@ -19,13 +20,14 @@ OperatorWishes wishesOf(const fmbpc::OperatorState& msg);
 
 class OperatorDesk : public Node {
  public:
-  /// `name`: of the controller.
+  /// `name`: of the controller. `known` is called when what was asked before may be known now.
   OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::string name,
-               ControllerSession& session);
+               ControllerSession& session, std::function<void()> known);
 
-  /// False: the first sample is not to be answered yet, since what was asked before is not known;
-  /// after a second it is answered, held (see ControllerSession::holdUntilReleased).
-  bool mayStart(const Measurement& first);
+  /// False: the sample is not to be answered yet, since what was asked before is not known. The
+  /// first one is answered after a second, held (see ControllerSession::holdUntilReleased); the
+  /// first of a new run of a real plant then begins anew.
+  bool mayStart(const Measurement& sample);
   /// Says what has changed, if anything has; call it after each new answer and each service.
   void tell(const StepHeader& sample);
   void changed() { changed_ = true; }
@@ -34,11 +36,13 @@ class OperatorDesk : public Node {
  private:
   void onKept(const fmbpc::OperatorState::ConstPtr& msg);
   void restore(const fmbpc::OperatorState& msg);
+  void takeUp(const fmbpc::OperatorState& msg);
   fmbpc::OperatorState message(const StepHeader& sample) const;
   void tellSetpoints();
 
   ControllerSession& session_;
-  bool keeper_expected_;
+  std::function<void()> known_;
+  bool keeper_expected_, goes_on_;  // the latter: the plant, without its gateway
   bool changed_{true};
   double deadline_s_{-1};
   std::optional<fmbpc::OperatorState> kept_;  // the latest word of the plant

@@ -16,6 +16,7 @@ constexpr double kPoll = 0.05;         // [s] of wall time
 constexpr double kIntroduceAgain = 1;  // [s], while nobody answers (in realtime samples go on)
 constexpr double kPatience = 1.0;      // [s] without an action before that is said
 constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr char kRecorder[] = "loop_recorder";
 
 std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
   std::vector<std::string> names = loop.ring.wait_for;
@@ -40,7 +41,7 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
       session_(std::move(process), ringPolicy(loop)),
       publishers_(node, session_.process().info(), disturbances, loop.ring.publish_clock),
       keeper_(node, loop, name()),
-      ready_(node, namesToWaitFor(loop, private_node)),
+      ready_(node, loop, name(), namesToWaitFor(loop, private_node)),
       watch_(namesToWatch(loop, node)),
       begun_s_(steadyNow()),
       end_(node),
@@ -76,9 +77,12 @@ void PlantNode::beginRun() {
   publishers_.introduce(session_.process());
   introduced_s_ = steadyNow();
   tracking_subscriber_.shutdown();
+  recorded_ = false;
 }
 
 void PlantNode::start() {
+  keeper_.start();
+  watch_.begin(steadyNow());
   session_.start(steadyNow());
   ROS_INFO("%s: run %lu of %s starts", name().c_str(), run_id_, loop_.name.c_str());
   publishSample();
@@ -104,7 +108,8 @@ void PlantNode::waitForOthers() {
   missing_ = ready_.missing();
   const std::vector<std::string> own = plantMissing();
   missing_.insert(missing_.end(), own.begin(), own.end());
-  if (missing_.empty()) return start();
+  if (missing_.empty() && keeper_.knowsWhatStands(steadyNow())) return start();
+  if (missing_.empty()) return;
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
   failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
              " s: " + join(missing_);
@@ -130,9 +135,13 @@ void PlantNode::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
     session_.finish();
 }
 
-void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg) {
+void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher) {
+  if (!speaksFor(topics::kLoopState, publisher, msg->node)) return;
+  keeper_.hear(*msg);
   watch_.hear(msg->node, {static_cast<LoopMode>(msg->mode), msg->reason, msg->missing},
               steadyNow());
+  const bool wrote = msg->mode == static_cast<std::uint8_t>(LoopMode::kFinished);
+  if (wrote && msg->node == node_.resolveName(kRecorder)) recorded_ = true;
 }
 
 void PlantNode::tryAdvance() {
@@ -202,17 +211,28 @@ bool PlantNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response
 Health PlantNode::health(double now_s) const {
   if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
-    return {LoopMode::kStarting, "waiting for " + join(missing_), missing_};
+    return {LoopMode::kStarting,
+            "waiting for " + (missing_.empty() ? "what the controller was asked" : join(missing_)),
+            missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};
-  if (session_.phase() == PlantPhase::kFinished)
-    return session_.acknowledged() ? Health{LoopMode::kFinished, "finished", {}}
-                                   : Health{LoopMode::kFinished,
-                                            "finished; the final sample is sent again until it is "
-                                            "tracked",
-                                            watch_.silent(now_s)};
+  if (session_.phase() == PlantPhase::kFinished) return finishedHealth(now_s);
   if (session_.paused()) return {LoopMode::kHeld, topics::kPausedReason, {}};
   return runningHealth(now_s);
+}
+
+// A run that nobody has recorded is over, but not in order.
+Health PlantNode::finishedHealth(double now_s) const {
+  const std::vector<std::string> silent = watch_.silent(now_s);
+  const std::string recorder = node_.resolveName(kRecorder);
+  if (!recorded_ && std::find(silent.begin(), silent.end(), recorder) != silent.end())
+    return {LoopMode::kDegraded, "finished, not recorded yet: no word from " + recorder, silent};
+  const Health others = watch_.worst(now_s);
+  if (others.mode == LoopMode::kFailed)
+    return {LoopMode::kDegraded, "finished; " + others.words, others.missing};
+  if (session_.acknowledged()) return {LoopMode::kFinished, "finished", {}};
+  return {LoopMode::kFinished, "finished; the final sample is sent again until it is tracked",
+          silent};
 }
 
 // Nothing that stands still is "running".
@@ -262,6 +282,8 @@ void PlantNode::report(Diagnostics::Status& status) const {
   addValues(status);
   addRefused(status, refused());
   addRefused(status, authority().refused());
+  addRefused(status, ready_.authority().refused());
+  addRefused(status, keeper_.authority().refused());
 }
 
 }  // namespace fpc

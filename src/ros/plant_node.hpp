@@ -60,7 +60,7 @@ class PlantNode : public Node {
  private:
   void onAction(const fmbpc::ControlAction::ConstPtr& msg);
   void onTracking(const fmbpc::Tracking::ConstPtr& msg);
-  void onLoopState(const fmbpc::LoopState::ConstPtr& msg);
+  void onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher);
   bool onPause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onStep(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
@@ -73,6 +73,7 @@ class PlantNode : public Node {
   void armTimer();
   Health health(double now_s) const;
   Health runningHealth(double now_s) const;
+  Health finishedHealth(double now_s) const;
   void report(Diagnostics::Status& status) const;
 
   LoopFile loop_;
@@ -87,6 +88,7 @@ class PlantNode : public Node {
   double begun_s_, introduced_s_{}, answered_s_{}, failed_s_{-1};
   std::string failure_;
   std::vector<std::string> missing_;
+  bool recorded_{false};
   RunEndPublisher end_;
   WallThrottle trouble_log_{1.0};
 

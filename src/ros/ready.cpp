@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "ros/node.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -20,8 +19,10 @@ void ReadyPublisher::announce() {
   ROS_INFO("%s: ready", msg.node.c_str());
 }
 
-ReadyListener::ReadyListener(ros::NodeHandle node, const std::vector<std::string>& names) {
-  for (const std::string& name : names) missing_.insert(node.resolveName(name));
+ReadyListener::ReadyListener(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                             const std::vector<std::string>& names)
+    : Node(node, loop, std::move(name)) {
+  for (const std::string& one : names) missing_.insert(node.resolveName(one));
   subscriber_ = subscribe(node, topics::kReady, topics::kViewQueue, &ReadyListener::onReady, this);
 }
 
@@ -29,6 +30,8 @@ std::vector<std::string> ReadyListener::missing() const {
   return {missing_.begin(), missing_.end()};
 }
 
-void ReadyListener::onReady(const fmbpc::NodeReady::ConstPtr& msg) { missing_.erase(msg->node); }
+void ReadyListener::onReady(const fmbpc::NodeReady::ConstPtr& msg, const std::string& publisher) {
+  if (speaksFor(topics::kReady, publisher, msg->node)) missing_.erase(msg->node);
+}
 
 }  // namespace fpc

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "ros/node.hpp"
+
 namespace fpc {
 
 /// Says "ready", once, latched.
@@ -24,14 +26,17 @@ class ReadyPublisher {
   bool announced_{false};
 };
 
-/// Listens for the nodes named (relative to the namespace of `node`).
-class ReadyListener {
+/// Listens for the nodes named (relative to the namespace of `node`); each speaks for itself.
+class ReadyListener : public Node {
  public:
-  ReadyListener(ros::NodeHandle node, const std::vector<std::string>& names);
+  /// `name`: of the node that listens.
+  ReadyListener(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                const std::vector<std::string>& names);
   std::vector<std::string> missing() const;
+  using Node::authority;
 
  private:
-  void onReady(const fmbpc::NodeReady::ConstPtr& msg);
+  void onReady(const fmbpc::NodeReady::ConstPtr& msg, const std::string& publisher);
 
   std::set<std::string> missing_;
   ros::Subscriber subscriber_;

@@ -8,8 +8,6 @@
 #include <ros/topic_manager.h>
 #include <ros/xmlrpc_manager.h>
 
-#include <vector>
-
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -86,9 +84,11 @@ bool KeptParameters::putBack() const {
   return any;
 }
 
-int registerAgain(const std::string& space) {
+int registerAgain(const std::vector<std::string>& spaces) {
   const std::string uri = ros::XMLRPCManager::instance()->getServerURI();
-  return publishers(uri) + subscribers(uri) + services(uri, space);
+  int count = publishers(uri) + subscribers(uri);
+  for (const std::string& space : spaces) count += services(uri, space);
+  return count;
 }
 
 }  // namespace fpc

@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 namespace fpc {
 
@@ -19,9 +20,9 @@ class KeptParameters {
   std::map<std::string, XmlRpc::XmlRpcValue> values_;  // by full name
 };
 
-/// Registers all topics of this process, and the services in the name space of a node, once more.
-/// Connections that live are not touched.
+/// Registers all topics of this process, and the services in the name spaces of its nodes, once
+/// more. Connections that live are not touched.
 /// @return how many.
-int registerAgain(const std::string& space);
+int registerAgain(const std::vector<std::string>& spaces);
 
 }  // namespace fpc

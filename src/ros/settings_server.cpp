@@ -148,11 +148,12 @@ Settings settingsOf(const std::vector<SettingInfo>& table, const Config& config)
 }
 
 SettingsServer::SettingsServer(ros::NodeHandle private_node, std::vector<SettingInfo> table,
-                               Current current, Change change)
+                               Current current, Change change, Refused refused)
     : name_(private_node.getNamespace()),
       table_(std::move(table)),
       current_(std::move(current)),
-      change_(std::move(change)) {
+      change_(std::move(change)),
+      refused_(std::move(refused)) {
   if (table_.empty()) return;
   descriptions_ =
       private_node.advertise<ConfigDescription>("parameter_descriptions", 1, /*latch=*/true);
@@ -172,7 +173,7 @@ bool SettingsServer::onSet(dynamic_reconfigure::Reconfigure::Request& request,
     change_(settingsOf(table_, request.config));
     ROS_INFO("%s: new settings from the next sample on", name_.c_str());
   } catch (const InputError& error) {
-    ROS_WARN("%s: settings refused: %s", name_.c_str(), error.what());
+    refused_(error.what());
   }
   response.config = settingsMessage(table_, current_());
   publish();

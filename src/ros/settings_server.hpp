@@ -16,14 +16,15 @@ namespace fpc {
 /// Serves ~set_parameters and latches ~parameter_descriptions and ~parameter_updates, as
 /// dynamic_reconfigure::Server does. It starts with what the controller has, whatever the parameter
 /// server holds; a change acts from the next sample on, and one that the controller refuses is
-/// logged and taken back: the answer shows what is in force.
+/// said and taken back: the answer shows what is in force.
 class SettingsServer {
  public:
   using Current = std::function<Settings()>;
-  using Change = std::function<void(const Settings&)>;  ///< @throws InputError: refused
+  using Change = std::function<void(const Settings&)>;      ///< @throws InputError: refused
+  using Refused = std::function<void(const std::string&)>;  ///< is told why
   /// Nothing is advertised for an empty table.
   SettingsServer(ros::NodeHandle private_node, std::vector<SettingInfo> table, Current current,
-                 Change change);
+                 Change change, Refused refused);
   void publish();  ///< what is in force now
 
  private:
@@ -34,6 +35,7 @@ class SettingsServer {
   std::vector<SettingInfo> table_;
   Current current_;
   Change change_;
+  Refused refused_;
   ros::Publisher descriptions_, updates_;
   ros::ServiceServer set_;
 };

@@ -4,6 +4,7 @@
 #include <fmbpc/LoopState.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,10 +31,16 @@ class SummaryListener : public Node {
   }
 
  private:
-  void onState(const fmbpc::LoopState::ConstPtr& msg) {
-    if (!msg->summary) return;
+  void onState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher) {
+    if (!msg->summary || !isPlant(msg->node)) return;
+    if (!speaksFor(topics::kLoopState, publisher, msg->node)) return;
     mode_ = static_cast<LoopMode>(msg->mode);
     paused_ = mode_ == LoopMode::kHeld && msg->reason == topics::kPausedReason;
+  }
+
+  bool isPlant(const std::string& node) const {
+    const auto& plants = authority().publishersOf(topics::kMeasurement);
+    return plants.empty() || std::find(plants.begin(), plants.end(), node) != plants.end();
   }
 
   LoopMode mode_{LoopMode::kStarting};

@@ -36,7 +36,9 @@ void setSampleTime(const CsvTable& table, const AutoColumns& columns, Structure&
   const TimeColumn time = timeColumn(table, columns.time, used);
   if (time.name.empty()) {
     structure.sample_time_s = 1.0;
-    remarks.push_back("no time column found: sample time taken as 1 s (--time, --sample-time)");
+    remarks.push_back(
+        "no time column found (time, t, t_s, time_..): sample time taken as 1 s (--time, "
+        "--sample-time)");
     return;
   }
   if (time.unit.empty()) remarks.push_back("'" + time.name + "' is taken to be in seconds");

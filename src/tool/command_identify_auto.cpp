@@ -13,10 +13,12 @@
 #include "tool/auto_structure.hpp"
 #include "tool/figures_json.hpp"
 #include "tool/identify_auto.hpp"
+#include "tool/identify_verdict.hpp"
 #include "tool/judgement.hpp"
 #include "tool/progress_bar.hpp"
 #include "tool/read_record.hpp"
 #include "tool/record_files.hpp"
+#include "tool/time_column.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -39,15 +41,17 @@ AutoRecords readAll(const IdentifyArguments& a) {
   const AutoColumns columns{a.outputs, a.inputs, a.disturbances, a.time, a.sample_time_s};
   const Structure structure = autoStructure(first, columns, r.remarks);
   if (!a.known.empty()) r.known = readKnown(a.known, structure);
-  r.each.push_back(makeData(first, structure, a.rows));
+  const auto take = [&](const CsvTable& table, const std::string& rows) {
+    return makeData(withEvenTimes(table, structure.time_column, r.remarks), structure, rows);
+  };
+  r.each.push_back(take(first, a.rows));
   for (std::size_t i = 1; i < a.data.size(); ++i)
-    r.each.push_back(makeData(readRecord(a.data[i], csvFormat(a.format)), structure, a.rows));
+    r.each.push_back(take(readRecord(a.data[i], csvFormat(a.format)), a.rows));
   r.joined = joinRecords(r.each);
   if (a.validate.empty() && a.validate_rows.empty()) return r;
   std::error_code ignored;
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  r.validation = makeData(same ? first : readRecord(a.validate, csvFormat(a.format)), structure,
-                          a.validate_rows);
+  r.validation = take(same ? first : readRecord(a.validate, csvFormat(a.format)), a.validate_rows);
   if (same && rowsOverlap(a.rows, a.validate_rows))
     r.remarks.push_back("validation rows are among the identification rows: not held out");
   return r;
@@ -60,19 +64,6 @@ std::optional<ModelKind> kindOf(const std::string& word) {
   return std::nullopt;
 }
 
-/// Keeps what --kind asks for.
-void choose(std::optional<ModelKind> kind, AutoIdentification& found) {
-  if (!kind) return;
-  for (auto& o : found.outputs) {
-    if (kind == ModelKind::kLinear) o.best = ModelKind::kLinear;
-    if (kind == ModelKind::kState && !found.state.outputs.empty()) o.best = ModelKind::kState;
-    if (kind == ModelKind::kRegressors)
-      o.best = o.fuzzy_model ? ModelKind::kRegressors : ModelKind::kLinear;
-  }
-  if (kind == ModelKind::kLinear) found.model.submodels = found.linear.submodels;
-  if (kind != ModelKind::kState) found.state.outputs.clear();
-}
-
 AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records) {
   AutoParams params;
   params.budget_s = a.budget_s;
@@ -80,6 +71,8 @@ AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records
   params.window = a.window;
   params.seed = a.seed;
   params.known = records.known;
+  params.longest_delay = a.longest_delay;
+  params.keep_still = a.keep_inputs;
   const std::optional<ModelKind> kind = kindOf(a.kind);
   params.states = !kind || kind == ModelKind::kState;
   ProgressBar bar("auto");
@@ -88,7 +81,7 @@ AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records
         bar.show(progress.share, progress.stage);
         return !interruption();
       });
-  choose(kind, found);
+  if (kind) chooseByKind(*kind, found);
   return found;
 }
 
@@ -99,14 +92,15 @@ std::string blocksText(const AutoFigures& f) {
 }
 
 std::string crossTable(const AutoIdentification& found) {
-  std::vector<Row> rows{{"held-out blocks", "model", "free-run RMSE", "fit %", "1-step RMSE",
-                         "95 % interval +-", "free-run RMSE of the blocks"}};
+  std::vector<Row> rows{{"held-out blocks", "model", "mean of blocks", "free-run RMSE", "fit %",
+                         "1-step RMSE", "95 % interval +-", "free-run RMSE of the blocks"}};
   for (const auto& o : found.outputs) {
     std::string label = o.output;
     const auto add = [&](ModelKind kind, const AutoFigures& f) {
       if (f.blocks.empty()) return;
-      rows.push_back({label, name(kind) + (kind == o.best ? " *" : ""), shortText(f.free_run),
-                      shortText(f.fit), shortText(f.one_step), shortText(f.width), blocksText(f)});
+      rows.push_back({label, name(kind) + (kind == o.best ? " *" : ""), shortText(f.mean),
+                      shortText(f.free_run), shortText(f.fit), shortText(f.one_step),
+                      shortText(f.width), blocksText(f)});
       label.clear();
     };
     add(ModelKind::kState, o.state);
@@ -117,8 +111,8 @@ std::string crossTable(const AutoIdentification& found) {
 }
 
 std::string searchTable(const AutoIdentification& found) {
-  std::vector<Row> rows{
-      {"structures of", "kind", "structure", "parameters", "held-out free-run RMSE", "+-", ""}};
+  std::vector<Row> rows{{"structures of", "kind", "structure", "parameters",
+                         "held-out free-run RMSE, mean of blocks", "+-", ""}};
   for (const auto& t : found.trials)
     rows.push_back({t.output, name(t.kind), t.structure, std::to_string(t.parameters),
                     shortText(t.free_run), shortText(t.spread), t.chosen ? "chosen" : ""});
@@ -129,11 +123,20 @@ Json toJson(const AutoFigures& f) {
   if (f.blocks.empty()) return nullptr;
   Json blocks = Json::array();
   for (const double b : f.blocks) blocks.push_back(finiteJson(b));
-  return {{"free_run", finiteJson(f.free_run)},
+  return {{"mean_of_blocks", finiteJson(f.mean)},
+          {"free_run", finiteJson(f.free_run)},
           {"fit", finiteJson(f.fit)},
           {"one_step", finiteJson(f.one_step)},
           {"blocks", blocks},
           {"half_width", finiteJson(f.width)}};
+}
+
+/// What the judgements say before all figures.
+Row firstWords(const std::vector<RecordJudgement>& parts) {
+  Row all;
+  for (const auto& part : parts)
+    for (const auto& words : warnings(part)) all.push_back(part.title + ": " + words);
+  return all;
 }
 
 Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>& parts,
@@ -165,6 +168,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
                               {"free_run", finiteJson(t.free_run)},
                               {"spread", finiteJson(t.spread)},
                               {"chosen", t.chosen}});
+  json["warnings"] = firstWords(parts);
   json["remarks"] = remarks;
   json["seconds"] = seconds;
   return json;
@@ -178,6 +182,32 @@ std::vector<RecordJudgement> judgeAll(const AutoRecords& records, const Identifi
   if (records.validation)
     parts.push_back(judgeRecord("validation", *records.validation, model, kSteps));
   return parts;
+}
+
+/// The model of what was found; validation rows may refuse it unless it was asked for by --kind.
+IdentifiedModel settle(const IdentifyArguments& a, const AutoRecords& records,
+                       AutoIdentification& found) {
+  IdentifiedModel model = toIdentified(found);
+  const auto kind = kindOf(a.kind);
+  const bool asked = kind == ModelKind::kState || kind == ModelKind::kLinear;
+  if (!records.validation || asked) return model;
+  const auto validation = judgeRecord("validation", *records.validation, model, 1);
+  return chooseByValidation(validation, found) ? toIdentified(found) : model;
+}
+
+Row remarksOf(const AutoRecords& records, const AutoIdentification& found,
+              const IdentifiedModel& model, const std::vector<RecordJudgement>& parts) {
+  Row remarks = records.remarks;
+  const auto add = [&remarks](const std::string& before, const Row& more) {
+    for (const auto& remark : more) remarks.push_back(before + remark);
+  };
+  if (found.cancelled) remarks.push_back("stopped: the best found so far is kept");
+  add("", found.remarks);
+  const TsModel linear = model.linearModel();
+  add("", recordRemarks(records.joined, &linear));
+  for (const auto& part : parts) add(part.title + ": ", part.remarks);
+  if (records.validation) add("validation: ", recordRemarks(*records.validation, nullptr));
+  return remarks;
 }
 
 void checkArguments(const IdentifyArguments& a) {
@@ -197,16 +227,10 @@ int identifyAuto(const IdentifyArguments& a) {
   AutoIdentification found = search(a, records);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (!a.out.empty()) found.model.name = fs::path(a.out).stem().string();
-  const IdentifiedModel model = toIdentified(found);
+  const IdentifiedModel model = settle(a, records, found);
   if (!a.out.empty()) writeAtOnce(writeIdentified(model), a.out);
   const auto parts = judgeAll(records, model);
-  std::vector<std::string> remarks = records.remarks;
-  if (found.cancelled) remarks.push_back("stopped: the best found so far is kept");
-  remarks.insert(remarks.end(), found.remarks.begin(), found.remarks.end());
-  const TsModel linear = model.linearModel();
-  for (const auto& remark : recordRemarks(records.joined, &linear)) remarks.push_back(remark);
-  for (const auto& part : parts)
-    for (const auto& remark : part.remarks) remarks.push_back(part.title + ": " + remark);
+  const Row remarks = remarksOf(records, found, model, parts);
   const Json json = toJson(found, parts, remarks, wall.count());
   if (!a.plots.empty()) plotJudgements(model, parts, json, a.plots);
   if (a.json) {
@@ -214,6 +238,7 @@ int identifyAuto(const IdentifyArguments& a) {
     return 0;
   }
   for (const auto& o : found.outputs) std::cout << o.output << ": " << o.verdict << "\n";
+  for (const auto& words : firstWords(parts)) std::cout << "warning: " << words << "\n";
   for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
   std::cout << "\n"
             << crossTable(found) << "\n"

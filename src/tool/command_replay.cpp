@@ -61,7 +61,7 @@ void print(const ReplayResult& result) {
 int replay(const ReplayArguments& arguments) {
   require(std::filesystem::is_regular_file(arguments.bag), arguments.bag, "an existing bag");
   const LoopFile loop = loopOf(arguments);
-  const ReplayResult result = replay(loop, readBagRun(arguments.bag, loop));
+  const ReplayResult result = replay(loop, readBagRun(arguments.bag, loop, arguments.run));
   if (arguments.json)
     std::cout << jsonOf(arguments, result).dump(2) << "\n";
   else

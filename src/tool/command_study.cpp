@@ -30,6 +30,20 @@ bool isStudy(const std::string& name) {
   return false;
 }
 
+/// One name may be a study's or a loop's, and a misspelt one may have meant either.
+void requireStudyOrLoop(const std::string& name) {
+  const fs::path path(name);
+  if (name.find('/') != std::string::npos || path.extension() == ".yaml")
+    return require(fs::is_regular_file(path), name, "an existing file of a study or a loop");
+  auto known = studyNames();
+  for (auto& loop : loopNames()) known.push_back(std::move(loop));
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  const auto near = nearest(name, known);
+  throw InputError("study or loop '" + name +
+                   "': expected a path or a name from config/study or config/loop" +
+                   (near.empty() ? "" : "; near: " + join(near)));
+}
+
 /// "H=0.001"
 std::pair<std::string, double> parseNoise(const std::string& text) {
   const auto [output, value] = parseOverride(text);
@@ -110,6 +124,7 @@ bool reportTrouble(const StudyStatistics& statistics) {
 
 int study(const StudyArguments& arguments) {
   const bool from_file = arguments.names.size() == 1 && isStudy(arguments.names.front());
+  if (arguments.names.size() == 1 && !from_file) requireStudyOrLoop(arguments.names.front());
   require(!from_file || arguments.index.empty(), "--index", "no study file beside it");
   require(!arguments.resume || !arguments.out.empty(), "--resume", "--out with a stopped study");
   StudyFile study = from_file ? readStudy(arguments.names.front()) : fromOptions(arguments);

@@ -112,9 +112,11 @@ int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
   const auto check = [&] {
     require(result.best >= 0, arguments.loop, "a run that does not fail: " + result.trouble);
   };
+  const std::string worse = worsening(objective, tuned);
+  const int code = worse.empty() ? 0 : kTunedWorse;
   if (!objective.pool().leads()) {
     if (!result.stopped) check();
-    return result.stopped ? kInterrupted : 0;
+    return result.stopped ? kInterrupted : code;
   }
   const Json json = toJson(objective, tuned);
   std::string file;
@@ -128,7 +130,8 @@ int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
   draw(arguments);
   if (!arguments.json && !file.empty()) std::cout << "written: " << file << "\n";
   check();
-  return 0;
+  if (code != 0) std::fprintf(stderr, "fmbpc: %s: %s\n", arguments.loop.c_str(), worse.c_str());
+  return code;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "fmbpc/fuzzy/record_remarks.hpp"
 #include "tool/auto_structure.hpp"
 #include "tool/commands.hpp"
+#include "tool/identify_verdict.hpp"
 #include "tool/judgement.hpp"
 #include "tool/read_record.hpp"
 #include "tool/record_files.hpp"
@@ -101,24 +102,28 @@ Structure structureOf(const TsModel& model, const CsvTable& table,
 
 int validate(const ValidateArguments& a) {
   const IdentifiedModel model = readIdentified(requireModel(a.model));
-  const CsvTable table = readRecord(a.data, csvFormat(a.format));
+  CsvTable table = readRecord(a.data, csvFormat(a.format));
   const auto columns = columnsOf(a.columns);
   requireSignals(columns, model.model);
   Structure structure = structureOf(model.model, table, columns);
   std::vector<std::string> remarks;
   if (!a.no_time) setTimes(table, structure, remarks);
+  table = withEvenTimes(std::move(table), structure.time_column, remarks);
   const DataSet data = makeData(table, structure, a.rows);
   const RecordJudgement part = judgeRecord("validation", data, model, a.steps);
   remarks.insert(remarks.end(), data.repairs.begin(), data.repairs.end());
   for (const auto& remark : recordRemarks(data, nullptr)) remarks.push_back(remark);
   remarks.insert(remarks.end(), part.remarks.begin(), part.remarks.end());
   Json json{{"name", model.model.name}, {"data", data.source}, {"validation", toJson(part)}};
+  const std::vector<std::string> first = warnings(part);
+  json["warnings"] = first;
   json["remarks"] = remarks;
   if (!a.plots.empty()) plotJudgements(model, {part}, json, a.plots);
   if (a.json) {
     std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     return 0;
   }
+  for (const auto& words : first) std::cout << "warning: " << words << "\n";
   std::cout << model.model.name << " on " << data.source << "\n\n" << toTable({part}) << "\n";
   for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
   if (!a.plots.empty()) std::cout << "written: " << a.plots << "\n";

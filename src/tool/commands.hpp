@@ -52,7 +52,9 @@ struct IdentifyArguments {
   std::string kind{"best"};  ///< best, linear, regressors, state
   double budget_s{45.0};
   int blocks{4}, window{5};
-  std::string known;  ///< of the outputs: file or text, empty: nothing
+  int longest_delay{};      ///< [samples], 0: by the length of the record
+  bool keep_inputs{false};  ///< those that hardly moved too
+  std::string known;        ///< of the outputs: file or text, empty: nothing
   std::uint64_t seed{1};
 };
 
@@ -130,8 +132,14 @@ struct EvaluateArguments {
   bool json{false};
 };
 
+struct RecoverArguments {
+  std::string folder;
+  bool no_plot{false};
+};
+
 struct ReplayArguments {
   std::string bag;
+  int run{0};                    ///< from 1; 0: the only one
   std::string loop;              ///< empty: the one in the bag
   std::vector<std::string> set;  ///< "path=value"
   bool json{false};
@@ -160,6 +168,7 @@ int tune(const TuneArguments& arguments);
 int study(const StudyArguments& arguments);
 int table(const std::vector<std::string>& folders);
 int replay(const ReplayArguments& arguments);
+int recover(const RecoverArguments& arguments);
 /// Becomes another program: returns only by throwing.
 int watch(const std::vector<std::string>& words);
 

@@ -39,6 +39,11 @@ ModelKind bestOf(const IdentifiedModel& model, std::size_t i) {
   return i < model.outputs.size() ? model.outputs[i].best : ModelKind::kRegressors;
 }
 
+/// The file's own model of an output is the linear one beside it: one row tells all.
+bool isLinear(const IdentifiedModel& model, std::size_t i) {
+  return !model.linear.empty() && model.model.submodels[i].rules.size() == 1;
+}
+
 Json toJson(const KindFigures& f) {
   return {{"one_step", figuresJson(f.one_step)}, {"free_run", figuresJson(f.free_run)}};
 }
@@ -76,11 +81,12 @@ Row rowOf(const OutputJudgement& o, const KindFigures& f, const std::string& lab
 
 }  // namespace
 
-RecordJudgement judgeRecord(const std::string& title, DataSet data, const IdentifiedModel& model,
-                            int steps, const ValidationParams& params) {
+RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
+                            const IdentifiedModel& model, int steps,
+                            const ValidationParams& params) {
   RecordJudgement part;
   part.title = title;
-  part.data = std::move(data);
+  part.data = withoutOutliers(data);
   part.steps = steps;
   part.best = predictBest(model, part.data);
   const Matrix ahead = predictSteps(model, part.data, steps);
@@ -90,9 +96,14 @@ RecordJudgement judgeRecord(const std::string& title, DataSet data, const Identi
   }
   for (const auto kind : {ModelKind::kState, ModelKind::kRegressors, ModelKind::kLinear}) {
     if (!model.has(kind)) continue;
-    const KindPrediction p = predictKind(model, kind, part.data);
+    KindPrediction p = predictKind(model, kind, part.data);
     for (std::size_t i = 0; i < part.outputs.size(); ++i) {
       const auto c = static_cast<Index>(i);
+      if (kind == ModelKind::kRegressors && isLinear(model, i)) continue;
+      if (kind == ModelKind::kLinear && isLinear(model, i) && i < model.outputs.size()) {
+        p.one_step_width[c] = model.outputs[i].one_step_width;
+        p.free_run_width[c] = model.outputs[i].free_run_width;
+      }
       part.outputs[i].kinds.push_back(figuresOf(kind, p, part.data.values.col(c), c));
     }
   }

@@ -21,22 +21,24 @@ struct KindFigures {
 struct OutputJudgement {
   std::string output, unit;
   ModelKind best{};
-  std::vector<KindFigures> kinds;
-  FitFigures ahead;  ///< of the best kind, `steps` samples ahead
+  std::vector<KindFigures> kinds;  ///< no `regressors` where these are the linear model
+  FitFigures ahead;                ///< of the best kind, `steps` samples ahead
   ResidualCorrelation residual;
 };
 
 /// One record (or part of one) judged.
 struct RecordJudgement {
   std::string title;  ///< "identification", "validation"
-  DataSet data;
+  DataSet data;       ///< without outliers
   int steps{};
   std::vector<OutputJudgement> outputs;
   KindPrediction best;
   std::vector<std::string> remarks;
 };
-RecordJudgement judgeRecord(const std::string& title, DataSet data, const IdentifiedModel& model,
-                            int steps, const ValidationParams& params = {});
+/// Outliers of `data` are left out, see withoutOutliers().
+RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
+                            const IdentifiedModel& model, int steps,
+                            const ValidationParams& params = {});
 
 std::string toTable(const std::vector<RecordJudgement>& parts);
 /// <output>.{best, one_step, free_run, ahead, residual, interval, <kind>..}, linear.<output>..

@@ -91,6 +91,11 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--blocks", a.blocks, "held out in turn")->check(CLI::Range(2, 20));
   identify->add_option("--window", a.window, "measured samples that start a free run")
       ->check(CLI::Range(1, 1000));
+  identify
+      ->add_option("--longest-delay", a.longest_delay,
+                   "[samples] (default: a tenth of the rows, at most 100)")
+      ->check(CLI::PositiveNumber);
+  identify->add_flag("--keep-inputs", a.keep_inputs, "inputs that hardly moved too");
   identify->add_option("--known", a.known,
                        "what is known of the outputs: a file, or text like "
                        "'y: {gain: {u: positive}, max_pole: 0.99}'");
@@ -218,6 +223,8 @@ int main(int argc, char** argv) {
   fpc::tool::addStudy(app, study, chosen);
   fpc::tool::ReplayArguments replay;
   fpc::tool::addReplay(app, replay, chosen);
+  fpc::tool::RecoverArguments recover;
+  fpc::tool::addRecover(app, recover, chosen);
   std::vector<std::string> watch_words;
   fpc::tool::addWatch(app, watch_words, chosen);
   fpc::tool::refuseEmptyNames(app);

@@ -14,7 +14,7 @@ namespace {
 
 std::string loopTextOf(const std::string& bag) { refuse(bag, "a program built with ROS"); }
 
-RecordedRun readBagRun(const std::string& bag, const LoopFile&) {
+RecordedRun readBagRun(const std::string& bag, const LoopFile&, int) {
   refuse(bag, "a program built with ROS");
 }
 

@@ -16,11 +16,17 @@ struct TimeColumn {
   void fitTo(double sample_time_s);
 };
 
-/// `named`, or the first column not among `used` that is called a time (time, t, time_...), or
-/// t_something that rises evenly.
-/// @throws InputError naming file and column: none of that name, times that do not rise evenly, a
-/// strange unit.
+/// `named`, or the first column not among `used` that is called a time (time, t, t_s, time_...), or
+/// t_something that always rises or always falls. Its spacing is the mean of the steps that
+/// are whole multiples of their median, rounded to the shortest number within 1e-4.
+/// @throws InputError naming file and column: none of that name, times that fall, steps further
+/// than a quarter from their median or its multiples in more than a tenth of the rows, a strange
+/// unit.
 TimeColumn timeColumn(const CsvTable& table, const std::string& named,
                       const std::vector<std::string>& used);
+
+/// The table with equally spaced times where those of column `name` (empty: none) jitter by more
+/// than rounding and less than a quarter of a sample, with a remark; otherwise as it is.
+CsvTable withEvenTimes(CsvTable table, const std::string& name, std::vector<std::string>& remarks);
 
 }  // namespace fpc::tool

@@ -9,9 +9,20 @@ void addReplay(CLI::App& app, ReplayArguments& a, std::function<int()>& chosen) 
   command->add_option("LOOP", a.loop, "name or path, instead of the loop in the bag");
   command->add_option("--set", a.set, "KEY.PATH=VALUE over LOOP, may be repeated")
       ->allow_extra_args(false);
+  command->add_option("--run", a.run, "which, from 1, of a bag with several (after a reset)")
+      ->check(CLI::PositiveNumber);
   command->add_flag("--json", a.json, "print one JSON object and nothing else");
   command->footer("Example: fmbpc replay ~/.ros/fmbpc/asp_case1_clp/loop.bag\n");
   command->callback([&a, &chosen] { chosen = [&a] { return fpc::tool::replay(a); }; });
+}
+
+void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen) {
+  CLI::App* command = app.add_subcommand(
+      "recover", "Makes the files of runs over topics whose recorder was killed (journal.bin)");
+  command->add_option("FOLDER", a.folder, "folder `out` of the launch")->required();
+  command->add_flag("--no-plot", a.no_plot, "no plot.png");
+  command->footer("Example: fmbpc recover ~/.ros/fmbpc/asp_case1_clp\n");
+  command->callback([&a, &chosen] { chosen = [&a] { return fpc::tool::recover(a); }; });
 }
 
 void addWatch(CLI::App& app, std::vector<std::string>& words, std::function<int()>& chosen) {

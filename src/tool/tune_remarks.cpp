@@ -11,6 +11,10 @@ const TuningStep& bestOf(const TunedLoop& tuned) {
   return tuned.result.history[static_cast<std::size_t>(tuned.result.best)];
 }
 
+void addIf(const std::string& words, std::vector<std::string>& remarks) {
+  if (!words.empty()) remarks.push_back(words);
+}
+
 }  // namespace
 
 bool isOutside(const TuningParameter& parameter, double own) {
@@ -21,6 +25,19 @@ std::string boundOf(const TuningParameter& parameter, double value) {
   const double share = parameter.share(value);
   if (share <= kAtBound) return "lower";
   return share >= 1.0 - kAtBound ? "upper" : "";
+}
+
+std::string worsening(const TuningObjective& objective, const TunedLoop& tuned) {
+  if (tuned.result.best < 0) return "";
+  const double untouched = objective.untouched().cost, found = bestOf(tuned).cost;
+  if (!tuned.held_out)
+    return found > untouched ? "the tuned cost is worse than that of the untouched loop, " +
+                                   shortText(untouched) + " -> " + shortText(found)
+                             : "";
+  const double before = objective.untouchedHeldOut().cost, after = tuned.held_out->cost;
+  return after > before ? "the cost on held-out scenarios got worse, " + shortText(before) +
+                              " -> " + shortText(after) + ": what was found does not carry over"
+                        : "";
 }
 
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned) {
@@ -39,15 +56,8 @@ std::vector<std::string> remarksOf(const TuningObjective& objective, const Tuned
                         ", lies outside its range " + shortText(parameters[i].lower) + ".." +
                         shortText(parameters[i].upper));
   }
-  const double untouched = objective.untouched().cost, found = bestOf(tuned).cost;
-  if (found > untouched)
-    remarks.push_back("the tuned cost is worse than that of the untouched loop, " +
-                      shortText(untouched) + " -> " + shortText(found));
-  if (!tuned.held_out) return remarks;
-  const double before = objective.untouchedHeldOut().cost, after = tuned.held_out->cost;
-  if (after > before)
-    remarks.push_back("the cost on held-out scenarios got worse, " + shortText(before) + " -> " +
-                      shortText(after) + ": what was found does not carry over");
+  if (tuned.held_out) addIf(worsening(objective, {tuned.loop, tuned.result, {}}), remarks);
+  addIf(worsening(objective, tuned), remarks);
   return remarks;
 }
 

@@ -96,6 +96,7 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned) {
             {"evaluations_per_s", numberOrNull(fresh / result.seconds)},
             {"failures", result.failures},
             {"trouble", result.trouble},
+            {"worse", !worsening(objective, tuned).empty()},
             {"parameters", parametersJson(objective, tuned)},
             {"remarks", remarksOf(objective, tuned)}};
   const TuningScore& before = objective.untouched();
@@ -115,7 +116,9 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned) {
 std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   const TuningFile& tuning = objective.tuning();
   const TuneResult& result = tuned.result;
+  const std::string worse = worsening(objective, tuned);
   std::ostringstream text;
+  if (!worse.empty()) text << worse << "\n\n";
   text << tuned.loop << ", " << wordOf(result.search.method) << ", seed " << result.search.seed
        << ": " << result.history.size() << " evaluations of " << tuning.scenarios.size()
        << (tuning.scenarios.size() == 1 ? " run" : " runs") << " in " << shortText(result.seconds)
@@ -141,8 +144,10 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
     addScores(scores, "held out: " + wordOf(tuning.fitness.across), tuning.held_out,
               objective.untouchedHeldOut(), *tuned.held_out);
   text << alignedTable(scores);
-  for (const auto& remark : remarksOf(objective, tuned)) text << "\n" << remark;
-  return text.str() + (remarksOf(objective, tuned).empty() ? "" : "\n");
+  std::string remarks;
+  for (const auto& remark : remarksOf(objective, tuned))
+    if (remark != worse) remarks += "\n" + remark;
+  return text.str() + remarks + (remarks.empty() ? "" : "\n");
 }
 
 std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tuned,

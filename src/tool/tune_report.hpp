@@ -21,6 +21,10 @@ struct TunedLoop {
 std::string boundOf(const TuningParameter& parameter, double value);
 /// What the untouched loop has, if it lies outside the range.
 bool isOutside(const TuningParameter& parameter, double own);
+/// That the tuned loop costs more than the untouched one, on the held-out scenarios or, without
+/// them, on those that it was tuned on; in words, empty if it does not.
+std::string worsening(const TuningObjective& objective, const TunedLoop& tuned);
+inline constexpr int kTunedWorse = 3;  ///< exit code of such a tuning
 /// Parameters that stand at a bound or began outside their range, costs that got worse; a line
 /// each.
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned);

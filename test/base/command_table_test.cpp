@@ -97,5 +97,26 @@ TEST(CommandTable, ClearForgetsActiveAndPending) {
   EXPECT_TRUE(table.advance(9).empty());
 }
 
+TEST(CommandTable, NamesAreBoundedInNumberAndEachComesOnce) {
+  CommandTable table({"q_i", "s_i"});
+  const std::vector<std::string> many(200000, "q_i"), twice(2, "q_i");
+  EXPECT_THROW(
+      table.accept({0, many, std::vector<double>(many.size(), 1.0), CommandMode::kOverride}, 0),
+      InputError);
+  EXPECT_THROW(table.accept({0, twice, {1.0, 2.0}, CommandMode::kOverride}, 0), InputError);
+  EXPECT_THROW(table.accept({0, many, {}, CommandMode::kRelease}, 0), InputError);
+  EXPECT_TRUE(table.advance(1).empty());
+}
+
+TEST(CommandTable, ARefusalOfALongNameIsShort) {
+  CommandTable table({"q_i"});
+  try {
+    table.accept(command(std::string(1000000, 'x'), 1.0), 0);
+    FAIL() << "taken";
+  } catch (const InputError& error) {
+    EXPECT_LT(std::string(error.what()).size(), 200U);
+  }
+}
+
 }  // namespace base_command_table_test
 }  // namespace fpc

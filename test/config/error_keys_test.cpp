@@ -20,6 +20,10 @@ TEST_F(ErrorKeys, ChecksOfThePlantNameTheWholePathOfTheKey) {
               {"--set actuator.input_upper.heat: expected a number >= 0 and <= 20"});
   expectWords(errorOfOverride("disturbance.commands=[{time_h: 1, name: T_in, value: 1e9}]"),
               {"--set disturbance.commands[0].value: expected a number >= 0 and <= 40"});
+  expectWords(errorOfOverride("disturbance.commands=[{time_h: 1, name: T_in, value: 9}, "
+                              "{time_h: 1, name: input/heat, value: 1e9}]"),
+              {"--set disturbance.commands[1].value: expected a number >= 0 and <= 20 [kW]",
+               "input heat, got 1e+09"});
   expectWords(errorOfOverride("plant.parameters.difference_step=0.03", "surge_tank_steps"),
               {"--set plant.parameters.difference_step: expected a whole part"});
 }

@@ -30,7 +30,7 @@ const OptionKey kOptions[] = {
     {"asp_case1_clp", "clp.action", {"eq26", "eq27"}},
     {"asp_case1_clp", "loop.pace", {"lockstep", "paced", "realtime"}},
     {"asp_case1_clp", "disturbance.source", {"constant", "pattern", "csv"}},
-    {"asp_case1_clp", "plant.integrator.method", {"bdf", "adams"}},
+    {"asp_case1_clp", "plant.integrator.method", {"bdf", "adams", "runge_kutta"}},
     {"asp_case1_clp", "sensors.x.class", {"none", "A", "B0", "B1", "C0", "C1", "D"}},
     {"asp_case1_clp", "plausibility.signals.x.substitute", {"hold", "last_good", "model"}},
     {"asp_case1_pi_x", "controller.loops.0.anti_windup", {"none", "clamp", "tracking"}},

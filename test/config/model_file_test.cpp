@@ -167,6 +167,15 @@ TEST(MatchToPlant, ReordersNamesAndKeepsTheMeaning) {
     }
 }
 
+TEST(MatchToPlant, TakesASampleTimeThatARecordRounded) {
+  TsModel model = test::shippedModel("fm_1");
+  const PlantInfo plant = test::activatedSludgeInfo();
+  model.sample_time_s = 0.9995 * plant.sample_time_s;
+  EXPECT_EQ(matchToPlant(model, plant).sample_time_s, plant.sample_time_s);
+  model.sample_time_s = 0.998 * plant.sample_time_s;
+  EXPECT_THROW(matchToPlant(model, plant), InputError);
+}
+
 TEST(MatchToPlant, NamesWhatDoesNotFit) {
   const TsModel model = test::shippedModel("fm_1");
   const auto expect = [&](const std::string& word, const std::function<void(PlantInfo&)>& spoil) {

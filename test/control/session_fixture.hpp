@@ -55,7 +55,7 @@ inline Measurement sample(std::uint32_t step, std::uint64_t run_id = 1, double a
 }
 
 // Remembers what was asked of it; answers input_applied + 1 and a prediction.
-struct FakeLaw final : Controller {
+struct FakeLaw : Controller {
   void reset(const Measurement& start) override { resets.push_back(start.header.step); }
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override {

@@ -177,9 +177,10 @@ def main():
     os.environ["ROS_MASTER_URI"] = f"http://localhost:{port}"
     with open(os.path.join(arguments.out, "launch.log"), "w", encoding="utf-8") as log:
         launch = subprocess.Popen(
-            ["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=" + LOOP, "pace:=lockstep", "respawn:=true", "keep:=true",
-             f"set:=sampling.duration_h={arguments.samples * TS_H!r} disturbance.source=constant actuator.move_upper.q_r=40",
-             "out:=" + arguments.out, "draw:=false", "sim_time:=false"], stdout=log, stderr=log, start_new_session=True)
+            ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=" + LOOP, "pace:=lockstep", "respawn:=true",
+                       "keep:=true", f"set:=sampling.duration_h={arguments.samples * TS_H!r} disturbance.source=constant "
+                       "actuator.move_upper.q_r=40", "out:=" + arguments.out, "draw:=false", "sim_time:=false"]),
+            stdout=log, stderr=log, start_new_session=True)
     try:
         ring.wait_until(rosgraph.is_master_online, "the master")
         rospy.init_node("soak", disable_signals=True, disable_rosout=True)

@@ -83,6 +83,62 @@ TEST(AutoIdentify, FindsADelay) {
   EXPECT_EQ(found.outputs[0].delay, std::vector<int>{3});
 }
 
+TEST(AutoIdentify, FindsALongDelayAndSaysWhenItEndsTheSearch) {
+  const DataSet data = simulate(linearLaw, 400, 0.02, 20, 3);
+  AutoIdentification found = autoIdentify(data, quick(false));
+  EXPECT_EQ(found.outputs[0].delay, std::vector<int>{20});
+  EXPECT_LT(freeRunError(found.linear, simulate(linearLaw, 400, 0.0, 20, 8)), 0.02);
+  const auto told = [&] {
+    for (const auto& r : found.remarks)
+      if (r.find("the longest that was tried") != std::string::npos) return true;
+    return false;
+  };
+  EXPECT_FALSE(told());
+  AutoParams params = quick(false);
+  params.longest_delay = 20;
+  found = autoIdentify(data, params);
+  EXPECT_TRUE(told());
+}
+
+TEST(AutoIdentify, LeavesOutAnInputThatHardlyMovedUnlessTold) {
+  DataSet data = simulate(linearLaw, 200, 0.02, 0, 1);
+  data.inputs.push_back({"v", "", 3.0, 3.01});
+  data.constant.assign(3, false);
+  data.values.conservativeResize(200, 3);
+  data.values.col(2).setConstant(3.0);
+  data.values.col(2).segment(100, 10).setConstant(3.01);
+  const auto uses = [](const AutoIdentification& found) {
+    for (const auto& r : found.linear.submodels[0].regressors)
+      if (r.kind == SignalKind::kInput && r.index == 1) return true;
+    return false;
+  };
+  const AutoIdentification found = autoIdentify(data, quick(false));
+  EXPECT_FALSE(uses(found));
+  ASSERT_FALSE(found.remarks.empty());
+  EXPECT_EQ(found.remarks[0].rfind("v is left out", 0), 0U) << found.remarks[0];
+  AutoParams keep = quick(false);
+  keep.keep_still = true;
+  EXPECT_TRUE(uses(autoIdentify(data, keep)));
+}
+
+TEST(AutoIdentify, SaysFirstThatNoiseCannotBePredicted) {
+  std::mt19937_64 random(8);
+  const Law noise = [&random](double, double) { return standardNormal(random); };
+  const AutoIdentification found = autoIdentify(simulate(noise, 240, 0.0, 0, 4), quick(false));
+  EXPECT_EQ(found.outputs[0].verdict.rfind("no model says ", 0), 0U) << found.outputs[0].verdict;
+  EXPECT_FALSE(found.outputs[0].beats_linear);
+}
+
+TEST(AutoIdentify, OffersTheBestLinearModelOfItsTable) {
+  const AutoIdentification found = autoIdentify(simulate(bentLaw, 240, 0.05, 0, 6), quick(false));
+  const AutoTrial* first = nullptr;
+  for (const auto& t : found.trials)
+    if (t.kind == ModelKind::kLinear && first == nullptr) first = &t;
+  ASSERT_NE(first, nullptr);
+  EXPECT_TRUE(first->chosen) << first->structure;
+  EXPECT_NEAR(first->free_run, found.outputs[0].linear.mean, 1e-12);
+}
+
 TEST(AutoIdentify, SameDataSameModelWhateverTheThreads) {
   const DataSet data = simulate(bentLaw, 120, 0.01, 0, 4);
   AutoParams one = quick(false), two = one;

@@ -88,7 +88,50 @@ TEST(RecordRemarks, TellASpikeButNotACornerOrAStep) {
   const DataSet data = recordOf(values), clean = withoutOutliers(data);
   EXPECT_TRUE(std::isnan(clean.values(120, 0)));
   EXPECT_EQ(clean.values.col(0).array().isNaN().count(), 1);
-  EXPECT_TRUE(contains(recordRemarks(data, nullptr), "y: 1 outliers, the first in row 121"));
+  EXPECT_TRUE(contains(recordRemarks(data, nullptr), "y: 1 outlier in row 121: left out"));
+}
+
+TEST(RecordRemarks, TellAClosedLoop) {
+  Matrix values = lag(0.9, 400, 0.05);
+  std::mt19937_64 random(6);
+  double y = 0.0, integral = 0.0;
+  for (Index k = 0; k < 400; ++k) {
+    const double w = k / 80 % 2 == 0 ? 1.0 : -1.0;
+    integral += 0.1 * (w - y);
+    const double u = 1.2 * (w - y) + integral;
+    values.row(k) << y, u;
+    y = 0.9 * y + 0.1 * u + 0.05 * standardNormal(random);
+  }
+  EXPECT_TRUE(contains(recordRemarks(recordOf(values), nullptr), "u answers to y"));
+}
+
+TEST(RecordRemarks, TellAnInputThatHardlyMovedInGoodGrammar) {
+  Matrix values = lag(0.9, 400, 0.02);
+  values.col(1).setConstant(1.0);
+  values(399, 1) = 2.0;
+  EXPECT_TRUE(contains(recordRemarks(recordOf(values), nullptr), "u hardly moved: 1 move in 400"));
+}
+
+TEST(PredictionRemarks, OfADriftSayItOnceAndNoLag) {
+  // what drifts is not in the model; the input wanders too
+  std::mt19937_64 random(7);
+  Matrix values = lag(0.5, 60, 0.0), predicted = values.leftCols(1);
+  for (Index k = 0; k < 60; ++k) {
+    values(k, 1) = 0.02 * static_cast<double>(k) + 0.1 * standardNormal(random);
+    values(k, 0) += 0.05 * static_cast<double>(k) + 0.1 * standardNormal(random);
+  }
+  const DataSet data = recordOf(values);
+  const auto remarks = predictionRemarks(firstOrder(data, 0.5), data, predicted, predicted, {});
+  EXPECT_TRUE(contains(remarks, "y: residuals drift"));
+  EXPECT_FALSE(contains(remarks, "a lag, a delay or a bend is missing"));
+}
+
+TEST(PredictionRemarks, TellAMissingLagOnce) {
+  const DataSet data = recordOf(lag(0.5, 400, 0.01));
+  Matrix predicted = data.values.leftCols(1);
+  for (Index k = 4; k < 400; ++k) predicted(k, 0) -= 0.3 * data.values(k - 4, 1);
+  const auto remarks = predictionRemarks(firstOrder(data, 0.5), data, predicted, predicted, {});
+  EXPECT_TRUE(contains(remarks, "y: residual correlated with u at lag 4")) << remarks.size();
 }
 
 /// Remarks of a search on y(k+1) = 0.7 y(k) + u(k - 3); with `period` the input repeats itself.

@@ -142,5 +142,16 @@ TEST(Validation, PolesAndGainsOfARuleAreKnown) {
   EXPECT_NEAR(dynamics[0].gains[0], 0.6 / 0.2, 1e-12);
 }
 
+TEST(Validation, CorrelationsOfDriftsStayWithinOne) {
+  const DataSet data = dataOf(test::knownRecord(50, 4));
+  DataSet ramp = data;
+  ramp.values.col(1) = Vector::LinSpaced(50, 0.0, 1.0);
+  const Vector residual = Vector::LinSpaced(50, 3.0, 9.0).array().square();
+  const ResidualCorrelation c = residualCorrelation(ramp, residual, {});
+  EXPECT_LE(c.cross.cwiseAbs().maxCoeff(), 1.0);
+  EXPECT_GT(c.cross(0, 0), 0.9);
+  EXPECT_LE(c.autocorrelation.cwiseAbs().maxCoeff(), 1.0);
+}
+
 }  // namespace fuzzy_validation_test
 }  // namespace fpc

@@ -25,6 +25,16 @@ TEST(Authority, ManyStrangersDoNotFillTheMemory) {
   EXPECT_EQ(authority.refused().at("measurement from others"), 1000 - Authority::kMostNamed);
 }
 
+TEST(Authority, NobodySpeaksForAnotherNodeButTheManagerOfNodelets) {
+  Authority authority(Publishers{}), nodelets(Publishers{}, "/manager");
+  EXPECT_TRUE(authority.speaksFor("loop_state", "/loop_recorder", "/loop_recorder"));
+  EXPECT_FALSE(authority.speaksFor("loop_state", "/rostopic_1", "/loop_recorder"));
+  EXPECT_FALSE(authority.speaksFor("loop_state", "/manager", "/loop_recorder"));
+  EXPECT_FALSE(authority.speaksFor("loop_state", "", "/loop_recorder"));
+  EXPECT_TRUE(nodelets.speaksFor("loop_state", "/manager", "/loop_recorder"));
+  EXPECT_EQ(authority.refused().at("loop_state from /rostopic_1"), 1U);
+}
+
 TEST(RateLimit, LetsABurstThroughAndThenTheStatedRate) {
   RateLimit limit(10.0, 5.0);
   int passed = 0;

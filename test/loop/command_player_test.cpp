@@ -136,6 +136,16 @@ TEST_F(Commands, AClampedSetpointIsRemarked) {
   expectWords(record.remarks[0].words, {"setpoint of T", "0..60", "degC", "clamped"});
 }
 
+TEST_F(Commands, AScheduleBeyondTheLimitsOfTheFileIsRemarkedAsWell) {
+  const LoopFile tank = readLoop("heated_tank", {{"setpoint.upper.T", "45"}});
+  const RunRecord record = runLoop(tank);
+  EXPECT_EQ(record.samples[40].tracking.setpoint[0], 45.0);
+  ASSERT_EQ(record.remarks.size(), 1U);
+  EXPECT_EQ(record.remarks[0].first, 30U);  // 50 from 0.25 h on
+  EXPECT_EQ(record.remarks[0].samples, 330U);
+  expectWords(record.remarks[0].words, {"setpoint of T", "0..45", "clamped"});
+}
+
 TEST_F(Commands, WhatLiesBeyondTheRunIsTold) {
   const RunRecord record = run(loop("asp_case1"),
                                "- {time_h: 5, setpoint: {x: 1900}}\n"
@@ -195,11 +205,16 @@ TEST_F(Commands, ValuesBeyondTheRangesAreRefusedWithTheirPlace) {
   for (const auto& [what, key, range] : std::vector<std::array<std::string, 3>>{
            {"setpoint: {T: 99999}", "setpoint.T", ">= 0 and <= 100 [degC]"},
            {"manual_input: {heat: 1e9}", "manual_input.heat", ">= 0 and <= 20 [kW]"},
-           {"disturbance: {T_in: 1e9}", "disturbance.T_in", ">= 0 and <= 40 [degC]"}})
+           {"disturbance: {T_in: 1e9}", "disturbance.T_in", ">= 0 and <= 40 [degC]"},
+           {"disturbance: {input/heat: -1}", "disturbance.input/heat", ">= 0 and <= 20 [kW]"}})
     expectWords(errorOf([&, text = what] {
                   commands("- {time_h: 0, manual: true}\n- {time_h: 1, " + text + "}\n", tank);
                 }),
                 {"commands.yaml:3", "commands[1]." + key, range});
+  const LoopFile narrow = readLoop("heated_tank", {{"actuator.input_upper.heat", "10"}});
+  commands("- {time_h: 1, disturbance: {input/heat: 10}}\n", narrow);
+  expectWords(errorOf([&] { commands("- {time_h: 1, disturbance: {input/heat: 11}}\n", narrow); }),
+              {"commands[0].disturbance.input/heat", "<= 10 [kW], the limits of the actuator"});
   commands("- {time_h: 1, setpoint: {T: 100}}\n- {time_h: 1, setpoint: {T: -300}, mode: offset}\n",
            tank);
   const LoopFile steady = readLoop("heated_tank", {{"setpoint.schedule", "[]"}});

@@ -60,6 +60,23 @@ TEST(RingWatch, SaysWhoIsWorstAndWhy) {
   EXPECT_EQ(worst.missing, (std::vector<std::string>{"/c"}));
 }
 
+TEST(RingWatch, WhoIsStartingWhileTheRunGoesOnDoesNotDoItsPart) {
+  RingWatch watch({"/a", "/b", "/c"});
+  watch.begin(10.0);
+  watch.hear("/a", health(LoopMode::kManual, "manual"), 11.6);
+  watch.hear("/b", {LoopMode::kStarting, "waiting for the first measurement", {"/plant"}}, 11.5);
+  EXPECT_EQ(watch.worst(12.4).mode, LoopMode::kManual);  // it may not have said yet that it began
+  watch.hear("/b", {LoopMode::kStarting, "waiting for the first measurement", {"/plant"}}, 12.6);
+  const Health worst = watch.worst(12.6);
+  EXPECT_EQ(worst.mode, LoopMode::kStarting);
+  EXPECT_EQ(worst.words, "/b: starting: waiting for the first measurement");
+  EXPECT_EQ(worst.missing, (std::vector<std::string>{"/plant"}));
+  watch.hear("/c", health(LoopMode::kHeld, "held"), 12.6);
+  EXPECT_EQ(watch.worst(12.6).mode, LoopMode::kStarting);  // worse than one that is held
+  watch.hear("/c", health(LoopMode::kStalled, "no answer"), 12.7);
+  EXPECT_EQ(watch.worst(12.7).mode, LoopMode::kStalled);
+}
+
 StepHeader sample(std::uint32_t step) { return {0, 7, step}; }
 
 TEST(OptimizerWatch, RealtimeTakesOverWithinTheSampleAndTrustsTheOptimizerAgainOnceItAnswers) {

@@ -1,13 +1,12 @@
 #include "fmbpc/loop/record_journal.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <sstream>
 
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
+#include "loop/full_disk.hpp"
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
@@ -63,13 +62,74 @@ TEST_F(RecordJournalTest, AProcessThatCameBackGoesOnWhereItWas) {
   EXPECT_EQ(textOf(readJournal(path("journal"), layout_)), textOf(record_));
 }
 
-TEST_F(RecordJournalTest, AnotherRunStartsAnew) {
+TEST_F(RecordJournalTest, WhatAnotherRunHasWrittenIsNeverOverwritten) {
   RecordJournal journal;
   journal.open(path("journal"), layout_, 1);
   append(journal, 0, 3);
+  expectWords(errorOf([&] { journal.open(path("journal"), layout_, 2); }),
+              {"journal", "an empty one"});
+  LoopFile other = loop_;
+  other.resolved += "# changed\n";
+  expectWords(errorOf([&] { journal.open(path("journal"), recordLayout(other), 1); }),
+              {"journal", "an empty one"});
+  write("letter", std::string(500, 'a'));
+  expectWords(errorOf([&] { journal.open(path("letter"), layout_, 1); }), {"letter"});
+  EXPECT_EQ(std::filesystem::file_size(path("letter")), 500U);
+  EXPECT_EQ(readJournal(path("journal"), layout_).samples.size(), 3U);
+}
+
+TEST_F(RecordJournalTest, OneWithoutSamplesIsBegunAnew) {
+  RecordJournal journal;
+  journal.open(path("journal"), layout_, 1);
   EXPECT_EQ(journal.open(path("journal"), layout_, 2), 0U);
+  append(journal, 0, 3);
   journal.close();
-  EXPECT_TRUE(readJournal(path("journal"), layout_).samples.empty());
+  EXPECT_EQ(journalRun(path("journal"), layout_), 2U);
+  EXPECT_EQ(readJournal(path("journal"), layout_).samples.size(), 3U);
+}
+
+TEST_F(RecordJournalTest, ItTellsOfWhichLoopAndRunItIs) {
+  write("letter", std::string(500, 'a'));
+  EXPECT_FALSE(journalLabel(path("letter")).has_value());
+  EXPECT_FALSE(journalLabel(path("nothing")).has_value());
+  RecordJournal journal;
+  journal.open(path("journal"), layout_, 7);
+  EXPECT_TRUE(journalLabel(path("journal"))->empty);
+  append(journal, 0, 2);
+  const auto label = journalLabel(path("journal"));
+  EXPECT_EQ(label->run_id, 7U);
+  EXPECT_EQ(label->loop, "asp_case1_clp");
+  EXPECT_FALSE(label->empty);
+  EXPECT_EQ(parseLoop(label->text, label->loop).resolved, loop_.resolved);
+}
+
+TEST_F(RecordJournalTest, SamplesThatCouldNotBeKeptLeaveTheirPlacesEmpty) {
+  RecordJournal journal;
+  journal.start(layout_, 1);
+  for (std::size_t k = 0; k < RecordJournal::kMostUnwritten; ++k) append(journal, 0, 1);
+  append(journal, 0, 3);  // the disk comes back after them
+  EXPECT_EQ(journal.lost(), 3U);
+  journal.open(path("journal"), layout_, 1);
+  append(journal, 4, 5);
+  journal.close();
+  const RunRecord back = readJournal(path("journal"), layout_);
+  ASSERT_EQ(back.samples.size(), RecordJournal::kMostUnwritten + 4);
+  EXPECT_FALSE(back.samples[RecordJournal::kMostUnwritten + 2].has_measurement);
+  EXPECT_EQ(back.samples.back().measurement.header.step, 4U);
+}
+
+TEST_F(RecordJournalTest, WhenItBeganOutlivesTheProcess) {
+  double began{};
+  {
+    RecordJournal journal;
+    journal.open(path("journal"), layout_, 1);
+    append(journal, 0, 2);
+    began = journal.beganAt();
+    EXPECT_GT(began, 0.0);
+  }
+  RecordJournal journal;
+  journal.open(path("journal"), layout_, 1);
+  EXPECT_EQ(journal.beganAt(), began);
 }
 
 TEST_F(RecordJournalTest, OnlyOneWritesAtATimeAndAFolderThatIsNotThereIsSaidAtOnce) {
@@ -83,22 +143,6 @@ TEST_F(RecordJournalTest, OnlyOneWritesAtATimeAndAFolderThatIsNotThereIsSaidAtOn
   first.close();
   EXPECT_EQ(readJournal(path("journal"), layout_).samples.size(), 2U);
 }
-
-/// While it lives no file grows beyond the size, as on a full disk.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    rlimit full = before_;
-    full.rlim_cur = bytes;
-    setrlimit(RLIMIT_FSIZE, &full);
-  }
-  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
 
 TEST_F(RecordJournalTest, AFullDiskIsSaidAndWhatItRefusedIsWrittenOnceThereIsRoom) {
   RecordJournal journal;

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
+#include <utility>
 
+#include "fmbpc/loop/recover.hpp"
 #include "fmbpc/loop/run.hpp"
+#include "loop/full_disk.hpp"
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
@@ -80,6 +84,125 @@ TEST_F(RecordStoreTest, MemoryDoesNotGrowWithTheRun) {
   const Summary summary = store.finish(0.0);
   EXPECT_EQ(summary.steps, 20000U);
   EXPECT_LT(peakSinceLastCall() - before, 3000.0);  // 21600 when the record was read whole
+}
+
+/// Runs that processes are killed in: a store that goes without finish().
+class InterruptedTest : public RecordStoreTest {
+ protected:
+  InterruptedTest()
+      : clp_(readLoop("asp_case1_clp", {{"sampling.duration_h", "2"}})),
+        plain_(readLoop("asp_case1", {{"sampling.duration_h", "2"}})) {}
+
+  /// A process that records the first samples of the run.
+  void record(const LoopFile& loop, std::uint64_t run_id, std::size_t samples,
+              bool finish = false) {
+    const RunRecord run = runLoop(loop);
+    RecordStore store(loop, path("out"));
+    store.begin(run_id);
+    for (std::size_t k = 0; k < samples; ++k) store.append(run.samples[k]);
+    if (finish) store.finish(1.0);
+  }
+  std::size_t rows(const std::string& folder) const {
+    const std::string text = textOf(path(folder) + "/trajectory.csv");
+    return text.empty() ? 0
+                        : static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) - 1;
+  }
+  bool exists(const std::string& file) const { return std::filesystem::exists(path(file)); }
+
+  LoopFile clp_, plain_;
+};
+
+TEST_F(InterruptedTest, EveryRunThatWasCutShortHasAFolderOfItsOwnAndIsOfItsOwnLoop) {
+  record(clp_, 11, 5);
+  record(clp_, 12, 6);
+  record(plain_, 13, 7);
+  record(plain_, 14, 1);
+  EXPECT_EQ(rows("out/interrupted/11"), 5U);
+  EXPECT_EQ(rows("out/interrupted/12"), 6U);
+  EXPECT_EQ(rows("out/interrupted/13"), 7U);
+  for (const auto& [run, loop] :
+       {std::pair("11", "asp_case1_clp"), {"12", "asp_case1_clp"}, {"13", "asp_case1"}}) {
+    const std::string folder = std::string("out/interrupted/") + run;
+    EXPECT_EQ(readSummary(path(folder) + "/summary.json").loop, loop);
+    EXPECT_FALSE(exists(folder + "/journal.bin"));
+  }
+}
+
+TEST_F(InterruptedTest, AJournalOfOtherSizesIsNotTruncated) {
+  record(clp_, 11, 5);
+  record(readLoop("cstr_tracking"), 12, 3);
+  EXPECT_EQ(rows("out/interrupted/11"), 5U);
+  EXPECT_EQ(journalLabel(path("out/journal.bin"))->run_id, 12U);
+}
+
+TEST_F(InterruptedTest, WhatIsNoJournalOfThisVersionIsPutAsideAsItIs) {
+  std::filesystem::create_directories(path("out"));
+  const std::string letter(5000, 'a');
+  write("out/journal.bin", letter);
+  RecordStore store(clp_, path("out"));
+  store.begin(12);
+  EXPECT_EQ(textOf(path("out/interrupted/unknown/journal.bin")), letter);
+  expectWords(store.remark(), {"interrupted/unknown/journal.bin", "stays as it is"});
+  EXPECT_EQ(store.problem(), "");
+}
+
+TEST_F(InterruptedTest, OneRunThatIsPutAsideTwiceHasTwoFolders) {
+  record(clp_, 11, 5);
+  record(plain_, 11, 4);
+  record(clp_, 11, 3);
+  EXPECT_EQ(rows("out/interrupted/11"), 5U);
+  EXPECT_EQ(rows("out/interrupted/11-2"), 4U);
+}
+
+TEST_F(InterruptedTest, AShortRunDoesNotTakeThePlaceOfACompleteOne) {
+  record(clp_, 11, 11, true);
+  const std::string complete = textOf(path("out/trajectory.csv"));
+  record(clp_, 12, 4, true);
+  EXPECT_EQ(textOf(path("out/trajectory.csv")), complete);
+  EXPECT_EQ(rows("out/interrupted/12"), 4U);
+  record(plain_, 13, 11, true);
+  EXPECT_EQ(readSummary(path("out/summary.json")).loop, "asp_case1");
+}
+
+TEST_F(InterruptedTest, AJournalBecomesFilesOnRequest) {
+  EXPECT_TRUE(recoverFolder(path("out")).empty());
+  record(clp_, 11, 5);
+  const auto first = recoverFolder(path("out"));
+  ASSERT_EQ(first.size(), 1U);
+  EXPECT_EQ(first[0].problem, "");
+  EXPECT_EQ(first[0].record.folder, path("out"));
+  EXPECT_EQ(rows("out"), 5U);
+  EXPECT_FALSE(exists("out/journal.bin"));
+  EXPECT_TRUE(recoverFolder(path("out")).empty());
+  record(plain_, 12, 4);
+  EXPECT_EQ(recoverFolder(path("out")).at(0).record.folder, path("out/interrupted/12"));
+}
+
+TEST_F(InterruptedTest, AJournalThatIsBeingWrittenIsLeftAlone) {
+  RecordStore store(clp_, path("out"));
+  store.begin(11);
+  store.append(runLoop(clp_).samples[0]);
+  expectWords(recoverFolder(path("out")).at(0).problem, {"another loop is running"});
+  EXPECT_TRUE(exists("out/journal.bin"));
+}
+
+TEST_F(InterruptedTest, AFullDiskAtTheBeginningIsSaidAndTheWholeRunIsRecordedOnceThereIsRoom) {
+  record(clp_, 11, 5);
+  const RunRecord run = runLoop(clp_);
+  RecordStore store(clp_, path("out"));
+  {
+    const FullDisk full(0);
+    EXPECT_EQ(store.begin(12), 0U);
+    for (const SampleRecord& sample : run.samples) store.append(sample);
+    store.flush();
+    expectWords(store.problem(), {"not recorded", "room on the disk"});
+  }
+  store.flush();
+  EXPECT_EQ(store.problem(), "");
+  EXPECT_EQ(store.finish(1.0).steps, 10U);
+  EXPECT_EQ(rows("out"), 11U);
+  EXPECT_EQ(recoverFolder(path("out")).size(), 1U);  // there was no room for its files
+  EXPECT_EQ(rows("out/interrupted/11"), 5U);
 }
 
 }  // namespace loop_record_store_test

@@ -166,6 +166,39 @@ TEST_F(RecorderSessionTest, RemarksOfTheLawBelongToTheirSamples) {
   EXPECT_EQ(record.remarks[0].first, 0U);
 }
 
+TEST_F(RecorderSessionTest, RemarksOfASampleAreCountedLineByLine) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  for (const std::uint32_t step : {0U, 1U}) {
+    r.receive(tracking(step), step == 0 ? "clamped" : "held\nclamped");
+    r.receive(measurement(step));
+    r.receiveBase(action(step));
+  }
+  addSample(r, 2, true);
+  RunRecord record;
+  record.samples = passed_;
+  conclude(record, true);
+  ASSERT_EQ(record.remarks.size(), 2U);
+  EXPECT_EQ(record.remarks[0].words, "clamped");
+  EXPECT_EQ(record.remarks[0].samples, 2U);
+  EXPECT_EQ(record.remarks[1].words, "held");
+  EXPECT_EQ(record.remarks[1].first, 1U);
+}
+
+TEST_F(RecorderSessionTest, OfTooManyRemarksTheWholeLinesAreKeptThatAJournalHolds) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  const std::string line(200, 'a');
+  r.receive(tracking(0), line + "\n" + line + "\n" + line);
+  r.receive(measurement(0));
+  r.receiveBase(action(0));
+  r.receive(tracking(1), std::string(600, 'b'));
+  r.receive(measurement(1, true));
+  ASSERT_EQ(passed_.size(), 2U);
+  EXPECT_EQ(passed_[0].remark, line + "\n" + line);
+  EXPECT_EQ(passed_[1].remark, std::string(511, 'b'));
+}
+
 TEST_F(RecorderSessionTest, WhatIsMissingForLongIsGivenUpAndNamed) {
   RecorderSession r = recorder();
   r.announce(7);

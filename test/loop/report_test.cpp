@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "fmbpc/base/csv.hpp"
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
+#include "loop/unplayed.hpp"
 
 namespace fpc {
 namespace loop_report_test {
@@ -163,6 +165,36 @@ TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
   EXPECT_FALSE(neverControlled(summary));
 }
 
+/// Inputs that are told locked in a run in which all inputs stand at their lower limits.
+std::vector<std::string> lockedAtTheLowerLimits(const LoopFile& loop) {
+  RunRecord record = recordLayout(loop).emptyRecord();
+  record.samples.resize(20);
+  for (SampleRecord& sample : record.samples) {
+    sample.has_action = true;
+    sample.action.source = ActionSource::kBase;
+    sample.action.input = loop.simulation.actuator.limits.lower;
+  }
+  std::vector<std::string> names;
+  for (const LockUp& lock : summarize(loop, record, 0.0).locked) names.push_back(lock.input);
+  return names;
+}
+
+TEST_F(Report, AnInputThatNobodyMovesIsNotLocked) {
+  using Names = std::vector<std::string>;
+  const char* both = "mimo_cstr_steps_pi";
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop(both)), (Names{"q", "qc"}));
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop(
+                both, {{"controller.loops", "[{input: qc, output: T, kp: 100, reverse: true}]"}})),
+            Names{"qc"});
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("column_excite")), (Names{"L", "V"}));
+  EXPECT_EQ(lockedAtTheLowerLimits(
+                readLoop("column_excite", {{"controller.signals", "[{input: L, signal: none}]"}})),
+            Names{});
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_fmbpc")), Names{"air"}) << "by its model";
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_supervisor")), Names{"air"});
+  EXPECT_EQ(lockedAtTheLowerLimits(readLoop("bsm1_own_open")), Names{"Qintr"}) << "its one signal";
+}
+
 TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {
   write("d.csv", "t[h],v[degC]\n0,15\n10,16\n");
   const std::string csv = "{file: " + path("d.csv") +
@@ -192,6 +224,26 @@ TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {
   expectWords(with("4"), {"record of disturbance.csv never acts", "4 h"});
   expectWords(with("1, next: {file: " + path("d.csv") + ", after_h: 2.5}"),
               {"disturbance.csv.next never acts", "3.5 h"});
+}
+
+TEST_F(Report, AValveThatIsStuckBeyondTheActuatorsLimitsIsToldWhereItIs) {
+  const auto stuck = [](double position, const char* duration_h) {
+    return readLoop("heated_tank",
+                    {{"actuator.input_upper.heat", "10"},
+                     {"setpoint.schedule", "[]"},
+                     {"sampling.duration_h", duration_h},
+                     {"disturbance.commands",
+                      "[{time_h: 0.1, name: input/heat, value: " + exactText(position) + "}]"}});
+  };
+  const LoopFile beyond = stuck(15.0, "0.2");
+  const RunRecord record = runLoop(beyond);
+  EXPECT_EQ(record.samples.back().measurement.input_applied[0], 10.0);
+  const auto remarks = summarize(beyond, record, 0.0).remarks;
+  ASSERT_GE(remarks.size(), 1U);
+  expectWords(remarks.back().words,
+              {"disturbance.commands: input/heat at 15", "0..10 [kW]", "acts as 10"});
+  EXPECT_TRUE(unplayedIn(stuck(10.0, "0.2")).empty());
+  EXPECT_EQ(unplayedIn(stuck(15.0, "0")).size(), 1U) << "an endless run";
 }
 
 TEST_F(Report, TrajectoryHasTheColumnsOfAMatrixOfTheLoopFile) {

@@ -14,6 +14,16 @@ double distance(const Vector& a, const Vector& b) {
   return a.size() > 0 ? (a - b).lpNorm<Eigen::Infinity>() : 0.0;
 }
 
+/// The same cost and bounds, with room for other rows.
+QpProblem withRows(const QpProblem& problem, Eigen::Index rows) {
+  QpProblem other(problem.g.size(), rows);
+  other.H = problem.H;
+  other.g = problem.g;
+  other.x_lower = problem.x_lower;
+  other.x_upper = problem.x_upper;
+  return other;
+}
+
 TEST(QpProperty, RandomProblemsBuiltFromAnOptimumGiveItBack) {
   for (unsigned seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
@@ -77,11 +87,7 @@ TEST(QpProperty, DuplicateAndScaledRowsAndWeaklyActiveLimitsDoNotCycle) {
     Draw draw(seed);
     const Eigen::Index n = draw.index(1, 40), m = draw.index(1, 60);
     const KnownQp known = knownQp(draw, n, m);
-    QpProblem p(n, 3 * m);
-    p.H = known.problem.H;
-    p.g = known.problem.g;
-    p.x_lower = known.problem.x_lower;
-    p.x_upper = known.problem.x_upper;
+    QpProblem p = withRows(known.problem, 3 * m);
     for (Eigen::Index i = 0; i < n; ++i) {  // touched by the optimum, not pushing
       if (known.y_x(i) == 0.0 && draw.chance(0.3)) p.x_lower(i) = known.x(i);
     }
@@ -108,11 +114,7 @@ TEST(QpProperty, NearlyParallelRowsAreNeitherInfeasibleNorInexact) {
     Draw draw(seed);
     const Eigen::Index n = draw.index(2, 30), m = draw.index(1, 20);
     const KnownQp known = knownQp(draw, n, m);
-    QpProblem p(n, 3 * m);
-    p.H = known.problem.H;
-    p.g = known.problem.g;
-    p.x_lower = known.problem.x_lower;
-    p.x_upper = known.problem.x_upper;
+    QpProblem p = withRows(known.problem, 3 * m);
     for (Eigen::Index i = 0; i < 3 * m; ++i) {  // each row, and two copies turned by a small angle
       p.A.row(i) = known.problem.A.row(i % m);
       p.a_lower(i) = known.problem.a_lower(i % m);

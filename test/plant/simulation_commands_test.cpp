@@ -170,6 +170,8 @@ TEST(SimulationCommands, BadCommandsAreErrorsAndNothingIsTaken) {
   EXPECT_THROW(simulation.command(command("q_i", kNaN)), InputError);
   EXPECT_THROW(simulation.command(command("q_i", -1.0)), InputError);
   EXPECT_THROW(simulation.command(command("s_i", 1e6)), InputError);
+  EXPECT_THROW(simulation.command(command("q_i", -1e300, CommandMode::kOffset)), InputError);
+  EXPECT_THROW(simulation.command(command("s_i", 1e300, CommandMode::kOffset)), InputError);
   EXPECT_THROW(simulation.command({0, {"q_i", "s_i"}, {1000.0, 1e6}}), InputError);
   EXPECT_THROW(simulation.command({0, {"q_i", "s_i"}, {1000.0}}), InputError);
   EXPECT_THROW(simulation.command(command("q_i", 1.0, static_cast<CommandMode>(0))), InputError);

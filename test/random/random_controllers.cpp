@@ -39,7 +39,36 @@ std::string horizon(Dice& dice, int longest) {
          "\n  move_steps: " + std::to_string(dice.whole(1, std::min(steps, 3))) + "\n";
 }
 
-std::string pi(Dice& dice, RandomFrame& frame) {
+std::string derivative(Dice& dice, const RandomFrame& frame, double kp) {
+  std::string text;
+  if (dice.chance(0.2))
+    text += ", kd_h: " + Dice::rounded(kp * frame.hours(dice.scale(0.1, 5.0))) +
+            ", derivative_lag_h: " + exactText(frame.hours(dice.whole(0, 5)));
+  if (dice.chance(0.2)) text += ", preview_h: " + exactText(frame.hours(dice.whole(0, 5)));
+  if (dice.chance(0.2))
+    text += ", setpoint_pole: " + dice.number(0.0, 0.98) +
+            ", setpoint_lead_h: " + exactText(frame.hours(dice.whole(0, 5)));
+  return text;
+}
+
+std::string pi(Dice& dice, RandomFrame& frame) { return randomPiKeys(dice, frame); }
+
+/// Of the plants that have a load to be fed forward.
+std::string loadSupervisor(Dice& dice, RandomFrame& frame) {
+  const Quantity& u = frame.plant.inputs.front();
+  const double gain = spanOf(u) / spanOf(frame.outputs.front()) * dice.scale(0.05, 3.0);
+  const auto hours = [&] { return Dice::rounded(frame.hours(dice.scale(1.0, 200.0))); };
+  std::string text = "  input: " + u.name + "\n  output: " + frame.outputs.front().name +
+                     "\n  gain: " + Dice::rounded(dice.chance(0.3) ? -gain : gain) +
+                     "\n  integral_time_h: " + hours() +
+                     "\n  load: {concentration: S_NH_in, flow: Q_in, gain: " +
+                     Dice::rounded(spanOf(u) * dice.between(-1.0, 2.0)) + "}\n";
+  if (dice.chance(0.5)) text += "  tracking_time_h: " + hours() + "\n";
+  if (dice.chance(0.3)) text += "  integral_limit: " + Dice::rounded(spanOf(u)) + "\n";
+  return text;
+}
+
+std::string piKeys(Dice& dice, const RandomFrame& frame) {
   std::string text = "  loops:\n";
   const auto& inputs = frame.plant.inputs;
   for (std::size_t i = 0; i < std::min(inputs.size(), frame.outputs.size()); ++i) {
@@ -58,7 +87,7 @@ std::string pi(Dice& dice, RandomFrame& frame) {
               ", gain: " + dice.number(0.2, 2.0) +
               "}, {output: " + exactText(workingRange(y).second) +
               ", gain: " + dice.number(0.2, 2.0) + "}]";
-    text += "}\n";
+    text += derivative(dice, frame, kp) + "}\n";
   }
   return text;
 }
@@ -90,9 +119,12 @@ std::string fmbpc(Dice& dice, RandomFrame& frame) {
       dice.pick<std::string>(single ? std::vector<std::string>{"published", "general", "iterated"}
                                     : std::vector<std::string>{"general", "iterated"});
   std::string text = "  law: " + law +
-                     "\n  coincidence_steps: " + std::to_string(dice.whole(1, 12)) +
-                     "\n  realisation: " + (dice.chance(0.7) ? "parallel" : "realigned") + "\n" +
+                     "\n  coincidence_steps: " + std::to_string(dice.whole(1, 12)) + "\n" +
                      costs(dice, frame, true);
+  const std::string observer = randomObserver(dice, frame);
+  text += observer.empty()
+              ? std::string("  realisation: ") + (dice.chance(0.7) ? "parallel\n" : "realigned\n")
+              : "  realisation: observer\n" + observer;
   if (law == "iterated")
     text += "  horizon_steps: " + std::to_string(dice.whole(2, 12)) +
             "\n  iterations: " + std::to_string(dice.whole(1, 4)) + "\n";
@@ -105,19 +137,20 @@ std::string fuzzyOptimal(Dice& dice, RandomFrame& frame) {
   return horizon(dice, 12) + costs(dice, frame, true) +
          "  solve: " + (dice.chance(0.8) ? "together" : "each") +
          "\n  disturbance: " + dice.pick<std::string>({"inside", "outside", "none"}) +
-         "\n  disturbance_gain: " + dice.number(0.1, 1.0) + "\n";
+         "\n  disturbance_gain: " + dice.number(0.1, 1.0) + "\n" + randomObserver(dice, frame);
 }
 
 std::string nmpc(Dice& dice, RandomFrame& frame) {
   return horizon(dice, 5) + costs(dice, frame, true) +
-         "  max_iterations: " + std::to_string(dice.whole(1, 6)) + "\n";
+         "  max_iterations: " + std::to_string(dice.whole(1, 6)) + "\n" +
+         randomObserver(dice, frame);
 }
 
 std::string swarm(Dice& dice, RandomFrame& frame) {
   return horizon(dice, 5) + costs(dice, frame, true) +
          "  swarm: {particles: " + std::to_string(dice.whole(2, 8)) +
          ", iterations: " + std::to_string(dice.whole(1, 6)) +
-         ", seed: " + std::to_string(dice.whole(0, 99)) + "}\n";
+         ", seed: " + std::to_string(dice.whole(0, 99)) + "}\n" + randomObserver(dice, frame);
 }
 
 std::string hybrid(Dice& dice, RandomFrame& frame) {
@@ -150,6 +183,8 @@ std::string adaptivePi(Dice& dice, RandomFrame&) {
 
 }  // namespace
 
+std::string randomPiKeys(Dice& dice, const RandomFrame& frame) { return piKeys(dice, frame); }
+
 std::string randomController(const std::string& type, Dice& dice, RandomFrame& frame) {
   using Maker = std::string (*)(Dice&, RandomFrame&);
   static const std::map<std::string, Maker> makers{{"pi", pi},
@@ -158,6 +193,7 @@ std::string randomController(const std::string& type, Dice& dice, RandomFrame& f
                                                    {"nmpc", nmpc},
                                                    {"swarm_mpc", swarm},
                                                    {"hybrid_mpc", hybrid},
+                                                   {"load_supervisor", loadSupervisor},
                                                    {"adaptive_pi", adaptivePi},
                                                    {"fuzzy_optimal", fuzzyOptimal}};
   return "controller:\n  type: " + type + "\n" + makers.at(type)(dice, frame);

@@ -22,8 +22,8 @@ struct RandomLoop {
 
 RandomLoop randomLoop(std::uint64_t seed);
 
-/// A random transfer matrix under PI, its first output and input counted in units `output_unit` and
-/// `input_unit` times as small.
+/// A random transfer matrix under PI or a law with a model, its first output and input counted in
+/// units `output_unit` and `input_unit` times as small.
 RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit = 1.0, double input_unit = 1.0);
 
 }  // namespace fpc

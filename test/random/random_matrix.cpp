@@ -1,4 +1,6 @@
-// Random transfer matrices under PI, in any units.
+// Random transfer matrices under PI or a predictive law, in any units.
+#include "random/random_matrix.hpp"
+
 #include "random/random_parts.hpp"
 
 namespace fpc {
@@ -27,6 +29,16 @@ std::string values(const std::vector<Quantity>& signals, Dice& dice, double shar
   return text + "}";
 }
 
+/// PI loops, or a law with a model beside the loop file.
+std::string controller(Dice& dice, const MatrixSignals& signals, const std::string& pi_loops,
+                       double sample_min, RandomLoop& loop) {
+  loop.controller =
+      dice.pick<std::string>({"pi", "pi", "pi", "fmbpc", "fmbpc", "fuzzy_optimal", "swarm_mpc"});
+  if (loop.controller == "pi") return "controller:\n  type: pi\n  loops:\n" + pi_loops;
+  loop.files["model.yaml"] = matrixModel(dice, signals, 60.0 * sample_min);
+  return "model: {file: model.yaml}\n" + matrixLaw(dice, loop.controller, signals);
+}
+
 }  // namespace
 
 // Only the first output and the first input change their units, so that a mix-up of the others
@@ -36,7 +48,6 @@ RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input
   RandomLoop loop;
   loop.seed = seed;
   loop.plant = "matrix";
-  loop.controller = "pi";
   const int n_y = dice.whole(1, 3), n_u = dice.whole(1, 3), n_d = dice.whole(0, 2);
   std::vector<Quantity> outputs, inputs, loads;
   for (int i = 0; i < n_y; ++i) outputs.push_back(signal(dice, "y" + std::to_string(i)));
@@ -98,10 +109,11 @@ RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input
     loop.text +=
         "    - {time_h: " + exactText(step * dice.whole(0, samples)) + ", name: d0, value: " +
         Dice::rounded(loads[0].nominal + 0.3 * (loads[0].upper - loads[0].nominal)) + "}\n";
-  loop.text += "    - {time_h: " + exactText(step * dice.whole(0, samples)) +
-               ", name: output/y0, mode: offset, value: " +
-               exactText(std::stod(dice.number(-1.0, 1.0)) / output_unit) + "}\n" +
-               "controller:\n  type: pi\n  loops:\n" + loops;
+  loop.text +=
+      "    - {time_h: " + exactText(step * dice.whole(0, samples)) +
+      ", name: output/y0, mode: offset, value: " +
+      exactText(std::stod(dice.number(-1.0, 1.0)) / output_unit) + "}\n" +
+      controller(dice, {outputs, inputs, output_unit, input_unit}, loops, sample_min, loop);
   return loop;
 }
 

@@ -111,7 +111,7 @@ std::string randomActuator(Dice& dice, const RandomFrame& frame) {
   if (dice.chance(0.5)) text += "  move_upper: " + byName(names, move) + "\n";
   if (dice.chance(0.7)) text += "  initial: " + byName(names, initial) + "\n";
   if (dice.chance(0.2)) text += "  hold_samples: " + std::to_string(dice.whole(-1, 5)) + "\n";
-  return text;
+  return text + randomDrives(dice, frame);
 }
 
 std::string randomSetpoint(Dice& dice, const RandomFrame& frame) {
@@ -127,7 +127,15 @@ std::string randomSetpoint(Dice& dice, const RandomFrame& frame) {
   std::string text = "setpoint:\n  initial: " + byName(names, values()) + "\n";
   double time = 0.0;
   const int steps = dice.whole(0, 3);
-  for (int i = 0; i < steps; ++i) {
+  const bool recipe = steps > 0 && dice.chance(0.15);
+  for (int i = 0; recipe && i < steps; ++i) {
+    std::string entry = byName(names, values());
+    entry.replace(0, 1,
+                  "{ramp_h: " + exactText(frame.hours(dice.whole(0, 8))) +
+                      ", hold_h: " + exactText(frame.hours(dice.whole(0, 12))) + ", ");
+    text += (i == 0 ? "  recipe:\n    - " : "    - ") + entry + "\n";
+  }
+  for (int i = 0; !recipe && i < steps; ++i) {
     time += dice.between(0.0, 0.4) * frame.samples;
     std::string entry = byName(names, values());
     entry.replace(0, 1, "{time_h: " + exactText(frame.hours(std::round(time))) + ", ");
@@ -139,6 +147,12 @@ std::string randomSetpoint(Dice& dice, const RandomFrame& frame) {
       rates.push_back(Dice::rounded((workingRange(q).second - workingRange(q).first) /
                                     frame.hours(frame.samples) * dice.scale(0.3, 10.0)));
     text += "  rate_per_h: " + byName(names, rates) + "\n";
+  }
+  if (dice.chance(0.15)) {  // narrower than what is asked
+    std::vector<std::string> upper;
+    for (const auto& q : frame.outputs)
+      upper.push_back(exactText(dice.between(q.nominal, workingRange(q).second)));
+    text += "  upper: " + byName(names, upper) + "\n";
   }
   if (dice.chance(0.2)) {
     const std::size_t i =

@@ -24,7 +24,7 @@ TYPED = [("setpoint", "fmbpc/Setpoint", "S_NH5", 0.6, 6), ("disturbance", "fmbpc
 def rostopic(topic, kind, name, value, time_h):
     """As a person types it, for a time of the plant; ends once the message is latched long enough."""
     text = f"{{header: {{stamp: {{secs: {T0_S + 3600 * time_h}}}}}, name: [{name}], value: [{value}], mode: 1}}"
-    return subprocess.Popen(["rostopic", "pub", "-1", topic, kind, text], stdout=subprocess.DEVNULL)
+    return subprocess.Popen(ring.tied(["rostopic", "pub", "-1", topic, kind, text]), stdout=subprocess.DEVNULL)
 
 
 def key(topic):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The example of a plant of one's own behind the gateway: every sample is recorded, the level reaches its setpoints, and
-what the tank was told kept all limits."""
+what the tank was told kept all limits. A second publisher of its level is refused and named."""
 import csv
 import math
 import os
@@ -9,6 +9,7 @@ import unittest
 
 import rospy
 import rostest
+from fmbpc.msg import LoopState, Measurement
 from std_msgs.msg import Float64, String
 
 import ring
@@ -17,8 +18,18 @@ import ring
 class Example(unittest.TestCase):
     def test_the_tank_follows_its_setpoints_inside_its_limits(self):
         efforts = ring.Listener("tank/control_effort", Float64, "/plant_gateway")
-        ring.publisher("tank/state", Float64, "/plant_gateway").publish(math.nan)  # a lie among the truth
-        folder = ring.Listener("recorded", String).wait().data
+        states = ring.Listener("loop_state", LoopState, "/plant_gateway")
+        measurements, recorded = ring.Listener("measurement", Measurement), ring.Listener("recorded", String)
+        liar = ring.publisher("tank/state", Float64, "/plant_gateway")
+        liar.publish(math.nan)  # a lie among the truth
+        measurements.wait(lambda m: math.isfinite(m.outputs[0]))
+
+        def said():
+            liar.publish(3.9)
+            return any(s.summary and s.mode == LoopState.DEGRADED and
+                       "/tank/state has two publishers: /example_plant counts" in s.reason for s in list(states.messages))
+        ring.wait_until(said, "the second publisher to be named")
+        folder = recorded.wait().data
         summary = ring.summary(folder)
         self.assertEqual((240, True), (summary["steps"], summary["complete"]))
         self.assertEqual({"input": 0, "move": 0, "output": 0}, summary["violations"])

@@ -7,7 +7,7 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
-from fmbpc.msg import CommandEffect, ControlAction, Measurement, NodeReady, PlantInfo, Setpoint, Tracking
+from fmbpc.msg import CommandEffect, ControlAction, LoopState, Measurement, NodeReady, PlantInfo, Setpoint, Tracking
 from fmbpc.srv import ManualInput
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import SetBool
@@ -196,6 +196,28 @@ class FakePlant(unittest.TestCase):
         self.answer(3)
         now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 3))
         self.assertEqual((55.0, 1800.0), now.setpoint)
+
+    def test_a_setpoint_beyond_its_limits_is_clamped_and_said(self):
+        words = "a setpoint of x was asked beyond its limits"
+        before = self.status.counts()["samples with a setpoint clamped"]
+        state = ring.Listener("loop_state", LoopState, "/fmbpc_controller")
+        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        setpoint.publish(name=["x"], value=[1e9], mode=Setpoint.OVERRIDE)
+        self.log.wait(lambda m: "setpoint of x from sample 1 on" in m.msg)
+        self.answer(1)
+        now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 1))
+        self.assertTrue(now.remark.split("\n")[-1].startswith(words), now.remark)
+        self.log.wait(lambda m: m.level == Log.WARN and words in m.msg)
+
+        def said():
+            self.send(1)  # who gets no measurement is stalled
+            return any(m.mode == LoopState.DEGRADED and words in m.reason for m in list(state.messages))
+        ring.wait_until(said, "the controller to say it")
+        self.status.wait(lambda s: int(ring.values(s)["samples with a setpoint clamped"]) == before + 1)
+        setpoint.publish(name=["x"], value=[], mode=Setpoint.RELEASE)
+        self.log.wait(lambda m: "setpoint of x from sample 2 on" in m.msg)
+        self.answer(2)
+        self.assertEqual("", self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2)).remark)
 
 
 if __name__ == "__main__":

@@ -12,21 +12,24 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
-from fmbpc.msg import (ControlAction, Disturbance, FuzzyModel, Matrix, Measurement, NodeReady, PlantInfo, PlantState,
-                       PredictiveAction, Setpoint, SolverReport, Tracking)
+from fmbpc.msg import (ControlAction, Disturbance, FuzzyModel, LoopState, Matrix, Measurement, NodeReady, OperatorState,
+                       PlantInfo, PlantState, PredictiveAction, Setpoint, SolverReport, Tracking)
 from std_msgs.msg import String
 
 import ring
 
 FAR = 2 ** 63  # a run that no plant has announced
+LIE = "a lie"
 KINDS = {"control_action": ControlAction, "base_action": ControlAction, "predictive_action": PredictiveAction,
          "measurement": Measurement, "plant_state": PlantState, "tracking": Tracking, "solver_report": SolverReport,
-         "setpoint": Setpoint, "disturbance": Disturbance, "fuzzy_model": FuzzyModel, "plant_info": PlantInfo}
+         "setpoint": Setpoint, "disturbance": Disturbance, "fuzzy_model": FuzzyModel, "plant_info": PlantInfo,
+         "loop_state": LoopState, "ready": NodeReady, "operator_state": OperatorState}
 PLANT, CONTROLLER, OPTIMIZER, RECORDER = NODES = ("/plant_simulator", "/fmbpc_controller", "/clp_optimizer", "/loop_recorder")
 RECEIVERS = {"control_action": (PLANT, RECORDER), "base_action": (OPTIMIZER, RECORDER), "predictive_action": (OPTIMIZER,),
              "measurement": (CONTROLLER, RECORDER), "plant_state": (RECORDER,), "tracking": (RECORDER,),
              "solver_report": (RECORDER,), "setpoint": (CONTROLLER,), "disturbance": (PLANT,), "fuzzy_model": (CONTROLLER,),
-             "plant_info": (CONTROLLER, OPTIMIZER, RECORDER)}
+             "plant_info": (CONTROLLER, OPTIMIZER, RECORDER), "loop_state": (PLANT, CONTROLLER), "ready": (PLANT,),
+             "operator_state": (PLANT,)}
 
 
 def rubbish(now):
@@ -78,6 +81,10 @@ def impostors(now, info):
     yield "plant_info", info
     yield "tracking", Tracking(setpoint=[1.0, 1.0], reference=[1.0, 1.0], **this)
     yield "solver_report", SolverReport(perturbation=[9.0], status=1, **this)
+    yield "loop_state", LoopState(node="/loop_recorder", mode=LoopState.FAILED, word="failed", reason=LIE, **this)
+    yield "loop_state", LoopState(node=PLANT, summary=True, mode=LoopState.FINISHED, word="finished", reason=LIE, **this)
+    yield "ready", NodeReady(node="/loop_recorder")
+    yield "operator_state", OperatorState(node=CONTROLLER, run_id=now.run_id, manual=True)
 
 
 OPEN = (("plant_simulator", ("actions dropped: wrong size", "actions dropped: other run", "refused: control_action",
@@ -86,7 +93,9 @@ OPEN = (("plant_simulator", ("actions dropped: wrong size", "actions dropped: ot
                               "dropped: run not announced")),
         ("clp_optimizer", ("refused: base_action", "refused: predictive_action", "dropped: run not announced")),
         ("loop_recorder", ("dropped: other run", "dropped: wrong size or not finite")))
-CLOSED = (("plant_simulator", ("refused: control_action from /intruder", "refused: disturbance")),
+CLOSED = (("plant_simulator", ("refused: control_action from /intruder", "refused: disturbance",
+                               "refused: loop_state from /intruder", "refused: ready from /intruder",
+                               "refused: operator_state from /intruder")),
           ("fmbpc_controller", ("refused: measurement from /intruder", "refused: plant_info from /intruder",
                                 "refused: fuzzy_model from /intruder", "refused: setpoint")),
           ("clp_optimizer", ("refused: base_action from /intruder", "refused: plant_info from /intruder")),
@@ -98,7 +107,7 @@ class Intruder(unittest.TestCase):
     def test_rubbish_on_every_topic_changes_nothing_and_is_counted(self):
         loop, sets = rospy.get_param("~loop"), rospy.get_param("~set").split()
         recorded, diagnostics = ring.Listener("recorded", String), ring.Listener("/diagnostics", DiagnosticArray, *NODES)
-        measurements = ring.Listener("measurement", Measurement)
+        measurements, states = ring.Listener("measurement", Measurement), ring.Listener("loop_state", LoopState, PLANT)
         closed, info = rospy.get_param("~closed"), ring.Listener("plant_info", PlantInfo).wait()
         publishers = {topic: ring.publisher(topic, kind, *RECEIVERS[topic]) for topic, kind in KINDS.items()}
         ring.Listener("ready", NodeReady, "/fmbpc_controller").wait(lambda m: m.node == "/fmbpc_controller")
@@ -124,6 +133,7 @@ class Intruder(unittest.TestCase):
         with tempfile.TemporaryDirectory() as reference:
             ring.run_in_process(loop, reference, sets)
             ring.assert_same_run(self, folder, reference)
+        self.assertEqual([], [s.reason for s in states.messages if s.summary and LIE in s.reason])
         for node, keys in CLOSED if closed else OPEN:
             diagnostics.wait(lambda m, n=node, k=keys: ring.diagnostics_of(m, n) is not None and all(
                 int(ring.values(ring.diagnostics_of(m, n)).get(key, 0)) > 0 for key in k))

@@ -19,8 +19,8 @@ def roslaunch(*arguments):
     port = ring.free_port()
     environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
     environment.pop("DISPLAY", None)
-    done = subprocess.run(["roslaunch", "-p", port, "fmbpc", "loop.launch", *arguments], env=environment, text=True,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=150, check=False)
+    done = subprocess.run(ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", *arguments]), env=environment,
+                          text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=150, check=False)
     return done.returncode, re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
 
 

@@ -13,7 +13,7 @@ import unittest
 
 import rospy
 import rostest
-from fmbpc.msg import LoopState, Measurement
+from fmbpc.msg import LoopState, Measurement, Setpoint, Tracking
 
 import ring
 import wire
@@ -82,7 +82,7 @@ class Plc:
 
     def start(self):
         command = ["/usr/bin/python3", os.path.join(SCRIPTS, "soft_plc.py"), "--port", str(self.port), "--log", self.log.name]
-        self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.process = subprocess.Popen(ring.tied(command), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def lines(self):
         with open(self.log.name, encoding="utf-8") as file:
@@ -97,8 +97,9 @@ class Modbus(unittest.TestCase):
         cls.wire = wire.Wire(cls.plc.port)
         sets = f"gateway.modbus.port={cls.wire.port} sampling.duration_h=0 setpoint.schedule=[]"
         cls.launch = subprocess.Popen(
-            ["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_modbus", f"set:={sets}", "draw:=false", "keep:=true",
-             "sim_time:=false", f"out:={tempfile.mkdtemp()}"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_modbus", f"set:={sets}", "draw:=false",
+                       "keep:=true", "sim_time:=false", "respawn:=true", f"out:={tempfile.mkdtemp()}"]),
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         cls.addClassCleanup(cls.end_launch)
         cls.states = ring.Listener("loop_state", LoopState, "/plant_gateway")
         cls.measurements = ring.Listener("measurement", Measurement)
@@ -167,6 +168,19 @@ class Modbus(unittest.TestCase):
             self.states.wait(lambda s: s.summary and s.mode == LoopState.FALLBACK, 2 * SOON)
             self.measurements.wait(lambda m: abs(m.input_applied[0] - FALLBACK) < 0.02)
         self.check(lose, self.wire.heals, 0.0, True)
+
+    def test_a_gateway_that_comes_back_goes_on_with_the_operators_setpoint(self):
+        self.await_calm()
+        tracking = ring.Listener("tracking", Tracking)
+        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        setpoint.publish(name=["CA"], value=[0.1], mode=Setpoint.OVERRIDE)
+        before = tracking.wait(lambda t: t.setpoint[0] == 0.1)
+        os.kill(ring.pid("/plant_gateway"), signal.SIGKILL)
+        after = tracking.wait(lambda t: t.run_id not in (0, before.run_id))
+        later = tracking.wait(lambda t: t.run_id == after.run_id and t.step > after.step + 5)
+        self.assertEqual([0.1, 0.1], [after.setpoint[0], later.setpoint[0]])
+        setpoint.publish(name=["CA"], value=[], mode=Setpoint.RELEASE)
+        self.await_calm()
 
     @unittest.skipUnless(LONG, "long run: scripts/test --long")
     def test_every_other_fault(self):

@@ -3,9 +3,11 @@
 import json
 import os
 import shutil
+import subprocess
 import tempfile
 import unittest
 
+import rosgraph
 import rostest
 
 import ring
@@ -33,6 +35,25 @@ class Nodelets(unittest.TestCase):
 
     def test_a_model_that_is_identified_on_the_way(self):
         self.equal("asp_identify")
+
+    def test_one_thread_watches_the_master_for_all(self):
+        port = ring.free_port()
+        address = f"http://localhost:{port}"
+        launch = subprocess.Popen(
+            ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=asp_case1_clp", "set:=sampling.duration_h=2",
+                       "pace:=lockstep", "nodelets:=true", "keep:=true", "draw:=false", "out:=" + self.out]),
+            env={**os.environ, "ROS_MASTER_URI": address}, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(ring.killed, launch)
+        master = rosgraph.Master("/nodelets_test", address)
+
+        def serves(service):
+            try:
+                return bool(master.lookupService(service))
+            except (rosgraph.MasterException, OSError):  # not yet
+                return False
+        for service in ("/plant_simulator/pause", "/fmbpc_controller/manual"):
+            ring.wait_until(lambda name=service: serves(name), service)
+        self.assertEqual(1, ring.threads(ring.pid("/loop_manager", master)).count("master_watch"))
 
     def test_a_loop_that_is_wrong_ends_the_launch_in_words(self):
         code, text = roslaunch("loop:=asp_case1", "set:=model.file=nowhere.yaml", "nodelets:=true", "draw:=false",

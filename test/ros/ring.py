@@ -79,9 +79,21 @@ def begin():
     ready.publish(node=rospy.get_name())
 
 
-def pid(node):
-    uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
+def pid(node, master=None):
+    uri = (master or rosgraph.Master(rospy.get_name())).lookupNode(node)
     return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2]
+
+
+def threads(process):
+    """Names of its threads."""
+    names = []
+    for task in os.listdir(f"/proc/{process}/task"):
+        try:
+            with open(f"/proc/{process}/task/{task}/comm", encoding="utf-8") as file:
+                names.append(file.read().strip())
+        except OSError:  # it has ended
+            pass
+    return names
 
 
 class Frozen:
@@ -209,6 +221,21 @@ def action_end(client, patience=PATIENCE):
     """(state, result) of a SimpleActionClient's goal."""
     wait_until(lambda: client.simple_state == actionlib.SimpleGoalState.DONE, "the end of the action", patience)
     return client.get_state(), client.get_result()
+
+
+def tied(command):
+    """The same command; its process gets a SIGTERM when the one that starts it dies, however that dies: nothing is left behind
+    that waits for a master which never comes."""
+    return ["setpriv", "--pdeathsig", "TERM", *command]
+
+
+def runs(process):
+    """False also for one that has ended and that nobody has asked for its exit code."""
+    try:
+        with open(f"/proc/{process}/stat", encoding="utf-8") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 def killed(process):

@@ -22,7 +22,7 @@ class Startup(unittest.TestCase):
             ring.killed(process)
 
     def start(self, name, *arguments, **options):
-        process = subprocess.Popen([ring.program(name), *arguments], **options)
+        process = subprocess.Popen(ring.tied([ring.program(name), *arguments]), **options)
         self.processes.append(process)
         return process
 
@@ -34,7 +34,19 @@ class Startup(unittest.TestCase):
             return status is not None and status.level == level and words in status.message
         listener.wait(fits)
 
+    def test_what_a_test_starts_ends_with_it(self):
+        """Killed from outside, it cleans up nothing."""
+        lines = "import subprocess, sys; print(subprocess.Popen(sys.argv[1:]).pid, flush=True); sys.stdin.read()"
+        test = subprocess.Popen([sys.executable, "-c", lines, *ring.tied(["sleep", "600"])], stdin=subprocess.PIPE,
+                                stdout=subprocess.PIPE, text=True)
+        with test:
+            child = int(test.stdout.readline())
+            ring.wait_until(lambda: ring.threads(child) == ["sleep"], "the child to begin")
+            test.kill()
+        ring.wait_until(lambda: not ring.runs(child), "the child to end")
+
     def test_a_missing_node_is_named_and_the_plant_ends(self):
+        """Whoever says of another that it is ready is not believed."""
         ready = rospy.Publisher("impatient/ready", NodeReady, queue_size=1, latch=True)
         ready.publish(node="/impatient/fuzzy_identifier")
         plant = self.start("plant_simulator", "__ns:=impatient", stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -42,7 +54,8 @@ class Startup(unittest.TestCase):
         text, _ = plant.communicate(timeout=ring.PATIENCE)
         self.assertEqual(1, plant.returncode)
         self.assertIn("not ready within loop.ready_timeout_s = 3 s: /impatient/fmbpc_controller, "
-                      "/impatient/loop_recorder\n", text.replace("\x1b[0m", ""))
+                      "/impatient/fuzzy_identifier, /impatient/loop_recorder\n", text.replace("\x1b[0m", ""))
+        self.assertIn(f"ready of {rospy.get_name()} dropped: it speaks for /impatient/fuzzy_identifier", text)
 
     def test_a_controller_without_a_model_is_not_ready_and_one_that_joins_late_finds_sample_0(self):
         measurements, recorded = (ring.Listener(topic, kind, connected=False)

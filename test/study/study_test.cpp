@@ -160,7 +160,7 @@ TEST_F(Study, OutputsWithoutASetpointHaveNoCost) {
 
 TEST_F(Study, OutsideTheModelIsCountedAsTheLawSawIt) {
   const StudyPlan study(
-      parseStudy("loops: [{loop: asp_case1_own}]\nseeds: 1\nfitness: {terms: [{index: ise}]}\n"
+      parseStudy("loops: [{loop: asp_best}]\nseeds: 1\nfitness: {terms: [{index: ise}]}\n"
                  "set: {sampling.duration_h: 10, noise.std.x: 600}\n",
                  "s.yaml"));
   const LoopFile loop = study.loop(0);

@@ -1,6 +1,7 @@
 // fmbpc identify --auto and fmbpc validate on a record that is known.
 #include <gtest/gtest.h>
 
+#include "base/random.hpp"
 #include "fmbpc/config/identified_file.hpp"
 #include "tool/identify_fixture.hpp"
 
@@ -116,6 +117,101 @@ TEST_F(AutoTool, TimesThatDoNotRiseOrHaveAnotherSpacingAreRefused) {
   table.units[0] = "s";
   const std::string uneven = writeRecord("uneven.csv", table);
   expectWords(refusal("identify " + uneven + by_name), {"uneven.csv", "'time'", "evenly"});
+}
+
+TEST_F(AutoTool, TimesThatJitterAreTakenAtTheirMeanAndSaid) {
+  CsvTable table = record();
+  std::mt19937_64 random(2);
+  table.names[0] = "t_s";
+  for (Eigen::Index k = 0; k < table.rows(); ++k)
+    table.values(k, 0) = 2.0 * (static_cast<double>(k) + 0.05 * (uniform(random) - 0.5));
+  const std::string jittered = writeRecord("jittered.csv", table), model = path("jittered.yaml");
+  const Outcome found = tool("identify " + jittered +
+                             " --auto --inputs u --outputs y --kind linear --json --out " + model);
+  ASSERT_EQ(found.code, 0);
+  EXPECT_NE(found.printed.find("times of 't_s' jitter by up to"), std::string::npos)
+      << parsed(found.printed).at("remarks");
+  EXPECT_EQ(readIdentified(model).model.sample_time_s, 2.0);
+  const Outcome judged = tool("validate " + model + " " + jittered + " --json");
+  ASSERT_EQ(judged.code, 0);
+  EXPECT_NE(judged.printed.find("jitter"), std::string::npos);
+}
+
+TEST_F(AutoTool, TimesThatFallOrJumpAreNeverCalledAbsent) {
+  CsvTable table = record();
+  table.names[0] = "t_s";
+  table.values.col(0) = -table.values.col(0);
+  const std::string falling = writeRecord("falling.csv", table);
+  const std::string by_name = " --auto --inputs u --outputs y";
+  expectWords(refusal("identify " + falling + by_name), {"falling.csv", "'t_s'", "fall"});
+  table.values.col(0) = -table.values.col(0);
+  for (Eigen::Index k = 0; k < table.rows(); k += 3) table.values(k, 0) += 0.4;
+  const std::string uneven = writeRecord("wild.csv", table);
+  expectWords(refusal("identify " + uneven + by_name), {"wild.csv", "'t_s'", "evenly"});
+  EXPECT_EQ(tool("identify " + uneven + by_name + " --sample-time 1 --kind linear").code, 0);
+}
+
+TEST_F(AutoTool, SaysWhatKindWasAskedFor) {
+  const Outcome outcome = tool("identify " + data_ +
+                               " --auto --inputs u --outputs y --kind linear --rows 1:200 --json");
+  ASSERT_EQ(outcome.code, 0);
+  const auto found = parsed(outcome.printed);
+  EXPECT_EQ(found.at("verdict").at("y").get<std::string>().rfind("linear, as --kind asks", 0), 0U);
+  EXPECT_FALSE(found.at("beats_linear").at("y").get<bool>());
+  EXPECT_FALSE(found.at("identification").at("y").contains("regressors"))
+      << "the linear model under another name";
+  EXPECT_FALSE(
+      found.at("identification").at("y").at("interval").at("free_run").at("coverage").is_null());
+}
+
+TEST_F(AutoTool, AModelThatIsWorseThanLinearOnValidationRowsIsNotWritten) {
+  // the known process first, afterwards what the linear model makes of it
+  CsvTable table = record(300);
+  const std::string first = path("first.yaml");
+  ASSERT_EQ(tool(search("--rows 1:200 --out " + first)).code, 0);
+  const IdentifiedModel model = readIdentified(first);
+  const TsModel linear = model.linearModel();
+  double y = table.values(199, 1);
+  for (Eigen::Index k = 200; k < 300; ++k) {
+    table.values(k, 1) = y;
+    const Rule& rule = linear.submodels[0].rules[0];
+    double next = rule.offset;
+    for (std::size_t r = 0; r < linear.submodels[0].regressors.size(); ++r) {
+      const Regressor& x = linear.submodels[0].regressors[r];
+      next += rule.coefficients[static_cast<Eigen::Index>(r)] *
+              table.values(k - x.lag, x.kind == SignalKind::kOutput ? 1 : 2);
+    }
+    y = next;
+  }
+  const std::string other = writeRecord("other.csv", table), written = path("written.yaml");
+  const std::string by_name =
+      "identify " + other + " --auto --inputs u --outputs y --kind regressors --rows 1:200 ";
+  const Outcome outcome = tool(by_name + "--validate-rows 201:300 --json --out " + written);
+  ASSERT_EQ(outcome.code, 0);
+  const auto found = parsed(outcome.printed);
+  const std::string verdict = found.at("verdict").at("y");
+  EXPECT_EQ(verdict.rfind("the fuzzy model is worse than the best linear one on the validation", 0),
+            0U)
+      << verdict;
+  EXPECT_FALSE(found.at("beats_linear").at("y").get<bool>());
+  EXPECT_EQ(readIdentified(written).model.submodels[0].rules.size(), 1U);
+  const Outcome judged = tool("validate " + first + " " + other + " --rows 201:300");
+  ASSERT_EQ(judged.code, 0);
+  EXPECT_EQ(judged.printed.rfind("warning: y: the fuzzy model 'regressors' is worse than", 0), 0U)
+      << judged.printed;
+}
+
+TEST_F(AutoTool, OutliersAreLeftOutOfThePrintedFigures) {
+  CsvTable table = record();
+  table.values(150, 1) += 500.0;
+  table.values(151, 1) += 500.0;
+  const std::string spoilt = writeRecord("spoilt.csv", table);
+  const Outcome outcome =
+      tool("identify " + spoilt + " --auto --inputs u --outputs y --kind regressors --json");
+  ASSERT_EQ(outcome.code, 0);
+  const auto found = parsed(outcome.printed);
+  EXPECT_NE(outcome.printed.find("y: 2 outliers, the first in row 151"), std::string::npos);
+  EXPECT_GT(found.at("identification").at("y").at("one_step").at("vaf").get<double>(), 95.0);
 }
 
 TEST_F(AutoTool, ValidateKnowsTheSignalsOfTheModelOnly) {

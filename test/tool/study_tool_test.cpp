@@ -85,6 +85,23 @@ TEST_F(StudyTool, TakesAStudyFile) {
   EXPECT_EQ(study["pairs"][0]["against"], "slow");
 }
 
+TEST_F(StudyTool, AMisspeltNameIsTakenForAStudyOrALoop) {
+  for (const auto& [typo, meant] :
+       {std::pair<const char*, const char*>{"sludge_gaurd", "near: sludge_guard"},
+        {"column_limit", "near: column_limits"},
+        {"asp_case11", "near: asp_case1"}}) {
+    const Outcome outcome = tool(std::string("study ") + typo, true);
+    EXPECT_EQ(outcome.code, 1) << typo;
+    EXPECT_NE(outcome.printed.find(std::string("study or loop '") + typo), std::string::npos)
+        << outcome.printed;
+    EXPECT_NE(outcome.printed.find(meant), std::string::npos) << outcome.printed;
+  }
+  const std::string none = tool("study " + path("none.yaml"), true).printed;
+  EXPECT_NE(none.find("none.yaml: expected an existing file of a study or a loop"),
+            std::string::npos)
+      << none;
+}
+
 TEST_F(StudyTool, MistakesAreOneLine) {
   for (const std::string& wrong :
        {loops() + " --seeds 3:1", loops() + " --vary k", loops() + " --seeds 1 --noise y",

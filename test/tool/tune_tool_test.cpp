@@ -18,9 +18,9 @@ class TuneTool : public LoopFolder {
     write("t.yaml", lagTuning());
   }
   std::string files() const { return path("lag.yaml") + " " + path("t.yaml"); }
-  nlohmann::json json(const std::string& arguments) const {
+  nlohmann::json json(const std::string& arguments, int code = 0) const {
     const Outcome outcome = tool("tune " + files() + " --json --no-plot " + arguments);
-    EXPECT_EQ(outcome.code, 0) << arguments;
+    EXPECT_EQ(outcome.code, code) << arguments;
     return nlohmann::json::parse(outcome.printed);
   }
 };
@@ -28,6 +28,7 @@ class TuneTool : public LoopFolder {
 TEST_F(TuneTool, WritesALoopThatIsBetterOnHeldOutScenarios) {
   const auto tuned = json("--out " + path("out"));
   EXPECT_EQ(tuned["evaluations"], 60);
+  EXPECT_EQ(tuned["worse"], false);
   EXPECT_LT(tuned["held_out"]["after"]["cost"].get<double>(),
             0.5 * tuned["held_out"]["before"]["cost"].get<double>());
   for (const char* file : {"history.csv", "tuning.json", "state.json", "lag_tuned.yaml"})
@@ -72,9 +73,7 @@ TEST_F(TuneTool, ResumesToTheSameTuning) {
   EXPECT_EQ(read(path("part") + "/history.csv"), read(path("whole") + "/history.csv"));
 }
 
-// The error grows with both gains and the plant is tuned where small gains are best: kp ends at its
-// upper bound; on the held-out step the other way round it is worse.
-TEST_F(TuneTool, SaysWhichParametersStandAtABoundAndThatHeldOutCostGotWorse) {
+TEST_F(TuneTool, SaysWhichParametersStandAtABound) {
   write("t.yaml",
         "parameters:\n  - {key: controller.loops.0.kp, lower: 0.1, upper: 0.3}\n"
         "fitness: {terms: [{index: ise, output: y}]}\n"
@@ -87,8 +86,7 @@ TEST_F(TuneTool, SaysWhichParametersStandAtABoundAndThatHeldOutCostGotWorse) {
   EXPECT_NE(told.find("controller.loops.0.kp ends at the upper bound of its range, 0.3"),
             std::string::npos)
       << told;
-  const bool worse = tuned["held_out"]["after"]["cost"] > tuned["held_out"]["before"]["cost"];
-  EXPECT_EQ(worse, told.find("held-out scenarios got worse") != std::string::npos) << told;
+  EXPECT_EQ(told.find("got worse"), std::string::npos) << told;
   std::ifstream written(path("out") + "/lag_tuned.yaml");
   const std::string text((std::istreambuf_iterator<char>(written)), {});
   EXPECT_NE(text.find("# controller.loops.0.kp ends at the upper bound"), std::string::npos)
@@ -102,7 +100,8 @@ TEST_F(TuneTool, SaysWhatTheLoopHadAndThatItWasBetter) {
         "  - {key: controller.loops.0.ki_per_h, lower: 0.001, upper: 0.002}\n"
         "fitness: {terms: [{index: ise, output: y}]}\n"
         "search: {population: 4, evaluations: 8}\n");
-  const auto tuned = json("");
+  const auto tuned = json("", 3);
+  EXPECT_EQ(tuned["worse"], true);
   EXPECT_EQ(tuned["parameters"][0]["before"], 0.2);
   EXPECT_EQ(tuned["parameters"][1]["before"], 0.5);
   EXPECT_GT(tuned["after"]["cost"], tuned["before"]["cost"]);
@@ -110,19 +109,29 @@ TEST_F(TuneTool, SaysWhatTheLoopHadAndThatItWasBetter) {
   for (const char* words : {"0.2 (outside)", "0.5 (outside)", "kp of the untouched loop, 0.2, lies",
                             "worse than that of the untouched loop"})
     EXPECT_NE(told.find(words), std::string::npos) << words << " in " << told;
+  EXPECT_EQ(told.rfind("the tuned cost is worse", 0), 0U) << told;
 }
 
-TEST_F(TuneTool, SaysThatHeldOutCostGotWorse) {
+/// The best gain of the plant, 2.9, is unstable where the plant's is ten times as large.
+TEST_F(TuneTool, SaysFirstThatHeldOutCostGotWorseAndEndsWithACodeOfItsOwn) {
   write("t.yaml",
         "parameters:\n  - {key: controller.loops.0.kp, lower: 0.1, upper: 5}\n"
-        "fitness: {terms: [{index: effort, input: u}]}\n"
-        "held_out: [{name: down, set: {setpoint.initial.y: 0.01, setpoint.schedule: [], "
-        "noise.std.y: 0.5}}]\n"
+        "fitness: {terms: [{index: ise, output: y}]}\n"
+        "held_out: [{name: steep, set: {plant.matrix.elements.0.gain: 20}}]\n"
         "search: {population: 8, evaluations: 24}\n");
-  const auto tuned = json("");
-  const double before = tuned["held_out"]["before"]["cost"],
-               after = tuned["held_out"]["after"]["cost"];
-  EXPECT_EQ(tuned["remarks"].dump().find("got worse") != std::string::npos, after > before);
+  const auto tuned = json("--out " + path("out"), 3);
+  EXPECT_LT(tuned["after"]["cost"], tuned["before"]["cost"]);
+  EXPECT_GT(tuned["held_out"]["after"]["cost"], tuned["held_out"]["before"]["cost"]);
+  EXPECT_EQ(tuned["worse"], true);
+  const std::string words = "the cost on held-out scenarios got worse, ";
+  EXPECT_NE(tuned["remarks"].dump().find(words), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(path("out") + "/lag_tuned.yaml"));
+  const Outcome table = tool("tune " + files() + " --no-plot");
+  EXPECT_EQ(table.code, 3);
+  EXPECT_EQ(table.printed.rfind(words, 0), 0U) << table.printed;
+  EXPECT_EQ(table.printed.find(words, 1), std::string::npos) << "once: " << table.printed;
+  const std::string errors = tool("tune " + files() + " --no-plot", true).printed;
+  EXPECT_NE(errors.find("lag.yaml: " + words), std::string::npos) << errors;
 }
 
 TEST_F(TuneTool, CtrlCSavesAndSaysHowToGoOn) {

@@ -30,8 +30,8 @@ class CommandTable {
   explicit CommandTable(std::vector<std::string> names);
 
   /// Takes a command that acts from `step` on.
-  /// @throws InputError (nothing is taken) on an unknown name, unequal lengths, a non-finite value
-  /// or an unknown mode.
+  /// @throws InputError (nothing is taken) on an unknown name, one that comes twice, unequal
+  /// lengths, a non-finite value or an unknown mode.
   void accept(const Command& command, std::uint32_t step);
   /// Brings all commands due at or before `step` into force; returns those that just took effect.
   /// The reference stays valid until the next call.
@@ -43,6 +43,8 @@ class CommandTable {
   const std::vector<std::string>& names() const { return names_; }
   /// What has been accepted and is not in force yet, in the order in which it will be.
   std::vector<Command> waiting() const;
+  /// Counts steps from 0 again after `passed` of them.
+  void carryOver(std::uint32_t passed);
   void clear();  ///< releases everything and forgets what is pending
 
  private:

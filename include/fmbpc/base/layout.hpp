@@ -10,7 +10,7 @@
 namespace fpc {
 
 /// Counted up with every change of a virtual function that plugins implement.
-inline constexpr std::size_t kInterface = 2;
+inline constexpr std::size_t kInterface = 3;
 
 /// Sizes of what a plugin and the core share.
 template <typename... Types>

@@ -7,8 +7,8 @@ namespace fpc {
 
 /// @throws InputError for an external plant, which only runs over topics.
 void requireSimulated(const LoopFile& loop);
-/// Names of the plant's disturbances.
-std::vector<std::string> disturbanceNames(const LoopFile& loop);
+/// The plant's disturbances, which it takes a plant to know.
+std::vector<Quantity> disturbancesOf(const LoopFile& loop);
 /// The disturbances of the loop on its own samples. @throws InputError naming file, column or
 /// field.
 DisturbanceRecord makeDisturbance(const LoopFile& loop);

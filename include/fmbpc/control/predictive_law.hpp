@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "fmbpc/base/layout.hpp"
 #include "fmbpc/control/bumpless_transfer.hpp"
 #include "fmbpc/control/controller.hpp"
 #include "fmbpc/control/plan_view.hpp"
@@ -38,6 +39,7 @@ struct Proposal {
 /// adoptTuning()), then predict(). No allocation in them, nor in inherit() and adoptTuning().
 class LawCore {
  public:
+  LawCore();
   virtual ~LawCore() = default;
   virtual void rest(const LawSample& sample) = 0;  ///< the process has rested at this sample
   virtual void advance(const LawSample& sample) = 0;
@@ -137,5 +139,11 @@ class PredictiveLaw : public Controller, public PlanView {
   bool start_pending_{true};  ///< the state is to be taken from the next measurement
   bool running_{false};       ///< a step has been asked for since the reset
 };
+
+using LawLayout = LayoutOf<PredictiveLaw, PredictiveLawParams, LawCore, LawSample, Proposal>;
+template <>
+void requireSameLayout<LawLayout>();
+
+inline LawCore::LawCore() { requireSameLayout<LawLayout>(); }
 
 }  // namespace fpc

@@ -39,13 +39,16 @@ struct ControllerContext {
   Eigen::Index inputCount() const;                ///< n_u
 };
 
-/// What a controller of a loop looks at.
+/// What a controller of a loop looks at, and what it moves.
 struct SignalUse {
   std::vector<bool> needed;  ///< outputs, then measured disturbances: without one it has no answer
   std::vector<Eigen::Index> followed;  ///< outputs that it steers to their setpoints
+  std::vector<bool> moved{};           ///< inputs; the others stay where they are. Empty: all
 };
 SignalUse everySignal(const ControllerContext& loop);
 SignalUse noSignal(const ControllerContext& loop);
+/// True for these inputs, for SignalUse::moved.
+std::vector<bool> theseInputs(const ControllerContext& loop, const std::vector<int>& inputs);
 /// Indices of the outputs with a weight above 0.
 std::vector<Eigen::Index> weighted(VectorRef weight_output);
 
@@ -117,8 +120,9 @@ using ControllerReader = std::function<std::unique_ptr<ControllerConfig>(
 /// The registration without its types; false if the name is taken.
 bool registerControllerReader(ControllerType type, ControllerReader read);
 
-using ControllerLayout = LayoutOf<ControllerType, ControllerContext, ControllerConfig, Controller,
-                                  ControllerOutput, Measurement, SetpointSource, SettingInfo>;
+using ControllerLayout =
+    LayoutOf<ControllerType, ControllerContext, ControllerConfig, Controller, ControllerOutput,
+             Measurement, SetpointSource, SettingInfo, SignalUse, TsModel, OutputModel, Rule>;
 template <>
 void requireSameLayout<ControllerLayout>();
 

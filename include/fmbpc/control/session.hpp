@@ -99,7 +99,7 @@ class ControllerSession {
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
   bool restore(const Command& setpoint) { return setpoint_.restore(setpoint); }
   /// Holds the setpoint schedule, or lets it go on (a recipe waits for its operator).
-  void holdRecipe(bool on) { setpoint_.hold(on); }
+  void holdRecipe(bool on);
   void manual(bool on);  ///< acts from the next sample, bumpless both ways
   /// Acts from the next sample; until it is called, manual keeps the last applied input.
   /// Clipped to the bounds at once and to the move limit sample by sample.
@@ -113,12 +113,15 @@ class ControllerSession {
   bool retune(const Settings& settings);
 
   OperatorWishes wishes() const;
-  /// Before the first sample. @throws InputError for what the controller refuses; the rest is
-  /// taken.
+  /// Before the first sample. What has been asked of this object itself is newer and stays.
+  /// @throws InputError for what the controller refuses; the rest is taken.
   void restore(const OperatorWishes& wishes);
+  /// The next new run is the same plant going on, not another beginning: setpoints stay in force
+  /// and the schedule goes on from where it is (see SetpointSource::carryOver).
+  void carryOver() { carries_ = true; }
   /// Sends the last applied input, source held, until manual() is called: for a controller that
-  /// joins a run and cannot know what its operator has asked.
-  void holdUntilReleased() { unreleased_ = true; }
+  /// joins a run and cannot know what its operator has asked. Not if manual() has been called.
+  void holdUntilReleased() { unreleased_ = !manual_asked_; }
   bool unreleased() const { return unreleased_; }
   /// Of the measurements to come: false while the plant's own hand has the inputs.
   void plantTakesActions(bool on) { takes_actions_ = on; }
@@ -150,6 +153,8 @@ class ControllerSession {
   void expectNext();
   void noteNeeds();
   void sendManual(const Measurement& m);
+  void restoreManual(const OperatorWishes& wishes);
+  void beginAnew();
 
   std::unique_ptr<Controller> controller_;
   SetpointSource setpoint_;
@@ -174,6 +179,7 @@ class ControllerSession {
   std::uint64_t models_{};
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
   bool takes_actions_{true};
+  bool manual_asked_{false}, recipe_asked_{false}, carries_{false};
   std::optional<bool> adapt_;
   Settings settings_;
 };

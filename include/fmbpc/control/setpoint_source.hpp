@@ -47,6 +47,9 @@ class SetpointSource {
   bool held() const { return hold_asked_; }
   /// Releases all commands and any hold, and replays the commands of the params (a new run).
   void restart();
+  /// The samples count from 0 again, but the plant is the one that was there before: what is in
+  /// force stays, and so do the schedule's place and the rate limiter's memory.
+  void carryOver();
   /// Tells the time that the plant gives to a sample, in case its t0 is not the clock's: the stamps
   /// of people's commands are then the plant's. The schedule goes by step.
   void anchor(const StepHeader& sample);
@@ -61,8 +64,9 @@ class SetpointSource {
   /// first sample this is 0, whatever step comes first).
   /// @throws InputError (nothing is taken) on an unknown name, wrong lengths, value or mode.
   std::uint32_t command(const Command& command);
-  /// Puts a command back in force that was in force when this source was lost. Only before the
-  /// first sample: later the source knows better, ignores it and returns false.
+  /// Puts a command back in force that was in force when this source was lost; what a person has
+  /// commanded since is newer and wins. Only before the first sample: later the source knows
+  /// better, ignores it and returns false.
   /// @throws InputError as command().
   bool restore(const Command& command);
   /// What is in force now, as commands for restore(): at most one override and one offset.
@@ -70,7 +74,8 @@ class SetpointSource {
   /// The same with what waits for its time.
   std::vector<Command> standing() const;
   /// Where the schedule is, for a source that takes over in the middle of a run: held or not, at
-  /// which step it is held, how many samples it is late.
+  /// which step it is held, how many samples it is late (modulo 2^32: after carryOver() it may be
+  /// early).
   struct Recipe {
     bool held{};
     std::uint32_t held_at{}, shift{};
@@ -95,6 +100,7 @@ class SetpointSource {
   CommandTable commands_;
   std::vector<std::uint32_t> schedule_steps_;
   std::vector<Command> waiting_;  // people's commands before the first sample: its step is unknown
+  std::ptrdiff_t restored_{};     // of them: those at the front
   std::vector<CommandEffect> effects_;
   Vector present_, asked_;
   std::int64_t clock_shift_ns_{};

@@ -23,7 +23,8 @@ struct AutoParams {
   Eigen::Index most_rows{2000};  ///< that the search uses
   Eigen::Index most_last{8000};  ///< that the last fit uses
   int window{5};                 ///< measured samples that start a free run
-  int longest_delay{10};         ///< [samples]
+  int longest_delay{0};          ///< [samples]; 0: a tenth of the rows, at most 100
+  bool keep_still{false};        ///< use inputs that hardly moved as well, see stillCauses()
   bool states{true};             ///< search models with a state of their own as well
   int threads{0};                ///< 0: all cores
   std::uint64_t seed{1};
@@ -36,13 +37,14 @@ struct AutoTrial {
   ModelKind kind{};
   std::string structure;  ///< in words
   Eigen::Index parameters{};
-  double free_run{};  ///< rmse over all held-out rows, unit of the output
+  double free_run{};  ///< mean of the blocks' rmse, by which models are chosen, unit of the output
   double spread{};    ///< std of the blocks' rmse
   bool chosen{false};
 };
 
 /// Cross-validated errors of one kind of model.
 struct AutoFigures {
+  double mean{};                  ///< of the blocks' free-run rmse, by which models are chosen
   double free_run{}, one_step{};  ///< rmse over all held-out rows, unit of the output
   double fit{};                   ///< [%] of the free run
   std::vector<double> blocks;     ///< free-run rmse of each
@@ -54,7 +56,7 @@ struct AutoFigures {
 struct AutoOutput {
   std::string output;
   AutoFigures linear, regressors, state;  ///< of the best of each kind; no blocks: not searched
-  ModelKind best{ModelKind::kLinear};  ///< lowest held-out error of those that beat linear, if any
+  ModelKind best{ModelKind::kLinear};     ///< lowest mean of those that beat linear, if any
   bool beats_linear{false};  ///< the best fuzzy model is better than linear beyond the spread
   bool fuzzy_model{false};   ///< `model` is fuzzy here, else linear
   std::string verdict;       ///< the same in words

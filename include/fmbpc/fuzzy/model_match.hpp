@@ -8,6 +8,8 @@ namespace fpc {
 
 /// Reorders the model's names to the plant's (readers may then index by PlantInfo order). Signals
 /// the model does not use stay unused; plant outputs the model does not predict are not allowed.
+/// A sample time within 0.1 % of the plant's is the plant's: records round their times, and time
+/// constants off by as much are far better than any identified.
 /// @throws InputError naming the signal that the plant lacks, a missing output, another sample
 /// time, another unit.
 TsModel matchToPlant(const TsModel& model, const PlantInfo& plant);

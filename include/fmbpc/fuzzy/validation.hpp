@@ -35,6 +35,9 @@ std::vector<OutputValidation> validateModel(const TsModel& model, const TsModel&
                                             const DataSet& data,
                                             const ValidationParams& params = {});
 
+/// Correlation of a signal with itself, lags 1..n.
+Vector autocorrelation(const Eigen::Ref<const Vector>& values, const ValidationParams& params);
+
 /// Source: boxjenkins1970, sec. 8.2; bounds z / sqrt(N) of white residuals.
 ResidualCorrelation residualCorrelation(const DataSet& data,
                                         const Eigen::Ref<const Vector>& residual,

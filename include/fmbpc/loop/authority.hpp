@@ -17,10 +17,15 @@ class Authority {
   static constexpr std::size_t kMostNamed = 20;  ///< strangers that are counted by name
 
   Authority() = default;
-  explicit Authority(Publishers publishers) : publishers_(std::move(publishers)) {}
+  /// `manager`: the name by which all nodelets speak; empty: there are none.
+  explicit Authority(Publishers publishers, std::string manager = {})
+      : publishers_(std::move(publishers)), manager_(std::move(manager)) {}
 
   /// False: the message is to be dropped; it has been counted.
   bool admits(const std::string& topic, const std::string& publisher);
+  /// What a message says of `node` counts only if it comes from that node itself. False: the
+  /// message is to be dropped; it has been counted.
+  bool speaksFor(const std::string& topic, const std::string& publisher, const std::string& node);
   /// Whether the topic is only for the nodes named.
   bool guards(const std::string& topic) const;
   const std::vector<std::string>& publishersOf(const std::string& topic) const;
@@ -30,7 +35,10 @@ class Authority {
   const std::string& latest() const { return latest_; }
 
  private:
+  void refuse(const std::string& topic, const std::string& publisher);
+
   Publishers publishers_;
+  std::string manager_;
   std::map<std::string, std::uint64_t> refused_;
   std::string latest_;
 };

@@ -45,13 +45,18 @@ class Hysteresis {
   Health shown_;
 };
 
-/// Hears the beat of every member; who has been silent for longer than kSilence is missing.
+/// Hears the beat of every member; who has been silent for longer than kSilence is missing. A
+/// member that is still (or again) starting while the run goes on does not do its part: as bad as
+/// degraded.
 class RingWatch {
  public:
   static constexpr double kBeat = 0.5;     ///< [s] between two beats
   static constexpr double kSilence = 1.1;  ///< [s]
+  static constexpr double kGrace = 2.5;    ///< [s], with the hysteresis of a member and its beats
 
   explicit RingWatch(std::vector<std::string> nodes) : nodes_(std::move(nodes)) {}
+  /// A run begins: members that are starting have kGrace to say that they have begun.
+  void begin(double now_s) { begun_s_ = now_s; }
   void hear(const std::string& node, const Health& health, double now_s);
   std::vector<std::string> silent(double now_s) const;  ///< of those expected, in their order
   /// What the members say that are not as they should be: the worst of it, with its node.
@@ -64,6 +69,7 @@ class RingWatch {
   };
   std::vector<std::string> nodes_;
   std::map<std::string, Beat> beats_;
+  double begun_s_{-kGrace};
 };
 
 }  // namespace fpc

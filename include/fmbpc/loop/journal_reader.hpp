@@ -17,6 +17,7 @@ class JournalReader {
   bool next(SampleRecord& sample);
   /// Of the samples read so far: the last one is final and nothing is missing.
   bool complete() const { return whole_ && final_; }
+  bool ended() const { return final_; }  ///< the last one is final
 
  private:
   RecordLayout layout_;

@@ -19,11 +19,11 @@ struct SampleRecord {
   ControlAction base;
   ControlAction action;  ///< what the plant was told (equals base without an optimizer)
   SolverReport report;
-  std::string remark;  ///< the law's own words at this sample, empty if it has none
+  std::string remark;  ///< what did not go as asked (SampleRemarks), one remark a line
   bool has_measurement{}, has_state{}, has_tracking{}, has_base{}, has_action{}, has_report{};
 };
 
-/// What a controller said of its own answers (`controller.horizon_steps is too short`, ...).
+/// What a controller said of its own answers, and setpoints that were clamped (SampleRemarks).
 struct RunRemark {
   std::string words;
   std::uint32_t samples{};  ///< at which it was said; 0: of the whole run

@@ -4,14 +4,17 @@
 
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fmbpc/loop/recorder_session.hpp"
 
 namespace fpc {
 
-/// Native doubles, for the machine that wrote it. One writer at a time (the file is locked).
+/// Native doubles, for the machine that wrote it; the loop's text stands at its beginning. One
+/// writer at a time (the file is locked).
 class RecordJournal {
  public:
   static constexpr std::size_t kMostUnwritten = 10000;  ///< samples kept while the disk is full
@@ -21,36 +24,58 @@ class RecordJournal {
   RecordJournal& operator=(const RecordJournal&) = delete;
   ~RecordJournal();
 
-  /// Goes on with the file if it holds this run of this loop, else starts it anew.
-  /// @return samples that are in it already. @throws InputError if it cannot be written, or another
+  /// Only keeps others away from the file. @throws InputError if it cannot be written, or another
   /// process writes it.
+  void lock(const std::string& file);
+  /// A run begins whose samples are kept until open() has worked.
+  void start(const RecordLayout& layout, std::uint64_t run_id);
+  /// Goes on with the file if it holds this run of this loop, else begins it. @return samples that
+  /// are in it already. @throws InputError if it cannot be written, another process writes it, or
+  /// something else is in it: that is never overwritten.
   std::uint32_t open(const std::string& file, const RecordLayout& layout, std::uint64_t run_id);
-  /// Never throws and never blocks the loop: what the disk refuses is kept and tried again.
+  /// Never throws and never blocks the loop: what the disk refuses is kept and tried again; what
+  /// cannot be kept leaves a hole at its place.
   void append(const SampleRecord& sample);
   void flush();
   /// Why something is not on disk, in words; empty if all is.
   const std::string& problem() const { return problem_; }
   std::uint64_t lost() const { return lost_; }  ///< samples that could not be kept
+  std::size_t unwritten() const { return unwritten_.size(); }
   bool isOpen() const { return file_ >= 0; }
+  /// When the first sample came, also before this process [s, steady clock of the machine].
+  double beganAt() const { return 1e-9 * static_cast<double>(began_ns_); }
   void close();
 
  private:
-  bool write(const std::vector<double>& entry);
+  using Entry = std::pair<std::uint64_t, std::vector<double>>;  // with its place
+  bool goesOn(std::uint64_t size);
+  void writeHead();
+  bool write(const Entry& entry);
 
-  std::string name_;
+  std::string name_, about_;
   RecordLayout layout_;
+  std::uint64_t run_id_{};
+  std::int64_t began_ns_{};
   int file_{-1};
   std::size_t entry_size_{};
-  std::uint64_t written_{};  // entries
-  std::deque<std::vector<double>> unwritten_;
+  std::uint64_t next_{};  // place of the next entry
+  std::deque<Entry> unwritten_;
   std::uint64_t lost_{};
   std::string problem_;
 };
 
+/// What a journal says of itself.
+struct JournalLabel {
+  std::uint64_t run_id{};
+  std::string loop, text;  ///< for parseLoop()
+  bool empty{true};        ///< no sample is in it
+};
+/// Nothing if the file is no journal of this version.
+std::optional<JournalLabel> journalLabel(const std::string& file);
 /// The record that a journal holds; complete if its last sample is final and nothing is missing.
 /// @throws InputError if the file is no journal of this loop.
 RunRecord readJournal(const std::string& file, const RecordLayout& layout);
-/// Which run a journal holds; 0 if there is none.
+/// Which run of this loop a journal holds; 0 if there is none.
 std::uint64_t journalRun(const std::string& file, const RecordLayout& layout);
 
 }  // namespace fpc

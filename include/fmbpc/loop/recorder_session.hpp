@@ -25,6 +25,7 @@ struct RecordLayout {
   std::vector<std::string> states, state_units;
   std::size_t true_disturbances{};             ///< of the simulated plant
   std::vector<Eigen::Index> without_setpoint;  ///< outputs: setpoint and reference become NaN
+  std::string text;  ///< of the loop, for parseLoop(): a record tells what it is of
 
   bool fits(const Measurement& m) const;
   bool fits(const PlantState& s) const;
@@ -52,7 +53,7 @@ class RecorderSession {
   void resume(std::uint64_t run_id, std::uint32_t next_step);
   void receive(const Measurement& m);
   void receive(const PlantState& s);
-  void receive(const Tracking& t, const std::string& remark = {});
+  void receive(const Tracking& t, const std::string& remark = {});  ///< one remark a line
   void receiveBase(const ControlAction& a);
   void receiveAction(const ControlAction& a);
   void receive(const SolverReport& r);

@@ -1,4 +1,4 @@
-// One sample of a plant by SUNDIALS CVODE, inputs and disturbances held.
+// One sample of a plant by SUNDIALS (CVODE or ARKODE), inputs and disturbances held.
 #pragma once
 
 #include <memory>
@@ -9,16 +9,22 @@
 
 namespace fpc {
 
-/// kBdf: stiff, Newton, dense.
-enum class IntegrationMethod { kBdf, kAdams };
-inline std::vector<std::string> wordsOf(IntegrationMethod) { return {"bdf", "adams"}; }
+/// kBdf: stiff, Newton, dense. kRungeKutta: explicit, orders 5 and 4; one-step, so that it loses
+/// nothing by starting anew at each sample.
+enum class IntegrationMethod { kBdf, kAdams, kRungeKutta };
+inline std::vector<std::string> wordsOf(IntegrationMethod) {
+  return {"bdf", "adams", "runge_kutta"};
+}
+/// Whether this build has kRungeKutta: SUNDIALS 4 or newer with ARKODE.
+bool hasRungeKutta();
 
 struct IntegratorParams {
   double relative_tolerance{1e-8};
   double absolute_tolerance{1e-8};
   int max_steps{5000};
   IntegrationMethod method{IntegrationMethod::kBdf};
-  void validate() const;  ///< @throws InputError naming the field
+  /// @throws InputError naming the field, also for a method that the build has not.
+  void validate(bool has_runge_kutta = hasRungeKutta()) const;
 };
 
 enum class IntegrationStatus { kOk, kTooMuchWork, kModelFailed, kSolverFailed };
@@ -30,7 +36,9 @@ struct IntegrationResult {
   bool ok() const { return status == IntegrationStatus::kOk; }
 };
 
-/// Restarts CVODE at each sample, so that advance() depends on its arguments only (bit for bit).
+class SundialsMethod;  // private to the room
+
+/// Starts anew at each sample, so that advance() depends on its arguments only (bit for bit).
 class Integrator {
  public:
   /// Keeps a reference to `plant`.
@@ -43,8 +51,7 @@ class Integrator {
   IntegrationResult advance(Eigen::Ref<Vector> x, VectorRef u, VectorRef d, double seconds);
 
  private:
-  struct Cvode;
-  std::unique_ptr<Cvode> cvode_;
+  std::unique_ptr<SundialsMethod> method_;
 };
 
 }  // namespace fpc

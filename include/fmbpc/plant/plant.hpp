@@ -57,6 +57,9 @@ class PlantStepper {
   virtual bool remembers() const { return true; }
   /// False if the sample time is part of the plant: it cannot be moved over a part of a sample.
   virtual bool divisible() const { return true; }
+  /// Why the state after the last advance() is none of the plant's: it is not used then. Empty
+  /// (default) if it is one, or not finite, which is seen anyway.
+  virtual std::string failure() const { return {}; }
 };
 
 /// dx/dt = f(x, u, d), measured outputs are states.

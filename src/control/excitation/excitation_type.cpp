@@ -128,14 +128,24 @@ std::unique_ptr<Controller> makeExcitation(const ExcitationParams& params,
                                                 loop.plant);
 }
 
-ControllerType describeExcitation() {
+SignalUse usedByExcitation(const ExcitationParams& params, const ControllerContext& loop) {
+  SignalUse use = everySignal(loop);
+  std::vector<int> moved;
+  for (const ExcitationSignal& signal : params.signals)
+    if (signal.signal != ExcitationKind::kNone) moved.push_back(signal.input);
+  for (const ExcitationFeedback& feedback : params.feedback) moved.push_back(feedback.input);
+  use.moved = theseInputs(loop, moved);
+  return use;
+}
+
+ControllerType describe() {
   ControllerType type{"excitation", "an experiment for identification: every input its own signal"};
   type.open_loop = true;
   return type;
 }
 
-const bool kExcitationRegistered =
-    registerController<ExcitationParams>({describeExcitation(), &readExcitation, &makeExcitation});
+const bool kRegistered = registerController<ExcitationParams>(
+    {describe(), &readExcitation, &makeExcitation, nullptr, &usedByExcitation});
 
 }  // namespace
 }  // namespace fpc

@@ -62,7 +62,7 @@ SignalUse usedByFmbpc(const FmbpcParams& params, const ControllerContext& loop) 
   return use;
 }
 
-ControllerType describeFmbpc() {
+ControllerType describe() {
   ControllerType type{"fmbpc", "fuzzy model-based predictive control: an explicit law"};
   type.needs_model = true;
   type.predicts = true;
@@ -70,8 +70,8 @@ ControllerType describeFmbpc() {
   return type;
 }
 
-const bool kFmbpcRegistered = registerController<FmbpcParams>(
-    {describeFmbpc(), &readFmbpc, &makeFmbpc, nullptr, &usedByFmbpc});
+const bool kRegistered =
+    registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc, nullptr, &usedByFmbpc});
 
 }  // namespace
 }  // namespace fpc

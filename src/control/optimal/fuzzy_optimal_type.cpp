@@ -58,7 +58,7 @@ SignalUse usedByFuzzyOptimal(const FuzzyOptimalParams& params, const ControllerC
   return use;
 }
 
-ControllerType describeFuzzyOptimal() {
+ControllerType describe() {
   ControllerType type{"fuzzy_optimal", "a quadratic predictive law for every rule, blended"};
   type.needs_model = true;
   type.predicts = true;
@@ -66,9 +66,8 @@ ControllerType describeFuzzyOptimal() {
   return type;
 }
 
-const bool kFuzzyOptimalRegistered =
-    registerController<FuzzyOptimalParams>({describeFuzzyOptimal(), &readFuzzyOptimal,
-                                            &makeFuzzyOptimal, &checkModel, &usedByFuzzyOptimal});
+const bool kRegistered = registerController<FuzzyOptimalParams>(
+    {describe(), &readFuzzyOptimal, &makeFuzzyOptimal, &checkModel, &usedByFuzzyOptimal});
 
 }  // namespace
 }  // namespace fpc

@@ -38,18 +38,19 @@ SignalUse usedBySupervisor(const LoadSupervisorParams& params, const ControllerC
   for (const int index : {params.output, n_y + params.concentration, n_y + params.flow})
     use.needed[static_cast<std::size_t>(index)] = true;
   use.followed = {params.output};
+  use.moved = theseInputs(loop, {params.input});
   return use;
 }
 
-ControllerType describeLoadSupervisor() {
+ControllerType describe() {
   ControllerType type{"load_supervisor",
                       "PI control of one output with the measured load ahead of it"};
   type.settings = loadSupervisorSettings().infos();
   return type;
 }
 
-const bool kLoadSupervisorRegistered = registerController<LoadSupervisorParams>(
-    {describeLoadSupervisor(), &readSupervisor, &makeSupervisor, nullptr, &usedBySupervisor});
+const bool kRegistered = registerController<LoadSupervisorParams>(
+    {describe(), &readSupervisor, &makeSupervisor, nullptr, &usedBySupervisor});
 
 }  // namespace
 }  // namespace fpc

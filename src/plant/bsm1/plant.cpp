@@ -13,7 +13,7 @@
 
 #include "plant/bsm1/description.hpp"
 #include "plant/bsm1/stepper.hpp"
-#include "plant/step_failure.hpp"
+#include "plant/state_range.hpp"
 
 namespace fpc::bsm1 {
 namespace {
@@ -103,7 +103,7 @@ void Bsm1::derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector>
 /// A state outside its range by more than this [its unit] is no rounding of a step.
 constexpr double kTolerance = 1e-3;
 
-class Bsm1Stepper final : public PlantStepper, public StepFailure {
+class Bsm1Stepper final : public PlantStepper {
  public:
   Bsm1Stepper(const Bsm1& plant, double sample_time_s)
       : plant_(plant),
@@ -118,7 +118,7 @@ class Bsm1Stepper final : public PlantStepper, public StepFailure {
     failure_ = outsideRange(plant_.description().states, kStates, x, kTolerance);
     if (!failure_.empty()) failure_ += ": something is too fast for the plant's steps of 8.64 s";
   }
-  const std::string& failure() const override { return failure_; }
+  std::string failure() const override { return failure_; }
   bool remembers() const override { return plant_.parameters().loops.noise > 0.0; }
 
  private:
@@ -138,8 +138,7 @@ bool enlist(Front front) {
   });
 }
 
-const bool kBsm1PlantRegistered =
-    enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
+const bool kRegistered = enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
 
 }  // namespace
 }  // namespace fpc::bsm1

@@ -74,8 +74,7 @@ void WorksStepper::fastStep(WorksState& x, const Drive& drive, double h) {
   if (loops_) move(x.loops, h / 6.0, sum_c, x.loops);
 }
 
-void WorksStepper::settlerStep(WorksState& x, const Drive& drive, double h) const {
-  const SettlerFlows flows = settlerFlows(drive.in);
+void WorksStepper::settlerStep(WorksState& x, const SettlerFlows& flows, double h) const {
   const double feed = solids(works_, x.z, kTanks - 1);
   const auto feed_solubles = feedSolubles(x.z);
   SettlerState y = x.settler, dy, sum{};
@@ -92,8 +91,9 @@ void WorksStepper::settlerStep(WorksState& x, const Drive& drive, double h) cons
 void WorksStepper::block(WorksState& x, const Drive& drive, double days) {
   const double h = days / kFastPerSettler;
   for (int i = 0; i < kFastPerSettler / 2; ++i) fastStep(x, drive, h);
-  const int steps = settlerSteps(works_.settler, settlerFlows(drive.in), days);
-  for (int i = 0; i < steps; ++i) settlerStep(x, drive, days / steps);
+  const SettlerFlows flows = settlerFlows(drive.in);
+  const int steps = settlerSteps(works_.settler, flows, days);
+  for (int i = 0; i < steps; ++i) settlerStep(x, flows, days / steps);
   for (int i = 0; i < kFastPerSettler / 2; ++i) fastStep(x, drive, h);
 }
 

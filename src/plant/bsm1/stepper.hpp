@@ -27,7 +27,7 @@ class WorksStepper {
   void block(WorksState& x, const Drive& drive, double days);
   void fastStep(WorksState& x, const Drive& drive, double h);
   void fastRates(const WorksState& x, const Drive& drive, TankTable& dz, LoopStates& dc) const;
-  void settlerStep(WorksState& x, const Drive& drive, double h) const;
+  void settlerStep(WorksState& x, const SettlerFlows& flows, double h) const;
 
   const WorksParams& works_;
   const LocalLoopParams* loops_;

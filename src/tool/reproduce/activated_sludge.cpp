@@ -80,7 +80,7 @@ Rows elements() {
   return rows;
 }
 
-const bool kActivatedSludgeRegistered =
+const bool kRegistered =
     registerExperiments({{"asp2_table_7", kPaper, "table 7",
                           "eigenvalues of the closed loop, formulas", "formulas", kBehind, table7},
                          {"asp2_table_8", kPaper, "table 8",

@@ -196,7 +196,7 @@ const bool kPictures = registerPicture("batch_figure_03", [] { return recordPict
                        registerPicture("batch_figure_04", [] { return recordPicture(1000); }) &&
                        registerPicture("batch_figure_05", setsPicture);
 
-const bool kBatchModelsRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"batch_figure_03", kPaper, "figure 3", "identification record", "curves", kBehind,
       [] { return record(kSamples); }},
      {"batch_figure_04", kPaper, "figure 4", "identification record, close-up", "curves", kBehind,

@@ -108,7 +108,7 @@ Experiment entry(const std::string& number, const char* shows, const std::string
 constexpr char kLess[] = "the paper: less than with eq. 44";
 const std::string kBoth = std::string(kPriced) + ", " + kLinear;
 
-const bool kBatchReactorRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {entry("06", "eq. 44, core", kPlain, [] { return followed(kPlain, 0.5); }),
      entry("07", "eq. 44, valves", kPlain, valvesPlain),
      entry("08", "eq. 45, core", kPriced, [] { return followed(kPriced, 0.5); }),

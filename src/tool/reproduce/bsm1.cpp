@@ -79,7 +79,7 @@ Rows ideal() {
 }
 Rows linear() { return all(kLinear, kLinearInfluent, "rows joined, S_I diluted"); }
 
-const bool kBsm1Registered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"bsm1_open_loop", "bsm1", "table of the open loop", "indices of 14 days, last 7 judged",
       "10 numbers each", "bsm1_open, bsm1_open_rain", open},
      {"bsm1_default_sensors", "bsm1", "table of the default control, with analysers",

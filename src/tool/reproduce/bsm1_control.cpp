@@ -116,7 +116,7 @@ Rows unseen() {
   return rows;
 }
 
-const bool kBsm1ControlRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"bsm1_baseline", "bsm1", "beyond the paper", "supervisor of ammonium, class A", "8 numbers",
       "bsm1_supervisor, bsm1_supervisor_rain", baseline},
      {"bsm1_class_a", "bsm1", "beyond the paper", "predictive control, class A", "-",

@@ -180,7 +180,7 @@ Rows adaptation() {
   return rows;
 }
 
-const bool kColumnRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"column_table_4", kPaper, "table 4", "indices of setpoint steps", "16 numbers",
       "column_imc, column_imc_bottom, column_pso, column_pso_bottom", table4},
      {"column_table_5", kPaper, "table 5", "indices of a feed disturbance", "16 numbers",

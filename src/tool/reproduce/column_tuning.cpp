@@ -108,7 +108,7 @@ Rows table3() {
       figure("PSO-PI 2, 1/Ti", 0.0312, 1.0 / pso_2.integral_time_min, "1/min", judged, printed)};
 }
 
-const bool kColumnTuningRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"column_table_1", kPaper, "table 1", "gains, nominal and changed, by least squares",
       "12 numbers", "MisoEstimator, one element at a time", table1},
      {"column_table_2", kPaper, "table 2", "settings of the swarm", "4 settings", "swarmTuning()",

@@ -156,7 +156,7 @@ Rows bounds() {
   return rows;
 }
 
-const bool kCstrRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"cstr_pi_optimum", "blazic2007", "section 5, PI", "PI tuned for experiment 1", "2 numbers",
       "cstr_tracking_pi --set controller.loops.0.kp=...", optimum},
      {"cstr_figure_2", "blazic2007", "figure 2", "tracking: FMBPC and PI, eqs. 38 and 39",

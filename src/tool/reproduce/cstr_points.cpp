@@ -121,7 +121,7 @@ Rows propositions() {
                 1e-6, "-", all)};
 }
 
-const bool kCstrPointsRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"cstr_table_1", "blazic2007", "table 1", "nominal operating point", "2 numbers",
       "fmbpc stability cstr_tracking", table1},
      {"cstr_section_2", "blazic2007", "section 2", "folds and Hopf points of the static curve",

@@ -94,7 +94,7 @@ Picture analyserPicture() {
   return picture;
 }
 
-const bool kFigurePicturesRegistered =
+const bool kRegistered =
     addReactor("cstr_figure_2", "cstr_tracking", 0.0165, 0.0061) &&
     addReactor("cstr_figure_3", "cstr_disturbance", 0.0076, 0.0036) &&
     registerPicture("column_figure_6", [] { return columnPicture("column_pso", false); }) &&

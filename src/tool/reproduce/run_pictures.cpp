@@ -75,7 +75,7 @@ bool addTaieb() {
   return true;
 }
 
-const bool kRunPicturesRegistered = addSludge() && addBatch() && addTaieb();
+const bool kRegistered = addSludge() && addBatch() && addTaieb();
 
 }  // namespace
 }  // namespace fpc::tool

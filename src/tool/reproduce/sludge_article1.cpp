@@ -195,9 +195,8 @@ std::vector<Experiment> tables() {
            ownModels}};
 }
 
-const bool kSludgeArticle1Registered = registerExperiments(casesAandB()) &&
-                                       registerExperiments(casesCandD()) &&
-                                       registerExperiments(tables());
+const bool kRegistered = registerExperiments(casesAandB()) && registerExperiments(casesCandD()) &&
+                         registerExperiments(tables());
 
 }  // namespace
 }  // namespace fpc::tool

@@ -120,7 +120,7 @@ Experiment entry(int number, const char* shows, const char* behind, Rows (*rows)
           rows};
 }
 
-const bool kSludgeArticle2Registered =
+const bool kRegistered =
     registerExperiments(
         {entry(5, "case 1, FMBPC", "asp_case1", case1),
          entry(6, "case 1, FMBPC and PI on s", "asp_case1, asp_case1_pi_s", case1PiS),

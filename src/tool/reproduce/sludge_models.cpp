@@ -167,7 +167,7 @@ const bool kPictures = [] {
   return true;
 }();
 
-const bool kSludgeModelsRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"asp1_figure_04", kPaper, "figure 4", "case A, record: inputs", "curves", "asp_excite",
       [] { return record(true); }},
      {"asp1_figure_05", kPaper, "figure 5", "case A, record: outputs", "curves", "asp_excite",

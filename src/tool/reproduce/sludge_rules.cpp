@@ -164,7 +164,7 @@ Picture setsPicture() {
 
 const bool kPicture = registerPicture("asp1_figure_06", setsPicture);
 
-const bool kSludgeRulesRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"asp1_figure_06", kPaper, "figure 6", "case D, sets of q_r", "curves", kBehind, sets},
      {"asp1_table_05", kPaper, "table 5", "case D, consequents of s", "12 numbers", kBehind,
       [] { return consequents(substrate()); }},

@@ -199,7 +199,7 @@ Experiment entry(const std::string& item, int model, const char* shows, const ch
           [model] { return rows(model); }};
 }
 
-const bool kSludgeTablesRegistered =
+const bool kRegistered =
     registerExperiments({entry<names>("table 3", 1, "names of the sets", "none"),
                          entry<coefficients>("table 4", 1, "consequents", "62 numbers"),
                          entry<names>("table 5", 2, "names of the sets", "none"),

@@ -109,7 +109,7 @@ Rows offset() {
   return rows;
 }
 
-const bool kTaiebLinearRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"taieb_table_1", kTaieb, "table 1", "weights and step responses of the linear example",
       "32 numbers", kBehind, table1},
      {"taieb_equations_4_6", kTaieb, "eqs. 4-6, 25, 27", "offset of the linear example",

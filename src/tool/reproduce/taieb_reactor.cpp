@@ -204,7 +204,7 @@ Experiment entry(const char* name, const char* item, const char* shows, const ch
   return {name, kTaieb, item, std::string("reactor: ") + shows, printed, kThree, std::move(rows)};
 }
 
-const bool kTaiebReactorRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {entry("taieb_table_5", "table 5", "indices of Ca", "17 numbers", [] { return table(0); }),
      entry("taieb_table_6", "table 6", "indices of T", "17 numbers", [] { return table(1); }),
      entry("taieb_figure_6", "figure 6", "Ca", "curves", [] { return followed(0); }),

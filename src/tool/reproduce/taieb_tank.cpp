@@ -181,7 +181,7 @@ Rows limits() {
 
 constexpr char kThree[] = "surge_tank_steps, surge_tank_steps_nmpc, surge_tank_steps_swarm";
 
-const bool kTaiebTankRegistered = registerExperiments(
+const bool kRegistered = registerExperiments(
     {{"taieb_table_3", kTaieb, "table 3", "tank: indices of three controllers", "17 numbers",
       kThree, table3},
      {"taieb_figure_4", kTaieb, "figure 4", "tank: steps of the level", "curves", kThree, figure4},

@@ -5,47 +5,13 @@
 
 #include <cmath>
 
-#include "control/fmbpc/law_fixture.hpp"
+#include "control/steady_law.hpp"
 #include "fuzzy/multivariate_fixture.hpp"
 
 namespace fpc {
 namespace control_fmbpc_allocation_test {
 
-struct Steady {
-  Steady(FmbpcParams params, const TsModel& model)
-      : info(test::infoOf(model)),
-        plant(model, Vector::Zero(count(info.outputs)), Vector::Zero(count(info.inputs)),
-              Vector::Zero(count(info.disturbances))),
-        setpoint(test::setpointOf(info, Vector::Ones(count(info.outputs)))),
-        law(std::move(params), test::wideLimits(count(info.inputs), 5.0), info) {
-    law.setModel(model);
-    test::start(law, plant, setpoint, 2);
-    setpoint.advance(2);
-    now = plant.measure(2);
-    law.step(now, setpoint, output);  // sizes the output
-  }
-  static Eigen::Index count(const std::vector<SignalInfo>& signals) {
-    return static_cast<Eigen::Index>(signals.size());
-  }
-
-  /// Allocations of the next n steps.
-  std::size_t allocations(int n) {
-    testing::AllocationCounter counter;
-    for (int i = 0; i < n; ++i) {
-      ++now.header.step;
-      now.outputs[0] = std::sin(0.1 * i);
-      law.step(now, setpoint, output);
-    }
-    return counter.count();
-  }
-
-  PlantInfo info;
-  test::ModelPlant plant;
-  SetpointSource setpoint;
-  FmbpcLaw law;
-  Measurement now;
-  ControllerOutput output;
-};
+using Steady = test::SteadyLaw<FmbpcLaw, FmbpcParams>;
 
 TEST(FmbpcLawMemory, StepDoesNotAllocate) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";

@@ -6,43 +6,12 @@
 #include <cmath>
 
 #include "control/optimal/fixture.hpp"
+#include "control/steady_law.hpp"
 
 namespace fpc {
 namespace control_optimal_allocation_test {
 
-struct Steady {
-  Steady(const FuzzyOptimalParams& params, const TsModel& model)
-      : info(test::infoOf(model)),
-        plant(model, zeros(info.outputs), zeros(info.inputs), zeros(info.disturbances)),
-        setpoint(test::setpointOf(info, zeros(info.outputs).array() + 1.0)),
-        law(params, test::wideLimits(zeros(info.inputs).size(), 5.0), info) {
-    law.setModel(model);
-    test::start(law, plant, setpoint, 2);
-    setpoint.advance(2);
-    now = plant.measure(2);
-    law.step(now, setpoint, output);  // sizes the output
-  }
-  static Vector zeros(const std::vector<SignalInfo>& signals) {
-    return Vector::Zero(static_cast<Eigen::Index>(signals.size()));
-  }
-  /// Allocations of the next n steps.
-  std::size_t allocations(int n) {
-    testing::AllocationCounter counter;
-    for (int i = 0; i < n; ++i) {
-      ++now.header.step;
-      now.outputs[0] = std::sin(0.1 * i);
-      law.step(now, setpoint, output);
-    }
-    return counter.count();
-  }
-
-  PlantInfo info;
-  test::ModelPlant plant;
-  SetpointSource setpoint;
-  FuzzyOptimalLaw law;
-  Measurement now;
-  ControllerOutput output;
-};
+using Steady = test::SteadyLaw<FuzzyOptimalLaw, FuzzyOptimalParams>;
 
 TEST(FuzzyOptimalMemory, StepDoesNotAllocate) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";

@@ -1,4 +1,4 @@
-#include "plant/step_failure.hpp"
+#include "plant/state_range.hpp"
 
 #include "fmbpc/base/text.hpp"
 

@@ -1,0 +1,19 @@
+// Transport delays before any structure is known.
+#pragma once
+
+#include "fuzzy/auto_data.hpp"
+
+namespace fpc {
+
+/// Delays of inputs and disturbances [samples], 0 = acts on the next output; by one-step least
+/// squares, one signal after the other, up to 10 samples.
+struct DelayGuess {
+  std::vector<int> delay;
+  std::vector<bool> doubt;  ///< the runner-up is as good
+  /// With longer delays: by one-step least squares again, where that lowers the error by as much as
+  /// a delay must; and by first-order lags that run freely. None where these say nothing else.
+  std::vector<std::vector<int>> longer;
+};
+DelayGuess guessDelays(const AutoData& prepared, int longest);
+
+}  // namespace fpc

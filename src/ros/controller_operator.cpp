@@ -1,0 +1,67 @@
+// What people ask of a controller over topics and services.
+#include "fmbpc/base/text.hpp"
+#include "ros/controller_node.hpp"
+#include "ros/conversions.hpp"
+#include "ros/topics.hpp"
+
+namespace fpc {
+
+void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
+  if (!commands_.pass(steadyNow())) return;
+  guarded(topics::kSetpoint, [&] {
+    const Command command = fromMsg(*msg);
+    const std::uint32_t step = session_.command(command);
+    ROS_INFO("%s: setpoint of %s from sample %u on", name().c_str(), join(command.name).c_str(),
+             step);
+    tell();
+  });
+}
+
+bool ControllerNode::onManual(std_srvs::SetBool::Request& request,
+                              std_srvs::SetBool::Response& response) {
+  session_.manual(request.data != 0);
+  tell();
+  response.success = true;
+  response.message = session_.isManual() ? "manual" : "auto";
+  return true;
+}
+
+bool ControllerNode::onAdapt(std_srvs::SetBool::Request& request,
+                             std_srvs::SetBool::Response& response) {
+  response.success = session_.adapt(request.data != 0);
+  tell();
+  response.message = !response.success   ? "this controller does not adapt"
+                     : request.data != 0 ? "adapting"
+                                         : "frozen";
+  return true;
+}
+
+bool ControllerNode::onManualInput(fmbpc::ManualInput::Request& request,
+                                   fmbpc::ManualInput::Response& response) {
+  try {
+    session_.manualInput(Eigen::Map<const Vector>(request.input.data(),
+                                                  static_cast<Eigen::Index>(request.input.size())));
+    tell();
+    response.success = true;
+  } catch (const InputError& error) {
+    response.message = error.what();
+  }
+  return true;
+}
+
+bool ControllerNode::onHold(std_srvs::SetBool::Request& request,
+                            std_srvs::SetBool::Response& response) {
+  session_.holdRecipe(request.data != 0);
+  tell();
+  response.success = true;
+  response.message = session_.setpoint().held() ? "recipe held" : "recipe running";
+  ROS_INFO("%s: %s", name().c_str(), response.message.c_str());
+  return true;
+}
+
+void ControllerNode::tell() {
+  desk_.changed();
+  desk_.tell(session_.answer().tracking.header);
+}
+
+}  // namespace fpc

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""What becomes of a run that does not go as it should: folders that cannot be used, a recorder that dies, nodes without
+a loop. Each launch has a master of its own."""
+import json
+import os
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosgraph
+import rospy
+import rostest
+from fmbpc.msg import LoopState
+
+import ring
+
+
+class Launch:
+    """loop.launch as a person types it; what it has said is in text()."""
+
+    def __init__(self, test, *arguments):
+        port = ring.free_port()
+        self.uri = f"http://localhost:{port}"
+        self.log = tempfile.NamedTemporaryFile("w")
+        command = ["roslaunch", "-p", port, "fmbpc", "loop.launch", "draw:=false", *arguments]
+        self.process = subprocess.Popen(ring.tied(command), env={**os.environ, "ROS_MASTER_URI": self.uri}, stdout=self.log,
+                                        stderr=subprocess.STDOUT, text=True)
+        test.addCleanup(self.log.close)
+        test.addCleanup(ring.killed, self.process)
+
+    def text(self):
+        with open(self.log.name, encoding="utf-8") as log:  # not by the handle that the launch writes with
+            return re.sub(r"\x1b\[[0-9;]*m", "", log.read())
+
+    def pid(self, node):
+        return ring.pid(node, rosgraph.Master("/records", self.uri))
+
+    def end(self, patience=ring.PATIENCE):
+        self.process.wait(patience)
+        return self.text()
+
+
+def holds_samples(journal):
+    """Something stands behind the header and the text of the loop, whose length is in the header."""
+    try:
+        with open(journal, "rb") as file:
+            header = file.read(80)
+        return len(header) == 80 and os.path.getsize(journal) > 80 + struct.unpack_from("=Q", header, 56)[0]
+    except OSError:
+        return False
+
+
+class Records(unittest.TestCase):
+    def setUp(self):
+        self.out = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.out)
+
+    def summary(self, *folder):
+        with open(os.path.join(self.out, *folder, "summary.json"), encoding="utf-8") as file:
+            return json.load(file)
+
+    def test_a_folder_that_cannot_be_used_starts_nothing(self):
+        launch = Launch(self, "loop:=asp_case1", "out:=/dev/null/x")
+        text = launch.end(20)
+        self.assertIn("out:=/dev/null/x: expected a folder that can be written: /dev/null is no folder", text)
+        self.assertNotIn("process[", text)
+
+    def test_a_recorder_whose_folder_cannot_be_used_says_so_and_is_not_ready(self):
+        rospy.set_param("useless/loop_recorder/out", "/dev/null/x")
+        rospy.set_param("useless/loop_recorder/stay", True)
+        recorder = subprocess.Popen(ring.tied([ring.program("loop_recorder"), "__ns:=useless"]), stderr=subprocess.PIPE,
+                                    text=True)
+        self.addCleanup(recorder.stderr.close)
+        self.addCleanup(ring.killed, recorder)
+        states = ring.Listener("useless/loop_state", LoopState, connected=False)
+        state = states.wait(lambda s: s.mode == LoopState.FAILED)
+        self.assertEqual("/useless/loop_recorder", state.node)
+        self.assertIn("cannot record: /dev/null/x", state.reason)
+
+    def test_a_node_that_cannot_read_its_loop_says_so_on_loop_state(self):
+        rospy.set_param("garbage/loop_text", "plant: [")
+        states = ring.Listener("garbage/loop_state", LoopState, connected=False)
+        controller = subprocess.Popen(ring.tied([ring.program("fmbpc_controller"), "__ns:=garbage"]),
+                                      stderr=subprocess.DEVNULL)
+        self.addCleanup(ring.killed, controller)
+        state = states.wait(lambda s: s.mode == LoopState.FAILED)
+        self.assertEqual("/garbage/fmbpc_controller", state.node)
+        self.assertIn("cannot start: ", state.reason)
+        self.assertEqual(1, controller.wait(ring.PATIENCE))
+
+    def test_a_recorder_that_dies_ends_the_launch_with_the_files_of_what_it_had(self):
+        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=15", "speedup:=14400", "out:=" + self.out)
+        journal = os.path.join(self.out, "journal.bin")
+        ring.wait_until(lambda: holds_samples(journal), "samples on disk")
+        os.kill(launch.pid("/loop_recorder"), signal.SIGKILL)
+        text = launch.end()
+        self.assertIn("loop_recorder is gone", text)
+        summary = self.summary()
+        self.assertFalse(summary["complete"])
+        self.assertEqual("asp_case1_clp", summary["loop"])
+        self.assertGreater(summary["steps"], 0)
+        self.assertFalse(os.path.exists(journal))
+        again = ring.tool("recover", self.out, check=False)
+        self.assertEqual(1, again.returncode)
+        self.assertIn("expected a journal.bin", again.stderr)
+
+    def test_in_a_namespace_with_a_bag_and_quotes_in_the_names(self):
+        out = os.path.join(self.out, "it's mine")
+        text = Launch(self, "loop:=asp_case1", "set:=sampling.duration_h=2", "pace:=lockstep", "ns:=/a", "record:=true",
+                      "out:=" + out).end()
+        self.assertTrue(os.path.isfile(os.path.join(out, "loop.bag")), text)
+        self.assertEqual(10, self.summary("it's mine")["steps"], text)
+        self.assertNotIn("Traceback", text)
+
+
+if __name__ == "__main__":
+    rospy.init_node("records")
+    rostest.rosrun("fmbpc", "records", Records, sys.argv)
