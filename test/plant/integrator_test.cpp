@@ -108,16 +108,22 @@ TEST(Integrator, BdfSolvesRobertsonsStiffProblem) {
   EXPECT_NEAR(x[2], 2.8416e-1, 1e-4);
 }
 
-void expectFailure(const TestPlant& plant, const IntegratorParams& params, IntegrationStatus status,
-                   const std::string& words) {
+/// The status of a sample that fails with these words, in silence and without a move.
+IntegrationStatus failureOf(const TestPlant& plant, const IntegratorParams& params,
+                            const std::string& words) {
   Integrator cvode(plant, params);
   Vector x = Vector::Constant(1, 1.0);
   ::testing::internal::CaptureStderr();
   const IntegrationResult result = cvode.advance(x, kZero, kZero, 10.0);
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-  EXPECT_EQ(result.status, status) << result.reason;
   EXPECT_NE(result.reason.find(words), std::string::npos) << result.reason;
   EXPECT_EQ(x[0], 1.0);
+  return result.status;
+}
+
+void expectFailure(const TestPlant& plant, const IntegratorParams& params, IntegrationStatus status,
+                   const std::string& words) {
+  EXPECT_EQ(failureOf(plant, params, words), status);
 }
 
 TEST_P(EveryMethod, ModelExceptionBecomesStatus) {
@@ -125,10 +131,10 @@ TEST_P(EveryMethod, ModelExceptionBecomesStatus) {
     if (x[0] > 2.0) throw std::runtime_error("the tank runs over");
     dxdt[0] = 1.0;
   });
-  // The iteration of adams goes on with shorter steps until it has had enough.
-  const IntegrationStatus status =
-      GetParam() == kAdams ? IntegrationStatus::kTooMuchWork : IntegrationStatus::kModelFailed;
-  expectFailure(plant, with(GetParam()), status, "the tank runs over");
+  const IntegrationStatus status = failureOf(plant, with(GetParam()), "the tank runs over");
+  // Before SUNDIALS 7 the iteration of adams goes on with shorter steps until it has had enough.
+  if (GetParam() == kAdams && status == IntegrationStatus::kTooMuchWork) return;
+  EXPECT_EQ(status, IntegrationStatus::kModelFailed);
 }
 
 TEST_P(EveryMethod, ExceptionsOfAnyTypeStayInside) {
