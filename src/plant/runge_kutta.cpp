@@ -1,6 +1,6 @@
 // ARKODE's explicit one-step methods behind a function call (hindmarsh2005): the pair of orders 5
 // and 4 by Dormand and Prince. Its last stage is the first of the next step, which ARKODE before
-// 6.5 takes to be so also of tables where it is not: another table would need a newer ARKODE.
+// 6.7 takes to be so also of tables where it is not: another table would need a newer ARKODE.
 #include "plant/sundials.hpp"
 #if defined(FMBPC_ARKODE) && SUNDIALS_VERSION_MAJOR >= 4
 #include <arkode/arkode_erkstep.h>
