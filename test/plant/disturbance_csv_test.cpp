@@ -33,7 +33,7 @@ std::vector<double> flows(const CsvDisturbanceParams& params, std::uint32_t samp
   const Matrix values = readDisturbances(params, kNames, kNominal, sample_time_s, samples).values;
   EXPECT_EQ(values.row(1), Matrix::Constant(1, values.cols(), 366.67)) << "s_i is not in the file";
   const Vector row = values.row(0);
-  return {row.begin(), row.end()};
+  return {row.data(), row.data() + row.size()};
 }
 
 std::string errorOf(const CsvDisturbanceParams& params, std::uint32_t samples = 2) {

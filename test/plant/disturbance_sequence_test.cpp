@@ -31,7 +31,7 @@ std::vector<double> flows(const CsvDisturbanceParams& params, std::uint32_t samp
       readDisturbanceSequence(params, {"q"}, Vector::Constant(1, 5.0), 3600.0, samples).values;
   EXPECT_EQ(values.cols(), static_cast<Eigen::Index>(samples) + 1);
   const Vector row = values.row(0);
-  return {row.begin(), row.end()};
+  return {row.data(), row.data() + row.size()};
 }
 
 TEST(DisturbanceSequence, NominalThenOneRecordThenTheOther) {
