@@ -16,7 +16,7 @@ namespace fuzzy_sample_collector_test {
 
 Vector of(std::initializer_list<double> values) {
   Vector v(static_cast<Eigen::Index>(values.size()));
-  std::copy(values.begin(), values.end(), v.begin());
+  std::copy(values.begin(), values.end(), v.data());
   return v;
 }
 

@@ -14,7 +14,7 @@ namespace control_clp_params_test {
 
 Vector numbers(std::initializer_list<double> list) {
   Vector v(static_cast<Eigen::Index>(list.size()));
-  std::copy(list.begin(), list.end(), v.begin());
+  std::copy(list.begin(), list.end(), v.data());
   return v;
 }
 
