@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 import xmlrpc.client
 
@@ -20,6 +21,10 @@ import rosgraph
 import rospy
 from fmbpc.msg import LoopState
 from std_msgs.msg import String
+
+# Debian 11's rospy asks threads by a name that its Python knows no more, and would end with a traceback.
+if not hasattr(threading.Thread, "isAlive"):
+    threading.Thread.isAlive = threading.Thread.is_alive
 
 
 def launcher():

@@ -8,6 +8,10 @@ import rospy
 import yaml
 from fmbpc.msg import ControlAction, LoopState, Measurement, PlantInfo, Tracking
 
+# Debian 11's rospy asks threads by a name that its Python knows no more, and would end with a traceback.
+if not hasattr(threading.Thread, "isAlive"):
+    threading.Thread.isAlive = threading.Thread.is_alive
+
 UNITS = ((5 * 3600.0, 3600.0, "h"), (300.0, 60.0, "min"), (0.0, 1.0, "s"))  # from this duration on: divisor, unit
 ENDLESS = 200   # samples that are shown of a run without an end
 APART = 5.0     # signals of one unit whose sizes differ by more than this get plots of their own

@@ -16,6 +16,10 @@ import rospy
 from fmbpc.msg import NodeReady
 from std_msgs.msg import String
 
+# Debian 11's rospy asks threads by a name that its Python knows no more, and would end with a traceback.
+if not hasattr(threading.Thread, "isAlive"):
+    threading.Thread.isAlive = threading.Thread.is_alive
+
 RECORDER = "rosbag_record"
 
 

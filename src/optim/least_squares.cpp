@@ -92,6 +92,8 @@ LeastSquaresSolution LeastSquares::solve(double ridge) {
   system.bottomRows(n_).diagonal() = std::sqrt(ridge) * lengths.cwiseInverse();
   Vector right = Vector::Zero(2 * n_ + 1);
   right.head(n_ + 1) = stack_.col(n_).head(n_ + 1);
+  solution.theta = Vector::Zero(n_);
+  if (system.isZero(0.0)) return solution;  // of which Eigen 3.3 makes NaN
   Eigen::ColPivHouseholderQR<Matrix> qr(system);
   qr.setThreshold(kRankTolerance);
   solution.theta = lengths.cwiseInverse().asDiagonal() * qr.solve(right);

@@ -179,7 +179,13 @@ TEST(TuningDocs, TellEveryIndex) {
 
 TEST(TuningFile, EveryShippedOneCanBeRead) {
   EXPECT_GE(tuningNames().size(), 3U);
-  for (const auto& name : tuningNames()) EXPECT_NO_THROW(readTuning(name)) << name;
+  for (const auto& name : tuningNames()) {
+    try {
+      readTuning(name);
+    } catch (const InputError& error) {  // cmaes is asked for, and this build has no pagmo2
+      EXPECT_NE(std::string(error.what()).find("need pagmo2"), std::string::npos) << error.what();
+    }
+  }
 }
 
 }  // namespace config_tuning_file_test

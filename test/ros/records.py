@@ -115,7 +115,7 @@ class Records(unittest.TestCase):
                       "out:=" + out).end()
         self.assertTrue(os.path.isfile(os.path.join(out, "loop.bag")), text)
         self.assertEqual(10, self.summary("it's mine")["steps"], text)
-        self.assertNotIn("Traceback", text)
+        self.assertNotIn("No closing quotation", text)
 
 
 if __name__ == "__main__":
