@@ -7,6 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/control/pi/pi.hpp"
+#include "fmbpc/fuzzy/model_inputs.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/fuzzy/process_trust.hpp"
 
@@ -31,14 +32,6 @@ void place(const Measurement& now, VectorRef input, Vector& point) {
 }
 
 constexpr double kHalf = 0.5;  // of an input's range
-
-bool knowsInput(const TsModel& model, int input) {
-  return std::any_of(model.submodels.begin(), model.submodels.end(), [&](const OutputModel& m) {
-    return std::any_of(m.regressors.begin(), m.regressors.end(), [&](const Regressor& r) {
-      return r.kind == SignalKind::kInput && r.index == input;
-    });
-  });
-}
 
 bool isLaws(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kClipped;

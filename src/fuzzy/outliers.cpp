@@ -1,7 +1,6 @@
 // Samples that a sensor or a typist made up: spikes of one sample, bursts of a few.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 
 #include "fmbpc/fuzzy/record_remarks.hpp"
@@ -78,7 +77,7 @@ void addBursts(const Eigen::Ref<const Vector>& y, double usual, std::set<Index>&
     while (after < y.size() && at(after) != 0) ++after;
     if (after >= y.size() || after - first > kLongest) continue;
     const double before = y[first - 1];
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (Index k = first; k < after; ++k) least = std::min(least, std::abs(y[k] - before));
     const double jump = std::min(std::abs(y[first] - before), std::abs(y[after] - y[after - 1]));
     if (jump > kSpike * usual && std::abs(y[after] - before) < kAgree * least)

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fmbpc/fuzzy/domain.hpp"
+#include "fmbpc/fuzzy/model_inputs.hpp"
 #include "fmbpc/fuzzy/process_trust.hpp"
 #include "fmbpc/loop/report.hpp"
 
@@ -28,18 +29,6 @@ std::uint64_t samplesOutsideModel(const LoopFile& loop, const RunRecord& record)
       std::count_if(record.samples.begin(), record.samples.end(),
                     [&](const SampleRecord& sample) { return isOutsideModel(loop, sample); }));
 }
-
-namespace {
-
-bool knowsInput(const TsModel& model, int input) {
-  return std::any_of(model.submodels.begin(), model.submodels.end(), [&](const OutputModel& m) {
-    return std::any_of(m.regressors.begin(), m.regressors.end(), [&](const Regressor& r) {
-      return r.kind == SignalKind::kInput && r.index == input;
-    });
-  });
-}
-
-}  // namespace
 
 std::vector<bool> movedInputs(const LoopFile& loop) {
   std::vector<bool> moved(loop.plant_info.inputs.size(), true);

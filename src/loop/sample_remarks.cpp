@@ -74,9 +74,9 @@ void SampleRemarks::addLine(const char* words) {
 }
 
 std::string SampleRemarks::sentence() const {
-  std::string text;
-  for (const char letter : lines_)
-    text += letter == '\n' ? std::string("; ") : std::string(1, letter);
+  std::string text = lines_;
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;)
+    text.replace(at, 1, "; ");
   return text;
 }
 

@@ -116,6 +116,7 @@ class Records(unittest.TestCase):
         self.assertTrue(os.path.isfile(os.path.join(out, "loop.bag")), text)
         self.assertEqual(10, self.summary("it's mine")["steps"], text)
         self.assertNotIn("No closing quotation", text)
+        self.assertNotIn("Traceback", text)
 
 
 if __name__ == "__main__":

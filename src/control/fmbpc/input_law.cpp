@@ -1,4 +1,5 @@
 #include "control/fmbpc/input_law.hpp"
+#include "fmbpc/fuzzy/model_inputs.hpp"
 
 namespace fpc {
 
@@ -57,25 +58,13 @@ bool PublishedLaw::computeGains(const AffineModel& model) {
   return gains_.computePublished(model, coincidence_steps_);
 }
 
-namespace {
-
-/// An input that no rule knows is left alone by whoever made the model.
-bool isModelled(const TsModel& model, int input) {
-  for (const OutputModel& submodel : model.submodels)
-    for (const Regressor& regressor : submodel.regressors)
-      if (regressor.kind == SignalKind::kInput && regressor.index == input) return true;
-  return false;
-}
-
-}  // namespace
-
 GeneralLaw::GeneralLaw(const InternalModel& model, const FmbpcParams& params, Eigen::Index n_u)
     : CoincidenceLaw(model, params, n_u),
       weight_output_(params.weight_output),
       weight_move_(params.weight_move) {
   const TsModel& rules = model.local().model();
   for (std::size_t j = 0; j < rules.inputs.size(); ++j)
-    idle_words_.push_back(isModelled(rules, static_cast<int>(j))
+    idle_words_.push_back(knowsInput(rules, static_cast<int>(j))
                               ? "input " + rules.inputs[j].name +
                                     " has no effect at controller.coincidence_steps and rests"
                               : "");
