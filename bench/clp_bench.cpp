@@ -36,9 +36,9 @@ fpc::ClosedLoopParadigm makeParadigm(int limits) {
   params.perturbation_steps = kSteps;
   const double upper = limits == kInactive ? 1e5 : 700.0,
                lower = limits == kInactive ? -1e5 : 500.0;
-  const double move = limits == kMoves || limits == kSoftOutputs ? 25.0 : kInfinity;
+  const double move = limits == kMoves || limits == kSoftOutputs ? 25.0 : fpc::kInfinity;
   if (limits == kSoftOutputs) {
-    params.output_upper = (Vector(2) << kInfinity, 1995.0).finished();
+    params.output_upper = (Vector(2) << fpc::kInfinity, 1995.0).finished();
   }
   return {params,
           {Vector::Constant(1, lower), Vector::Constant(1, upper), Vector::Constant(1, move)},

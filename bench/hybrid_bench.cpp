@@ -10,7 +10,8 @@
 #include <random>
 #include <vector>
 
-#include "control/hybrid_fixture.hpp"
+#include "control/hybrid/fixture.hpp"
+#include "fmbpc/base/option.hpp"
 
 namespace {
 
@@ -35,7 +36,9 @@ std::vector<Case> cases(int n) {
   return all;
 }
 
-const char* boundOf(std::int64_t index) { return index == 0 ? "cost" : "reach"; }
+fpc::BranchBound boundOf(std::int64_t index) {
+  return index == 0 ? fpc::BranchBound::kCost : fpc::BranchBound::kReach;
+}
 
 /// n input vectors: those of the paper, or more positions of the mixing valve between them.
 fpc::Matrix inputs(int n) {
@@ -73,7 +76,7 @@ void run(benchmark::State& state, fpc::HybridMpcParams params, int n_cases) {
 
 void BM_Decision(benchmark::State& state) {
   const int levels = static_cast<int>(state.range(0));
-  state.SetLabel(boundOf(state.range(1)));
+  state.SetLabel(fpc::wordOf(boundOf(state.range(1))));
   run(state, fpc::test::batchReactorParams(45, boundOf(state.range(1)), levels),
       levels == 4   ? 1000
       : levels == 6 ? 200
@@ -88,7 +91,7 @@ void BM_Growth(benchmark::State& state) {
   const int levels = static_cast<int>(state.range(0)), n = static_cast<int>(state.range(1));
   auto params = fpc::test::batchReactorParams(45, boundOf(state.range(2)), levels);
   params.choices = inputs(n);
-  state.SetLabel(boundOf(state.range(2)));
+  state.SetLabel(fpc::wordOf(boundOf(state.range(2))));
   run(state, std::move(params), 40);
 }
 BENCHMARK(BM_Growth)

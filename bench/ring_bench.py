@@ -1,43 +1,42 @@
 #!/usr/bin/python3
-"""The loop over topics beside a bare ring of three processes: ring_bench.py [--nodelets] [PAIRS] [LOOP]
+"""The loop over topics beside a bare ring of three processes, and as nodelets beside a bare ring in one process:
+ring_bench.py [ROUNDS] [LOOP] [HOURS]
 
-With --nodelets both are in one process, whose parts hand shared messages on.
-
-Runs pairs, one after the other (bare, loop, bare, loop, ...), each run with a master of its own, and prints samples
-per second of both and the median of the ratios. Before: make -C build bare_ring, and source scripts/env.sh.
+In every round the four run one after the other, each with a master of its own, for as many samples as HOURS of the
+loop have (4000 h: 20,000 samples, 2 s and more). Prints lines of JSON as bench/pairs.hpp does, with microseconds a
+sample. Before: make -C build bare_ring, and source scripts/env.sh.
 """
 import json
 import os
-import socket
 import statistics
 import subprocess
 import sys
 import tempfile
 
+from launching import free_port
+
 BARE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "devel", "lib", "fmbpc", "bare_ring")
 ROLES = ("listener", "optimizer", "controller", "plant")
+LONGEST = 600  # [s] of one run
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("", 0))
-        return probe.getsockname()[1]
+def environment(port):
+    return dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", ROS_HOSTNAME="localhost")
 
 
-def bare_rate(samples, nodelets):
-    """Samples per second of the bare ring."""
+def bare(samples, nodelets):
+    """Microseconds a sample of the bare ring."""
     port = free_port()
-    env = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", ROS_HOSTNAME="localhost")
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": env}
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "env": environment(port)}
     master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], **quiet)
     nodes = []
     try:
         subprocess.run(["rostopic", "list"], check=False, **quiet)
         for role in () if nodelets else ROLES[:-1]:
             nodes.append(subprocess.Popen([BARE, role, str(samples)], **quiet))
-        plant = subprocess.run([BARE, "all" if nodelets else "plant", str(samples)], env=env, check=True,
-                               capture_output=True, text=True, timeout=300)
-        return samples / float(plant.stdout.split()[-1])
+        plant = subprocess.run([BARE, "all" if nodelets else "plant", str(samples)], env=environment(port), check=True,
+                               capture_output=True, text=True, timeout=LONGEST)
+        return 1e6 * float(plant.stdout.split()[-1]) / samples
     finally:
         for node in [*nodes, master]:
             node.terminate()
@@ -45,30 +44,36 @@ def bare_rate(samples, nodelets):
             node.wait()
 
 
-def loop_rate(loop, nodelets):
-    """(samples per second, samples) of the loop over topics, in lockstep."""
+def ring(loop, hours, nodelets):
+    """(microseconds a sample of the loop over topics in lockstep, samples)"""
     port = free_port()
-    env = dict(os.environ, ROS_MASTER_URI=f"http://localhost:{port}", ROS_HOSTNAME="localhost")
     with tempfile.TemporaryDirectory() as out:
-        subprocess.run(["roslaunch", "-p", str(port), "fmbpc", "loop.launch", f"loop:={loop}", "pace:=lockstep",
-                        f"out:={out}", "draw:=false", "sim_time:=false", f"nodelets:={str(nodelets).lower()}"], env=env, check=True, capture_output=True, timeout=300)
+        subprocess.run(["roslaunch", "-p", str(port), "fmbpc", "loop.launch", f"loop:={loop}", "pace:=lockstep", f"out:={out}", "draw:=false",
+                        "sim_time:=false", f"nodelets:={str(nodelets).lower()}", f"set:=sampling.duration_h={hours}"],
+                       env=environment(port), check=True, capture_output=True, timeout=LONGEST)
         with open(os.path.join(out, "summary.json"), encoding="utf-8") as file:
             summary = json.load(file)
-    return summary["steps"] / summary["wall_s"], summary["steps"]
+    return 1e6 * summary["wall_s"] / summary["steps"], summary["steps"]
 
 
-def main(*arguments):
-    nodelets = "--nodelets" in arguments
-    pairs, loop = [*(a for a in arguments if a != "--nodelets"), *("10", "asp_case1_clp")[len(arguments) - nodelets:]]
-    _, samples = loop_rate(loop, nodelets)  # warms the file cache and tells the length
-    ratios = []
-    for pair in range(int(pairs)):
-        bare = bare_rate(samples, nodelets)
-        ours, _ = loop_rate(loop, nodelets)
-        ratios.append(ours / bare)
-        print(f"pair {pair + 1}: bare {bare:7.0f}/s  loop {ours:7.0f}/s  ratio {ratios[-1]:.2f}", flush=True)
-    print(f"median ratio {statistics.median(ratios):.2f} over {len(ratios)} pairs of {samples} samples"
-          f" (least {min(ratios):.2f}, most {max(ratios):.2f})")
+def row(path, baseline, aim, ours, theirs):
+    ratios = [b / a for a, b in zip(ours, theirs)]
+    return {"path": path, "baseline": baseline, "aim": aim, "ratio": statistics.median(ratios), "least": min(ratios), "most": max(ratios),
+            "ours_us": statistics.median(ours), "baseline_us": statistics.median(theirs), "pairs": len(ratios)}
+
+
+def main(rounds="10", loop="asp_case1_clp", hours="4000"):
+    _, samples = ring(loop, hours, False)  # warms the file cache and tells the length
+    nodes, nodelets, bare_nodes, bare_nodelets = [], [], [], []
+    for _ in range(int(rounds)):
+        bare_nodes.append(bare(samples, False))
+        nodes.append(ring(loop, hours, False)[0])
+        bare_nodelets.append(bare(samples, True))
+        nodelets.append(ring(loop, hours, True)[0])
+    for line in (row(f"loop over topics, 4 nodes, {loop}", "bare ring of three roscpp processes", "0.8", nodes, bare_nodes),
+                 row(f"loop as nodelets, {loop}", "bare ring in one process", "0.8", nodelets, bare_nodelets),
+                 row(f"loop as nodelets, {loop}", "the same as four nodes", "2.5", nodelets, nodes)):
+        print(json.dumps(line))
 
 
 if __name__ == "__main__":

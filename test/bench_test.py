@@ -12,13 +12,13 @@ BUILD = pathlib.Path(os.environ.get("FMBPC_BUILD", TOP / "build"))
 
 class Bench(unittest.TestCase):
     def test_every_benchmark_runs_and_our_qps_are_solved(self):
-        programs = ("growth_bench", "path_bench", "qp_baselines")
+        programs = ("growth_bench", "model_bench", "path_bench", "qp_baselines")
         if not all((BUILD / "bench" / program).exists() for program in programs):
             self.skipTest("not built: " + ", ".join(programs))
         page = subprocess.run([TOP / "scripts/bench", "--build", BUILD, "--quick", "--no-build"], check=True,
                               capture_output=True, text=True, timeout=300, env=dict(os.environ)).stdout
         rows = [line for line in page.splitlines() if re.search(r"\| (yes|\*\*no\*\*) \|", line)]
-        for path in ("166 h in process", "step of the published law", "plant sample", "Gustafson-Kessel", "eight runs"):
+        for path in ("166 h in process", "step of the published law", "plant sample", "Gustafson-Kessel", "eight runs", "iterated law", "branch and bound", "fit to free runs"):
             self.assertTrue(any(path in row for row in rows), path)
         for curve in ("law, outputs = inputs", "law, rules", "law, coincidence", "CLP cold", "CLP warm", "plant sample, tanks"):
             self.assertRegex(page, rf"\| {curve}[^|]*\| \d+ to \d+ \| [\d.e+]+ \|")

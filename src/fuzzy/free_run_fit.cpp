@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "fmbpc/fuzzy/firing_slopes.hpp"
 #include "fmbpc/fuzzy/partition.hpp"
 #include "fmbpc/optim/least_squares.hpp"
 #include "fuzzy/knowledge_map.hpp"
@@ -15,7 +16,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double kFarthest = 100.0;  // spans of the data: a run that leaves further has failed
-constexpr double kNudge = 1e-6;      // spans, for derivatives by differences
 constexpr double kEnough = 1e-6;  // relative fall of the objective below which the fit has settled
 constexpr double kFirstDamping = 1e-3;  // of the number of rows
 constexpr double kMostDamping = 1e6;
@@ -36,6 +36,9 @@ class Simulator {
     z_.resize(static_cast<Index>(z_sources_.size()));
     x_.resize(static_cast<Index>(x_sources_.size()) + 1);
     gradient_.resize(unknowns());
+    slopes_.resize(static_cast<Index>(shape.rules.size()), z_.size());
+    consequents_.resize(slopes_.rows());
+    past_slope_.resize(own_lags_);
   }
 
   Index unknowns() const { return static_cast<Index>(shape_.rules.size()) * x_.size(); }
@@ -83,6 +86,7 @@ class Simulator {
     return s.own ? past_[k - s.lag] : data_.values(k - s.lag, s.column);
   }
   double predict(const Vector& theta, Index k);
+  void differentiatePast(const Vector& theta);
   void differentiate(const Vector& theta, Index k, bool free);
 
   const DataSet& data_;
@@ -93,6 +97,8 @@ class Simulator {
   ColumnScaling scaling_;
   Vector z_, x_, past_, gradient_;
   Matrix sensitivity_;  // of the last own_lags_ predictions, a ring of columns
+  Matrix slopes_;       // of the weights: rules x antecedents
+  Vector consequents_, past_slope_;
   FiringResult firing_;
 };
 
@@ -113,22 +119,34 @@ double Simulator::predict(const Vector& theta, Index k) {
   return sum;
 }
 
+/// Into past_slope_: the derivatives of the prediction just made by the own past, lag by lag.
+void Simulator::differentiatePast(const Vector& theta) {
+  const Index p = x_.size();
+  past_slope_.setZero();
+  for (Index r = 0; r < firing_.weights.size(); ++r)
+    consequents_[r] = x_.dot(theta.segment(r * p, p));
+  for (std::size_t j = 0; j < x_sources_.size(); ++j) {
+    if (!x_sources_[j].own) continue;
+    double blended = 0.0;
+    for (Index r = 0; r < firing_.weights.size(); ++r)
+      blended += firing_.weights[r] * theta[r * p + static_cast<Index>(j)];
+    past_slope_[x_sources_[j].lag] += blended / scaling_.scale[static_cast<Index>(j)];
+  }
+  firingSlopes(shape_, z_, firing_, slopes_);
+  for (std::size_t i = 0; i < z_sources_.size(); ++i)
+    if (z_sources_[i].own)
+      past_slope_[z_sources_[i].lag] += slopes_.col(static_cast<Index>(i)).dot(consequents_);
+}
+
 /// gradient_ of the prediction just made: its own rules, and in free run what they did to the past.
 void Simulator::differentiate(const Vector& theta, Index k, bool free) {
   const Index p = x_.size(), ring = sensitivity_.cols();
   for (Index r = 0; r < firing_.weights.size(); ++r)
     gradient_.segment(r * p, p) = firing_.weights[r] * x_;
-  for (Index lag = 0; free && lag < own_lags_; ++lag) {
-    const auto earlier = sensitivity_.col((k - lag) % ring);
-    if (earlier.isZero(0.0)) continue;
-    const double here = past_[k - lag], nudge = kNudge * span_;
-    past_[k - lag] = here + nudge;
-    const double above = predict(theta, k);
-    past_[k - lag] = here - nudge;
-    const double below = predict(theta, k);
-    past_[k - lag] = here;
-    gradient_ += (above - below) / (2.0 * nudge) * earlier;
-  }
+  if (!free || own_lags_ == 0) return;
+  differentiatePast(theta);
+  for (Index lag = 0; lag < own_lags_; ++lag)
+    gradient_ += past_slope_[lag] * sensitivity_.col((k - lag) % ring);
 }
 
 double Simulator::run(const Vector& theta, bool free, double unit, double weight,

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "fmbpc/fuzzy/firing_slopes.hpp"
+
 namespace fpc {
 namespace {
 
@@ -30,6 +32,7 @@ LocalModel::LocalModel(TsModel model) : model_(std::move(model)) {
     firing_[i].weights = Vector::Zero(static_cast<Eigen::Index>(model_.submodels[i].rules.size()));
     antecedent_values_.emplace_back(
         Vector::Zero(static_cast<Eigen::Index>(model_.submodels[i].antecedents.size())));
+    slopes_.emplace_back(Matrix::Zero(firing_[i].weights.size(), antecedent_values_[i].size()));
   }
 }
 
@@ -98,40 +101,29 @@ void LocalModel::fillShifts() {
     shift(disturbance_offset_[i], disturbance_lags_[i]);
 }
 
-double LocalModel::antecedentValue(const Regressor& variable, VectorRef state, VectorRef input,
-                                   VectorRef disturbances) const {
-  switch (variable.kind) {
-    case SignalKind::kOutput:
-      return state[outputState(variable.index, variable.lag)];
-    case SignalKind::kInput:
-      return variable.lag == 0 ? input[variable.index]
-                               : state[inputState(variable.index, variable.lag)];
-    default:
-      return variable.lag == 0 ? disturbances[variable.index]
-                               : state[disturbanceState(variable.index, variable.lag)];
-  }
+Eigen::Index LocalModel::stateOf(const Regressor& variable) const {
+  if (variable.kind == SignalKind::kOutput) return outputState(variable.index, variable.lag);
+  if (variable.lag == 0) return -1;
+  return variable.kind == SignalKind::kInput ? inputState(variable.index, variable.lag)
+                                             : disturbanceState(variable.index, variable.lag);
+}
+
+double LocalModel::value(const Regressor& variable, VectorRef state, VectorRef input,
+                         VectorRef disturbances) const {
+  const Eigen::Index row = stateOf(variable);
+  if (row >= 0) return state[row];
+  return variable.kind == SignalKind::kInput ? input[variable.index] : disturbances[variable.index];
 }
 
 void LocalModel::addTerm(Eigen::Index output, const Regressor& regressor, double coefficient,
                          VectorRef disturbances) {
-  const Eigen::Index row = outputState(output);
-  switch (regressor.kind) {
-    case SignalKind::kOutput:
-      affine_.A(row, outputState(regressor.index, regressor.lag)) += coefficient;
-      break;
-    case SignalKind::kInput:
-      if (regressor.lag == 0)
-        affine_.B(row, regressor.index) += coefficient;
-      else
-        affine_.A(row, inputState(regressor.index, regressor.lag)) += coefficient;
-      break;
-    case SignalKind::kDisturbance:
-      if (regressor.lag == 0)
-        affine_.g[row] += coefficient * disturbances[regressor.index];
-      else
-        affine_.A(row, disturbanceState(regressor.index, regressor.lag)) += coefficient;
-      break;
-  }
+  const Eigen::Index row = outputState(output), column = stateOf(regressor);
+  if (column >= 0)
+    affine_.A(row, column) += coefficient;
+  else if (regressor.kind == SignalKind::kInput)
+    affine_.B(row, regressor.index) += coefficient;
+  else
+    affine_.g[row] += coefficient * disturbances[regressor.index];
 }
 
 bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef input,
@@ -140,7 +132,7 @@ bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef inp
   Vector& values = antecedent_values_[at(output)];
   for (std::size_t i = 0; i < submodel.antecedents.size(); ++i)
     values[static_cast<Eigen::Index>(i)] =
-        antecedentValue(submodel.antecedents[i], state, input, disturbances);
+        value(submodel.antecedents[i], state, input, disturbances);
   FiringResult& firing = firing_[at(output)];
   firingWeights(submodel, values, firing);
 
@@ -173,6 +165,31 @@ bool LocalModel::blend(VectorRef state, VectorRef input, VectorRef disturbances)
     if (disturbance_lags_[i] > 0)
       affine_.g[disturbance_offset_[i]] = disturbances[static_cast<Eigen::Index>(i)];
   return fired;
+}
+
+void LocalModel::addSlopes(VectorRef state, VectorRef input, VectorRef disturbances, Matrix& A,
+                           Matrix& B) {
+  for (std::size_t o = 0; o < model_.submodels.size(); ++o) {
+    const OutputModel& submodel = model_.submodels[o];
+    Matrix& slopes = slopes_[o];
+    firingSlopes(submodel, antecedent_values_[o], firing_[o], slopes);
+    for (std::size_t r = 0; r < submodel.rules.size(); ++r) {
+      double consequent = submodel.rules[r].offset;
+      for (std::size_t j = 0; j < submodel.regressors.size(); ++j)
+        consequent += submodel.rules[r].coefficients[static_cast<Eigen::Index>(j)] *
+                      value(submodel.regressors[j], state, input, disturbances);
+      slopes.row(static_cast<Eigen::Index>(r)) *= consequent;
+    }
+    const Eigen::Index row = outputState(static_cast<Eigen::Index>(o));
+    for (std::size_t i = 0; i < submodel.antecedents.size(); ++i) {
+      const Regressor& z = submodel.antecedents[i];
+      const double slope = slopes.col(static_cast<Eigen::Index>(i)).sum();
+      if (const Eigen::Index column = stateOf(z); column >= 0)
+        A(row, column) += slope;
+      else if (z.kind == SignalKind::kInput)
+        B(row, z.index) += slope;
+    }
+  }
 }
 
 void LocalModel::advance(VectorRef state, VectorRef input, VectorRef disturbances, Vector& next) {

@@ -38,6 +38,14 @@ double linearFlank(double beyond, double width) {
   return beyond < width ? std::log1p(-beyond / width) : kOutside;
 }
 
+/// Of the flanks' logarithms by `beyond`.
+double exponentialSlope(double beyond, double width) {
+  return beyond >= 0.0 && width > 0.0 ? -2.0 * kFootDecay * beyond / (width * width) : 0.0;
+}
+double linearSlope(double beyond, double width) {
+  return beyond >= 0.0 && beyond < width ? -1.0 / (width - beyond) : 0.0;
+}
+
 /// Feet and shoulders of any shape (a bell ends at three widths).
 std::array<double, 4> corners(MembershipShape shape, const std::vector<double>& p) {
   switch (shape) {
@@ -85,6 +93,18 @@ double Membership::logDegree(double z) const {
   const double width = left ? c[1] - c[0] : c[3] - c[2];
   return shape == MembershipShape::kExponential ? exponentialFlank(beyond, width)
                                                 : linearFlank(beyond, width);
+}
+
+double Membership::logSlope(double z) const {
+  if (shape == MembershipShape::kGaussian)
+    return -(z - parameters[0]) / (parameters[1] * parameters[1]);
+  const auto c = corners(shape, parameters);
+  const bool left = z < c[1];
+  const double beyond = left ? c[1] - z : z - c[2];
+  const double width = left ? c[1] - c[0] : c[3] - c[2];
+  const double slope = shape == MembershipShape::kExponential ? exponentialSlope(beyond, width)
+                                                              : linearSlope(beyond, width);
+  return left ? -slope : slope;
 }
 
 double Membership::distance(double z) const {

@@ -68,6 +68,13 @@ double MultivariateMembership::logDegree(VectorRef z) const {
   return std::isfinite(form) ? -0.5 * form : -std::numeric_limits<double>::infinity();
 }
 
+double MultivariateMembership::logSlope(VectorRef z, Index variable) const {
+  double slope = 0.0;
+  for (Index i = 0; i < center.size(); ++i)
+    slope -= inverse_covariance(variable, i) * (z[i] - center[i]);
+  return std::isfinite(slope) && std::isfinite(logDegree(z)) ? slope : 0.0;
+}
+
 double MultivariateMembership::distance(VectorRef z) const {
   const double size = std::max(z.cwiseAbs().maxCoeff(), center.cwiseAbs().maxCoeff());
   if (!(size > 0.0)) return 0.0;

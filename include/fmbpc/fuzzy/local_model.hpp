@@ -41,12 +41,17 @@ class LocalModel {
   /// xi(k+1) of a state under u(k), d(k): blends there, then moves. No allocation once `next` has
   /// its size.
   void advance(VectorRef state, VectorRef input, VectorRef disturbances, Vector& next);
+  /// Adds to A (n_x n_x) and B (n_x n_u) what the rules' weights change along xi and u(k), so that
+  /// affine().A + A and affine().B + B are the derivatives of xi(k+1) at the values last blended,
+  /// which are handed over again. No allocation.
+  void addSlopes(VectorRef state, VectorRef input, VectorRef disturbances, Matrix& A, Matrix& B);
   const AffineModel& affine() const { return affine_; }
   const std::vector<FiringResult>& firing() const { return firing_; }
 
  private:
-  double antecedentValue(const Regressor& variable, VectorRef state, VectorRef input,
-                         VectorRef disturbances) const;
+  double value(const Regressor& variable, VectorRef state, VectorRef input,
+               VectorRef disturbances) const;
+  Eigen::Index stateOf(const Regressor& variable) const;  ///< -1 for u(k) and d(k)
   bool blendOutput(Eigen::Index output, VectorRef state, VectorRef input, VectorRef disturbances);
   void addTerm(Eigen::Index output, const Regressor& regressor, double coefficient,
                VectorRef disturbances);
@@ -61,7 +66,8 @@ class LocalModel {
   AffineModel affine_;
   std::vector<FiringResult> firing_;
   std::vector<Vector> antecedent_values_;
-  Vector last_input_;  ///< u(k-1) out of a state
+  std::vector<Matrix> slopes_;  ///< of an output's weights: rules x antecedents
+  Vector last_input_;           ///< u(k-1) out of a state
 };
 
 }  // namespace fpc

@@ -28,6 +28,8 @@ struct Membership {
 
   /// log(mu(z)), -inf where mu is 0. Never NaN for finite z.
   double logDegree(double z) const;
+  /// d log(mu) / dz, from the right at a corner; 0 where mu is 0 or an edge is crisp.
+  double logSlope(double z) const;
   /// How far z lies outside the support [in widths of the set, or in units for crisp ones]; 0
   /// inside. Orders rules when none fires.
   double distance(double z) const;

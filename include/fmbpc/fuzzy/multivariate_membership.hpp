@@ -16,6 +16,8 @@ struct MultivariateMembership {
 
   /// log(mu(z)) <= 0, -inf where it is too far to tell. Never NaN for finite z. No allocation.
   double logDegree(VectorRef z) const;
+  /// d log(mu) / dz of one variable, 0 where mu is 0. No allocation.
+  double logSlope(VectorRef z, Eigen::Index variable) const;
   /// Mahalanobis distance to the centre, finite wherever it is a number at all: orders rules when
   /// none fires. No allocation.
   double distance(VectorRef z) const;

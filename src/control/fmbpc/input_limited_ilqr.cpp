@@ -10,7 +10,6 @@ namespace {
 constexpr double kEnough = 1e-4;    // relative gain below which another round is not worth it
 constexpr double kSmallest = 0.05;  // share of a step below which it is given up
 constexpr double kFlat = 1e-12;     // slope that is none, relative
-constexpr double kStep = 1e-4;      // of finite differences, relative
 
 }  // namespace
 
@@ -77,6 +76,11 @@ double InputLimitedIlqr::weigh(Eigen::Index i, const Matrix& states, const Matri
   return cost;
 }
 
+void InputLimitedIlqr::evaluate(Eigen::Index i) {
+  model_.blend(state_, input_, disturbances_.col(i));
+  ++evaluations_;
+}
+
 /// The model forwards under u + share * step + K (x - x of the plan), clipped.
 double InputLimitedIlqr::simulate(double share, Matrix& states, Matrix& inputs) {
   double cost = 0.0;
@@ -89,7 +93,7 @@ double InputLimitedIlqr::simulate(double share, Matrix& states, Matrix& inputs) 
     limits_.clip(input_, wish_);
     inputs.col(i) = input_;
     state_ = states.col(i);
-    model_.blend(state_, input_, disturbances_.col(i));
+    evaluate(i);
     next_ = model_.affine().g + correction_;
     next_ += model_.affine().A.lazyProduct(state_);
     next_ += model_.affine().B.lazyProduct(input_);
@@ -99,33 +103,17 @@ double InputLimitedIlqr::simulate(double share, Matrix& states, Matrix& inputs) 
   return cost;
 }
 
+/// The derivatives along the path: of the consequents, and of the weights that change with it.
 void InputLimitedIlqr::linearise() {
   for (Eigen::Index i = 0; i < N_; ++i) {
     state_ = states_.col(i);
     input_ = inputs_.col(i);
-    model_.blend(state_, input_, disturbances_.col(i));
+    evaluate(i);
     A_[static_cast<std::size_t>(i)] = model_.affine().A;
     B_[static_cast<std::size_t>(i)] = model_.affine().B;
-    slope(i);
+    model_.addSlopes(state_, input_, disturbances_.col(i), A_[static_cast<std::size_t>(i)],
+                     B_[static_cast<std::size_t>(i)]);
   }
-}
-
-/// The rules' weights change along the path as well: differences where they depend on something.
-void InputLimitedIlqr::slope(Eigen::Index i) {
-  auto& A = A_[static_cast<std::size_t>(i)];
-  auto& B = B_[static_cast<std::size_t>(i)];
-  const auto difference = [&](double& variable, Eigen::Ref<Vector> column) {
-    const double h = kStep * std::max(1.0, std::abs(variable)), kept = variable;
-    variable = kept + h;
-    model_.blend(state_, input_, disturbances_.col(i));
-    next_ = model_.affine().g + correction_ - states_.col(i + 1);
-    next_ += model_.affine().A.lazyProduct(state_);
-    next_ += model_.affine().B.lazyProduct(input_);
-    column = next_ / h;
-    variable = kept;
-  };
-  for (Eigen::Index j = 0; j < n_x_; ++j) difference(state_[j], A.col(j));
-  for (Eigen::Index a = 0; a < n_u_; ++a) difference(input_[a], B.col(a));
 }
 
 /// Into wish_ the least of 1/2 x' Quu x + Qu' x with the fixed inputs where wish_ has them.
@@ -244,6 +232,7 @@ bool InputLimitedIlqr::sweep() {
 bool InputLimitedIlqr::plan(VectorRef state, VectorRef correction, VectorRef offset_output,
                             const Matrix& disturbances, const Matrix& reference,
                             VectorRef input_previous) {
+  evaluations_ = 0;
   correction_ = correction;
   offset_ = offset_output;
   disturbances_ = disturbances.leftCols(N_);

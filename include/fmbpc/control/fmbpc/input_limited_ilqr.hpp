@@ -37,11 +37,12 @@ class InputLimitedIlqr {
   const Matrix& states() const { return states_; }              ///< n_x N + 1, xi(k)...
   const Matrix& disturbances() const { return disturbances_; }  ///< n_d N, as they are expected
   double cost() const { return cost_; }                         ///< of that plan
+  long evaluations() const { return evaluations_; }  ///< of the rules, for that plan
 
  private:
+  void evaluate(Eigen::Index i);
   double simulate(double share, Matrix& states, Matrix& inputs);
   void linearise();
-  void slope(Eigen::Index i);
   bool sweep();
   bool chooseInput(Eigen::Index i);
   bool solveFree();
@@ -55,6 +56,7 @@ class InputLimitedIlqr {
   Eigen::Index n_x_, n_u_, n_y_, N_;
   bool warm_{false};
   double cost_{};
+  long evaluations_{};
   Matrix states_, inputs_, trial_states_, trial_inputs_, step_;  ///< columns: samples
   std::vector<Matrix> A_, B_, K_;                                ///< one per sample
   Matrix P_, PA_, PB_, Quu_, Qux_, Qxx_, free_Quu_;
