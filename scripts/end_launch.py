@@ -2,7 +2,8 @@
 """Node end_launch: ends the launch that started it, as Ctrl-C does, when the run is over (topic run_end). roslaunch with
 a master of its own never ends by itself, and a node that is `required` is announced in red as having died. Where the
 recorder is gone, it makes the run's files of the journal (`fmbpc recover`) in the folder ~out, and ends the launch when
-the plant has finished and the recorder has been gone for ~patience seconds."""
+the plant has finished and the recorder has been gone for ~patience seconds (5). One that has not answered for ~hanging
+seconds (20) when the plant has finished hangs for ever: it is killed first."""
 import os
 import queue
 import signal
@@ -44,6 +45,7 @@ class Recorder:
 
     def __init__(self):
         self.name, self.plant_finished, self.gone_since, self.came = rospy.resolve_name("loop_recorder"), False, None, False
+        self.hangs_since, self.process = None, 0
         rospy.Subscriber("loop_state", LoopState, self.hear)
 
     def hear(self, state):
@@ -51,26 +53,67 @@ class Recorder:
             self.plant_finished = state.reason.startswith("finished")
             self.came = self.came or state.mode != LoopState.STARTING  # it was ready before sample 0
         if state.node == self.name:
-            self.came, self.gone_since = True, None
+            self.came, self.gone_since, self.hangs_since = True, None, None
 
     def look(self):
         """Silent is not gone: one that writes a long record does not speak, but its process answers."""
-        if lives(self.name):
-            self.came, self.gone_since = True, None
-        elif self.came:
-            self.gone_since = self.gone_since or time.monotonic()
+        begun, now = time.monotonic(), ask(self.name)
+        if now == HANGS:
+            self.gone_since, self.hangs_since = None, self.hangs_since or begun
+        elif now == GONE:
+            self.gone_since, self.hangs_since = self.gone_since or (begun if self.came else None), None
+        else:
+            self.came, self.gone_since, self.hangs_since, self.process = True, None, None, now or self.process
 
     def gone_for(self):
-        return time.monotonic() - self.gone_since if self.gone_since else 0.0
+        return seconds_since(self.gone_since)
+
+    def hangs_for(self):
+        return seconds_since(self.hangs_since)
 
 
-def lives(node):
+def seconds_since(begin):
+    return 0.0 if begin is None else time.monotonic() - begin
+
+
+class Impatient(xmlrpc.client.Transport):
+    """rospy sets the time-out of all sockets to a minute whenever it connects a topic."""
+
+    def make_connection(self, host):
+        connection = super().make_connection(host)
+        connection.timeout = 2.0
+        return connection
+
+
+GONE, HANGS = "gone", "hangs"
+
+
+def ask(node):
+    """The process of a node, 0 where the master is not to be asked; or what is wrong with it."""
     try:
         uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-        return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[0] == 1
+    except rosgraph.MasterException:
+        return GONE
+    except (OSError, xmlrpc.client.Error):
+        return 0
+    try:
+        code, _, process = xmlrpc.client.ServerProxy(uri, transport=Impatient()).getPid(rospy.get_name())
+        return process if code == 1 else GONE
     except socket.timeout:
-        return True  # it hangs, or its machine is slow
-    except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
+        return HANGS
+    except (OSError, xmlrpc.client.Error):
+        return GONE
+
+
+def kill(process, parent):
+    """True if it was a child of this launch, and is killed: a process that hangs keeps its journal to itself."""
+    try:
+        with open(f"/proc/{process}/stat", encoding="utf-8") as stat:
+            if int(stat.read().rsplit(")", 1)[1].split()[1]) != parent:
+                return False
+        os.kill(process, signal.SIGKILL)
+        return True
+    except (OSError, ValueError, IndexError):
         return False
 
 
@@ -103,7 +146,18 @@ def main():
             message = words.get(timeout=0.5)
         except queue.Empty:
             recorder.look()
-            if not recorder.plant_finished or recorder.gone_for() < patience:
+            if not recorder.plant_finished:
+                continue
+            if recorder.hangs_for() > rospy.get_param("~hanging", 20.0):
+                rospy.logerr("end_launch: %s has not answered for %.0f s: it is killed", recorder.name, recorder.hangs_for())
+                if kill(recorder.process, parent):
+                    recorder.hangs_since = None
+                    continue
+                rospy.logerr("end_launch: the run is over, but %s hangs on another machine: the launch ends; "
+                             "`fmbpc recover` makes the files there", recorder.name)
+                os.kill(parent, signal.SIGINT)
+                return 0
+            if recorder.gone_for() < patience:
                 continue
             rospy.logerr("end_launch: the run is over, but %s is gone: the launch ends", recorder.name)
             recover(folder)
