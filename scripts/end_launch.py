@@ -45,7 +45,7 @@ class Recorder:
 
     def __init__(self):
         self.name, self.plant_finished, self.gone_since, self.came = rospy.resolve_name("loop_recorder"), False, None, False
-        self.hangs_since, self.process = None, 0
+        self.hangs_since = None
         rospy.Subscriber("loop_state", LoopState, self.hear)
 
     def hear(self, state):
@@ -63,7 +63,7 @@ class Recorder:
         elif now == GONE:
             self.gone_since, self.hangs_since = self.gone_since or (begun if self.came else None), None
         else:
-            self.came, self.gone_since, self.hangs_since, self.process = True, None, None, now or self.process
+            self.came, self.gone_since, self.hangs_since = True, None, None
 
     def gone_for(self):
         return seconds_since(self.gone_since)
@@ -89,32 +89,46 @@ GONE, HANGS = "gone", "hangs"
 
 
 def ask(node):
-    """The process of a node, 0 where the master is not to be asked; or what is wrong with it."""
+    """What is wrong with a node; empty if nothing is, or if the master is not to be asked."""
     try:
         uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
     except rosgraph.MasterException:
         return GONE
     except (OSError, xmlrpc.client.Error):
-        return 0
+        return ""
     try:
-        code, _, process = xmlrpc.client.ServerProxy(uri, transport=Impatient()).getPid(rospy.get_name())
-        return process if code == 1 else GONE
+        code = xmlrpc.client.ServerProxy(uri, transport=Impatient()).getPid(rospy.get_name())[0]
+        return "" if code == 1 else GONE
     except socket.timeout:
         return HANGS
     except (OSError, xmlrpc.client.Error):
         return GONE
 
 
-def kill(process, parent):
-    """True if it was a child of this launch, and is killed: a process that hangs keeps its journal to itself."""
-    try:
-        with open(f"/proc/{process}/stat", encoding="utf-8") as stat:
-            if int(stat.read().rsplit(")", 1)[1].split()[1]) != parent:
-                return False
-        os.kill(process, signal.SIGKILL)
-        return True
-    except (OSError, ValueError, IndexError):
+def child(parent, node):
+    """The process of a node among those that the launch has started on this machine; 0 if it is not there."""
+    name = b"__name:=" + node.rsplit("/", 1)[-1].encode()
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{process}/stat", encoding="utf-8") as stat, open(f"/proc/{process}/cmdline", "rb") as line:
+                if int(stat.read().rsplit(")", 1)[1].split()[1]) == parent and name in line.read().split(b"\0"):
+                    return int(process)
+        except OSError:  # it has just ended
+            continue
+    return 0
+
+
+def killed(recorder, parent):
+    """True if one that hangs, and keeps its journal to itself, was killed; False if it is on another machine."""
+    process, seconds = child(parent, recorder.name), recorder.hangs_for()
+    if not process:
+        rospy.logerr("end_launch: %s has not answered for %.0f s: the launch ends; on its machine `fmbpc recover` makes the files",
+                     recorder.name, seconds)
         return False
+    rospy.logerr("end_launch: %s has not answered for %.0f s: it is killed", recorder.name, seconds)
+    os.kill(process, signal.SIGKILL)
+    recorder.hangs_since = None
+    return True
 
 
 def recover(folder):
@@ -149,12 +163,8 @@ def main():
             if not recorder.plant_finished:
                 continue
             if recorder.hangs_for() > rospy.get_param("~hanging", 20.0):
-                rospy.logerr("end_launch: %s has not answered for %.0f s: it is killed", recorder.name, recorder.hangs_for())
-                if kill(recorder.process, parent):
-                    recorder.hangs_since = None
+                if killed(recorder, parent):
                     continue
-                rospy.logerr("end_launch: the run is over, but %s hangs on another machine: the launch ends; "
-                             "`fmbpc recover` makes the files there", recorder.name)
                 os.kill(parent, signal.SIGINT)
                 return 0
             if recorder.gone_for() < patience:
