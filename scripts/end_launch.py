@@ -2,7 +2,8 @@
 """Node end_launch: ends the launch that started it, as Ctrl-C does, when the run is over (topic run_end). roslaunch with
 a master of its own never ends by itself, and a node that is `required` is announced in red as having died. Where the
 recorder is gone, it makes the run's files of the journal (`fmbpc recover`) in the folder ~out, and ends the launch when
-the plant has finished and the recorder has been gone for ~patience seconds."""
+the plant has finished and the recorder has been gone for ~patience seconds (5). One that has not answered for ~hanging
+seconds (20) when the plant has finished hangs for ever: it is killed first."""
 import os
 import queue
 import signal
@@ -44,6 +45,7 @@ class Recorder:
 
     def __init__(self):
         self.name, self.plant_finished, self.gone_since, self.came = rospy.resolve_name("loop_recorder"), False, None, False
+        self.hangs_since = None
         rospy.Subscriber("loop_state", LoopState, self.hear)
 
     def hear(self, state):
@@ -51,27 +53,82 @@ class Recorder:
             self.plant_finished = state.reason.startswith("finished")
             self.came = self.came or state.mode != LoopState.STARTING  # it was ready before sample 0
         if state.node == self.name:
-            self.came, self.gone_since = True, None
+            self.came, self.gone_since, self.hangs_since = True, None, None
 
     def look(self):
         """Silent is not gone: one that writes a long record does not speak, but its process answers."""
-        if lives(self.name):
-            self.came, self.gone_since = True, None
-        elif self.came:
-            self.gone_since = self.gone_since or time.monotonic()
+        begun, now = time.monotonic(), ask(self.name)
+        if now == HANGS:
+            self.gone_since, self.hangs_since = None, self.hangs_since or begun
+        elif now == GONE:
+            self.gone_since, self.hangs_since = self.gone_since or (begun if self.came else None), None
+        else:
+            self.came, self.gone_since, self.hangs_since = True, None, None
 
     def gone_for(self):
-        return time.monotonic() - self.gone_since if self.gone_since else 0.0
+        return seconds_since(self.gone_since)
+
+    def hangs_for(self):
+        return seconds_since(self.hangs_since)
 
 
-def lives(node):
+def seconds_since(begin):
+    return 0.0 if begin is None else time.monotonic() - begin
+
+
+class Impatient(xmlrpc.client.Transport):
+    """rospy sets the time-out of all sockets to a minute whenever it connects a topic."""
+
+    def make_connection(self, host):
+        connection = super().make_connection(host)
+        connection.timeout = 2.0
+        return connection
+
+
+GONE, HANGS = "gone", "hangs"
+
+
+def ask(node):
+    """What is wrong with a node; empty if nothing is, or if the master is not to be asked."""
     try:
         uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-        return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[0] == 1
+    except rosgraph.MasterException:
+        return GONE
+    except (OSError, xmlrpc.client.Error):
+        return ""
+    try:
+        code = xmlrpc.client.ServerProxy(uri, transport=Impatient()).getPid(rospy.get_name())[0]
+        return "" if code == 1 else GONE
     except socket.timeout:
-        return True  # it hangs, or its machine is slow
-    except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
+        return HANGS
+    except (OSError, xmlrpc.client.Error):
+        return GONE
+
+
+def child(parent, node):
+    """The process of a node among those that the launch has started on this machine; 0 if it is not there."""
+    name = b"__name:=" + node.rsplit("/", 1)[-1].encode()
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{process}/stat", encoding="utf-8") as stat, open(f"/proc/{process}/cmdline", "rb") as line:
+                if int(stat.read().rsplit(")", 1)[1].split()[1]) == parent and name in line.read().split(b"\0"):
+                    return int(process)
+        except OSError:  # it has just ended
+            continue
+    return 0
+
+
+def killed(recorder, parent):
+    """True if one that hangs, and keeps its journal to itself, was killed; False if it is on another machine."""
+    process, seconds = child(parent, recorder.name), recorder.hangs_for()
+    if not process:
+        rospy.logerr("end_launch: %s has not answered for %.0f s: the launch ends; on its machine `fmbpc recover` makes the files",
+                     recorder.name, seconds)
         return False
+    rospy.logerr("end_launch: %s has not answered for %.0f s: it is killed", recorder.name, seconds)
+    os.kill(process, signal.SIGKILL)
+    recorder.hangs_since = None
+    return True
 
 
 def recover(folder):
@@ -103,7 +160,14 @@ def main():
             message = words.get(timeout=0.5)
         except queue.Empty:
             recorder.look()
-            if not recorder.plant_finished or recorder.gone_for() < patience:
+            if not recorder.plant_finished:
+                continue
+            if recorder.hangs_for() > rospy.get_param("~hanging", 20.0):
+                if killed(recorder, parent):
+                    continue
+                os.kill(parent, signal.SIGINT)
+                return 0
+            if recorder.gone_for() < patience:
                 continue
             rospy.logerr("end_launch: the run is over, but %s is gone: the launch ends", recorder.name)
             recover(folder)

@@ -10,6 +10,7 @@ TOP = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(TOP / "faults"), str(TOP / "ros")]
 import judge  # noqa: E402
 from fault import Outcome  # noqa: E402
+from pulse import Pulse  # noqa: E402
 
 LIMITS = types.SimpleNamespace(names=["u"], lower=[0.0], upper=[100.0], range=[100.0], move=[2.5])
 
@@ -41,9 +42,16 @@ class Judge(unittest.TestCase):
         for words, expected in (([(3.0, "/plant_simulator stalled: no action ()")], 0), ([], 1), ([(9.0, "late")], 1)):
             loop = types.SimpleNamespace(words=lambda start, w=words: w, logs={"plant_state": types.SimpleNamespace(
                 since=lambda start: [(2.0, None), (7.0, None)])})
-            outcome = Outcome("x")
-            judge.judge_stalls(loop, 1.0, 7.5, outcome)
-            self.assertEqual(expected, len(outcome.problems), words)
+            for still, problems_of in ((0.0, expected), (2.9, expected), (3.1, 0)):
+                loop.pulse = types.SimpleNamespace(within=lambda a, b, s=still: s if b - a > 2.0 else 0.0)
+                outcome = Outcome("x")
+                judge.judge_stalls(loop, 1.0, 7.5, outcome)
+                self.assertEqual(problems_of, len(outcome.problems), words)
+
+    def test_a_machine_that_stands_still_is_seen_by_the_judge_itself(self):
+        pulse = types.SimpleNamespace(gaps=[(3.0, 5.0), (8.0, 9.0)])
+        within = Pulse.within
+        self.assertEqual([2.0, 0.5, 0.0, 3.0], [within(pulse, *span) for span in ((1.0, 6.0), (4.5, 7.0), (5.0, 8.0), (0.0, 9.5))])
 
 
 class Quick(unittest.TestCase):

@@ -42,4 +42,5 @@ class Outcome:
     back_after: int = None      # samples
     largest_move: float = 0.0   # % of the range
     bump: float = 0.0           # % of the range, first move after the input was held or on its fallback
+    stood_still: float = 0.0    # s that the machine gave to nobody, the longest
     problems: list = dataclasses.field(default_factory=list)

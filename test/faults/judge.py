@@ -56,11 +56,14 @@ def judge_move(before, after, limits, forced, outcome):
 
 
 def judge_stalls(loop, start, end, outcome):
-    """A time without samples must be said while it lasts, by anybody of the loop."""
+    """A time without samples must be said while it lasts, by anybody of the loop; not one in which the whole machine stood
+    still, this process with it."""
     times = [start] + [t for t, _ in loop.logs["plant_state"].since(start)] + [end]
     words = loop.words(start - 2.0)
     for before, after in zip(times, times[1:]):
-        if after - before <= SILENCE:
+        stood_still = loop.pulse.within(before, after)
+        if after - before - stood_still <= SILENCE:
+            outcome.stood_still = max(outcome.stood_still, stood_still)
             continue
         if not any(before - 0.5 <= t <= before + SILENCE + 0.3 for t, _ in words):
             outcome.problems.append(f"silent stall of {after - before:.1f} s")

@@ -14,6 +14,8 @@ from fmbpc.msg import (CommandEffect, ControlAction, Disturbance, FuzzyModel, Id
                        OperatorState, PlantInfo, PlantState, PredictiveAction, Setpoint, SolverReport, Tracking)
 from std_msgs.msg import String
 
+from pulse import Pulse
+
 KINDS = {"plant_info": PlantInfo, "measurement": Measurement, "plant_state": PlantState, "base_action": ControlAction,
          "predictive_action": PredictiveAction, "control_action": ControlAction, "tracking": Tracking,
          "solver_report": SolverReport, "fuzzy_model": FuzzyModel, "identified": Identified, "setpoint": Setpoint,
@@ -71,7 +73,7 @@ class Loop:
                            for topic, kind in KINDS.items() if topic not in ("plant_info",)}
         self.publishers["plant_info"] = rospy.Publisher("plant_info", PlantInfo, queue_size=10, tcp_nodelay=True)
         self.master = rosgraph.Master(rospy.get_name())
-        self.frozen, self.children = set(), []
+        self.frozen, self.children, self.pulse = set(), [], Pulse()
 
     # What it says.
     def now(self):

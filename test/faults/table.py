@@ -55,6 +55,10 @@ def main():
     lines.append("|---" * (len(columns) + 1) + "|")
     for (_, fault), cells in rows.items():
         lines.append(f"| {fault} | " + " | ".join(cell(cells.get(column)) for column in columns) + " |")
+    slow = [r for r in results if r.get("stood_still", 0.0) > 0.0]
+    if slow:
+        lines += ["", "The machine stood still, the judge with it:", ""]
+        lines += [f"- {r['fault']} ({r['loop']}, {r['pace']}): {r['stood_still']:.1f} s" for r in slow]
     bad = [r for r in results if r["problems"]]
     if bad:
         lines += ["", "Not as asked:", ""]

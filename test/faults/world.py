@@ -61,6 +61,7 @@ def usurper(executable, node, what):
 
 
 def second_launch(loop):
+    loop.second = ""
     done = subprocess.run(["roslaunch", "fmbpc", "loop.launch", "loop:=asp_case1"], capture_output=True, text=True,
                           timeout=60, check=False)
     loop.second = done.stdout + done.stderr

@@ -109,6 +109,19 @@ class Records(unittest.TestCase):
         self.assertEqual(1, again.returncode)
         self.assertIn("expected a journal.bin", again.stderr)
 
+    def test_a_recorder_that_hangs_is_killed_when_the_run_is_over(self):
+        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=15", "speedup:=14400", "out:=" + self.out)
+        ring.wait_until(lambda: holds_samples(os.path.join(self.out, "journal.bin")), "samples on disk")
+        rosgraph.Master("/records", launch.uri).setParam("/end_launch/hanging", 2.0)
+        os.kill(launch.pid("/loop_recorder"), signal.SIGSTOP)
+        text = launch.end()
+        self.assertIn("/loop_recorder has not answered for", text)
+        self.assertIn("loop_recorder is gone", text)
+        summary = self.summary()
+        self.assertFalse(summary["complete"])
+        self.assertGreater(summary["steps"], 0)
+        self.assertFalse(os.path.exists(os.path.join(self.out, "journal.bin")))
+
     def test_in_a_namespace_with_a_bag_and_quotes_in_the_names(self):
         out = os.path.join(self.out, "it's mine")
         text = Launch(self, "loop:=asp_case1", "set:=sampling.duration_h=2", "pace:=lockstep", "ns:=/a", "record:=true",
