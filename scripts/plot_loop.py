@@ -15,6 +15,7 @@ import sys
 import textwrap
 
 LONG_H = 240.0  # days beyond
+LEGEND_COLUMNS = 4
 COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a"]
 DASHES = [(7, 3), (3, 2), (9, 3, 2, 3), (1.5, 1.5), (5, 2, 1.5, 2, 1.5, 2)]
 SUFFIXES = ("_setpoint", "_reference", "_true", "_commanded", "_base", "_perturbation")
@@ -180,8 +181,9 @@ def draw(runs, file):
         handles, _ = axis.get_legend_handles_labels()
         if handles:
             low, high = axis.get_ylim()
-            axis.set_ylim(low, high + 0.16 * (high - low))  # room for the legend
-            axis.legend(loc="upper right", ncol=min(len(handles), 4), fontsize=8, framealpha=0.85, borderpad=0.3)
+            rows = -(-len(handles) // LEGEND_COLUMNS)
+            axis.set_ylim(low, high + 0.16 * rows * (high - low))  # room for the legend
+            axis.legend(loc="upper right", ncol=min(len(handles), LEGEND_COLUMNS), fontsize=8, framealpha=0.85, borderpad=0.3)
     figure.align_ylabels(axes[:, 0])
     constant = held(first, [n for n in first.disturbances() if not changes(runs, n)])
     axes[-1, 0].set_xlabel("time [%s]" % unit + ("\nheld: " + textwrap.fill(constant, 110) if constant else ""))
