@@ -83,7 +83,7 @@ TEST(Bsm1Faults, AnAmmoniumAnalyserThatSticksUnderItsNoise) {
   }
 }
 
-// At six in the morning the ammonium is at its lowest: a law that goes on believing it starves the
+// At six in the morning the ammonium is at its lowest: a law that goes on with it starves the
 // plant of air in the peak of the day.
 TEST(Bsm1Faults, AnAnalyserThatSticksUnderItsNoiseBeforeThePeak) {
   if (!hasRecords()) GTEST_SKIP() << "needs ${FMBPC_DATA}";
