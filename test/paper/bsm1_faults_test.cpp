@@ -57,8 +57,8 @@ TEST(Bsm1Faults, AnAmmoniumAnalyserThatSticksForEightDays) {
   expectNoWorse(stuck("S_NH5"), "S_NH5 stands still: the fallback acts");
 }
 
-/// White noise on the ammonium, with the window that bsm1_fmbpc (up to 0.1 g/m3) or bsm1_fmbpc_noise
-/// has for that much of it.
+/// White noise on the ammonium, with the window that bsm1_fmbpc (up to 0.1 g/m3) or
+/// bsm1_fmbpc_noise has for that much of it.
 Overrides noisy(const std::string& std) {
   Overrides overrides{{"noise.std.S_NH5", std}};
   if (std::stod(std) > 0.1) overrides.emplace_back("standstill.noise_window_h", "24");
@@ -98,8 +98,8 @@ TEST(Bsm1Faults, AnAnalyserThatSticksUnderItsNoiseBeforeThePeak) {
 TEST(Bsm1Faults, AHealthyNoisyAnalyserIsNotAccused) {
   for (const char* noise : {"0.05", "0.3"})
     for (const char* seed : {"1", "2", "3"})
-      EXPECT_FALSE(run("bsm1_own_fmbpc", both(noisy(noise), {{"noise.seed", seed}}))
-                       .says("stands still"))
+      EXPECT_FALSE(
+          run("bsm1_own_fmbpc", both(noisy(noise), {{"noise.seed", seed}})).says("stands still"))
           << noise << ", seed " << seed;
 }
 
