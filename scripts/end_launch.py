@@ -128,6 +128,10 @@ def killed(recorder, parent):
     rospy.logerr("end_launch: %s has not answered for %.0f s: it is killed", recorder.name, seconds)
     os.kill(process, signal.SIGKILL)
     recorder.hangs_since = None
+    for _ in range(100):  # its journal is free when it has ended
+        if child(parent, recorder.name) != process:
+            break
+        time.sleep(0.05)
     return True
 
 
@@ -176,7 +180,8 @@ def main():
         if end(message._connection_header["callerid"], message.data, ours):
             os.kill(parent, signal.SIGINT)
             break
-    if recorder.gone_for() > 1.0:  # not one that ends with the launch, as this node does
+    # Not one that ends with the launch, as this node does.
+    if recorder.gone_for() > 1.0 or (recorder.hangs_for() > 1.0 and killed(recorder, parent)):
         recover(folder)
     return 0
 
