@@ -37,7 +37,7 @@ class InputLimitedIlqr {
   const Matrix& states() const { return states_; }              ///< n_x N + 1, xi(k)...
   const Matrix& disturbances() const { return disturbances_; }  ///< n_d N, as they are expected
   double cost() const { return cost_; }                         ///< of that plan
-  long evaluations() const { return evaluations_; }  ///< of the rules, for that plan
+  long evaluations() const { return evaluations_; }             ///< of the rules, for that plan
 
  private:
   void evaluate(Eigen::Index i);
