@@ -56,8 +56,8 @@ class Identify(unittest.TestCase):
         self.assertTrue(all(vaf > 95 for vaf in result.one_step_vaf), result.one_step_vaf)
         self.assertGreater(result.free_run_vaf[0], result.linear_free_run_vaf[0])
         self.assertIn("sample_time_s: 720", result.model_text)
-        last = self.progress.wait(lambda m: m.feedback.stage == "done").feedback
-        self.assertEqual((1.0, ["s", "x"]), (last.share, last.validated))
+        last = self.progress.wait(lambda m: m.feedback.share == 1.0).feedback
+        self.assertEqual(("done", ["s", "x"]), (last.stage, last.validated))
         self.assertEqual(result.free_run_vaf, last.free_run_vaf)
         self.assertEqual(models, len(self.models.messages))  # nobody asked for it to be published
 
