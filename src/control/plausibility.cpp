@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/no_value.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -32,6 +33,10 @@ std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
   switch (doubt) {
     case Doubt::kNoNumber:
       return "is no number";
+    case Doubt::kStale:
+      return "is stale";
+    case Doubt::kMissing:
+      return "has not come";
     case Doubt::kRange:
       return "is outside [" + shortText(asked.lower) + ", " + shortText(asked.upper) + "]";
     case Doubt::kRate:
@@ -44,6 +49,11 @@ std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
       break;
   }
   return "";
+}
+
+Doubt doubtOf(NoValue why) {
+  if (why == NoValue::kStale) return Doubt::kStale;
+  return why == NoValue::kMissing ? Doubt::kMissing : Doubt::kNoNumber;
 }
 
 std::string actionOf(Verdict verdict, Substitute substitute) {
@@ -148,7 +158,7 @@ bool Plausibility::jumped(Memory& signal, const SignalPlausibility& asked, doubl
 
 Doubt Plausibility::judge(Memory& signal, const SignalPlausibility& asked, double value,
                           VectorRef input) {
-  if (!std::isfinite(value)) return Doubt::kNoNumber;
+  if (!std::isfinite(value)) return doubtOf(whyNoValue(value));
   if (!params_.enabled) return Doubt::kNone;
   const bool frozen = isFrozen(signal, asked, value, input);
   const bool jump = jumped(signal, asked, value);

@@ -26,22 +26,23 @@ void RecentSamples::add(const Measurement& now) {
 }
 
 const Measurement& RecentSamples::at(int k) const {
-  return samples_[static_cast<std::size_t>((next_ + k) % kKept)];
+  return samples_[static_cast<std::size_t>((next_ - count_ + kKept + k) % kKept)];
 }
 
 Vector RecentSamples::errorsOf(const TsModel& model) const {
   if (!enough()) return {};
+  const int judged = count_ / 2;
   LocalModel local(model);
   Vector state(local.stateSize()), next = state, squares = Vector::Zero(countOf(model.outputs));
   local.restState(at(0).outputs, at(0).input_applied, at(0).disturbances, state);
-  for (int k = 1; k < kKept; ++k) {
+  for (int k = 1; k < count_; ++k) {
     const Measurement& now = at(k);
     const Vector& before = at(k - 1).disturbances;
     local.advance(state, now.input_applied, before, next);
-    if (k >= kKept - kJudged) squares += (now.outputs - local.affine().C * next).cwiseAbs2();
+    if (k >= count_ - judged) squares += (now.outputs - local.affine().C * next).cwiseAbs2();
     local.shiftState(now.outputs, now.input_applied, before, state);
   }
-  return (squares / static_cast<double>(kJudged)).cwiseSqrt();
+  return (squares / static_cast<double>(judged)).cwiseSqrt();
 }
 
 }  // namespace fpc

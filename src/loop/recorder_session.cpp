@@ -19,6 +19,11 @@ std::string kept(const std::string& remark) {
   return remark.substr(0, end == std::string::npos ? kMostRemark : end);
 }
 
+/// The controller's remarks before the plant's, whoever was heard first.
+std::string joined(const std::string& first, const std::string& second) {
+  return first.empty() || second.empty() ? first + second : first + "\n" + second;
+}
+
 }  // namespace
 
 RecorderSession::RecorderSession(RecordLayout layout, Sink sink)
@@ -115,15 +120,17 @@ void RecorderSession::receive(const Measurement& m) {
   });
 }
 
-void RecorderSession::receive(const PlantState& s) {
-  collect(s, &SampleRecord::has_state,
-          [](SampleRecord& sample, const PlantState& item) { sample.state = item; });
+void RecorderSession::receive(const PlantState& s, const std::string& remark) {
+  collect(s, &SampleRecord::has_state, [remark](SampleRecord& sample, const PlantState& item) {
+    sample.state = item;
+    sample.remark = kept(joined(sample.remark, remark));
+  });
 }
 
 void RecorderSession::receive(const Tracking& t, const std::string& remark) {
   const auto place = [this, remark](SampleRecord& sample, const Tracking& item) {
     sample.tracking = item;
-    sample.remark = kept(remark);
+    sample.remark = kept(joined(remark, sample.remark));
     for (const Eigen::Index i : layout_.without_setpoint)
       sample.tracking.setpoint[i] = sample.tracking.reference[i] = kNaN;
   };

@@ -7,6 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/command_player.hpp"
 #include "fmbpc/loop/factory.hpp"
+#include "fmbpc/loop/forced_inputs.hpp"
 #include "fmbpc/loop/identifier_session.hpp"
 #include "fmbpc/loop/plant_session.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
@@ -33,6 +34,7 @@ class Ring {
         recorder_(recordLayout(loop),
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
         remarks_(loop),
+        forced_(simulation_.info()),
         targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
                  [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
@@ -51,7 +53,8 @@ class Ring {
     const Measurement now = simulation_.measurement();
     player_.advance(now.header.step, targets_);
     recorder_.receive(now);
-    recorder_.receive(simulation_.state());
+    forced_.look(now.header.step, simulation_.effects());
+    recorder_.receive(simulation_.state(), forced_.lines());
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
     recorder_.receive(answer.tracking, remarks_.look(controller_));
@@ -148,6 +151,7 @@ class Ring {
   RunRecord record_;
   RecorderSession recorder_;
   SampleRemarks remarks_;
+  ForcedInputs forced_;
   OperatorNotes notes_;
   CommandTargets targets_;
 };

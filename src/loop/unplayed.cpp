@@ -30,10 +30,9 @@ class Unplayed {
   }
 
   void say(const std::string& words) {
-    note(words + "; the run ends at " + exactText(clock_.hoursAt(samples_)) + " h");
+    remarks_.push_back(
+        {words + "; the run ends at " + exactText(clock_.hoursAt(samples_)) + " h", 0, 0});
   }
-
-  void note(const std::string& words) { remarks_.push_back({words, 0, 0}); }
 
   std::vector<RunRemark> take() { return std::move(remarks_); }
 
@@ -69,31 +68,10 @@ void addDisturbances(const LoopFile& loop, Unplayed& found) {
               exactText(next_h) + " h");
 }
 
-/// A valve that the file sticks beyond the actuator's limits stays at the nearer one.
-void addStuckValves(const LoopFile& loop, Unplayed& found) {
-  const InputLimits& limits = loop.simulation.actuator.limits;
-  for (const ScheduledCommand& entry : loop.simulation.disturbance_commands) {
-    if (entry.command.mode != CommandMode::kOverride) continue;
-    for (std::size_t i = 0; i < loop.plant_info.inputs.size(); ++i) {
-      const SignalInfo& input = loop.plant_info.inputs[i];
-      const double lower = limits.lower[static_cast<Eigen::Index>(i)],
-                   upper = limits.upper[static_cast<Eigen::Index>(i)];
-      const double asked = entry.command.value.front();
-      if (entry.command.name.front() != "input/" + input.name || (asked >= lower && asked <= upper))
-        continue;
-      found.note("disturbance.commands: input/" + input.name + " at " + exactText(asked) +
-                 " lies beyond the actuator's limits, " + exactText(lower) + ".." +
-                 exactText(upper) + " [" + input.unit + "], and acts as " +
-                 exactText(asked < lower ? lower : upper));
-    }
-  }
-}
-
 }  // namespace
 
 std::vector<RunRemark> unplayedIn(const LoopFile& loop) {
   Unplayed found(loop);
-  addStuckValves(loop, found);
   if (loop.simulation.samples == 0) return found.take();
   addSetpoints(loop, found);
   addDisturbances(loop, found);

@@ -1,5 +1,4 @@
-// What a loop file asks for that does not come: after the end of the run, beyond the actuator.
-// Private to the room.
+// What a loop file asks for that does not come: after the end of the run. Private to the room.
 #pragma once
 
 #include <vector>
@@ -9,8 +8,8 @@
 
 namespace fpc {
 
-/// A remark per list of entries, and per record, of which something never acts (none of an endless
-/// run), and per stuck valve that the actuator's limits hold elsewhere.
+/// A remark per list of entries, and per record, of which something never acts; none of an endless
+/// run.
 std::vector<RunRemark> unplayedIn(const LoopFile& loop);
 
 }  // namespace fpc

@@ -5,7 +5,8 @@
 namespace fpc {
 namespace {
 constexpr double kSilence = 1.0;  // [s] without a measurement that is due
-}
+constexpr double kNews = 5.0;     // [s] in which a refused model degrades the controller
+}  // namespace
 
 std::string ControllerNode::plantName() const {
   const auto& names = loop_.ring.publishers.at(topics::kMeasurement);
@@ -41,19 +42,25 @@ Health ControllerNode::health(double now_s) const {
     return {LoopMode::kDegraded,
             "no answer of " + standin_->optimizer() + ": the base action goes to the plant",
             {standin_->optimizer()}};
-  if (session_.isManual()) return {LoopMode::kManual, "manual", {}};
+  if (session_.isManual())
+    return {LoopMode::kManual,
+            withRefusal(clamped_.empty() ? "manual" : "manual; " + clamped_, now_s),
+            {}};
   if (session_.fellBack()) return {LoopMode::kFallback, session_.output().remark, {}};
   if (session_.answer().base.source == ActionSource::kHeld)
     return {LoopMode::kHeld, session_.output().remark, {}};
   if (!remarks_.lines().empty()) return {LoopMode::kDegraded, remarks_.sentence(), {}};
   if (!plant_.remark().empty()) return {LoopMode::kDegraded, "controlling; " + plant_.remark(), {}};
-  if (!model_problem_.empty())
+  return whileControlling(now_s);
+}
+
+// The model in use goes on as before: that another was refused is news for a while, no state.
+Health ControllerNode::whileControlling(double now_s) const {
+  if (!model_problem_.empty() && now_s - model_refused_s_ < kNews)
     return {LoopMode::kDegraded, "controlling; refused: " + model_problem_, {}};
   std::string words = "controlling";
   if (!session_.modelRemark().empty()) words += "; " + session_.modelRemark();
-  const std::string refusal = refusedLately(now_s);
-  if (!refusal.empty()) words += "; refused: " + refusal;
-  return {LoopMode::kAutomatic, words, {}};
+  return {LoopMode::kAutomatic, withRefusal(std::move(words), now_s), {}};
 }
 
 void ControllerNode::report(Diagnostics::Status& status) const {
@@ -67,6 +74,7 @@ void ControllerNode::report(Diagnostics::Status& status) const {
     status.add("model", model_);
     status.add("model source", model_source_);
     status.add("models taken", session_.models());
+    status.add("latest model refused", model_problem_);
     status.add("gains turned by the model", session_.modelRemark());
   }
   status.add("commands dropped: too many", commands_.dropped());

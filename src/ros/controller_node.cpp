@@ -5,6 +5,7 @@
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
+#include "ros/remark_lines.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
@@ -101,8 +102,7 @@ void ControllerNode::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
       inbox_.put(needed ? matchToPlant(fromMsg(*msg), loop_.plant_info) : TsModel(),
                  headerOf(*msg));
     } catch (const InputError& error) {
-      model_problem_ = error.what();
-      throw;
+      return refuseModel(error.what());
     }
     useModels(nextSample());
     announceIfReady();
@@ -134,10 +134,15 @@ void ControllerNode::useModels(const StepHeader& next) {
       model_problem_.clear();
       ROS_INFO("%s: model %s from the next sample on", name().c_str(), model_.c_str());
     } catch (const InputError& error) {
-      model_problem_ = error.what();
-      refuse(topics::kFuzzyModel, error.what());
+      refuseModel(error.what());
     }
   }
+}
+
+void ControllerNode::refuseModel(const std::string& why) {
+  model_problem_ = why;
+  model_refused_s_ = steadyNow();
+  refuse(topics::kFuzzyModel, why);
 }
 
 void ControllerNode::announceIfReady() {
@@ -187,6 +192,7 @@ void ControllerNode::answer(const Measurement& measurement) {
     case Receipt::kAnswered:
       if (first) settings_.publish();  // those that were restored
       remarks_.look(session_);
+      writeRemark();
       return publish(false);
     case Receipt::kRepeated:
       return publish(true);
@@ -194,6 +200,11 @@ void ControllerNode::answer(const Measurement& measurement) {
     case Receipt::kNotReady:
       return;
   }
+}
+
+void ControllerNode::writeRemark() {
+  if (!session_.isManual()) clamped_.clear();
+  remark_ = joinedLines(joinedLines(remarks_.lines(), clamped_), takeRefusedCommands());
 }
 
 void ControllerNode::publish(bool repeated) {
@@ -204,7 +215,7 @@ void ControllerNode::publish(bool repeated) {
   if (standin_) standin_->asked(answer, repeated);
   if (tracking_.getNumSubscribers() > 0) {
     fmbpc::Tracking tracking = toMsg(answer.tracking);
-    tracking.remark = remarks_.lines();
+    tracking.remark = remark_;
     tracking_.publish(shared(std::move(tracking)));
   }
   if (repeated) return;

@@ -63,6 +63,9 @@ class ControllerNode : public Node {
   void answerParked();
   void tell();  ///< what the operator asks has changed
   void publish(bool repeated);
+  void refuseModel(const std::string& why);
+  void writeRemark();
+  Health whileControlling(double now_s) const;
   void advertiseSignals();
   void publishSignals();
   void log();
@@ -83,7 +86,10 @@ class ControllerNode : public Node {
   SignalPublishers signals_;
   PlantGate plant_;
   std::string model_, model_source_,
-      model_problem_;  // name of the one in use; why the latest was refused
+      model_problem_;         // name of the one in use; why the latest was refused
+  double model_refused_s_{};  // when
+  std::string clamped_;       // the manual input that was asked beyond the limits, in words
+  std::string remark_;        // of the present answer
   WallThrottle log_{1.0};
 
   ros::Publisher base_, prediction_, tracking_, effect_;

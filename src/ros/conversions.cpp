@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "conversion_parts.hpp"
+#include "fmbpc/base/no_value.hpp"
 
 namespace fpc {
 
@@ -105,6 +106,15 @@ PlantInfo fromMsg(const fmbpc::PlantInfo& msg) {
   return info;
 }
 
+namespace {
+
+NoValue reasonOf(std::uint8_t quality) {
+  if (quality == fmbpc::Measurement::STALE) return NoValue::kStale;
+  return quality == fmbpc::Measurement::MISSING ? NoValue::kMissing : NoValue::kNoNumber;
+}
+
+}  // namespace
+
 fmbpc::Measurement toMsg(const Measurement& measurement) {
   fmbpc::Measurement msg;
   fillHeader(msg, measurement.header);
@@ -124,7 +134,8 @@ Measurement fromMsg(const fmbpc::Measurement& msg) {
   for (std::size_t i = 0; i < msg.quality.size(); ++i)
     if (msg.quality[i] != fmbpc::Measurement::GOOD)
       (i < n_y ? m.outputs[static_cast<Eigen::Index>(i)]
-               : m.disturbances[static_cast<Eigen::Index>(i - n_y)]) = std::nan("");
+               : m.disturbances[static_cast<Eigen::Index>(i - n_y)]) =
+          noValue(reasonOf(msg.quality[i]));
   return m;
 }
 

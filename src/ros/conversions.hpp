@@ -57,7 +57,7 @@ fmbpc::Disturbance toDisturbanceMsg(const Command& command);
 Matrix fromMsg(const fmbpc::Matrix& msg);
 SignalInfo fromMsg(const fmbpc::SignalInfo& msg);
 PlantInfo fromMsg(const fmbpc::PlantInfo& msg);
-/// A value whose quality is not good becomes NaN.
+/// A value whose quality is not good becomes NaN, which says why (noValue).
 Measurement fromMsg(const fmbpc::Measurement& msg);
 ControlAction fromMsg(const fmbpc::ControlAction& msg);
 PredictiveAction fromMsg(const fmbpc::PredictiveAction& msg);

@@ -149,7 +149,7 @@ void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
 }
 
 void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
-  record(topics::kPlantState, [&] { session_.receive(fromMsg(*msg)); });
+  record(topics::kPlantState, [&] { session_.receive(fromMsg(*msg), msg->remark); });
 }
 
 void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {

@@ -3,6 +3,7 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <fmbpc/LoopState.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -15,6 +16,12 @@ namespace {
 
 constexpr double kShown = 5.0;             // [s] that a refusal stays in words
 constexpr std::size_t kMostLetters = 300;  // of them
+constexpr std::size_t kMostCommands = 10;  // refused ones that are told to the record
+
+bool isCommand(const std::string& topic) {
+  return topic == topics::kSetpoint || topic == topics::kDisturbance ||
+         topic == topics::kManualInput || topic == topics::kSettings;
+}
 
 std::string shortened(const std::string& words) {
   return words.size() <= kMostLetters ? words : words.substr(0, kMostLetters) + "...";
@@ -64,6 +71,23 @@ void Node::refuse(const char* topic, const std::string& why) {
   refusal_ = std::string(topic) + ": " + shortened(why);
   refusal_s_ = steadyNow();
   if (mayLog(topic)) ROS_WARN("%s: message dropped: %s", topic, shortened(why).c_str());
+  if (isCommand(topic)) noteCommand("command refused: " + shortened(why));
+}
+
+void Node::noteCommand(std::string line) {
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  if (commands_seen_.size() >= kMostCommands && commands_seen_.count(line) == 0) return;
+  commands_seen_.insert(line);
+  if (commands_refused_.size() > kMostCommands * kMostLetters) return;  // nobody takes them
+  commands_refused_ += (commands_refused_.empty() ? "" : "\n") + line;
+}
+
+std::string Node::takeRefusedCommands() { return std::exchange(commands_refused_, {}); }
+
+std::string Node::withRefusal(std::string words, double now_s) const {
+  const std::string refusal = refusedLately(now_s);
+  if (!refusal.empty()) words += "; refused: " + refusal;
+  return words;
 }
 
 std::string Node::refusedLately(double now_s) const {
@@ -76,28 +100,70 @@ void Node::mishap(const char* topic, const std::string& what) {
     ROS_ERROR("%s: %s: %s", name_.c_str(), topic, shortened(what).c_str());
 }
 
-int failToStart(ros::NodeHandle node, const std::string& why) {
+namespace {
+
+/// Says on loop_state and the diagnostics why a node cannot start.
+class Failure {
+ public:
+  Failure(ros::NodeHandle node, const std::string& why)
+      : states_(node.advertise<fmbpc::LoopState>(topics::kLoopState, 1, true)),
+        array_(node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1, true)) {
+    state_.node = ros::this_node::getName();
+    state_.mode = static_cast<std::uint8_t>(LoopMode::kFailed);
+    state_.word = wordOf(LoopMode::kFailed);
+    state_.reason = "cannot start: " + why;
+    diagnostics_.status.resize(1);
+    diagnostics_.status[0].name = state_.node.substr(1) + ": start";
+    diagnostics_.status[0].level = diagnostic_msgs::DiagnosticStatus::ERROR;
+    diagnostics_.status[0].message = state_.reason;
+    say();
+  }
+  void say() {
+    states_.publish(state_);
+    array_.publish(diagnostics_);
+  }
+  bool hasListener() const { return states_.getNumSubscribers() > 0; }
+
+ private:
+  fmbpc::LoopState state_;
+  diagnostic_msgs::DiagnosticArray diagnostics_;
+  ros::Publisher states_, array_;
+};
+
+void pause(double seconds) {
+  ros::spinOnce();
+  ros::WallDuration(seconds).sleep();
+}
+
+void untilHeard(const Failure& failure) {
   constexpr double kHeard = 0.5, kPatience = 3.0;  // [s] after somebody has connected, and in all
-  fmbpc::LoopState state;
-  state.node = ros::this_node::getName();
-  state.mode = static_cast<std::uint8_t>(LoopMode::kFailed);
-  state.word = wordOf(LoopMode::kFailed);
-  state.reason = "cannot start: " + why;
-  diagnostic_msgs::DiagnosticArray diagnostics;
-  diagnostics.status.resize(1);
-  diagnostics.status[0].name = state.node.substr(1) + ": start";
-  diagnostics.status[0].level = diagnostic_msgs::DiagnosticStatus::ERROR;
-  diagnostics.status[0].message = state.reason;
-  const auto states = node.advertise<fmbpc::LoopState>(topics::kLoopState, 1, true);
-  const auto array = node.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1, true);
-  states.publish(state);
-  array.publish(diagnostics);
   const double begun_s = steadyNow();
   double alone_s = begun_s;  // until then
   while (ros::ok() && steadyNow() - alone_s < kHeard && steadyNow() - begun_s < kPatience) {
-    if (states.getNumSubscribers() == 0) alone_s = steadyNow();
-    ros::spinOnce();
-    ros::WallDuration(0.05).sleep();
+    if (!failure.hasListener()) alone_s = steadyNow();
+    pause(0.05);
+  }
+}
+
+std::string loopText(const ros::NodeHandle& private_node) {
+  std::string key, text;
+  if (private_node.searchParam(topics::kLoopText, key)) private_node.getParam(key, text);
+  return text;
+}
+
+}  // namespace
+
+int failToStart(ros::NodeHandle node, const ros::NodeHandle& private_node, const std::string& why) {
+  Failure failure(node, why);
+  if (!private_node.param("respawned", false)) {
+    untilHeard(failure);
+    return 1;
+  }
+  const std::string text = loopText(private_node);
+  ROS_FATAL("%s: waits for another %s", ros::this_node::getName().c_str(), topics::kLoopText);
+  while (ros::ok() && loopText(private_node) == text) {
+    failure.say();
+    pause(RingWatch::kBeat);
   }
   return 1;
 }

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "fmbpc/base/input_error.hpp"
@@ -49,6 +50,11 @@ class Node {
   void mishap(const char* topic, const std::string& what);
   /// The message refused last, in words, for some seconds after it came; then empty.
   std::string refusedLately(double now_s) const;
+  /// "running" with what refusedLately() says.
+  std::string withRefusal(std::string words, double now_s) const;
+  /// For the record: commands of people that were refused since it was asked last, one line each;
+  /// the first ten that differ, in all.
+  std::string takeRefusedCommands();
   /// False: the message says something of `node` but comes from another; it is dropped and counted.
   bool speaksFor(const char* topic, const std::string& publisher, const std::string& node);
   const std::map<std::string, std::uint64_t>& refused() const { return refused_; }
@@ -78,6 +84,7 @@ class Node {
   }
 
  private:
+  void noteCommand(std::string line);
   bool mayPass(const char* topic, const std::string& publisher);
   bool mayLog(const std::string& what);
   template <typename Msg, typename Handler>
@@ -96,13 +103,16 @@ class Node {
   int exit_code_{0};
   std::map<std::string, std::uint64_t> refused_;
   std::map<std::string, WallThrottle> logs_;  // by topic and reason: one flood silences no other
+  std::set<std::string> commands_seen_;       // refused, in words
+  std::string commands_refused_;              // lines that nobody has taken yet
   std::string refusal_;                       // the latest
   double refusal_s_{};
 };
 
 /// For a node that cannot start: says why on loop_state and the diagnostics, stays long enough to
-/// be heard, and returns 1.
-int failToStart(ros::NodeHandle node, const std::string& why);
+/// be heard, and returns 1. With ~respawned true its launch would start it again and again on the
+/// same text: it stays, failed in words, until `loop_text` has changed.
+int failToStart(ros::NodeHandle node, const ros::NodeHandle& private_node, const std::string& why);
 
 /// The loop that the launch file gave as text: parameter `loop_text`, searched upwards.
 /// @throws InputError if there is none or it is no loop.
@@ -148,7 +158,7 @@ int runNode(int argc, char** argv, const std::string& name) {
     return running.finish();
   } catch (const std::exception& error) {
     ROS_FATAL("%s: %s", name.c_str(), error.what());
-    return failToStart(node, error.what());
+    return failToStart(node, private_node, error.what());
   }
 }
 

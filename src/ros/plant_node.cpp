@@ -252,14 +252,14 @@ Health PlantNode::runningHealth(double now_s) const {
   }
   const Health plant = plantHealth();
   const bool its_own_hand = plant.mode == LoopMode::kManual;
-  if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= others.mode))
-    return plant;
-  const double late_s = session_.unansweredFor(now_s);
-  if (late_s > kPatience && loop_.ring.pace != Pace::kRealtime)
-    return {LoopMode::kStalled, "no action for sample " + step + who, silent};
+  const bool late = session_.unansweredFor(now_s) > kPatience && loop_.ring.pace != Pace::kRealtime;
+  const LoopMode worst = late ? std::max(others.mode, LoopMode::kStalled) : others.mode;
+  if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= worst)) return plant;
+  if (late) return {LoopMode::kStalled, "no action for sample " + step + who, silent};
   if (!silent.empty()) return {LoopMode::kDegraded, "no word from " + join(silent), silent};
   if (!session_.stuck().empty()) return {LoopMode::kDegraded, session_.stuck(), {}};
-  if (others.mode == LoopMode::kAutomatic) return {LoopMode::kAutomatic, "running", {}};
+  if (others.mode == LoopMode::kAutomatic)
+    return {LoopMode::kAutomatic, withRefusal("running", now_s), {}};
   if (others.mode == LoopMode::kManual) return {LoopMode::kManual, others.words, {}};
   const bool as_it_is = others.mode == LoopMode::kHeld || others.mode == LoopMode::kFallback;
   return {as_it_is ? others.mode : LoopMode::kDegraded, others.words, others.missing};

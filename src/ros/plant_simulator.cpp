@@ -6,6 +6,7 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
+#include "ros/remark_lines.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
@@ -32,6 +33,7 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
       simulation_(static_cast<SimulatedProcess&>(session().process()).simulation()),
       lines_(loop.tf.sample_lines),
       commands_(loop.ring.commands_per_s, kBurst),
+      forced_(simulation_.info()),
       state_(node.advertise<fmbpc::PlantState>(topics::kPlantState, topics::kRingQueue)),
       effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect, topics::kRingQueue)),
       disturbance_subscriber_(subscribe(node, topics::kDisturbance, topics::kViewQueue,
@@ -51,8 +53,25 @@ std::vector<std::string> PlantSimulator::plantMissing() {
 }
 
 void PlantSimulator::afterSample() {
-  if (state_.getNumSubscribers() > 0) state_.publish(shared(toMsg(simulation_.state())));
+  const std::string before = forced_.lines();
+  forced_.look(simulation_.measurement().header.step, simulation_.effects());
+  if (!forced_.lines().empty() && forced_.lines() != before)
+    ROS_WARN("plant_simulator: %s", inOneLine(forced_.lines()).c_str());
+  publishState();
   for (const CommandEffect& effect : simulation_.effects()) effect_.publish(toMsg(effect));
+}
+
+void PlantSimulator::publishState() {
+  std::string remark = joinedLines(forced_.lines(), takeRefusedCommands());
+  if (state_.getNumSubscribers() == 0) return;
+  fmbpc::PlantState state = toMsg(simulation_.state());
+  state.remark = std::move(remark);
+  state_.publish(shared(std::move(state)));
+}
+
+Health PlantSimulator::plantHealth() const {
+  if (forced_.lines().empty()) return PlantNode::plantHealth();
+  return {LoopMode::kDegraded, inOneLine(forced_.lines()), {}};
 }
 
 void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
@@ -67,6 +86,7 @@ void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
 
 void PlantSimulator::addValues(Diagnostics::Status& status) const {
   status.add("commands dropped: too many", commands_.dropped());
+  status.add("samples with an input clamped", forced_.samples());
 }
 
 }  // namespace fpc

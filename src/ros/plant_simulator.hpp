@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/loop/forced_inputs.hpp"
 #include "fmbpc/plant/simulation.hpp"
 #include "ros/plant_node.hpp"
 
@@ -25,14 +26,17 @@ class PlantSimulator : public PlantNode {
   PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
                  std::unique_ptr<SimulatedProcess> simulation);
   void onDisturbance(const fmbpc::Disturbance::ConstPtr& msg);
+  void publishState();
   std::vector<std::string> plantMissing() override;
   VectorRef shownDisturbances() const override { return simulation_.state().disturbances; }
   void afterSample() override;
+  Health plantHealth() const override;
   void addValues(Diagnostics::Status& status) const override;
 
   Simulation& simulation_;  // the session's
   SampleLines lines_;
   RateLimit commands_;
+  ForcedInputs forced_;
   ros::Publisher state_, effect_;
   ros::Subscriber disturbance_subscriber_;
 };

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/no_value.hpp"
 
 namespace fpc {
 namespace control_plausibility_test {
@@ -48,6 +49,14 @@ TEST(Plausibility, AsksNothingByItselfButNumbers) {
   EXPECT_EQ(watch.look(-1e9), Verdict::kClean);
   EXPECT_EQ(watch.look(kNaN), Verdict::kHold);
   EXPECT_STREQ(watch.judge.words(), "x is no number: input held");
+}
+
+TEST(Plausibility, AValueThatIsMissingForAReasonIsCalledByIt) {
+  Watch watch(params());
+  EXPECT_EQ(watch.look(noValue(NoValue::kStale)), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x is stale: input held");
+  EXPECT_EQ(watch.look(noValue(NoValue::kMissing)), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x has not come: input held");
 }
 
 TEST(Plausibility, RangeHoldsThenFallsBackAndReturnsAtOnce) {

@@ -42,13 +42,22 @@ TEST(RecentSamples, TheTrueModelErrsByNothingAndOneWithHalfTheGainByHalfTheInput
 
 TEST(RecentSamples, FewSamplesOrAGapSayNothing) {
   RecentSamples recent(test::infoOf(model(0.8, 0.5)));
-  live(recent, RecentSamples::kKept - 1);
+  live(recent, RecentSamples::kFewest - 1);
   EXPECT_EQ(recent.errorsOf(model(0.8, 0.5)).size(), 0);
   live(recent, 1);
   EXPECT_EQ(recent.errorsOf(model(0.8, 0.5)).size(), 1);
   recent.reset();
   live(recent, 5);
   EXPECT_EQ(recent.errorsOf(model(0.8, 0.5)).size(), 0);
+}
+
+TEST(RecentSamples, AFewTellAWrongModelFromTheTrueOne) {
+  for (int samples = RecentSamples::kFewest; samples <= RecentSamples::kKept + 9; ++samples) {
+    RecentSamples recent(test::infoOf(model(0.8, 0.5)));
+    live(recent, samples);
+    EXPECT_LE(recent.errorsOf(model(0.8, 0.5))[0], 1e-15) << samples;
+    EXPECT_GT(recent.errorsOf(model(-0.8, -0.5))[0], 0.1) << samples;
+  }
 }
 
 TEST(RecentSamples, AModelThatTurnsAGainMustForeseeWhatCame) {

@@ -118,7 +118,7 @@ def hold_is_kept(loop):
     return None if held else "the hold was forgotten"
 
 
-def wrong(topic, what, counted=True, **fields):
+def wrong(topic, what, counted=True, said=None, **fields):
     def do(loop):
         kind, now = loop.publishers[topic].data_class, dict(fields)
         if now.get("name") == "output":
@@ -130,7 +130,10 @@ def wrong(topic, what, counted=True, **fields):
     def undo(loop):
         if not counted and topic == "setpoint":
             asked(loop, name=[loop.info().outputs[-1].name], value=[], mode=3)
-    return Fault(f"person: {topic}, {what}", do, undo, counted=REFUSED[topic] if counted else None, lasts=1.0)
+        if said:
+            loop.send(topic, loop.publishers[topic].data_class(name=["input/" + loop.info().inputs[0].name], mode=3))
+    counter = REFUSED[topic] if counted is True else counted or None
+    return Fault(f"person: {topic}, {what}", do, undo, said=said, counted=counter, lasts=1.0)
 
 
 def flood(topic):
@@ -190,9 +193,11 @@ FAULTS = [
     wrong("setpoint", "no value", name="output", value=[], mode=1),
     wrong("setpoint", "1e300", counted=False, name="output", value=[1e300], mode=1),
     wrong("disturbance", "infinite", name="input", value=[math.inf], mode=1),
+    wrong("disturbance", "input 1e300", said="was asked to be 1e\\+300, beyond its limits", counted=(PLANT, "samples with an input clamped"),
+          name="input", value=[1e300], mode=1),
     wrong("disturbance", "of nobody", name=["nobody"], value=[1.0], mode=1),
     flood("setpoint"), flood("disturbance"),
-    Fault("person: manual input of 1e300", huge_manual, automatic, said="manual", lasts=0.5),
+    Fault("person: manual input of 1e300", huge_manual, automatic, said="manual; .* and clamped to", lasts=0.5),
     Fault("person: manual and back 25 times", toggles, lasts=0.5),
     Fault("person: plant paused and resumed", pause, resume, said="paused", lasts=3.0),
     Fault("person: five single steps", steps, resume, said="paused", lasts=0.5),

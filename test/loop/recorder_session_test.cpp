@@ -18,6 +18,12 @@ Measurement measurement(std::uint32_t step, bool final = false, std::uint64_t ru
 }
 
 Tracking tracking(std::uint32_t step) { return {header(step), Vector::Ones(1), Vector::Ones(1)}; }
+PlantState state(std::uint32_t step) {
+  PlantState s;
+  s.header = header(step);
+  s.outputs = Vector::Ones(1);
+  return s;
+}
 ControlAction action(std::uint32_t step) {
   return {header(step), Vector::Ones(1), ActionSource::kBase};
 }
@@ -30,11 +36,12 @@ SolverReport report(std::uint32_t step) {
 
 class RecorderSessionTest : public ::testing::Test {
  protected:
-  RecorderSession recorder(bool has_optimizer = false) {
+  RecorderSession recorder(bool has_optimizer = false, bool has_state = false) {
     RecordLayout layout;
     layout.info.outputs = {{"y", "-", 0, 1}};
     layout.info.inputs = {{"u", "-", 0, 1}};
     layout.has_optimizer = has_optimizer;
+    layout.has_state = has_state;
     return {layout, [this](const SampleRecord& s) { passed_.push_back(s); }};
   }
   static void addSample(RecorderSession& r, std::uint32_t step, bool final = false) {
@@ -183,6 +190,22 @@ TEST_F(RecorderSessionTest, RemarksOfASampleAreCountedLineByLine) {
   EXPECT_EQ(record.remarks[0].samples, 2U);
   EXPECT_EQ(record.remarks[1].words, "held");
   EXPECT_EQ(record.remarks[1].first, 1U);
+}
+
+TEST_F(RecorderSessionTest, RemarksOfThePlantFollowThoseOfTheControllerWhoeverIsHeardFirst) {
+  RecorderSession r = recorder(false, true);
+  r.announce(7);
+  for (const bool plant_first : {true, false}) {
+    const std::uint32_t step = plant_first ? 0 : 1;
+    if (plant_first) r.receive(state(step), "clamped");
+    r.receive(tracking(step), "held");
+    if (!plant_first) r.receive(state(step), "clamped");
+    r.receive(measurement(step));
+    r.receiveBase(action(step));
+  }
+  ASSERT_EQ(passed_.size(), 2U);
+  EXPECT_EQ(passed_[0].remark, "held\nclamped");
+  EXPECT_EQ(passed_[1].remark, "held\nclamped");
 }
 
 TEST_F(RecorderSessionTest, OfTooManyRemarksTheWholeLinesAreKeptThatAJournalHolds) {

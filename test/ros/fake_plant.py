@@ -7,7 +7,8 @@ import unittest
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
-from fmbpc.msg import CommandEffect, ControlAction, LoopState, Measurement, NodeReady, PlantInfo, Setpoint, Tracking
+from fmbpc.msg import (CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, NodeReady, PlantInfo, Setpoint,
+                       Tracking)
 from fmbpc.srv import ManualInput
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import SetBool
@@ -63,9 +64,19 @@ class FakePlant(unittest.TestCase):
         except AssertionError:
             return False
 
-    def message(self, step, run_id=None, outputs=(200.0, 2000.0), final=False):
+    def wait_for_state(self, step, fits):
+        """Meanwhile the sample is sent again: who gets no measurement is stalled."""
+        state = ring.Listener("loop_state", LoopState, "/fmbpc_controller")
+
+        def said():
+            self.send(step)
+            return any(fits(m) for m in list(state.messages))
+        ring.wait_until(said, "the controller to say it")
+
+    def message(self, step, run_id=None, outputs=(200.0, 2000.0), final=False, quality=()):
         msg = Measurement(run_id=self.info.run_id if run_id is None else run_id, step=step, outputs=outputs,
-                          disturbances=[1300.0, 430.0], input_applied=self.applied, final=final)
+                          disturbances=[1300.0, 430.0], input_applied=self.applied, final=final,
+                          quality=quality)
         msg.header.stamp = self.info.header.stamp + rospy.Duration(720 * step)
         return msg
 
@@ -161,18 +172,44 @@ class FakePlant(unittest.TestCase):
         self.assertEqual((MANUAL, self.applied), (action.source, list(action.input)))
         self.assertTrue(by_hand([700.0]).success)
         self.assertEqual((700.0,), self.answer(3).input)
+        before = int(ring.values(self.status.wait(lambda s: True)).get("refused: manual_input", 0))
         for refused in ([], [1.0, 2.0], [math.nan]):
             reply = by_hand(refused)
             self.assertEqual((False, True), (reply.success, "manual input" in reply.message))
-        self.assertTrue(by_hand([99999.0]).success)
+        reply, words = by_hand([99999.0]), "the manual input of q_r was asked to be 99999 and clamped to 1600"
+        self.assertTrue(reply.success)
+        self.assertIn(words, reply.message)
         self.assertEqual((self.info.inputs[0].upper,), self.answer(4).input)
-        self.assertTrue(by_hand([650.0]).success)
+        self.assertIn(words, self.remark(4))
+        self.assertIn("command refused: manual input: expected ", self.remark(4))
+        self.wait_for_state(4, lambda s: s.mode == LoopState.MANUAL and words in s.reason)
+        self.status.wait(lambda s: ring.values(s).get("refused: manual_input") == str(before + 3))
+        self.assertEqual("", by_hand([650.0]).message)
         self.answer(5)
-        self.status.wait(lambda s: s.message == "manual")
+        self.assertNotIn(words, self.remark(5))
+        self.wait_for_state(5, lambda s: s.mode == LoopState.MANUAL and words not in s.reason)
         self.assertEqual("auto", manual(False).message)
         action = self.answer(6)
         self.assertEqual(BASE, action.source)
         self.assertAlmostEqual(650.0, action.input[0], delta=1e-6)
+
+    def remark(self, step):
+        return self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, step)).remark
+
+    def test_a_value_that_is_stale_or_has_not_come_is_called_so(self):
+        for step, (quality, words) in enumerate(((Measurement.STALE, "is stale"), (Measurement.MISSING, "has not come"),
+                                                 (Measurement.BAD, "is no number")), 1):
+            action = self.answer(step, quality=[Measurement.GOOD, quality] + [Measurement.GOOD] * len(self.info.disturbances))
+            self.assertEqual(HELD, action.source)
+            self.assertEqual(f"x {words}: input held", self.remark(step).split("\n")[0])
+
+    def test_a_model_that_is_refused_degrades_the_controller_for_a_while(self):
+        before = self.status.counts().get("refused: fuzzy_model", 0)
+        self.answer(1)
+        ring.publisher("fuzzy_model", FuzzyModel, "/fmbpc_controller").publish(FuzzyModel(name="empty"))
+        self.wait_for_state(1, lambda s: s.mode == LoopState.DEGRADED and s.reason.startswith("controlling; refused: "))
+        self.wait_for_state(1, lambda s: s.mode == LoopState.AUTOMATIC and "refused" not in s.reason)
+        self.assertEqual(before + 1, self.status.counts()["refused: fuzzy_model"])
 
     def test_a_setpoint_without_a_stamp_acts_at_the_next_sample(self):
         effects = ring.Listener("setpoint_effect", CommandEffect)
@@ -200,7 +237,6 @@ class FakePlant(unittest.TestCase):
     def test_a_setpoint_beyond_its_limits_is_clamped_and_said(self):
         words = "a setpoint of x was asked beyond its limits"
         before = self.status.counts()["samples with a setpoint clamped"]
-        state = ring.Listener("loop_state", LoopState, "/fmbpc_controller")
         setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
         setpoint.publish(name=["x"], value=[1e9], mode=Setpoint.OVERRIDE)
         self.log.wait(lambda m: "setpoint of x from sample 1 on" in m.msg)
@@ -208,11 +244,7 @@ class FakePlant(unittest.TestCase):
         now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 1))
         self.assertTrue(now.remark.split("\n")[-1].startswith(words), now.remark)
         self.log.wait(lambda m: m.level == Log.WARN and words in m.msg)
-
-        def said():
-            self.send(1)  # who gets no measurement is stalled
-            return any(m.mode == LoopState.DEGRADED and words in m.reason for m in list(state.messages))
-        ring.wait_until(said, "the controller to say it")
+        self.wait_for_state(1, lambda s: s.mode == LoopState.DEGRADED and words in s.reason)
         self.status.wait(lambda s: int(ring.values(s)["samples with a setpoint clamped"]) == before + 1)
         setpoint.publish(name=["x"], value=[], mode=Setpoint.RELEASE)
         self.log.wait(lambda m: "setpoint of x from sample 2 on" in m.msg)

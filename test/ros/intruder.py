@@ -132,7 +132,10 @@ class Intruder(unittest.TestCase):
         folder = recorded.wait().data
         with tempfile.TemporaryDirectory() as reference:
             ring.run_in_process(loop, reference, sets)
-            ring.assert_same_run(self, folder, reference)
+            ring.assert_same_run(self, folder, reference, beyond="command refused: ")
+        said = [r["words"] for r in ring.summary(folder)["remarks"]]
+        for refused in ("name 'nobody': ", "value of q_i: "):  # on setpoint and on disturbance
+            self.assertTrue(any(words.startswith("command refused: " + refused) for words in said), said)
         self.assertEqual([], [s.reason for s in states.messages if s.summary and LIE in s.reason])
         for node, keys in CLOSED if closed else OPEN:
             diagnostics.wait(lambda m, n=node, k=keys: ring.diagnostics_of(m, n) is not None and all(

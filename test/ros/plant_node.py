@@ -7,7 +7,8 @@ import unittest
 
 import rospy
 import rostest
-from fmbpc.msg import CommandEffect, ControlAction, Disturbance, Measurement, NodeReady, PlantInfo, PlantState, Signal
+from fmbpc.msg import (CommandEffect, ControlAction, Disturbance, LoopState, Measurement, NodeReady, PlantInfo, PlantState,
+                       Signal)
 from rosgraph_msgs.msg import Clock, Log
 from std_srvs.srv import SetBool, Trigger
 from tf2_msgs.msg import TFMessage
@@ -107,6 +108,34 @@ class PlantNode(unittest.TestCase):
         self.assertEqual(0, self.state().actuator_clips)
         self.advance(1601.0)
         self.assertEqual(1, self.state().actuator_clips)
+
+    def test_an_input_put_beyond_its_limits_is_clamped_and_said(self):
+        words = "input/q_r was asked to be 1e+300, beyond its limits, 0..1600 [m3/h], and clamped"
+        before, states = self.status.counts()["samples with an input clamped"], ring.Listener("loop_state", LoopState)
+        pub = ring.publisher("disturbance", Disturbance, "/plant_simulator")
+        self.log.clear()
+        pub.publish(name=["input/q_r"], value=[1e300], mode=Disturbance.OVERRIDE)
+        self.log.wait(lambda m: "disturbance of input/q_r from sample 1 on" in m.msg)
+        self.advance()
+        self.assertEqual(words, self.state().remark)
+        self.assertEqual((1600.0,), self.advance().input_applied)
+        for _ in range(5):  # a better word than that of before comes after a second; who gets no action is stalled
+            states.clear()
+            self.advance()
+            said = states.wait(lambda s: s.summary)
+            if said.mode == LoopState.DEGRADED:
+                break
+        self.assertEqual((LoopState.DEGRADED, words), (said.mode, said.reason))
+        self.status.wait(lambda s: ring.values(s)["samples with an input clamped"] == str(before + self.now.step))
+        self.log.clear()
+        pub.publish(name=["input/q_r"], value=[math.inf], mode=Disturbance.OVERRIDE)
+        self.log.wait(lambda m: "expected finite numbers" in m.msg)
+        self.advance()
+        self.assertEqual(words + "\ncommand refused: value: expected finite numbers", self.state().remark)
+        pub.publish(name=["input/q_r"], value=[], mode=Disturbance.RELEASE)
+        self.log.wait(lambda m: f"disturbance of input/q_r from sample {self.now.step + 1} on" in m.msg)
+        self.advance()
+        self.assertEqual("", self.state().remark)
 
     def test_a_disturbance_without_a_stamp_acts_at_the_next_sample(self):
         effects = ring.Listener("disturbance_effect", CommandEffect)

@@ -122,6 +122,22 @@ class Records(unittest.TestCase):
         self.assertGreater(summary["steps"], 0)
         self.assertFalse(os.path.exists(os.path.join(self.out, "journal.bin")))
 
+    def test_a_node_that_is_started_again_and_again_on_a_bad_loop_stays_until_there_is_another(self):
+        rospy.set_param("stays/loop_text", "plant: [")
+        rospy.set_param("stays/fmbpc_controller/respawned", True)
+        states = ring.Listener("stays/loop_state", LoopState, connected=False)
+        controller = subprocess.Popen(ring.tied([ring.program("fmbpc_controller"), "__ns:=stays"]), stderr=subprocess.PIPE,
+                                      text=True)
+        self.addCleanup(controller.stderr.close)
+        self.addCleanup(ring.killed, controller)
+        for _ in range(8):  # for longer than one that ends would be heard
+            self.assertEqual(LoopState.FAILED, states.wait(lambda s: "cannot start: " in s.reason).mode)
+            states.clear()
+        self.assertIsNone(controller.poll())
+        rospy.set_param("stays/loop_text", "plant: [[")
+        self.assertEqual(1, controller.wait(ring.PATIENCE))
+        self.assertIn("waits for another loop_text", controller.stderr.read())
+
     def test_in_a_namespace_with_a_bag_and_quotes_in_the_names(self):
         out = os.path.join(self.out, "it's mine")
         text = Launch(self, "loop:=asp_case1", "set:=sampling.duration_h=2", "pace:=lockstep", "ns:=/a", "record:=true",

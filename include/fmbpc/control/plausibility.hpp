@@ -1,5 +1,5 @@
 // Can this measurement be true? Each signal is judged by itself: range, rate, jump, freezing. What
-// its instrument or its link does not vouch for has become NaN before.
+// its instrument or its link does not vouch for has become NaN before (noValue).
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,17 @@
 namespace fpc {
 
 /// Why a value is not accepted.
-enum class Doubt : std::uint8_t { kNone, kNoNumber, kRange, kRate, kJump, kFrozen };
-inline constexpr std::size_t kDoubts = 6;
+enum class Doubt : std::uint8_t {
+  kNone,
+  kNoNumber,
+  kStale,
+  kMissing,
+  kRange,
+  kRate,
+  kJump,
+  kFrozen
+};
+inline constexpr std::size_t kDoubts = 8;
 
 /// What becomes of a sample.
 enum class Verdict : std::uint8_t {

@@ -12,16 +12,16 @@ namespace fpc {
 class RecentSamples {
  public:
   static constexpr int kKept = 40;
-  static constexpr int kJudged = 20;  ///< the latest of them; those before fill a model's lags
+  static constexpr int kFewest = 8;  ///< before that nothing is judged
 
   explicit RecentSamples(const PlantInfo& plant);
   /// A sample was lost or not accepted: those before say nothing of what follows.
   void reset() { count_ = 0; }
   /// Sample k; its input_applied is u(k-1). No allocation.
   void add(const Measurement& now);
-  bool enough() const { return count_ == kKept; }
-  /// n_y: root mean square of the errors one sample ahead over the judged samples, of a model
-  /// matched to the plant; empty before there are enough.
+  bool enough() const { return count_ >= kFewest; }
+  /// n_y: root mean square of the errors one sample ahead over the later half of the samples, of a
+  /// model matched to the plant; those before fill its lags. Empty before there are enough.
   Vector errorsOf(const TsModel& model) const;
 
  private:

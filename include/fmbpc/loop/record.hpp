@@ -19,7 +19,8 @@ struct SampleRecord {
   ControlAction base;
   ControlAction action;  ///< what the plant was told (equals base without an optimizer)
   SolverReport report;
-  std::string remark;  ///< what did not go as asked (SampleRemarks), one remark a line
+  std::string remark;  ///< what did not go as asked: the controller's (SampleRemarks), the plant's;
+                       ///< one a line
   bool has_measurement{}, has_state{}, has_tracking{}, has_base{}, has_action{}, has_report{};
 };
 
