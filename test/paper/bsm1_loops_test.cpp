@@ -106,6 +106,21 @@ TEST_F(Bsm1Loops, FmbpcPassesTheBaselineInClassA) {
   }
 }
 
+// The supervisor tuned again with the numbers that ours may turn: the baseline without a handicap.
+TEST_F(Bsm1Loops, FmbpcPassesTheSupervisorWithItsLevers) {
+  if (isShort()) GTEST_SKIP() << "long run: scripts/test --long";
+  for (const std::string influent : {"", "_rain"}) {
+    const EffluentReport baseline = evaluated("bsm1_supervisor_tuned" + influent);
+    EXPECT_LT(baseline.EQI, evaluated("bsm1_supervisor" + influent).EQI)
+        << "tuned again" << influent;
+    for (const std::string law : {"bsm1_fmbpc", "bsm1_fmbpc_tuned"}) {
+      const EffluentReport ours = evaluated(law + influent);
+      EXPECT_LT(ours.EQI, baseline.EQI) << law + influent;
+      EXPECT_LT(ours.OCI, baseline.OCI) << law + influent;
+    }
+  }
+}
+
 TEST_F(Bsm1Loops, SampledPisAreTheContinuousOnes) {
   if (isShort()) GTEST_SKIP() << "long run: scripts/test --long";
   const EffluentReport r = evaluated("bsm1_default_sampled");
