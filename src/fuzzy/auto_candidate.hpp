@@ -20,11 +20,12 @@ enum class AntecedentChoice {
 
 /// Enough to fit it again on other rows.
 struct Candidate {
-  bool hidden{false};      ///< own state, or the output's past
-  int order{2};            ///< states
-  int input_terms{2};      ///< past values of each input, not hidden
-  std::vector<int> delay;  ///< of each input and disturbance
-  int later{};             ///< added to every delay, but none becomes negative
+  bool hidden{false};                         ///< own state, or the output's past
+  int order{2};                               ///< states
+  int input_terms{2};                         ///< past values of each input, not hidden
+  std::vector<int> delay;                     ///< of each input and disturbance
+  std::vector<std::vector<int>> block_delay;  ///< the same for each held-out block; none: `delay`
+  int later{};                                ///< added to every delay, but none becomes negative
   int rules{1};
   AntecedentChoice antecedents{AntecedentChoice::kOutput};
   double ridge{10.0};         ///< of the rules towards the linear model

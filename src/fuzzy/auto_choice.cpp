@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "fmbpc/base/order_statistics.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
 
 namespace fpc {
@@ -32,8 +33,7 @@ double widthOf(const Vector& errors) {
       std::min<double>(std::ceil(kCoverage * static_cast<double>(sizes.size() + 1)),
                        static_cast<double>(sizes.size())) -
       1.0);
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(at), sizes.end());
-  return sizes[at];
+  return orderStatistic(std::move(sizes), at);
 }
 
 /// rmse over about kPieces parts of the blocks, none across two of them.

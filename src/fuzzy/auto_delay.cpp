@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "fmbpc/base/parallel.hpp"
+
 namespace fpc {
 namespace {
 
@@ -172,9 +174,23 @@ DelayGuess guessDelays(const AutoData& p, int longest) {
   std::vector<int> running = far;
   for (std::size_t j = 0; j < m; ++j)
     if (free[j] > near) running[j] = free[j];
-  if (far != guess.delay) guess.longer.push_back(far);
-  if (running != far) guess.longer.push_back(running);
+  guess.longer = {far, running};
   return guess;
+}
+
+std::vector<DelayGuess> guessDelaysByBlock(const AutoData& p, int longest, int threads) {
+  std::vector<DelayGuess> guesses(p.windows.size());
+  parallelFor(guesses.size(), threads, [&](std::size_t b) {
+    AutoData seen = p;
+    const Stretch w = p.windows[b];
+    seen.scaled.col(p.output).segment(w.first, w.last - w.first).setConstant(kNaN);
+    guesses[b] = guessDelays(seen, longest);
+  });
+  return guesses;
+}
+
+bool DelayGuess::isOpen() const {
+  return std::any_of(longer.begin(), longer.end(), [this](const auto& d) { return d != delay; });
 }
 
 }  // namespace fpc

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fmbpc/base/order_statistics.hpp"
 #include "fuzzy/auto_search.hpp"
 
 namespace fpc {
@@ -65,11 +66,9 @@ double seenError(const AutoData& data, const Fitted& fitted, const std::vector<S
 }
 
 std::vector<bool> stuckStarts(const std::vector<double>& seen) {
-  std::vector<double> sorted = seen;
-  const auto quartile = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) / 4);
-  std::nth_element(sorted.begin(), quartile, sorted.end());
+  const double quartile = quantile(seen, 0.25);
   std::vector<bool> stuck;
-  for (const double e : seen) stuck.push_back(!(e <= kStuck * *quartile));
+  for (const double e : seen) stuck.push_back(!(e <= kStuck * quartile));
   return stuck;
 }
 

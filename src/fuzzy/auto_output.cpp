@@ -9,6 +9,7 @@
 #include "fmbpc/base/parallel.hpp"
 #include "fuzzy/auto_choice.hpp"
 #include "fuzzy/auto_delay.hpp"
+#include "fuzzy/contradiction.hpp"
 
 namespace fpc {
 namespace {
@@ -49,7 +50,8 @@ class OutputSearch {
     require(!searched_.linear.empty(), data_.data->source + ": output '" + name() + "'",
             "a linear model that runs freely without leaving the data; none did in all of " +
                 std::to_string(data_.windows.size()) +
-                " blocks (fewer --blocks or a smaller --window, if a block has only few rows)");
+                " blocks (fewer --blocks or a smaller --window, if a block has only few rows)" +
+                (contradiction_.empty() ? "" : "; " + contradiction_));
     chooseModels();
     chooseState();
     decide();
@@ -83,9 +85,16 @@ class OutputSearch {
             : usual;
     const DelayGuess guess = guessDelays(data_, longest);
     found_.delay = guess.delay;
-    if (!guess.longer.empty())
-      found_.delay = bestDelays(data_, guess.delay, guess.longer, params_.seed, limits_);
+    if (guess.isOpen())
+      found_.delay = bestDelays(data_, guess, guessDelaysByBlock(data_, longest, limits_.threads),
+                                params_.seed, limits_);
     remarkDelays(guess, longest);
+    if (!data_.known.empty()) contradict({guess.delay, found_.delay});
+  }
+
+  void contradict(const std::vector<std::vector<int>>& delays) {
+    contradiction_ = contradiction(data_, delays, limits_);
+    if (!contradiction_.empty()) result_.contradictions.push_back(name() + ": " + contradiction_);
   }
 
   void remarkDelays(const DelayGuess& guess, int longest) {
@@ -276,7 +285,7 @@ class OutputSearch {
   AutoOutput found_;
   StructureSearch searched_;
   bool fuzzy_chosen_{false}, states_complete_{true};
-  std::string linear_text_, fuzzy_text_;
+  std::string linear_text_, fuzzy_text_, contradiction_;
   std::vector<std::string> members_;
 };
 

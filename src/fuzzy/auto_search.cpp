@@ -24,10 +24,16 @@ class Search {
       : data_(data), delay_(delay), seed_(seed), limits_(limits) {}
 
   /// The lowest score of a few linear models.
-  double lowestOfLines() {
-    judge(delayCandidates(base()), 0.0, 0.0);
+  double lowestOfLines(const std::vector<std::vector<int>>& block_delay) {
+    Candidate c = base();
+    c.block_delay = block_delay;
+    judge(delayCandidates(c), 0.0, 0.0);
     sortAll();
     return result_.linear.empty() ? kInfinity : result_.linear.front().score;
+  }
+
+  std::vector<Judgement> judgeOnly(const Candidates& candidates) {
+    return judgeAll(candidates, 0.0, 0.0);
   }
 
   StructureSearch run(bool states) {
@@ -115,7 +121,9 @@ void Search::deepen(std::size_t groups, double from, double to) {
 
 void Search::judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const {
   const auto training = trainingStretches(data_, static_cast<int>(block));
-  const Fitted fitted = fitCandidate(data_, j.candidate, training);
+  Candidate c = j.candidate;
+  if (!c.block_delay.empty()) c.delay = c.block_delay[block];
+  const Fitted fitted = fitCandidate(data_, c, training);
   if (!fitted.finite) return;
   const Stretch w = data_.windows[block];
   free = freeRunOf(data_, fitted, w, limits_.window);
@@ -193,17 +201,29 @@ StructureSearch searchStructures(const AutoData& data, const std::vector<int>& d
   return Search(data, delay, seed, limits).run(states);
 }
 
-std::vector<int> bestDelays(const AutoData& data, const std::vector<int>& usual,
-                            const std::vector<std::vector<int>>& others, std::uint64_t seed,
+std::vector<Judgement> judgeCandidates(const AutoData& data, const Candidates& candidates,
+                                       const SearchLimits& limits) {
+  const std::vector<int> none;
+  return Search(data, none, 1, limits).judgeOnly(candidates);
+}
+
+std::vector<int> bestDelays(const AutoData& data, const DelayGuess& guess,
+                            const std::vector<DelayGuess>& by_block, std::uint64_t seed,
                             const SearchLimits& limits) {
   constexpr double kWorth = 0.97;
-  std::vector<int> best = usual;
-  double lowest = kWorth * Search(data, usual, seed, limits).lowestOfLines();
-  for (const auto& delay : others) {
-    const double score = Search(data, delay, seed, limits).lowestOfLines();
+  const auto scoreOf = [&](const std::vector<int>& delay, auto&& of_block) {
+    std::vector<std::vector<int>> blocks;
+    for (const auto& g : by_block) blocks.push_back(of_block(g));
+    return Search(data, delay, seed, limits).lowestOfLines(blocks);
+  };
+  std::vector<int> best = guess.delay;
+  double lowest = kWorth * scoreOf(guess.delay, [](const auto& g) { return g.delay; });
+  for (std::size_t i = 0; i < guess.longer.size(); ++i) {
+    if (guess.longer[i] == guess.delay) continue;
+    const double score = scoreOf(guess.longer[i], [i](const auto& g) { return g.longer[i]; });
     if (!(score < lowest)) continue;
     lowest = score;
-    best = delay;
+    best = guess.longer[i];
   }
   return best;
 }

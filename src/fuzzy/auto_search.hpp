@@ -6,6 +6,7 @@
 
 #include "fmbpc/fuzzy/auto_identify.hpp"
 #include "fuzzy/auto_candidate.hpp"
+#include "fuzzy/auto_delay.hpp"
 
 namespace fpc {
 
@@ -53,10 +54,16 @@ struct StructureSearch {
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
                                  std::uint64_t seed, const SearchLimits& limits);
 
-/// The delays with which simple linear models run best over the blocks: `usual` unless `others` do
-/// better by 3 %.
-std::vector<int> bestDelays(const AutoData& data, const std::vector<int>& usual,
-                            const std::vector<std::vector<int>>& others, std::uint64_t seed,
+/// Each candidate over the blocks, in their order; an infinite score: it could not be judged.
+std::vector<Judgement> judgeCandidates(const AutoData& data,
+                                       const std::vector<Candidate>& candidates,
+                                       const SearchLimits& limits);
+
+/// The delays with which simple linear models run best over the blocks: the usual ones unless
+/// longer ones do better by 3 %. A block is judged with delays that were guessed without it (one
+/// guess per block): that of a long list which fits best by chance does not fit the next rows.
+std::vector<int> bestDelays(const AutoData& data, const DelayGuess& guess,
+                            const std::vector<DelayGuess>& by_block, std::uint64_t seed,
                             const SearchLimits& limits);
 
 /// Trimmed mean of what members say at each row (NaN: nobody).

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "fmbpc/base/order_statistics.hpp"
+
 namespace fpc {
 namespace {
 
@@ -80,10 +82,8 @@ double squares(const Vector& errors, const std::vector<Index>& kept) {
 
 /// Rows whose error is a usual one; none where most errors vanish.
 std::vector<Index> usual(const Vector& errors) {
-  Vector sizes = errors.cwiseAbs();
-  const Index middle = sizes.size() / 2;
-  std::nth_element(sizes.data(), sizes.data() + middle, sizes.data() + sizes.size());
-  const double most = kTrim * 1.4826 * sizes[middle];
+  const Vector sizes = errors.cwiseAbs();
+  const double most = kTrim * 1.4826 * upperMedian({sizes.data(), sizes.data() + sizes.size()});
   std::vector<Index> kept;
   for (Index i = 0; most > 1e-9 && i < errors.size(); ++i)
     if (std::abs(errors[i]) < most) kept.push_back(i);

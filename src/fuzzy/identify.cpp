@@ -6,6 +6,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fuzzy/contradiction.hpp"
 #include "fuzzy/rule_finder.hpp"
 
 namespace fpc {
@@ -118,6 +119,10 @@ bool identifyOutput(const DataSet& data, const Structure& structure, std::size_t
   }
   bool completed =
       findRules(rows, s, structure, result.linear.submodels.back(), report, found, submodel);
+  if (!known.empty()) {
+    const std::string words = contradiction(data, static_cast<int>(i), s.regressors, known);
+    if (!words.empty()) result.remarks.insert(result.remarks.begin(), name + ": " + words);
+  }
   imposeKnowledge(data, static_cast<int>(i), known, result.linear.submodels.back());
   if (completed) imposeKnowledge(data, static_cast<int>(i), known, submodel);
   if (completed && structure.consequents.free_run_iterations > 0) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "fmbpc/base/order_statistics.hpp"
 #include "fmbpc/fuzzy/record_remarks.hpp"
 #include "fuzzy/spike_influence.hpp"
 
@@ -17,14 +18,6 @@ constexpr Index kLongest = 5;    // samples of a burst
 constexpr double kFar = 0.5;     // of the span of 96 % of the samples: beyond them lie bursts
 constexpr double kTail = 0.02;   // left out at either end of that span
 constexpr Index kReaction = 20;  // samples within which an output shows what an input did
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 double bendAt(const Eigen::Ref<const Vector>& y, Index k) {
   return y[k] - 0.5 * (y[k - 1] + y[k + 1]);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/order_statistics.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/base/time_unit.hpp"
 
@@ -63,9 +64,7 @@ std::vector<double> timesOf(const CsvTable& table, const std::string& time_colum
 double medianInterval(const std::vector<double>& times) {
   std::vector<double> intervals;
   for (std::size_t r = 1; r < times.size(); ++r) intervals.push_back(times[r] - times[r - 1]);
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  return *middle;
+  return upperMedian(std::move(intervals));
 }
 
 }  // namespace

@@ -197,7 +197,8 @@ IdentifiedModel settle(const IdentifyArguments& a, const AutoRecords& records,
 
 Row remarksOf(const AutoRecords& records, const AutoIdentification& found,
               const IdentifiedModel& model, const std::vector<RecordJudgement>& parts) {
-  Row remarks = records.remarks;
+  Row remarks = found.contradictions;
+  remarks.insert(remarks.end(), records.remarks.begin(), records.remarks.end());
   const auto add = [&remarks](const std::string& before, const Row& more) {
     for (const auto& remark : more) remarks.push_back(before + remark);
   };
@@ -230,6 +231,7 @@ int identifyAuto(const IdentifyArguments& a) {
   const IdentifiedModel model = settle(a, records, found);
   if (!a.out.empty()) writeAtOnce(writeIdentified(model), a.out);
   const auto parts = judgeAll(records, model);
+  if (records.validation) tellCoverage(parts.back(), found);
   const Row remarks = remarksOf(records, found, model, parts);
   const Json json = toJson(found, parts, remarks, wall.count());
   if (!a.plots.empty()) plotJudgements(model, parts, json, a.plots);

@@ -98,6 +98,16 @@ Structure structureOf(const TsModel& model, const CsvTable& table,
   return s;
 }
 
+/// What comes before all figures.
+std::vector<std::string> firstWords(const RecordJudgement& part) {
+  std::vector<std::string> words = warnings(part);
+  for (const auto& o : part.outputs) {
+    const std::string covered = coverageWords(o);
+    if (!covered.empty()) words.push_back(o.output + ": " + covered);
+  }
+  return words;
+}
+
 }  // namespace
 
 int validate(const ValidateArguments& a) {
@@ -115,7 +125,7 @@ int validate(const ValidateArguments& a) {
   for (const auto& remark : recordRemarks(data, nullptr)) remarks.push_back(remark);
   remarks.insert(remarks.end(), part.remarks.begin(), part.remarks.end());
   Json json{{"name", model.model.name}, {"data", data.source}, {"validation", toJson(part)}};
-  const std::vector<std::string> first = warnings(part);
+  const std::vector<std::string> first = firstWords(part);
   json["warnings"] = first;
   json["remarks"] = remarks;
   if (!a.plots.empty()) plotJudgements(model, {part}, json, a.plots);

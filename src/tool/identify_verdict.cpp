@@ -1,6 +1,7 @@
 #include "tool/identify_verdict.hpp"
 
 #include <algorithm>
+#include <cstdio>
 
 #include "fmbpc/base/text.hpp"
 
@@ -79,6 +80,28 @@ std::vector<std::string> warnings(const RecordJudgement& part) {
     if (!text.empty()) words.push_back(o.output + ": " + text);
   }
   return words;
+}
+
+std::string coverageWords(const OutputJudgement& o) {
+  const KindFigures& f = bestFigures(o);
+  std::string words;
+  const auto add = [&words](const char* ahead, double covered, double least) {
+    if (!(covered < least)) return;
+    char text[96];
+    std::snprintf(text, sizeof text, "%.3g %% %s (chance leaves %.3g %% or more)", covered, ahead,
+                  least);
+    words += (words.empty() ? "its 95 % intervals hold only " : " and ") + std::string(text);
+  };
+  add("one step ahead", f.one_step_coverage, f.one_step_least);
+  add("in free run", f.free_run_coverage, f.free_run_least);
+  return words;
+}
+
+void tellCoverage(const RecordJudgement& validation, AutoIdentification& found) {
+  for (std::size_t i = 0; i < found.outputs.size(); ++i) {
+    const std::string words = coverageWords(validation.outputs[i]);
+    if (!words.empty()) found.outputs[i].verdict += "; on the validation rows " + words;
+  }
 }
 
 void chooseByKind(ModelKind kind, AutoIdentification& found) {

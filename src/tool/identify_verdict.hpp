@@ -17,6 +17,13 @@ bool chooseByValidation(const RecordJudgement& validation, AutoIdentification& f
 /// linear model beside it or than the mean of the record; per output, in words; empty: nothing.
 std::vector<std::string> warnings(const RecordJudgement& part);
 
+/// Prediction intervals of the chosen kind that hold fewer values of a record than chance leaves of
+/// 95 %, in words; empty: none does.
+std::string coverageWords(const OutputJudgement& o);
+
+/// The same at the end of the verdicts, of validation rows.
+void tellCoverage(const RecordJudgement& validation, AutoIdentification& found);
+
 /// --kind asks for other models than the best: the verdict says what was asked for.
 void chooseByKind(ModelKind kind, AutoIdentification& found);
 

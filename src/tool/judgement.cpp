@@ -5,6 +5,7 @@
 
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/fuzzy/interval_coverage.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
 #include "fmbpc/fuzzy/record_remarks.hpp"
 #include "tool/figures_json.hpp"
@@ -15,6 +16,8 @@ namespace {
 using Eigen::Index;
 using Json = OrderedJson;
 using Row = std::vector<std::string>;
+
+constexpr double kStated = 95.0;  // [%] that intervals are to hold
 
 std::string fixed(double value) {
   if (!std::isfinite(value)) return "-";
@@ -32,6 +35,8 @@ KindFigures figuresOf(ModelKind kind, const KindPrediction& p, const Vector& mea
   f.free_run_width = p.free_run_width[i];
   f.one_step_coverage = coverage(measured, p.one_step.col(i), f.one_step_width);
   f.free_run_coverage = coverage(measured, p.free_run.col(i), f.free_run_width);
+  f.one_step_least = leastCoverage(independentCount(measured - p.one_step.col(i)), kStated);
+  f.free_run_least = leastCoverage(independentCount(measured - p.free_run.col(i)), kStated);
   return f;
 }
 
@@ -49,19 +54,14 @@ Json toJson(const KindFigures& f) {
 }
 
 Json intervalJson(const KindFigures& f) {
-  const auto one = [](double width, double covered) {
+  const auto one = [](double width, double covered, double least) {
     return Json{{"half_width", width > 0.0 ? Json(width) : Json(nullptr)},
-                {"coverage", finiteJson(covered)}};
+                {"coverage", finiteJson(covered)},
+                {"least_by_chance", width > 0.0 ? Json(least) : Json(nullptr)}};
   };
-  return {{"stated", 95.0},
-          {"one_step", one(f.one_step_width, f.one_step_coverage)},
-          {"free_run", one(f.free_run_width, f.free_run_coverage)}};
-}
-
-const KindFigures& bestFigures(const OutputJudgement& o) {
-  for (const auto& f : o.kinds)
-    if (f.kind == o.best) return f;
-  return o.kinds.front();
+  return {{"stated", kStated},
+          {"one_step", one(f.one_step_width, f.one_step_coverage, f.one_step_least)},
+          {"free_run", one(f.free_run_width, f.free_run_coverage, f.free_run_least)}};
 }
 
 Row rowOf(const OutputJudgement& o, const KindFigures& f, const std::string& label,
@@ -80,6 +80,12 @@ Row rowOf(const OutputJudgement& o, const KindFigures& f, const std::string& lab
 }
 
 }  // namespace
+
+const KindFigures& bestFigures(const OutputJudgement& o) {
+  for (const auto& f : o.kinds)
+    if (f.kind == o.best) return f;
+  return o.kinds.front();
+}
 
 RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
                             const IdentifiedModel& model, int steps,

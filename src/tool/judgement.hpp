@@ -10,11 +10,13 @@
 
 namespace fpc::tool {
 
-/// Figures of one kind on one output. Coverage [%] of the 95 % intervals; NaN: no interval.
+/// Figures of one kind on one output. Coverage [%] of the 95 % intervals; NaN: no interval. Least:
+/// what chance leaves of it, see leastCoverage().
 struct KindFigures {
   ModelKind kind{};
   FitFigures one_step, free_run;
   double one_step_coverage{}, free_run_coverage{};
+  double one_step_least{}, free_run_least{};
   double one_step_width{}, free_run_width{};
 };
 
@@ -35,6 +37,8 @@ struct RecordJudgement {
   KindPrediction best;
   std::vector<std::string> remarks;
 };
+/// Of the best kind, or of what stands for it.
+const KindFigures& bestFigures(const OutputJudgement& o);
 /// Outliers of `data` are left out, see withoutOutliers().
 RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
                             const IdentifiedModel& model, int steps,

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/order_statistics.hpp"
 #include "fmbpc/base/time_unit.hpp"
 
 namespace fpc::tool {
@@ -40,13 +41,6 @@ std::vector<double> stepsOf(const Eigen::Ref<const Vector>& times) {
   return steps;
 }
 
-double medianOf(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The number with the fewest digits within kRound of it.
 double rounded(double step) {
   for (int digits = 1; digits < 8; ++digits) {
@@ -65,7 +59,7 @@ struct Spacing {
 /// The usual step of a column that rises evenly, but for rows that are missing and jitter.
 Spacing spacingOf(const Eigen::Ref<const Vector>& times) {
   const std::vector<double> steps = stepsOf(times);
-  const double usual = medianOf(steps);
+  const double usual = upperMedian(steps);
   if (!(usual > 0.0)) return {};
   Spacing s{usual, 0.0};
   double single = 0.0, sum = 0.0, samples = 0.0;
@@ -113,7 +107,7 @@ std::string found(const CsvTable& table, const std::vector<std::string>& used) {
 
 void requireRising(const CsvTable& table, const std::string& name, const Spacing& spacing) {
   if (spacing.step > 0.0) return;
-  const double usual = medianOf(stepsOf(table.values.col(table.column(name))));
+  const double usual = upperMedian(stepsOf(table.values.col(table.column(name))));
   const std::string where = table.file + ": column '" + name + "'";
   require(!(usual < 0.0), where, "times that rise evenly; they fall (is the newest row first?)");
   throw InputError(where +

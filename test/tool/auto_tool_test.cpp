@@ -201,6 +201,47 @@ TEST_F(AutoTool, AModelThatIsWorseThanLinearOnValidationRowsIsNotWritten) {
       << judged.printed;
 }
 
+TEST_F(AutoTool, AWrongSignIsTheFirstRemark) {
+  const auto remarks = [&](const std::string& sign) {
+    const Outcome outcome =
+        tool("identify " + data_ + " --auto --inputs u --outputs y --kind linear --rows 1:200 " +
+             "--known 'y: {gain: {u: " + sign + "}}' --json");
+    EXPECT_EQ(outcome.code, 0);
+    return parsed(outcome.printed).at("remarks");
+  };
+  const auto wrong = remarks("negative");
+  ASSERT_FALSE(wrong.empty());
+  EXPECT_EQ(wrong[0].get<std::string>().rfind(
+                "y: the record contradicts known.gain of u (negative): ", 0),
+            0U)
+      << wrong;
+  for (const auto& remark : remarks("positive"))
+    EXPECT_EQ(remark.get<std::string>().find("contradicts"), std::string::npos) << remark;
+}
+
+TEST_F(AutoTool, IntervalsThatHoldTooLittleArePartOfTheVerdict) {
+  CsvTable table = record(300);
+  const std::string model = path("covers.yaml");
+  const std::string rest =
+      " --auto --inputs u --outputs y --kind linear --rows 1:200 --validate-rows 201:300 --json";
+  const std::string kept = writeRecord("kept.csv", table);
+  const auto verdict = [&](const std::string& file) {
+    const Outcome outcome = tool("identify " + file + rest + " --out " + model);
+    EXPECT_EQ(outcome.code, 0);
+    return parsed(outcome.printed).at("verdict").at("y").get<std::string>();
+  };
+  EXPECT_EQ(verdict(kept).find("95 % intervals"), std::string::npos) << verdict(kept);
+  std::mt19937_64 random(3);
+  for (Eigen::Index k = 200; k < 300; ++k) table.values(k, 1) += 3.0 * (uniform(random) - 0.5);
+  const std::string noisy = writeRecord("noisy.csv", table);
+  expectWords(verdict(noisy), {"on the validation rows its 95 % intervals hold only",
+                               "one step ahead", "chance leaves"});
+  const Outcome judged = tool("validate " + model + " " + noisy + " --rows 201:300 --json");
+  ASSERT_EQ(judged.code, 0);
+  EXPECT_NE(parsed(judged.printed).at("warnings").dump().find("95 % intervals hold only"),
+            std::string::npos);
+}
+
 TEST_F(AutoTool, OutliersAreLeftOutOfThePrintedFigures) {
   CsvTable table = record();
   table.values(150, 1) += 500.0;

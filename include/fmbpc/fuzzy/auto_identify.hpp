@@ -70,6 +70,7 @@ struct AutoIdentification {
   StateModel state;
   std::vector<AutoOutput> outputs;
   std::vector<AutoTrial> trials;
+  std::vector<std::string> contradictions;  ///< where the record speaks against what is known
   std::vector<std::string> remarks;
   bool cancelled{false};
 };
