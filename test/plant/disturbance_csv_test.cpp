@@ -280,6 +280,10 @@ TEST(DisturbanceCsv, ReadsTheUciPlantWithItsGaps) {
   }
 }
 
+TEST(DisturbanceCsv, DatesWithoutHyphensAreRefused) {
+  expectWords(errorOf(flowFrom("t,q\n20250228,1\n20250301,2\n")), "2025-02-28, got 20250228");
+}
+
 TEST(DisturbanceCsv, TimesOfAnotherUnitThanSaidAreRefused) {
   const std::string rows = ",q\n0,100\n60,200\n120,400\n";
   CsvDisturbanceParams params = flowFrom("t[min]" + rows);
