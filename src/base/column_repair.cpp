@@ -39,8 +39,8 @@ std::vector<Fill> judge(Eigen::Ref<Vector> cells, const ColumnRules& rules,
     } else if (!(cell >= rules.lower && cell <= rules.upper)) {
       require(rules.implausible != Implausible::kError, where(r),
               "a value from " + exactText(rules.lower) + " to " + exactText(rules.upper) + " " +
-                  rules.unit + " (another unit? " + rules.implausible_key +
-                  " says what to do), got " + exactText(cell));
+                  (rules.unit.empty() ? "" : rules.unit + " ") + "(another unit? " +
+                  rules.implausible_key + " says what to do), got " + exactText(cell));
       ++repairs.implausible;
       const bool clip = rules.implausible == Implausible::kClip;
       if (!clip) fill = fillOf(rules.implausible);

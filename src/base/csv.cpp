@@ -136,8 +136,10 @@ void checkColumn(const CsvTable& table, const CsvFormat& format, const std::stri
   };
   const bool has_values = kind.number != 0 || kind.date != 0;
   require(kind.other == 0 || !has_values, at(kind.other),
-          (kind.number != 0 ? "a finite number or one of missing_values, got '"
-                            : "a date or time of ISO 8601, got '") +
+          (kind.number != 0
+               ? "a finite number, or a text that is said to mean missing (missing_values, "
+                 "--missing), got '"
+               : "a date or time of ISO 8601, got '") +
               kind.text + "'" + decimalHint(kind.text, format.decimal));
   require(kind.number == 0 || kind.date == 0, at(std::max(kind.number, kind.date)),
           "either dates or numbers in one column");

@@ -45,9 +45,19 @@ std::optional<Integer> decimal(const std::string& text) {
   return value;
 }
 
+constexpr std::size_t kLongestList = 60;  // characters that a message repeats
+
+/// What a file says where something else was expected.
 std::string scalarText(const YAML::Node& node) {
-  return node.IsScalar() ? "'" + node.Scalar() + "'"
-                         : (node.IsNull() ? "nothing" : "a list or mapping");
+  if (node.IsScalar()) return "'" + node.Scalar() + "'";
+  if (!node.IsSequence()) return node.IsNull() ? "nothing" : "a mapping";
+  std::string items;
+  for (const auto& item : node) {
+    const bool plain = item.IsScalar() || item.IsNull();
+    if (!plain || items.size() > kLongestList) return "a list of " + std::to_string(node.size());
+    items += (items.empty() ? "" : ", ") + (item.IsNull() ? "nothing" : item.Scalar());
+  }
+  return "[" + items + "]";
 }
 
 /// A key without a value is an empty mapping.
@@ -281,7 +291,8 @@ void YamlSection::finish() const {
   const auto unread = unreadKeys();
   if (unread.empty()) return;
   const std::vector<std::string> known(read_->begin(), read_->end());
-  throw InputError(where(unread.front()) + ": unknown key; expected one of " + join(known));
+  throw InputError(where(unread.front()) + ": unknown key; expected " +
+                   (known.empty() ? "none here" : "one of " + join(known)));
 }
 
 }  // namespace fpc

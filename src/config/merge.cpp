@@ -66,17 +66,28 @@ bool changesType(const YAML::Node& old, const YAML::Node& young) {
          before.Scalar() != after.Scalar();
 }
 
-/// Writes `young` over `old` (both mappings).
+/// A key without a value over a section that has keys: one person means to keep them, another to be
+/// rid of them.
+void requireSaid(const YAML::Node& there, const YAML::Node& value, const std::string& where,
+                 const std::string& remedy) {
+  const bool loses = there.IsDefined() && there.IsMap() && there.size() > 0 && value.IsNull();
+  require(!loses, where, "a mapping of keys to values, got nothing; " + remedy);
+}
+
+/// Writes `young`, a mapping of the loop `source`, over the mapping `old`.
 void mergeMaps(YAML::Node old, const YAML::Node& young, const std::string& path, Origins& origins,
-               const Origins& news) {
+               const MergedLoop& source) {
+  const Origins& news = source.origins;
   for (const auto& entry : young) {
     const std::string key = entry.first.Scalar();
     const std::string child = below(path, key);
     const YAML::Node& before = old;
     const YAML::Node there = before[key];
+    requireSaid(there, entry.second, source.whereIs(child),
+                "leave the key out or write {} to keep what is inherited");
     const bool both_maps = there.IsDefined() && there.IsMap() && entry.second.IsMap();
     if (both_maps && !changesType(there, entry.second)) {
-      mergeMaps(there, entry.second, child, origins, news);
+      mergeMaps(there, entry.second, child, origins, source);
       const auto origin = news.find(child);
       if (origin != news.end()) origins[child] = origin->second;
     } else {
@@ -127,7 +138,7 @@ MergedLoop mergeChain(const std::string& file, std::vector<std::string> chain) {
   chain.pop_back();
   loop.root.remove("extends");
   MergedLoop merged = mergeChain(parent, chain);
-  mergeMaps(merged.root, loop.root, "", merged.origins, loop.origins);
+  mergeMaps(merged.root, loop.root, "", merged.origins, loop);
   return merged;
 }
 
@@ -160,6 +171,8 @@ void setAt(YAML::Node node, const std::vector<std::string>& parts, std::size_t i
       }
       return setAt(node[part], parts, index + 1, path, value, origins);
     }
+    requireSaid(there, value, asked,
+                "leave it out to keep what is there, " + part + "={} begins with the defaults");
     YAML::Node one(YAML::NodeType::Map);
     one[part] = value;
     if (part == "type" && changesType(node, one))

@@ -30,9 +30,10 @@ struct MergedLoop {
 /// Reads a file and everything it extends. Mappings merge, lists and scalars replace; a section
 /// whose `type` changes is replaced as a whole, because its other keys belong to the old type.
 /// @throws InputError naming file, line and key: bad YAML, repeated keys, missing or circular
-/// `extends`.
+/// `extends`, a key without a value over a mapping with keys.
 MergedLoop mergeLoop(const std::string& file);
-/// Writes overrides over it, in order. @throws InputError naming "--set path".
+/// Writes overrides over it, in order. @throws InputError naming "--set path": also nothing over a
+/// mapping with keys.
 void applyOverrides(MergedLoop& loop, const Overrides& overrides);
 
 }  // namespace fpc

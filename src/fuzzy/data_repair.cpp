@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "base/time_cells.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/base/time_unit.hpp"
@@ -29,12 +30,24 @@ std::vector<Index> timeOrder(const Vector& time, const RowName& where, bool may_
   moved = 0;
   for (Index k = 0; k < time.size(); ++k) {
     require(std::isfinite(time[k]), where(k), "a time");
+    require(k == 0 || time[k] != time[k - 1], where(k), "every time only once");
     require(k == 0 || may_sort || time[k] > time[k - 1], where(k),
-            "times that increase (repair.sort_time: true sorts)");
+            "times that increase (a structure file's repair.sort_time: true sorts)");
   }
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return time[a] < time[b]; });
   for (Index k = 0; k < time.size(); ++k) moved += order[static_cast<std::size_t>(k)] != k ? 1 : 0;
   return order;
+}
+
+/// How many samples all rows lie apart, if that is a whole number of them and more than one;
+/// else 1.
+double commonStep(const Vector& time, const std::vector<Index>& order, double sample) {
+  if (order.size() < 3) return 1.0;
+  const double first = std::round((time[order[1]] - time[order[0]]) / sample);
+  for (std::size_t k = 1; k < order.size(); ++k)
+    if (std::abs((time[order[k]] - time[order[k - 1]]) / sample - first) > kSpacingTolerance)
+      return 1.0;
+  return std::max(first, 1.0);
 }
 
 /// Sample number of each row after the first. @throws InputError unless all are whole numbers of
@@ -45,6 +58,7 @@ std::vector<Index> sampleNumbers(const Vector& time, const std::vector<Index>& o
   for (std::size_t k = 1; k < order.size(); ++k) {
     const double step = (time[order[k]] - time[order[k - 1]]) / sample;
     const double whole = std::round(step);
+    require(step != 0.0, where(order[k]), "every time only once");
     if (whole < 1.0 || whole > kLongestGap || std::abs(step - whole) > kSpacingTolerance)
       throw InputError(where(order[k]) + ": expected times " + exactText(sample) +
                        " apart (sample_time_s; or another unit?), got " +
@@ -68,16 +82,21 @@ TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& stru
   const std::string unit_expected = dates ? "d" : structure.time_unit;
   const std::string& unit = table.units[index];
   const auto where = [&](Index row) { return table.at(first + row, column); };
+  requirePlainTimes(table, column);
   require(unit.empty() || unit == unit_expected,
           table.file + ": column '" + structure.time_column + "'",
           "the unit [" + unit_expected + "] of the structure, got [" + unit + "]");
   const std::string text = index < table.texts.size() ? table.texts[index] : "";
   require(text.empty(), where(0), "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
   const Vector time = table.values.col(column).segment(first, count);
+  const double sample = structure.sample_time_s / secondsPer(unit_expected);
   Index moved = 0;
   const auto order = timeOrder(time, where, structure.repair.sort_time, moved);
-  const auto numbers =
-      sampleNumbers(time, order, structure.sample_time_s / secondsPer(unit_expected), where);
+  const auto numbers = sampleNumbers(time, order, sample, where);
+  const double common = commonStep(time, order, sample);
+  require(common == 1.0 || structure.repair.missing != MissingCells::kError, where(0),
+          "times " + exactText(sample) + " apart (another unit? or another sample_time_s), got " +
+              exactText(common * sample) + " from each row to the next");
   const Index holes = numbers.back() + 1 - count;
   TableRows rows(static_cast<std::size_t>(numbers.back()) + 1, -1);
   Matrix placed = Matrix::Constant(numbers.back() + 1, data.values.cols(), kNaN);
@@ -133,7 +152,8 @@ void repairCells(DataSet& data, const Structure& structure,
         repairColumn(data.values.col(c), times, rulesOf(structure, signal), at);
     for (Index k = 0; k < data.values.rows(); ++k)
       require(!(std::abs(data.values(k, c)) > kLargestCell), at(k),
-              "values of at most 1e60 (a code for missing cells? csv.missing_values), got " +
+              "values of at most 1e60 (a code for missing cells? csv.missing_values of a structure "
+              "file, --missing), got " +
                   exactText(data.values(k, c)));
     const std::string of = " cells of '" + signal.column + "' ";
     if (done.missing > 0)

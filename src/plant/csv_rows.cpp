@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/time_cells.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/order_statistics.hpp"
 #include "fmbpc/base/text.hpp"
@@ -39,6 +40,7 @@ std::vector<double> timesOf(const CsvTable& table, const std::string& time_colum
                             const std::string& time_unit) {
   const Eigen::Index column = table.column(time_column);
   const auto index = static_cast<std::size_t>(column);
+  requirePlainTimes(table, column);
   const double unit_s = secondsPer(table.is_date[index] ? "d" : time_unit);
   require(unit_s > 0.0, "disturbance.csv.time_unit",
           "one of " + join(timeUnits()) + ", got '" + time_unit + "'");

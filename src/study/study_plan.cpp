@@ -70,13 +70,23 @@ Overrides noiseOf(const StudyFile& study, const LoopFile& loop) {
   return noise;
 }
 
+/// Whether some output has noise once the study's own is laid over the loop's.
+bool hasNoise(const StudyFile& study, const LoopFile& loop) {
+  if (study.noise_percent != 0.0) return true;
+  Vector std = loop.simulation.noise_std;
+  const std::vector<std::string> outputs = namesOf(loop.plant_info.outputs);
+  for (const auto& [output, value] : study.noise)
+    std[std::find(outputs.begin(), outputs.end(), output) - outputs.begin()] = value;
+  return std.any();
+}
+
 /// The keys of a loop that take a study's seed: of its influent's pattern, and of noise wherever it
 /// has any.
-std::vector<std::string> seededKeys(const LoopFile& loop, bool noise_added) {
+std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy) {
   std::vector<std::string> keys;
   if (loop.disturbance.source == DisturbanceSource::kPattern)
     keys.emplace_back("disturbance.pattern.seed");
-  if (noise_added || loop.simulation.noise_std.any()) keys.emplace_back("noise.seed");
+  if (noisy) keys.emplace_back("noise.seed");
   const auto& sensors = loop.simulation.instruments.sensors;
   if (std::any_of(sensors.begin(), sensors.end(),
                   [](const auto& sensor) { return sensor.second.noise_std > 0.0; }))
@@ -123,7 +133,7 @@ StudyPlan::Prepared StudyPlan::prepare(const StudyLoop& loop,
   prepared.noise = noiseOf(study_, read);
   for (const auto& variation : study_.vary)
     prepared.numbers.push_back(variation.factor ? numberAt(read, variation.key) : 1.0);
-  prepared.seeded = seededKeys(read, !prepared.noise.empty());
+  prepared.seeded = seededKeys(read, hasNoise(study_, read));
   require(study_.seeds.empty() || !prepared.seeded.empty() || !study_.vary.empty(), "seeds",
           "a disturbance pattern, noise or vary in loop " + read.name);
   return prepared;

@@ -69,13 +69,22 @@ int list(const std::vector<Experiment>& all, bool json) {
   return 0;
 }
 
+/// One line that changes on a terminal; else a line for every paper that begins, so that a log
+/// shows that something is done.
+void tellProgress(const std::vector<Experiment>& some, std::size_t i, bool terminal) {
+  const Experiment& now = some[i];
+  if (terminal)
+    std::fprintf(stderr, "\r\033[K%zu of %zu: %s ...", i + 1, some.size(), now.name.c_str());
+  else if (i == 0 || some[i - 1].paper != now.paper)
+    std::fprintf(stderr, "fmbpc: reproduce: %s, from %zu of %zu\n", now.paper.c_str(), i + 1,
+                 some.size());
+}
+
 std::vector<Outcome> outcomesOf(const std::vector<Experiment>& some) {
   const bool shown = isatty(STDERR_FILENO) != 0;
   std::vector<Outcome> outcomes;
   for (const auto& experiment : some) {
-    if (shown)
-      std::fprintf(stderr, "\r\033[K%zu of %zu: %s ...", outcomes.size() + 1, some.size(),
-                   experiment.name.c_str());
+    tellProgress(some, outcomes.size(), shown);
     outcomes.push_back({experiment, rowsOf(experiment)});
   }
   if (shown) std::fprintf(stderr, "\r\033[K");

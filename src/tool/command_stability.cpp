@@ -167,13 +167,12 @@ Json certificateOf(const StabilitySubject& s, const std::vector<RuleChoice>& cho
   return json;
 }
 
-/// The usual range of the first input, or what the loop's limits leave or add; an input that
+/// The loop's limits of the first input, or its usual range where these are not said; an input that
 /// cannot be negative begins at a hundredth.
 PlantContinuation continuationOf(const StabilitySubject& s) {
-  const Quantity& input = s.plant->description().inputs[0];
   PlantContinuation set = plantContinuation(s.plant, 0, s.sample_time_s, -1.0, -1.0);
-  if (s.input_upper != input.upper) set.params.upper = s.input_upper;
-  if (s.input_lower != input.lower) set.params.lower = s.input_lower;
+  if (s.upper_said) set.params.upper = s.input_upper;
+  if (s.lower_said) set.params.lower = s.input_lower;
   if (set.params.lower >= 0.0) set.params.lower = std::max(s.input_lower, 0.01 * set.params.upper);
   return set;
 }
@@ -187,6 +186,8 @@ Json branchesOf(const StabilitySubject& s) {
       object[states[i].name] = x[static_cast<Eigen::Index>(i)];
     return object;
   };
+  const bool cut_below = s.input_lower < 0.0 && set.params.lower > s.input_lower;
+  const bool cut = cut_below || set.params.upper < s.input_upper;
   Json list = Json::array();
   for (const auto& branch : continueBranches(set.problem, set.params)) {
     Json points = Json::array(), special = Json::array();
@@ -205,6 +206,9 @@ Json branchesOf(const StabilitySubject& s) {
           {"input_unit", s.plant->description().inputs[0].unit},
           {"input_lower", set.params.lower},
           {"input_upper", set.params.upper},
+          {"limit_lower", s.input_lower},
+          {"limit_upper", s.input_upper},
+          {"cut", cut},
           {"output", s.plant->description().outputs.back()},
           {"map", set.problem.map},
           {"branches", list}};

@@ -112,8 +112,8 @@ int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
   const auto check = [&] {
     require(result.best >= 0, arguments.loop, "a run that does not fail: " + result.trouble);
   };
-  const std::string worse = worsening(objective, tuned);
-  const int code = worse.empty() ? 0 : kTunedWorse;
+  const std::string verdict = verdictOf(objective, tuned);
+  const int code = verdict.empty() ? 0 : kTunedWorse;
   if (!objective.pool().leads()) {
     if (!result.stopped) check();
     return result.stopped ? kInterrupted : code;
@@ -123,14 +123,15 @@ int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
   if (!arguments.out.empty()) {
     writeHistory(objective.tuning(), result, inFolder(arguments, "history.csv"));
     writeText(json.dump(2), inFolder(arguments, "tuning.json"));
-    if (result.best >= 0) file = writeTunedLoop(objective, tuned, arguments.out);
+    if (result.best >= 0 && nothingFound(objective, result).empty())
+      file = writeTunedLoop(objective, tuned, arguments.out);
   }
   std::cout << (arguments.json ? json.dump(2) + "\n" : toTable(objective, tuned));
   if (interruption() || result.stopped) return interrupted(arguments);
   draw(arguments);
   if (!arguments.json && !file.empty()) std::cout << "written: " << file << "\n";
   check();
-  if (code != 0) std::fprintf(stderr, "fmbpc: %s: %s\n", arguments.loop.c_str(), worse.c_str());
+  if (code != 0) std::fprintf(stderr, "fmbpc: %s: %s\n", arguments.loop.c_str(), verdict.c_str());
   return code;
 }
 

@@ -90,6 +90,10 @@ std::string branchesText(const Json& s) {
                     number(s["input_lower"].get<double>()) + " to " +
                     number(s["input_upper"].get<double>()) +
                     (s["map"].get<bool>() ? ", as a map from sample to sample" : "") + "\n";
+  if (s["cut"].get<bool>())
+    out += "  not looked at: the rest of " + number(s["limit_lower"].get<double>()) + " to " +
+           number(s["limit_upper"].get<double>()) +
+           ", the plant's range (actuator.input_lower and input_upper say how far)\n";
   for (const auto& branch : s["branches"]) {
     out += "  branch of " + std::to_string(branch["points"].size()) + " points" +
            (branch["closed"].get<bool>() ? ", closed" : "") + "\n";

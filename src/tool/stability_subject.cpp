@@ -10,6 +10,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/base/yaml_section.hpp"
+#include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
@@ -96,6 +97,15 @@ void takeLaw(StabilitySubject& subject, const LoopFile& loop, const FmbpcParams&
         "outputs and inputs), not of the printed state space, which adds one sample of delay";
 }
 
+/// Whether the loop file says a limit of the first input: by name, for all inputs, or in a list.
+bool saysLimit(const LoopFile& loop, const std::string& key) {
+  const std::string path = "actuator." + key;
+  for (const std::string& place :
+       {"." + loop.plant_info.inputs[0].name, std::string(), std::string(".0")})
+    if (!scalarOf(loop.resolved, path + place).empty()) return true;
+  return false;
+}
+
 void readLoopInto(StabilitySubject& subject, const std::string& name) {
   const LoopFile loop = readLoop(name);
   subject.name = loop.name;
@@ -114,6 +124,8 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
   subject.plant = makePlant(loop.simulation);
   subject.input_lower = loop.simulation.actuator.limits.lower[0];
   subject.input_upper = loop.simulation.actuator.limits.upper[0];
+  subject.lower_said = saysLimit(loop, "input_lower");
+  subject.upper_said = saysLimit(loop, "input_upper");
 }
 
 }  // namespace

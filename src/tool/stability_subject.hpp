@@ -19,6 +19,7 @@ struct StabilitySubject {
   std::shared_ptr<const Plant> plant;  ///< none for a model alone
   double sample_time_s{};
   double input_lower{}, input_upper{};       ///< with a plant: the loop's limits of its first input
+  bool lower_said{}, upper_said{};           ///< in the loop file, not the plant's by default
   std::string note;                          ///< what the analysis does not cover of this subject
   Vector outputs, input, disturbances;       ///< the point, in the model's order
   std::vector<FuzzyEquilibrium> equilibria;  ///< of the model for that input

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/time_cells.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/order_statistics.hpp"
 #include "fmbpc/base/time_unit.hpp"
@@ -129,6 +130,7 @@ TimeColumn timeColumn(const CsvTable& table, const std::string& named,
   time.name = named.empty() ? found(table, used) : named;
   if (time.name.empty()) return time;
   const Index column = table.column(time.name);
+  requirePlainTimes(table, column);
   const Spacing spacing = spacingOf(table.values.col(column));
   requireRising(table, time.name, spacing);
   time.unit = timeUnit(table, column);

@@ -1,4 +1,8 @@
-// What a tuning does not say by its numbers alone: ranges that held it back, runs it made worse.
+// What a tuning does not say by its numbers alone: ranges that held it back, runs it made worse,
+// costs that told it nothing.
+#include <algorithm>
+#include <cmath>
+
 #include "fmbpc/base/text.hpp"
 #include "tool/tune_report.hpp"
 
@@ -6,6 +10,7 @@ namespace fpc::tool {
 namespace {
 
 constexpr double kAtBound = 1e-3;  // of the range, in its scale
+constexpr double kSame = 1e-12;    // relative: costs that differ by less are the same
 
 const TuningStep& bestOf(const TunedLoop& tuned) {
   return tuned.result.history[static_cast<std::size_t>(tuned.result.best)];
@@ -40,14 +45,38 @@ std::string worsening(const TuningObjective& objective, const TunedLoop& tuned) 
                         : "";
 }
 
+std::string nothingFound(const TuningObjective& objective, const TuneResult& result) {
+  if (result.best < 0 || result.stopped || result.history.size() < 2) return "";
+  const double most = objective.tuning().fitness.failure;
+  const std::string all =
+      "nothing was found: all " + std::to_string(result.history.size()) + " points cost ";
+  const auto isMost = [&](const TuningStep& step) { return step.cost >= most; };
+  if (std::all_of(result.history.begin(), result.history.end(), isMost))
+    return all + shortText(most) + ", fitness.failure, the most that a run can cost";
+  const double first = result.history.front().cost;
+  const auto isSame = [&](const TuningStep& step) {
+    return std::abs(step.cost - first) <= kSame * std::abs(first);
+  };
+  if (std::all_of(result.history.begin(), result.history.end(), isSame))
+    return all + "the same, " + shortText(first) + ": no parameter acts on this cost in its range";
+  return "";
+}
+
+std::string verdictOf(const TuningObjective& objective, const TunedLoop& tuned) {
+  const std::string nothing = nothingFound(objective, tuned.result);
+  return nothing.empty() ? worsening(objective, tuned) : nothing;
+}
+
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned) {
   std::vector<std::string> remarks;
   if (tuned.result.best < 0) return remarks;
+  const std::string nothing = nothingFound(objective, tuned.result);
+  addIf(nothing, remarks);
   const auto& parameters = objective.tuning().parameters;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const double value = bestOf(tuned).values[i];
     const std::string bound = boundOf(parameters[i], value);
-    if (!bound.empty())
+    if (!bound.empty() && nothing.empty())
       remarks.push_back(parameters[i].key + " ends at the " + bound + " bound of its range, " +
                         shortText(value) + ": the best may lie beyond");
     const double own = objective.own()[i];

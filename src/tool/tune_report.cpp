@@ -37,6 +37,7 @@ Json scoresJson(const std::vector<TuningScenario>& scenarios, double cost,
 Json parametersJson(const TuningObjective& objective, const TunedLoop& tuned) {
   Json list = Json::array();
   const auto start = objective.values(objective.start());
+  const bool found = nothingFound(objective, tuned.result).empty();
   const auto& own = objective.own();
   for (std::size_t i = 0; i < own.size(); ++i) {
     const TuningParameter& p = objective.tuning().parameters[i];
@@ -49,7 +50,7 @@ Json parametersJson(const TuningObjective& objective, const TunedLoop& tuned) {
     if (tuned.result.best >= 0) {
       parameter["value"] = valuesAfter(tuned)[i];
       const std::string bound = boundOf(p, valuesAfter(tuned)[i]);
-      if (!bound.empty()) parameter["at_bound"] = bound;
+      if (!bound.empty() && found) parameter["at_bound"] = bound;
     }
     list.push_back(parameter);
   }
@@ -116,9 +117,9 @@ Json toJson(const TuningObjective& objective, const TunedLoop& tuned) {
 std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   const TuningFile& tuning = objective.tuning();
   const TuneResult& result = tuned.result;
-  const std::string worse = worsening(objective, tuned);
+  const std::string verdict = verdictOf(objective, tuned);
   std::ostringstream text;
-  if (!worse.empty()) text << worse << "\n\n";
+  if (!verdict.empty()) text << verdict << "\n\n";
   text << tuned.loop << ", " << wordOf(result.search.method) << ", seed " << result.search.seed
        << ": " << result.history.size() << " evaluations of " << tuning.scenarios.size()
        << (tuning.scenarios.size() == 1 ? " run" : " runs") << " in " << shortText(result.seconds)
@@ -146,7 +147,7 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   text << alignedTable(scores);
   std::string remarks;
   for (const auto& remark : remarksOf(objective, tuned))
-    if (remark != worse) remarks += "\n" + remark;
+    if (remark != verdict) remarks += "\n" + remark;
   return text.str() + remarks + (remarks.empty() ? "" : "\n");
 }
 

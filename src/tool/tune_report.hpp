@@ -24,7 +24,12 @@ bool isOutside(const TuningParameter& parameter, double own);
 /// That the tuned loop costs more than the untouched one, on the held-out scenarios or, without
 /// them, on those that it was tuned on; in words, empty if it does not.
 std::string worsening(const TuningObjective& objective, const TunedLoop& tuned);
-inline constexpr int kTunedWorse = 3;  ///< exit code of such a tuning
+/// That every point of the search cost the same, or the most that a run can cost; in words, empty
+/// if some point was better than another.
+std::string nothingFound(const TuningObjective& objective, const TuneResult& result);
+/// nothingFound(), else worsening(): what is said first.
+std::string verdictOf(const TuningObjective& objective, const TunedLoop& tuned);
+inline constexpr int kTunedWorse = 3;  ///< exit code of a tuning with such a verdict
 /// Parameters that stand at a bound or began outside their range, costs that got worse; a line
 /// each.
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned);

@@ -208,6 +208,7 @@ TEST(YamlSection, ByNameWithoutDefaultsWantsEveryName) {
   expectWords(read("v: {y: 1}\n"), "v.y: expected one of s, x");
   expectWords(read("v: {s: 1, s: 2, x: 3}\n"), "v.s: expected the key only once");
   expectWords(read("v: {s: one, x: 3}\n"), "got 'one'");
+  expectWords(read("v: [1, 2, 3]\n"), "got [1, 2, 3]");
 }
 
 TEST(YamlSection, ListsOfMappingsAreNumbered) {

@@ -100,10 +100,33 @@ TEST_F(Extends, AMissingParentIsNamed) {
   expectWords(errorOf([&] { readLoop(list); }), {list + ":1: extends", "one loop file"});
 }
 
-TEST_F(Extends, AnEmptySectionTakesTheParentsAway) {
-  const std::string file = write("a.yaml", "extends: asp_case1_clp\nclp:\n");
+/// Read as nothing, a section whose lines are commented out would lose the limits it inherits.
+TEST_F(Extends, AKeyWithoutAValueOverASectionIsAnError) {
+  const std::string file = write("a.yaml", "extends: heated_tank\nactuator:\n  # move_upper: 3\n");
+  expectWords(errorOf([&] { readLoop(file); }),
+              {file + ":2: actuator: ", "expected a mapping", "got nothing", "leave the key out"});
+  const std::string inner = write("b.yaml", "extends: heated_tank\nactuator:\n  move_upper: ~\n");
+  expectWords(errorOf([&] { readLoop(inner); }), {inner + ":3: actuator.move_upper: "});
+  for (const char* nothing : {"", "null", "~"})
+    expectWords(errorOf([&] {
+                  readLoop("heated_tank", {{"actuator", nothing}});
+                }),
+                {"--set actuator: ", "got nothing", "leave it out", "actuator={}"});
+  const std::string grandchild = write("c.yaml", "extends: a\ntitle: c\n");
+  expectWords(errorOf([&] { readLoop(grandchild); }), {file + ":2: actuator: "});
+}
+
+TEST_F(Extends, AnEmptyMappingKeepsAndAnEmptySectionOverNothingIsNone) {
+  const LoopFile tank = readLoop("heated_tank");
+  const auto same = [&](const LoopFile& loop) {
+    return loop.simulation.actuator.limits.move == tank.simulation.actuator.limits.move;
+  };
+  EXPECT_TRUE(same(readLoop(write("a.yaml", "extends: heated_tank\nactuator: {}\n"))));
+  EXPECT_TRUE(same(readLoop(write("b.yaml", "extends: heated_tank\nguard:\nclp:\n"))));
+  EXPECT_FALSE(same(readLoop("heated_tank", {{"actuator", "{}"}}))) << "begins with the defaults";
   EXPECT_TRUE(readLoop("asp_case1_clp").has_clp);
-  EXPECT_FALSE(readLoop(file).has_clp);
+  EXPECT_FALSE(
+      readLoop(write("c.yaml", "extends: asp_case1_clp\nclp: {enabled: false}\n")).has_clp);
   EXPECT_FALSE(readLoop("asp_case1_clp", {{"clp.enabled", "false"}}).has_clp);
 }
 

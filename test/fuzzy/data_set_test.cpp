@@ -185,6 +185,30 @@ TEST(DataSet, UnequalTimesAreRefusedAndHolesBecomeMissingRows) {
   contains(data.repairs[0], "2 rows absent");
 }
 
+TEST(DataSet, ARecordOfAnotherSampleTimeIsNotOneWithMissingRows) {
+  const auto slower = [](CsvTable& t) { t.values.col(0) *= 2.0; };
+  contains(errorOf(slower),
+           "times 1 apart (another unit? or another sample_time_s), got 2 from each row");
+  CsvTable t = table();
+  slower(t);
+  EXPECT_EQ(makeDataSet(t, structureWith("repair: {missing: interpolate}\n")).rows(), 39)
+      << "asked for";
+}
+
+TEST(DataSet, TimesThatRepeatAreNotToBeSorted) {
+  const auto repeat = [](CsvTable& t) { t.values(7, 0) = t.values(6, 0); };
+  for (const char* repair : {"", "repair: {sort_time: true}\n"})
+    contains(errorOf(repeat, repair), "every time only once");
+}
+
+TEST(DataSet, DatesWithoutHyphensAreNoTimes) {
+  contains(errorOf([](CsvTable& t) {
+             for (Eigen::Index k = 0; k < t.rows(); ++k)
+               t.values(k, 0) = 20250301.0 + static_cast<double>(k);
+           }),
+           "2025-03-01, got 20250301");
+}
+
 TEST(DataSet, TooFewRowsAndUnknownColumnsAreErrors) {
   contains(errorOf([](CsvTable&) {}, "", {1, 5}), "at least 10 rows, got 5");
   contains(errorOf([](CsvTable&) {}, "", {1, 21}), "rows within 1:20");

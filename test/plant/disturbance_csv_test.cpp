@@ -123,6 +123,7 @@ TEST(DisturbanceCsv, AHoleInTimeIsMissingRows) {
   params.missing = MissingCells::kHold;
   EXPECT_EQ(readDisturbances(params, kNames, kNominal, 3600.0, 51).repaired, 47U);
   expectWords(errorOf(flowFrom("t,q\n0,1\n1,2\n2,3\n1e9,4\n")), "rows (another unit?)");
+  expectWords(errorOf(flowFrom("t,q\n20250228,1\n20250301,2\n")), "2025-02-28, got 20250228");
 }
 
 TEST(DisturbanceCsv, OtherSeparatorsDecimalsAndMissingValues) {

@@ -63,7 +63,7 @@ TEST(ReproducePlots, OfASelectionWithoutFiguresDrawNothingAndWarnOfNothing) {
   const Outcome outcome =
       tool("reproduce cstr_propositions --plots " + ::testing::TempDir() + "/no_pictures", true);
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_EQ(outcome.printed, "");
+  EXPECT_EQ(outcome.printed, "fmbpc: reproduce: blazic2007, from 1 of 1\n") << "progress alone";
 }
 
 }  // namespace tool_results_page_test

@@ -27,8 +27,9 @@ TEST_F(StabilityTool, ALoopOfOnesOwnIsOneWhereverItLies) {
 
 TEST_F(StabilityTool, TheRangeIsThatOfTheLoopAndIsPrinted) {
   const auto tank = steadyStates("heated_tank");
-  EXPECT_DOUBLE_EQ(tank["input_lower"], 0.15) << "the limits are the plant's: three times 5 kW";
-  EXPECT_DOUBLE_EQ(tank["input_upper"], 15.0);
+  EXPECT_DOUBLE_EQ(tank["input_lower"], 0.2);
+  EXPECT_DOUBLE_EQ(tank["input_upper"], 20.0) << "said by the loop, though it is the plant's";
+  EXPECT_EQ(tank["cut"], false);
   const std::string narrow = write(
       "narrow.yaml",
       "extends: heated_tank\nactuator:\n  input_lower: {heat: 2}\n  input_upper: {heat: 18}\n");
@@ -37,6 +38,29 @@ TEST_F(StabilityTool, TheRangeIsThatOfTheLoopAndIsPrinted) {
   EXPECT_DOUBLE_EQ(states["input_upper"], 18.0);
   const std::string printed = tool("stability " + narrow).printed;
   EXPECT_NE(printed.find("over heat [kW] from 2 to 18"), std::string::npos) << printed;
+}
+
+TEST_F(StabilityTool, WithoutLimitsOfTheLoopTheRestOfTheRangeIsNamed) {
+  const std::string loop =
+      write("free.yaml",
+            "plant:\n  type: distillation_column\n  matrix:\n"
+            "    outputs: [{name: T, unit: K, nominal: 40, lower: 0, upper: 100}]\n"
+            "    inputs: [{name: heat, unit: kW, nominal: 5, lower: 0, upper: 20}]\n"
+            "    elements: [{output: T, from: heat, gain: 2, time_constant_min: 9}]\n"
+            "sampling: {sample_time_s: 30, duration_h: 1}\n"
+            "controller:\n  type: pi\n"
+            "  loops: [{input: heat, output: T, kp: 1, ki_per_h: 4}]\n");
+  const auto states = steadyStates(loop);
+  EXPECT_DOUBLE_EQ(states["input_upper"], 15.0) << "three times 5 kW";
+  EXPECT_EQ(states["cut"], true);
+  const std::string printed = tool("stability " + loop).printed;
+  EXPECT_NE(printed.find("not looked at: the rest of 0 to 20"), std::string::npos) << printed;
+  EXPECT_EQ(tool("stability heated_tank").printed.find("not looked at"), std::string::npos);
+  for (const char* limit : {"actuator.input_upper=20", "actuator.input_upper=[20]"}) {
+    const Outcome said = tool("resolve " + loop + " --set '" + limit + "' > " + path("said.yaml"));
+    ASSERT_EQ(said.code, 0);
+    EXPECT_DOUBLE_EQ(steadyStates(path("said.yaml"))["input_upper"], 20.0) << limit;
+  }
 }
 
 TEST_F(StabilityTool, OptionsThatOnlyALawUnderstandsAreRefusedWithoutOne) {

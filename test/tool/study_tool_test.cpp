@@ -105,7 +105,8 @@ TEST_F(StudyTool, AMisspeltNameIsTakenForAStudyOrALoop) {
 TEST_F(StudyTool, MistakesAreOneLine) {
   for (const std::string& wrong :
        {loops() + " --seeds 3:1", loops() + " --vary k", loops() + " --seeds 1 --noise y",
-        loops() + " --resume", path("lag.yaml") + " --against nobody"}) {
+        loops() + " --seeds 1:3 --noise y=0", loops() + " --resume",
+        path("lag.yaml") + " --against nobody"}) {
     const Outcome outcome = tool("study " + wrong, true);
     EXPECT_EQ(outcome.code, 1) << wrong;
     EXPECT_EQ(std::count(outcome.printed.begin(), outcome.printed.end(), '\n'), 1)

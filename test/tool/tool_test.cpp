@@ -217,6 +217,10 @@ TEST_F(Tool, StabilitySaysThatItDoesNotAnalyseThePrintedStateSpace) {
 TEST_F(Tool, ReproduceJsonIsAListOfRowsWithAVerdictEach) {
   const auto json =
       nlohmann::json::parse(tool("reproduce asp2_table_8 asp2_equations --json").printed);
+  EXPECT_EQ(
+      tool("reproduce asp2_table_8 cstr_propositions", true).printed,
+      "fmbpc: reproduce: blazic2007, from 1 of 2\nfmbpc: reproduce: vallejo2021a, from 2 of 2\n")
+      << "a log shows that something is done";
   ASSERT_TRUE(json.is_array());
   ASSERT_EQ(json.size(), 16U);
   for (const auto& row : json)

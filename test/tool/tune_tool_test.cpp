@@ -134,6 +134,30 @@ TEST_F(TuneTool, SaysFirstThatHeldOutCostGotWorseAndEndsWithACodeOfItsOwn) {
   EXPECT_NE(errors.find("lag.yaml: " + words), std::string::npos) << errors;
 }
 
+/// A cap below every cost, and a plant that no gain moves: the search saw nothing.
+TEST_F(TuneTool, SaysThatNothingWasFoundWhereEveryPointCostsTheSame) {
+  const std::string parameter =
+      "parameters:\n  - {key: controller.loops.0.kp, lower: 0.2, upper: 5}\n"
+      "search: {population: 4, evaluations: 12}\n";
+  const std::string term = "fitness: {terms: [{index: ise, output: y}]";
+  for (const auto& [more, words] :
+       {std::pair<std::string, std::string>{term + ", failure: 1e-9}\n",
+                                            "all 12 points cost 1e-09, fitness.failure"},
+        {term + "}\nset: {plant.matrix.elements.0.gain: 0}\n", "all 12 points cost the same"}}) {
+    write("t.yaml", parameter + more);
+    std::filesystem::remove_all(path("out"));
+    const auto tuned = json("--out " + path("out"), 3);
+    EXPECT_EQ(tuned["worse"], false);
+    EXPECT_EQ(tuned["parameters"][0].count("at_bound"), 0U);
+    EXPECT_NE(tuned["remarks"].dump().find(words), std::string::npos) << tuned["remarks"].dump();
+    EXPECT_EQ(tuned["remarks"].dump().find("bound"), std::string::npos);
+    EXPECT_FALSE(std::filesystem::exists(path("out") + "/lag_tuned.yaml"));
+    const Outcome table = tool("tune " + files() + " --no-plot");
+    EXPECT_EQ(table.code, 3);
+    EXPECT_EQ(table.printed.rfind("nothing was found: " + words, 0), 0U) << table.printed;
+  }
+}
+
 TEST_F(TuneTool, CtrlCSavesAndSaysHowToGoOn) {
   const std::string out = path("out");
   // The interrupt comes when the first generation stands in the state file.

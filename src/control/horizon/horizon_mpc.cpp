@@ -12,6 +12,9 @@ namespace {
 using Eigen::Index;
 
 constexpr double kDifference = 1e-5;  // relative, of finite differences
+constexpr double kTrial = 1e-3;       // of an input's range: a move whose effect is looked for
+constexpr const char* kShortSighted =
+    "controller.horizon_steps is too short: an input hardly acts within it";
 
 }  // namespace
 
@@ -25,7 +28,8 @@ HorizonMpc::HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo
       correction_(Vector::Zero(n_y_)),
       disturbances_(Vector::Zero(countOf(plant.disturbances))),
       plan_(Vector::Zero(n_u_ * params_.move_steps)),
-      kept_(plan_) {
+      kept_(plan_),
+      trial_(Vector::Zero(n_u_)) {
   limits_.validate(n_u_);
   range_ = limits_.upper - limits_.lower;
   range_ = (range_.array() > 0.0).select(range_, 1.0);
@@ -165,10 +169,11 @@ void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
     present_ = state_;
   }
   if (anew_) restPlan(now);
-  anew_ = false;
   clipPlan(plan_, now.input_applied, limits_);
   kept_ = plan_;
   cost_->start(present_, correction_, disturbances_, now.input_applied, future_);
+  if (anew_) lookAhead(now);
+  anew_ = false;
   PlanFound found = search(now, plan_);
   found.usable = found.usable && plan_.allFinite();
   if (!found.usable) plan_ = kept_;
@@ -176,9 +181,18 @@ void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
   output.input = plan_.head(n_u_);
   output.source = found.usable ? ActionSource::kBase : ActionSource::kClipped;
   output.ok = found.usable;
-  output.remark = found.remark;
+  output.remark = *found.remark == '\0' && short_sighted_ ? kShortSighted : found.remark;
   if (!state_.allFinite()) fresh_ = true;
   refreshSignals(found);
+}
+
+/// Moves each input into its range; one whose bounds coincide never acts.
+void HorizonMpc::lookAhead(const Measurement& now) {
+  for (Index a = 0; a < n_u_; ++a) {
+    const double step = limits_.upper[a] > limits_.lower[a] ? kTrial * range_[a] : 0.0;
+    trial_[a] = now.input_applied[a] + step <= limits_.upper[a] ? step : -step;
+  }
+  short_sighted_ = cost_->isShortSighted(trial_);
 }
 
 void HorizonMpc::refreshSignals(const PlanFound& found) {

@@ -11,6 +11,8 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double kHardlyBegun = 0.1;  // of the effect one sample later
+
 void checkWeights(const Vector& weights, Index n, const std::string& key) {
   require(weights.size() == n && weights.allFinite() && (weights.array() >= 0.0).all(), key,
           std::to_string(n) + " finite numbers >= 0");
@@ -42,7 +44,10 @@ PlanCost::PlanCost(SampleModel& model, const HorizonParams& params)
       previous_(Vector::Zero(n_u_)),
       state_(start_),
       residuals_(residualSize()),
-      reference_(Matrix::Zero(n_y_, params.horizon_steps)) {}
+      reference_(Matrix::Zero(n_y_, params.horizon_steps)),
+      held_(Vector::Zero(n_u_)),
+      last_(Matrix::Zero(n_y_, 2)),
+      stepped_(last_) {}
 
 void PlanCost::start(VectorRef state, VectorRef correction, VectorRef disturbances,
                      VectorRef input_previous, MatrixRef reference) {
@@ -76,6 +81,35 @@ bool PlanCost::residuals(VectorRef plan, Eigen::Ref<Vector> r) {
 double PlanCost::cost(VectorRef plan) {
   return residuals(plan, residuals_) ? residuals_.squaredNorm()
                                      : std::numeric_limits<double>::infinity();
+}
+
+/// Of the inputs held_, at the horizon and one sample later; false where the model is not finite.
+bool PlanCost::lastOutputs(Eigen::Ref<Matrix> outputs) {
+  state_ = start_;
+  for (Index i = 0; i <= params_.horizon_steps; ++i) {
+    if (!model_.step(held_, disturbances_, state_)) return false;
+    const Index column = i < params_.horizon_steps ? 0 : 1;
+    for (Index o = 0; o < n_y_; ++o) {
+      double& y = state_[model_.outputState(o)];
+      y += correction_[o];
+      outputs(o, column) = root_output_[o] * y;
+    }
+  }
+  return outputs.allFinite();
+}
+
+bool PlanCost::isShortSighted(VectorRef step) {
+  held_ = previous_;
+  if (!lastOutputs(last_)) return false;
+  for (Index a = 0; a < n_u_; ++a) {
+    if (step[a] == 0.0) continue;
+    held_ = previous_;
+    held_[a] += step[a];
+    if (!lastOutputs(stepped_)) continue;
+    stepped_ -= last_;
+    if (stepped_.col(0).norm() <= kHardlyBegun * stepped_.col(1).norm()) return true;
+  }
+  return false;
 }
 
 void clipPlan(Eigen::Ref<Vector> plan, VectorRef input_previous, const InputLimits& limits) {

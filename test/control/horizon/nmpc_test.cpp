@@ -213,6 +213,41 @@ TEST(Nmpc, TheSameSamplesGiveTheSameBits) {
   EXPECT_EQ(first, second);
 }
 
+/// y(k+1) = 0.8 y(k) + b2 u(k-1) + b1 u(k): with b1 = 0 an input moves nothing within one sample.
+TsModel lateModel(double b1) {
+  TsModel model = test::firstOrder(0.8, 0.3, 0.0);
+  OutputModel& output = model.submodels[0];
+  output.regressors = {
+      {SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 0}, {SignalKind::kInput, 0, 1}};
+  output.rules[0].coefficients = (Vector(3) << 0.8, b1, 0.3).finished();
+  return model;
+}
+
+std::string remarkOf(const TsModel& model, int steps, const InputLimits& limits) {
+  NmpcParams params = test::tankParams(steps, 1);
+  const PlantInfo info = test::infoOf(model);
+  Nmpc law(params, limits, info, std::make_unique<FuzzySampleModel>(model));
+  SetpointSource source = test::setpointOf(info, Vector::Ones(1));
+  ControllerOutput output;
+  const Measurement now = test::tankSample(0, 0.5, 1.0);
+  source.advance(0);
+  law.reset(now);
+  law.step(now, source, output);
+  EXPECT_TRUE(output.ok);
+  return output.remark;
+}
+
+TEST(Nmpc, AHorizonWithinWhichAnInputHardlyActsIsRemarked) {
+  const InputLimits limits = test::tankLimits();
+  const std::string words = "controller.horizon_steps is too short";
+  EXPECT_EQ(remarkOf(lateModel(0.0), 1, limits).rfind(words, 0), 0U);
+  EXPECT_EQ(remarkOf(lateModel(0.01), 1, limits).rfind(words, 0), 0U) << "a thirtieth of the whole";
+  EXPECT_EQ(remarkOf(lateModel(0.1), 1, limits), "");
+  EXPECT_EQ(remarkOf(lateModel(0.0), 2, limits), "");
+  const InputLimits fixed{Vector::Ones(1), Vector::Ones(1), Vector::Ones(1)};
+  EXPECT_EQ(remarkOf(lateModel(0.0), 1, fixed), "") << "an input that cannot move anyway";
+}
+
 TEST(Nmpc, ParametersAreCheckedByName) {
   const auto refuses = [](const NmpcParams& params, const std::string& field) {
     try {

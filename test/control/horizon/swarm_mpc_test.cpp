@@ -116,5 +116,19 @@ TEST(SwarmMpc, LimitsOfInputsAndMovesHoldAtEverySample) {
 
 TEST(SwarmMpc, NeedsAModel) { EXPECT_TRUE(Loop(swarmParams()).law.needsModel()); }
 
+TEST(SwarmMpc, AHorizonWithinWhichTheInputDoesNotActIsRemarked) {
+  TsModel late = kModel;
+  late.submodels[0].regressors.back().lag = 1;
+  for (const int steps : {1, 2}) {
+    SwarmMpcParams params = swarmParams();
+    params.horizon = test::horizonParams(1, 1, steps, 1, 0.05);
+    Loop loop(params);
+    loop.law.setModel(late);
+    std::string remark;
+    loop.run(3, [&](const Measurement&, const ControllerOutput& o) { remark = o.remark; });
+    EXPECT_EQ(remark.find("controller.horizon_steps is too short") == 0, steps == 1) << remark;
+  }
+}
+
 }  // namespace control_horizon_swarm_mpc_test
 }  // namespace fpc

@@ -30,8 +30,9 @@ struct PlanFound {
 /// forward on the inputs applied since, corrected in every sample. The search starts from the plan
 /// of the sample before, moved on by one sample and put inside the limits; if it fails that plan's
 /// input is sent, ok is false and the source `clipped`. Hard limits on inputs and moves. signals():
-/// NAME_correction of each output, plan_cost, plan_effort. While somebody else has the inputs the
-/// state moves on (lookOn()); reset() at the next sample keeps it, and plans anew.
+/// NAME_correction of each output, plan_cost, plan_effort. A horizon at whose end an input has
+/// hardly begun to act is remarked, as seen where plans begin anew. While somebody else has the
+/// inputs the state moves on (lookOn()); reset() at the next sample keeps it, and plans anew.
 class HorizonMpc : public Controller {
  public:
   void reset(const Measurement& start) override;
@@ -58,6 +59,7 @@ class HorizonMpc : public Controller {
   bool goesOn(const StepHeader& header) const;
   bool estimate(const Measurement& now);
   void restPlan(const Measurement& now);
+  void lookAhead(const Measurement& now);
   bool observe(const Measurement& now);
   bool linearise();
   void remember(const Measurement& now);
@@ -78,9 +80,11 @@ class HorizonMpc : public Controller {
   Matrix inputs_, past_;  // u and d of the samples since the measured outputs were true, and before
   Vector state_;          // when the measured outputs were true
   Vector present_, correction_, disturbances_, plan_, kept_;
+  Vector trial_;      // moves, n_u
   StepHeader seen_;   // of the last sample
   bool fresh_{true};  // the state is to be taken from the next measurement
   bool anew_{true};   // the plan as well
+  bool short_sighted_{false};
   std::vector<std::pair<std::string, double>> signals_;
 };
 

@@ -35,14 +35,23 @@ class PlanCost {
   /// The square roots of the terms of J. Returns false where the model is not finite.
   bool residuals(VectorRef plan, Eigen::Ref<Vector> r);
   double cost(VectorRef plan);  ///< J, infinite where the model is not finite
+  /// The effect of some input on the weighted outputs has hardly begun at the horizon: less than a
+  /// tenth of what it is one sample later. Every plan then costs nearly the same, or asks for huge
+  /// moves. Tried from start() with each input held at its last value and at `step` beside it, n_u;
+  /// inputs whose step is 0 do not count. False where the model is not finite.
+  bool isShortSighted(VectorRef step);
 
  private:
+  bool lastOutputs(Eigen::Ref<Matrix> outputs);
+
   SampleModel& model_;
   HorizonParams params_;
   Eigen::Index n_y_, n_u_;
   Vector root_output_, root_move_;
   Vector start_, correction_, disturbances_, previous_, state_, residuals_;
   Matrix reference_;
+  Vector held_;            // inputs that stay
+  Matrix last_, stepped_;  // weighted outputs at P and P + 1, n_y 2
 };
 
 /// Puts a plan inside the limits, sample after sample from `input_previous` on.
