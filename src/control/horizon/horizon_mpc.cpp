@@ -172,8 +172,6 @@ void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
   clipPlan(plan_, now.input_applied, limits_);
   kept_ = plan_;
   cost_->start(present_, correction_, disturbances_, now.input_applied, future_);
-  if (anew_) lookAhead(now);
-  anew_ = false;
   PlanFound found = search(now, plan_);
   found.usable = found.usable && plan_.allFinite();
   if (!found.usable) plan_ = kept_;
@@ -181,6 +179,8 @@ void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
   output.input = plan_.head(n_u_);
   output.source = found.usable ? ActionSource::kBase : ActionSource::kClipped;
   output.ok = found.usable;
+  if (anew_) lookAhead(now);
+  anew_ = false;
   output.remark = *found.remark == '\0' && short_sighted_ ? kShortSighted : found.remark;
   if (!state_.allFinite()) fresh_ = true;
   refreshSignals(found);
