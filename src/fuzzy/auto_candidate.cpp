@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fmbpc/base/number.hpp"
 #include "fuzzy/auto_knowledge.hpp"
 #include "fuzzy/auto_start.hpp"
 #include "fuzzy/auto_stress.hpp"
@@ -19,14 +20,7 @@ constexpr int kRandomStarts = 16;
 constexpr int kProbe = 8;        // iterations that tell a good start from a bad one
 constexpr double kBeyond = 0.5;  // of the states' span: how far a run may leave them
 
-std::string number(double value) {
-  std::string text = std::to_string(value);
-  text.erase(text.find_last_not_of('0') + 1);
-  if (text.back() == '.') text.pop_back();
-  return text;
-}
-
-/// Inputs, then disturbances, each from its delay on; none that tell nothing.
+/// Inputs, disturbances, each from its delay on, none that tell nothing; then other outputs.
 std::vector<Regressor> exogenousOf(const DataSet& data, const Candidate& c) {
   std::vector<Regressor> v;
   const int n_u = static_cast<int>(data.inputs.size());
@@ -36,6 +30,8 @@ std::vector<Regressor> exogenousOf(const DataSet& data, const Candidate& c) {
       v.push_back({j < n_u ? SignalKind::kInput : SignalKind::kDisturbance, j < n_u ? j : j - n_u,
                    std::max(c.delay[static_cast<std::size_t>(j)] + c.later, 0) + lag});
   }
+  for (const int other : c.partners)
+    for (int lag = 0; lag < c.input_terms; ++lag) v.push_back({SignalKind::kOutput, other, lag});
   return v;
 }
 
@@ -50,6 +46,9 @@ std::vector<Index> antecedentsOf(const Candidate& c, Index exogenous) {
   if (a == AntecedentChoice::kInputs || a == AntecedentChoice::kOutputAndInputs ||
       a == AntecedentChoice::kStateAndInputs)
     for (Index j = 0; j < exogenous; j += step) z.push_back(n + j);
+  if (a == AntecedentChoice::kPartners)
+    for (auto p = static_cast<Index>(c.partners.size()); p > 0; --p)
+      z.push_back(n + exogenous - p * step);
   return z;
 }
 
@@ -246,20 +245,21 @@ Vector inOwnUnit(const AutoData& data, const Fitted& fitted, Vector y) {
 }  // namespace
 
 std::string Candidate::text() const {
-  static const char* const on[] = {"y",         "all past y",      "inputs", "y and inputs",
-                                   "the state", "state and inputs"};
+  static const char* const on[] = {"y",         "all past y",       "inputs", "y and inputs",
+                                   "the state", "state and inputs", "them"};
   std::string words = hidden ? "hidden state " + std::to_string(order)
                              : "y " + std::to_string(order) + ", u " + std::to_string(input_terms);
   if (absolute) words += ", size of";
   if (hidden && chain) words += ", chain";
+  if (!partners.empty()) words += ", with other outputs";
   if (later != 0) words += ", delays " + std::string(later > 0 ? "+" : "") + std::to_string(later);
   if (rules == 1) {
     if (!free_run) words += ", one-step fit";
-    if (linear_ridge > 0.01) words += ", ridge " + number(linear_ridge);
+    if (linear_ridge > 0.01) words += ", ridge " + printNumber(linear_ridge);
     return words;
   }
   return words + ", " + std::to_string(rules) + " rules on " +
-         on[static_cast<std::size_t>(antecedents)] + ", ridge " + number(ridge) +
+         on[static_cast<std::size_t>(antecedents)] + ", ridge " + printNumber(ridge) +
          (seed > 1 ? ", seed " + std::to_string(seed) : "");
 }
 

@@ -15,7 +15,8 @@ enum class AntecedentChoice {
   kInputs,
   kOutputAndInputs,
   kState,
-  kStateAndInputs
+  kStateAndInputs,
+  kPartners  ///< the present values of other outputs
 };
 
 /// Enough to fit it again on other rows.
@@ -25,7 +26,8 @@ struct Candidate {
   int input_terms{2};                         ///< past values of each input, not hidden
   std::vector<int> delay;                     ///< of each input and disturbance
   std::vector<std::vector<int>> block_delay;  ///< the same for each held-out block; none: `delay`
-  int later{};                                ///< added to every delay, but none becomes negative
+  std::vector<int> partners;  ///< other outputs, from their present value on; not hidden
+  int later{};                ///< added to every delay, but none becomes negative
   int rules{1};
   AntecedentChoice antecedents{AntecedentChoice::kOutput};
   double ridge{10.0};         ///< of the rules towards the linear model

@@ -19,6 +19,7 @@ constexpr std::size_t kMostGroups = 4;     // of structures in it
 constexpr int kLastIterations = 150;
 constexpr double kSuspicious = 1.3;  // fitted error over held-out error: another minimum
 constexpr double kCoverage = 0.95;
+constexpr double kWorth = 0.97;         // a better model must lower the held-out error by this
 constexpr double kSure = 1.5;           // standard errors of the mean ratio of errors
 constexpr Eigen::Index kPieces = 12;    // parts of the blocks that models are compared on
 constexpr Eigen::Index kShortest = 20;  // rows of a part
@@ -135,6 +136,14 @@ void dropStuck(const Committee& committee, std::vector<Fitted>& fitted) {
     for (std::size_t m = 0; m < all.size(); ++m)
       if (stuck[m]) fitted[all[m]].finite = false;
   }
+}
+
+bool isLower(const AutoFigures& other, const AutoFigures& than) {
+  return other.mean < kWorth * than.mean;
+}
+
+bool isWorthIt(const AutoFigures& other, const AutoFigures& linear) {
+  return isLower(other, linear) && beyondSpread(other, linear);
 }
 
 bool beyondSpread(const AutoFigures& other, const AutoFigures& linear) {

@@ -24,6 +24,11 @@ Fitted fitWhole(const AutoData& data, const Judgement& judged, int window, doubl
 /// finite.
 void dropStuck(const Committee& committee, std::vector<Fitted>& fitted);
 
+/// The mean of the blocks' errors is lower by 3 %.
+bool isLower(const AutoFigures& other, const AutoFigures& than);
+/// The same, and beyond the spread.
+bool isWorthIt(const AutoFigures& other, const AutoFigures& linear);
+
 /// `other` is better than `linear` by more than the spread of their ratio over parts of the blocks.
 bool beyondSpread(const AutoFigures& other, const AutoFigures& linear);
 

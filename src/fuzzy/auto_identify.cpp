@@ -7,7 +7,8 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/fuzzy/record_remarks.hpp"
-#include "fuzzy/auto_output.hpp"
+#include "fuzzy/auto_coupling.hpp"
+#include "fuzzy/auto_verdict.hpp"
 
 namespace fpc {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kFewestRows = 60;
+constexpr double kTogether = 0.15;  // of the budget, for outputs that depend on each other
 
 void checkParams(const DataSet& data, const AutoParams& p) {
   require(p.budget_s > 0.0, "budget_s", "a number > 0");
@@ -108,11 +110,13 @@ AutoIdentification search(const DataSet& full, const AutoParams& params,
   const std::size_t n_y = data.outputs.size();
   std::atomic<bool> stopped{false};
   std::mutex guard;
+  std::vector<SearchedOutput> alone;
   for (std::size_t i = 0; i < n_y; ++i) {
     SearchLimits limits;
     limits.threads = params.threads;
     limits.window = params.window;
-    const double share = static_cast<double>(i + 1) / static_cast<double>(n_y);
+    const double share =
+        static_cast<double>(i + 1) / static_cast<double>(n_y) * (n_y > 1 ? 1.0 - kTogether : 1.0);
     limits.deadline = begin + std::chrono::duration_cast<Clock::duration>(
                                   std::chrono::duration<double>(params.budget_s * share));
     limits.proceed = [&stopped] { return !stopped.load(); };
@@ -121,8 +125,16 @@ AutoIdentification search(const DataSet& full, const AutoParams& params,
       const double done = (static_cast<double>(i) + part) / static_cast<double>(n_y);
       if (callback && !callback({data.outputs[i].name + ": structures", done})) stopped = true;
     };
-    searchOutput(data, static_cast<int>(i), params, limits, result);
+    alone.push_back(searchOutput(data, static_cast<int>(i), params, limits, result));
   }
+  SearchLimits together;
+  together.threads = params.threads;
+  together.window = params.window;
+  together.deadline = begin + std::chrono::duration_cast<Clock::duration>(
+                                  std::chrono::duration<double>(params.budget_s));
+  together.proceed = [&stopped] { return !stopped.load(); };
+  coupleOutputs(alone, together, result);
+  for (auto& found : result.outputs) decide(found);
   if (result.state.outputs.size() != n_y) result.state.outputs.clear();
   result.cancelled = stopped;
   result.model.validate();

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
@@ -16,17 +15,9 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kWorth = 0.97;    // a fuzzy model must lower the held-out error by this
 constexpr std::size_t kShown = 5;  // trials of each kind in the report
-constexpr double kTells = 10.0;    // [%] of fit: less is hardly more than the mean
 constexpr int kLongestDelay = 100;
 constexpr Index kRowsPerDelay = 10;
-
-std::string shortNumber(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.4g", value);
-  return text;
-}
 
 /// Everything of one output.
 class OutputSearch {
@@ -40,7 +31,7 @@ class OutputSearch {
     if (!params.known.empty()) data_.known = params.known[static_cast<std::size_t>(output)];
   }
 
-  void run() {
+  SearchedOutput run() {
     found_.output = name();
     findDelays();
     searched_ = searchStructures(data_, found_.delay, params_.states, params_.seed, limits_);
@@ -54,7 +45,6 @@ class OutputSearch {
                 (contradiction_.empty() ? "" : "; " + contradiction_));
     chooseModels();
     chooseState();
-    decide();
     keepTrials();
     for (const auto* model : {&result_.linear, &result_.model})
       for (const auto& key :
@@ -65,6 +55,8 @@ class OutputSearch {
       found_.sensor_upper = inUnit(data_.upper);
     }
     result_.outputs.push_back(found_);
+    alone_.data = std::move(data_);
+    return std::move(alone_);
   }
 
  private:
@@ -146,11 +138,12 @@ class OutputSearch {
     if (rules >= 0) {
       const Judgement& r = searched_.regressors[static_cast<std::size_t>(rules)];
       found_.regressors = figuresOf(data_, r.free_run, r.one_step);
-      fuzzy_chosen_ = found_.regressors.fit > 0.0 &&
-                      found_.regressors.mean < kWorth * found_.linear.mean &&
-                      beyondSpread(found_.regressors, found_.linear);
+      fuzzy_chosen_ = found_.regressors.fit > 0.0 && isWorthIt(found_.regressors, found_.linear);
       fuzzy_text_ = r.candidate.text();
+      alone_.fuzzy = r.candidate;
     }
+    alone_.linear = l.candidate;
+    found_.fuzzy_model = fuzzy_chosen_;
     result_.model.submodels.push_back(fuzzy_chosen_ ? fuzzy : linear);
   }
 
@@ -180,63 +173,6 @@ class OutputSearch {
     state.one_step_width = found_.state.one_step_width;
     for (const auto* j : committee.members) members_.push_back(j->candidate.text());
     result_.state.outputs.push_back(std::move(state));
-  }
-
-  /// A fuzzy model is taken where it beats linear beyond the spread; otherwise linear is safer.
-  void decide() {
-    const AutoFigures& line = found_.linear;
-    const AutoFigures* best = &line;
-    if (fuzzy_chosen_) {
-      best = &found_.regressors;
-      found_.best = ModelKind::kRegressors;
-    }
-    const AutoFigures& own = found_.state;
-    if (!own.blocks.empty() && own.fit > 0.0 && own.mean < kWorth * best->mean &&
-        beyondSpread(own, line)) {
-      best = &own;
-      found_.best = ModelKind::kState;
-    }
-    found_.beats_linear = best != &line;
-    found_.fuzzy_model = fuzzy_chosen_;
-    found_.verdict = verdictOf(*best);
-    if (best->fit > kTells) return;
-    found_.verdict =
-        (best->fit > 0.0 ? "no model says much more than the mean of the record in free run over "
-                           "held-out blocks (fit " +
-                               shortNumber(best->fit) + " %): "
-                         : "no model says more than the mean of the record in free run over "
-                           "held-out blocks: ") +
-        "do not trust any of them there (" + found_.verdict + ")";
-  }
-
-  std::string verdictOf(const AutoFigures& best) const {
-    const AutoFigures& line = found_.linear;
-    if (!found_.beats_linear)
-      return "no fuzzy model beats the best linear one beyond the spread over held-out blocks "
-             "(" +
-             lowestFuzzyText() + ", beside " + shortNumber(line.mean) +
-             "): the linear model is written";
-    std::string words =
-        "the fuzzy model beats linear beyond the spread over held-out blocks: free "
-        "run " +
-        shortNumber(best.mean) + " beside " + shortNumber(line.mean) + " of the best linear one";
-    if (found_.best == ModelKind::kState)
-      words += "; it has a state of its own, for simulation; what control laws take reaches " +
-               shortNumber(fuzzy_chosen_ ? found_.regressors.mean : line.mean) +
-               (fuzzy_chosen_ ? "" : " (linear)");
-    return words;
-  }
-
-  std::string lowestFuzzyText() const {
-    const double lowest = lowestFuzzy();
-    return std::isfinite(lowest) ? "free run " + shortNumber(lowest) : "none ran to the end";
-  }
-
-  double lowestFuzzy() const {
-    double lowest = std::numeric_limits<double>::infinity();
-    for (const auto* f : {&found_.regressors, &found_.state})
-      if (!f->blocks.empty()) lowest = std::min(lowest, f->mean);
-    return lowest;
   }
 
   void keepTrials() {
@@ -283,6 +219,7 @@ class OutputSearch {
   const SearchLimits& limits_;
   AutoIdentification& result_;
   AutoOutput found_;
+  SearchedOutput alone_;
   StructureSearch searched_;
   bool fuzzy_chosen_{false}, states_complete_{true};
   std::string linear_text_, fuzzy_text_, contradiction_;
@@ -291,9 +228,9 @@ class OutputSearch {
 
 }  // namespace
 
-void searchOutput(const DataSet& data, int output, const AutoParams& params,
-                  const SearchLimits& limits, AutoIdentification& result) {
-  OutputSearch(data, output, params, limits, result).run();
+SearchedOutput searchOutput(const DataSet& data, int output, const AutoParams& params,
+                            const SearchLimits& limits, AutoIdentification& result) {
+  return OutputSearch(data, output, params, limits, result).run();
 }
 
 }  // namespace fpc

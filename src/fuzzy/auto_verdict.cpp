@@ -1,0 +1,70 @@
+#include "fuzzy/auto_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "fuzzy/auto_choice.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kTells = 10.0;  // [%] of fit: less is hardly more than the mean
+
+std::string shortNumber(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string lowestFuzzyText(const AutoOutput& found) {
+  double lowest = kInfinity;
+  for (const auto* f : {&found.regressors, &found.state})
+    if (!f->blocks.empty()) lowest = std::min(lowest, f->mean);
+  return std::isfinite(lowest) ? "free run " + shortNumber(lowest) : "none ran to the end";
+}
+
+std::string verdictOf(const AutoOutput& found, const AutoFigures& best) {
+  const AutoFigures& line = found.linear;
+  if (!found.beats_linear)
+    return "no fuzzy model beats the best linear one beyond the spread over held-out blocks (" +
+           lowestFuzzyText(found) + ", beside " + shortNumber(line.mean) +
+           "): the linear model is written";
+  std::string words =
+      "the fuzzy model beats linear beyond the spread over held-out blocks: free run " +
+      shortNumber(best.mean) + " beside " + shortNumber(line.mean) + " of the best linear one";
+  if (found.best == ModelKind::kState)
+    words += "; it has a state of its own, for simulation; what control laws take reaches " +
+             shortNumber(found.fuzzy_model ? found.regressors.mean : line.mean) +
+             (found.fuzzy_model ? "" : " (linear)");
+  return words;
+}
+
+}  // namespace
+
+void decide(AutoOutput& found) {
+  const AutoFigures* best = &found.linear;
+  found.best = ModelKind::kLinear;
+  if (found.fuzzy_model) {
+    best = &found.regressors;
+    found.best = ModelKind::kRegressors;
+  }
+  const AutoFigures& own = found.state;
+  if (!own.blocks.empty() && own.fit > 0.0 && isLower(own, *best) &&
+      beyondSpread(own, found.linear)) {
+    best = &own;
+    found.best = ModelKind::kState;
+  }
+  found.beats_linear = found.best != ModelKind::kLinear;
+  found.verdict = verdictOf(found, *best);
+  if (best->fit > kTells) return;
+  found.verdict =
+      (best->fit > 0.0 ? "no model says much more than the mean of the record in free run over "
+                         "held-out blocks (fit " +
+                             shortNumber(best->fit) + " %): "
+                       : "no model says more than the mean of the record in free run over "
+                         "held-out blocks: ") +
+      "do not trust any of them there (" + found.verdict + ")";
+}
+
+}  // namespace fpc
