@@ -40,6 +40,22 @@ TEST_F(StabilityTool, TheRangeIsThatOfTheLoopAndIsPrinted) {
   EXPECT_NE(printed.find("over heat [kW] from 2 to 18"), std::string::npos) << printed;
 }
 
+TEST_F(StabilityTool, OptionsThatOnlyALawUnderstandsAreRefusedWithoutOne) {
+  for (const char* option :
+       {"--at bogus=7", "--at heat=7", "--noise-gain 3", "--settling 3", "--horizon 1..9"}) {
+    const Outcome outcome = tool(std::string("stability heated_tank ") + option, true);
+    EXPECT_EQ(outcome.code, 1) << option;
+    EXPECT_NE(outcome.printed.find(std::string(option).substr(0, 4)), std::string::npos)
+        << outcome.printed;
+  }
+}
+
+TEST_F(StabilityTool, NothingToLookAtIsAnError) {
+  const Outcome outcome = tool("stability example_external", true);
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.printed.find("external"), std::string::npos) << outcome.printed;
+}
+
 TEST_F(StabilityTool, WithoutLimitsOfTheLoopTheRestOfTheRangeIsNamed) {
   const std::string loop =
       write("free.yaml",
@@ -61,22 +77,6 @@ TEST_F(StabilityTool, WithoutLimitsOfTheLoopTheRestOfTheRangeIsNamed) {
     ASSERT_EQ(said.code, 0);
     EXPECT_DOUBLE_EQ(steadyStates(path("said.yaml"))["input_upper"], 20.0) << limit;
   }
-}
-
-TEST_F(StabilityTool, OptionsThatOnlyALawUnderstandsAreRefusedWithoutOne) {
-  for (const char* option :
-       {"--at bogus=7", "--at heat=7", "--noise-gain 3", "--settling 3", "--horizon 1..9"}) {
-    const Outcome outcome = tool(std::string("stability heated_tank ") + option, true);
-    EXPECT_EQ(outcome.code, 1) << option;
-    EXPECT_NE(outcome.printed.find(std::string(option).substr(0, 4)), std::string::npos)
-        << outcome.printed;
-  }
-}
-
-TEST_F(StabilityTool, NothingToLookAtIsAnError) {
-  const Outcome outcome = tool("stability example_external", true);
-  EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.printed.find("external"), std::string::npos) << outcome.printed;
 }
 
 }  // namespace tool_stability_tool_test
