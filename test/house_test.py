@@ -45,8 +45,10 @@ def controller_types():
 
 
 def plant_types():
-    found = [name for p in sources("src/plant") for name in re.findall(r'registerPlant\("(\w+)"', p.read_text())]
-    assert len(found) >= 6, found
+    text = "\n".join(p.read_text() for p in sources("src/plant"))
+    found = re.findall(r'registerPlant\(\s*"(\w+)"', text)
+    found += re.findall(r'"(\w+)"', re.search(r"char\* const names\[\] = \{([^}]*)\}", text)[1])  # those of bsm1
+    assert len(found) >= 10, found
     return found
 
 
@@ -147,9 +149,12 @@ class House(unittest.TestCase):
             self.assertIsNone(words.search(path.name), path)
 
     def test_small_questions_about_signals_are_answered_once(self):
-        again = re.compile(r"\b(?:countOf|signalCount|namesOf|allFinite)\(const (?:std::vector<(?:SignalInfo|std::string|Quantity)>|Measurement)& \w+\) *\{")
-        places = [p for p in sources("include", "src") if again.search(p.read_text())]
+        again = re.compile(r"\b(?:countOf|signalCount|allFinite)\(const (?:std::vector<\w[\w:]*>|Measurement)& \w+\) *\{|\bnamesOf\(const [\w:<>]+& \w+\) *\{")
+        places = [p for p in sources("include", "src", "bench") if again.search(p.read_text())]
         self.assertEqual([TOP / "include/fmbpc/base/signals.hpp"], places)
+        infinity = re.compile(r"\bk\w+ = -?std::numeric_limits<double>::infinity\(\)")
+        places = [p for p in sources("include", "src", "test") if infinity.search(p.read_text())]
+        self.assertEqual([TOP / "include/fmbpc/base/types.hpp"], places)
 
     def test_files_are_small(self):
         for path in list(sources("include", "src", "test", "bench")) + sorted((TOP / "test").rglob("*.py")):
