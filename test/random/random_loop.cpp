@@ -149,8 +149,10 @@ RandomLoop randomLoop(std::uint64_t seed, const std::vector<std::string>& shippe
   if (given) plant += "  measured_disturbances: " + listed(modelled.disturbances) + "\n";
   const std::string controller = randomController(loop.controller, dice, frame);
   const ControllerType& type = controllerType(loop.controller);
+  // moves are not shrunk where the law names the few positions of its actuators
+  const bool guarded = type.needs_model && frame.actuator.empty();
   const std::string guard =
-      type.needs_model ? randomGuard(dice, frame, randomPiKeys(dice, frame)) : std::string();
+      guarded ? randomGuard(dice, frame, randomPiKeys(dice, frame)) : std::string();
   loop.text = "title: Random loop " + std::to_string(seed) + "\n" + plant +
               "sampling:\n  sample_time_s: " + exactText(frame.sample_time_s) +
               "\n  duration_h: " + exactText(frame.hours(frame.samples)) + "\n" +
