@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/plant/plant.hpp"
@@ -69,7 +70,7 @@ class LawCase {
  public:
   LawCase(int outputs, int rules, int horizon)
       : model_(neighbourModel(outputs, rules)),
-        setpoint_(setpointParams(outputs), namesOf(model_), SampleClock(1.0, 1.0)),
+        setpoint_(setpointParams(outputs), namesOf(model_.outputs), SampleClock(1.0, 1.0)),
         law_(paramsOf(outputs, horizon), limitsOf(outputs), test::infoOf(model_)) {
     now_.outputs = Vector::Zero(outputs);
     now_.disturbances = Vector::Zero(0);
@@ -91,11 +92,6 @@ class LawCase {
     SetpointParams params;
     params.initial = Vector::Constant(outputs, 0.5);
     return params;
-  }
-  static std::vector<std::string> namesOf(const TsModel& model) {
-    std::vector<std::string> names;
-    for (const auto& output : model.outputs) names.push_back(output.name);
-    return names;
   }
   static FmbpcParams paramsOf(int outputs, int horizon) {
     FmbpcParams params;

@@ -3,6 +3,7 @@
 count must see one failure. A result that is missing, empty or cut short is a failure too."""
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -55,6 +56,37 @@ class Counting(unittest.TestCase):
             subprocess.run(["rostest", TOP / "test/broken/broken.test"], env=environment, capture_output=True)
         wrapper = next(path.name for path in self.results.glob("rostest-*.xml"))
         self.assertEqual((1, "0 passed, 1 failed"), self.count(wrapper, "rosunit-broken.xml"))
+
+    @unittest.skipUnless(WITH_ROS, "built without ROS")
+    def test_a_rostest_with_a_case(self):
+        with tempfile.TemporaryDirectory() as home:
+            environment = dict(os.environ, ROS_TEST_RESULTS_DIR=str(self.build / "test_results"), ROS_HOME=home,
+                               ROS_HOSTNAME="localhost")
+            for case in ("one", "two"):
+                subprocess.run(["rostest", "--results-filename", f"broken_case__case_{case}.xml", TOP / "test/broken/broken_case.test",
+                                f"case:={case}"], env=environment, capture_output=True)
+        written = sorted(path.name for path in self.results.glob("*.xml"))
+        self.assertEqual(["rostest-broken_case__case_one.xml", "rostest-broken_case__case_two.xml", "rosunit-broken_one.xml",
+                          "rosunit-broken_two.xml"], written)
+        self.assertEqual((1, "0 passed, 2 failed"), self.count(*written))
+        self.assertEqual((1, "0 passed, 3 failed"), self.count(*written, "rosunit-broken_three.xml"))
+
+    @unittest.skipUnless(WITH_ROS, "built without ROS")
+    def test_every_case_of_every_rostest_is_registered(self):
+        registered = (PROGRAMS.parent.parent / "registered_tests.txt").read_text().split()
+        known = subprocess.run([TOP / "scripts/flaky", "nobody"], capture_output=True, text=True).stderr
+        for file in sorted((TOP / "test/ros").glob("*.test")):
+            text = file.read_text()
+            cases = re.search(r'<arg name="case" doc="([^"]+)"/>', text)
+            self.assertEqual(cases is not None, "$(arg case)" in text, file)
+            if file.stem == "modbus" and "rosunit-modbus.xml" not in registered:
+                continue  # built without libmodbus
+            for case in re.split(r", | or ", cases[1]) if cases else [""]:
+                for name in re.findall(r'test-name="([^"]+)"', text):
+                    self.assertIn(f"rosunit-{name.replace('$(arg case)', case)}.xml", registered)
+                wrapper = f"rostest-{file.stem}__case_{case}.xml" if cases else f"rostest-test_ros_{file.stem}.xml"
+                self.assertIn(wrapper, registered)
+                self.assertIn(file.stem + ("_" + case if case else ""), re.findall(r"\w+", known))
 
     @unittest.skipUnless(WITH_ROS, "built without ROS")
     def test_a_rostest_that_is_run_again_and_again(self):

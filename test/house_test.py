@@ -36,6 +36,30 @@ def types_of(text):
     return found
 
 
+def controller_types():
+    """The file of the registration by controller.type."""
+    named = re.compile(r'(?:ControllerType type\{|\{\{)"(\w+)"')
+    found = {name: p for p in sources("src/control") if p.name.endswith("_type.cpp") for name in named.findall(p.read_text())}
+    assert len(found) >= 8, found
+    return found
+
+
+def plant_types():
+    text = "\n".join(p.read_text() for p in sources("src/plant"))
+    found = re.findall(r'registerPlant\(\s*"(\w+)"', text)
+    found += re.findall(r'"(\w+)"', re.search(r"char\* const names\[\] = \{([^}]*)\}", text)[1])  # those of bsm1
+    assert len(found) >= 10, found
+    return found
+
+
+def named_by_others(types, room):
+    """Files that name one of these types as a literal, outside of its room, the papers' reproductions and the studies of scripts/."""
+    literal = re.compile(r'["\'](' + "|".join(types) + r')["\']')
+    paths = [p for p in sources("include", "src") if room_of(p) != room and (TOP / "src/tool/reproduce") not in p.parents]
+    paths += sorted((TOP / "launch").glob("*")) + sorted((TOP / "cmake").glob("*"))
+    return [str(p) for p in paths if literal.search(p.read_text())]
+
+
 def room_of(path):
     parts = path.relative_to(TOP).parts
     return parts[2] if parts[0] == "include" else parts[1]
@@ -67,14 +91,28 @@ class House(unittest.TestCase):
         for path in sources("src/config", "src/loop", "src/study", "src/ros"):
             self.assertNotIn("findParams<", path.read_text(), path)
 
-    def test_types_of_controllers_are_compared_nowhere(self):
+    def test_types_of_controllers_and_plants_are_compared_nowhere(self):
         """Everything learns of them from the registry; their names stand in their own registration."""
-        named = re.compile(r'(?:ControllerType type\{|\{\{)"(\w+)"')
-        types = {name for p in sources("src/control") if p.name.endswith("_type.cpp") for name in named.findall(p.read_text())}
-        self.assertGreaterEqual(len(types), 8)
-        compared = re.compile(r'[=!]= *"(' + "|".join(sorted(types)) + r')"|"(' + "|".join(sorted(types)) + r')" *[=!]=')
-        for path in sources("include", "src"):
+        names = "|".join(sorted(controller_types()) + plant_types())
+        compared = re.compile(rf'[=!]= *"({names})"|"({names})" *[=!]=')
+        for path in sources("include", "src", "test"):
             self.assertIsNone(compared.search(path.read_text()), path)
+
+    def test_a_type_of_controller_is_four_files_beside_the_law_and_its_test(self):
+        """The registration, its line for CMake, a loop, its keys: docs/own_controller.md lists them; nobody else may have to know."""
+        where = (TOP / "docs/own_controller.md").read_text().split("## Where the files go")[1]
+        listed = re.findall(r"^\| `([^`]+)` \|", where, flags=re.M)
+        self.assertEqual(listed, ["src/control/FAMILY/my_type.cpp", "src/CMakeLists.txt", "config/loop/PLANT/PLANT_my.yaml", "docs/loop_file.md"])
+        loops = "\n".join(path.read_text() for path in (TOP / "config/loop").rglob("*.yaml"))
+        for name, registration in controller_types().items():
+            self.assertIn(f" control/{registration.parent.name}/{registration.name}\n", (TOP / "src/CMakeLists.txt").read_text())
+            self.assertRegex(loops, rf"(?m)^  type: {name}\b")
+            self.assertRegex((TOP / "docs/loop_file.md").read_text(), rf"`[^`\n]*\b{name}\b[^`\n]*`")
+        # "fmbpc" is the package as well, "pi" a key of the section guard
+        self.assertEqual([], named_by_others(set(controller_types()) - {"fmbpc", "pi"}, "control"))
+
+    def test_a_type_of_plant_is_known_to_no_other_file_of_the_library(self):
+        self.assertEqual([], named_by_others(plant_types(), "plant"))
 
     def test_our_nodes_never_read_the_ros_clock(self):
         paths = list(sources("include", "src")) + sorted((TOP / "scripts").glob("*.py"))
@@ -111,9 +149,12 @@ class House(unittest.TestCase):
             self.assertIsNone(words.search(path.name), path)
 
     def test_small_questions_about_signals_are_answered_once(self):
-        again = re.compile(r"\b(?:countOf|signalCount|namesOf|allFinite)\(const (?:std::vector<(?:SignalInfo|std::string|Quantity)>|Measurement)& \w+\) *\{")
-        places = [p for p in sources("include", "src") if again.search(p.read_text())]
+        again = re.compile(r"\b(?:countOf|signalCount|allFinite)\(const (?:std::vector<\w[\w:]*>|Measurement)& \w+\) *\{|\bnamesOf\(const [\w:<>]+& \w+\) *\{")
+        places = [p for p in sources("include", "src", "bench") if again.search(p.read_text())]
         self.assertEqual([TOP / "include/fmbpc/base/signals.hpp"], places)
+        infinity = re.compile(r"\bk\w+ = -?std::numeric_limits<double>::infinity\(\)")
+        places = [p for p in sources("include", "src", "test") if infinity.search(p.read_text())]
+        self.assertEqual([TOP / "include/fmbpc/base/types.hpp"], places)
 
     def test_files_are_small(self):
         for path in list(sources("include", "src", "test", "bench")) + sorted((TOP / "test").rglob("*.py")):

@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/base/types.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr double kOutside = -std::numeric_limits<double>::infinity();
+constexpr double kOutside = -kInfinity;
 constexpr double kFootDecay = 7.0;  // mu = exp(-7) at the feet of the exponential shape
 constexpr double kGaussianSupport =
     3.0;  // [widths] where a bell counts as ended, for distances only

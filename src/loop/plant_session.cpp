@@ -5,7 +5,7 @@
 
 namespace fpc {
 namespace {
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kNever = kInfinity;
 }
 
 PlantPolicy lockstepPolicy(const LoopFile& loop) {

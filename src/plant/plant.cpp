@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -18,13 +19,6 @@ std::map<std::string, PlantFactory>& registry() {
 std::vector<std::string>& refused() {
   static std::vector<std::string> names;
   return names;
-}
-
-template <typename Named>
-std::string namesOf(const std::vector<Named>& things) {
-  std::vector<std::string> names;
-  for (const auto& thing : things) names.push_back(thing.name);
-  return join(names);
 }
 
 }  // namespace
@@ -65,7 +59,7 @@ Vector parameterValues(const PlantDescription& description, const PlantParameter
     const std::string where = "plant.parameters." + name;
     const auto found = std::find_if(known.begin(), known.end(),
                                     [&key = name](const Quantity& q) { return q.name == key; });
-    require(found != known.end(), where, "one of " + namesOf(known));
+    require(found != known.end(), where, "one of " + join(namesOf(known)));
     require(std::isfinite(value) && value >= found->lower && value <= found->upper, where,
             "a number >= " + exactText(found->lower) + " and <= " + exactText(found->upper) + " [" +
                 found->unit + "], got " + exactText(value));

@@ -27,15 +27,12 @@ double numberAt(const LoopFile& loop, const std::string& key) {
   const std::string expected = "a key that has a number in loop " + loop.name;
   require(text.empty() && !loop.external_plant, "vary." + key, expected);
   const PlantDescription about = makePlant(loop.simulation)->description();
-  const auto dot = key.find_last_of('.');
-  const std::string section = key.substr(0, dot == std::string::npos ? 0 : dot);
-  const auto& known = section == "plant.parameters"      ? about.parameters
-                      : section == "plant.initial_state" ? about.states
-                                                         : about.disturbances;
-  const bool ours = section == "plant.parameters" || section == "plant.initial_state" ||
-                    section == "disturbance.nominal";
-  for (const auto& quantity : known)
-    if (ours && key == section + "." + quantity.name) return quantity.nominal;
+  using Section = std::pair<std::string, const std::vector<Quantity>&>;
+  for (const auto& [section, quantities] :
+       {Section{"plant.parameters", about.parameters}, Section{"plant.initial_state", about.states},
+        Section{"disturbance.nominal", about.disturbances}})
+    for (const Quantity& quantity : quantities)
+      if (key == section + "." + quantity.name) return quantity.nominal;
   throw InputError("vary." + key + ": expected " + expected);
 }
 

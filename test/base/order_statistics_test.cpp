@@ -7,11 +7,12 @@
 #include <limits>
 #include <random>
 
+#include "fmbpc/base/types.hpp"
+
 namespace fpc {
 namespace base_order_statistics_test {
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 TEST(OrderStatistics, MediansOnPaper) {
   EXPECT_EQ(upperMedian({3.0, 1.0, 2.0}), 2.0);
@@ -30,11 +31,11 @@ TEST(OrderStatistics, NothingIsNotANumber) {
 }
 
 TEST(OrderStatistics, NotANumberStandsBehindAllNumbers) {
-  const std::vector<double> values{kNotANumber, 2.0, kInfinite, kNotANumber, -kInfinite, 1.0};
-  EXPECT_EQ(orderStatistic(values, 0), -kInfinite);
+  const std::vector<double> values{kNotANumber, 2.0, kInfinity, kNotANumber, -kInfinity, 1.0};
+  EXPECT_EQ(orderStatistic(values, 0), -kInfinity);
   EXPECT_EQ(orderStatistic(values, 1), 1.0);
   EXPECT_EQ(orderStatistic(values, 2), 2.0);
-  EXPECT_EQ(orderStatistic(values, 3), kInfinite);
+  EXPECT_EQ(orderStatistic(values, 3), kInfinity);
   EXPECT_TRUE(std::isnan(orderStatistic(values, 4)));
   EXPECT_TRUE(std::isnan(orderStatistic(values, 5)));
 }

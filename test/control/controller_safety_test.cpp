@@ -10,7 +10,7 @@ class ControllerSessionHold : public SessionFixture {};
 class ControllerSessionManual : public SessionFixture {};
 
 TEST_F(ControllerSessionHold, SampleThatIsNotFiniteIsAnsweredWithTheAppliedInput) {
-  for (const double bad : {kNaN, kInf, -kInf}) {
+  for (const double bad : {kNaN, kInfinity, -kInfinity}) {
     make();
     session->receive(sample(0));
     Measurement m = sample(1, 1, 640.0);
@@ -49,7 +49,7 @@ TEST_F(ControllerSessionHold, ControllerIsResetAtTheNextFiniteSample) {
 
 TEST_F(ControllerSessionHold, AppliedInputThatIsNotFiniteIsReplacedByTheLastOneSent) {
   Measurement m = sample(0);
-  m.input_applied[0] = kInf;
+  m.input_applied[0] = kInfinity;
   session->receive(m);
   EXPECT_EQ(input(), 570.0);  // u(-1) of the loop file: nothing was sent yet
   session->receive(sample(1, 1, 700.0));

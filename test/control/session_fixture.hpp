@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -16,7 +15,6 @@
 
 namespace fpc::test_session {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr std::int64_t kStart = 1234500000000;  // t0 is not 1 s
 constexpr std::int64_t kSample = 720000000000;
 
@@ -37,7 +35,7 @@ inline PlantInfo plant() {
   return info;
 }
 
-inline InputLimits limits(double move = kInf) { return {of({0.0}), of({1600.0}), of({move})}; }
+inline InputLimits limits(double move = kInfinity) { return {of({0.0}), of({1600.0}), of({move})}; }
 
 inline SetpointParams setpoints() {
   SetpointParams p;

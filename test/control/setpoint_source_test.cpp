@@ -1,7 +1,6 @@
 #include "fmbpc/control/setpoint_source.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -10,7 +9,6 @@
 namespace fpc {
 namespace control_setpoint_source_test {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kStart = 1234.5;               // t0 [s]
 constexpr std::int64_t kSample = 720000000000;  // 0.2 h [ns]
 constexpr std::int64_t kZero = 1234500000000;   // t0 [ns]
@@ -156,7 +154,7 @@ TEST(SetpointSource, BadCommandThrowsAndChangesNothing) {
 TEST(SetpointSource, ClampHoldsForScheduleCommandAndPreview) {
   SetpointParams p = params();
   p.lower = two(0.0, 1500.0);
-  p.upper = two(100.0, kInf);
+  p.upper = two(100.0, kInfinity);
   p.schedule = {{0.2, two(-5.0, 1000.0)}};
   SetpointSource s = source(p);
   EXPECT_EQ(s.advance(1), two(0.0, 1500.0));
@@ -169,7 +167,7 @@ TEST(SetpointSource, ClampHoldsForScheduleCommandAndPreview) {
 
 TEST(SetpointSource, RateLimitCountsTheHoursThatPassed) {
   SetpointParams p = params();
-  p.rate_per_h = two(kInf, 50.0);  // 10 per sample
+  p.rate_per_h = two(kInfinity, 50.0);  // 10 per sample
   p.schedule = {{0.2, two(60.0, 2100.0)}, {2.0, two(60.0, 0.0)}};
   SetpointSource s = source(p);
   s.advance(0);
@@ -266,7 +264,7 @@ TEST(SetpointParams, ValidationNamesTheField) {
   EXPECT_NE(messageOf(p).find("setpoint.schedule[1].time_h"), std::string::npos);
   p.schedule = {{1.0, two(1.0, 1.0), -0.5}};
   EXPECT_NE(messageOf(p).find("setpoint.schedule[0].ramp_h"), std::string::npos);
-  p.schedule = {{1.0, two(kInf, 1.0)}};
+  p.schedule = {{1.0, two(kInfinity, 1.0)}};
   EXPECT_NE(messageOf(p).find("setpoint.schedule[0].value"), std::string::npos);
   p = params();
   p.lower = Vector::Zero(1);

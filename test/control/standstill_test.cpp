@@ -23,7 +23,7 @@ class Standstill : public testing::Test {
     p.fallback = of({800.0});
     return p;
   }
-  void make(StandstillParams p, double move = kInf) {
+  void make(StandstillParams p, double move = kInfinity) {
     auto owned = std::make_unique<FakeLaw>();
     law = owned.get();
     PlantInfo info = plant();

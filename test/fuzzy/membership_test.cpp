@@ -6,11 +6,12 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/types.hpp"
 
 namespace fpc {
 namespace fuzzy_membership_test {
 
-const double kMinusInfinity = -std::numeric_limits<double>::infinity();
+const double kMinusInfinity = -kInfinity;
 
 TEST(Membership, ExponentialIsOneOnItsShouldersAndSevenNepersDownAtItsFeet) {
   const Membership set{MembershipShape::kExponential, {10.0, 20.0, 30.0, 50.0}};

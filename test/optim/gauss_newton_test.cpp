@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace optim_gauss_newton_test {
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 Vector two(double a, double b) { return (Vector(2) << a, b).finished(); }
 
@@ -59,7 +56,7 @@ TEST(GaussNewton, KeepsLinearRows) {
   LinearLimits limits = box(two(-9, -9), two(9, 9));
   limits.A = (Matrix(1, 2) << -1.0, 1.0).finished();
   limits.a_lower = Vector::Constant(1, 1.0);
-  limits.a_upper = Vector::Constant(1, kInf);
+  limits.a_upper = Vector::Constant(1, kInfinity);
   GaussNewton solver(2, 2, 1);
   const auto& found = solver.solve(distance, two(-3.0, 4.0), limits);
   EXPECT_EQ(found.status, SolveStatus::kSolved);

@@ -29,8 +29,8 @@ TEST(Qp, ContradictionsAreInfeasible) {
 
   QpProblem rows(2, 2);
   rows.A << 1.0, 1.0, 2.0, 2.0;
-  rows.a_lower << 2.0, -kInf;
-  rows.a_upper << kInf, 3.9;
+  rows.a_lower << 2.0, -kInfinity;
+  rows.a_upper << kInfinity, 3.9;
   EXPECT_EQ(statusOf(rows), SolveStatus::kInfeasible);
 
   rows.a_lower << 2.0, 4.1;
@@ -93,7 +93,7 @@ TEST(Qp, AConcaveProblemIsNotSolvedByTheRememberedBounds) {
 
 TEST(Qp, DataThatAreNotFiniteAreInvalid) {
   const QpProblem good = nearestPointOfHalfPlane();
-  for (const double bad : {kNaN, kInf, -kInf}) {
+  for (const double bad : {kNaN, kInfinity, -kInfinity}) {
     QpProblem p = good;
     p.H(0, 1) = bad;
     EXPECT_EQ(statusOf(p), SolveStatus::kInvalidProblem) << "H upper " << bad;
@@ -124,10 +124,10 @@ TEST(Qp, ImpossibleLimitsAreInvalid) {
   p.a_upper(0) = 1.0;
   EXPECT_EQ(statusOf(p), SolveStatus::kInvalidProblem);
   p = nearestPointOfHalfPlane();
-  p.a_lower(0) = kInf;
+  p.a_lower(0) = kInfinity;
   EXPECT_EQ(statusOf(p), SolveStatus::kInvalidProblem);
   p = nearestPointOfHalfPlane();
-  p.x_lower(0) = p.x_upper(0) = -kInf;
+  p.x_lower(0) = p.x_upper(0) = -kInfinity;
   EXPECT_EQ(statusOf(p), SolveStatus::kInvalidProblem);
 }
 
@@ -191,9 +191,9 @@ TEST(KktResidual, EachKindOfErrorIsSeen) {
   EXPECT_DOUBLE_EQ(residual(2.0, -3.0), 2.0 / 4.0);  // stationarity, scale 1 + |g|
   EXPECT_DOUBLE_EQ(residual(3.0, 0.0), 1.0 / 6.0);   // feasibility, scale 2 + 1 + 3
   EXPECT_DOUBLE_EQ(residual(1.0, -2.0), 1.0 / 4.0);  // distance 1 of 4, multiplier 2 of 4
-  p.x_upper << kInf;
+  p.x_upper << kInfinity;
   EXPECT_DOUBLE_EQ(residual(2.0, -1.0), 1.0 / 4.0);  // a multiplier without its limit
-  EXPECT_EQ(residual(kNaN, 0.0), kInf);
+  EXPECT_EQ(residual(kNaN, 0.0), kInfinity);
   EXPECT_THROW(kktResidual(p, Vector(2), Vector(1), Vector(0)), InputError);
 }
 
@@ -201,7 +201,7 @@ TEST(KktResidual, RowOfTheWrongSignIsSeen) {
   QpProblem p = nearestPointOfHalfPlane();
   const Vector x = Vector::Constant(2, 1.0), none = Vector::Zero(2);
   EXPECT_EQ(kktResidual(p, x, none, Vector::Constant(1, 1.0)), 0.0);
-  p.a_lower << -kInf;
+  p.a_lower << -kInfinity;
   p.a_upper << 2.0;  // the same multiplier now pulls to the wrong side
   EXPECT_DOUBLE_EQ(kktResidual(p, x, none, Vector::Constant(1, 1.0)), 0.5);
 }

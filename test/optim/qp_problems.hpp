@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "fmbpc/optim/qp.hpp"
 
 namespace fpc::testing {
-
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// min 1/2 |x|^2 over two unknowns with x_1 + x_2 >= 2: x = (1, 1), y_a = 1.
 inline QpProblem nearestPointOfHalfPlane() {
@@ -56,8 +53,8 @@ struct KnownQp {
 inline double drawLimits(Draw& draw, double value, bool active, double size, double& lower,
                          double& upper) {
   const double room = size * draw.uniform(0.1, 2.0);
-  lower = draw.chance(0.3) ? -kInf : value - room;
-  upper = draw.chance(0.3) ? kInf : value + size * draw.uniform(0.1, 2.0);
+  lower = draw.chance(0.3) ? -kInfinity : value - room;
+  upper = draw.chance(0.3) ? kInfinity : value + size * draw.uniform(0.1, 2.0);
   if (!active) return 0.0;
   const double y = draw.uniform(0.1, 3.0);
   if (draw.chance(0.15)) {
@@ -116,7 +113,7 @@ inline void makeInfeasible(Draw& draw, QpProblem& p, double gap) {
     }
   }
   p.a_lower(last) = reach + gap;
-  p.a_upper(last) = kInf;
+  p.a_upper(last) = kInfinity;
 }
 
 /// Farkas: y_x + A'y_a must vanish while the limits that y stands for add up to more than zero. Own

@@ -243,8 +243,8 @@ TEST(QpProperty, GarbageNeverThrowsAndIsNeverCalledSolved) {
     Draw draw(seed);
     const Eigen::Index n = draw.index(1, 8), m = draw.index(0, 8);
     QpProblem p = knownQp(draw, n, m).problem;
-    const double values[] = {0.0,  -1.0,  1e308,        -1e308, 1e-310,
-                             kInf, -kInf, std::nan(""), 1e20,   5.0};
+    const double values[] = {0.0,       -1.0,       1e308,        -1e308, 1e-310,
+                             kInfinity, -kInfinity, std::nan(""), 1e20,   5.0};
     const auto spoil = [&](auto& M) {
       if (M.size() == 0 || !draw.chance(0.3)) return;
       M(draw.index(0, M.rows() - 1), draw.index(0, M.cols() - 1)) = values[draw.index(0, 9)];

@@ -159,7 +159,7 @@ void addNoise(Draw& draw, QpProblem& p) {
   p.a_lower.resize(2 * m);
   p.a_upper.resize(2 * m);
   p.A << A, Matrix::Zero(m, p.g.size());
-  p.a_lower << lower, Vector::Constant(m, -kInf);
+  p.a_lower << lower, Vector::Constant(m, -kInfinity);
   p.a_upper << upper, Vector::Constant(m, -2.8e-17);
   for (Eigen::Index i = m; i < 2 * m; ++i) {
     if (draw.chance(0.5)) p.A.row(i) = 1e-17 * draw.vector(p.g.size()).transpose();
@@ -186,7 +186,7 @@ TEST(QpRows, RowsThatAreZeroUpToRoundingDoNotCount) {
 TEST(QpRows, TheZeroRowOfADeadTimeIsFeasible) {
   QpProblem p = nearestPointOfHalfPlane();
   p.A << 0.0, 0.0;
-  p.a_lower << -kInf;
+  p.a_lower << -kInfinity;
   p.a_upper << -2.8e-17;
   QpSolver solver(2, 1);
   const QpResult& r = solver.solve(p);

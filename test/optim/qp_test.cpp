@@ -141,7 +141,7 @@ TEST(Qp, DuplicateRowsShareTheMultiplier) {
 TEST(Qp, RowThatRepeatsABoundIsHarmless) {
   QpProblem p(2, 1);
   p.g << 1.0, 0.0;
-  p.x_lower << 2.0, -kInf;
+  p.x_lower << 2.0, -kInfinity;
   p.A << 1.0, 0.0;
   p.a_lower << 2.0;
   QpSolver solver(2, 1);
@@ -221,7 +221,7 @@ TEST(Qp, LimitThatVanishedIsNotRemembered) {
   QpProblem p = nearestPointOfHalfPlane();
   QpSolver solver(2, 1);
   ASSERT_EQ(solver.solve(p).active, 1);
-  p.a_lower << -kInf;
+  p.a_lower << -kInfinity;
   const QpResult& r = solver.solve(p);
   ASSERT_EQ(r.status, SolveStatus::kSolved);
   expectVector(r.x, {0.0, 0.0});

@@ -20,7 +20,16 @@ struct RandomLoop {
   std::string told() const;
 };
 
-RandomLoop randomLoop(std::uint64_t seed);
+/// Types of controllers that random_controllers.cpp has no generator for: none has to.
+std::vector<std::string> typesWithoutGenerator();
+
+/// A few of them, more for more types, are of those types: randomShippedLoop().
+RandomLoop randomLoop(std::uint64_t seed,
+                      const std::vector<std::string>& shipped = typesWithoutGenerator());
+
+/// The first shipped loop of a type of controller, shortened, with noise and a fault of an
+/// actuator. @throws InputError if no loop is shipped.
+RandomLoop randomShippedLoop(const std::string& type, std::uint64_t seed);
 
 /// A random transfer matrix under PI or a law with a model, its first output and input counted in
 /// units `output_unit` and `input_unit` times as small.

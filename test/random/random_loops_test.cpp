@@ -13,7 +13,7 @@
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
-#include "random/random_loop.hpp"
+#include "random/random_parts.hpp"
 
 namespace fpc {
 namespace random_random_loops_test {
@@ -44,21 +44,25 @@ class RandomLoops : public LoopFolder {
   template <typename Check>
   void each(const std::vector<std::uint64_t>& all, Check check) {
     for (const std::uint64_t seed : all) {
-      const RandomLoop random = randomLoop(seed);
-      std::string stage = "reading";
-      try {
-        const LoopFile loop = read(random);
-        stage = "running";
-        check(random, loop, runLoop(loop));
-      } catch (const InputError& e) {
-        if (stage == "reading")
-          refused_[random.plant + " under " + random.controller].push_back(e.what());
-        else
-          ADD_FAILURE() << stage << ": " << e.what() << "\n" << random.told();
-      } catch (const std::exception& e) {
-        ADD_FAILURE() << stage << ": " << e.what() << "\n" << random.told();
-      }
+      one(randomLoop(seed), check);
       if (HasFailure()) return;  // one loop is enough to look at
+    }
+  }
+
+  template <typename Check>
+  void one(const RandomLoop& random, Check check) {
+    std::string stage = "reading";
+    try {
+      const LoopFile loop = read(random);
+      stage = "running";
+      check(random, loop, runLoop(loop));
+    } catch (const InputError& e) {
+      if (stage == "reading")
+        refused_[random.plant + " under " + random.controller].push_back(e.what());
+      else
+        ADD_FAILURE() << stage << ": " << e.what() << "\n" << random.told();
+    } catch (const std::exception& e) {
+      ADD_FAILURE() << stage << ": " << e.what() << "\n" << random.told();
     }
   }
 
@@ -133,7 +137,7 @@ TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
     EXPECT_EQ(summary.input_violations + summary.move_violations, 0U) << random.told();
     for (const auto& u : summary.inputs) EXPECT_TRUE(std::isfinite(u.travel)) << random.told();
     for (const auto& y : summary.outputs)
-      EXPECT_TRUE(std::isfinite(y.rmse) || random.controller == "excitation") << random.told();
+      EXPECT_TRUE(std::isfinite(y.rmse) || loop.controllerType().open_loop) << random.told();
   });
   std::size_t refused = 0;
   for (const auto& [kind, errors] : refused_) {
@@ -145,6 +149,36 @@ TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
   EXPECT_LT(refused, seeds().size() / 20) << "the generator writes files that a user would not";
   for (const auto& type : controllerNames()) EXPECT_GT(ran[type], 0) << type;
   for (const auto& type : plantNames()) EXPECT_GT(plants[type], 0) << type;
+}
+
+// A new type needs no line in this folder: its first shipped loop is enough.
+TEST_F(RandomLoops, OfATypeWithoutAGeneratorAreItsShippedOnesShortened) {
+  for (const std::string& type : controllerNames())
+    for (const std::uint64_t seed : {0, 1, 2}) {
+      const auto check = [&](const RandomLoop& random, const LoopFile& loop, const RunRecord& run) {
+        EXPECT_EQ(loop.controllerType().name, type);
+        EXPECT_EQ(run.samples.size(), loop.simulation.samples + std::size_t{1}) << random.told();
+        EXPECT_LE(loop.simulation.samples, 40U);
+        EXPECT_EQ(notFinite(run) + beyondLimits(loop, run), "") << random.told();
+      };
+      one(randomShippedLoop(type, seed), check);
+    }
+  EXPECT_TRUE(refused_.empty()) << refused_.begin()->first << ": "
+                                << refused_.begin()->second.front();
+}
+
+TEST_F(RandomLoops, OfTypesWithoutAGeneratorAreDrawnOftenEnough) {
+  const std::vector<std::string> types{"nmpc", "pi"};
+  std::map<std::string, int> drawn;
+  for (std::uint64_t seed = 0; seed < kQuick; ++seed)
+    for (const std::string& type : types)
+      if (randomLoop(seed, types).text == randomShippedLoop(type, seed).text) ++drawn[type];
+  for (const std::string& type : types) EXPECT_GT(drawn[type], 3) << type;
+}
+
+TEST_F(RandomLoops, OfAPlantWithoutARowAreSampledAsItsShippedOne) {
+  EXPECT_EQ(shippedSampleTime("surge_tank"), 0.1);
+  EXPECT_EQ(shippedSampleTime("nobody ships this"), 0.0);
 }
 
 TEST_F(RandomLoops, GiveTheSameBitsAgainFromTheirPrintedTextAndAtAnotherTime) {

@@ -1,6 +1,7 @@
 // Random transfer matrices under PI or a predictive law, in any units.
 #include "random/random_matrix.hpp"
 
+#include "fmbpc/control/registry.hpp"
 #include "random/random_parts.hpp"
 
 namespace fpc {
@@ -34,7 +35,8 @@ std::string controller(Dice& dice, const MatrixSignals& signals, const std::stri
                        double sample_min, RandomLoop& loop) {
   loop.controller =
       dice.pick<std::string>({"pi", "pi", "pi", "fmbpc", "fmbpc", "fuzzy_optimal", "swarm_mpc"});
-  if (loop.controller == "pi") return "controller:\n  type: pi\n  loops:\n" + pi_loops;
+  if (!controllerType(loop.controller).needs_model)
+    return "controller:\n  type: pi\n  loops:\n" + pi_loops;
   loop.files["model.yaml"] = matrixModel(dice, signals, 60.0 * sample_min);
   return "model: {file: model.yaml}\n" + matrixLaw(dice, loop.controller, signals);
 }

@@ -1,7 +1,9 @@
 // A predictive law with a model of rules for a random transfer matrix, in any units. The model is
 // of the right size and no more: laws must live with that.
 #include <cmath>
+#include <map>
 
+#include "fmbpc/control/registry.hpp"
 #include "random/random_matrix.hpp"
 #include "random/random_parts.hpp"
 
@@ -77,14 +79,24 @@ std::string rangesOf(const std::vector<Quantity>& signals, double unit) {
   return text;
 }
 
-std::string keysOf(Dice& dice, const std::string& type) {
-  if (type == "fmbpc")
-    return "  law: general\n  coincidence_steps: " + std::to_string(dice.whole(3, 12)) + "\n";
+std::string generalKeys(Dice& dice) {
+  return "  law: general\n  coincidence_steps: " + std::to_string(dice.whole(3, 12)) + "\n";
+}
+
+std::string horizonKeys(Dice& dice) {
   const int steps = dice.whole(3, 10);
-  std::string text = "  horizon_steps: " + std::to_string(steps) +
-                     "\n  move_steps: " + std::to_string(dice.whole(1, 3)) + "\n";
-  if (type == "swarm_mpc") text += "  swarm: {particles: 6, iterations: 5}\n";
-  return text;
+  return "  horizon_steps: " + std::to_string(steps) +
+         "\n  move_steps: " + std::to_string(dice.whole(1, 3)) + "\n";
+}
+
+std::string swarmKeys(Dice& dice) {
+  return horizonKeys(dice) + "  swarm: {particles: 6, iterations: 5}\n";
+}
+
+std::string keysOf(Dice& dice, const std::string& type) {
+  static const std::map<std::string, std::string (*)(Dice&)> makers{
+      {"fmbpc", generalKeys}, {"fuzzy_optimal", horizonKeys}, {"swarm_mpc", swarmKeys}};
+  return makers.at(type)(dice);
 }
 
 }  // namespace
@@ -105,7 +117,7 @@ std::string matrixLaw(Dice& dice, const std::string& type, const MatrixSignals& 
                      "\n  weight_output: " + scaled(dice, s.outputs, s.output_unit, 2.0, 0.5, 5.0) +
                      "\n  weight_move: " + scaled(dice, s.inputs, s.input_unit, 2.0, 0.05, 5.0) +
                      "\n";
-  if (type != "swarm_mpc" && dice.chance(0.4))
+  if (controllerType(type).predicts && dice.chance(0.4))
     text += "clp:\n  perturbation_steps: " + std::to_string(dice.whole(2, 8)) +
             "\n  weight_perturbation: " + scaled(dice, s.inputs, s.input_unit, 2.0, 0.5, 5.0) +
             "\n";

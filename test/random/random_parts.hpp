@@ -15,7 +15,10 @@ struct RandomFrame {
   std::string model;              ///< file below config/model; empty: none
   double sample_time_s{};
   int samples{};
-  bool delayed{false};  ///< a sample line delays an output
+  bool delayed{false};   ///< a sample line delays an output
+  bool divisible{true};  ///< as PlantStepper::divisible()
+  bool remembers{};      ///< as PlantStepper::remembers()
+  std::string actuator;  ///< section that the controller needs; empty: any
   double hours(double samples_after_start) const {
     return samples_after_start * sample_time_s / 3600.0;
   }
@@ -25,6 +28,9 @@ struct RandomFrame {
 std::pair<double, double> workingRange(const Quantity& q);
 std::string byName(const std::vector<std::string>& names, const std::vector<std::string>& values);
 
+/// Of the first shipped loop with this plant; 0: there is none.
+double shippedSampleTime(const std::string& plant);
+bool hasGenerator(const std::string& type);
 std::string randomController(const std::string& type, Dice& dice, RandomFrame& frame);
 std::string randomActuator(Dice& dice, const RandomFrame& frame);
 std::string randomSetpoint(Dice& dice, const RandomFrame& frame);

@@ -56,9 +56,9 @@ std::string doubts(Dice& dice, const Quantity& q, const RandomFrame& frame) {
 std::string randomSensors(Dice& dice, const RandomFrame& frame) {
   if (!dice.chance(0.25)) return "";
   std::string text = "sensors:\n  seed: " + std::to_string(dice.whole(0, 99)) + "\n";
-  const bool discrete = frame.plant.name == "surge_tank" || frame.plant.name == "linear_2x2";
   if (frame.sample_time_s < 60.0 || dice.chance(0.5))
-    text += "  step_s: " + exactText(frame.sample_time_s / dice.whole(1, discrete ? 1 : 5)) + "\n";
+    text += "  step_s: " + exactText(frame.sample_time_s / dice.whole(1, frame.divisible ? 5 : 1)) +
+            "\n";
   for (const Quantity& q : frame.outputs)
     if (dice.chance(0.6)) text += sensor(dice, q, frame);
   return text;

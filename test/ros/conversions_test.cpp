@@ -17,7 +17,7 @@ class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : random_(seed) {}
   double next() {
-    const double awkward[] = {kNaN, kInf, -kInf, -0.0, 5e-324, 1.0 / 3.0};
+    const double awkward[] = {kNaN, kInfinity, -kInfinity, -0.0, 5e-324, 1.0 / 3.0};
     const std::uint64_t draw = random_();
     if (draw % 4 == 0) return awkward[(draw / 4) % 6];
     return std::ldexp(static_cast<double>(random_()), static_cast<int>(draw % 200) - 160);
@@ -138,7 +138,7 @@ TEST_P(Conversions, TrackingAndPlantStateSurvive) {
 
 TEST_P(Conversions, PlantInfoSurvives) {
   PlantInfo info{kHeader, "tank", "tank_frame", numbers.next(), {}, {}, {}, {"analyzer", ""}};
-  info.outputs = {{"h", "m", numbers.next(), numbers.next()}, {"T", "K", -kInf, kInf}};
+  info.outputs = {{"h", "m", numbers.next(), numbers.next()}, {"T", "K", -kInfinity, kInfinity}};
   info.inputs = {{"q", "m3/h", 0.0, numbers.next()}};
   const PlantInfo r = fromMsg(sent(toMsg(info)));
   EXPECT_TRUE(sameHeader(info.header, r.header));

@@ -30,7 +30,7 @@ TsModel smallModel() {
   model.name = "small";
   model.source = "made up";
   model.sample_time_s = 720.0;
-  model.outputs = {{"x", "mg/l", -kInf, kInf}};
+  model.outputs = {{"x", "mg/l", -kInfinity, kInfinity}};
   model.inputs = {{"q_r", "m3/h", 0.0, 1600.0}};
   model.disturbances = {{"q_i", "m3/h", 700.0, 2300.0}};
   model.submodels = {submodel};

@@ -5,14 +5,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 #include <vector>
 
 #include "ros/conversions.hpp"
 
 namespace fpc {
 
-inline constexpr double kInf = std::numeric_limits<double>::infinity();
 inline const StepHeader kHeader{1234500000001, 18000000000000000001u, 4294967295u};
 
 inline bool sameBits(double a, double b) { return std::memcmp(&a, &b, sizeof a) == 0; }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "loop/loop_fixture.hpp"
@@ -29,8 +30,9 @@ TEST_F(Tool, JsonIsOneObjectAndNothingElse) {
   EXPECT_EQ(plants["plants"][0]["name"], "activated_sludge");
   const auto controllers = nlohmann::json::parse(tool("controllers --json").printed)["controllers"];
   EXPECT_GE(controllers.size(), 8U);
-  for (const auto& controller : controllers)
-    if (controller["type"] == "pi") EXPECT_EQ(controller["settings"][0], "kp");
+  std::map<std::string, nlohmann::json> settings;
+  for (const auto& one : controllers) settings[one["type"].get<std::string>()] = one["settings"];
+  EXPECT_EQ(settings["pi"][0], "kp");
   EXPECT_NE(tool("controllers").printed.find("fuzzy_optimal"), std::string::npos);
 }
 

@@ -14,7 +14,6 @@ namespace fpc {
 namespace control_horizon_nmpc_test {
 
 using Eigen::Index;
-constexpr double kInf = std::numeric_limits<double>::infinity();
 
 const auto kNothing = [](std::uint32_t, double, double, const ControllerOutput&) {};
 
@@ -68,7 +67,7 @@ TEST(Nmpc, OnALinearPlantThePlanIsThatOfTheQuadraticProgramme) {
     NmpcParams params;
     params.horizon = test::horizonParams(2, 2, 1 + static_cast<int>(seed % 6) + 2, 3, 0.1);
     const InputLimits limits{Vector::Constant(2, -1.5), Vector::Constant(2, 1.5),
-                             Vector::Constant(2, seed % 2 == 0 ? 0.4 : kInf)};
+                             Vector::Constant(2, seed % 2 == 0 ? 0.4 : kInfinity)};
     const TsModel model = test::twoByTwo(A, B, c);
     const PlantInfo info = test::infoOf(model);
     Nmpc law(params, limits, info, std::make_unique<FuzzySampleModel>(model));

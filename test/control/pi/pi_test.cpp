@@ -1,7 +1,6 @@
 #include "fmbpc/control/pi/pi.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -10,7 +9,6 @@
 namespace fpc {
 namespace control_pi_pi_test {
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kSampleTime = 720.0;  // 0.2 h
 
 Vector of(std::initializer_list<double> values) {
@@ -30,7 +28,7 @@ PlantInfo plant(std::size_t n_u) {
   return info;
 }
 
-InputLimits limits(std::size_t n_u, double lower, double upper, double move = kInf) {
+InputLimits limits(std::size_t n_u, double lower, double upper, double move = kInfinity) {
   const auto n = static_cast<Eigen::Index>(n_u);
   return {Vector::Constant(n, lower), Vector::Constant(n, upper), Vector::Constant(n, move)};
 }
@@ -252,7 +250,7 @@ TEST(PiParams, ValidationNamesTheField) {
   expectNamed("input", [](PiLoop& l) { l.input = -1; });
   expectNamed("output", [](PiLoop& l) { l.output = 2; });
   expectNamed("kp", [](PiLoop& l) { l.kp = kNaN; });
-  expectNamed("ki_per_h", [](PiLoop& l) { l.ki_per_h = kInf; });
+  expectNamed("ki_per_h", [](PiLoop& l) { l.ki_per_h = kInfinity; });
   expectNamed("bias", [](PiLoop& l) { l.bias = kNaN; });
 }
 
