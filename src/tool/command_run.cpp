@@ -30,9 +30,10 @@ void writeModelFile(const TsModel& model, const std::string& folder) {
   require(stream.good(), file, "a writable file");
 }
 
-/// A loop that is there for a model: an experiment with model.identify.after.
-bool isForAModel(const LoopFile& loop) {
-  return loop.has_identify && loop.identify.after > 0 && loop.controllerType().name == "excitation";
+/// A loop that is there for a model: model.identify.after, and no setpoint is followed.
+bool isForAModel(const LoopFile& loop, const RunRecord& record) {
+  return loop.has_identify && loop.identify.after > 0 && !record.samples.empty() &&
+         record.samples.front().tracking.setpoint.array().isNaN().all();
 }
 
 /// `failed` becomes true if the loop was there for a model and has none.
@@ -54,7 +55,7 @@ Summary runOne(const LoopFile& loop, const std::string& folder, const std::strin
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   Summary summary = summarize(loop, record, wall.count());
   if (!folder.empty()) writeRun(loop, record, summary, folder);
-  if (isForAModel(loop) && !identified && !interruption()) {
+  if (isForAModel(loop, record) && !identified && !interruption()) {
     failed = true;
     std::fprintf(stderr, "fmbpc: %s: no model was identified\n", loop.name.c_str());
   }

@@ -13,7 +13,7 @@ Vector one(double value) { return Vector::Constant(1, value); }
 
 InputLimits limits(double move = 2.0) { return {one(0.0), one(20.0), one(move)}; }
 
-/// What is sent when `asked` is wanted and `applied` is read.
+/// What is sent when the law asks for `asked` and `applied` is read.
 double send(MoveOrigin& moves, double applied, double asked, double move = 2.0) {
   moves.look(one(applied));
   Vector input = one(asked);
