@@ -10,11 +10,13 @@ using Eigen::Index;
 MoveOrigin::MoveOrigin(const InputLimits& limits)
     : limits_(limits),
       origin_(limits.lower),
+      proven_(limits.lower),
       applied_(limits.lower),
       command_(limits.lower),
       command_before_(limits.lower),
       away_(static_cast<std::size_t>(limits.lower.size())),
-      along_(away_) {}
+      along_(away_),
+      seen_(away_) {}
 
 void MoveOrigin::restart() {
   active_ = displaced_ = false;
@@ -30,21 +32,24 @@ double MoveOrigin::tolerance(Index i) const {
 void MoveOrigin::judge(Index i, double applied) {
   const auto k = static_cast<std::size_t>(i);
   const double moved = applied - applied_[i], asked = command_[i] - command_before_[i];
+  const bool asked_to_move = std::abs(asked) > tolerance(i);
+  seen_[k] = away_[k] && (seen_[k] || asked_to_move);
   if (!away_[k])
     along_[k] = std::abs(moved) > tolerance(i);
-  else if (std::abs(asked) > tolerance(i))
+  else if (asked_to_move)
     along_[k] = std::abs(moved - asked) < std::abs(moved);
 }
 
 void MoveOrigin::look(VectorRef applied) {
   displaced_ = false;
-  origin_ = applied;
+  origin_ = proven_ = applied;
   for (Index i = 0; i < origin_.size(); ++i) {
     const auto k = static_cast<std::size_t>(i);
     const bool away = active_ && std::isfinite(limits_.move[i]) &&
                       std::abs(applied[i] - command_[i]) > tolerance(i);
     if (away) judge(i, applied[i]);
     if (away && along_[k]) origin_[i] = command_[i];
+    if (away && along_[k] && seen_[k]) proven_[i] = command_[i];
     away_[k] = away;
     displaced_ = displaced_ || away;
   }

@@ -36,8 +36,10 @@ void ControllerSession::answered() {
 }
 
 void ControllerSession::fallBack(const Measurement& m, const char* remark) {
-  answer_.base.input = plausibility_.params().fallback;
-  limit(m);
+  Vector& input = answer_.base.input;
+  input = plausibility_.params().fallback;
+  limits_.clip(input, m.input_applied.allFinite() ? moves_.proven() : m.input_applied);
+  controller_->makeSendable(input);
   answer_.base.source = output_.source = ActionSource::kFallback;
   output_.ok = output_.predictive = false;
   output_.remark = remark;
@@ -46,7 +48,7 @@ void ControllerSession::fallBack(const Measurement& m, const char* remark) {
 
 void ControllerSession::hold(const Measurement& m, const char* remark) {
   Vector& input = answer_.base.input;
-  input = m.input_applied.allFinite() ? moves_.origin() : last_input_;
+  input = m.input_applied.allFinite() ? moves_.proven() : last_input_;
   limits_.clip(input, input);
   controller_->makeSendable(input);
   answer_.base.source = output_.source = ActionSource::kHeld;
@@ -55,10 +57,11 @@ void ControllerSession::hold(const Measurement& m, const char* remark) {
 }
 
 void ControllerSession::sendManual(const Measurement& m) {
-  if (!manual_given_) manual_input_ = moves_.origin();
+  if (!manual_given_) manual_input_ = moves_.proven();
   manual_given_ = true;
   answer_.base.input = manual_input_;
-  limit(m);
+  limits_.clip(answer_.base.input, moves_.proven());
+  controller_->makeSendable(answer_.base.input);
   answer_.base.source = output_.source = ActionSource::kManual;
   if (controller_->followsSetpoint()) answer_.tracking.reference = m.outputs;
   output_.ok = true;

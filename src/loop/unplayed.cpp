@@ -73,8 +73,8 @@ void addIdentification(const LoopFile& loop, Unplayed& found) {
   const auto after = static_cast<std::int64_t>(loop.has_identify ? loop.identify.after : 0);
   const std::int64_t samples = std::int64_t{loop.simulation.samples} + 1;
   if (after > samples)
-    found.note("model.identify.after: no model is identified before " + std::to_string(after) +
-               " samples, the run has " + std::to_string(samples));
+    found.say("model.identify.after: no model is identified before " + std::to_string(after) +
+              " samples, the run has " + std::to_string(samples));
 }
 
 }  // namespace

@@ -24,6 +24,9 @@ class MoveOrigin {
   void look(VectorRef applied);
   /// From where the input of sample k moves on: what was read, or the last command.
   const Vector& origin() const { return origin_; }
+  /// The same for what is not a law's: what is read, unless the input has been seen to move along
+  /// with its command.
+  const Vector& proven() const { return proven_; }
   /// Some input is further from its last command than 1e-9 of its range.
   bool displaced() const { return displaced_; }
   /// Puts what goes out within the move limit of the last command where an input is displaced.
@@ -37,8 +40,9 @@ class MoveOrigin {
   double tolerance(Eigen::Index i) const;
 
   InputLimits limits_;
-  Vector origin_, applied_, command_, command_before_;
+  Vector origin_, proven_, applied_, command_, command_before_;
   std::vector<bool> away_, along_;  // at the last sample: not where it was told; moves along
+  std::vector<bool> seen_;          // a command that moved has shown which
   bool active_{false}, displaced_{false};
 };
 
