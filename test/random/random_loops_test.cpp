@@ -84,15 +84,18 @@ bool isOfLaw(ActionSource source) {
 }
 
 /// From where the move of action k counts: from what is read, or, where a valve is not where the
-/// law told it to be, from the command before.
+/// law told it to be, from the command before (of others than the law: from the nearer).
 Vector origin(const RunRecord& record, std::size_t k, const Vector& slack) {
   const SampleRecord& s = record.samples[k];
   Vector from = s.measurement.input_applied;
   if (k == 0 || !record.samples[k - 1].has_action) return from;
   const SampleRecord& before = record.samples[k - 1];
-  if (!isOfLaw(s.action.source) || !isOfLaw(before.action.source)) return from;
-  for (Eigen::Index i = 0; i < from.size(); ++i)
-    if (std::abs(from[i] - before.action.input[i]) > slack[i]) from[i] = before.action.input[i];
+  const bool of_law = isOfLaw(s.action.source) && isOfLaw(before.action.source);
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
+    const double u = s.action.input[i], last = before.action.input[i];
+    const bool nearer = std::abs(u - last) < std::abs(u - from[i]);
+    if (std::abs(from[i] - last) > slack[i] && (of_law || nearer)) from[i] = last;
+  }
   return from;
 }
 
