@@ -23,7 +23,10 @@ bool needsPrediction(ActionSource source) {
 }  // namespace
 
 OptimizerSession::OptimizerSession(ClpParams params, InputLimits limits, PlantInfo plant)
-    : params_(std::move(params)), limits_(std::move(limits)), plant_(std::move(plant)) {
+    : params_(std::move(params)),
+      limits_(std::move(limits)),
+      moves_(limits_),
+      plant_(std::move(plant)) {
   const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
   params_.validate(static_cast<Eigen::Index>(plant_.outputs.size()), n_u);
   limits_.validate(n_u);
@@ -48,6 +51,7 @@ bool OptimizerSession::admit(const StepHeader& header, bool already_here) {
   if (!answered_ && !already_here && gate_.classify(header) == Arrival::kRepeat) return true;
   const Arrival arrival = gate_.pass(header);
   if (!isNew(arrival)) return false;
+  if (needsReset(arrival)) moves_.restart();
   if (needsReset(arrival) && optimizer_) optimizer_->reset();
   have_base_ = have_prediction_ = answered_ = false;
   return true;
@@ -123,11 +127,19 @@ void OptimizerSession::optimize() {
     optimizer_ = std::make_unique<ClosedLoopParadigm>(params_, limits_, n_x_, prediction_.C.rows(),
                                                       prediction_.B.cols());
   }
+  moves_.look(prediction_.input_previous);
+  prediction_.input_previous = moves_.origin();
   optimizer_->step(prediction_, action_, report_);
+  if (moves_.keepNear(action_.input)) {
+    action_.source = ActionSource::kClipped;
+    report_.perturbation = action_.input - prediction_.input_base_unclipped;
+  }
+  moves_.sent(action_.input);
 }
 
 // The base action is inside its limits already; the bounds are for controllers that broke the rule.
 void OptimizerSession::passThrough(SolveStatus status) {
+  moves_.restart();
   action_.input = base_.input;
   limits_.clip(action_.input, base_.input);
   action_.source = status == SolveStatus::kNotRun ? base_.source : ActionSource::kClipped;

@@ -44,6 +44,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
       limits_(std::move(limits)),
       plant_(std::move(plant)),
       last_input_(std::move(initial_input)),
+      moves_(limits_),
       plausibility_(std::move(plausibility), plant_),
       recent_(plant_),
       max_pole_(max_pole) {
@@ -53,7 +54,9 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
   require(last_input_.size() == n_u && last_input_.allFinite(), "actuator.initial",
           std::to_string(n_u) + " finite numbers");
   manual_input_ = last_input_;
-  answer_.base.input = last_input_;
+  seen_.outputs = Vector::Zero(countOf(plant_.outputs));
+  seen_.disturbances = Vector::Zero(countOf(plant_.disturbances));
+  seen_.input_applied = answer_.base.input = last_input_;
   answer_.tracking.reference = setpoint_.present();
   if (!controller_->followsSetpoint()) answer_.tracking.reference.setConstant(std::nan(""));
   noteNeeds();
@@ -123,6 +126,7 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
 void ControllerSession::process(const Measurement& m) {
   fell_back_ = false;
   if (needsReset(arrival_)) forgetSamples();
+  lookAtMoves(m);
   const Verdict verdict = plausibility_.look(m);
   const Measurement& accepted = verdict == Verdict::kClean ? m : plausibility_.accepted();
   const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
@@ -146,8 +150,10 @@ void ControllerSession::process(const Measurement& m) {
     interruption_ = kNotFinite;
   } else if (const std::string* bad = imposing(DoubtAction::kFallback)) {
     fallBack(m, bad->c_str());
+    interruption_ = kDoubted;
   } else if (verdict == Verdict::kFallback) {
     fallBack(m, plausibility_.words());
+    interruption_ = kDoubted;
   } else if (const std::string* doubt = imposing(DoubtAction::kHold)) {
     hold(m, doubt->c_str());
     interruption_ = kDoubted;
@@ -155,7 +161,7 @@ void ControllerSession::process(const Measurement& m) {
     hold(m, plausibility_.words());
     interruption_ = finite ? kDoubted : kNotFinite;
   } else {
-    runLaw(accepted);
+    runLaw(seen(accepted));
     if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
   }
   if (interruption_ != nullptr && usable) controller_->lookOn(accepted);
@@ -165,7 +171,7 @@ void ControllerSession::process(const Measurement& m) {
   }
   if (*output_.remark == '\0') output_.remark = reaction().c_str();
   expectNext();
-  last_input_ = answer_.base.input;
+  answered();
 }
 
 void ControllerSession::forgetSamples() {
@@ -213,41 +219,6 @@ void ControllerSession::watchReaction(const Measurement& m) {
   if (reaction_) reaction_->look(m);
 }
 
-void ControllerSession::fallBack(const Measurement& m, const char* remark) {
-  Vector& input = answer_.base.input;
-  input = plausibility_.params().fallback;
-  limits_.clip(input, m.input_applied);
-  controller_->makeSendable(input);
-  answer_.base.source = output_.source = ActionSource::kFallback;
-  output_.ok = output_.predictive = false;
-  output_.remark = remark;
-  interruption_ = kDoubted;
-  fell_back_ = true;
-}
-
-void ControllerSession::hold(const Measurement& m, const char* remark) {
-  Vector& input = answer_.base.input;
-  input = m.input_applied.allFinite() ? m.input_applied : last_input_;
-  limits_.clip(input, input);
-  controller_->makeSendable(input);
-  answer_.base.source = output_.source = ActionSource::kHeld;
-  output_.ok = output_.predictive = false;
-  output_.remark = remark;
-}
-
-void ControllerSession::sendManual(const Measurement& m) {
-  if (!manual_given_) manual_input_ = m.input_applied;
-  manual_given_ = true;
-  answer_.base.input = manual_input_;
-  limits_.clip(answer_.base.input, m.input_applied);
-  controller_->makeSendable(answer_.base.input);
-  answer_.base.source = output_.source = ActionSource::kManual;
-  if (controller_->followsSetpoint()) answer_.tracking.reference = m.outputs;
-  output_.ok = true;
-  output_.predictive = false;
-  output_.remark = "";
-}
-
 void ControllerSession::runLaw(const Measurement& m) {
   if (interruption_ != nullptr || !arrival_reason_.empty()) {
     reset_reason_ = arrival_reason_;
@@ -266,8 +237,7 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
     return hold(m, "the law gave no finite input: input held");
   answer_.base.input = output_.input;
-  limits_.clip(answer_.base.input, m.input_applied);
-  controller_->makeSendable(answer_.base.input);
+  limit(m);
   answer_.base.source = output_.source;
   answer_.has_prediction = output_.predictive && !m.final;
   if (!answer_.has_prediction) return;

@@ -43,8 +43,10 @@ Simulation makeSimulation(const LoopFile& loop) {
 
 ControllerSession makeControllerSession(const LoopFile& loop) {
   const ActuatorParams& actuator = loop.simulation.actuator;
-  return {makeController(loop), loop.setpoint, actuator.limits,  actuator.initial,
-          loop.plant_info,      loop.max_pole, loop.plausibility};
+  ControllerSession session(makeController(loop), loop.setpoint, actuator.limits, actuator.initial,
+                            loop.plant_info, loop.max_pole, loop.plausibility);
+  if (loop.has_clp) session.leadsAnOptimizer();
+  return session;
 }
 
 OptimizerSession makeOptimizerSession(const LoopFile& loop) {

@@ -10,7 +10,12 @@ constexpr std::size_t kMostRefused = 20;
 }  // namespace
 
 void OperatorNotes::refused(std::uint32_t step, const std::string& words) {
-  const std::string remark = "command refused: " + words;
+  keep(step, "command refused: " + words);
+}
+
+void OperatorNotes::failed(std::uint32_t step, const std::string& words) { keep(step, words); }
+
+void OperatorNotes::keep(std::uint32_t step, const std::string& remark) {
   const auto known = std::find_if(refused_.begin(), refused_.end(),
                                   [&](const RunRemark& r) { return r.words == remark; });
   if (known != refused_.end())
@@ -23,7 +28,7 @@ void OperatorNotes::refused(std::uint32_t step, const std::string& words) {
 
 std::vector<RunRemark> OperatorNotes::remarks() const {
   std::vector<RunRemark> all = refused_;
-  if (more_ > 0) all.push_back({std::to_string(more_) + " more commands refused", 0, 0});
+  if (more_ > 0) all.push_back({std::to_string(more_) + " more refused", 0, 0});
   return all;
 }
 

@@ -41,7 +41,7 @@ class Ring {
     if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
     plant_.begin(kRunId);
     recorder_.announce(kRunId);
-    if (identifier_) use(identifier_->start());
+    if (identifier_) begin(identifier_->start());
     require(controller_.ready(), loop.name + ": model.file",
             "a model for controller " + loop.controllerType().name);
     player_.begin(targets_);
@@ -51,7 +51,8 @@ class Ring {
   /// Answers the present sample; false after the final one.
   bool step() {
     const Measurement now = simulation_.measurement();
-    player_.advance(now.header.step, targets_);
+    present_ = now.header.step;
+    player_.advance(present_, targets_);
     recorder_.receive(now);
     forced_.look(now.header.step, simulation_.effects());
     recorder_.receive(simulation_.state(), forced_.lines());
@@ -78,11 +79,12 @@ class Ring {
   }
 
  private:
-  /// What the plant says of inputs that do not follow, once; over topics diagnostics say it.
+  /// What the plant says of inputs that do not follow, once; over topics diagnostics say it. The
+  /// summary counts it from the record.
   void watchInputs(std::uint32_t step) {
     if (plant_.stuck() == stuck_) return;
     stuck_ = plant_.stuck();
-    if (!stuck_.empty()) remark("sample " + std::to_string(step) + ": " + stuck_);
+    if (!stuck_.empty()) tell(step, stuck_);
   }
 
   const ControlAction& optimize(const ControllerAnswer& answer) {
@@ -96,7 +98,7 @@ class Ring {
   void learn(const Measurement& now) {
     const std::uint64_t refused = identifier_->refused();
     const IdentifierSession::Due due = identifier_->take(now);
-    if (identifier_->refused() > refused) remark(identifier_->lastRefusal());
+    if (identifier_->refused() > refused) fail(identifier_->lastRefusal());
     use(due.model);
     if (due.job) identify(*due.job);
   }
@@ -115,7 +117,7 @@ class Ring {
       if (options_.identified) options_.identified(model);
       use(&model);
     } catch (const InputError& error) {
-      remark(std::string("identification: ") + error.what());
+      fail(std::string("identification: ") + error.what());
     }
   }
 
@@ -124,14 +126,34 @@ class Ring {
     try {
       controller_.setModel(*model);
     } catch (const InputError& error) {
-      remark(error.what());
+      fail(error.what());
     }
+  }
+
+  /// Without the model that the loop file names there is no run.
+  void begin(const TsModel* model) {
+    if (model == nullptr || !controller_.controller().needsModel()) return;
+    try {
+      controller_.setModel(*model);
+    } catch (const InputError& error) {
+      throw InputError(loop_.name + ": controller: " + error.what());
+    }
+  }
+
+  /// A model that could not be had, or used: told at once and kept.
+  void fail(const std::string& words) {
+    notes_.failed(present_, words);
+    tell(present_, words);
+  }
+
+  void tell(std::uint32_t step, const std::string& words) const {
+    remark("sample " + std::to_string(step) + ": " + words);
   }
 
   /// What an operator asked in vain is told at once and kept.
   void refuse(std::uint32_t step, const std::string& words) {
     notes_.refused(step, words);
-    remark("sample " + std::to_string(step) + ": " + words);
+    tell(step, words);
   }
 
   void remark(const std::string& words) const {
@@ -141,6 +163,7 @@ class Ring {
   const LoopFile& loop_;
   const RunOptions& options_;
   std::string stuck_;
+  std::uint32_t present_{};                 // the sample that is answered
   std::unique_ptr<SimulatedProcess> made_;  // until it is the session's
   Simulation& simulation_;
   PlantSession plant_;

@@ -12,6 +12,7 @@
 #include "fmbpc/loop/run_summary.hpp"
 #include "loop/model_use.hpp"
 #include "loop/overruled.hpp"
+#include "loop/record_remarks.hpp"
 #include "loop/run_tally.hpp"
 #include "loop/unplayed.hpp"
 
@@ -25,6 +26,11 @@ constexpr double kTolerance = 1e-9;  // of an input's range
 double toleranceOf(const InputLimits& limits, Index i) {
   const double range = limits.upper[i] - limits.lower[i];
   return kTolerance * (std::isfinite(range) ? range : 1.0);
+}
+
+bool isOfLaw(ActionSource source) {
+  return source == ActionSource::kBase || source == ActionSource::kConstrained ||
+         source == ActionSource::kClipped;
 }
 
 /// Counted again from the record; 0 where the record is not at hand (it is the plant's, maybe of
@@ -42,6 +48,7 @@ void countCells(const LoopFile& loop, Summary& summary) {
 void addUnplayed(const LoopFile& loop, Summary& summary) {
   for (RunRemark& remark : unplayedIn(loop)) summary.remarks.push_back(std::move(remark));
   for (RunRemark& remark : overruledIn(loop)) summary.remarks.push_back(std::move(remark));
+  for (RunRemark& remark : clampedIn(loop)) summary.remarks.push_back(std::move(remark));
 }
 
 /// What stands in a summary before the first sample.
@@ -70,6 +77,16 @@ Summary blank(const LoopFile& loop) {
   return summary;
 }
 
+/// The remarks of a record come first; what they say already is not said again.
+void mergeRemarks(const std::vector<RunRemark>& first, std::vector<RunRemark>& remarks) {
+  std::vector<RunRemark> merged = first;
+  for (RunRemark& remark : remarks)
+    if (std::none_of(first.begin(), first.end(),
+                     [&](const RunRemark& r) { return r.words == remark.words; }))
+      merged.push_back(std::move(remark));
+  remarks = std::move(merged);
+}
+
 }  // namespace
 
 struct RunSummary::Sums {
@@ -81,12 +98,14 @@ struct RunSummary::Sums {
         outputs(of.plant_info.outputs.size(), RunningOutput(sample_time_h)),
         at_lower(of.plant_info.inputs.size()),
         at_upper(at_lower),
-        moved(movedInputs(of)) {}
+        moved(movedInputs(of)),
+        of_record(of) {}
 
   void followOutputs(const SampleRecord& sample);
   void followWindows(const SampleRecord& sample);
   void followInputs(const SampleRecord& sample);
   void countAction(const SampleRecord& sample);
+  double moveOf(const SampleRecord& sample, Index i, double tolerance) const;
   void countState(const SampleRecord& sample);
   void countSolve(const SampleRecord& sample);
   void findLockUps(Summary& result) const;
@@ -101,6 +120,8 @@ struct RunSummary::Sums {
   std::vector<bool> moved;                        // the others stand where they stand
   LogHistogram solve_us;
   RunTally tally;
+  RecordRemarks of_record;
+  ControlAction last;  // of the sample before, without an input if there was none
   std::uint32_t step{};
 };
 
@@ -160,9 +181,19 @@ void RunSummary::Sums::countAction(const SampleRecord& sample) {
     at_lower[k] = std::abs(u - limits.lower[i]) <= tolerance ? at_lower[k] + 1 : 0;
     at_upper[k] = std::abs(u - limits.upper[i]) <= tolerance ? at_upper[k] + 1 : 0;
     if (!sample.has_measurement) continue;
-    const double move = std::abs(u - sample.measurement.input_applied[i]);
-    summary.move_violations += !(move <= limits.move[i] + tolerance);
+    summary.move_violations += !(moveOf(sample, i, tolerance) <= limits.move[i] + tolerance);
   }
+}
+
+/// The move of command i: from the command before it; from what is read where the plant shows that
+/// one, where there was none, and, if that is shorter, where somebody else than the law acted.
+double RunSummary::Sums::moveOf(const SampleRecord& sample, Index i, double tolerance) const {
+  const double u = sample.action.input[i], applied = sample.measurement.input_applied[i];
+  const double from_read = std::abs(u - applied);
+  if (last.input.size() == 0 || std::abs(applied - last.input[i]) <= tolerance) return from_read;
+  const double from_command = std::abs(u - last.input[i]);
+  const bool of_law = isOfLaw(last.source) && isOfLaw(sample.action.source);
+  return of_law ? from_command : std::min(from_command, from_read);
 }
 
 void RunSummary::Sums::countState(const SampleRecord& sample) {
@@ -207,6 +238,8 @@ void RunSummary::add(const SampleRecord& sample) {
   sums_->countSolve(sample);
   if (sums_->has_domain) sums_->summary.outside_model += isOutsideModel(sums_->loop, sample);
   sums_->tally.add(sample);
+  sums_->of_record.add(sample);
+  sums_->last = sample.has_action ? sample.action : ControlAction();
   ++sums_->step;
 }
 
@@ -216,6 +249,7 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
   result.failed_samples = sums_->tally.failed_samples;
   result.trouble = sums_->tally.trouble;
   result.remarks = sums_->tally.remarks;
+  for (RunRemark& remark : sums_->of_record.remarks()) result.remarks.push_back(std::move(remark));
   addUnplayed(sums_->loop, result);
   result.complete = nothing_missing && result.failed_samples == 0;
   for (const RunningOutput& output : sums_->outputs) result.outputs.push_back(output.indices());
@@ -241,8 +275,7 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
   summary.complete = record.complete;
   summary.failed_samples = record.failed_samples;
   summary.trouble = record.trouble;
-  summary.remarks = record.remarks;
-  addUnplayed(loop, summary);
+  mergeRemarks(record.remarks, summary.remarks);
   return summary;
 }
 

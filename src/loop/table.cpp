@@ -1,4 +1,6 @@
 // The table that a person reads after a run: one line per loop and output, one per loop and input.
+#include <algorithm>
+
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/report.hpp"
 
@@ -30,29 +32,37 @@ void addOutputRows(const Summary& s, std::vector<Row>& rows) {
     const OutputIndices& y = s.outputs[i];
     rows.push_back({i == 0 ? s.loop : "", withUnit(s.output_names, s.output_units, i), cell(y.ise),
                     cell(y.iae), cell(y.itae), cell(y.itse), cell(y.rmse), cell(y.ise_reference),
-                    i == 0 ? std::to_string(s.output_violations) : ""});
+                    s.outputs.size() == 1 ? std::to_string(s.output_violations) : ""});
   }
+  if (s.outputs.size() > 1)
+    rows.push_back(
+        {"", "all outputs", "", "", "", "", "", "", std::to_string(s.output_violations)});
 }
 
 void addInputRows(const Summary& s, std::vector<Row>& rows) {
   for (std::size_t i = 0; i < s.inputs.size(); ++i) {
     const InputIndices& u = s.inputs[i];
-    const bool first = i == 0;
-    rows.push_back({first ? s.loop : "", withUnit(s.input_names, s.input_units, i), cell(u.min),
-                    cell(u.max), cell(u.mean_abs_move), switches(u, s.steps), cell(u.travel),
-                    first ? std::to_string(s.input_violations) : "",
-                    first ? std::to_string(s.move_violations) : "",
-                    first ? std::to_string(s.actuator_clips) : "",
-                    first ? std::to_string(s.steps) : "", first ? cell(s.wall_s) : ""});
+    rows.push_back({i == 0 ? s.loop : "", withUnit(s.input_names, s.input_units, i), cell(u.min),
+                    cell(u.max), cell(u.mean_abs_move), switches(u, s.steps), cell(u.travel), "",
+                    "", "", "", ""});
   }
+  if (s.inputs.size() > 1)
+    rows.push_back({"", "all inputs", "", "", "", "", "", "", "", "", "", ""});
+  if (s.inputs.empty()) return;
+  const std::vector<std::string> counts{
+      std::to_string(s.input_violations), std::to_string(s.move_violations),
+      std::to_string(s.actuator_clips), std::to_string(s.steps), cell(s.wall_s)};
+  std::copy(counts.begin(), counts.end(), rows.back().end() - 5);
 }
 
 constexpr char kLegend[] =
     "e: setpoint - measured. ISE, IAE: sums of e^2, |e| over the samples; ITAE, ITSE: with the "
     "time\n"
     "in h; rmse: root mean square of e; ISE ref: sum of (reference - measured)^2; beyond: samples\n"
-    "outside the limits of the loop file; travel: sum of moves; switches: moves of an input that\n"
-    "rests more often than it moves; clips: inputs that the actuator had to cut.\n";
+    "outside the limits of the loop file (outputs: report.output_lower, .output_upper), for "
+    "several\n"
+    "signals the sum of theirs; travel: sum of moves; switches: moves of an input that rests more\n"
+    "often than it moves; clips: inputs that the actuator had to cut, summed up alike.\n";
 
 void addWindowRows(const Summary& s, std::vector<Row>& rows) {
   for (const WindowIndices& w : s.windows)

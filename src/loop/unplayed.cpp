@@ -68,11 +68,21 @@ void addDisturbances(const LoopFile& loop, Unplayed& found) {
               exactText(next_h) + " h");
 }
 
+/// The final sample is one more to learn from.
+void addIdentification(const LoopFile& loop, Unplayed& found) {
+  const auto after = static_cast<std::int64_t>(loop.has_identify ? loop.identify.after : 0);
+  const std::int64_t samples = std::int64_t{loop.simulation.samples} + 1;
+  if (after > samples)
+    found.say("model.identify.after: no model is identified before " + std::to_string(after) +
+              " samples, the run has " + std::to_string(samples));
+}
+
 }  // namespace
 
 std::vector<RunRemark> unplayedIn(const LoopFile& loop) {
   Unplayed found(loop);
   if (loop.simulation.samples == 0) return found.take();
+  addIdentification(loop, found);
   addSetpoints(loop, found);
   addDisturbances(loop, found);
   return found.take();

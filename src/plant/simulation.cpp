@@ -29,6 +29,38 @@ std::string troubleOf(const PlantStepper& stepper, const Vector& state) {
   return stepper.failure();
 }
 
+bool justSet(const std::vector<CommandEffect>& effects, const std::string& name) {
+  for (const CommandEffect& effect : effects)
+    if (std::find(effect.command.name.begin(), effect.command.name.end(), name) !=
+        effect.command.name.end())
+      return true;
+  return false;
+}
+
+/// Where a valve is without its offset; at a bound, where the offset has no room, it may be nearer
+/// to what is asked.
+double withoutOffset(double applied, double offset, double lower, double upper, double asked) {
+  double from = applied - offset, to = from;
+  if (offset > 0.0 && applied >= upper) to = upper;
+  if (offset < 0.0 && applied <= lower) from = lower;
+  return std::clamp(std::isfinite(asked) ? asked : applied, from, to);
+}
+
+/// A valve with an offset moves from its own position: from the displaced one the offset would add
+/// up whenever it is larger than the move limit.
+void takeBackOffsets(const CommandTable& commands, const std::vector<CommandEffect>& effects,
+                     std::size_t first, VectorRef asked, Actuator& actuator) {
+  const InputLimits& limits = actuator.params().limits;
+  for (Eigen::Index i = 0; i < actuator.applied().size() && i < asked.size(); ++i) {
+    const std::size_t name = first + static_cast<std::size_t>(i);
+    const ActiveCommand& entry = commands.active()[name];
+    if (!entry.active || entry.mode != CommandMode::kOffset) continue;
+    if (justSet(effects, commands.names()[name])) continue;  // it has not acted yet
+    actuator.disturb(i, withoutOffset(actuator.applied()[i], entry.value, limits.lower[i],
+                                      limits.upper[i], asked[i]));
+  }
+}
+
 }  // namespace
 
 Simulation::Simulation(SimulationParams params)
@@ -101,12 +133,15 @@ bool Simulation::answers(const StepHeader& header) const {
 
 const Measurement& Simulation::advance(VectorRef input) {
   if (measurement_.final) return measurement_;
+  takeBackOffsets(commands_, effects_, plant_->description().disturbances.size(), input, actuator_);
   actuator_.apply(input);
   return integrate();
 }
 
 const Measurement& Simulation::advanceWithoutAction() {
   if (measurement_.final) return measurement_;
+  takeBackOffsets(commands_, effects_, plant_->description().disturbances.size(),
+                  actuator_.applied(), actuator_);
   actuator_.miss();
   return integrate();
 }

@@ -30,11 +30,23 @@ void writeModelFile(const TsModel& model, const std::string& folder) {
   require(stream.good(), file, "a writable file");
 }
 
-Summary runOne(const LoopFile& loop, const std::string& folder, const std::string& commands) {
+/// A loop that is there for a model: model.identify.after, and no setpoint is followed.
+bool isForAModel(const LoopFile& loop, const RunRecord& record) {
+  return loop.has_identify && loop.identify.after > 0 && !record.samples.empty() &&
+         record.samples.front().tracking.setpoint.array().isNaN().all();
+}
+
+/// `failed` becomes true if the loop was there for a model and has none.
+Summary runOne(const LoopFile& loop, const std::string& folder, const std::string& commands,
+               bool& failed) {
   ProgressBar bar(loop.name);
   RunOptions options = watchedBy(bar);
   if (!commands.empty()) options.commands = readCommands(commands, loop);
-  options.identified = [&folder](const TsModel& model) { writeModelFile(model, folder); };
+  bool identified = false;
+  options.identified = [&](const TsModel& model) {
+    identified = true;
+    writeModelFile(model, folder);
+  };
   options.remark = [&loop](const std::string& words) {
     std::fprintf(stderr, "fmbpc: %s: %s\n", loop.name.c_str(), words.c_str());
   };
@@ -43,6 +55,10 @@ Summary runOne(const LoopFile& loop, const std::string& folder, const std::strin
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   Summary summary = summarize(loop, record, wall.count());
   if (!folder.empty()) writeRun(loop, record, summary, folder);
+  if (isForAModel(loop, record) && !identified && !interruption()) {
+    failed = true;
+    std::fprintf(stderr, "fmbpc: %s: no model was identified\n", loop.name.c_str());
+  }
   return summary;
 }
 
@@ -91,10 +107,11 @@ int run(const RunArguments& arguments) {
   catchInterrupts();
   std::vector<Summary> summaries;
   std::vector<std::string> written;
+  bool failed = false;
   for (const auto& loop : loops) {
     std::string folder = arguments.out;
     if (!folder.empty() && loops.size() > 1) folder = (fs::path(folder) / loop.name).string();
-    summaries.push_back(runOne(loop, folder, arguments.commands));
+    summaries.push_back(runOne(loop, folder, arguments.commands, failed));
     if (!folder.empty()) written.push_back(folder);
     if (!folder.empty() && !arguments.no_plot && !interruption()) draw(folder);
     if (interruption()) break;
@@ -102,7 +119,7 @@ int run(const RunArguments& arguments) {
   std::cout << (arguments.json ? jsonOf(summaries) + "\n" : toTable(summaries));
   if (!arguments.json)
     for (const auto& folder : written) std::cout << "written: " << folder << "\n";
-  if (!interruption()) return reportTrouble(summaries) ? 1 : 0;
+  if (!interruption()) return reportTrouble(summaries) || failed ? 1 : 0;
   std::fprintf(stderr, "fmbpc: interrupted after %u steps\n", summaries.back().steps);
   return kInterrupted;
 }

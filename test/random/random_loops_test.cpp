@@ -82,6 +82,27 @@ std::string notFinite(const RunRecord& record) {
   return "";
 }
 
+bool isOfLaw(ActionSource source) {
+  return source != ActionSource::kHeld && source != ActionSource::kManual &&
+         source != ActionSource::kFallback;
+}
+
+/// From where the move of action k counts: from what is read, or, where a valve is not where the
+/// law told it to be, from the command before (of others than the law: from the nearer).
+Vector origin(const RunRecord& record, std::size_t k, const Vector& slack) {
+  const SampleRecord& s = record.samples[k];
+  Vector from = s.measurement.input_applied;
+  if (k == 0 || !record.samples[k - 1].has_action) return from;
+  const SampleRecord& before = record.samples[k - 1];
+  const bool of_law = isOfLaw(s.action.source) && isOfLaw(before.action.source);
+  for (Eigen::Index i = 0; i < from.size(); ++i) {
+    const double u = s.action.input[i], last = before.action.input[i];
+    const bool nearer = std::abs(u - last) < std::abs(u - from[i]);
+    if (std::abs(from[i] - last) > slack[i] && (of_law || nearer)) from[i] = last;
+  }
+  return from;
+}
+
 /// Empty if every action and every applied input is inside its limits.
 std::string beyondLimits(const LoopFile& loop, const RunRecord& record) {
   const InputLimits& limits = loop.simulation.actuator.limits;
@@ -96,7 +117,7 @@ std::string beyondLimits(const LoopFile& loop, const RunRecord& record) {
     if (!inside(s.measurement.input_applied)) return "applied input" + at;
     if (!s.has_action) continue;
     if (!inside(s.action.input)) return "action" + at;
-    const Vector move = (s.action.input - s.measurement.input_applied).cwiseAbs();
+    const Vector move = (s.action.input - origin(record, k, slack)).cwiseAbs();
     if (!((limits.move + slack - move).array() >= 0.0).all()) return "move" + at;
   }
   return "";

@@ -11,6 +11,7 @@
 #include "fmbpc/base/step_gate.hpp"
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 #include "fmbpc/control/controller.hpp"
+#include "fmbpc/control/move_origin.hpp"
 #include "fmbpc/control/plausibility.hpp"
 #include "fmbpc/control/recent_samples.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
@@ -62,6 +63,8 @@ enum class Receipt {
 ///   outputs react, is doubted and the loop file asks for it (DoubtAction). The controller is
 ///   reset, bumplessly, at the next sample that it gets;
 /// - first sample, gap, new run: the controller is reset; otherwise it just steps.
+/// Move limits count from the applied input, but for one with an offset, which the law, a person
+/// and a fallback move on from the last command (MoveOrigin): they see that one as applied.
 /// Setpoints advance with every sample. No allocation in receive() after the first answer, but for
 /// the words of a reset and for setpoint commands that take effect.
 class ControllerSession {
@@ -123,6 +126,8 @@ class ControllerSession {
   /// joins a run and cannot know what its operator has asked. Not if manual() has been called.
   void holdUntilReleased() { unreleased_ = !manual_asked_; }
   bool unreleased() const { return unreleased_; }
+  /// What its law answers goes to an optimizer, which knows what the plant was told.
+  void leadsAnOptimizer() { leads_an_optimizer_ = true; }
   /// Of the measurements to come: false while the plant's own hand has the inputs.
   void plantTakesActions(bool on) { takes_actions_ = on; }
   /// In what the plant that announced itself differs from the loop file, in words; empty: in
@@ -142,6 +147,10 @@ class ControllerSession {
   bool sizesFit(const Measurement& m) const;
   void begin(const Measurement& m, Arrival arrival, const StepHeader& before);
   void process(const Measurement& m);
+  void lookAtMoves(const Measurement& m);
+  const Measurement& seen(const Measurement& m);
+  void answered();
+  void limit(const Measurement& m);
   void runLaw(const Measurement& m);
   void hold(const Measurement& m, const char* remark);
   void fallBack(const Measurement& m, const char* remark);
@@ -168,6 +177,8 @@ class ControllerSession {
   const char* interruption_{nullptr};  // why the controller did not run at the last sample
   std::string arrival_reason_;         // first sample, gap, new run: in words
   Vector last_input_, manual_input_;
+  MoveOrigin moves_;
+  Measurement seen_;  // with the input from which the law moves on; sized once
   Plausibility plausibility_;
   TsModel model_;        // in use, matched to the plant; of a law that needs one
   Measurement present_;  // the last that was accepted; empty before the first
@@ -178,7 +189,7 @@ class ControllerSession {
   double max_pole_{1.0};
   std::uint64_t models_{};
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
-  bool takes_actions_{true};
+  bool takes_actions_{true}, leads_an_optimizer_{false};
   bool manual_asked_{false}, recipe_asked_{false}, carries_{false};
   std::optional<bool> adapt_;
   Settings settings_;
@@ -217,6 +228,7 @@ class OptimizerSession {
 
   ClpParams params_;
   InputLimits limits_;
+  MoveOrigin moves_;
   PlantInfo plant_;
   std::unique_ptr<ClosedLoopParadigm> optimizer_;  // made at a prediction, when n_x is known
   StepGate gate_;
