@@ -211,18 +211,23 @@ std::vector<int> bestDelays(const AutoData& data, const DelayGuess& guess,
                             const std::vector<DelayGuess>& by_block, std::uint64_t seed,
                             const SearchLimits& limits) {
   constexpr double kWorth = 0.97;
-  const auto scoreOf = [&](const std::vector<int>& delay, auto&& of_block) {
+  struct Scores {
+    double all, apart;  // with delays guessed from all rows, and without each block
+  };
+  const auto scoresOf = [&](const std::vector<int>& delay, auto&& of_block) {
     std::vector<std::vector<int>> blocks;
     for (const auto& g : by_block) blocks.push_back(of_block(g));
-    return Search(data, delay, seed, limits).lowestOfLines(blocks);
+    return Scores{Search(data, delay, seed, limits).lowestOfLines({}),
+                  Search(data, delay, seed, limits).lowestOfLines(blocks)};
   };
   std::vector<int> best = guess.delay;
-  double lowest = kWorth * scoreOf(guess.delay, [](const auto& g) { return g.delay; });
+  Scores lowest = scoresOf(guess.delay, [](const auto& g) { return g.delay; });
+  lowest = {kWorth * lowest.all, kWorth * lowest.apart};
   for (std::size_t i = 0; i < guess.longer.size(); ++i) {
     if (guess.longer[i] == guess.delay) continue;
-    const double score = scoreOf(guess.longer[i], [i](const auto& g) { return g.longer[i]; });
-    if (!(score < lowest)) continue;
-    lowest = score;
+    const Scores scores = scoresOf(guess.longer[i], [i](const auto& g) { return g.longer[i]; });
+    if (!(scores.all < lowest.all && scores.apart < lowest.apart)) continue;
+    lowest = scores;
     best = guess.longer[i];
   }
   return best;

@@ -60,8 +60,9 @@ std::vector<Judgement> judgeCandidates(const AutoData& data,
                                        const SearchLimits& limits);
 
 /// The delays with which simple linear models run best over the blocks: the usual ones unless
-/// longer ones do better by 3 %. A block is judged with delays that were guessed without it (one
-/// guess per block): that of a long list which fits best by chance does not fit the next rows.
+/// longer ones do better by 3 %, also where each block is judged with delays that were guessed
+/// without it (one guess per block): that of a long list which fits best by chance does not fit the
+/// next rows.
 std::vector<int> bestDelays(const AutoData& data, const DelayGuess& guess,
                             const std::vector<DelayGuess>& by_block, std::uint64_t seed,
                             const SearchLimits& limits);
