@@ -225,10 +225,10 @@ int main(int argc, char** argv) {
   fpc::tool::addReplay(app, replay, chosen);
   fpc::tool::RecoverArguments recover;
   fpc::tool::addRecover(app, recover, chosen);
-  std::vector<std::string> watch_words;
-  fpc::tool::addWatch(app, watch_words, chosen);
+  fpc::tool::addWatch(app);
   fpc::tool::refuseEmptyNames(app);
   try {
+    if (const auto words = fpc::tool::wordsForWatch(argc, argv)) return fpc::tool::watch(*words);
     app.parse(argc, argv);
     return chosen();
   } catch (const CLI::ParseError& e) {
