@@ -42,7 +42,9 @@ std::vector<std::string> nearest(const std::string& word, const std::vector<std:
     const bool part = meant.size() >= 3 && at != std::string::npos;
     const std::size_t as_part = at == 0 ? 1 : 2;
     if (slip || part)
-      ranked.emplace_back(slip && part ? std::min(edits, as_part) : part ? as_part : edits,
+      ranked.emplace_back(slip && part ? std::min(edits, as_part)
+                          : part       ? as_part
+                                       : edits,
                           candidate);
   }
   std::stable_sort(ranked.begin(), ranked.end(),

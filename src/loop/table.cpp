@@ -62,8 +62,8 @@ constexpr char kLegend[] =
 /// "T [degC]", by the output's name.
 std::string outputWithUnit(const Summary& s, const std::string& name) {
   const auto& names = s.output_names;
-  const auto at = static_cast<std::size_t>(
-      std::find(names.begin(), names.end(), name) - names.begin());
+  const auto at =
+      static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
   return at < names.size() ? withUnit(names, s.output_units, at) : name;
 }
 

@@ -72,9 +72,8 @@ std::string meantBy(const std::vector<std::string>& words, const std::vector<Ent
   std::set<std::string> known;
   for (const Entry& e : all) known.insert({e.name, e.plant, e.controller});
   for (const auto& word : words) {
-    const bool is_there = std::any_of(all.begin(), all.end(), [&](const Entry& entry) {
-      return containsAll(entry, {word});
-    });
+    const bool is_there = std::any_of(
+        all.begin(), all.end(), [&](const Entry& entry) { return containsAll(entry, {word}); });
     if (!is_there) return nearNames(word, {known.begin(), known.end()}, kLoopsListsThem);
   }
   return std::string("; ") + kLoopsListsThem;

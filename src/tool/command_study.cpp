@@ -41,8 +41,7 @@ void requireStudyOrLoop(const std::string& name) {
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
   throw InputError(
       "study or loop '" + name + "': expected a path or a name from config/study or config/loop" +
-      nearNames(name, known,
-                std::string(kLoopsListsThem) + "; studies: " + join(studyNames())));
+      nearNames(name, known, std::string(kLoopsListsThem) + "; studies: " + join(studyNames())));
 }
 
 /// "H=0.001"

@@ -60,8 +60,7 @@ std::string linearText(const std::string& name, const Json& j) {
 
 std::string modelText(const Json& r) {
   const Json& units = r["units"];
-  std::string out = "model " + r["model"].get<std::string>() + " at " +
-                    pointText(r["at"], units) +
+  std::string out = "model " + r["model"].get<std::string>() + " at " + pointText(r["at"], units) +
                     "\n\nequilibria of the model, and the eigenvalues there\n";
   for (const auto& e : r["equilibria"])
     out += "  " + objectText(e["outputs"], units) +
@@ -146,7 +145,8 @@ std::string stabilityTable(const Json& report) {
     for (const auto& reason : report["advice"]["reasons"])
       out += "  " + reason.get<std::string>() + "\n";
   }
-  if (report.contains("steady_states")) out += branchesText(report["steady_states"], report["units"]);
+  if (report.contains("steady_states"))
+    out += branchesText(report["steady_states"], report["units"]);
   return out;
 }
 

@@ -31,8 +31,7 @@ void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen
 }
 
 void addWatch(CLI::App& app) {
-  app.add_subcommand(kWatch,
-                     "Shows a running loop from its topics: in the terminal, or --window");
+  app.add_subcommand(kWatch, "Shows a running loop from its topics: in the terminal, or --window");
 }
 
 std::optional<std::vector<std::string>> wordsForWatch(int argc, char** argv) {

@@ -93,8 +93,8 @@ TEST_F(Plugins, OneThatRegistersIsRightUnderAnyPathAndWhoeverMappedIt) {
 TEST_F(Plugins, OneThatIsRefusedIsRefusedUnderEveryPath) {
   for (const char* name : {"taken_name", "registers_nothing"}) {
     const std::string link = std::string(name) + "_link.so";
-    std::filesystem::create_symlink(
-        std::string(FMBPC_TEST_PLUGINS "/lib") + name + ".so", folder_ / link);
+    std::filesystem::create_symlink(std::string(FMBPC_TEST_PLUGINS "/lib") + name + ".so",
+                                    folder_ / link);
     EXPECT_NE(errorWith(name), "nothing was thrown");
     expectWords(errorWith("./" + link), {"p.yaml:12: plugins", link});
   }

@@ -31,8 +31,8 @@ TEST_F(LoopsTool, ALoopWithoutItsDataStillShowsTitlePlantAndController) {
     for (const char* key : {"title", "plant", "controller"})
       EXPECT_GT(loop[key].get<std::string>().size(), 1U) << name << " " << key;
     const bool needs = needsRecords(name);
-    EXPECT_EQ(loop["needs"], needs ? nlohmann::json::array({"FMBPC_DATA"})
-                                   : nlohmann::json::array())
+    EXPECT_EQ(loop["needs"],
+              needs ? nlohmann::json::array({"FMBPC_DATA"}) : nlohmann::json::array())
         << name;
     needing += needs;
   }

@@ -11,8 +11,7 @@ namespace tool_suggestions_test {
 void expectAnswer(const std::string& arguments, const std::string& part) {
   const Outcome outcome = tool(arguments, true);
   EXPECT_EQ(outcome.code, 1) << arguments;
-  EXPECT_EQ(std::count(outcome.printed.begin(), outcome.printed.end(), '\n'), 1)
-      << outcome.printed;
+  EXPECT_EQ(std::count(outcome.printed.begin(), outcome.printed.end(), '\n'), 1) << outcome.printed;
   EXPECT_NE(outcome.printed.find(part), std::string::npos) << arguments << ": " << outcome.printed;
 }
 

@@ -7,9 +7,9 @@
 namespace fpc {
 
 struct LoopBrief {
-  std::string title;                      ///< the loop's name if it has none
-  std::string plant, controller;          ///< their types; empty: none is named
-  bool has_clp{};                         ///< a section clp that is not switched off
+  std::string title;               ///< the loop's name if it has none
+  std::string plant, controller;   ///< their types; empty: none is named
+  bool has_clp{};                  ///< a section clp that is not switched off
   std::vector<std::string> unset;  ///< environment variables that it names and that are not set
 };
 
