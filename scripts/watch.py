@@ -6,9 +6,12 @@ setpoint and its course. --window: one plot per unit in a window of matplotlib t
   --picture FILE   draw into a file again and again (for a machine without a screen)
   --seconds N      end after so many seconds of wall time (default: stay until Ctrl-C or the end of the master)
   --rate HZ        pictures a second (default 5)
+
+Example: fmbpc watch --window
 """
 import argparse
 import os
+import socket
 import sys
 import threading
 import time
@@ -17,10 +20,8 @@ if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
     print(__doc__.strip())
     sys.exit(0)
 
-sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-
+import rosgraph  # noqa: E402
 import rospy  # noqa: E402
-from live_view import LiveView  # noqa: E402
 
 BARS = " ▁▂▃▄▅▆▇█"
 WIDTH = 50      # letters of a course
@@ -137,8 +138,25 @@ def window(view, arguments):
                 return
 
 
+def master_answers():
+    """Asked before a node is made, which would wait for it without an end."""
+    before = socket.getdefaulttimeout()
+    socket.setdefaulttimeout(3.0)
+    try:
+        return rosgraph.is_master_online()
+    finally:
+        socket.setdefaulttimeout(before)
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """Says what is wrong as the other commands do."""
+
+    def error(self, message):
+        sys.exit(f"fmbpc: watch: {message}")
+
+
 def main():
-    parser = argparse.ArgumentParser(prog="fmbpc watch", description=__doc__)
+    parser = OneLineParser(prog="fmbpc watch", description=__doc__)
     parser.add_argument("--window", action="store_true")
     parser.add_argument("--picture", default="")
     parser.add_argument("--seconds", type=float, default=float("inf"))
@@ -146,6 +164,10 @@ def main():
     arguments = parser.parse_args(rospy.myargv()[1:])
     if not arguments.rate > 0.0:
         parser.error("--rate: expected a number > 0")
+    if not master_answers():
+        sys.exit(f"fmbpc: no master at {rosgraph.get_master_uri()}: start a loop first (roslaunch fmbpc loop.launch loop:=NAME)")
+    sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+    from live_view import LiveView  # needs the messages, which help and the question above do not
     rospy.init_node("watch", anonymous=True, disable_signals=True)
     view = LiveView()
     try:

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "base/near_names.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/number.hpp"
 
@@ -33,11 +34,18 @@ std::vector<std::string> nearest(const std::string& word, const std::vector<std:
                                  std::size_t limit) {
   std::vector<std::pair<std::size_t, std::string>> ranked;
   if (word.empty()) return {};
+  const std::string meant = lowerCase(word);
   for (const auto& candidate : known) {
-    const std::size_t edits = editsBetween(word, candidate);
-    const bool begins = word.size() >= 3 && candidate.rfind(word, 0) == 0;
-    if (begins || edits <= std::max<std::size_t>(word.size() / 3, 1))
-      ranked.emplace_back(begins ? 1 : edits, candidate);
+    const std::string name = lowerCase(candidate);
+    const std::size_t edits = editsBetween(meant, name), at = name.find(meant);
+    const bool slip = edits <= std::max<std::size_t>(meant.size() / 3, 1);
+    const bool part = meant.size() >= 3 && at != std::string::npos;
+    const std::size_t as_part = at == 0 ? 1 : 2;
+    if (slip || part)
+      ranked.emplace_back(slip && part ? std::min(edits, as_part)
+                          : part       ? as_part
+                                       : edits,
+                          candidate);
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -5,6 +5,7 @@
 #include <map>
 #include <sstream>
 
+#include "base/near_names.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/loop_file.hpp"
@@ -69,10 +70,13 @@ std::string find(const std::string& kind, const std::string& name_or_path) {
   const auto file = files.find(name_or_path);
   if (file != files.end()) return fs::absolute(file->second).lexically_normal().string();
   constexpr std::size_t kFew = 12;  // more names than a person reads
-  const auto names = namesIn(kind), near = nearest(name_or_path, names);
-  throw InputError(kind + " '" + name_or_path + "': expected a path or " +
-                   (names.size() <= kFew ? "one of " + join(names) : "a name from config/" + kind) +
-                   (near.empty() ? "" : "; near: " + join(near)));
+  const auto names = namesIn(kind);
+  const std::string expected = kind + " '" + name_or_path + "': expected a path or ";
+  if (names.size() <= kFew && nearest(name_or_path, names).empty())
+    throw InputError(expected + "one of " + join(names));
+  throw InputError(expected + "a name from config/" + kind +
+                   nearNames(name_or_path, names,
+                             kind == "loop" ? kLoopsListsThem : "there are " + join(names)));
 }
 
 }  // namespace

@@ -1,17 +1,21 @@
 #include "fmbpc/config/plugins.hpp"
 
 #include <dlfcn.h>
+#include <link.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <mutex>
 #include <sstream>
 
+#include "control/registered_code.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/control/registry.hpp"
 #include "fmbpc/plant/plant.hpp"
+#include "plant/registered_code.hpp"
 
 namespace fpc {
 namespace {
@@ -62,6 +66,8 @@ std::string pathOf(const std::string& name, const std::string& where) {
   return name;
 }
 
+const std::string kRegistersNothing = "a library that registers plants or controllers, got ";
+
 std::string oneLine(std::string text) {
   for (char& c : text)
     if (c == '\n') c = ' ';
@@ -74,28 +80,54 @@ struct Registered {
   std::vector<std::string> plants{refusedPlants()}, controllers{refusedControllers()};
 };
 
-std::string whatIsWrong(const Registered& before, const std::string& path) {
+/// What to expect instead; the library's path goes behind it. Nothing if all is well.
+std::string whatIsWrong(const Registered& before) {
   const Registered after;
-  const std::string taken = ", which is there already, from " + path;
+  const std::string taken = ", which is there already, from ";
   if (after.plants.size() > before.plants.size())
     return "names of its own, got the plant " + after.plants.back() + taken;
   if (after.controllers.size() > before.controllers.size())
     return "names of its own, got the controller " + after.controllers.back() + taken;
-  if (after.types == before.types)
-    return "a library that registers plants or controllers, got " + path;
-  return "";
+  return after.types == before.types ? kRegistersNothing : "";
 }
 
-/// Loads it for good (what it registered lives in it). Returns what is wrong with it, or nothing.
-std::string load(const std::string& path) {
-  if (dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD) != nullptr) return "";  // linked
-  const Registered before;
-  if (dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL) != nullptr) return whatIsWrong(before, path);
+/// True if a plant or controller was registered by this library.
+bool registers(void* library) {
+  link_map* own = nullptr;
+  if (dlinfo(library, RTLD_DI_LINKMAP, &own) != 0) return false;
+  std::vector<const void*> code = plantCode();
+  for (const void* address : controllerCode()) code.push_back(address);
+  return std::any_of(code.begin(), code.end(), [own](const void* address) {
+    Dl_info info{};
+    link_map* found = nullptr;
+    return dladdr1(address, &info, reinterpret_cast<void**>(&found), RTLD_DL_LINKMAP) != 0 &&
+           found == own;
+  });
+}
+
+/// Of a library that could not be loaded.
+std::string whyNot(const std::string& path) {
   const char* reason = dlerror();
   const std::string words = oneLine(reason ? reason : path);
   if (words.find("requireSameLayout") != std::string::npos)
     return "a library that was built against this fmbpc (build it again), got " + path;
   return "a library that this fmbpc can load: " + words;
+}
+
+/// Loads it for good (what it registered lives in it), whatever path leads to it. Returns what is
+/// wrong with it, or nothing.
+std::string load(const std::string& path) {
+  static std::map<void*, std::string> outcomes;  // of what was loaded here
+  if (void* mapped = dlopen(path.c_str(), RTLD_NOW | RTLD_NOLOAD)) {
+    const auto known = outcomes.find(mapped);
+    if (known != outcomes.end()) return known->second.empty() ? "" : known->second + path;
+    return registers(mapped) ? "" : kRegistersNothing + path;  // linked, or another plugin needs it
+  }
+  const Registered before;
+  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (library == nullptr) return whyNot(path);
+  const std::string problem = outcomes[library] = whatIsWrong(before);
+  return problem.empty() ? "" : problem + path;
 }
 
 }  // namespace
@@ -114,12 +146,8 @@ bool isPluginPath(const std::string& name) { return name.find('/') != std::strin
 
 void loadPlugin(const std::string& name, const std::string& where) {
   static std::mutex mutex;
-  static std::map<std::string, std::string> outcomes;  // by path: what was wrong with it
   const std::lock_guard<std::mutex> lock(mutex);
-  const std::string path = pathOf(name, where);
-  const auto known = outcomes.find(path);
-  const std::string problem = known != outcomes.end() ? known->second : load(path);
-  outcomes[path] = problem;
+  const std::string problem = load(pathOf(name, where));
   if (!problem.empty()) throw InputError(where + ": expected " + problem);
 }
 

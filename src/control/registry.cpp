@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "base/code_address.hpp"
+#include "control/registered_code.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -81,6 +83,12 @@ bool registerControllerReader(ControllerType type, ControllerReader read) {
 }
 
 std::vector<std::string> refusedControllers() { return refused(); }
+
+std::vector<const void*> controllerCode() {
+  std::vector<const void*> code;
+  for (const auto& entry : registry()) code.push_back(codeAddress(entry.second.read));
+  return code;
+}
 
 std::vector<std::string> controllerNames() {
   std::vector<std::string> names;

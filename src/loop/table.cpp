@@ -22,9 +22,12 @@ std::string cell(double value) {
   return text == "-0" ? "0" : text;
 }
 
-/// Moves are counted as switches only of an input that rests more often than it moves.
+/// Moves are switches only of an input that rests more often than it moves, and then jumps: over
+/// half of its range on the average. A continuous valve at rest at a limit creeps there.
 std::string switches(const InputIndices& u, std::uint32_t steps) {
-  return 2 * u.switches > steps ? "-" : std::to_string(u.switches);
+  const bool rests = 2 * u.switches <= steps;
+  const bool jumps = u.travel >= 0.5 * static_cast<double>(u.switches) * (u.max - u.min);
+  return rests && jumps ? std::to_string(u.switches) : "-";
 }
 
 void addOutputRows(const Summary& s, std::vector<Row>& rows) {
@@ -64,9 +67,17 @@ constexpr char kLegend[] =
     "signals the sum of theirs; travel: sum of moves; switches: moves of an input that rests more\n"
     "often than it moves; clips: inputs that the actuator had to cut, summed up alike.\n";
 
+/// "T [degC]", by the output's name.
+std::string outputWithUnit(const Summary& s, const std::string& name) {
+  const auto& names = s.output_names;
+  const auto at =
+      static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  return at < names.size() ? withUnit(names, s.output_units, at) : name;
+}
+
 void addWindowRows(const Summary& s, std::vector<Row>& rows) {
   for (const WindowIndices& w : s.windows)
-    rows.push_back({s.loop, w.output, w.window.name, shortText(w.window.from_h),
+    rows.push_back({s.loop, outputWithUnit(s, w.output), w.window.name, shortText(w.window.from_h),
                     shortText(w.window.to_h), cell(w.rmse), cell(w.mean_error)});
 }
 
@@ -91,7 +102,8 @@ std::string toTable(const std::vector<Summary>& summaries) {
   }
   std::string text = alignedTable(outputs) + "\n" + alignedTable(inputs);
   if (solves.size() > 1) text += "\n" + alignedTable(solves);
-  if (windows.size() > 1) text += "\n" + alignedTable(windows);
+  if (windows.size() > 1)
+    text += "\n" + alignedTable(windows) + "mean error: of measured - setpoint in the window.\n";
   for (const auto& summary : summaries)
     for (const auto& [name, value] : summary.consumption)
       text += summary.loop + ": " + name + " " + shortText(value) + "\n";

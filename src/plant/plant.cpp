@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/code_address.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
+#include "plant/registered_code.hpp"
 
 namespace fpc {
 namespace {
@@ -46,6 +48,12 @@ std::vector<std::string> plantNames() {
   std::vector<std::string> names;
   for (const auto& entry : registry()) names.push_back(entry.first);
   return names;
+}
+
+std::vector<const void*> plantCode() {
+  std::vector<const void*> code;
+  for (const auto& entry : registry()) code.push_back(codeAddress(entry.second));
+  return code;
 }
 
 void Plant::localLoop(VectorRef, VectorRef, Eigen::Ref<Vector>) const {}

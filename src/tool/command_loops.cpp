@@ -1,14 +1,16 @@
 // fmbpc loops [WORDS]: which loop files there are, what they show, with which plant and controller.
 #include <algorithm>
-#include <cctype>
-#include <cstdio>
 #include <exception>
 #include <iostream>
+#include <iterator>
+#include <set>
 
+#include "base/near_names.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
+#include "fmbpc/config/loop_brief.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "tool/commands.hpp"
 
@@ -19,41 +21,74 @@ using Json = OrderedJson;
 
 struct Entry {
   std::string name, title, plant, controller;
+  std::vector<std::string> needs;  ///< environment variables, to be run here
 };
 
-Entry entryOf(const std::string& name) {
+Entry readEntry(const std::string& name) {
+  const LoopFile loop = readLoop(name);
+  const std::string plant = loop.external_plant ? "external" : loop.simulation.plant;
+  return {name,
+          loop.report.title,
+          plant,
+          loop.controllerType().name + (loop.has_clp ? " + clp" : ""),
+          {}};
+}
+
+/// Of a loop that cannot be read here: what its text says.
+Entry unreadEntry(const std::string& name, const std::string& reason) {
   try {
-    const LoopFile loop = readLoop(name);
-    const std::string plant = loop.external_plant ? "external" : loop.simulation.plant;
-    return {name, loop.report.title, plant,
-            loop.controllerType().name + (loop.has_clp ? " + clp" : "")};
-  } catch (const std::exception& e) {
-    return {name, std::string("cannot be read: ") + e.what(), "-", "-"};
+    const LoopBrief brief = briefOf(name);
+    const auto orDash = [](const std::string& text) { return text.empty() ? "-" : text; };
+    const std::string lacks = brief.unset.empty() ? " (cannot be read: " + reason + ")" : "";
+    return {name, brief.title + lacks, orDash(brief.plant),
+            orDash(brief.controller) + (brief.has_clp ? " + clp" : ""), brief.unset};
+  } catch (const std::exception&) {
+    return {name, "cannot be read: " + reason, "-", "-", {}};
   }
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
+Entry entryOf(const std::string& name) {
+  try {
+    return readEntry(name);
+  } catch (const std::exception& e) {
+    return unreadEntry(name, e.what());
+  }
+}
+
+std::string titleOf(const Entry& entry) {
+  return entry.title + (entry.needs.empty() ? "" : " (needs " + join(entry.needs) + ")");
 }
 
 bool containsAll(const Entry& entry, const std::vector<std::string>& words) {
   const std::string text =
-      lower(entry.name + " " + entry.title + " " + entry.plant + " " + entry.controller);
+      lowerCase(entry.name + " " + entry.title + " " + entry.plant + " " + entry.controller);
   return std::all_of(words.begin(), words.end(), [&](const std::string& word) {
-    return text.find(lower(word)) != std::string::npos;
+    return text.find(lowerCase(word)) != std::string::npos;
   });
 }
 
+/// What may have been meant by the first word that no loop has.
+std::string meantBy(const std::vector<std::string>& words, const std::vector<Entry>& all) {
+  std::set<std::string> known;
+  for (const Entry& e : all) known.insert({e.name, e.plant, e.controller});
+  for (const auto& word : words) {
+    const bool is_there = std::any_of(
+        all.begin(), all.end(), [&](const Entry& entry) { return containsAll(entry, {word}); });
+    if (!is_there) return nearNames(word, {known.begin(), known.end()}, kLoopsListsThem);
+  }
+  return std::string("; ") + kLoopsListsThem;
+}
+
+/// @throws InputError if there is none.
 std::vector<Entry> entries(const std::vector<std::string>& words) {
   const auto names = loopNames();
-  std::vector<Entry> all(names.size());
+  std::vector<Entry> all(names.size()), found;
   parallelFor(all.size(), 0, [&](std::size_t i) { all[i] = entryOf(names[i]); });
-  all.erase(std::remove_if(all.begin(), all.end(),
-                           [&](const Entry& entry) { return !containsAll(entry, words); }),
-            all.end());
-  return all;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(found),
+               [&](const Entry& entry) { return containsAll(entry, words); });
+  require(!found.empty(), "loops " + join(words, " "),
+          "words that a loop's name, title, plant or controller has" + meantBy(words, all));
+  return found;
 }
 
 }  // namespace
@@ -70,11 +105,10 @@ int loops(const std::vector<std::string>& words, bool names_only, bool json) {
     list.push_back({{"name", entry.name},
                     {"title", entry.title},
                     {"plant", entry.plant},
-                    {"controller", entry.controller}});
-    table.push_back({entry.name, entry.plant, entry.controller, entry.title});
+                    {"controller", entry.controller},
+                    {"needs", entry.needs}});
+    table.push_back({entry.name, entry.plant, entry.controller, titleOf(entry)});
   }
-  require(!all.empty(), join(words, " "),
-          "words that a loop's name, title, plant or controller has");
   std::cout << (json ? Json{{"loops", list}}.dump(2) + "\n" : leftTable(table));
   return 0;
 }

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "base/near_names.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -41,9 +42,9 @@ std::string findModel(const std::string& name) {
 std::string requireModel(const std::string& name) {
   const std::string file = findModel(name);
   if (fs::exists(file)) return file;
-  const auto near = nearest(name, modelNames());
+  const auto known = modelNames();
   throw InputError("model '" + name + "': expected a path or a name from config/model" +
-                   (near.empty() ? "" : "; near: " + join(near)));
+                   nearNames(name, known, "there are " + join(known)));
 }
 
 int model(const std::string& file, bool json) {

@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <set>
 
+#include "base/near_names.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/plot.hpp"
@@ -37,6 +39,13 @@ bool isNamed(const Experiment& e, const std::string& name) {
   return e.paper == name || e.name.rfind(name, 0) == 0 || containsWord(e.behind, name);
 }
 
+/// Papers and experiments, each once.
+std::vector<std::string> namesOf(const std::vector<Experiment>& all) {
+  std::set<std::string> names;
+  for (const auto& e : all) names.insert({e.paper, e.name});
+  return {names.begin(), names.end()};
+}
+
 std::vector<Experiment> chosen(const std::vector<std::string>& names) {
   const auto all = experiments();
   if (names.empty()) return all;
@@ -44,7 +53,9 @@ std::vector<Experiment> chosen(const std::vector<std::string>& names) {
   for (const auto& name : names)
     require(!name.empty() && std::any_of(all.begin(), all.end(),
                                          [&](const Experiment& e) { return isNamed(e, name); }),
-            name, "a paper, an experiment or a loop that fmbpc reproduce --list names");
+            name,
+            "a paper, an experiment or a loop behind one" +
+                nearNames(name, namesOf(all), "`fmbpc reproduce --list` lists them"));
   std::copy_if(all.begin(), all.end(), std::back_inserter(some), [&](const Experiment& e) {
     return std::any_of(names.begin(), names.end(),
                        [&](const std::string& name) { return isNamed(e, name); });

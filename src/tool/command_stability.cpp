@@ -239,7 +239,7 @@ Json reportOf(const StabilitySubject& s, const StabilityArguments& a) {
   const auto range = parseHorizon(a.horizon);
   refuseWithoutLaw(s, a);
   const Stage stage;
-  Json json = {{"name", s.name}};
+  Json json = {{"name", s.name}, {"units", unitsOf(s)}};
   if (!s.note.empty()) json["note"] = s.note;
   if (s.has_model) {
     stage.show("rules");

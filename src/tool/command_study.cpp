@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "base/near_names.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/plot.hpp"
@@ -38,10 +39,9 @@ void requireStudyOrLoop(const std::string& name) {
   auto known = studyNames();
   for (auto& loop : loopNames()) known.push_back(std::move(loop));
   if (std::find(known.begin(), known.end(), name) != known.end()) return;
-  const auto near = nearest(name, known);
-  throw InputError("study or loop '" + name +
-                   "': expected a path or a name from config/study or config/loop" +
-                   (near.empty() ? "" : "; near: " + join(near)));
+  throw InputError(
+      "study or loop '" + name + "': expected a path or a name from config/study or config/loop" +
+      nearNames(name, known, std::string(kLoopsListsThem) + "; studies: " + join(studyNames())));
 }
 
 /// "H=0.001"

@@ -20,9 +20,10 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
   run->add_option("LOOP", a.loops, "names of config/loop, or paths")->required();
   run->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
       ->allow_extra_args(false);
-  run->add_option(
-      "--out", a.out,
-      "folder for trajectory.csv, summary.json, plot.png (one below it per loop if several)");
+  run->add_option("--out", a.out,
+                  "folder for trajectory.csv, summary.json, plot.png (one below it per loop if "
+                  "several; default: "
+                  "nothing is written)");
   run->add_option("--commands", a.commands,
                   "file of what an operator does at which time (docs/operation.md)");
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
@@ -43,9 +44,11 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
 }
 
 void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
-  command.add_option("--separator", f.separator, "comma, semicolon, tab or bar");
-  command.add_option("--decimal", f.decimal, "point or comma");
-  command.add_option("--missing", f.missing, "cells that mean missing")->delimiter(',');
+  command.add_option("--separator", f.separator, "comma, semicolon, tab or bar")
+      ->capture_default_str();
+  command.add_option("--decimal", f.decimal, "point or comma")->capture_default_str();
+  command.add_option("--missing", f.missing, "cells that mean missing beside empty ones and nan")
+      ->delimiter(',');
 }
 
 void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
@@ -59,6 +62,7 @@ void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
   evaluate->add_option("--to-h", a.to_h, "its end [h], default the end of the run");
   evaluate->add_flag("--weights-2002", a.weights_2002, "formulas of the benchmark's 2002 book");
   evaluate->add_flag("--json", a.json, "print one JSON object and nothing else");
+  evaluate->footer("Example: fmbpc evaluate bsm1_default bsm1_supervisor\n");
   evaluate->callback([&a] { chosen = [&a] { return fpc::tool::evaluate(a); }; });
 }
 
@@ -75,7 +79,8 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--rows", a.rows,
                        "FIRST:LAST data rows to identify from, from 1 (default: all)");
   identify->add_option("--validate", a.validate, "another record to validate on");
-  identify->add_option("--validate-rows", a.validate_rows, "FIRST:LAST rows to validate on");
+  identify->add_option("--validate-rows", a.validate_rows,
+                       "FIRST:LAST rows to validate on (default: none held out)");
   identify->add_option("--plots", a.plots, "folder for pictures of sets, predictions, residuals");
   identify->add_flag("--json", a.json, "print one JSON object and nothing else");
   identify->add_flag("--auto", a.automatic, "search the structure; needs --inputs and --outputs");
@@ -86,10 +91,16 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--time", a.time, "column of times; found by its name if left out");
   identify->add_option("--sample-time", a.sample_time_s, "[s], instead of a time column");
   identify->add_option("--kind", a.kind, "best, linear, regressors or state")
+      ->capture_default_str()
       ->check(CLI::IsMember({"best", "linear", "regressors", "state"}));
-  identify->add_option("--budget", a.budget_s, "[s] of the search")->check(CLI::PositiveNumber);
-  identify->add_option("--blocks", a.blocks, "held out in turn")->check(CLI::Range(2, 20));
+  identify->add_option("--budget", a.budget_s, "[s] of the search")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  identify->add_option("--blocks", a.blocks, "held out in turn")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 20));
   identify->add_option("--window", a.window, "measured samples that start a free run")
+      ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   identify
       ->add_option("--longest-delay", a.longest_delay,
@@ -100,7 +111,7 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
                        "what is known of the outputs: a file, or text like "
                        "'y: {gain: {u: positive}, max_pole: 0.99}'");
   addFormat(*identify, a.format);
-  identify->add_option("--seed", a.seed, "of the starts of all fits");
+  identify->add_option("--seed", a.seed, "of the starts of all fits")->capture_default_str();
   identify->footer(
       "Example: fmbpc identify tanks.csv --auto --inputs u_V --outputs y_V --out tanks.yaml\n"
       "         fmbpc identify results/trajectory.csv asp_d --out my_model.yaml\n");
@@ -112,10 +123,11 @@ void addValidate(CLI::App& app, fpc::tool::ValidateArguments& a) {
       "validate", "Judges a model file on a record: one step, n steps, free run");
   validate->add_option("MODEL", a.model, "name of config/model, or path")->required();
   validate->add_option("DATA", a.data, "CSV, or bag recorded by loop.launch")->required();
-  validate->add_option("--rows", a.rows, "FIRST:LAST data rows, from 1");
+  validate->add_option("--rows", a.rows, "FIRST:LAST data rows, from 1 (default: all)");
   validate->add_option("--columns", a.columns, "SIGNAL=COLUMN where names differ")->delimiter(',');
   validate->add_flag("--no-time", a.no_time, "rows are samples, whatever the times say");
   validate->add_option("--steps", a.steps, "samples ahead of the n-step prediction")
+      ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   addFormat(*validate, a.format);
   validate->add_option("--plots", a.plots, "folder for pictures");
@@ -225,10 +237,10 @@ int main(int argc, char** argv) {
   fpc::tool::addReplay(app, replay, chosen);
   fpc::tool::RecoverArguments recover;
   fpc::tool::addRecover(app, recover, chosen);
-  std::vector<std::string> watch_words;
-  fpc::tool::addWatch(app, watch_words, chosen);
+  fpc::tool::addWatch(app);
   fpc::tool::refuseEmptyNames(app);
   try {
+    if (const auto words = fpc::tool::wordsForWatch(argc, argv)) return fpc::tool::watch(*words);
     app.parse(argc, argv);
     return chosen();
   } catch (const CLI::ParseError& e) {

@@ -25,12 +25,28 @@ std::string valuesText(const Json& values) {
   return text.empty() ? "-" : text;
 }
 
-std::string objectText(const Json& object) {
+/// "s = 54.1531 mg/l, x = 2024.25 mg/l"
+std::string objectText(const Json& object, const Json& units) {
   std::string text;
-  for (const auto& [key, value] : object.items())
-    text += (text.empty() ? "" : ", ") + key + " = " + number(value.get<double>(), "%.6g");
+  for (const auto& [key, value] : object.items()) {
+    const std::string unit = units.value(key, "");
+    text += (text.empty() ? "" : ", ") + key + " = " + number(value.get<double>(), "%.6g") +
+            (unit.empty() || unit == "-" ? "" : " " + unit);
+  }
   return text;
 }
+
+/// Inputs, then disturbances if there are any.
+std::string pointText(const Json& at, const Json& units) {
+  const std::string disturbances = objectText(at["disturbances"], units);
+  return objectText(at["inputs"], units) + (disturbances.empty() ? "" : "; ") + disturbances;
+}
+
+constexpr char kLegend[] =
+    "H: coincidence horizon [samples]. rules: the rule of each output; blended: all of them,\n"
+    "weighted at the point. |open|, |closed|: largest modulus of the eigenvalues of the model and\n"
+    "of the loop, below 1 is stable; rho: relative degree [samples]; stable from H: the least\n"
+    "horizon from which on all that were looked at are stable, 0: none.\n";
 
 std::string linearText(const std::string& name, const Json& j) {
   char line[400];
@@ -43,11 +59,11 @@ std::string linearText(const std::string& name, const Json& j) {
 }
 
 std::string modelText(const Json& r) {
-  std::string out = "model " + r["model"].get<std::string>() + " at " +
-                    objectText(r["at"]["inputs"]) + "; " + objectText(r["at"]["disturbances"]) +
-                    "\n\nequilibria of the model\n";
+  const Json& units = r["units"];
+  std::string out = "model " + r["model"].get<std::string>() + " at " + pointText(r["at"], units) +
+                    "\n\nequilibria of the model, and the eigenvalues there\n";
   for (const auto& e : r["equilibria"])
-    out += "  " + objectText(e["outputs"]) +
+    out += "  " + objectText(e["outputs"], units) +
            (e["stable"].get<bool>() ? "  stable  " : "  UNSTABLE  ") +
            valuesText(e["eigenvalues"]) + "\n";
   if (r["equilibria"].empty()) out += "  none found; blended at the given outputs instead\n";
@@ -55,7 +71,7 @@ std::string modelText(const Json& r) {
          "\n  rules    |open|     rho   |closed|  stable from H  closed-loop eigenvalues\n";
   out += linearText("blended", r["blended"]);
   for (const auto& rule : r["rules"]) out += linearText(rule["rules"].get<std::string>(), rule);
-  out += "\nblended loop over the horizon\n";
+  out += std::string("\n") + kLegend + "\nblended loop over the horizon: its eigenvalues\n";
   for (const auto& row : r["horizon"]) {
     const int H = row["coincidence_steps"].get<int>();
     if (H > 10 && H % 50 != 0) continue;
@@ -84,7 +100,7 @@ std::string certificateText(const Json& c) {
   return out + "\n";
 }
 
-std::string branchesText(const Json& s) {
+std::string branchesText(const Json& s, const Json& units) {
   std::string out = "\nsteady states of the plant over " + s["input"].get<std::string>() + " [" +
                     s["input_unit"].get<std::string>() + "] from " +
                     number(s["input_lower"].get<double>()) + " to " +
@@ -101,13 +117,28 @@ std::string branchesText(const Json& s) {
       std::string kind = p["kind"].get<std::string>();
       if (p.contains("of")) kind += " of " + p["of"].get<std::string>();
       out += "    " + kind + " at " + number(p["input"].get<double>(), "%.7g") + ": " +
-             objectText(p["state"]) + "\n";
+             objectText(p["state"], units) + "\n";
     }
   }
   return out;
 }
 
 }  // namespace
+
+Json unitsOf(const StabilitySubject& s) {
+  Json units = Json::object();
+  const auto add = [&units](const auto& signals) {
+    for (const auto& signal : signals) units[signal.name] = signal.unit;
+  };
+  if (s.plant) {
+    add(s.plant->description().states);
+    add(s.plant->description().inputs);
+  }
+  add(s.model.outputs);
+  add(s.model.inputs);
+  add(s.model.disturbances);
+  return units;
+}
 
 std::string stabilityTable(const Json& report) {
   std::string out = report["name"].get<std::string>() + "\n";
@@ -118,7 +149,8 @@ std::string stabilityTable(const Json& report) {
     for (const auto& reason : report["advice"]["reasons"])
       out += "  " + reason.get<std::string>() + "\n";
   }
-  if (report.contains("steady_states")) out += branchesText(report["steady_states"]);
+  if (report.contains("steady_states"))
+    out += branchesText(report["steady_states"], report["units"]);
   return out;
 }
 

@@ -4,11 +4,15 @@
 #include <string>
 
 #include "base/ordered_json.hpp"
+#include "tool/stability_subject.hpp"
 
 namespace fpc::tool {
 
 using Json = OrderedJson;
 
+/// By name, of the model's signals and the plant's states and inputs.
+Json unitsOf(const StabilitySubject& subject);
+/// `report` with the key "units" of unitsOf().
 std::string stabilityTable(const Json& report);
 
 }  // namespace fpc::tool

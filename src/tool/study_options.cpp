@@ -39,15 +39,20 @@ void addStudy(CLI::App& app, StudyArguments& a, std::function<int()>& chosen) {
   CLI::App* study = app.add_subcommand(
       "study", "Compares loops in pairs over seeds, parameters, noise and records, on all cores");
   study->add_option("STUDY|LOOP", a.names, "a study of config/study, or loops")->required();
-  study->add_option("--seeds", a.seeds, "FIRST:LAST or a list: of patterns, noise and --vary");
+  study->add_option("--seeds", a.seeds,
+                    "FIRST:LAST or a list: of patterns, noise and --vary (default: the study's, "
+                    "else the loops')");
   study->add_option("--vary", a.vary, "KEY=LOWER:UPPER as factors, or KEY=value:LOWER:UPPER")
       ->allow_extra_args(false);
   study->add_option("--noise", a.noise, "OUTPUT=STD, may be repeated")->allow_extra_args(false);
   study->add_option("--noise-percent", a.noise_percent, "std in percent of the span of setpoints");
   study->add_option("--set", a.set, "KEY.PATH=VALUE over all loops, may be repeated")
       ->allow_extra_args(false);
-  study->add_option("--against", a.against, "the loop that the others are paired with");
-  study->add_option("--index", a.index, "what counts, without a study file: ise, iae, rmse, ...");
+  study->add_option(
+      "--against", a.against,
+      "the loop that the others are paired with (default: the study's, else the last)");
+  study->add_option("--index", a.index,
+                    "what counts, without a study file: ise, iae, rmse, ... (default: ise)");
   study->add_option("--out", a.out, "folder for study.json, runs.csv, state, distributions.png");
   study->add_option("--threads", a.threads, "0: all cores; the answer does not depend on it");
   study->add_flag("--resume", a.resume, "go on with what --out holds");

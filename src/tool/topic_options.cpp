@@ -1,6 +1,11 @@
 #include "tool/topic_options.hpp"
 
 namespace fpc::tool {
+namespace {
+
+constexpr char kWatch[] = "watch";
+
+}  // namespace
 
 void addReplay(CLI::App& app, ReplayArguments& a, std::function<int()>& chosen) {
   CLI::App* command = app.add_subcommand(
@@ -25,17 +30,13 @@ void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen
   command->callback([&a, &chosen] { chosen = [&a] { return fpc::tool::recover(a); }; });
 }
 
-void addWatch(CLI::App& app, std::vector<std::string>& words, std::function<int()>& chosen) {
-  CLI::App* command = app.add_subcommand(
-      "watch", "Shows a running loop from its topics: in the terminal, or --window");
-  command->add_option("WORDS", words, "options of scripts/watch.py; --help lists them");
-  command->prefix_command();
-  command->set_help_flag();
-  command->footer("Example: fmbpc watch --window\n");
-  command->callback([&words, &chosen, command] {
-    words = command->remaining();
-    chosen = [&words] { return fpc::tool::watch(words); };
-  });
+void addWatch(CLI::App& app) {
+  app.add_subcommand(kWatch, "Shows a running loop from its topics: in the terminal, or --window");
+}
+
+std::optional<std::vector<std::string>> wordsForWatch(int argc, char** argv) {
+  if (argc < 2 || std::string(argv[1]) != kWatch) return std::nullopt;
+  return std::vector<std::string>(argv + 2, argv + argc);
 }
 
 void refuseEmptyNames(CLI::App& app) {

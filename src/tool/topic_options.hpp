@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,11 @@ namespace fpc::tool {
 /// Each sets `chosen` to what the command does once it is parsed.
 void addReplay(CLI::App& app, ReplayArguments& a, std::function<int()>& chosen);
 void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen);
-void addWatch(CLI::App& app, std::vector<std::string>& words, std::function<int()>& chosen);
+
+/// `watch` for the list of commands only: its words are those of a script.
+void addWatch(CLI::App& app);
+/// What stands behind `fmbpc watch`, whatever it is, --help too; nothing of another command.
+std::optional<std::vector<std::string>> wordsForWatch(int argc, char** argv);
 
 /// An empty text where a file or folder is named is a script's variable that nobody has set: no
 /// command of the app takes one. Call it when all are there.

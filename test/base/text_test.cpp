@@ -44,6 +44,15 @@ TEST(Text, NearestFindsSlipsOfTheFingersAndBeginnings) {
   EXPECT_TRUE(nearest("", known).empty());
 }
 
+TEST(Text, NearestDoesNotMindCapitalsAndFindsParts) {
+  const std::vector<std::string> known{"asp_case1", "asp_case1_clp", "blazic2007", "cstr_tracking"};
+  EXPECT_EQ(nearest("ASP_CASE1", known).at(0), "asp_case1");
+  EXPECT_EQ(nearest("case1_clp", known).at(0), "asp_case1_clp");
+  EXPECT_EQ(nearest("Blazic", known), std::vector<std::string>{"blazic2007"});
+  EXPECT_EQ(nearest("tracking", known), std::vector<std::string>{"cstr_tracking"});
+  EXPECT_TRUE(nearest("as", known).empty()) << "two letters are in many words";
+}
+
 TEST(Text, LeftTablesHaveNoBlanksAtTheEndOfALine) {
   EXPECT_EQ(leftTable({{"a", "b"}, {"longer", "c"}}), "a       b\nlonger  c\n");
 }

@@ -1,6 +1,7 @@
 // Libraries with plants and controllers of others: found, loaded, or one clear error.
 #include "fmbpc/config/plugins.hpp"
 
+#include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,6 +69,35 @@ TEST_F(Plugins, WhatIsNoPluginIsSaidSo) {
   for (int again = 0; again < 2; ++again)
     expectWords(errorWith("registers_nothing"),
                 {"p.yaml:12: plugins", "registers plants or controllers", "registers_nothing"});
+}
+
+// The C library is in every process.
+TEST_F(Plugins, ALibraryThatIsMappedAlreadyIsNoPluginByThat) {
+  Dl_info info{};
+  ASSERT_NE(dladdr(reinterpret_cast<void*>(&std::abort), &info), 0);
+  std::filesystem::create_symlink(std::filesystem::absolute(info.dli_fname), path("libc_link.so"));
+  for (int again = 0; again < 2; ++again)
+    expectWords(errorWith("./libc_link.so"),
+                {"p.yaml:12: plugins", "registers plants or controllers", "libc_link.so"});
+}
+
+TEST_F(Plugins, OneThatRegistersIsRightUnderAnyPathAndWhoeverMappedIt) {
+  std::filesystem::create_symlink(FMBPC_TEST_PLUGINS "/libtwo_tanks.so", folder_ / "link.so");
+  EXPECT_EQ(errorWith("two_tanks"), "nothing was thrown");
+  EXPECT_EQ(errorWith("./link.so"), "nothing was thrown");
+  Dl_info core{};  // nobody loads it as a plugin, and it registers all of ours
+  ASSERT_NE(dladdr(reinterpret_cast<void*>(&loadPlugin), &core), 0);
+  EXPECT_EQ(errorWith(std::filesystem::absolute(core.dli_fname).string()), "nothing was thrown");
+}
+
+TEST_F(Plugins, OneThatIsRefusedIsRefusedUnderEveryPath) {
+  for (const char* name : {"taken_name", "registers_nothing"}) {
+    const std::string link = std::string(name) + "_link.so";
+    std::filesystem::create_symlink(std::string(FMBPC_TEST_PLUGINS "/lib") + name + ".so",
+                                    folder_ / link);
+    EXPECT_NE(errorWith(name), "nothing was thrown");
+    expectWords(errorWith("./" + link), {"p.yaml:12: plugins", link});
+  }
 }
 
 TEST_F(Plugins, OneThatWasBuiltAgainstAnotherFmbpcIsNotLoaded) {

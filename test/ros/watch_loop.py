@@ -22,8 +22,8 @@ import plot_live  # noqa: E402
 
 
 def watch(*arguments, check=True):
-    return subprocess.run(["/usr/bin/python3", os.path.join(SCRIPTS, "watch.py"), *arguments], check=check,
-                          capture_output=True, text=True, timeout=60)
+    """As a person calls it: through the tool."""
+    return subprocess.run([os.path.join(SCRIPTS, "fmbpc"), "watch", *arguments], check=check, capture_output=True, text=True, timeout=60)
 
 
 class Watch(unittest.TestCase):

@@ -40,6 +40,19 @@ TEST_F(StabilityTool, TheRangeIsThatOfTheLoopAndIsPrinted) {
   EXPECT_NE(printed.find("over heat [kW] from 2 to 18"), std::string::npos) << printed;
 }
 
+TEST_F(StabilityTool, TheTableHasUnitsAndALegend) {
+  const std::string model =
+      tool("stability fm_1 --at q_r=570,q_i=1300,s_i=366.67 --horizon 1..3").printed;
+  for (const char* words :
+       {"at q_r = 570 m3/h; q_i = 1300 m3/h, s_i = 366.67 mg/l\n",
+        " mg/l, x = ", "H: coincidence horizon", "|open|, |closed|: ", "rho: ", "0: none"})
+    EXPECT_NE(model.find(words), std::string::npos) << words << "\n" << model;
+  const std::string loop = tool("stability cstr_tracking --horizon 1..3").printed;
+  EXPECT_NE(loop.find("at q_c = 103.407 l/min\n"), std::string::npos) << loop;
+  EXPECT_NE(loop.find("fold at 119.7128: CA = 0.257799 mol/l, T = 417.667 K"), std::string::npos)
+      << loop;
+}
+
 TEST_F(StabilityTool, OptionsThatOnlyALawUnderstandsAreRefusedWithoutOne) {
   for (const char* option :
        {"--at bogus=7", "--at heat=7", "--noise-gain 3", "--settling 3", "--horizon 1..9"}) {

@@ -77,13 +77,22 @@ TEST_F(Tool, SuggestsWhatWasMeant) {
 TEST_F(Tool, HelpNamesTheToolAndGivesAnExampleOfEveryCommand) {
   const std::string all = tool("--help").printed;
   EXPECT_EQ(all.find("fmbpc_tool"), std::string::npos) << all;
-  for (const char* command : {"run", "resolve", "identify", "plants", "model", "table", "stability",
-                              "reproduce", "tune", "loops"}) {
+  for (const char* command : {"run", "resolve", "evaluate", "identify", "validate", "loops",
+                              "plants", "controllers", "model", "table", "stability", "reproduce",
+                              "tune", "study", "replay", "recover", "watch"}) {
     EXPECT_NE(all.find(command), std::string::npos) << command;
     const std::string help = tool(std::string(command) + " --help").printed;
     EXPECT_NE(help.find("Example: fmbpc " + std::string(command)), std::string::npos) << help;
     EXPECT_EQ(help.find('/' + std::string("fmbpc_tool")), std::string::npos) << help;
   }
+}
+
+TEST_F(Tool, HelpShowsDefaults) {
+  const std::string identify = tool("identify --help").printed;
+  for (const char* words : {"[best]", "[45]", "[comma]", "[point]", "--seed UINT [1]"})
+    EXPECT_NE(identify.find(words), std::string::npos) << words << "\n" << identify;
+  EXPECT_NE(tool("validate --help").printed.find("--steps INT:"), std::string::npos);
+  EXPECT_NE(tool("study --help").printed.find("(default: ise)"), std::string::npos);
 }
 
 TEST_F(Tool, LoopsAreListedByWords) {

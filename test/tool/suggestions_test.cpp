@@ -1,0 +1,40 @@
+// What an unknown name is answered with: what was meant, or where all names are.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tool/tool_run.hpp"
+
+namespace fpc {
+namespace tool_suggestions_test {
+
+void expectAnswer(const std::string& arguments, const std::string& part) {
+  const Outcome outcome = tool(arguments, true);
+  EXPECT_EQ(outcome.code, 1) << arguments;
+  EXPECT_EQ(std::count(outcome.printed.begin(), outcome.printed.end(), '\n'), 1) << outcome.printed;
+  EXPECT_NE(outcome.printed.find(part), std::string::npos) << arguments << ": " << outcome.printed;
+}
+
+TEST(Suggestions, CapitalsPartsAndSlips) {
+  expectAnswer("run ASP_CASE1", "near: asp_case1");
+  expectAnswer("run case1_clp", "near: asp_case1_clp");
+  expectAnswer("reproduce blazik2007", "near: blazic2007");
+  expectAnswer("reproduce blazic", "near: blazic2007");
+  expectAnswer("reproduce Blazic2007", "near: blazic2007");
+  expectAnswer("study Cstr_mismatch", "near: cstr_mismatch");
+  expectAnswer("model FM_1", "near: fm_1");
+  expectAnswer("identify x.csv ASP_D", "asp_d");
+  expectAnswer("loops load_supervisr", "near: load_supervisor");
+}
+
+TEST(Suggestions, WhereNothingIsNearTheyAreListedOrTheirListIsNamed) {
+  expectAnswer("run sludge", "; `fmbpc loops` lists them");
+  expectAnswer("loops two_inputs", "; `fmbpc loops` lists them");
+  expectAnswer("study nothing", "; `fmbpc loops` lists them; studies: ");
+  expectAnswer("reproduce wood1973", "; `fmbpc reproduce --list` lists them");
+  expectAnswer("model nothing", "; there are asp_a");
+  expectAnswer("tune asp_case1 nothing", "one of ");
+}
+
+}  // namespace tool_suggestions_test
+}  // namespace fpc
