@@ -40,7 +40,7 @@ bool isNamed(const Experiment& e, const std::string& name) {
 }
 
 /// Papers and experiments, each once.
-std::vector<std::string> namesOf(const std::vector<Experiment>& all) {
+std::vector<std::string> experimentNames(const std::vector<Experiment>& all) {
   std::set<std::string> names;
   for (const auto& e : all) names.insert({e.paper, e.name});
   return {names.begin(), names.end()};
@@ -55,7 +55,7 @@ std::vector<Experiment> chosen(const std::vector<std::string>& names) {
                                          [&](const Experiment& e) { return isNamed(e, name); }),
             name,
             "a paper, an experiment or a loop behind one" +
-                nearNames(name, namesOf(all), "`fmbpc reproduce --list` lists them"));
+                nearNames(name, experimentNames(all), "`fmbpc reproduce --list` lists them"));
   std::copy_if(all.begin(), all.end(), std::back_inserter(some), [&](const Experiment& e) {
     return std::any_of(names.begin(), names.end(),
                        [&](const std::string& name) { return isNamed(e, name); });

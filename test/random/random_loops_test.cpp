@@ -14,13 +14,13 @@
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
 #include "random/random_parts.hpp"
+#include "random/run_checks.hpp"
 
 namespace fpc {
 namespace random_random_loops_test {
 
 constexpr std::uint64_t kQuick = 120;
 constexpr std::uint64_t kLong = 6000;
-constexpr double kTolerance = 1e-9;  // of an input's range
 
 std::vector<std::uint64_t> seeds(std::uint64_t quick = kQuick) {
   if (const char* one = std::getenv("FMBPC_RANDOM_SEED")) return {std::stoull(one)};
@@ -68,82 +68,6 @@ class RandomLoops : public LoopFolder {
 
   std::map<std::string, std::vector<std::string>> refused_;
 };
-
-/// Empty if all is finite.
-std::string notFinite(const RunRecord& record) {
-  for (std::size_t k = 0; k < record.samples.size(); ++k) {
-    const SampleRecord& s = record.samples[k];
-    const std::string at = " of sample " + std::to_string(k);
-    if (!s.measurement.outputs.allFinite()) return "outputs" + at;
-    if (!s.measurement.input_applied.allFinite()) return "applied input" + at;
-    if (!s.state.state.allFinite()) return "state" + at;
-    if (s.has_action && !s.action.input.allFinite()) return "action" + at;
-  }
-  return "";
-}
-
-bool isOfLaw(ActionSource source) {
-  return source != ActionSource::kHeld && source != ActionSource::kManual &&
-         source != ActionSource::kFallback;
-}
-
-/// From where the move of action k counts: from what is read, or, where a valve is not where the
-/// law told it to be, from the command before (of others than the law: from the nearer).
-Vector origin(const RunRecord& record, std::size_t k, const Vector& slack) {
-  const SampleRecord& s = record.samples[k];
-  Vector from = s.measurement.input_applied;
-  if (k == 0 || !record.samples[k - 1].has_action) return from;
-  const SampleRecord& before = record.samples[k - 1];
-  const bool of_law = isOfLaw(s.action.source) && isOfLaw(before.action.source);
-  for (Eigen::Index i = 0; i < from.size(); ++i) {
-    const double u = s.action.input[i], last = before.action.input[i];
-    const bool nearer = std::abs(u - last) < std::abs(u - from[i]);
-    if (std::abs(from[i] - last) > slack[i] && (of_law || nearer)) from[i] = last;
-  }
-  return from;
-}
-
-/// Empty if every action and every applied input is inside its limits.
-std::string beyondLimits(const LoopFile& loop, const RunRecord& record) {
-  const InputLimits& limits = loop.simulation.actuator.limits;
-  const Vector slack = kTolerance * (limits.upper - limits.lower);
-  const auto inside = [&](const Vector& u) {
-    return ((u - limits.lower + slack).array() >= 0.0).all() &&
-           ((limits.upper - u + slack).array() >= 0.0).all();
-  };
-  for (std::size_t k = 0; k < record.samples.size(); ++k) {
-    const SampleRecord& s = record.samples[k];
-    const std::string at = " of sample " + std::to_string(k);
-    if (!inside(s.measurement.input_applied)) return "applied input" + at;
-    if (!s.has_action) continue;
-    if (!inside(s.action.input)) return "action" + at;
-    const Vector move = (s.action.input - origin(record, k, slack)).cwiseAbs();
-    if (!((limits.move + slack - move).array() >= 0.0).all()) return "move" + at;
-  }
-  return "";
-}
-
-/// The same bits; what is missing (a setpoint that nobody follows) equals what is missing.
-bool same(const Vector& a, const Vector& b) {
-  if (a.size() != b.size()) return false;
-  return ((a.array() == b.array()) || (a.array().isNaN() && b.array().isNaN())).all();
-}
-
-/// The first sample that differs in what a plant and a controller say; -1 if none does.
-int firstDifference(const RunRecord& a, const RunRecord& b) {
-  if (a.samples.size() != b.samples.size()) return 0;
-  for (std::size_t k = 0; k < a.samples.size(); ++k) {
-    const SampleRecord &x = a.samples[k], &y = b.samples[k];
-    const bool equal =
-        same(x.measurement.outputs, y.measurement.outputs) &&
-        same(x.measurement.input_applied, y.measurement.input_applied) &&
-        same(x.state.state, y.state.state) && same(x.state.disturbances, y.state.disturbances) &&
-        same(x.tracking.setpoint, y.tracking.setpoint) &&
-        same(x.tracking.reference, y.tracking.reference) && same(x.action.input, y.action.input);
-    if (!equal) return static_cast<int>(k);
-  }
-  return -1;
-}
 
 TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
   std::map<std::string, int> ran, plants;
