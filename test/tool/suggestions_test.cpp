@@ -18,6 +18,7 @@ void expectAnswer(const std::string& arguments, const std::string& part) {
 TEST(Suggestions, CapitalsPartsAndSlips) {
   expectAnswer("run ASP_CASE1", "near: asp_case1");
   expectAnswer("run case1_clp", "near: asp_case1_clp");
+  expectAnswer("run sludge", "near: bsm1_fmbpc_sludge");
   expectAnswer("reproduce blazik2007", "near: blazic2007");
   expectAnswer("reproduce blazic", "near: blazic2007");
   expectAnswer("reproduce Blazic2007", "near: blazic2007");
@@ -28,7 +29,7 @@ TEST(Suggestions, CapitalsPartsAndSlips) {
 }
 
 TEST(Suggestions, WhereNothingIsNearTheyAreListedOrTheirListIsNamed) {
-  expectAnswer("run sludge", "; `fmbpc loops` lists them");
+  expectAnswer("run thermostat", "; `fmbpc loops` lists them");
   expectAnswer("loops two_inputs", "; `fmbpc loops` lists them");
   expectAnswer("study nothing", "; `fmbpc loops` lists them; studies: ");
   expectAnswer("reproduce wood1973", "; `fmbpc reproduce --list` lists them");

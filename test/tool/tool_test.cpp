@@ -89,9 +89,9 @@ TEST_F(Tool, HelpNamesTheToolAndGivesAnExampleOfEveryCommand) {
 
 TEST_F(Tool, HelpShowsDefaults) {
   const std::string identify = tool("identify --help").printed;
-  for (const char* words : {"[best]", "[45]", "[comma]", "[point]", "--seed UINT [1]"})
+  for (const char* words : {"=best", "=45", "=comma", "=point", "--seed UINT=1"})
     EXPECT_NE(identify.find(words), std::string::npos) << words << "\n" << identify;
-  EXPECT_NE(tool("validate --help").printed.find("--steps INT:"), std::string::npos);
+  EXPECT_NE(tool("validate --help").printed.find("=10"), std::string::npos);
   EXPECT_NE(tool("study --help").printed.find("(default: ise)"), std::string::npos);
 }
 
