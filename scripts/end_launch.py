@@ -145,6 +145,12 @@ def recover(folder):
     rospy.logerr("end_launch: the recorder was gone; its journal: %s", done.stdout.strip())
 
 
+def end_launch(parent):
+    """As Ctrl-C does. This node ends by itself: rospy cannot be interrupted while it says its last."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.kill(parent, signal.SIGINT)
+
+
 def main():
     rospy.init_node("end_launch")
     parent = launcher()
@@ -169,16 +175,16 @@ def main():
             if recorder.hangs_for() > rospy.get_param("~hanging", 20.0):
                 if killed(recorder, parent):
                     continue
-                os.kill(parent, signal.SIGINT)
+                end_launch(parent)
                 return 0
             if recorder.gone_for() < patience:
                 continue
             rospy.logerr("end_launch: the run is over, but %s is gone: the launch ends", recorder.name)
             recover(folder)
-            os.kill(parent, signal.SIGINT)
+            end_launch(parent)
             return 0
         if end(message._connection_header["callerid"], message.data, ours):
-            os.kill(parent, signal.SIGINT)
+            end_launch(parent)
             break
     # Not one that ends with the launch, as this node does.
     if recorder.gone_for() > 1.0 or (recorder.hangs_for() > 1.0 and killed(recorder, parent)):

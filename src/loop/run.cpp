@@ -126,7 +126,7 @@ class Ring {
     try {
       controller_.setModel(*model);
     } catch (const InputError& error) {
-      fail(error.what());
+      fail(error.what(), present_ + 1);  // from there on it was to be used
     }
   }
 
@@ -141,9 +141,10 @@ class Ring {
   }
 
   /// A model that could not be had, or used: told at once and kept.
-  void fail(const std::string& words) {
-    notes_.failed(present_, words);
-    tell(present_, words);
+  void fail(const std::string& words) { fail(words, present_); }
+  void fail(const std::string& words, std::uint32_t step) {
+    notes_.failed(step, words);
+    tell(step, words);
   }
 
   void tell(std::uint32_t step, const std::string& words) const {

@@ -134,6 +134,7 @@ void ControllerNode::useModels(const StepHeader& next) {
       model_problem_.clear();
       ROS_INFO("%s: model %s from the next sample on", name().c_str(), model_.c_str());
     } catch (const InputError& error) {
+      model_refused_ = error.what();
       refuseModel(error.what());
     }
   }
@@ -204,7 +205,8 @@ void ControllerNode::answer(const Measurement& measurement) {
 
 void ControllerNode::writeRemark() {
   if (!session_.isManual()) clamped_.clear();
-  remark_ = joinedLines(joinedLines(remarks_.lines(), clamped_), takeRefusedCommands());
+  const std::string refused = joinedLines(takeRefusedCommands(), std::exchange(model_refused_, {}));
+  remark_ = joinedLines(joinedLines(remarks_.lines(), clamped_), refused);
 }
 
 void ControllerNode::publish(bool repeated) {

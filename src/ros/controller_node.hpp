@@ -86,10 +86,11 @@ class ControllerNode : public Node {
   SignalPublishers signals_;
   PlantGate plant_;
   std::string model_, model_source_,
-      model_problem_;         // name of the one in use; why the latest was refused
-  double model_refused_s_{};  // when
-  std::string clamped_;       // the manual input that was asked beyond the limits, in words
-  std::string remark_;        // of the present answer
+      model_problem_;          // name of the one in use; why the latest was refused
+  double model_refused_s_{};   // when
+  std::string model_refused_;  // that could not be used, in words; until it is in a remark
+  std::string clamped_;        // the manual input that was asked beyond the limits, in words
+  std::string remark_;         // of the present answer
   WallThrottle log_{1.0};
 
   ros::Publisher base_, prediction_, tracking_, effect_;

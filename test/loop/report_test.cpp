@@ -145,11 +145,13 @@ TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
   for (std::size_t k = 0; k < 200; ++k) {
     record.samples[k].action.input << (k < 170 ? 700.0 : 800.0);
     record.samples[k].action.source = ActionSource::kBase;
+    record.samples[k + 1].measurement.input_applied = record.samples[k].action.input;
   }
   EXPECT_EQ(remarksOf(summarize(loop, record, 0.0)),
             std::vector<std::string>{
                 "asp_case1_pi_s: q_r locked at its upper limit over the last 30 of 200 samples"});
   record.samples[199].action.input << 799.0;  // it came back
+  record.samples[200].measurement.input_applied << 799.0;
   record.samples[3].action.source = record.samples[4].action.source = ActionSource::kHeld;
   record.samples[5].action.source = ActionSource::kFallback;
   record.samples[6].action.source = ActionSource::kClipped;
@@ -283,7 +285,7 @@ TEST_F(Report, TheTableHasALinePerOutputAndPerInput) {
   const Summary summary = summarize(loop, runLoop(loop), 0.0);
   const std::string table = toTable({summary, summary});
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'),
-            1 + 4 + 1 + 1 + 2 + 1 + 1 + 2 + 1 + 4);  // the legend has four
+            1 + 6 + 1 + 1 + 2 + 1 + 1 + 2 + 1 + 5);  // the legend has five
   EXPECT_NE(table.find("mean move"), std::string::npos);
 }
 

@@ -103,8 +103,8 @@ TEST_F(AutoTool, TimesThatDoNotRiseOrHaveAnotherSpacingAreRefused) {
   CsvTable table = record();
   table.values(50, 0) = table.values(49, 0);
   const std::string twice = writeRecord("twice.csv", table);
-  expectWords(refusal("identify " + twice + by_name), {"twice.csv:52", "'time'", "increase"});
-  expectWords(refusal("validate " + model + " " + twice), {"twice.csv:52", "increase"});
+  expectWords(refusal("identify " + twice + by_name), {"twice.csv:52", "'time'", "only once"});
+  expectWords(refusal("validate " + model + " " + twice), {"twice.csv:52", "only once"});
   table = record();
   table.units[0] = "min";
   const std::string slow = writeRecord("slow.csv", table);
