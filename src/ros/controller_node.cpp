@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kBurst = 200;       // commands at once
 constexpr double kLookAgain = 0.05;  // [s] at what a parked sample waits for
+constexpr double kConnecting = 5.0;  // [s] in which those who listen find one that came back
+constexpr std::size_t kFirstAnswers = 1000;  // kept for them
 
 const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_node) {
   const bool answers_plant = private_node.param("final_action", !loop.has_clp);
@@ -37,7 +39,9 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                                                  topics::kRingQueue)),
       prediction_(
           node.advertise<fmbpc::PredictiveAction>(topics::kPredictiveAction, topics::kRingQueue)),
-      tracking_(node.advertise<fmbpc::Tracking>(topics::kTracking, topics::kRingQueue)),
+      tracking_(node.advertise<fmbpc::Tracking>(
+          topics::kTracking, topics::kRingQueue,
+          [this](const ros::SingleSubscriberPublisher& listener) { catchUp(listener); })),
       effect_(node.advertise<fmbpc::CommandEffect>(topics::kSetpointEffect, topics::kRingQueue)),
       listeners_({base_, prediction_, tracking_, effect_}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
@@ -192,6 +196,7 @@ void ControllerNode::answer(const Measurement& measurement) {
   switch (session_.receive(measurement)) {
     case Receipt::kAnswered:
       if (first) settings_.publish();  // those that were restored
+      if (first && measurement.header.step > 0) came_s_ = steadyNow();
       remarks_.look(session_);
       writeRemark();
       return publish(false);
@@ -215,11 +220,7 @@ void ControllerNode::publish(bool repeated) {
     prediction_.publish(shared(toMsg(answer.prediction)));
   if (answer.has_action) base_.publish(shared(toMsg(answer.base)));
   if (standin_) standin_->asked(answer, repeated);
-  if (tracking_.getNumSubscribers() > 0) {
-    fmbpc::Tracking tracking = toMsg(answer.tracking);
-    tracking.remark = remark_;
-    tracking_.publish(shared(std::move(tracking)));
-  }
+  publishTracking(repeated);
   if (repeated) return;
   for (const CommandEffect& effect : answer.effects) effect_.publish(toMsg(effect));
   if (!answer.effects.empty() || answer.tracking.header.step == 0) desk_.changed();
@@ -228,6 +229,28 @@ void ControllerNode::publish(bool repeated) {
   if (!session_.resetReason().empty())
     ROS_INFO("%s: reset: %s", name().c_str(), session_.resetReason().c_str());
   log();
+}
+
+void ControllerNode::publishTracking(bool repeated) {
+  if (tracking_.getNumSubscribers() == 0 && !cameLately()) return;
+  fmbpc::Tracking tracking = toMsg(session_.answer().tracking);
+  tracking.remark = remark_;
+  const auto message = shared(std::move(tracking));
+  tracking_.publish(message);
+  if (!cameLately())
+    first_answers_.clear();
+  else if (!repeated && first_answers_.size() < kFirstAnswers)
+    first_answers_.push_back(message);
+}
+
+bool ControllerNode::cameLately() const {
+  return came_s_ >= 0.0 && steadyNow() - came_s_ < kConnecting;
+}
+
+// One that comes back in a run answers at once; the recorder may take a moment to connect.
+void ControllerNode::catchUp(const ros::SingleSubscriberPublisher& listener) {
+  if (!cameLately()) return;
+  for (const auto& answer : first_answers_) listener.publish(*answer);
 }
 
 // At once, or the latest of each second of wall time.

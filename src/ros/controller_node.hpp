@@ -8,11 +8,13 @@
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
 #include <fmbpc/Setpoint.h>
+#include <fmbpc/Tracking.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
@@ -65,6 +67,9 @@ class ControllerNode : public Node {
   void publish(bool repeated);
   void refuseModel(const std::string& why);
   void writeRemark();
+  void publishTracking(bool repeated);
+  bool cameLately() const;
+  void catchUp(const ros::SingleSubscriberPublisher& listener);
   Health whileControlling(double now_s) const;
   void advertiseSignals();
   void publishSignals();
@@ -90,7 +95,9 @@ class ControllerNode : public Node {
   double model_refused_s_{};   // when
   std::string model_refused_;  // that could not be used, in words; until it is in a remark
   std::string clamped_;        // the manual input that was asked beyond the limits, in words
-  std::string remark_;         // of the present answer
+  double came_s_{-1.0};        // when it first answered, in a run that others had begun
+  std::vector<boost::shared_ptr<const fmbpc::Tracking>> first_answers_;  // of then
+  std::string remark_;                                                   // of the present answer
   WallThrottle log_{1.0};
 
   ros::Publisher base_, prediction_, tracking_, effect_;

@@ -63,7 +63,9 @@ class BadModels(unittest.TestCase):
         self.assertEqual({"input": 0, "move": 0, "output": 0}, ring.summary(folder)["violations"])
         with tempfile.TemporaryDirectory() as reference:
             ring.run_in_process(loop, reference, sets)
-            ring.assert_same_run(self, folder, reference)
+            ring.assert_same_run(self, folder, reference, beyond="model 'unstable': ")
+        said = [r["words"] for r in ring.summary(folder)["remarks"]]
+        self.assertTrue(any(words.startswith("model 'unstable': expected a model that is stable") for words in said), said)
 
 
 if __name__ == "__main__":
