@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "loop/journal_entry.hpp"
+#include "loop/remark_lines.hpp"
 
 namespace fpc {
 namespace {
@@ -17,11 +18,6 @@ std::string kept(const std::string& remark) {
   if (remark.size() <= kMostRemark) return remark;
   const std::size_t end = remark.rfind('\n', kMostRemark);
   return remark.substr(0, end == std::string::npos ? kMostRemark : end);
-}
-
-/// The controller's remarks before the plant's, whoever was heard first.
-std::string joined(const std::string& first, const std::string& second) {
-  return first.empty() || second.empty() ? first + second : first + "\n" + second;
 }
 
 }  // namespace
@@ -120,17 +116,18 @@ void RecorderSession::receive(const Measurement& m) {
   });
 }
 
+// The controller's remarks before the plant's, whoever was heard first.
 void RecorderSession::receive(const PlantState& s, const std::string& remark) {
   collect(s, &SampleRecord::has_state, [remark](SampleRecord& sample, const PlantState& item) {
     sample.state = item;
-    sample.remark = kept(joined(sample.remark, remark));
+    sample.remark = kept(joinedLines(sample.remark, remark));
   });
 }
 
 void RecorderSession::receive(const Tracking& t, const std::string& remark) {
   const auto place = [this, remark](SampleRecord& sample, const Tracking& item) {
     sample.tracking = item;
-    sample.remark = kept(joined(remark, sample.remark));
+    sample.remark = kept(joinedLines(remark, sample.remark));
     for (const Eigen::Index i : layout_.without_setpoint)
       sample.tracking.setpoint[i] = sample.tracking.reference[i] = kNaN;
   };

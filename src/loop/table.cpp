@@ -65,7 +65,8 @@ constexpr char kLegend[] =
     "outside the limits of the loop file (outputs: report.output_lower, .output_upper), for "
     "several\n"
     "signals the sum of theirs; travel: sum of moves; switches: moves of an input that rests more\n"
-    "often than it moves; clips: inputs that the actuator had to cut, summed up alike.\n";
+    "often than it moves, and jumps; clips: inputs that the actuator had to cut, summed up "
+    "alike.\n";
 
 /// "T [degC]", by the output's name.
 std::string outputWithUnit(const Summary& s, const std::string& name) {

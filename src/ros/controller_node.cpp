@@ -4,8 +4,8 @@
 
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
+#include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
-#include "ros/remark_lines.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 

@@ -5,8 +5,8 @@
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/factory.hpp"
+#include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
-#include "ros/remark_lines.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 

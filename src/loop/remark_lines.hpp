@@ -1,4 +1,4 @@
-// Remarks of a sample: one a line.
+// Remarks of a sample: one a line. Private to the package.
 #pragma once
 
 #include <string>
