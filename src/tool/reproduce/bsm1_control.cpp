@@ -79,6 +79,31 @@ Rows classA() { return dryAndRain(kLaws, {3.0, 0.0, 12.0, 16.0}, {2.3, 0.0, 6.5,
 /// Past the baseline.
 Rows aim() { return dryAndRain(kLaws, {4.5, 0.0, 12.0, 16.0}, {3.0, 0.0, 6.5, 23.0}); }
 
+/// Each of ours beside the supervisor that was tuned with the same levers, cost and ranges.
+Rows besideTunedSupervisor() {
+  Rows rows;
+  for (const auto& [of_baseline, ours] :
+       std::vector<std::pair<std::string, std::vector<std::string>>>{
+           {"bsm1_supervisor_tuned",
+            {"bsm1_published", "bsm1_fmbpc", "bsm1_fmbpc_clp", "bsm1_fmbpc_tuned"}},
+           {"bsm1_supervisor_tuned_rain",
+            {"bsm1_published_rain", "bsm1_fmbpc_rain", "bsm1_fmbpc_clp_rain",
+             "bsm1_fmbpc_tuned_rain"}},
+           {"bsm1_own_supervisor_tuned",
+            {"bsm1_own_fmbpc", "bsm1_own_fmbpc_clp", "bsm1_own_fmbpc_tuned"}}}) {
+    const EffluentReport is = evaluated(of_baseline);
+    for (const std::string& loop : ours) {
+      const EffluentReport here = evaluated(loop);
+      const auto add = [&](const char* what, double ahead) {
+        rows.push_back(check(loop + ", " + what, ahead, Direction::kHigher, 0.0, "%", "ours"));
+      };
+      add("EQI below the tuned supervisor's", 100.0 * (1.0 - here.EQI / is.EQI));
+      add("OCI below the tuned supervisor's", 100.0 * (1.0 - here.OCI / is.OCI));
+    }
+  }
+  return rows;
+}
+
 /// The same tuning with one rule.
 Rows linearTwin() {
   Rows rows;
@@ -123,6 +148,9 @@ const bool kRegistered = registerExperiments(
       "bsm1_fmbpc, bsm1_fmbpc_clp, dry and rain", classA},
      {"bsm1_class_a_aim", "bsm1", "beyond the paper", "past the baseline, class A", "-",
       "bsm1_fmbpc, bsm1_fmbpc_clp, dry and rain", aim},
+     {"bsm1_class_a_tuned_baseline", "bsm1", "beyond the paper", "beside the tuned supervisor", "-",
+      "bsm1_supervisor_tuned, bsm1_published, bsm1_fmbpc, its CLP and tuned one",
+      besideTunedSupervisor},
      {"bsm1_class_a_360", "bsm1", "beyond the paper", "class A with blowers up to 360 1/d", "-",
       "bsm1_fmbpc_360, dry and rain", largerBlowers},
      {"bsm1_class_b", "bsm1", "beyond the paper", "class B, Qw 260", "-",
