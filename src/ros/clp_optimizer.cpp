@@ -2,7 +2,6 @@
 
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
-#include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -50,9 +49,9 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
       ready_(node, name()),
       signals_(node),
       plant_(loop.plant_info),
-      action_(node.advertise<fmbpc::ControlAction>(topics::kControlAction, topics::kRingQueue)),
-      report_(node.advertise<fmbpc::SolverReport>(topics::kSolverReport, topics::kRingQueue)),
-      listeners_({action_, report_}),
+      action_(node, topics::kControlAction, comeback_, audienceOf(node, authority())),
+      report_(node, topics::kSolverReport, comeback_, audienceOf(node, authority())),
+      listeners_({action_.publisher(), report_.publisher()}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ClpOptimizer::onPlantInfo, this)),
       base_subscriber_(
           subscribe(node, topics::kBaseAction, topics::kRingQueue, &ClpOptimizer::onBase, this)),
@@ -94,9 +93,11 @@ void ClpOptimizer::onPrediction(const fmbpc::PredictiveAction::ConstPtr& msg) {
 
 void ClpOptimizer::publish() {
   const SolverReport& report = session_.report();
-  action_.publish(shared(toMsg(session_.action())));
-  if (report_.getNumSubscribers() > 0) report_.publish(shared(toMsg(report)));
-  if (report.header.run_id == last_.run_id && report.header.step == last_.step) return;
+  const bool repeated = report.header.run_id == last_.run_id && report.header.step == last_.step;
+  comeback_.answered(report.header, heard_s_);
+  action_.publish(toMsg(session_.action()), repeated);
+  if (report_.wanted()) report_.publish(toMsg(report), repeated);
+  if (repeated) return;
   last_ = report.header;
   for (Eigen::Index i = 0; i < report.perturbation.size(); ++i)
     signals_.publish(static_cast<std::size_t>(i), report.header.time_ns, report.perturbation[i]);

@@ -5,6 +5,7 @@
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/PlantInfo.h>
 #include <fmbpc/PredictiveAction.h>
+#include <fmbpc/SolverReport.h>
 #include <ros/ros.h>
 
 #include <cstdint>
@@ -12,11 +13,13 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
+#include "fmbpc/loop/first_answers.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
+#include "ros/ring_publisher.hpp"
 #include "ros/signal_publishers.hpp"
 #include "ros/summary_listener.hpp"
 #include "ros/wall_throttle.hpp"
@@ -47,7 +50,9 @@ class ClpOptimizer : public Node {
   StepHeader last_;  // of the last answer that was not a repetition
   WallThrottle log_{1.0};
 
-  ros::Publisher action_, report_;
+  Comeback comeback_;
+  RingPublisher<fmbpc::ControlAction> action_;
+  RingPublisher<fmbpc::SolverReport> report_;
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, base_subscriber_, prediction_subscriber_;
   SummaryListener summary_;

@@ -6,7 +6,6 @@
 #include "fmbpc/loop/factory.hpp"
 #include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
-#include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -14,8 +13,6 @@ namespace {
 
 constexpr double kBurst = 200;       // commands at once
 constexpr double kLookAgain = 0.05;  // [s] at what a parked sample waits for
-constexpr double kConnecting = 5.0;  // [s] in which those who listen find one that came back
-constexpr std::size_t kFirstAnswers = 1000;  // kept for them
 
 const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_node) {
   const bool answers_plant = private_node.param("final_action", !loop.has_clp);
@@ -35,15 +32,12 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       ready_(node, name()),
       signals_(node),
       plant_(loop.plant_info),
-      base_(node.advertise<fmbpc::ControlAction>(actionTopic(loop, private_node),
-                                                 topics::kRingQueue)),
-      prediction_(
-          node.advertise<fmbpc::PredictiveAction>(topics::kPredictiveAction, topics::kRingQueue)),
-      tracking_(node.advertise<fmbpc::Tracking>(
-          topics::kTracking, topics::kRingQueue,
-          [this](const ros::SingleSubscriberPublisher& listener) { catchUp(listener); })),
-      effect_(node.advertise<fmbpc::CommandEffect>(topics::kSetpointEffect, topics::kRingQueue)),
-      listeners_({base_, prediction_, tracking_, effect_}),
+      base_(node, actionTopic(loop, private_node), comeback_, audienceOf(node, authority())),
+      prediction_(node, topics::kPredictiveAction, comeback_, audienceOf(node, authority())),
+      tracking_(node, topics::kTracking, comeback_, audienceOf(node, authority())),
+      effect_(node, topics::kSetpointEffect, comeback_, audienceOf(node, authority())),
+      listeners_({base_.publisher(), prediction_.publisher(), tracking_.publisher(),
+                  effect_.publisher()}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &ControllerNode::onModel, this)),
       measurement_subscriber_(subscribe(node, topics::kMeasurement, topics::kRingQueue,
@@ -74,7 +68,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.answer().tracking.header; },
                [this](Diagnostics::Status& status) { report(status); }}) {
-  if (loop.has_clp) standin_.emplace(node, loop, name());
+  if (loop.has_clp) standin_.emplace(node, loop, name(), comeback_);
   advertiseSignals();
 }
 
@@ -196,7 +190,7 @@ void ControllerNode::answer(const Measurement& measurement) {
   switch (session_.receive(measurement)) {
     case Receipt::kAnswered:
       if (first) settings_.publish();  // those that were restored
-      if (first && measurement.header.step > 0) came_s_ = steadyNow();
+      comeback_.answered(measurement.header, heard_s_);
       remarks_.look(session_);
       writeRemark();
       return publish(false);
@@ -216,13 +210,13 @@ void ControllerNode::writeRemark() {
 
 void ControllerNode::publish(bool repeated) {
   const ControllerAnswer& answer = session_.answer();
-  if (answer.has_prediction && prediction_.getNumSubscribers() > 0)
-    prediction_.publish(shared(toMsg(answer.prediction)));
-  if (answer.has_action) base_.publish(shared(toMsg(answer.base)));
+  if (answer.has_prediction && prediction_.wanted())
+    prediction_.publish(toMsg(answer.prediction), repeated);
+  if (answer.has_action) base_.publish(toMsg(answer.base), repeated);
   if (standin_) standin_->asked(answer, repeated);
   publishTracking(repeated);
   if (repeated) return;
-  for (const CommandEffect& effect : answer.effects) effect_.publish(toMsg(effect));
+  for (const CommandEffect& effect : answer.effects) effect_.publish(toMsg(effect), false);
   if (!answer.effects.empty() || answer.tracking.header.step == 0) desk_.changed();
   desk_.tell(answer.tracking.header);
   publishSignals();
@@ -232,25 +226,10 @@ void ControllerNode::publish(bool repeated) {
 }
 
 void ControllerNode::publishTracking(bool repeated) {
-  if (tracking_.getNumSubscribers() == 0 && !cameLately()) return;
+  if (!tracking_.wanted()) return;
   fmbpc::Tracking tracking = toMsg(session_.answer().tracking);
   tracking.remark = remark_;
-  const auto message = shared(std::move(tracking));
-  tracking_.publish(message);
-  if (!cameLately())
-    first_answers_.clear();
-  else if (!repeated && first_answers_.size() < kFirstAnswers)
-    first_answers_.push_back(message);
-}
-
-bool ControllerNode::cameLately() const {
-  return came_s_ >= 0.0 && steadyNow() - came_s_ < kConnecting;
-}
-
-// One that comes back in a run answers at once; the recorder may take a moment to connect.
-void ControllerNode::catchUp(const ros::SingleSubscriberPublisher& listener) {
-  if (!cameLately()) return;
-  for (const auto& answer : first_answers_) listener.publish(*answer);
+  tracking_.publish(std::move(tracking), repeated);
 }
 
 // At once, or the latest of each second of wall time.

@@ -2,11 +2,14 @@
 // is answered with a base action and, if the law predicts, its prediction.
 #pragma once
 
+#include <fmbpc/CommandEffect.h>
+#include <fmbpc/ControlAction.h>
 #include <fmbpc/FuzzyModel.h>
 #include <fmbpc/Identified.h>
 #include <fmbpc/ManualInput.h>
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
+#include <fmbpc/PredictiveAction.h>
 #include <fmbpc/Setpoint.h>
 #include <fmbpc/Tracking.h>
 #include <ros/ros.h>
@@ -18,6 +21,7 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/control/session.hpp"
+#include "fmbpc/loop/first_answers.hpp"
 #include "fmbpc/loop/model_inbox.hpp"
 #include "fmbpc/loop/sample_remarks.hpp"
 #include "ros/health_reporter.hpp"
@@ -27,6 +31,7 @@
 #include "ros/optimizer_standin.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
+#include "ros/ring_publisher.hpp"
 #include "ros/settings_server.hpp"
 #include "ros/signal_publishers.hpp"
 #include "ros/summary_listener.hpp"
@@ -68,8 +73,6 @@ class ControllerNode : public Node {
   void refuseModel(const std::string& why);
   void writeRemark();
   void publishTracking(bool repeated);
-  bool cameLately() const;
-  void catchUp(const ros::SingleSubscriberPublisher& listener);
   Health whileControlling(double now_s) const;
   void advertiseSignals();
   void publishSignals();
@@ -84,6 +87,7 @@ class ControllerNode : public Node {
   SampleRemarks remarks_;
   ModelInbox inbox_;
   OperatorDesk desk_;
+  Comeback comeback_;                        // before all that publishes
   std::optional<OptimizerStandin> standin_;  // of a loop with an optimizer
   std::optional<Measurement> parked_;        // waits for what must be known before it
   double parked_since_s_{}, heard_s_{};
@@ -95,12 +99,13 @@ class ControllerNode : public Node {
   double model_refused_s_{};   // when
   std::string model_refused_;  // that could not be used, in words; until it is in a remark
   std::string clamped_;        // the manual input that was asked beyond the limits, in words
-  double came_s_{-1.0};        // when it first answered, in a run that others had begun
-  std::vector<boost::shared_ptr<const fmbpc::Tracking>> first_answers_;  // of then
-  std::string remark_;                                                   // of the present answer
+  std::string remark_;         // of the present answer
   WallThrottle log_{1.0};
 
-  ros::Publisher base_, prediction_, tracking_, effect_;
+  RingPublisher<fmbpc::ControlAction> base_;
+  RingPublisher<fmbpc::PredictiveAction> prediction_;
+  RingPublisher<fmbpc::Tracking> tracking_;
+  RingPublisher<fmbpc::CommandEffect> effect_;
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       identified_subscriber_, setpoint_subscriber_;

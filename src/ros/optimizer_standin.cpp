@@ -5,18 +5,18 @@
 #include <utility>
 
 #include "ros/conversions.hpp"
-#include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
 
-OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, std::string name)
+OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                                   const Comeback& comeback)
     : Node(node, loop, std::move(name)),
       watch_(loop.ring.pace, loop.plant_info.sample_time_s / loop.ring.speedup,
              loop.ring.optimizer_timeout_s),
       optimizer_(node.resolveName("clp_optimizer")),
-      action_(node.advertise<fmbpc::ControlAction>(topics::kControlAction, topics::kRingQueue)),
-      report_(node.advertise<fmbpc::SolverReport>(topics::kSolverReport, topics::kRingQueue)),
+      action_(node, topics::kControlAction, comeback, audienceOf(node, authority())),
+      report_(node, topics::kSolverReport, comeback, audienceOf(node, authority())),
       subscriber_(subscribe(node, topics::kControlAction, topics::kPairQueue,
                             &OptimizerStandin::onAction, this)),
       timer_(node.createSteadyTimer(
@@ -26,7 +26,7 @@ OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, s
 void OptimizerStandin::asked(const ControllerAnswer& answer, bool repeated) {
   if (!answer.has_action) return;
   if (repeated) {
-    if (sent_) send();  // the plant has missed it
+    if (sent_) send(true);  // the plant has missed it
     return;
   }
   base_ = answer.base;
@@ -57,9 +57,9 @@ bool OptimizerStandin::isOwn(const fmbpc::ControlAction& msg, const std::string&
   return same;
 }
 
-void OptimizerStandin::send() {
+void OptimizerStandin::send(bool repeated) {
   ++unheard_;
-  action_.publish(shared(toMsg(base_)));
+  action_.publish(toMsg(base_), repeated);
 }
 
 void OptimizerStandin::arm() {
@@ -79,12 +79,12 @@ void OptimizerStandin::onTimer() {
 
 void OptimizerStandin::takeOver() {
   sent_ = true;
-  send();
+  send(false);
   SolverReport report;
   report.header = base_.header;
   report.perturbation = Vector::Zero(base_.input.size());
   report.status = SolveStatus::kNotRun;
-  report_.publish(shared(toMsg(report)));
+  report_.publish(toMsg(report), false);
   if (log_.pass())
     ROS_WARN("%s: sample %u: no answer of %s, the base action goes to the plant", name().c_str(),
              base_.header.step, optimizer_.c_str());

@@ -3,20 +3,24 @@
 #pragma once
 
 #include <fmbpc/ControlAction.h>
+#include <fmbpc/SolverReport.h>
 #include <ros/ros.h>
 
 #include <string>
 
 #include "fmbpc/control/session.hpp"
+#include "fmbpc/loop/first_answers.hpp"
 #include "fmbpc/loop/optimizer_watch.hpp"
 #include "ros/node.hpp"
+#include "ros/ring_publisher.hpp"
 
 namespace fpc {
 
 class OptimizerStandin : public Node {
  public:
-  /// `name`: of the controller.
-  OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, std::string name);
+  /// `name`, `comeback`: of the controller.
+  OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, std::string name,
+                   const Comeback& comeback);
   /// A base action has been published for the optimizer. `repeated`: not for the first time.
   void asked(const ControllerAnswer& answer, bool repeated);
   const OptimizerWatch& watch() const { return watch_; }
@@ -25,7 +29,7 @@ class OptimizerStandin : public Node {
  private:
   void onAction(const fmbpc::ControlAction::ConstPtr& msg, const std::string& publisher);
   bool isOwn(const fmbpc::ControlAction& msg, const std::string& publisher);
-  void send();
+  void send(bool repeated);
   void onTimer();
   void arm();
   void takeOver();
@@ -36,7 +40,8 @@ class OptimizerStandin : public Node {
   bool sent_{false};  // base_ went to the plant
   int unheard_{};     // times that it was sent and has not come back on the topic
   WallThrottle log_{1.0};
-  ros::Publisher action_, report_;
+  RingPublisher<fmbpc::ControlAction> action_;
+  RingPublisher<fmbpc::SolverReport> report_;
   ros::Subscriber subscriber_;
   ros::SteadyTimer timer_;
 };

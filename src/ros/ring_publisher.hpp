@@ -1,0 +1,64 @@
+// Publisher of what a member of the ring answers: one for all topics of which a record is made.
+#pragma once
+
+#include <ros/ros.h>
+
+#include <string>
+#include <utility>
+
+#include "fmbpc/loop/authority.hpp"
+#include "fmbpc/loop/first_answers.hpp"
+#include "ros/shared.hpp"
+#include "ros/topics.hpp"
+#include "ros/wall_throttle.hpp"
+
+namespace fpc {
+
+/// Tells the first answers of a node that came back again to those who connect in the seconds after
+/// it and only listen.
+template <typename Msg>
+class RingPublisher {
+ public:
+  /// `comeback` (of the node) must outlive this.
+  RingPublisher(ros::NodeHandle node, const char* topic, const Comeback& comeback,
+                Audience audience)
+      : comeback_(comeback),
+        audience_(std::move(audience)),
+        publisher_(node.advertise<Msg>(
+            topic, topics::kRingQueue,
+            [this](const ros::SingleSubscriberPublisher& listener) { catchUp(listener); })) {}
+  RingPublisher(const RingPublisher&) = delete;
+  RingPublisher& operator=(const RingPublisher&) = delete;
+
+  /// Whether anybody listens, or may in a moment.
+  bool wanted() const {
+    return publisher_.getNumSubscribers() > 0 || comeback_.lately(steadyNow());
+  }
+  /// `repeated`: it was published before.
+  void publish(Msg msg, bool repeated) {
+    const boost::shared_ptr<const Msg> message = shared(std::move(msg));
+    publisher_.publish(message);
+    if (!repeated) first_.add(message->run_id, message, comeback_, steadyNow());
+  }
+  const ros::Publisher& publisher() const { return publisher_; }
+
+ private:
+  void catchUp(const ros::SingleSubscriberPublisher& listener) const {
+    if (!comeback_.lately(steadyNow()) || !audience_.mayHearOld(listener.getSubscriberName()))
+      return;
+    for (const auto& message : first_.all()) listener.publish(*message);
+  }
+
+  const Comeback& comeback_;
+  Audience audience_;
+  FirstAnswers<boost::shared_ptr<const Msg>> first_;
+  ros::Publisher publisher_;  // last: its callbacks end before the rest does
+};
+
+/// Full names, for a node in the namespace of `node`.
+inline Audience audienceOf(const ros::NodeHandle& node, const Authority& authority) {
+  return {authority.publishersOf(topics::kMeasurement),
+          authority.publishersOf(topics::kControlAction), node.resolveName("loop_recorder")};
+}
+
+}  // namespace fpc
