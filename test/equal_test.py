@@ -66,6 +66,8 @@ CASES = {
 }
 CLAMPED = ("heated_tank", 360, ["setpoint.upper.T=55", "setpoint.commands=[{time_h: 1, name: T, mode: offset, value: 9}]"],
            "lockstep", 3600)
+MODELS_REFUSED = ("asp_case1", 100, ["sampling.duration_h=20", "model.identify.structure=asp_d.yaml", "model.identify.after=10",
+                                     "model.identify.online.every=40", "model.max_pole=0.9"], "lockstep", 3600)
 
 
 def environment():
@@ -136,6 +138,12 @@ class Equal(unittest.TestCase):
         remark, = self.compare_case(*CLAMPED)["remarks"]
         self.assertEqual((240, 120), (remark["samples"], remark["first"]))
         self.assertIn("beyond its limits, 0..55", remark["words"])
+
+    def test_models_that_could_not_be_had_are_remarked_in_both_ways(self):
+        remarks = self.compare_case(*MODELS_REFUSED)["remarks"]
+        said = [(r["first"], r["words"]) for r in remarks if "identification: " in r["words"] or "model.max_pole" in r["words"]]
+        self.assertEqual([10, 41, 81], [first for first, _ in said], remarks)  # from the next sample on they were to be used
+        self.assertIn("expected at least 10 rows", said[0][1])
 
     def test_types_without_a_case_run_their_first_loop(self):
         """A new type is compared by the loop that it brings."""

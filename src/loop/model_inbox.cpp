@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "loop/remark_lines.hpp"
+
 namespace fpc {
 namespace {
 
@@ -20,6 +22,10 @@ void ModelInbox::put(TsModel model, const StepHeader& made_from) {
 
 void ModelInbox::hear(const IdentifierWord& word) {
   if (word.header.run_id != run_id_) return;
+  if (!word.remark.empty()) {
+    if (remarks_.size() < kMostRemarks) remarks_.push_back(word);
+    return;
+  }
   word_ = word.header;
   if (!word.model) return;
   const bool used = used_ && same(*used_, word.header);  // it was faster than its word
@@ -52,6 +58,20 @@ std::vector<TsModel> ModelInbox::take(const StepHeader& next) {
     due.push_back(std::move(item.model));
   }
   items_ = std::move(later);
+  return due;
+}
+
+std::string ModelInbox::takeRemarks(const StepHeader& next) {
+  std::string due;
+  std::deque<IdentifierWord> later;
+  for (IdentifierWord& word : remarks_)
+    if (word.header.run_id != next.run_id)
+      continue;  // of a run that is over
+    else if (belongsBefore(word.header, next))
+      due = joinedLines(due, word.remark);
+    else
+      later.push_back(std::move(word));
+  remarks_ = std::move(later);
   return due;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/command_player.hpp"
@@ -13,6 +14,7 @@
 #include "fmbpc/loop/recorder_session.hpp"
 #include "fmbpc/loop/sample_remarks.hpp"
 #include "loop/operator_notes.hpp"
+#include "loop/remark_lines.hpp"
 
 namespace fpc {
 namespace {
@@ -58,7 +60,8 @@ class Ring {
     recorder_.receive(simulation_.state(), forced_.lines());
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    recorder_.receive(answer.tracking, remarks_.look(controller_));
+    recorder_.receive(answer.tracking,
+                      joinedLines(remarks_.look(controller_), std::exchange(missed_, {})));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimizer_ ? optimize(answer) : answer.base);
@@ -72,6 +75,7 @@ class Ring {
   RunRecord take() {
     recorder_.close();
     conclude(record_, recorder_.complete());
+    if (!missed_.empty()) notes_.failed(present_, inOneLine(missed_));  // at the very end
     for (RunRemark& note : notes_.remarks()) record_.remarks.push_back(std::move(note));
     const std::string unplayed = player_.unplayed();
     if (!unplayed.empty()) record_.remarks.push_back({unplayed, 0, 0});
@@ -126,7 +130,7 @@ class Ring {
     try {
       controller_.setModel(*model);
     } catch (const InputError& error) {
-      fail(error.what(), present_ + 1);  // from there on it was to be used
+      fail(error.what());
     }
   }
 
@@ -140,11 +144,11 @@ class Ring {
     }
   }
 
-  /// A model that could not be had, or used: told at once and kept.
-  void fail(const std::string& words) { fail(words, present_); }
-  void fail(const std::string& words, std::uint32_t step) {
-    notes_.failed(step, words);
-    tell(step, words);
+  /// A model that could not be had, or used: told at once, recorded with the next sample that is
+  /// answered, from which on it was to be used.
+  void fail(const std::string& words) {
+    missed_ = joinedLines(missed_, inOneLine(words));
+    tell(present_, words);
   }
 
   void tell(std::uint32_t step, const std::string& words) const {
@@ -164,7 +168,8 @@ class Ring {
   const LoopFile& loop_;
   const RunOptions& options_;
   std::string stuck_;
-  std::uint32_t present_{};                 // the sample that is answered
+  std::string missed_;       // what went wrong with models since the sample answered last, by line
+  std::uint32_t present_{};  // the sample that is answered
   std::unique_ptr<SimulatedProcess> made_;  // until it is the session's
   Simulation& simulation_;
   PlantSession plant_;

@@ -36,8 +36,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       prediction_(node, topics::kPredictiveAction, comeback_, audienceOf(node, authority())),
       tracking_(node, topics::kTracking, comeback_, audienceOf(node, authority())),
       effect_(node, topics::kSetpointEffect, comeback_, audienceOf(node, authority())),
-      listeners_({base_.publisher(), prediction_.publisher(), tracking_.publisher(),
-                  effect_.publisher()}),
+      listeners_(
+          {base_.publisher(), prediction_.publisher(), tracking_.publisher(), effect_.publisher()}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &ControllerNode::onModel, this)),
       measurement_subscriber_(subscribe(node, topics::kMeasurement, topics::kRingQueue,
@@ -204,7 +204,9 @@ void ControllerNode::answer(const Measurement& measurement) {
 
 void ControllerNode::writeRemark() {
   if (!session_.isManual()) clamped_.clear();
-  const std::string refused = joinedLines(takeRefusedCommands(), std::exchange(model_refused_, {}));
+  const std::string models = joinedLines(inbox_.takeRemarks(session_.answer().tracking.header),
+                                         std::exchange(model_refused_, {}));
+  const std::string refused = joinedLines(takeRefusedCommands(), models);
   remark_ = joinedLines(joinedLines(remarks_.lines(), clamped_), refused);
 }
 

@@ -7,6 +7,7 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/config/structure_file.hpp"
+#include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
 #include "ros/identify_messages.hpp"
 #include "ros/topics.hpp"
@@ -132,6 +133,7 @@ void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
     if (session_.refused() > refused)
       ROS_WARN("fuzzy_identifier: sample %u: the model learned online is not published: %s",
                measurement.header.step, session_.lastRefusal().c_str());
+    if (session_.refused() > refused) remark(session_.lastRefusal());
     if (due.model != nullptr) publish(*due.model, measurement.header);
     if (due.job) waiting_ = std::move(due.job);
     if (waiting_ && !worker_.busy()) begin(std::move(*std::exchange(waiting_, std::nullopt)), true);
@@ -193,6 +195,7 @@ void FuzzyIdentifier::onGoal(Server::GoalHandle goal) {
   } catch (const InputError& error) {
     result.message = error.what();
     ROS_WARN("fuzzy_identifier: goal rejected: %s", error.what());
+    remark(std::string("command refused: ") + error.what());
     goal.setRejected(result, error.what());
     return;
   }
@@ -242,8 +245,11 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
     result.message = "cancelled";
     return;
   }
+  failure_.clear();
   if (!outcome.error.empty()) {
     result.message = outcome.error;
+    failure_ = inOneLine("identification: " + outcome.error);
+    remark(failure_);
     return;
   }
   result = toResult(outcome.result);
@@ -258,37 +264,14 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   } catch (const InputError& error) {
     result.ok = 0;
     result.message = std::string("identified, but refused: ") + error.what();
+    failure_ = inOneLine(std::string("identification: ") + error.what());
+    remark(failure_);
   }
 }
 
-Health FuzzyIdentifier::health(double) const {
-  const std::string& problem = plant_.problem().empty() ? problem_ : plant_.problem();
-  if (!problem.empty()) return {LoopMode::kFailed, problem, {}};
-  if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {"plant_simulator"}};
-  if (worker_.busy()) return {LoopMode::kAutomatic, "identifying: " + progress_, {}};
-  if (!session_.lastRefusal().empty())
-    return {LoopMode::kDegraded, "refused: " + session_.lastRefusal(), {}};
-  if (session_.published() == 0) return {LoopMode::kAutomatic, "collecting, no model yet", {}};
-  return {LoopMode::kAutomatic, "published " + session_.model().name, {}};
-}
-
-void FuzzyIdentifier::report(Diagnostics::Status& status) const {
-  const CollectorCounts& counts = session_.collector().counts();
-  status.add("source", session_.model().source);
-  status.add("models published", session_.published());
-  status.add("models refused", session_.refused());
-  status.add("last identification", last_identification_);
-  status.add("samples collected", counts.samples);
-  status.add("samples missing", counts.missing);
-  status.add("samples incomplete", counts.incomplete);
-  status.add("runs", counts.runs);
-  status.add("rows in the window", session_.collector().size());
-  if (session_.learned() > 0) status.add("samples learned online", session_.learned());
-  if (session_.published() > 0)
-    for (const RuleRemark& remark : reportModel(session_.model()))
-      status.add(remark.output + ", rule " + std::to_string(remark.rule), remark.text);
-  addRefused(status, refused());
-  addRefused(status, authority().refused());
+// The record tells it with the next sample that the controller answers.
+void FuzzyIdentifier::remark(const std::string& words) {
+  identified_.publish(toMsg(IdentifierWord{session_.present(), false, inOneLine(words)}));
 }
 
 }  // namespace fpc

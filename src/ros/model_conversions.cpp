@@ -163,11 +163,12 @@ fmbpc::Identified toMsg(const IdentifierWord& word) {
   msg.run_id = word.header.run_id;
   msg.step = word.header.step;
   msg.model = word.model;
+  msg.remark = word.remark;
   return msg;
 }
 
 IdentifierWord fromMsg(const fmbpc::Identified& msg) {
-  return {{fromStamp(msg.header.stamp), msg.run_id, msg.step}, msg.model != 0};
+  return {{fromStamp(msg.header.stamp), msg.run_id, msg.step}, msg.model != 0, msg.remark};
 }
 
 TsModel fromMsg(const fmbpc::FuzzyModel& msg) {

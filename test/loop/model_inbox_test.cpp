@@ -74,5 +74,33 @@ TEST(ModelInbox, AnIdentifierThatCameBackLaterDoesNotStallTheLoop) {
   EXPECT_TRUE(inbox.complete(header(10)));
 }
 
+TEST(ModelInbox, ARemarkIsOfTheNextSampleAndIsNoWordThatTheSampleIsDoneWith) {
+  ModelInbox inbox(true);
+  inbox.announce(7);
+  inbox.hear({header(4), false, "one"});
+  inbox.hear({header(4), false, "two"});
+  EXPECT_FALSE(inbox.complete(header(5)));
+  inbox.hear({header(4), true});
+  EXPECT_FALSE(inbox.complete(header(5)));  // a model is owed
+  inbox.put(model("a"), header(4));
+  EXPECT_TRUE(inbox.complete(header(5)));
+  inbox.hear({header(5), false, "later"});  // the identifier may be ahead
+  EXPECT_EQ(inbox.takeRemarks(header(4)), "");
+  EXPECT_EQ(inbox.takeRemarks(header(5)), "one\ntwo");
+  EXPECT_EQ(inbox.takeRemarks(header(5)), "");
+  EXPECT_EQ(inbox.takeRemarks(header(6)), "later");
+}
+
+TEST(ModelInbox, RemarksOfOtherRunsAreNotToldAndOnlySoManyWait) {
+  ModelInbox inbox(false);
+  inbox.announce(7);
+  inbox.hear({header(4, 6), false, "a stray"});
+  inbox.hear({header(4), false, "before the reset"});
+  inbox.announce(8);
+  EXPECT_EQ(inbox.takeRemarks(header(0, 8)), "");
+  for (int k = 0; k < 100; ++k) inbox.hear({header(1, 8), false, "r"});
+  EXPECT_EQ(inbox.takeRemarks(header(1, 8)).size(), 2 * ModelInbox::kMostRemarks - 1);
+}
+
 }  // namespace loop_model_inbox_test
 }  // namespace fpc

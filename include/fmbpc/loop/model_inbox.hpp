@@ -2,9 +2,11 @@
 // used from sample k + 1 on; this keeps it so although messages of two topics have no order.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fmbpc/base/ring.hpp"
@@ -16,10 +18,15 @@ namespace fpc {
 struct IdentifierWord {
   StepHeader header;
   bool model{};  ///< it has handed over a model made from this sample
+  /// Not empty: this is no such word (one follows), but what went wrong at this sample, in one
+  /// line.
+  std::string remark{};
 };
 
 class ModelInbox {
  public:
+  static constexpr std::size_t kMostRemarks = 20;  ///< that wait; later ones are dropped
+
   /// `in_step`: no sample is answered before the identifier has done with the one before it
   /// (lockstep, and the loop identifies). Otherwise models are used when they come.
   explicit ModelInbox(bool in_step) : in_step_(in_step) {}
@@ -35,6 +42,8 @@ class ModelInbox {
   /// Models to be used before `next` is answered, in their order. They are taken out; `next` of run
   /// 0 stands for a controller that has answered nothing yet.
   std::vector<TsModel> take(const StepHeader& next);
+  /// Remarks of the samples before `next`, one a line; taken out.
+  std::string takeRemarks(const StepHeader& next);
 
  private:
   bool belongsBefore(const StepHeader& made_from, const StepHeader& next) const;
@@ -46,6 +55,7 @@ class ModelInbox {
   bool in_step_;
   std::uint64_t run_id_{};
   std::deque<Item> items_;
+  std::deque<IdentifierWord> remarks_;
   std::optional<StepHeader> word_;  // the latest
   std::optional<StepHeader> used_;  // the model taken last
   std::optional<StepHeader> owed_;  // a model that was announced and has not come

@@ -1,0 +1,37 @@
+// How an identifier over topics is, and what it counts.
+#include "ros/fuzzy_identifier.hpp"
+
+namespace fpc {
+
+Health FuzzyIdentifier::health(double) const {
+  const std::string& problem = plant_.problem().empty() ? problem_ : plant_.problem();
+  if (!problem.empty()) return {LoopMode::kFailed, problem, {}};
+  if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {"plant_simulator"}};
+  if (worker_.busy()) return {LoopMode::kAutomatic, "identifying: " + progress_, {}};
+  if (!failure_.empty()) return {LoopMode::kDegraded, failure_, {}};
+  if (!session_.lastRefusal().empty())
+    return {LoopMode::kDegraded, "refused: " + session_.lastRefusal(), {}};
+  if (session_.published() == 0) return {LoopMode::kAutomatic, "collecting, no model yet", {}};
+  return {LoopMode::kAutomatic, "published " + session_.model().name, {}};
+}
+
+void FuzzyIdentifier::report(Diagnostics::Status& status) const {
+  const CollectorCounts& counts = session_.collector().counts();
+  status.add("source", session_.model().source);
+  status.add("models published", session_.published());
+  status.add("models refused", session_.refused());
+  status.add("last identification", last_identification_);
+  status.add("samples collected", counts.samples);
+  status.add("samples missing", counts.missing);
+  status.add("samples incomplete", counts.incomplete);
+  status.add("runs", counts.runs);
+  status.add("rows in the window", session_.collector().size());
+  if (session_.learned() > 0) status.add("samples learned online", session_.learned());
+  if (session_.published() > 0)
+    for (const RuleRemark& remark : reportModel(session_.model()))
+      status.add(remark.output + ", rule " + std::to_string(remark.rule), remark.text);
+  addRefused(status, refused());
+  addRefused(status, authority().refused());
+}
+
+}  // namespace fpc
