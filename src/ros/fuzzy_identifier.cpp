@@ -133,7 +133,8 @@ void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
     if (session_.refused() > refused)
       ROS_WARN("fuzzy_identifier: sample %u: the model learned online is not published: %s",
                measurement.header.step, session_.lastRefusal().c_str());
-    if (session_.refused() > refused) remark(session_.lastRefusal());
+    if (due.model != nullptr) failure_.clear();
+    if (session_.refused() > refused) hadNoModel(session_.lastRefusal());
     if (due.model != nullptr) publish(*due.model, measurement.header);
     if (due.job) waiting_ = std::move(due.job);
     if (waiting_ && !worker_.busy()) begin(std::move(*std::exchange(waiting_, std::nullopt)), true);
@@ -245,11 +246,9 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
     result.message = "cancelled";
     return;
   }
-  failure_.clear();
   if (!outcome.error.empty()) {
     result.message = outcome.error;
-    failure_ = inOneLine("identification: " + outcome.error);
-    remark(failure_);
+    hadNoModel("identification: " + outcome.error);
     return;
   }
   result = toResult(outcome.result);
@@ -257,6 +256,7 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   result.message = model.name + " identified from " + std::to_string(result.rows) + " rows" +
                    (publish_ ? " and published" : ", not published");
   result.ok = 1;
+  failure_.clear();
   if (!publish_) return;
   try {
     publish(session_.accept(model), job_from_);
@@ -264,9 +264,15 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   } catch (const InputError& error) {
     result.ok = 0;
     result.message = std::string("identified, but refused: ") + error.what();
-    failure_ = inOneLine(std::string("identification: ") + error.what());
-    remark(failure_);
+    hadNoModel(std::string("identification: ") + error.what());
   }
+}
+
+// The loop goes on with the model it has: that is news for a while, no state.
+void FuzzyIdentifier::hadNoModel(const std::string& why) {
+  failure_ = inOneLine(why);
+  failed_s_ = steadyNow();
+  remark(failure_);
 }
 
 // The record tells it with the next sample that the controller answers.

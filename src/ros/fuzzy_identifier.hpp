@@ -54,6 +54,7 @@ class FuzzyIdentifier : public Node {
   void sayDone();
   void sayDone(const StepHeader& made_from);
   void write(const TsModel& model) const;
+  void hadNoModel(const std::string& why);
   void remark(const std::string& words);
   Health health(double now_s) const;
   void report(Diagnostics::Status& status) const;
@@ -66,7 +67,8 @@ class FuzzyIdentifier : public Node {
   std::vector<fmbpc::Measurement::ConstPtr>
       unannounced_;  // of runs that plant_info has not announced yet
   std::string problem_, last_identification_{"none"};
-  std::string failure_;  // of the latest identification
+  std::string failure_;  // of the latest model that was to be had
+  double failed_s_{};
   double introduced_s_{-1};
   bool kept_known_{false};  // what the plant kept, if anything
 

@@ -1,18 +1,25 @@
 // How an identifier over topics is, and what it counts.
 #include "ros/fuzzy_identifier.hpp"
 
-namespace fpc {
+#include <utility>
 
-Health FuzzyIdentifier::health(double) const {
+namespace fpc {
+namespace {
+
+constexpr double kNews = 5.0;  // [s] in which a model that could not be had degrades the identifier
+
+}  // namespace
+
+Health FuzzyIdentifier::health(double now_s) const {
   const std::string& problem = plant_.problem().empty() ? problem_ : plant_.problem();
   if (!problem.empty()) return {LoopMode::kFailed, problem, {}};
   if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {"plant_simulator"}};
   if (worker_.busy()) return {LoopMode::kAutomatic, "identifying: " + progress_, {}};
-  if (!failure_.empty()) return {LoopMode::kDegraded, failure_, {}};
-  if (!session_.lastRefusal().empty())
-    return {LoopMode::kDegraded, "refused: " + session_.lastRefusal(), {}};
-  if (session_.published() == 0) return {LoopMode::kAutomatic, "collecting, no model yet", {}};
-  return {LoopMode::kAutomatic, "published " + session_.model().name, {}};
+  std::string words =
+      session_.published() == 0 ? "collecting, no model yet" : "published " + session_.model().name;
+  if (!failure_.empty()) words += "; " + failure_;
+  const bool news = !failure_.empty() && now_s - failed_s_ < kNews;
+  return {news ? LoopMode::kDegraded : LoopMode::kAutomatic, std::move(words), {}};
 }
 
 void FuzzyIdentifier::report(Diagnostics::Status& status) const {
