@@ -36,8 +36,4 @@ class RecordRemarks {
   std::uint32_t step_{};
 };
 
-/// Offsets of the loop file that were cut because they would have taken a disturbance out of its
-/// range; nothing where the record of the disturbances is not at hand.
-std::vector<RunRemark> clampedIn(const LoopFile& loop);
-
 }  // namespace fpc

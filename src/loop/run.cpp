@@ -7,6 +7,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/command_player.hpp"
+#include "fmbpc/loop/cut_offsets.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/forced_inputs.hpp"
 #include "fmbpc/loop/identifier_session.hpp"
@@ -37,6 +38,7 @@ class Ring {
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
         remarks_(loop),
         forced_(simulation_.info()),
+        cut_(loop),
         targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
                  [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
@@ -57,7 +59,8 @@ class Ring {
     player_.advance(present_, targets_);
     recorder_.receive(now);
     forced_.look(now.header.step, simulation_.effects());
-    recorder_.receive(simulation_.state(), forced_.lines());
+    cut_.look(now, simulation_.effects());
+    recorder_.receive(simulation_.state(), joinedLines(forced_.lines(), cut_.lines()));
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
     recorder_.receive(answer.tracking,
@@ -181,6 +184,7 @@ class Ring {
   RecorderSession recorder_;
   SampleRemarks remarks_;
   ForcedInputs forced_;
+  CutOffsets cut_;
   OperatorNotes notes_;
   CommandTargets targets_;
 };

@@ -48,7 +48,6 @@ void countCells(const LoopFile& loop, Summary& summary) {
 void addUnplayed(const LoopFile& loop, Summary& summary) {
   for (RunRemark& remark : unplayedIn(loop)) summary.remarks.push_back(std::move(remark));
   for (RunRemark& remark : overruledIn(loop)) summary.remarks.push_back(std::move(remark));
-  for (RunRemark& remark : clampedIn(loop)) summary.remarks.push_back(std::move(remark));
 }
 
 /// What stands in a summary before the first sample.

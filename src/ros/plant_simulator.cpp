@@ -34,6 +34,7 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
       lines_(loop.tf.sample_lines),
       commands_(loop.ring.commands_per_s, kBurst),
       forced_(simulation_.info()),
+      cut_(loop),
       state_(node.advertise<fmbpc::PlantState>(topics::kPlantState, topics::kRingQueue)),
       effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect, topics::kRingQueue)),
       disturbance_subscriber_(subscribe(node, topics::kDisturbance, topics::kViewQueue,
@@ -53,16 +54,19 @@ std::vector<std::string> PlantSimulator::plantMissing() {
 }
 
 void PlantSimulator::afterSample() {
-  const std::string before = forced_.lines();
+  const std::string before = clamped();
   forced_.look(simulation_.measurement().header.step, simulation_.effects());
-  if (!forced_.lines().empty() && forced_.lines() != before)
-    ROS_WARN("plant_simulator: %s", inOneLine(forced_.lines()).c_str());
+  cut_.look(simulation_.measurement(), simulation_.effects());
+  const std::string now = clamped();
+  if (!now.empty() && now != before) ROS_WARN("plant_simulator: %s", inOneLine(now).c_str());
   publishState();
   for (const CommandEffect& effect : simulation_.effects()) effect_.publish(toMsg(effect));
 }
 
+std::string PlantSimulator::clamped() const { return joinedLines(forced_.lines(), cut_.lines()); }
+
 void PlantSimulator::publishState() {
-  std::string remark = joinedLines(forced_.lines(), takeRefusedCommands());
+  std::string remark = joinedLines(clamped(), takeRefusedCommands());
   if (state_.getNumSubscribers() == 0) return;
   fmbpc::PlantState state = toMsg(simulation_.state());
   state.remark = std::move(remark);
@@ -70,8 +74,9 @@ void PlantSimulator::publishState() {
 }
 
 Health PlantSimulator::plantHealth() const {
-  if (forced_.lines().empty()) return PlantNode::plantHealth();
-  return {LoopMode::kDegraded, inOneLine(forced_.lines()), {}};
+  const std::string words = clamped();
+  if (words.empty()) return PlantNode::plantHealth();
+  return {LoopMode::kDegraded, inOneLine(words), {}};
 }
 
 void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
@@ -87,6 +92,7 @@ void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
 void PlantSimulator::addValues(Diagnostics::Status& status) const {
   status.add("commands dropped: too many", commands_.dropped());
   status.add("samples with an input clamped", forced_.samples());
+  status.add("samples with an offset clamped", cut_.samples());
 }
 
 }  // namespace fpc

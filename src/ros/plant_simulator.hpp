@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/loop/cut_offsets.hpp"
 #include "fmbpc/loop/forced_inputs.hpp"
 #include "fmbpc/plant/simulation.hpp"
 #include "ros/plant_node.hpp"
@@ -27,6 +28,7 @@ class PlantSimulator : public PlantNode {
                  std::unique_ptr<SimulatedProcess> simulation);
   void onDisturbance(const fmbpc::Disturbance::ConstPtr& msg);
   void publishState();
+  std::string clamped() const;  ///< what people put where it cannot go, one a line
   std::vector<std::string> plantMissing() override;
   VectorRef shownDisturbances() const override { return simulation_.state().disturbances; }
   void afterSample() override;
@@ -37,6 +39,7 @@ class PlantSimulator : public PlantNode {
   SampleLines lines_;
   RateLimit commands_;
   ForcedInputs forced_;
+  CutOffsets cut_;
   ros::Publisher state_, effect_;
   ros::Subscriber disturbance_subscriber_;
 };

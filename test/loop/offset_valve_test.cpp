@@ -101,7 +101,7 @@ TEST(OffsetValve, SoftLimitsThatAreMissedAndOffsetsThatAreCutAreTold) {
       readLoop("heated_tank",
                {{"disturbance.commands", "[{time_h: 0.5, name: T_in, value: -20, mode: offset}]"}});
   const Summary summary = summarize(cut, runLoop(cut), 0.0);
-  const RunRemark* told = remarkWith(summary, "offset of T_in was asked beyond its range (-5)");
+  const RunRemark* told = remarkWith(summary, "offset of T_in was asked beyond its range, ");
   ASSERT_NE(told, nullptr);
   EXPECT_EQ(told->first, 60U);
   EXPECT_EQ(told->samples, 300U);
