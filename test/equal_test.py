@@ -64,7 +64,8 @@ CASES = {
                         "lockstep", 3600),
     "plugin": ("two_tanks_outflow", 360, [], "lockstep", 3600),
 }
-CLAMPED = ("heated_tank", 360, ["setpoint.upper.T=55", "setpoint.commands=[{time_h: 1, name: T, mode: offset, value: 9}]"],
+CLAMPED = ("heated_tank", 360, ["setpoint.upper.T=55", "setpoint.commands=[{time_h: 1, name: T, mode: offset, value: 9}]",
+                                "disturbance.commands=[{time_h: 0.5, name: T_in, mode: offset, value: -20}]"],
            "lockstep", 3600)
 MODELS_REFUSED = ("asp_case1", 100, ["sampling.duration_h=20", "model.identify.structure=asp_d.yaml", "model.identify.after=10",
                                      "model.identify.online.every=40", "model.max_pole=0.9"], "lockstep", 3600)
@@ -134,8 +135,10 @@ class Equal(unittest.TestCase):
         self.assertEqual(len(there), len(here))
         print(f"realtime: {same - 1} of {steps + 1} rows compared, {len(late)} actions too late")
 
-    def test_a_setpoint_clamped_is_remarked_in_both_ways(self):
-        remark, = self.compare_case(*CLAMPED)["remarks"]
+    def test_a_setpoint_and_an_offset_clamped_are_remarked_in_both_ways(self):
+        offset, remark = self.compare_case(*CLAMPED)["remarks"]
+        self.assertEqual((300, 60), (offset["samples"], offset["first"]))
+        self.assertIn("an offset of T_in was asked beyond its range, 0..40", offset["words"])
         self.assertEqual((240, 120), (remark["samples"], remark["first"]))
         self.assertIn("beyond its limits, 0..55", remark["words"])
 
