@@ -64,8 +64,9 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
           withoutTimer(private_node), topics::kIdentify,
           [this](Server::GoalHandle goal) { onGoal(std::move(goal)); },
           [this](Server::GoalHandle goal) { onCancel(std::move(goal)); }, false),
-      poll_timer_(node.createSteadyTimer(ros::WallDuration(kPollPeriod),
-                                         [this](const ros::SteadyTimerEvent&) { poll(); })),
+      poll_timer_(node.createSteadyTimer(
+          ros::WallDuration(kPollPeriod),
+          [this](const ros::SteadyTimerEvent&) { guarded("poll", [this] { poll(); }); })),
       health_(
           node, private_node, "model", loop.name, false,
           {[this](double now_s) { return health(now_s); }, [this] { return session_.present(); },
@@ -169,7 +170,8 @@ void FuzzyIdentifier::publish(const TsModel& matched, const StepHeader& made_fro
 
 void FuzzyIdentifier::write(const TsModel& model) const {
   if (out_.empty()) return;
-  std::filesystem::create_directories(out_);
+  std::error_code error;  // then the stream is not good either
+  std::filesystem::create_directories(out_, error);
   const auto file = std::filesystem::path(out_) / "model.yaml";
   std::ofstream stream(file);
   stream << writeModel(model);
@@ -193,7 +195,7 @@ void FuzzyIdentifier::onGoal(Server::GoalHandle goal) {
             "that section in the loop file: nothing is collected");
     begin(session_.job(structureOf(wish, loop_), wish.window, shareOf(wish, loop_)),
           wish.publish != 0);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     result.message = error.what();
     ROS_WARN("fuzzy_identifier: goal rejected: %s", error.what());
     remark(std::string("command refused: ") + error.what());

@@ -36,8 +36,9 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       plant_(loop.plant_info),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
       end_(node),
-      poll_timer_(node.createSteadyTimer(ros::WallDuration(kPollPeriod),
-                                         [this](const ros::SteadyTimerEvent&) { poll(); })),
+      poll_timer_(node.createSteadyTimer(
+          ros::WallDuration(kPollPeriod),
+          [this](const ros::SteadyTimerEvent&) { guarded("poll", [this] { poll(); }); })),
       health_(node, private_node, "recorder", loop.name, false,
               {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },
                [this](Diagnostics::Status& status) { report(status); }}) {
@@ -192,7 +193,7 @@ bool LoopRecorder::tryWrite() {
     written_ = true;
     trouble_ = troubleOf(summary);
     ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, summary.wall_s);
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     problem_ = error.what();
     return false;
   }

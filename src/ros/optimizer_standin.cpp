@@ -20,7 +20,8 @@ OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, s
       subscriber_(subscribe(node, topics::kControlAction, topics::kPairQueue,
                             &OptimizerStandin::onAction, this)),
       timer_(node.createSteadyTimer(
-          ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) { onTimer(); }, true,
+          ros::WallDuration(1.0),
+          [this](const ros::SteadyTimerEvent&) { guarded("standin", [this] { onTimer(); }); }, true,
           false)) {}
 
 void OptimizerStandin::asked(const ControllerAnswer& answer, bool repeated) {

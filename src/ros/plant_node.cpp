@@ -53,10 +53,12 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
       pause_(private_node.advertiseService(topics::kPause, &PlantNode::onPause, this)),
       step_(private_node.advertiseService(topics::kStep, &PlantNode::onStep, this)),
       reset_(private_node.advertiseService(topics::kReset, &PlantNode::onReset, this)),
-      poll_timer_(node.createSteadyTimer(ros::WallDuration(kPoll),
-                                         [this](const ros::SteadyTimerEvent&) { onPoll(); })),
+      poll_timer_(node.createSteadyTimer(
+          ros::WallDuration(kPoll),
+          [this](const ros::SteadyTimerEvent&) { guarded("poll", [this] { onPoll(); }); })),
       pace_timer_(node.createSteadyTimer(
-          ros::WallDuration(kPoll), [this](const ros::SteadyTimerEvent&) { tryAdvance(); }, true,
+          ros::WallDuration(kPoll),
+          [this](const ros::SteadyTimerEvent&) { guarded("pace", [this] { tryAdvance(); }); }, true,
           false)),
       health_(node, private_node, "plant", loop.name, true,
               {[this](double now_s) { return health(now_s); },
