@@ -96,7 +96,7 @@ void ClpOptimizer::publish() {
   const bool repeated = report.header.run_id == last_.run_id && report.header.step == last_.step;
   comeback_.answered(report.header, heard_s_);
   action_.publish(toMsg(session_.action()), repeated);
-  if (report_.wanted()) report_.publish(toMsg(report), repeated);
+  if (report_.needed()) report_.publish(toMsg(report), repeated);
   if (repeated) return;
   last_ = report.header;
   for (Eigen::Index i = 0; i < report.perturbation.size(); ++i)

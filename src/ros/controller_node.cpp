@@ -212,7 +212,7 @@ void ControllerNode::writeRemark() {
 
 void ControllerNode::publish(bool repeated) {
   const ControllerAnswer& answer = session_.answer();
-  if (answer.has_prediction && prediction_.wanted())
+  if (answer.has_prediction && prediction_.needed())
     prediction_.publish(toMsg(answer.prediction), repeated);
   if (answer.has_action) base_.publish(toMsg(answer.base), repeated);
   if (standin_) standin_->asked(answer, repeated);
@@ -228,7 +228,7 @@ void ControllerNode::publish(bool repeated) {
 }
 
 void ControllerNode::publishTracking(bool repeated) {
-  if (!tracking_.wanted()) return;
+  if (!tracking_.needed()) return;
   fmbpc::Tracking tracking = toMsg(session_.answer().tracking);
   tracking.remark = remark_;
   tracking_.publish(std::move(tracking), repeated);

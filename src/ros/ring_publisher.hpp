@@ -31,7 +31,7 @@ class RingPublisher {
   RingPublisher& operator=(const RingPublisher&) = delete;
 
   /// Whether anybody listens, or may in a moment.
-  bool wanted() const {
+  bool needed() const {
     return publisher_.getNumSubscribers() > 0 || comeback_.lately(steadyNow());
   }
   /// `repeated`: it was published before.
