@@ -1,5 +1,6 @@
 #include "ros/clp_optimizer.hpp"
 
+#include "fmbpc/base/same_sample.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
 #include "ros/shared.hpp"
@@ -96,7 +97,7 @@ void ClpOptimizer::publish() {
   const SolverReport& report = session_.report();
   action_.publish(shared(toMsg(session_.action())));
   if (report_.getNumSubscribers() > 0) report_.publish(shared(toMsg(report)));
-  if (report.header.run_id == last_.run_id && report.header.step == last_.step) return;
+  if (isSameSample(report.header, last_)) return;
   last_ = report.header;
   for (Eigen::Index i = 0; i < report.perturbation.size(); ++i)
     signals_.publish(static_cast<std::size_t>(i), report.header.time_ns, report.perturbation[i]);
