@@ -1,11 +1,9 @@
 #include "fmbpc/loop/report.hpp"
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
+#include "base/files.hpp"
 #include "base/ordered_json.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/run_summary.hpp"
 #include "fmbpc/loop/trajectory.hpp"
 
@@ -143,22 +141,16 @@ CsvTable trajectoryOf(const LoopFile& loop, const RunRecord& record) {
 }
 
 void writeSummary(const Summary& summary, const std::string& file) {
-  std::ofstream stream(file);
-  stream << toJson(summary) << "\n";
-  stream.close();
-  require(!stream.fail(), file, "a writable file");
+  writeText(toJson(summary) + "\n", file);
 }
 
 void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
               const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  require(!error, folder, "a folder that can be made (" + error.message() + ")");
-  TrajectoryFile file(loop, layoutOf(record),
-                      (std::filesystem::path(folder) / "trajectory.csv").string());
+  makeFolder(folder);
+  TrajectoryFile file(loop, layoutOf(record), inFolder(folder, "trajectory.csv"));
   for (const SampleRecord& sample : record.samples) file.add(sample);
   file.close();
-  writeSummary(summary, (std::filesystem::path(folder) / "summary.json").string());
+  writeSummary(summary, inFolder(folder, "summary.json"));
 }
 
 }  // namespace fpc
