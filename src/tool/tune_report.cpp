@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "base/files.hpp"
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
@@ -73,8 +74,6 @@ std::string ownText(const TuningParameter& parameter, double own) {
 }
 
 }  // namespace
-
-Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json toJson(const TuningObjective& objective, const TunedLoop& tuned) {
   const TuneResult& result = tuned.result;
