@@ -3,12 +3,12 @@
 _fmbpc_env() {
   local top=$1 built
   if [ ! -e "$top/devel/setup.bash" ]; then
-    echo "fmbpc is not built yet: run $top/scripts/install && $top/scripts/build first" >&2
+    echo "fmbpc is not built yet: run '$top/scripts/install' && '$top/scripts/build' first" >&2
     return 1
   fi
   built=$(sed -n 's/^: \${_CATKIN_SETUP_DIR:=\(.*\)}$/\1/p' "$top/devel/setup.sh")
   if [ "$(readlink -f "$built")" != "$(readlink -f "$top/devel")" ]; then
-    echo "this tree was built elsewhere and moved here: remove $top/build and $top/devel, then run $top/scripts/build" >&2
+    echo "this tree was built elsewhere and moved here: remove '$top/build' and '$top/devel', then run '$top/scripts/build'" >&2
     return 1
   fi
   local strict=

@@ -1,4 +1,4 @@
-# Completion of `fmbpc` in bash: commands, options, names of loops, studies, tunings, models and structures; else files.
+# Completion of `fmbpc` in bash: commands, options and the words that they take, names of loops, studies, tunings, models and structures; else files.
 # scripts/env.sh sources it; installed under share/bash-completion/completions it is found without a line in ~/.bashrc.
 
 _fmbpc_names() { # names of config/KIND
@@ -10,7 +10,16 @@ _fmbpc_names() { # names of config/KIND
   done | sed 's/\.yaml$//' | sort -u
 }
 
+_fmbpc_values() { # TOOL COMMAND OPTION: the words of an option's value, as its help lists them; fails if it takes none
+  local line
+  line=$("$1" "$2" --help 2>/dev/null | sed -nE "s/^ *(-[a-z], *)?$3 +(TEXT|INT|UINT|FLOAT)/\\2/p" | head -n 1)
+  [ -n "$line" ] || return 1
+  sed -nE 's/^[^ ]*\{([a-z_,]*)\}.*/\1/p; s/^TEXT +([a-z]+(, [a-z]+)+)( \(.*)?$/\1/p' <<<"$line" | tr -d ' ' | tr ',' '\n'
+}
+
 _fmbpc() {
+  local before=${COMP_WORDS[COMP_CWORD - 1]} # --option VALUE and --option=VALUE
+  if [ "$before" = "=" ]; then before=${COMP_WORDS[COMP_CWORD - 2]}; fi
   local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]:-} tool=${COMP_WORDS[0]} words
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
@@ -18,8 +27,11 @@ _fmbpc() {
     words="$words --help --version"
   elif [ "${word#-}" != "$word" ]; then
     words=$("$tool" "$command" --help 2>/dev/null | grep -oE -- '--[a-z-]+' | sort -u)
+  elif [ "${before#--}" != "$before" ] && words=$(_fmbpc_values "$tool" "$command" "$before"); then
+    command=
   else
     case $command in
+      replay) [ "$COMP_CWORD" -eq 2 ] || words=$("$tool" loops --names 2>/dev/null) ;;
       run | resolve | evaluate) words=$("$tool" loops --names 2>/dev/null) ;;
       stability) words="$("$tool" loops --names 2>/dev/null) $(_fmbpc_names model)" ;;
       study) words="$("$tool" loops --names 2>/dev/null) $(_fmbpc_names study)" ;;

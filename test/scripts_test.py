@@ -74,12 +74,18 @@ class Scripts(unittest.TestCase):
         lines = """
         . %s/fmbpc_completion.bash
         fmbpc() { case "$1" in loops) printf 'asp_case1\\nasp_case2\\n' ;; --help) printf 'Subcommands:\\n  run  x\\n  resolve  x\\n' ;;
-          run) printf -- '  --out TEXT\\n  --json\\n' ;; esac; }
+          run) printf -- '  --out TEXT\\n  --json\\n' ;;
+          identify) printf -- '  -k, --kind TEXT:{best,linear}=best\\n  --blocks INT=4\\n  --json  all, as, one\\n' ;;
+          tune) printf -- '  --method TEXT   apso, pso, de (default: the other)\\n' ;; esac; }
         try() { COMP_WORDS=(fmbpc "$@"); COMP_CWORD=$#; _fmbpc; echo "${COMPREPLY[*]}"; }
         cd /; try r; try run asp_case1; try run --o; try resolve asp
+        try identify --kind l; try tune --method ''; try tune --method = ap; try identify --blocks ''; try resolve --json ''
+        try replay ''; try replay x.bag asp_; try run --json asp_case1
         """ % SCRIPTS
         done = subprocess.run(["bash", "-c", lines], capture_output=True, text=True, timeout=60, check=True)
-        self.assertEqual(done.stdout.split("\n")[:4], ["run resolve", "asp_case1", "--out", "asp_case1 asp_case2"],
+        both = "asp_case1 asp_case2"
+        self.assertEqual(done.stdout.splitlines(), ["run resolve", "asp_case1", "--out", both,
+                                                    "linear", "apso pso de", "apso", "", both, "", both, "asp_case1"],
                          done.stdout + done.stderr)
 
 

@@ -24,6 +24,12 @@ const std::map<std::string, char>& separators() {
   return words;
 }
 
+const std::map<std::string, char>& decimals() {
+  static const std::map<std::string, char> words = {
+      {".", '.'}, {",", ','}, {"point", '.'}, {"comma", ','}};
+  return words;
+}
+
 std::string wordOf(char separator) {
   for (const auto& [word, c] : separators())
     if (c == separator && word.size() > 1) return word;
@@ -157,9 +163,9 @@ char separatorOf(const std::string& word) {
 }
 
 char decimalOf(const std::string& word) {
-  if (word == "." || word == "point") return '.';
-  require(word == "," || word == "comma", "decimal", "point or comma, got '" + word + "'");
-  return ',';
+  const auto found = decimals().find(word);
+  require(found != decimals().end(), "decimal", "point or comma, got '" + word + "'");
+  return found->second;
 }
 
 void CsvFormat::validate() const {

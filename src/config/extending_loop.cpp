@@ -3,9 +3,9 @@
 #include <filesystem>
 #include <sstream>
 
+#include "base/split.hpp"
 #include "base/yaml_load.hpp"
 #include "config/merge.hpp"
-#include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
@@ -20,13 +20,6 @@ YAML::Node childOf(const YAML::Node& node, const std::string& part) {
   }
   if (!node.IsMap()) return YAML::Node(YAML::NodeType::Undefined);
   return node[part];
-}
-
-std::vector<std::string> partsOf(const std::string& path) {
-  std::vector<std::string> parts;
-  std::stringstream stream(path);
-  for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
-  return parts;
 }
 
 /// Copies what stands at the path, and no more than the mappings that lead to it.
@@ -53,7 +46,7 @@ std::string extendingLoop(const std::string& name_or_path, const Overrides& over
   YAML::Node root(YAML::NodeType::Map);
   root["extends"] = name_or_path == std::filesystem::path(file).stem() ? name_or_path : file;
   root["title"] = title;
-  for (const auto& [path, value] : overrides) copyPath(merged.root, root, partsOf(path), 0);
+  for (const auto& [path, value] : overrides) copyPath(merged.root, root, split(path, '.'), 0);
   std::string text;
   std::stringstream lines(comment);
   for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
@@ -64,7 +57,7 @@ std::string extendingLoop(const std::string& name_or_path, const Overrides& over
 
 std::string scalarOf(const std::string& resolved, const std::string& path) {
   YAML::Node node = loadYaml(resolved, "loop");
-  for (const auto& part : partsOf(path)) {
+  for (const auto& part : split(path, '.')) {
     const YAML::Node child = childOf(node, part);
     if (!child.IsDefined()) return "";
     node.reset(child);

@@ -1,5 +1,6 @@
 #include "fmbpc/config/identified_file.hpp"
 
+#include "base/list_of.hpp"
 #include "config/model_file_parts.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/model_file.hpp"
@@ -8,10 +9,6 @@ namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-std::vector<double> listOf(const Eigen::Ref<const Vector>& values) {
-  return {values.data(), values.data() + values.size()};
-}
 
 void write(YAML::Emitter& out, const std::string& key, const std::vector<double>& values) {
   out << YAML::Key << key << YAML::Value;

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "base/split.hpp"
 #include "base/yaml_load.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -183,13 +184,6 @@ void setAt(YAML::Node node, const std::vector<std::string>& parts, std::size_t i
   origins[path] = {"", 0};
 }
 
-std::vector<std::string> split(const std::string& path) {
-  std::vector<std::string> parts;
-  std::stringstream stream(path);
-  for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
-  return parts;
-}
-
 }  // namespace
 
 std::string MergedLoop::whereIs(const std::string& path) const {
@@ -212,7 +206,7 @@ MergedLoop mergeLoop(const std::string& file) { return mergeChain(file, {}); }
 
 void applyOverrides(MergedLoop& loop, const Overrides& overrides) {
   for (const auto& [path, text] : overrides) {
-    const auto parts = split(path);
+    const auto parts = split(path, '.');
     require(!parts.empty() && std::count(parts.begin(), parts.end(), "") == 0, "--set " + path,
             "path=value");
     require(parts.front() != "extends", "--set extends", "a key of a section");

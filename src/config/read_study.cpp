@@ -6,6 +6,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/split.hpp"
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "config/read_scenarios.hpp"
@@ -17,13 +18,6 @@ namespace fpc {
 namespace {
 
 constexpr std::size_t kMostSeeds = 100000;
-
-std::vector<std::string> split(const std::string& text, char at) {
-  std::vector<std::string> parts;
-  std::stringstream stream(text);
-  for (std::string part; std::getline(stream, part, at);) parts.push_back(part);
-  return parts;
-}
 
 std::uint64_t wholeNumber(const std::string& text, const std::string& where) {
   const bool digits = !text.empty() && text.size() < 19 &&

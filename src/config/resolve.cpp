@@ -7,6 +7,7 @@
 #include "config/merge.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
 #include "fmbpc/config/plugins.hpp"
@@ -81,7 +82,8 @@ void eachFile(const MergedLoop& loop, Use use) {
   use({"model", "file"}, "model");
   use({"model", "identify", "structure"}, "structure");
   const YAML::Node source = scalarAt(loop.root, {"disturbance", "source"});
-  if (!source.IsDefined() || !source.IsScalar() || source.Scalar() != "csv") return;
+  const std::string csv = wordOf(DisturbanceSource::kCsv);
+  if (!source.IsDefined() || !source.IsScalar() || source.Scalar() != csv) return;
   use({"disturbance", "csv", "file"}, "data");
   use({"disturbance", "csv", "next", "file"}, "data");
 }

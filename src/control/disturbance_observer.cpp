@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -17,11 +18,8 @@ constexpr double kLeastNoise = 1e-6;  // of the variance of d's change: keeps S 
 }  // namespace
 
 void ObserverParams::validate(Index n_y) const {
-  require(noise_std.size() == n_y && noise_std.allFinite() && (noise_std.array() >= 0.0).all(),
-          "controller.observer.noise_std", std::to_string(n_y) + " finite numbers >= 0");
-  require(disturbance_std.size() == n_y && disturbance_std.allFinite() &&
-              (disturbance_std.array() > 0.0).all(),
-          "controller.observer.disturbance_std", std::to_string(n_y) + " finite numbers > 0");
+  requireNonNegative(noise_std, n_y, "controller.observer.noise_std");
+  requirePositive(disturbance_std, n_y, "controller.observer.disturbance_std");
   require(adaptation > 0.0 && adaptation < 1.0, "controller.observer.adaptation",
           "a number > 0 and < 1");
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -17,20 +18,14 @@ constexpr double kDifference = 1e-5;  // of a state, for the Jacobian
 }  // namespace
 
 void EstimatorParams::validate(Index n_y) const {
-  const auto numbers = [&](const Vector& v, const char* key, bool positive) {
-    const bool fine = v.size() == n_y && v.allFinite() &&
-                      (positive ? (v.array() > 0.0).all() : (v.array() >= 0.0).all());
-    require(fine, std::string("estimator.") + key,
-            std::to_string(n_y) + (positive ? " finite numbers > 0" : " finite numbers >= 0"));
-  };
   for (const Index i : outputs)
     require(i >= 0 && i < n_y, "estimator.outputs", "outputs of the plant");
   require(static_cast<Index>(outputs.size()) < n_y, "estimator.outputs",
           "at least one output that is measured");
   require(initial.size() == n_y && initial.allFinite(), "estimator.initial", "finite numbers");
-  numbers(initial_std, "initial_std", false);
-  numbers(noise_std, "noise_std", false);
-  numbers(process_std, "process_std", true);
+  requireNonNegative(initial_std, n_y, "estimator.initial_std");
+  requireNonNegative(noise_std, n_y, "estimator.noise_std");
+  requirePositive(process_std, n_y, "estimator.process_std");
 }
 
 OutputEstimator::OutputEstimator(const TsModel& model, EstimatorParams params)

@@ -17,6 +17,21 @@ IdentifierSession::IdentifierSession(const LoopFile& loop)
       start_(loop.model),
       collector_(loop.plant_info, static_cast<std::size_t>(loop.identify.window)) {}
 
+void IdentifierSession::announce(std::uint64_t run_id, double now_s) {
+  collector_.announce(run_id);
+  if (!announced_s_) announced_s_ = now_s;
+}
+
+bool IdentifierSession::hearKept(const StepHeader& made_from) {
+  kept_known_ = true;
+  return made_from.run_id != 0 && published_ == 0;
+}
+
+bool IdentifierSession::startDue(double now_s) const {
+  if (!has_start_ || published_ > 0 || !announced_s_) return false;
+  return kept_known_ || now_s - *announced_s_ > kKeptPatience;
+}
+
 const TsModel* IdentifierSession::start() {
   return has_start_ ? &use(matchToPlant(start_, plant_)) : nullptr;
 }
@@ -38,7 +53,7 @@ IdentifierSession::Due IdentifierSession::take(const Measurement& measurement) {
   Due due;
   due.arrival = collector_.take(measurement);
   if (!isNew(due.arrival)) return due;
-  due.model = learn(measurement, due.arrival);
+  learn(measurement, due);
   const auto after = static_cast<std::uint64_t>(params_.after);
   if (after == 0 || done_by_itself_ || collector_.counts().samples < after) return due;
   done_by_itself_ = true;
@@ -46,12 +61,12 @@ IdentifierSession::Due IdentifierSession::take(const Measurement& measurement) {
   return due;
 }
 
-const TsModel* IdentifierSession::learn(const Measurement& measurement, Arrival arrival) {
-  if (!learner_ || !learner_->take(measurement, arrival)) return nullptr;
+void IdentifierSession::learn(const Measurement& measurement, Due& due) {
+  if (!learner_ || !learner_->take(measurement, due.arrival)) return;
   try {
-    return &use(checked(learner_->model()));
-  } catch (const InputError&) {  // counted, and told by lastRefusal()
-    return nullptr;
+    due.model = &use(checked(learner_->model()));
+  } catch (const InputError& error) {  // counted, and told by lastRefusal()
+    due.refusal = error.what();
   }
 }
 

@@ -3,20 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "fmbpc/base/same_sample.hpp"
 #include "loop/remark_lines.hpp"
 
 namespace fpc {
-namespace {
-
-bool same(const StepHeader& a, const StepHeader& b) {
-  return a.run_id == b.run_id && a.step == b.step;
-}
-
-}  // namespace
 
 void ModelInbox::put(TsModel model, const StepHeader& made_from) {
-  if (owed_ && same(*owed_, made_from)) owed_.reset();
-  if (made_from.run_id != 0 && used_ && same(*used_, made_from)) return;
+  if (owed_ && isSameSample(*owed_, made_from)) owed_.reset();
+  if (made_from.run_id != 0 && used_ && isSameSample(*used_, made_from)) return;
   items_.push_back({made_from, std::move(model)});
 }
 
@@ -28,9 +22,9 @@ void ModelInbox::hear(const IdentifierWord& word) {
   }
   word_ = word.header;
   if (!word.model) return;
-  const bool used = used_ && same(*used_, word.header);  // it was faster than its word
+  const bool used = used_ && isSameSample(*used_, word.header);  // it was faster than its word
   const bool here = used || std::any_of(items_.begin(), items_.end(), [&](const Item& item) {
-                      return same(item.made_from, word.header);
+                      return isSameSample(item.made_from, word.header);
                     });
   if (!here) owed_ = word.header;
 }

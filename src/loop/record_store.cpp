@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/files.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/recover.hpp"
 
@@ -25,9 +26,7 @@ bool holdsSomething(const std::string& file) {
 RecordStore::RecordStore(const LoopFile& loop, std::string folder)
     : loop_(loop), folder_(std::move(folder)), layout_(recordLayout(loop)) {
   if (folder_.empty()) return;
-  std::error_code error;
-  fs::create_directories(folder_, error);
-  require(!error, folder_, "a folder that can be made (" + error.message() + ")");
+  makeFolder(folder_);
   const std::uint64_t left = journalRun(journalFile(), layout_);
   if (left == 0 && holdsSomething(journalFile()))
     journal_.lock(journalFile());  // nobody else may write from now on

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "base/files.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/journal_reader.hpp"
@@ -16,12 +17,6 @@ namespace fpc {
 namespace {
 
 namespace fs = std::filesystem;
-
-void makeFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  require(!error, folder.string(), "a folder that can be made (" + error.message() + ")");
-}
 
 /// Files that were written beside take the place of those of the run before.
 void moveIn(const fs::path& beside, const fs::path& folder) {

@@ -1,11 +1,8 @@
 #include "fmbpc/loop/report.hpp"
 
-#include <cmath>
-#include <filesystem>
-#include <fstream>
-
+#include "base/files.hpp"
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/run_summary.hpp"
 #include "fmbpc/loop/trajectory.hpp"
 
@@ -27,8 +24,6 @@ constexpr const char* kSourceNames[] = {"",     "base",   "constrained", "clippe
                                         "held", "manual", "fallback"};
 
 /// JSON has no infinity: an absent limit is null.
-Json limit(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json outputsOf(const Summary& summary) {
   Json outputs = Json::object();
   for (std::size_t i = 0; i < summary.outputs.size(); ++i) {
@@ -72,13 +67,13 @@ Json limitsOf(const Summary& summary) {
   Json inputs = Json::object(), outputs = Json::object();
   for (std::size_t i = 0; i < summary.input_names.size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
-    inputs[summary.input_names[i]] = {{"lower", limit(summary.limits.lower[k])},
-                                      {"upper", limit(summary.limits.upper[k])},
-                                      {"move", limit(summary.limits.move[k])}};
+    inputs[summary.input_names[i]] = {{"lower", numberOrNull(summary.limits.lower[k])},
+                                      {"upper", numberOrNull(summary.limits.upper[k])},
+                                      {"move", numberOrNull(summary.limits.move[k])}};
   }
   for (std::size_t i = 0; i < summary.output_names.size(); ++i)
-    outputs[summary.output_names[i]] = {{"lower", limit(summary.output_lower[i])},
-                                        {"upper", limit(summary.output_upper[i])}};
+    outputs[summary.output_names[i]] = {{"lower", numberOrNull(summary.output_lower[i])},
+                                        {"upper", numberOrNull(summary.output_upper[i])}};
   return {{"inputs", inputs}, {"outputs", outputs}};
 }
 
@@ -143,22 +138,16 @@ CsvTable trajectoryOf(const LoopFile& loop, const RunRecord& record) {
 }
 
 void writeSummary(const Summary& summary, const std::string& file) {
-  std::ofstream stream(file);
-  stream << toJson(summary) << "\n";
-  stream.close();
-  require(!stream.fail(), file, "a writable file");
+  writeText(toJson(summary) + "\n", file);
 }
 
 void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summary,
               const std::string& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  require(!error, folder, "a folder that can be made (" + error.message() + ")");
-  TrajectoryFile file(loop, layoutOf(record),
-                      (std::filesystem::path(folder) / "trajectory.csv").string());
+  makeFolder(folder);
+  TrajectoryFile file(loop, layoutOf(record), inFolder(folder, "trajectory.csv"));
   for (const SampleRecord& sample : record.samples) file.add(sample);
   file.close();
-  writeSummary(summary, (std::filesystem::path(folder) / "summary.json").string());
+  writeSummary(summary, inFolder(folder, "summary.json"));
 }
 
 }  // namespace fpc

@@ -103,9 +103,8 @@ class Ring {
   }
 
   void learn(const Measurement& now) {
-    const std::uint64_t refused = identifier_->refused();
     const IdentifierSession::Due due = identifier_->take(now);
-    if (identifier_->refused() > refused) fail(identifier_->lastRefusal());
+    if (!due.refusal.empty()) fail(due.refusal);
     use(due.model);
     if (due.job) identify(*due.job);
   }

@@ -1,12 +1,14 @@
 #include "fmbpc/plant/process.hpp"
 
+#include "fmbpc/base/same_sample.hpp"
+
 namespace fpc {
 
 void Process::take(VectorRef) {}
 
 bool Process::answers(const StepHeader& header) const {
   const Measurement& now = measurement();
-  return !now.final && header.run_id == now.header.run_id && header.step == now.header.step;
+  return !now.final && isSameSample(header, now.header);
 }
 
 }  // namespace fpc

@@ -1,5 +1,6 @@
 #include "ros/clp_optimizer.hpp"
 
+#include "fmbpc/base/same_sample.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
 #include "ros/topics.hpp"
@@ -93,7 +94,7 @@ void ClpOptimizer::onPrediction(const fmbpc::PredictiveAction::ConstPtr& msg) {
 
 void ClpOptimizer::publish() {
   const SolverReport& report = session_.report();
-  const bool repeated = report.header.run_id == last_.run_id && report.header.step == last_.step;
+  const bool repeated = isSameSample(report.header, last_);
   comeback_.answered(report.header, heard_s_);
   action_.publish(toMsg(session_.action()), repeated);
   if (report_.needed()) report_.publish(toMsg(report), repeated);

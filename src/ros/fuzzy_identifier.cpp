@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kPollPeriod = 0.05;  // [s] of wall time: feedback, end of a job
 constexpr std::size_t kMostUnannounced = 1000;
-constexpr double kKeptPatience = 1.0;  // [s] for a plant that keeps models
 
 /// A status is sent when something changes; the timer of actionlib, which goes by simulated time,
 /// stays off.
@@ -55,6 +54,7 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
       ready_(node, name()),
       plant_(loop.plant_info),
       session_(loop),
+      duty_(loop.ring.pace == Pace::kLockstep),
       model_publisher_(node.advertise<fmbpc::FuzzyModel>(topics::kFuzzyModel, 1, true)),
       identified_(node.advertise<fmbpc::Identified>(topics::kIdentified, topics::kPairQueue, true)),
       plant_subscriber_(
@@ -80,8 +80,7 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
 void FuzzyIdentifier::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
     if (!plant_.introduce(fromMsg(*msg))) return;
-    session_.announce(plant_.runId());
-    if (introduced_s_ < 0) introduced_s_ = steadyNow();
+    session_.announce(plant_.runId(), steadyNow());
     publishStartModel();
     announceIfReady();
     for (const auto& measurement : std::exchange(unannounced_, {})) onMeasurement(measurement);
@@ -91,8 +90,7 @@ void FuzzyIdentifier::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
 // The plant says at once whether it has kept a model of this run; without such a plant nobody does.
 void FuzzyIdentifier::onModelKept(const fmbpc::FuzzyModel::ConstPtr& msg) {
   guarded(topics::kModelKept, [&] {
-    kept_known_ = true;
-    if (msg->run_id != 0 && session_.published() == 0) {
+    if (session_.hearKept(headerOf(*msg))) {
       publish(session_.restore(fromMsg(*msg)), headerOf(*msg));
       ROS_INFO("fuzzy_identifier: model %s of this run restored", msg->name.c_str());
     }
@@ -102,8 +100,7 @@ void FuzzyIdentifier::onModelKept(const fmbpc::FuzzyModel::ConstPtr& msg) {
 }
 
 void FuzzyIdentifier::publishStartModel() {
-  const bool known = kept_known_ || steadyNow() - introduced_s_ > kKeptPatience;
-  if (!loop_.has_model || !plant_.open() || !known || session_.published() > 0) return;
+  if (!plant_.open() || !session_.startDue(steadyNow())) return;
   try {
     if (const TsModel* model = session_.start()) publish(*model, {});
     problem_.clear();
@@ -126,42 +123,29 @@ void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
       if (unannounced_.size() < kMostUnannounced) unannounced_.push_back(msg);
       return;
     }
-    const std::uint64_t refused = session_.refused();
     IdentifierSession::Due due = session_.take(measurement);
-    if (due.arrival == Arrival::kRepeat) return sayDone();
+    if (due.arrival == Arrival::kRepeat) return say(duty_.again());
     if (!isNew(due.arrival)) return;
-    done_ = made_model_ = false;
-    if (session_.refused() > refused)
+    duty_.take(measurement.header, std::move(due.job));
+    if (!due.refusal.empty())
       ROS_WARN("fuzzy_identifier: sample %u: the model learned online is not published: %s",
-               measurement.header.step, session_.lastRefusal().c_str());
+               measurement.header.step, due.refusal.c_str());
     if (due.model != nullptr) failure_.clear();
-    if (session_.refused() > refused) hadNoModel(session_.lastRefusal());
+    if (!due.refusal.empty()) hadNoModel(due.refusal);
     if (due.model != nullptr) publish(*due.model, measurement.header);
-    if (due.job) waiting_ = std::move(due.job);
-    if (waiting_ && !worker_.busy()) begin(std::move(*std::exchange(waiting_, std::nullopt)), true);
-    const bool wait = loop_.ring.pace == Pace::kLockstep && worker_.busy();
-    done_ = !wait;
-    sayDone();
+    if (auto job = duty_.next()) begin(std::move(*job), true);
+    say(duty_.settle());
   });
 }
 
 // In lockstep the next sample is answered only when this has been heard.
-void FuzzyIdentifier::sayDone() {
-  if (done_) identified_.publish(toMsg(IdentifierWord{session_.present(), made_model_}));
-}
-
-// The word of a job is that of the sample it was made from; another may have come meanwhile.
-void FuzzyIdentifier::sayDone(const StepHeader& made_from) {
-  done_ = true;
-  identified_.publish(toMsg(IdentifierWord{made_from, made_model_}));
-  if (made_from.step == session_.present().step) return;
-  made_model_ = false;
-  sayDone();
+void FuzzyIdentifier::say(const IdentifierDuty::Words& words) {
+  for (const IdentifierWord& word : words) identified_.publish(toMsg(word));
 }
 
 void FuzzyIdentifier::publish(const TsModel& matched, const StepHeader& made_from) {
   model_publisher_.publish(toMsg(matched, made_from));
-  made_model_ = made_model_ || made_from.run_id != 0;
+  duty_.handOver(made_from);
   if (session_.published() > 1) return;
   for (const RuleRemark& remark : reportModel(matched))
     ROS_INFO("fuzzy_identifier: %s, output %s, rule %zu: %s", matched.name.c_str(),
@@ -180,7 +164,7 @@ void FuzzyIdentifier::write(const TsModel& model) const {
 
 void FuzzyIdentifier::begin(IdentificationJob job, bool publish) {
   publish_ = publish;
-  job_from_ = session_.present();
+  duty_.begin();
   ROS_INFO("fuzzy_identifier: identifies %s from %zu rows", job.structure.name.c_str(),
            static_cast<std::size_t>(job.values.rows()));
   worker_.start(std::move(job));
@@ -229,7 +213,7 @@ void FuzzyIdentifier::finishJob(const IdentificationWorker::Outcome& outcome) {
   fmbpc::IdentifyModelResult result;
   conclude(outcome, result);
   last_identification_ = result.message;
-  sayDone(job_from_);
+  say(duty_.finish());
   ROS_INFO("fuzzy_identifier: %s", result.message.c_str());
   if (!has_goal_) return;
   has_goal_ = false;
@@ -261,7 +245,7 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   failure_.clear();
   if (!publish_) return;
   try {
-    publish(session_.accept(model), job_from_);
+    publish(session_.accept(model), duty_.jobFrom());
     write(session_.model());
   } catch (const InputError& error) {
     result.ok = 0;

@@ -10,12 +10,11 @@
 #include <fmbpc/PlantInfo.h>
 #include <ros/ros.h>
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/loop/identifier_duty.hpp"
 #include "fmbpc/loop/identifier_session.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/identification_worker.hpp"
@@ -51,8 +50,7 @@ class FuzzyIdentifier : public Node {
   void finishJob(const IdentificationWorker::Outcome& outcome);
   void conclude(const IdentificationWorker::Outcome& outcome, fmbpc::IdentifyModelResult& result);
   void publish(const TsModel& matched, const StepHeader& made_from);
-  void sayDone();
-  void sayDone(const StepHeader& made_from);
+  void say(const IdentifierDuty::Words& words);
   void write(const TsModel& model) const;
   void hadNoModel(const std::string& why);
   void remark(const std::string& words);
@@ -64,20 +62,16 @@ class FuzzyIdentifier : public Node {
   ReadyPublisher ready_;
   PlantGate plant_;
   IdentifierSession session_;
+  IdentifierDuty duty_;
   std::vector<fmbpc::Measurement::ConstPtr>
       unannounced_;  // of runs that plant_info has not announced yet
   std::string problem_, last_identification_{"none"};
   std::string failure_;  // of the latest model that was to be had
   double failed_s_{};
-  double introduced_s_{-1};
-  bool kept_known_{false};  // what the plant kept, if anything
 
   IdentificationWorker worker_;
-  std::optional<IdentificationJob> waiting_;  // until the worker is free
-  Server::GoalHandle goal_;                   // of the job at work, if a client asked for it
+  Server::GoalHandle goal_;  // of the job at work, if a client asked for it
   bool has_goal_{false}, publish_{false};
-  StepHeader job_from_;                   // the sample that the job under way is made from
-  bool done_{false}, made_model_{false};  // the present sample is done; it gave a model
   std::string progress_;
 
   ros::Publisher model_publisher_, identified_;

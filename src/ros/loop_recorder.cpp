@@ -13,12 +13,10 @@
 namespace fpc {
 namespace {
 
-constexpr double kPollPeriod = 0.05;   // [s] of wall time
-constexpr double kFinalPatience = 10;  // [s] for stragglers after the final measurement
-constexpr double kWritePatience = 10;  // [s] for room on the disk at the end
-constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
-constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
-constexpr int kPollsConnected = 3;     // a connection is complete at both ends a moment later
+constexpr double kPollPeriod = 0.05;  // [s] of wall time
+constexpr double kLastWords = 0.3;    // [s] between run_end and the end of this process
+constexpr double kHeard = 1.0;        // [s] in which a run under way is heard of
+constexpr int kPollsConnected = 3;    // a connection is complete at both ends a moment later
 
 }  // namespace
 
@@ -76,9 +74,8 @@ void LoopRecorder::poll() {
   if (!unusable_.empty()) return giveUp();
   store_->flush();
   if (written_) return;
-  const double now_s = steadyNow();
-  if (closed_s_ >= 0) return conclude();  // the disk had no room
-  if (final_seen_s_ < 0 || now_s - final_seen_s_ < kFinalPatience) return;
+  if (clock_.closed()) return conclude();  // the disk had no room
+  if (!clock_.stragglersLost(steadyNow())) return;
   problem_ = "the final sample came, but the record has gaps: " + join(session_.gaps());
   session_.close();
   conclude();
@@ -110,14 +107,14 @@ void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
 void LoopRecorder::beginRun(std::uint64_t run_id) {
   if (session_.running() && !written_) session_.close();
   written_ = false;
-  began_s_ = final_seen_s_ = closed_s_ = -1;
+  clock_.restart();
   problem_ = unusable_;
   const std::uint32_t here = store_->begin(run_id);
   if (!store_->problem().empty())
     ROS_ERROR("loop_recorder: %s (tried again)", store_->problem().c_str());
   if (!store_->remark().empty()) ROS_WARN("loop_recorder: %s", store_->remark().c_str());
   if (here > 0) {
-    began_s_ = std::min(store_->beganAt(), steadyNow());
+    clock_.restart(std::min(store_->beganAt(), steadyNow()));
     session_.resume(run_id, here);
     ROS_INFO("loop_recorder: goes on after the %u samples that are on disk", here);
   } else {
@@ -133,19 +130,16 @@ void LoopRecorder::record(const char* topic, Take take) {
     return;
   }
   guarded(topic, [&] {
-    if (began_s_ < 0) began_s_ = steadyNow();
+    clock_.hear(steadyNow());
     take();
-    if (!written_ && closed_s_ < 0 && session_.complete()) conclude();
+    if (!written_ && !clock_.closed() && session_.complete()) conclude();
   });
 }
 
 void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
   record(topics::kMeasurement, [&] {
     session_.receive(fromMsg(*msg));
-    if (!session_.finalSeen())
-      final_seen_s_ = -1;
-    else if (!written_ && final_seen_s_ < 0)
-      final_seen_s_ = steadyNow();
+    clock_.seeFinal(session_.finalSeen(), steadyNow());
   });
 }
 
@@ -171,9 +165,9 @@ void LoopRecorder::onReport(const fmbpc::SolverReport::ConstPtr& msg) {
 
 // Writes the files; a disk without room gets some time, the journal stays whatever happens.
 void LoopRecorder::conclude() {
-  if (closed_s_ < 0) closed_s_ = steadyNow();
+  clock_.close(steadyNow());
   if (!tryWrite()) {
-    if (steadyNow() - closed_s_ > kWritePatience) end();
+    if (clock_.writingLost(steadyNow())) end();
     return;
   }
   health_.look();
@@ -189,7 +183,7 @@ void LoopRecorder::end() {
 
 bool LoopRecorder::tryWrite() {
   try {
-    const Summary summary = store_->finish(steadyNow() - began_s_);
+    const Summary summary = store_->finish(clock_.elapsed(steadyNow()));
     written_ = true;
     trouble_ = troubleOf(summary);
     ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, summary.wall_s);

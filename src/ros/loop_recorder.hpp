@@ -15,6 +15,7 @@
 
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/record_store.hpp"
+#include "fmbpc/loop/recorder_clock.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/node.hpp"
@@ -70,7 +71,8 @@ class LoopRecorder : public Node {
   ReadyPublisher ready_;
   PlantGate plant_;
 
-  double began_s_{-1}, final_seen_s_{-1}, closed_s_{-1}, ending_s_{-1};
+  RecorderClock clock_;
+  double ending_s_{-1};
   bool written_{false};
   std::string problem_, trouble_;  // of the recorder; of the plant
   int polls_connected_{};

@@ -145,9 +145,7 @@ fmbpc::FuzzyModel toMsg(const TsModel& model) {
   return msg;
 }
 
-StepHeader headerOf(const fmbpc::FuzzyModel& msg) {
-  return {fromStamp(msg.header.stamp), msg.run_id, msg.step};
-}
+StepHeader headerOf(const fmbpc::FuzzyModel& msg) { return conversion::stepHeader(msg); }
 
 fmbpc::FuzzyModel toMsg(const TsModel& model, const StepHeader& made_from) {
   fmbpc::FuzzyModel msg = toMsg(model);
@@ -168,7 +166,7 @@ fmbpc::Identified toMsg(const IdentifierWord& word) {
 }
 
 IdentifierWord fromMsg(const fmbpc::Identified& msg) {
-  return {{fromStamp(msg.header.stamp), msg.run_id, msg.step}, msg.model != 0, msg.remark};
+  return {conversion::stepHeader(msg), msg.model != 0, msg.remark};
 }
 
 TsModel fromMsg(const fmbpc::FuzzyModel& msg) {

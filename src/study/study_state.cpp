@@ -1,9 +1,8 @@
 #include "study/study_state.hpp"
 
-#include <cmath>
 #include <fstream>
-#include <limits>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "study/replace_file.hpp"
@@ -13,24 +12,18 @@ namespace {
 
 using Json = OrderedJson;
 
-Json toJson(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
-}
-
 Json toJson(const RunJudgement& run) {
-  return {{"cost", toJson(run.cost)},   {"move", toJson(run.move)},
-          {"least", toJson(run.least)}, {"largest_move", toJson(run.largest_move)},
-          {"failures", run.failures},   {"trouble", run.trouble}};
+  return {{"cost", numberOrNull(run.cost)},   {"move", numberOrNull(run.move)},
+          {"least", numberOrNull(run.least)}, {"largest_move", numberOrNull(run.largest_move)},
+          {"failures", run.failures},         {"trouble", run.trouble}};
 }
 
 RunJudgement runOf(const Json& json) {
   RunJudgement run;
-  run.cost = number(json.at("cost"));
-  run.move = number(json.at("move"));
-  run.least = number(json.at("least"));
-  run.largest_move = number(json.at("largest_move"));
+  run.cost = numberOrInfinity(json.at("cost"));
+  run.move = numberOrInfinity(json.at("move"));
+  run.least = numberOrInfinity(json.at("least"));
+  run.largest_move = numberOrInfinity(json.at("largest_move"));
   run.failures = json.at("failures").get<std::vector<std::uint64_t>>();
   run.failures.resize(kRunFailures, 0);
   run.trouble = json.at("trouble");

@@ -1,9 +1,8 @@
 #include "study/tune_state.hpp"
 
-#include <cmath>
 #include <fstream>
-#include <limits>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
@@ -17,13 +16,8 @@ using Json = OrderedJson;
 
 Json numbers(const double* values, std::size_t n) {
   Json list = Json::array();
-  for (std::size_t i = 0; i < n; ++i)
-    list.push_back(std::isfinite(values[i]) ? Json(values[i]) : Json(nullptr));
+  for (std::size_t i = 0; i < n; ++i) list.push_back(numberOrNull(values[i]));
   return list;
-}
-
-double number(const Json& json) {
-  return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>();
 }
 
 TuningStep stepOf(const Json& json) {
@@ -31,9 +25,9 @@ TuningStep stepOf(const Json& json) {
   const Json& shares = json.at("shares");
   step.shares.resize(static_cast<Eigen::Index>(shares.size()));
   for (std::size_t i = 0; i < shares.size(); ++i)
-    step.shares[static_cast<Eigen::Index>(i)] = number(shares[i]);
-  for (const Json& cost : json.at("scenarios")) step.scenarios.push_back(number(cost));
-  step.cost = number(json.at("cost"));
+    step.shares[static_cast<Eigen::Index>(i)] = numberOrInfinity(shares[i]);
+  for (const Json& cost : json.at("scenarios")) step.scenarios.push_back(numberOrInfinity(cost));
+  step.cost = numberOrInfinity(json.at("cost"));
   step.failures = json.at("failures");
   return step;
 }
@@ -56,7 +50,7 @@ void writeState(const std::string& file, const std::string& identity, const Tune
   for (const auto& step : state.steps)
     steps.push_back(
         {{"shares", numbers(step.shares.data(), static_cast<std::size_t>(step.shares.size()))},
-         {"cost", numbers(&step.cost, 1).front()},
+         {"cost", numberOrNull(step.cost)},
          {"scenarios", numbers(step.scenarios.data(), step.scenarios.size())},
          {"failures", step.failures}});
   const Json json{{"tuning", identity}, {"seconds", state.seconds}, {"evaluations", steps}};

@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -184,9 +185,7 @@ TuningScore TuningObjective::scoreOf(const std::vector<Run>& runs, std::size_t f
 }
 
 std::string TuningObjective::textOf(const Run& run) {
-  return Json{{"cost", std::isfinite(run.cost) ? Json(run.cost) : Json(nullptr)},
-              {"trouble", run.trouble}}
-      .dump();
+  return Json{{"cost", numberOrNull(run.cost)}, {"trouble", run.trouble}}.dump();
 }
 
 TuningObjective::Run TuningObjective::runOf(const std::optional<std::string>& text) {

@@ -122,13 +122,13 @@ std::string searchTable(const AutoIdentification& found) {
 Json toJson(const AutoFigures& f) {
   if (f.blocks.empty()) return nullptr;
   Json blocks = Json::array();
-  for (const double b : f.blocks) blocks.push_back(finiteJson(b));
-  return {{"mean_of_blocks", finiteJson(f.mean)},
-          {"free_run", finiteJson(f.free_run)},
-          {"fit", finiteJson(f.fit)},
-          {"one_step", finiteJson(f.one_step)},
+  for (const double b : f.blocks) blocks.push_back(numberOrNull(b));
+  return {{"mean_of_blocks", numberOrNull(f.mean)},
+          {"free_run", numberOrNull(f.free_run)},
+          {"fit", numberOrNull(f.fit)},
+          {"one_step", numberOrNull(f.one_step)},
           {"blocks", blocks},
-          {"half_width", finiteJson(f.width)}};
+          {"half_width", numberOrNull(f.width)}};
 }
 
 /// What the judgements say before all figures.
@@ -165,8 +165,8 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
                               {"kind", name(t.kind)},
                               {"structure", t.structure},
                               {"parameters", t.parameters},
-                              {"free_run", finiteJson(t.free_run)},
-                              {"spread", finiteJson(t.spread)},
+                              {"free_run", numberOrNull(t.free_run)},
+                              {"spread", numberOrNull(t.spread)},
                               {"chosen", t.chosen}});
   json["warnings"] = firstWords(parts);
   json["remarks"] = remarks;

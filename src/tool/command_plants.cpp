@@ -1,8 +1,8 @@
 // fmbpc plants: what can be simulated.
-#include <cmath>
 #include <iomanip>
 #include <iostream>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/plant/plant.hpp"
 #include "tool/commands.hpp"
@@ -20,8 +20,6 @@ Groups groupsOf(const PlantDescription& plant) {
           {"parameters", &plant.parameters}};
 }
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
 Json toJson(const PlantDescription& plant) {
   Json json{{"name", plant.name}, {"title", plant.title}, {"time_unit_s", plant.time_unit_s}};
   json["outputs"] = plant.outputs;
@@ -31,8 +29,8 @@ Json toJson(const PlantDescription& plant) {
       json[group].push_back({{"name", q.name},
                              {"unit", q.unit},
                              {"nominal", q.nominal},
-                             {"lower", finite(q.lower)},
-                             {"upper", finite(q.upper)}});
+                             {"lower", numberOrNull(q.lower)},
+                             {"upper", numberOrNull(q.upper)}});
   }
   return json;
 }

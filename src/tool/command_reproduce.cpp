@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <set>
 
+#include "base/files.hpp"
 #include "base/near_names.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -21,7 +20,6 @@
 namespace fpc::tool {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = OrderedJson;
 
 /// `word` in `text` with neither letter, digit nor underscore beside it.
@@ -103,9 +101,7 @@ std::vector<Outcome> outcomesOf(const std::vector<Experiment>& some) {
 }
 
 void draw(const std::vector<Outcome>& outcomes, const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  require(!error, folder, "a folder that can be made (" + error.message() + ")");
+  makeFolder(folder);
   bool any = false;
   for (const auto& outcome : outcomes) {
     const Experiment& e = outcome.experiment;
@@ -114,11 +110,7 @@ void draw(const std::vector<Outcome>& outcomes, const std::string& folder) {
     Json json = toJson(pictureOf(e.name));
     json["title"] = e.paper + ", " + e.item + ": " + e.shows;
     json["rows"] = toJson(std::vector<Outcome>{outcome});
-    const std::string file = (fs::path(folder) / (e.name + ".json")).string();
-    std::ofstream stream(file);
-    stream << json.dump() << "\n";
-    stream.close();
-    require(!stream.fail(), file, "a writable file");
+    writeText(json.dump() + "\n", inFolder(folder, e.name + ".json"));
   }
   if (!any) return;  // tables and equations alone
   const PlotResult plot = drawReproduction(folder);

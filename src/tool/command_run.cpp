@@ -2,10 +2,10 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <set>
 
+#include "base/files.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/command_file.hpp"
 #include "fmbpc/config/model_file.hpp"
@@ -23,11 +23,8 @@ namespace fs = std::filesystem;
 /// Where the models that a run identifies go, as fuzzy_identifier writes them.
 void writeModelFile(const TsModel& model, const std::string& folder) {
   if (folder.empty()) return;
-  fs::create_directories(folder);
-  const std::string file = (fs::path(folder) / "model.yaml").string();
-  std::ofstream stream(file);
-  stream << writeModel(model);
-  require(stream.good(), file, "a writable file");
+  makeFolder(folder);
+  writeText(writeModel(model), inFolder(folder, "model.yaml"));
 }
 
 /// A loop that is there for a model: model.identify.after, and no setpoint is followed.

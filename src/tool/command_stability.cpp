@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <numeric>
 
+#include "base/files.hpp"
 #include "fmbpc/analysis/common_lyapunov.hpp"
 #include "fmbpc/analysis/horizon_advisor.hpp"
 #include "fmbpc/analysis/transfer.hpp"
@@ -21,8 +20,6 @@
 
 namespace fpc::tool {
 namespace {
-
-namespace fs = std::filesystem;
 
 class Stage {
  public:
@@ -273,12 +270,8 @@ int stability(const StabilityArguments& arguments) {
   const Json report = reportOf(readSubject(arguments.name, arguments.at), arguments);
   std::cout << (arguments.json ? report.dump(2) + "\n" : stabilityTable(report));
   if (arguments.out.empty()) return 0;
-  std::error_code error;
-  fs::create_directories(arguments.out, error);
-  std::ofstream file(fs::path(arguments.out) / "stability.json");
-  file << report.dump(1) << "\n";
-  require(static_cast<bool>(file), arguments.out, "a folder that can be written");
-  file.close();
+  makeFolder(arguments.out);
+  writeText(report.dump(1) + "\n", inFolder(arguments.out, "stability.json"));
   if (arguments.no_plot) return 0;
   const PlotResult plot = drawStability(arguments.out);
   if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "base/files.hpp"
 #include "base/near_names.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -17,10 +18,6 @@ namespace fpc::tool {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string inFolder(const StudyArguments& arguments, const char* name) {
-  return (fs::path(arguments.out) / name).string();
-}
 
 bool isStudy(const std::string& name) {
   const auto known = studyNames();
@@ -84,7 +81,7 @@ StudyResult runWithBar(const StudyPlan& plan, const StudyArguments& arguments) {
   StudyOptions options;
   options.threads = arguments.threads;
   options.pool = arguments.pool.get();
-  if (!arguments.out.empty()) options.state = inFolder(arguments, "state.json");
+  if (!arguments.out.empty()) options.state = inFolder(arguments.out, "state.json");
   options.resume = arguments.resume;
   options.stop = [] { return interruption().load(); };
   ProgressBar bar("study");
@@ -97,12 +94,8 @@ StudyResult runWithBar(const StudyPlan& plan, const StudyArguments& arguments) {
 
 void write(const StudyArguments& arguments, const StudyPlan& plan, const StudyResult& result,
            const StudyStatistics& statistics) {
-  const std::string file = inFolder(arguments, "study.json");
-  std::ofstream stream(file);
-  stream << toJson(plan, result, statistics).dump(2) << "\n";
-  stream.close();
-  require(!stream.fail(), file, "a writable file");
-  writeRuns(plan, result, inFolder(arguments, "runs.csv"));
+  writeText(toJson(plan, result, statistics).dump(2) + "\n", inFolder(arguments.out, "study.json"));
+  writeRuns(plan, result, inFolder(arguments.out, "runs.csv"));
   if (arguments.no_plot || !result.complete) return;
   const PlotResult plot = drawStudy(arguments.out);
   if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
@@ -131,11 +124,7 @@ int study(const StudyArguments& arguments) {
   layOver(arguments, study);
   const StudyPlan plan(std::move(study));
   const bool leads = !arguments.pool || arguments.pool->leads();
-  if (leads && !arguments.out.empty()) {
-    std::error_code error;
-    fs::create_directories(arguments.out, error);
-    require(!error, arguments.out, "a folder that can be made (" + error.message() + ")");
-  }
+  if (leads && !arguments.out.empty()) makeFolder(arguments.out);
   catchInterrupts();
   const StudyResult result = runWithBar(plan, arguments);
   if (!leads) return result.complete ? 0 : kInterrupted;

@@ -1,9 +1,8 @@
 // fmbpc tune LOOP TUNING: numbers of a loop file found by search.
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <iostream>
 
+#include "base/files.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
@@ -16,7 +15,6 @@
 namespace fpc::tool {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = OrderedJson;
 
 SearchParams searchOf(const TuneArguments& arguments, const TuningFile& tuning) {
@@ -30,24 +28,6 @@ SearchParams searchOf(const TuneArguments& arguments, const TuningFile& tuning) 
   }
   search.validate();
   return search;
-}
-
-std::string inFolder(const TuneArguments& arguments, const char* name) {
-  return (fs::path(arguments.out) / name).string();
-}
-
-void writeText(const std::string& text, const std::string& file) {
-  std::ofstream stream(file);
-  stream << text << "\n";
-  stream.close();
-  require(!stream.fail(), file, "a writable file");
-}
-
-void makeFolder(const std::string& folder) {
-  if (folder.empty()) return;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  require(!error, folder, "a folder that can be made (" + error.message() + ")");
 }
 
 void draw(const TuneArguments& arguments) {
@@ -80,7 +60,8 @@ int compare(const TuneArguments& arguments, const TuningObjective& objective,
   }
   const Json comparison = compareMethods(objective, options);
   if (!objective.pool().leads()) return comparison["complete"] ? 0 : kInterrupted;
-  if (!arguments.out.empty()) writeText(comparison.dump(), inFolder(arguments, "compare.json"));
+  if (!arguments.out.empty())
+    writeText(comparison.dump() + "\n", inFolder(arguments.out, "compare.json"));
   if (!comparison["complete"]) return interrupted(arguments);
   draw(arguments);
   if (arguments.json) {
@@ -94,7 +75,7 @@ int compare(const TuneArguments& arguments, const TuningObjective& objective,
 int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
              const SearchParams& search) {
   TuneOptions options;
-  if (!arguments.out.empty()) options.state = inFolder(arguments, "state.json");
+  if (!arguments.out.empty()) options.state = inFolder(arguments.out, "state.json");
   options.resume = arguments.resume;
   options.stop = [] { return interruption().load(); };
   TunedLoop tuned{arguments.loop, {}, {}};
@@ -121,8 +102,8 @@ int tuneOnce(const TuneArguments& arguments, const TuningObjective& objective,
   const Json json = toJson(objective, tuned);
   std::string file;
   if (!arguments.out.empty()) {
-    writeHistory(objective.tuning(), result, inFolder(arguments, "history.csv"));
-    writeText(json.dump(2), inFolder(arguments, "tuning.json"));
+    writeHistory(objective.tuning(), result, inFolder(arguments.out, "history.csv"));
+    writeText(json.dump(2) + "\n", inFolder(arguments.out, "tuning.json"));
     if (result.best >= 0 && nothingFound(objective, result).empty())
       file = writeTunedLoop(objective, tuned, arguments.out);
   }
@@ -146,7 +127,7 @@ int tune(const TuneArguments& arguments) {
   const auto pool =
       arguments.pool ? arguments.pool : std::make_shared<ThreadPool>(arguments.threads);
   const TuningObjective objective(arguments.loop, tuning, overrides, pool);
-  if (pool->leads()) makeFolder(arguments.out);
+  if (pool->leads() && !arguments.out.empty()) makeFolder(arguments.out);
   catchInterrupts();
   return arguments.compare ? compare(arguments, objective, search)
                            : tuneOnce(arguments, objective, search);

@@ -1,20 +1,14 @@
 // Numbers of a judgement as JSON: what does not exist is null.
 #pragma once
 
-#include <cmath>
-
-#include "base/ordered_json.hpp"
+#include "base/finite_json.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
 
 namespace fpc::tool {
 
-inline OrderedJson finiteJson(double value) {
-  return std::isfinite(value) ? OrderedJson(value) : OrderedJson(nullptr);
-}
-
 inline OrderedJson figuresJson(const FitFigures& figures) {
   const auto known = [&](double value) {
-    return figures.samples > 0 ? finiteJson(value) : OrderedJson(nullptr);
+    return figures.samples > 0 ? numberOrNull(value) : OrderedJson(nullptr);
   };
   return {{"rmse", known(figures.rmse)},
           {"mse", known(figures.mse)},

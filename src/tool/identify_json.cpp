@@ -9,7 +9,7 @@ namespace {
 
 using Json = OrderedJson;
 
-Json finite(double value) { return finiteJson(value); }
+Json finite(double value) { return numberOrNull(value); }
 Json toJson(const FitFigures& figures) { return figuresJson(figures); }
 
 /// <output>.{one_step, free_run, linear.{..}, residual} and linear.<output>.{one_step, free_run}.

@@ -56,7 +56,7 @@ Json toJson(const KindFigures& f) {
 Json intervalJson(const KindFigures& f) {
   const auto one = [](double width, double covered, double least) {
     return Json{{"half_width", width > 0.0 ? Json(width) : Json(nullptr)},
-                {"coverage", finiteJson(covered)},
+                {"coverage", numberOrNull(covered)},
                 {"least_by_chance", width > 0.0 ? Json(least) : Json(nullptr)}};
   };
   return {{"stated", kStated},
@@ -165,8 +165,8 @@ Json toJson(const RecordJudgement& part) {
       output[name(f.kind)] = toJson(f);
       if (f.kind == ModelKind::kLinear) linear[o.output] = toJson(f);
     }
-    output["residual"] = {{"bound", finiteJson(o.residual.bound)},
-                          {"outside", finiteJson(o.residual.outside)}};
+    output["residual"] = {{"bound", numberOrNull(o.residual.bound)},
+                          {"outside", numberOrNull(o.residual.outside)}};
     output["interval"] = intervalJson(best);
   }
   if (!linear.empty()) tree["linear"] = linear;

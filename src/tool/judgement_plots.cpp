@@ -1,10 +1,10 @@
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
+#include "base/files.hpp"
+#include "base/list_of.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/csv.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/plot.hpp"
 #include "tool/judgement.hpp"
 #include "tool/model_plots.hpp"
@@ -15,10 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Index;
 using Json = OrderedJson;
-
-std::vector<double> listOf(const Vector& values) {
-  return {values.data(), values.data() + values.size()};
-}
 
 Json correlationsOf(const RecordJudgement& part) {
   Json all = Json::object();
@@ -64,11 +60,10 @@ CsvTable predictionsOf(const IdentifiedModel& model, const RecordJudgement& part
 
 void plotJudgements(const IdentifiedModel& model, const std::vector<RecordJudgement>& parts,
                     Json json, const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  require(!error, folder, "a folder that can be made (" + error.message() + ")");
+  makeFolder(folder);
   const fs::path path(folder);
   json["memberships"] = membershipsJson(model.model);
+  std::error_code error;
   for (const char* title : {"identification", "validation"})
     fs::remove(path / (std::string(title) + ".csv"), error);  // of an earlier run
   json["rules"] = Json::object();
@@ -78,10 +73,8 @@ void plotJudgements(const IdentifiedModel& model, const std::vector<RecordJudgem
     json["correlations"][part.title] = correlationsOf(part);
     writeCsv(predictionsOf(model, part), (path / (part.title + ".csv")).string());
   }
-  std::ofstream stream(path / "report.json");
-  stream << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
-  stream.close();
-  require(!stream.fail(), (path / "report.json").string(), "a writable file");
+  writeText(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+            inFolder(folder, "report.json"));
   const PlotResult plot = drawModelPlots(folder);
   if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
 }

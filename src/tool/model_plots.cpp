@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 
+#include "base/files.hpp"
+#include "base/list_of.hpp"
 #include "base/ordered_json.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/plot.hpp"
 
 namespace fpc::tool {
@@ -49,10 +49,6 @@ Json membershipsOf(const TsModel& model, const OutputModel& submodel, std::size_
           {"projected", submodel.rules.front().multivariate.has_value()},
           {"z", z},
           {"degrees", degrees}};
-}
-
-std::vector<double> listOf(const Vector& values) {
-  return {values.data(), values.data() + values.size()};
 }
 
 Json correlationsOf(const JudgedRecord& judged) {
@@ -97,13 +93,6 @@ CsvTable predictions(const Identification& found, const DataSet& data) {
   return table;
 }
 
-void writeText(const std::string& text, const std::string& file) {
-  std::ofstream stream(file);
-  stream << text << "\n";
-  stream.close();
-  require(!stream.fail(), file, "a writable file");
-}
-
 }  // namespace
 
 Json membershipsJson(const TsModel& model) {
@@ -117,13 +106,12 @@ Json membershipsJson(const TsModel& model) {
 }
 
 void writeModelPlots(const IdentifyReport& report, const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  require(!error, folder, "a folder that can be made (" + error.message() + ")");
+  makeFolder(folder);
   const fs::path path(folder);
   Json json = Json::parse(toJson(report));
   const TsModel& model = report.found.model;
   json["memberships"] = membershipsJson(model);
+  std::error_code error;
   fs::remove(path / "validation.csv", error);  // of an earlier run
   for (const auto* judged :
        {&report.identification, report.validation ? &*report.validation : nullptr}) {
@@ -131,8 +119,8 @@ void writeModelPlots(const IdentifyReport& report, const std::string& folder) {
     json["correlations"][judged->title] = correlationsOf(*judged);
     writeCsv(predictions(report.found, judged->data), (path / (judged->title + ".csv")).string());
   }
-  writeText(json.dump(2, ' ', false, Json::error_handler_t::replace),
-            (path / "report.json").string());
+  writeText(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+            inFolder(folder, "report.json"));
   const PlotResult plot = drawModelPlots(folder);
   if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
 }

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"

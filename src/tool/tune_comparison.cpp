@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
@@ -14,11 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = OrderedJson;
 
-double numberOf(const Json& json) { return json.is_null() ? kInfinity : json.get<double>(); }
-
 std::vector<double> sorted(const Json& list) {
   std::vector<double> values;
-  for (const Json& value : list) values.push_back(numberOf(value));
+  for (const Json& value : list) values.push_back(numberOrInfinity(value));
   std::sort(values.begin(), values.end());
   return values;
 }
@@ -119,7 +118,7 @@ Json compareMethods(const TuningObjective& objective, const CompareOptions& opti
 std::string comparisonTable(const Json& comparison) {
   const bool has_held_out = comparison.contains("held_out_before");
   std::vector<std::vector<std::string>> rows{{"method", "median", "best", "worst", "held out"}};
-  const auto cell = [](const Json& value) { return shortText(numberOf(value)); };
+  const auto cell = [](const Json& value) { return shortText(numberOrInfinity(value)); };
   rows.push_back({"untouched", cell(comparison["before"]), "", "",
                   has_held_out ? cell(comparison["held_out_before"]) : "-"});
   for (const Json& method : comparison["methods"]) {

@@ -2,11 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
+#include "base/files.hpp"
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
@@ -74,8 +74,6 @@ std::string ownText(const TuningParameter& parameter, double own) {
 }
 
 }  // namespace
-
-Json numberOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json toJson(const TuningObjective& objective, const TunedLoop& tuned) {
   const TuneResult& result = tuned.result;
@@ -166,11 +164,8 @@ std::string writeTunedLoop(const TuningObjective& objective, const TunedLoop& tu
                shortText(tuned.held_out->cost);
   for (const auto& remark : remarksOf(objective, tuned)) comment += ".\n" + remark;
   const std::string title = readLoop(tuned.loop).report.title + ", tuned";
-  const std::string file = (fs::path(folder) / (stem + "_tuned.yaml")).string();
-  std::ofstream stream(file);
-  stream << extendingLoop(tuned.loop, objective.changes(best.shares), title, comment + ".");
-  stream.close();
-  require(!stream.fail(), file, "a writable file");
+  const std::string file = inFolder(folder, stem + "_tuned.yaml");
+  writeText(extendingLoop(tuned.loop, objective.changes(best.shares), title, comment + "."), file);
   return file;
 }
 

@@ -35,7 +35,6 @@ inline constexpr int kTunedWorse = 3;  ///< exit code of a tuning with such a ve
 std::vector<std::string> remarksOf(const TuningObjective& objective, const TunedLoop& tuned);
 
 /// Infinite numbers are null.
-OrderedJson numberOrNull(double value);
 OrderedJson toJson(const TuningObjective& objective, const TunedLoop& tuned);
 std::string toTable(const TuningObjective& objective, const TunedLoop& tuned);
 /// LOOP_tuned.yaml: extends the loop. Returns the file's name.

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <limits>
 
+#include "error_words.hpp"
 #include "fmbpc/base/csv_header.hpp"
 #include "fmbpc/base/input_error.hpp"
 
@@ -21,12 +22,7 @@ std::string fileWith(const std::string& text) {
 CsvTable tableOf(const std::string& text) { return readCsv(fileWith(text)); }
 
 std::string errorOf(const std::string& text) {
-  try {
-    tableOf(text);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
+  return test::thrownBy([&] { tableOf(text); });
 }
 
 TEST(Csv, ReadsNamesUnitsAndNumbers) {

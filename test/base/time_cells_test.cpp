@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "error_words.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -15,17 +16,11 @@ std::string errorOf(const std::vector<double>& cells) {
   CsvTable table{"r.csv", {"t"}, {""}, Matrix(static_cast<Eigen::Index>(cells.size()), 1)};
   for (std::size_t i = 0; i < cells.size(); ++i)
     table.values(static_cast<Eigen::Index>(i), 0) = cells[i];
-  try {
-    requirePlainTimes(table, 0);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "";
+  return test::thrownBy([&] { requirePlainTimes(table, 0); });
 }
 
-void expectWords(const std::string& error, const std::string& words) {
-  EXPECT_NE(error.find(words), std::string::npos) << error;
-}
+using test::expectWords;
+const std::string kNothing = "nothing was thrown";
 
 // As numbers of days these would lie 1 and 73 apart.
 TEST(TimeCells, DatesWithoutHyphensAreNoNumbers) {
@@ -42,13 +37,13 @@ TEST(TimeCells, MillisecondsSince1970AreInNoUnit) {
 }
 
 TEST(TimeCells, OtherNumbersAreTimes) {
-  EXPECT_EQ(errorOf({20250228, 20250229, 20250230}), "") << "no 29 February in 2025";
-  EXPECT_EQ(errorOf({20250228, 20250228.5, 20250301}), "");
-  EXPECT_EQ(errorOf({18991231, 19000101}), "") << "years from 1900 on";
-  EXPECT_EQ(errorOf({1740700800, 1740704400}), "") << "seconds since 1970";
-  EXPECT_EQ(errorOf({0, 720, 1440}), "");
-  EXPECT_EQ(errorOf({-1, 0, 1}), "");
-  EXPECT_EQ(errorOf({kNaN, 1}), "") << "told where it is read";
+  EXPECT_EQ(errorOf({20250228, 20250229, 20250230}), kNothing) << "no 29 February in 2025";
+  EXPECT_EQ(errorOf({20250228, 20250228.5, 20250301}), kNothing);
+  EXPECT_EQ(errorOf({18991231, 19000101}), kNothing) << "years from 1900 on";
+  EXPECT_EQ(errorOf({1740700800, 1740704400}), kNothing) << "seconds since 1970";
+  EXPECT_EQ(errorOf({0, 720, 1440}), kNothing);
+  EXPECT_EQ(errorOf({-1, 0, 1}), kNothing);
+  EXPECT_EQ(errorOf({kNaN, 1}), kNothing) << "told where it is read";
 }
 
 }  // namespace base_time_cells_test

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "error_words.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -14,18 +15,13 @@ YamlSection parsed(const std::string& text) { return YamlSection::parse(text, "l
 
 /// What reading `text` throws.
 std::string errorOf(const std::string& text, const std::function<void(YamlSection&)>& read) {
-  try {
+  return test::thrownBy([&] {
     YamlSection section = parsed(text);
     read(section);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
+  });
 }
 
-void expectWords(const std::string& error, const std::string& words) {
-  EXPECT_NE(error.find(words), std::string::npos) << error;
-}
+using test::expectWords;
 
 TEST(YamlSection, ReadsOverDefaults) {
   YamlSection section = parsed("a: 1e-6\nb: 7\nc: true\nd: word\n");

@@ -60,6 +60,48 @@ TEST(IdentifierSession, AModelThatIsUnstableWhereThePlantIsIsRefusedAndTheOldOne
   EXPECT_EQ(session.model().name, loop.model.name);
 }
 
+TEST(IdentifierSession, TheModelOfTheFileWaitsForWhatThePlantHasKept) {
+  const LoopFile loop = readLoop("asp_case1");
+  IdentifierSession session(loop);
+  EXPECT_FALSE(session.startDue(100.0));  // nobody has announced a run
+  session.announce(7, 100.0);
+  session.announce(7, 100.8);  // the first time counts
+  EXPECT_FALSE(session.startDue(100.9));
+  EXPECT_TRUE(session.startDue(101.1));  // a plant that keeps nothing says nothing
+  EXPECT_FALSE(session.hearKept({}));
+  EXPECT_TRUE(session.startDue(100.9));
+  session.start();
+  EXPECT_FALSE(session.startDue(200.0));
+  EXPECT_FALSE(session.hearKept({0, 7, 3}));  // there is one already
+
+  IdentifierSession back(loop);
+  back.announce(7, 100.0);
+  EXPECT_TRUE(back.hearKept({0, 7, 3}));
+  back.restore(loop.model);
+  EXPECT_FALSE(back.startDue(200.0));
+
+  IdentifierSession without(readLoop("asp_identify"));
+  without.announce(7, 100.0);
+  EXPECT_FALSE(without.startDue(200.0));
+}
+
+TEST(IdentifierSession, WhatWasLearnedAndIsNotHandedOverSaysWhy) {
+  LoopFile loop =
+      readLoop("asp_case1", {{"model.identify.online.every", "40"}, {"sampling.duration_h", "20"}});
+  LoopFile plain = loop;
+  plain.has_identify = false;
+  const RunRecord record = runLoop(plain);
+  loop.max_pole = 0.01;
+  IdentifierSession session(loop);
+  session.start();
+  for (std::size_t k = 0; k < record.samples.size(); ++k) {
+    const auto due = session.take(record.samples[k].measurement);
+    EXPECT_EQ(due.model, nullptr) << k;
+    EXPECT_EQ(due.refusal, k > 0 && k % 40 == 0 ? session.lastRefusal() : "") << k;
+  }
+  EXPECT_EQ(session.refused(), 2U);
+}
+
 TEST(Run, OnlineLearningChangesTheModelAtItsStatedSamples) {
   const Overrides learning{{"sampling.duration_h", "40"}, {"model.identify.online.every", "40"}};
   const Told plain = run(readLoop("asp_case1", {{"sampling.duration_h", "40"}}));

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "error_words.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/plant/disturbance.hpp"
 
@@ -37,17 +38,10 @@ std::vector<double> flows(const CsvDisturbanceParams& params, std::uint32_t samp
 }
 
 std::string errorOf(const CsvDisturbanceParams& params, std::uint32_t samples = 2) {
-  try {
-    readDisturbances(params, kNames, kNominal, 1800.0, samples);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
+  return test::thrownBy([&] { readDisturbances(params, kNames, kNominal, 1800.0, samples); });
 }
 
-void expectWords(const std::string& error, const std::string& words) {
-  EXPECT_NE(error.find(words), std::string::npos) << error;
-}
+using test::expectWords;
 
 using Values = std::vector<double>;
 const std::string kThreeHours = "t[h],q\n5,100\n6,200\n7,400\n";

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "error_words.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -16,12 +17,7 @@ PlantDescription twoParameters() {
 }
 
 std::string errorOf(const PlantParameters& parameters) {
-  try {
-    parameterValues(twoParameters(), parameters);
-  } catch (const InputError& e) {
-    return e.what();
-  }
-  return "nothing was thrown";
+  return test::thrownBy([&] { parameterValues(twoParameters(), parameters); });
 }
 
 TEST(Plant, ParametersAreReadOverTheirNominalValues) {

@@ -61,12 +61,23 @@ class LaunchFile(unittest.TestCase):
         self.assertEqual((True, 51, 50, 50), (replayed["equal"], replayed["measurements"],
                                               replayed["base_action"]["equal"], replayed["control_action"]["equal"]))
 
-    def test_the_arguments_are_listed_without_a_loop(self):
-        done = subprocess.run(["roslaunch", "--ros-args", "fmbpc", "loop.launch"], text=True, stdout=subprocess.PIPE,
-                              stderr=subprocess.STDOUT, timeout=60, check=False)
-        self.assertEqual(0, done.returncode, done.stdout)
-        for name in ("loop", "set", "pace", "out"):
-            self.assertIn(f"  {name}", done.stdout)
+    def test_the_arguments_are_listed_without_a_loop_in_a_bare_shell(self):
+        for file, required in (("loop", {"loop"}), ("example", set()), ("modbus_demo", set()),
+                               ("two_machines", {"loop", "plant_host", "control_host"})):
+            done = subprocess.run(["roslaunch", "--ros-args", "fmbpc", file + ".launch"], text=True, timeout=60, check=False,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                  env={name: value for name, value in os.environ.items() if name != "USER"})
+            self.assertEqual(0, done.returncode, done.stdout)
+            first = done.stdout.split("Optional Arguments:")[0]
+            self.assertEqual(required, set(re.findall(r"^  (\w+):", first, re.MULTILINE)), done.stdout)
+            self.assertIn("  set (default", done.stdout)
+            self.assertNotIn("undocumented", done.stdout)
+
+    def test_without_a_loop_one_line_says_so(self):
+        code, text = roslaunch()
+        self.assertNotEqual(0, code)
+        self.assertIn("requires the 'loop' arg to be set", text)
+        self.assertNotIn("xml is", text)
 
     def test_paths_and_values_may_hold_spaces(self):
         folder = os.path.join(self.out, "my loops")

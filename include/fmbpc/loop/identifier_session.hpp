@@ -29,7 +29,16 @@ class IdentifierSession {
  public:
   explicit IdentifierSession(const LoopFile& loop);
 
-  void announce(std::uint64_t run_id) { collector_.announce(run_id); }
+  static constexpr double kKeptPatience = 1.0;  ///< [s] for a plant that keeps models
+
+  /// The plant has announced a run, at this time [s] of any steady clock.
+  void announce(std::uint64_t run_id, double now_s = 0.0);
+  /// The plant says which model it has kept (run 0: none). Whether that is to be restored: it is
+  /// of this run, and none has been handed over yet.
+  bool hearKept(const StepHeader& made_from);
+  /// Whether the model of the loop file is to be handed over: the plant has said what it has kept,
+  /// or nothing for a while, and that was none.
+  bool startDue(double now_s) const;
   /// The model of the loop file, matched to the plant; null if it names none. @throws InputError if
   /// it does not fit.
   const TsModel* start();
@@ -40,6 +49,7 @@ class IdentifierSession {
   struct Due {
     Arrival arrival{Arrival::kOld};
     const TsModel* model{nullptr};           ///< learned online: to be handed over now
+    std::string refusal{};                   ///< why what was learned is not handed over
     std::optional<IdentificationJob> job{};  ///< model.identify.after: to be identified, once
   };
   /// @throws InputError naming a wrong size.
@@ -60,7 +70,7 @@ class IdentifierSession {
   std::uint64_t learned() const { return learner_ ? learner_->samples() : 0; }
 
  private:
-  const TsModel* learn(const Measurement& measurement, Arrival arrival);
+  void learn(const Measurement& measurement, Due& due);
   TsModel checked(const TsModel& model);
   const TsModel& use(TsModel matched);
 
@@ -74,6 +84,8 @@ class IdentifierSession {
   std::uint64_t published_{}, refused_{};
   std::string last_refusal_;
   bool done_by_itself_{false};
+  std::optional<double> announced_s_;  // first
+  bool kept_known_{false};             // what the plant has kept, if anything
 };
 
 }  // namespace fpc

@@ -1,16 +1,12 @@
 // Checks of the parameters of the fuzzy model-based predictive law.
 #include <algorithm>
 
+#include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
 
 namespace fpc {
 namespace {
-
-void requireWeights(const Vector& weight, Eigen::Index n, const std::string& key) {
-  require(weight.size() == n, key, std::to_string(n) + " numbers");
-  require(weight.allFinite() && (weight.array() >= 0.0).all(), key, "finite numbers >= 0");
-}
 
 /// What only some realisations can do.
 void requireCombination(const FmbpcParams& p) {
@@ -49,8 +45,8 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
           "an integer from 1 to 10000");
   require(iterations >= 1 && iterations <= 1000, "controller.iterations",
           "an integer from 1 to 1000");
-  requireWeights(weight_output, n_y, "controller.weight_output");
-  requireWeights(weight_move, n_u, "controller.weight_move");
+  requireNonNegative(weight_output, n_y, "controller.weight_output");
+  requireNonNegative(weight_move, n_u, "controller.weight_move");
   require((weight_output.array() > 0.0).any(), "controller.weight_output",
           "at least one number > 0");
 }

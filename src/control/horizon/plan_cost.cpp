@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -13,19 +14,14 @@ using Eigen::Index;
 
 constexpr double kHardlyBegun = 0.1;  // of the effect one sample later
 
-void checkWeights(const Vector& weights, Index n, const std::string& key) {
-  require(weights.size() == n && weights.allFinite() && (weights.array() >= 0.0).all(), key,
-          std::to_string(n) + " finite numbers >= 0");
-}
-
 }  // namespace
 
 void HorizonParams::validate(Index n_y, Index n_u) const {
   require(horizon_steps >= 1, "controller.horizon_steps", "an integer >= 1");
   require(move_steps >= 1 && move_steps <= horizon_steps, "controller.move_steps",
           "an integer >= 1 and <= horizon_steps");
-  checkWeights(weight_output, n_y, "controller.weight_output");
-  checkWeights(weight_move, n_u, "controller.weight_move");
+  requireNonNegative(weight_output, n_y, "controller.weight_output");
+  requireNonNegative(weight_move, n_u, "controller.weight_move");
   require(weight_output.maxCoeff() > 0.0, "controller.weight_output", "a weight > 0");
   require(reference_pole.size() == n_y && (reference_pole.array() >= 0.0).all() &&
               (reference_pole.array() < 1.0).all(),

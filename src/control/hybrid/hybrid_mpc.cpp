@@ -4,6 +4,7 @@
 #include <string>
 
 #include "control/hybrid/evolution.hpp"
+#include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -12,11 +13,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double kMoved = 1e-6;  // an input is elsewhere than it was sent
-
-void checkWeights(const Vector& weights, Index n, const std::string& key) {
-  require(weights.size() == n, key, std::to_string(n) + " numbers");
-  require(weights.allFinite() && (weights.array() >= 0.0).all(), key, "finite numbers >= 0");
-}
 
 void checkChoices(const Matrix& choices, Index n_u) {
   require(choices.rows() == n_u && choices.cols() > 0, "controller.inputs",
@@ -39,8 +35,8 @@ void HybridMpcParams::validate(Index n_y, Index n_u) const {
   checkChoices(choices, n_u);
   require(hold_samples >= 1, "controller.hold_samples", "a number >= 1");
   require(horizon_blocks >= 1, "controller.horizon_blocks", "a number >= 1");
-  checkWeights(weight_tracking, n_y, "controller.cost.tracking");
-  checkWeights(weight_consumption, n_u, "controller.cost.consumption");
+  requireNonNegative(weight_tracking, n_y, "controller.cost.tracking");
+  requireNonNegative(weight_consumption, n_u, "controller.cost.consumption");
   bool signs = (weight_consumption.transpose() * choices).minCoeff() >= 0.0;
   for (const SwitchTerm& s : switching) {
     checkTerm(s.weight, s.before, n_u, "controller.cost.switching");

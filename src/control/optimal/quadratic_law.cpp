@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -12,11 +13,6 @@ using Eigen::Index;
 constexpr double kSingular = 1e-12;    // relative size below which a pivot counts as rounding
 constexpr double kHardlyBegun = 0.1;   // of the effect one sample later
 constexpr int kLongestHorizon = 1000;  // samples
-
-void requireWeight(const Vector& weight, Index n, const std::string& key) {
-  require(weight.size() == n, key, std::to_string(n) + " numbers");
-  require(weight.allFinite() && (weight.array() >= 0.0).all(), key, "finite numbers >= 0");
-}
 
 /// y(k+j) = F(j) x + T(j) g + S(j) u for an input that stays, j = 1..P; rows stacked.
 struct Responses {
@@ -79,9 +75,9 @@ bool isShortSighted(const Responses& r, const Vector& weight_output) {
 }  // namespace
 
 void QuadraticWeights::validate(Index n_y, Index n_u, const std::string& where) const {
-  requireWeight(output, n_y, where + ".weight_output");
-  requireWeight(move, n_u, where + ".weight_move");
-  requireWeight(input, n_u, where + ".weight_input");
+  requireNonNegative(output, n_y, where + ".weight_output");
+  requireNonNegative(move, n_u, where + ".weight_move");
+  requireNonNegative(input, n_u, where + ".weight_input");
   require((output.array() > 0.0).any(), where + ".weight_output", "at least one number > 0");
 }
 

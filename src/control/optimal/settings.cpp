@@ -1,7 +1,7 @@
 // The tuning of the fuzzy optimal law as texts that a person can type while the loop runs.
-#include <sstream>
 #include <utility>
 
+#include "base/split.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/control/optimal/law.hpp"
@@ -10,13 +10,6 @@ namespace fpc {
 namespace {
 
 using Weight = Vector QuadraticWeights::*;
-
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::istringstream stream(text);
-  for (std::string part; std::getline(stream, part, separator);) parts.push_back(part);
-  return parts;
-}
 
 /// Groups behind semicolons are those of the rules; a single group is for all.
 void readWeight(const std::string& text, const std::vector<SignalInfo>& signals,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 
@@ -30,8 +31,6 @@ Scale scaleOf(const RunRecord& run) {
   if (length > 600.0) return {1.0 / 60.0, "time [min]"};
   return {1.0, "time [s]"};
 }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 struct Found {
   const SignalInfo* info;
@@ -154,12 +153,12 @@ Json toJson(const Picture& picture) {
             {{"label", curve.label}, {"style", curve.style}, {"x", curve.x}, {"y", curve.y}});
     Json marks = Json::array();
     for (const auto& mark : panel.marks)
-      marks.push_back({{"label", mark.label}, {"x", number(mark.x)}, {"y", mark.y}});
+      marks.push_back({{"label", mark.label}, {"x", numberOrNull(mark.x)}, {"y", mark.y}});
     json["panels"].push_back({{"label", panel.label},
                               {"curves", curves},
                               {"marks", marks},
-                              {"from", number(panel.span.from)},
-                              {"to", number(panel.span.to)}});
+                              {"from", numberOrNull(panel.span.from)},
+                              {"to", numberOrNull(panel.span.to)}});
   }
   return json;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/text.hpp"
 
@@ -17,8 +18,6 @@ std::string format(const char* pattern, double value) {
   std::snprintf(text, sizeof text, pattern, value);
   return text;
 }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// What the paper prints, or the statement: "<= 1".
 std::string paperCell(const ReproduceRow& row) {
@@ -198,10 +197,10 @@ Json toJson(const std::vector<Outcome>& outcomes) {
                      {"shows", e.shows},
                      {"quantity", row.quantity},
                      {"kind", row.statement ? "check" : "figure"},
-                     {"paper", number(row.paper)},
-                     {"here", number(row.here.median())},
-                     {"lowest", number(row.here.lowest())},
-                     {"highest", number(row.here.highest())},
+                     {"paper", numberOrNull(row.paper)},
+                     {"here", numberOrNull(row.here.median())},
+                     {"lowest", numberOrNull(row.here.lowest())},
+                     {"highest", numberOrNull(row.here.highest())},
                      {"runs", row.here.count()},
                      {"unit", row.unit},
                      {"verdict", name(row.verdict())},
