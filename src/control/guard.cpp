@@ -123,24 +123,28 @@ void GuardedController::comeBack(const Measurement& now, double trust) {
   inside_->reset(now);
 }
 
-/// The largest error that counts, in units of its tolerance.
-double GuardedController::worstError(const Measurement& now, const SetpointSource& setpoint) const {
-  double worst = 0.0;
+WorstError GuardedController::worstError(const Measurement& now,
+                                         const SetpointSource& setpoint) const {
+  WorstError worst;
   for (const Index i : params_.lock_outputs) {
     const double asked = setpoint.present()[i];
     const double tolerated = params_.lock_error * std::abs(asked);
-    if (tolerated > 0.0) worst = std::max(worst, std::abs(asked - now.outputs[i]) / tolerated);
+    if (tolerated <= 0.0) continue;
+    const double error = (asked - now.outputs[i]) / tolerated;
+    if (std::abs(error) <= worst.size) continue;
+    worst.size = std::abs(error);
+    worst.whose = static_cast<int>(error > 0.0 ? i + 1 : -(i + 1));
   }
   return worst;
 }
 
 void GuardedController::watchLocks(const Measurement& now, const SetpointSource& setpoint) {
-  const double error = worstError(now, setpoint);
+  const WorstError error = worstError(now, setpoint);
   view_.locked = false;
   for (std::size_t i = 0; i < locks_.size(); ++i) {
     if (!moved_[i]) continue;
     const auto k = static_cast<Index>(i);
-    view_.locked = locks_[i].observe(now.input_applied[k], error) || view_.locked;
+    view_.locked = locks_[i].observe(now.input_applied[k], error.size, error.whose) || view_.locked;
     shrunk_.lower[k] = locks_[i].lower();
     shrunk_.upper[k] = locks_[i].upper();
   }

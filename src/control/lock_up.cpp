@@ -25,7 +25,7 @@ LockUpWatch::LockUpWatch(const GuardParams& params, double lower, double upper)
           params.lock_samples > 0 ? std::max<Index>(kLeastWindow, params.lock_samples) : 0)) {}
 
 void LockUpWatch::reset() {
-  wait_ = side_ = 0;
+  wait_ = side_ = whose_ = for_ = 0;
   drawn_ = 0.0;
   trying_ = locked_ = false;
   known_ = 0;
@@ -41,9 +41,14 @@ double LockUpWatch::mean(Index from) const {
   return past_.segment(from, quarter).mean();
 }
 
-void LockUpWatch::open() {
-  drawn_ = std::max(0.0, drawn_ - range_ / release_);
+void LockUpWatch::open(double step) {
+  drawn_ = std::max(0.0, drawn_ - step);
   if (drawn_ == 0.0) locked_ = false;
+}
+
+/// The same output, now beyond its tolerance on the other side.
+bool LockUpWatch::isInTheWay(double error, int whose) const {
+  return drawn_ > 0.0 && error >= 1.0 && whose != 0 && whose == -for_;
 }
 
 /// A full window at the bound: is it worth a trial?
@@ -51,10 +56,11 @@ void LockUpWatch::suspect() {
   const Index quarter = past_.size() / 4;
   const double first = mean(0), last = mean(past_.size() - quarter);
   if (last < 1.0 || last < first) {
-    open();
+    open(range_ / release_);
     return;
   }
   if (wait_ > 0) return;
+  if (drawn_ == 0.0) for_ = whose_;
   expected_ = last + (last - first);
   drawn_ = std::min(range_, drawn_ + step_);
   trying_ = true;
@@ -75,15 +81,22 @@ void LockUpWatch::judge() {
   wait_ = release_;
 }
 
-bool LockUpWatch::observe(double applied, double error) {
+bool LockUpWatch::observe(double applied, double error, int whose) {
   if (past_.size() == 0 || !std::isfinite(range_) || range_ <= 0.0) return false;
   wait_ = std::max(0, wait_ - 1);
+  whose_ = whose;
+  if (isInTheWay(error, whose)) {
+    known_ = 0;
+    trying_ = false;
+    open(step_ / static_cast<double>(past_.size()));
+    return locked_;
+  }
   const int side = sideOf(applied);
   if (side == 0 || (side_ != 0 && side != side_)) {
     known_ = 0;
     trying_ = false;
     if (drawn_ > 0.0)
-      open();
+      open(range_ / release_);
     else
       side_ = 0;
     return locked_;

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/control/guard.hpp"
@@ -75,6 +76,40 @@ TEST(LockUp, ABoundOpensAgainWhenTheLawLeavesIt) {
   for (int k = 0; k < 101; ++k) loop.lock.observe(0.3, 0.0);
   EXPECT_FALSE(loop.lock.drawnIn());
   EXPECT_EQ(loop.lock.upper(), 1.0);
+}
+
+/// A watch whose upper bound was drawn in for an output that lay above its setpoint.
+LockUpWatch drawnForTooMuch() {
+  LockUpWatch lock(params(), 0.0, 1.0);
+  double error = 5.0;
+  for (int k = 0; k < 24; ++k) {
+    error += k < 12 ? 0.1 : -0.05;  // the trial helps
+    lock.observe(lock.upper(), error, -1);
+  }
+  return lock;
+}
+
+// What was drawn in against too much of an output holds it down once there is too little of it: the
+// bound opens by lock_step 0.1 in lock_samples 12, not over the 100 samples of lock_release.
+TEST(LockUp, OnTheOtherSideOfTheSetpointTheBoundOpensAsFastAsItWasDrawnIn) {
+  LockUpWatch lock = drawnForTooMuch();
+  const double drawn = 1.0 - lock.upper();
+  ASSERT_NEAR(drawn, 0.09, 1e-12);  // it has begun to open, by a hundredth
+  for (int k = 1; k <= 6; ++k) {
+    lock.observe(lock.upper(), 2.0 + k, 1);  // at the bound, and the error grows
+    EXPECT_NEAR(lock.upper(), 1.0 - drawn + k * 0.1 / 12.0, 1e-12) << k;
+  }
+  for (int k = 0; k < 40; ++k) lock.observe(0.5, 9.0, 1);
+  EXPECT_FALSE(lock.drawnIn());
+}
+
+TEST(LockUp, AnotherOutputOrALittleErrorOnTheOtherSideOpensItSlowly) {
+  for (const auto& [error, whose] : {std::pair{9.0, 2}, std::pair{9.0, -1}, std::pair{0.9, 1}}) {
+    LockUpWatch lock = drawnForTooMuch();
+    const double before = lock.upper();
+    lock.observe(0.3, error, whose);  // the law has left the bound
+    EXPECT_NEAR(lock.upper(), before + 0.01, 1e-12) << error << " " << whose;
+  }
 }
 
 TEST(LockUp, LowerBoundsLockAsWell) {

@@ -26,6 +26,12 @@ struct GuardView {
   bool acting{false};    ///< the input is not the law's
 };
 
+/// The largest error that counts.
+struct WorstError {
+  double size{};  ///< in units of its tolerance
+  int whose{};    ///< its output, counted from 1, negative where it lies above its setpoint
+};
+
 /// Whether one input is locked up, found by trying. An input at a bound for `lock_samples` while
 /// the error stays beyond its tolerance and does not shrink (last quarter of that time against the
 /// first) is suspected. Its bound is then drawn in by lock_step of the range, and a window of
@@ -33,28 +39,34 @@ struct GuardView {
 /// Smaller: less of what the law asks for helps, so the gain's sign is against the law: locked; the
 /// bound is drawn in by another step. Not smaller: that step is taken back, and nothing is tried
 /// for lock_release samples. A bound that helped opens over lock_release samples once the error
-/// shrinks or the law leaves it.
+/// shrinks or the law leaves it, and as fast as it was drawn in (lock_step in lock_samples) while
+/// the output for which that was done lies beyond its tolerance on the other side of its setpoint:
+/// there it is the bound that is in the way.
 class LockUpWatch {
  public:
   LockUpWatch(const GuardParams& params, double lower, double upper);
   void reset();
   /// One sample: the applied input, and the largest error in units of its tolerance. Returns
   /// whether the input is locked.
-  bool observe(double applied, double error);
+  /// @param whose the output of that error, counted from 1, negative where it lies above its
+  /// setpoint; 0: not known.
+  bool observe(double applied, double error, int whose = 0);
   double lower() const { return lower_ + (side_ < 0 ? drawn_ : 0.0); }
   double upper() const { return upper_ - (side_ > 0 ? drawn_ : 0.0); }
   bool drawnIn() const { return drawn_ > 0.0; }
 
  private:
   int sideOf(double applied) const;
-  void open();
+  bool isInTheWay(double error, int whose) const;
+  void open(double step);
   void suspect();
   void judge();
   double mean(Eigen::Index from) const;  ///< of a quarter of the window
 
   double lower_, upper_, range_, step_;
   int release_, wait_{0};
-  int side_{0};  ///< of the bound that is watched or drawn in
+  int side_{0};            ///< of the bound that is watched or drawn in
+  int whose_{0}, for_{0};  ///< error of now, and that for which the bound was drawn in
   double drawn_{0.0}, expected_{0.0};
   bool trying_{false}, locked_{false};
   Vector past_;  ///< lock_samples errors at the bound, oldest first
@@ -92,7 +104,7 @@ class GuardedController final : public ControllerAround {
   double trustAt(const Measurement& now, VectorRef input);
   void comeBack(const Measurement& now, double trust);
   void watchLocks(const Measurement& now, const SetpointSource& setpoint);
-  double worstError(const Measurement& now, const SetpointSource& setpoint) const;
+  WorstError worstError(const Measurement& now, const SetpointSource& setpoint) const;
   void shrink(double trust);
   void calm(const Measurement& now);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);

@@ -102,6 +102,8 @@ class IteratedLaw final : public InputLaw {
  private:
   InputLimitedIlqr solver_;
   DisturbanceForecast& forecast_;
+  Eigen::Index lead_;
+  Matrix aimed_;  ///< n_y N, the references of x(k+1)...x(k+N)
 };
 
 std::unique_ptr<InputLaw> makeInputLaw(const InternalModel& model, const FmbpcParams& params,

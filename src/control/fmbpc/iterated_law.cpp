@@ -13,7 +13,10 @@ IlqrParams solverParams(const FmbpcParams& params) {
 
 IteratedLaw::IteratedLaw(const InternalModel& model, const FmbpcParams& params,
                          const InputLimits& limits, DisturbanceForecast& forecast)
-    : solver_(model.local(), solverParams(params), limits), forecast_(forecast) {}
+    : solver_(model.local(), solverParams(params), limits),
+      forecast_(forecast),
+      lead_(params.reference_lead_steps),
+      aimed_(Matrix::Zero(model.outputs().size(), params.horizon_steps)) {}
 
 void IteratedLaw::follow(InternalModel& model, const LawSample& sample) {
   model.blendAt(sample.now.input_applied, sample.past_disturbances);
@@ -21,8 +24,9 @@ void IteratedLaw::follow(InternalModel& model, const LawSample& sample) {
 
 Proposal IteratedLaw::propose(InternalModel& model, const LawSample& sample, const Matrix& future,
                               Vector& input) {
+  aimed_ = future.middleCols(lead_, aimed_.cols());
   if (!solver_.plan(model.state(), model.correction(), model.offsetOutput(), forecast_.predict(),
-                    future, sample.now.input_applied))
+                    aimed_, sample.now.input_applied))
     return {"the law gave no finite input"};
   input = solver_.inputs().col(0);
   model.replan(input, sample.disturbances);
@@ -48,6 +52,7 @@ void IteratedLaw::planned(const InternalModel& model, Eigen::Index i,
 }
 
 void IteratedLaw::retune(const FmbpcParams& params) {
+  lead_ = params.reference_lead_steps;
   solver_.retune(params.iterations, params.weight_output, params.weight_move);
 }
 

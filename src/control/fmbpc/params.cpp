@@ -18,8 +18,6 @@ void requireCombination(const FmbpcParams& p) {
           "0 for realisation realigned, whose state comes from present measurements");
   require(p.reference_lead_steps >= 0 && p.reference_lead_steps <= 100000,
           "controller.reference_lead_steps", "an integer from 0 to 100000");
-  require(p.law != FmbpcForm::kIterated || (p.delay_steps == 0 && p.reference_lead_steps == 0),
-          "controller.law", "published or general with delay_steps or reference_lead_steps");
   require(!literal || p.law == FmbpcForm::kPublished, "controller.law",
           "published for realisation literal");
   require(!literal || p.antecedent == FmbpcAntecedent::kMeasured, "controller.antecedent",
@@ -56,8 +54,9 @@ Eigen::Index FmbpcParams::aimedColumn() const {
 }
 
 Eigen::Index FmbpcParams::referenceSteps() const {
-  return std::max<Eigen::Index>(prediction_steps + aimedColumn(),
-                                law == FmbpcForm::kIterated ? horizon_steps : 1);
+  return std::max<Eigen::Index>(
+      prediction_steps + aimedColumn(),
+      law == FmbpcForm::kIterated ? horizon_steps + reference_lead_steps : 1);
 }
 
 }  // namespace fpc

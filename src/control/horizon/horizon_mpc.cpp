@@ -24,7 +24,7 @@ HorizonMpc::HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo
       n_y_(countOf(plant.outputs)),
       n_u_(countOf(plant.inputs)),
       reference_(params_.reference_pole, params_.preview),
-      future_(Matrix::Zero(n_y_, params_.horizon_steps)),
+      future_(Matrix::Zero(n_y_, params_.horizon_steps + params_.reference_lead_steps)),
       correction_(Vector::Zero(n_y_)),
       disturbances_(Vector::Zero(countOf(plant.disturbances))),
       plan_(Vector::Zero(n_u_ * params_.move_steps)),
@@ -171,7 +171,8 @@ void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
   if (anew_) restPlan(now);
   clipPlan(plan_, now.input_applied, limits_);
   kept_ = plan_;
-  cost_->start(present_, correction_, disturbances_, now.input_applied, future_);
+  cost_->start(present_, correction_, disturbances_, now.input_applied,
+               future_.rightCols(params_.horizon_steps));
   PlanFound found = search(now, plan_);
   found.usable = found.usable && plan_.allFinite();
   if (!found.usable) plan_ = kept_;

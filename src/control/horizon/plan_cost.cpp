@@ -20,6 +20,7 @@ void HorizonParams::validate(Index n_y, Index n_u) const {
   require(horizon_steps >= 1, "controller.horizon_steps", "an integer >= 1");
   require(move_steps >= 1 && move_steps <= horizon_steps, "controller.move_steps",
           "an integer >= 1 and <= horizon_steps");
+  require(reference_lead_steps >= 0, "controller.reference_lead_steps", "an integer >= 0");
   requireNonNegative(weight_output, n_y, "controller.weight_output");
   requireNonNegative(weight_move, n_u, "controller.weight_move");
   require(weight_output.maxCoeff() > 0.0, "controller.weight_output", "a weight > 0");

@@ -13,6 +13,7 @@ HorizonParams readHorizon(YamlSection& section, const ControllerContext& loop) {
   section.integer("move_steps", params.move_steps, 1, 1000);
   section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
   section.boolean("preview", params.preview);
+  section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
   params.observe = readObserver(section, params.observer, loop);
   section.byName("weight_output", params.weight_output, loop.outputs(), kFiniteNotNegative);
   section.byName("weight_move", params.weight_move, loop.inputs(), kFiniteNotNegative);

@@ -61,6 +61,48 @@ TEST(FmbpcDelay, OnItsOwnModelTheDelayChangesNothingButTheTimeOfTheMeasurement) 
   }
 }
 
+FmbpcParams planningParams(int delay_steps, FmbpcRealisation realisation) {
+  FmbpcParams params = reactorParams(delay_steps);
+  params.law = FmbpcForm::kIterated;
+  params.realisation = realisation;
+  params.horizon_steps = 12;
+  params.iterations = 30;
+  params.weight_output = one(1.0);
+  params.weight_move = one(0.0);
+  params.observer.noise_std = params.observer.disturbance_std = one(0.001);
+  return params;
+}
+
+// Of a plant that is its model, without limits or weights on moves, the plan meets every reference.
+TEST(FmbpcDelay, APlanWithTheLeadOfTheDelayMeetsTheReferenceWhereItIsMeasured) {
+  const TsModel model = test::shippedModel("cstr_a");
+  const PlantInfo info = test::infoOf(model);
+  const Vector u = one(restInput(withoutDelay(model, 5), 0.1));
+  for (const auto realisation : {FmbpcRealisation::kParallel, FmbpcRealisation::kObserver}) {
+    FmbpcParams params = planningParams(5, realisation);
+    params.reference_lead_steps = 5;
+    test::ModelPlant plant(model, one(0.1), u, Vector(0));
+    SetpointSource setpoint = test::setpointOf(info, one(0.13));
+    FmbpcLaw law(params, test::wideLimits(1), info);
+    law.setModel(model);
+    test::start(law, plant, setpoint, 80, [&](const Measurement& m, const ControllerOutput& o) {
+      if (m.header.step <= 5) return;
+      EXPECT_NEAR(m.outputs[0], o.reference[0], 1e-6) << m.header.step;
+    });
+  }
+}
+
+TEST(FmbpcDelay, APlanLeavesNoOffsetUnderAConstantDisturbance) {
+  const TsModel model = test::shippedModel("cstr_a");
+  TsModel process = model;
+  for (Rule& rule : process.submodels[0].rules) rule.offset += 3e-4;
+  std::vector<double> y;
+  FmbpcParams params = planningParams(5, FmbpcRealisation::kObserver);
+  params.weight_move = one(1e-8);
+  inputsOf(params, model, {process, one(0.1), one(103.0), Vector(0)}, 600, &y);
+  EXPECT_NEAR(y.back(), 0.13, 1e-6);
+}
+
 /// blazic2007, eq. 27, with states [y(k), y(k-1)], written out in plain loops.
 class PlainLaw {
  public:

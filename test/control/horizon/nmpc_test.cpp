@@ -101,6 +101,18 @@ TEST(Nmpc, ReachesALevelWithoutOffsetUnderALeakItDoesNotKnow) {
   }
 }
 
+// A horizon of one sample meets y_r(k + 1 + lead) = w - 0.8^(1 + lead) (w - y) exactly.
+TEST(Nmpc, AimsAtALaterReferenceWithALead) {
+  for (const int lead : {0, 3}) {
+    NmpcParams params = test::tankParams(1, 1, 0.0);
+    params.horizon.reference_pole = Vector::Constant(1, 0.8);
+    params.horizon.reference_lead_steps = lead;
+    Nmpc law(params, test::tankLimits(), test::tankInfo(), std::make_unique<test::Tank>());
+    const double level = test::runTank(law, test::Tank(), 1.0, 1.1, 1, kNothing);
+    EXPECT_NEAR(level, 1.1 - 0.1 * std::pow(0.8, 1 + lead), 1e-7) << lead;
+  }
+}
+
 // With the input held at 0 the tank would run empty, where its model ends.
 TEST(Nmpc, AnInputThatLeadsOutOfTheModelIsNoTrap) {
   Nmpc law(test::tankParams(10, 2), test::tankLimits(), test::tankInfo(),

@@ -38,7 +38,7 @@ struct FmbpcParams : PredictiveLawParams {
   FmbpcRealisation realisation{FmbpcRealisation::kParallel};
   FmbpcAntecedent antecedent{FmbpcAntecedent::kModel};
   int delay_steps{0};           ///< transport delay taken out of the model, see FmbpcLaw
-  int reference_lead_steps{0};  ///< the law aims at y_r(k + H + this)
+  int reference_lead_steps{0};  ///< added to every time at which a reference is met
   double offset_gain{0.2};      ///< filter gain of the one-step error w_hat (realigned)
   ObserverParams observer;      ///< used by realisation observer
   /// @throws InputError naming the field ("controller.coincidence_steps"). The weights matter to

@@ -76,7 +76,7 @@ class HorizonMpc : public Controller {
   Matrix A_;             // of the model at the state of k-1
   Vector moved_, next_;  // for the differences
   ReferenceTrajectory reference_;
-  Matrix future_;         // n_y P
+  Matrix future_;         // n_y, P and the lead
   Matrix inputs_, past_;  // u and d of the samples since the measured outputs were true, and before
   Vector state_;          // when the measured outputs were true
   Vector present_, correction_, disturbances_, plan_, kept_;

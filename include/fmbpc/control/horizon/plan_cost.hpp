@@ -8,14 +8,15 @@
 namespace fpc {
 
 struct HorizonParams {
-  int horizon_steps{40};    ///< P, samples predicted
-  int move_steps{1};        ///< M <= P, inputs that are free; the last one is held
-  Vector weight_output;     ///< n_y, W
-  Vector weight_move;       ///< n_u, L
-  Vector reference_pole;    ///< n_y
-  bool preview{false};      ///< references follow the setpoint schedule over the horizon
-  bool observe{false};      ///< state and correction come from an observer with stated noise
-  ObserverParams observer;  ///< used if observe
+  int horizon_steps{40};        ///< P, samples predicted
+  int move_steps{1};            ///< M <= P, inputs that are free; the last one is held
+  Vector weight_output;         ///< n_y, W
+  Vector weight_move;           ///< n_u, L
+  Vector reference_pole;        ///< n_y
+  bool preview{false};          ///< references follow the setpoint schedule over the horizon
+  bool observe{false};          ///< state and correction come from an observer with stated noise
+  ObserverParams observer;      ///< used if observe
+  int reference_lead_steps{0};  ///< y(k+i) is drawn to y_r(k + i + this)
   void validate(Eigen::Index n_y, Eigen::Index n_u) const;  ///< @throws InputError naming the field
 };
 
