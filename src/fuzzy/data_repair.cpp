@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "base/csv_cell.hpp"
 #include "base/time_cells.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -87,7 +88,8 @@ TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& stru
           table.file + ": column '" + structure.time_column + "'",
           "the unit [" + unit_expected + "] of the structure, got [" + unit + "]");
   const std::string text = index < table.texts.size() ? table.texts[index] : "";
-  require(text.empty(), where(0), "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
+  require(text.empty(), where(0),
+          "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'" + decimalHint(text));
   const Vector time = table.values.col(column).segment(first, count);
   const double sample = structure.sample_time_s / secondsPer(unit_expected);
   Index moved = 0;

@@ -103,6 +103,17 @@ TEST(DisturbanceCsv, TimesOfIso8601AreRead) {
               ":2: column 't': expected a number, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '29.03.");
 }
 
+TEST(DisturbanceCsv, TimesWithADecimalCommaAreSuspected) {
+  CsvDisturbanceParams params = flowFrom("t;q\n0,0;1\n0,5;2\n");
+  params.format.separator = ';';
+  expectWords(errorOf(params), "got '0,0' (decimal: point; is it comma?)");
+  params.format.decimal = ',';
+  EXPECT_EQ(flows(params, 1), (Values{1, 2}));
+  params = flowFrom("t;q\n0.0;1\n0.5;2\n");
+  params.format = {';', ',', {}};
+  expectWords(errorOf(params), "got '0.0' (decimal: comma; is it point?)");
+}
+
 // Clocks go forward at two in the morning: local times lack an hour, a logger that was off two
 // days.
 TEST(DisturbanceCsv, AHoleInTimeIsMissingRows) {
