@@ -48,6 +48,7 @@ DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
         readDisturbances(next, names, nominal, sample_time_s, samples - lead - first);
     values.rightCols(samples - lead - first + 1) = second.values;
     result.repaired += second.repaired;
+    result.implausible += second.implausible;
   }
   result.values = std::move(values);
   return result;
