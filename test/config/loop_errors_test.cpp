@@ -180,6 +180,26 @@ std::string nameOf(const ::testing::TestParamInfo<Mistake>& info) { return info.
 
 INSTANTIATE_TEST_SUITE_P(Loop, EveryMistake, ::testing::ValuesIn(kMistakes), nameOf);
 
+TEST_F(LoopErrors, APairThatLacksInAModelIsNamed) {
+  const auto error = [](const char* key, const char* value) {
+    return errorOf([&] { readLoop("column_adaptive", {{key, value}}); });
+  };
+  expectWords(error("controller.model", "[]"),
+              {"--set controller.model: expected an item", "y_D from L lacks", "got []"});
+  expectWords(error("controller.model.3.input", "L"), {"controller.model[3].output", "only once"});
+  expectWords(error("controller.model.3.gain", "0"), {"controller.model", "x_B from V lacks"});
+}
+
+TEST_F(LoopErrors, AValueOfACommandBeyondTheRangeIsRepeated) {
+  const auto error = [](const char* command) {
+    return errorOf([&] { readLoop("heated_tank", {{"disturbance.commands", command}}); });
+  };
+  expectWords(error("[{time_h: 0.5, name: T_in, value: 50}]"),
+              {"disturbance.commands[0].value", "<= 40 [degC], got 50"});
+  expectWords(error("[{time_h: 0.5, name: T_in, value: -60, mode: offset}]"),
+              {"disturbance.commands[0].value", "width of its range, got -60"});
+}
+
 TEST_F(LoopErrors, ARecordForYearsOfSamplesIsRefusedBeforeItIsMade) {
   const std::string file =
       write("long.yaml", smallLoop() +
