@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "fmbpc/base/command_table.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
@@ -14,7 +13,7 @@ namespace {
 using Eigen::Index;
 
 /// What the file offsets of these disturbances, by step.
-CommandTable tableOf(const LoopFile& loop, const std::vector<Quantity>& all, bool& any) {
+CommandTable tableOf(const LoopFile& loop, const std::vector<Quantity>& all) {
   std::vector<std::string> names;
   for (const Quantity& q : all) names.push_back(q.name);
   CommandTable table(names);
@@ -22,7 +21,6 @@ CommandTable tableOf(const LoopFile& loop, const std::vector<Quantity>& all, boo
   for (const auto& [time_h, command] : loop.simulation.disturbance_commands) {
     if (std::find(names.begin(), names.end(), command.name.front()) == names.end()) continue;
     table.accept(command, clock.firstStepAtHours(time_h));
-    any = any || command.mode == CommandMode::kOffset;
   }
   return table;
 }
@@ -53,13 +51,12 @@ class Clamped {
   double most_{}, worst_{};
 };
 
-std::vector<RunRemark> clamped(const LoopFile& loop) {
+}  // namespace
+
+std::vector<RunRemark> clampedIn(const LoopFile& loop, const Matrix& values) {
   std::vector<RunRemark> remarks;
   const std::vector<Quantity> all = disturbancesOf(loop);
-  bool any = false;
-  CommandTable table = tableOf(loop, all, any);
-  if (!any) return remarks;
-  const Matrix values = makeDisturbance(loop).values;
+  CommandTable table = tableOf(loop, all);
   std::vector<Clamped> counts(all.begin(), all.end());
   for (std::uint32_t step = 0; step < loop.simulation.samples; ++step) {
     table.advance(step);
@@ -75,17 +72,6 @@ std::vector<RunRemark> clamped(const LoopFile& loop) {
   }
   for (const Clamped& count : counts) count.tell(remarks);
   return remarks;
-}
-
-}  // namespace
-
-std::vector<RunRemark> clampedIn(const LoopFile& loop) {
-  if (loop.external_plant || loop.simulation.disturbance_commands.empty()) return {};
-  try {
-    return clamped(loop);
-  } catch (const InputError&) {  // the record is not on this machine
-    return {};
-  }
 }
 
 }  // namespace fpc

@@ -37,7 +37,7 @@ class RecordRemarks {
 };
 
 /// Offsets of the loop file that were cut because they would have taken a disturbance out of its
-/// range; nothing where the record of the disturbances is not at hand.
-std::vector<RunRemark> clampedIn(const LoopFile& loop);
+/// range. `values`: the disturbances of the run by sample, empty if they keep their nominal values.
+std::vector<RunRemark> clampedIn(const LoopFile& loop, const Matrix& values);
 
 }  // namespace fpc

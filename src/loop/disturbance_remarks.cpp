@@ -1,0 +1,44 @@
+#include "loop/disturbance_remarks.hpp"
+
+#include <algorithm>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/config/disturbance_source.hpp"
+#include "loop/record_remarks.hpp"
+
+namespace fpc {
+namespace {
+
+bool hasOffsets(const LoopFile& loop) {
+  const auto& commands = loop.simulation.disturbance_commands;
+  return std::any_of(commands.begin(), commands.end(), [](const ScheduledCommand& scheduled) {
+    return scheduled.command.mode == CommandMode::kOffset;
+  });
+}
+
+void add(const LoopFile& loop, Summary& summary) {
+  LateRows late;
+  const DisturbanceRecord record = makeDisturbance(loop, late);
+  summary.repaired_cells = record.repaired;
+  summary.implausible_cells = record.implausible;
+  for (RunRemark& remark : clampedIn(loop, record.values))
+    summary.remarks.push_back(std::move(remark));
+  if (late.isRounding())
+    summary.remarks.push_back({std::to_string(late.rows) + " of " + std::to_string(late.of) +
+                                   " rows of the disturbance record come at most 2 % of a sample "
+                                   "after one and act from the next: rounded times?",
+                               0, 0});
+}
+
+}  // namespace
+
+void addDisturbances(const LoopFile& loop, Summary& summary) {
+  const bool recorded = loop.disturbance.source == DisturbanceSource::kCsv;
+  if (loop.external_plant || !(recorded || hasOffsets(loop))) return;
+  try {
+    add(loop, summary);
+  } catch (const InputError&) {  // not on this machine
+  }
+}
+
+}  // namespace fpc
