@@ -1,4 +1,4 @@
-// One line of a table, and what a cell of it says. Private to the room.
+// One line of a table, and what a cell of it says. Private to the package.
 #pragma once
 
 #include <optional>

@@ -40,15 +40,12 @@ std::vector<Index> timeOrder(const Vector& time, const RowName& where, bool may_
   return order;
 }
 
-/// How many samples all rows lie apart, if that is a whole number of them and more than one;
-/// else 1.
-double commonStep(const Vector& time, const std::vector<Index>& order, double sample) {
-  if (order.size() < 3) return 1.0;
-  const double first = std::round((time[order[1]] - time[order[0]]) / sample);
-  for (std::size_t k = 1; k < order.size(); ++k)
-    if (std::abs((time[order[k]] - time[order[k - 1]]) / sample - first) > kSpacingTolerance)
-      return 1.0;
-  return std::max(first, 1.0);
+/// The largest number of samples of which all rows lie whole multiples apart; 1 for a few rows.
+Index commonStep(const std::vector<Index>& numbers) {
+  if (numbers.size() < 3) return 1;
+  Index common = 0;
+  for (const Index number : numbers) common = std::gcd(common, number);
+  return std::max<Index>(common, 1);
 }
 
 /// Sample number of each row after the first. @throws InputError unless all are whole numbers of
@@ -95,10 +92,11 @@ TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& stru
   Index moved = 0;
   const auto order = timeOrder(time, where, structure.repair.sort_time, moved);
   const auto numbers = sampleNumbers(time, order, sample, where);
-  const double common = commonStep(time, order, sample);
-  require(common == 1.0 || structure.repair.missing != MissingCells::kError, where(0),
+  const Index common = commonStep(numbers);
+  require(common == 1 || structure.repair.missing != MissingCells::kError, where(0),
           "times " + exactText(sample) + " apart (another unit? or another sample_time_s), got " +
-              exactText(common * sample) + " from each row to the next");
+              exactText(static_cast<double>(common) * sample) +
+              " from each row to the next, or multiples of it");
   const Index holes = numbers.back() + 1 - count;
   TableRows rows(static_cast<std::size_t>(numbers.back()) + 1, -1);
   Matrix placed = Matrix::Constant(numbers.back() + 1, data.values.cols(), kNaN);
