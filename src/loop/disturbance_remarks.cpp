@@ -23,6 +23,11 @@ void add(const LoopFile& loop, Summary& summary) {
   summary.implausible_cells = record.implausible;
   for (RunRemark& remark : clampedIn(loop, record.values))
     summary.remarks.push_back(std::move(remark));
+  if (loop.disturbance.source == DisturbanceSource::kCsv && late.of == 0)
+    summary.remarks.push_back(
+        {"only the first row of the disturbance record falls into the run "
+         "(disturbance.csv.time_unit?)",
+         0, 0});
   if (late.isRounding())
     summary.remarks.push_back({std::to_string(late.rows) + " of " + std::to_string(late.of) +
                                    " rows of the disturbance record come at most 2 % of a sample "

@@ -81,13 +81,13 @@ constexpr double kLate = 0.02;  // of a sample: what files round
 /// The rows of a file by their times, before the end is added.
 void countLate(const CsvRows& rows, const CsvDisturbanceParams& params, double sample_time_s,
                std::uint32_t samples, LateRows& late) {
-  if (params.interpolation == Interpolation::kLinear) return;
+  const bool held = params.interpolation == Interpolation::kHold;
   for (std::size_t r = 1; r < rows.times.size(); ++r) {
     const double t = rows.times[r];
     if (rows.of_table[r] < 0 || t >= samples * sample_time_s) continue;
     const double after = t - std::floor(t / sample_time_s) * sample_time_s;
     ++late.of;
-    late.rows += after > kEarly * (t - rows.times[r - 1]) && after <= kLate * sample_time_s;
+    late.rows += held && after > kEarly * (t - rows.times[r - 1]) && after <= kLate * sample_time_s;
   }
 }
 

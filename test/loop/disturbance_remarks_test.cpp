@@ -16,17 +16,17 @@ class DisturbanceRemarks : public LoopFolder {
     std::string text = "t,v\n";
     for (int k = 0; k <= 130; ++k) {
       char row[64];
-      std::snprintf(row, sizeof row, "%.*f,%s\n", digits, k * 30.0 / 86400.0,
-                    k == 5 ? "" : "15");
+      std::snprintf(row, sizeof row, "%.*f,%s\n", digits, k * 30.0 / 86400.0, k == 5 ? "" : "15");
       text += row;
     }
     write("record.csv", text);
-    const LoopFile loop = readLoop(
-        write("loop.yaml", "extends: heated_tank\nsampling: {duration_h: 1}\ndisturbance:\n"
-                           "  source: csv\n  commands: " +
-                               commands +
-                               "\n  csv: {file: record.csv, time_column: t, time_unit: d, missing: "
-                               "hold, channels: {T_in: {column: v}}}\n"));
+    const LoopFile loop =
+        readLoop(write("loop.yaml",
+                       "extends: heated_tank\nsampling: {duration_h: 1}\ndisturbance:\n"
+                       "  source: csv\n  commands: " +
+                           commands +
+                           "\n  csv: {file: record.csv, time_column: t, time_unit: d, missing: "
+                           "hold, channels: {T_in: {column: v}}}\n"));
     return summarize(loop, runLoop(loop), 0.0);
   }
   static bool says(const Summary& summary, const std::string& words) {
@@ -41,6 +41,32 @@ TEST_F(DisturbanceRemarks, RoundedTimesAreSaidAndExactOnesAreNot) {
   EXPECT_TRUE(says(rounded, "of 119 rows of the disturbance record come at most 2 % of a sample"));
   EXPECT_FALSE(says(summaryWith(10), "rows of the disturbance record"));
   EXPECT_EQ(rounded.repaired_cells, 1U);
+}
+
+TEST_F(DisturbanceRemarks, ARecordOfWhichOnlyOneRowActsIsSaid) {
+  write("long.csv", "t,v\n0,15\n1,16\n2,17\n");
+  const auto remark = [&](const std::string& unit) {
+    const LoopFile loop =
+        readLoop(write("l.yaml",
+                       "extends: heated_tank\nsampling: {duration_h: 1.5}\ndisturbance:\n"
+                       "  source: csv\n  commands: []\n  csv: {file: long.csv, time_column: t, "
+                       "time_unit: " +
+                           unit + ", channels: {T_in: {column: v}}}\n"));
+    return says(summarize(loop, runLoop(loop), 0.0), "only the first row");
+  };
+  EXPECT_FALSE(remark("h"));
+  EXPECT_TRUE(remark("d"));
+}
+
+TEST_F(DisturbanceRemarks, AWindowBeyondTheRunIsSaid) {
+  const auto remark = [](const char* from) {
+    const LoopFile loop = readLoop(
+        "heated_tank",
+        {{"report.windows", "[{name: late, from_h: " + std::string(from) + ", to_h: 12}]"}});
+    return says(summarize(loop, runLoop(loop), 0.0), "window late of report.windows begins only");
+  };
+  EXPECT_TRUE(remark("10"));
+  EXPECT_FALSE(remark("2"));
 }
 
 TEST_F(DisturbanceRemarks, OffsetsAreCutAgainstTheRecord) {

@@ -1,11 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/plant/late_rows.hpp"
+#include "fmbpc/plant/disturbance.hpp"
 
 namespace fpc {
 namespace plant_disturbance_csv_test {
@@ -102,47 +101,6 @@ TEST(DisturbanceCsv, TimesOfIso8601AreRead) {
     EXPECT_EQ(flows(flowFrom(text), 5), (Values{1, 1, 2, 2, 3, 3})) << text;
   expectWords(errorOf(flowFrom("t,q\n29.03.2026 01:00,1\n29.03.2026 02:00,2\n")),
               ":2: column 't': expected a number, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '29.03.");
-}
-
-TEST(DisturbanceCsv, TimesWithADecimalCommaAreSuspected) {
-  CsvDisturbanceParams params = flowFrom("t;q\n0,0;1\n0,5;2\n");
-  params.format.separator = ';';
-  expectWords(errorOf(params), "got '0,0' (decimal: point; is it comma?)");
-  params.format.decimal = ',';
-  EXPECT_EQ(flows(params, 1), (Values{1, 2}));
-  params = flowFrom("t;q\n0.0;1\n0.5;2\n");
-  params.format = {';', ',', {}};
-  expectWords(errorOf(params), "got '0.0' (decimal: comma; is it point?)");
-}
-
-/// Rows of every 7.3 s, in days with so many digits behind the point.
-LateRows lateRowsOf(int digits, double interval_s, Interpolation interpolation) {
-  std::string text = "t,q\n";
-  for (int k = 0; k < 60; ++k) {
-    char row[64];
-    std::snprintf(row, sizeof row, "%.*f,%d\n", digits, k * interval_s / 86400.0, k);
-    text += row;
-  }
-  CsvDisturbanceParams params = flowFrom(text);
-  params.time_unit = "d";
-  params.interpolation = interpolation;
-  LateRows late;
-  readDisturbances(params, kNames, kNominal, 7.3, 40, late);
-  return late;
-}
-
-// Six digits of a day are 0.09 s: half of the rows are rounded up, past their sample.
-TEST(DisturbanceCsv, RowsThatRoundingPutsBehindTheirSampleAreCounted) {
-  const LateRows rounded = lateRowsOf(6, 7.3, Interpolation::kHold);
-  EXPECT_EQ(rounded.of, 39U);
-  EXPECT_GT(rounded.rows, 10U);
-  EXPECT_LT(rounded.rows, 30U);
-  EXPECT_TRUE(rounded.isRounding());
-  EXPECT_EQ(lateRowsOf(10, 7.3, Interpolation::kHold).rows, 0U);
-  EXPECT_EQ(lateRowsOf(6, 7.3, Interpolation::kLinear).of, 0U);
-  const LateRows drifting = lateRowsOf(10, 7.5, Interpolation::kHold);
-  EXPECT_EQ(drifting.rows, 1U);  // row 37 at 38 samples and 0.1 s
-  EXPECT_FALSE(drifting.isRounding());
 }
 
 // Clocks go forward at two in the morning: local times lack an hour, a logger that was off two

@@ -5,8 +5,8 @@
 
 namespace fpc {
 
-/// A row acts from the first sample at or after its time (early by at most 1e-4 of an interval). One
-/// whose time was rounded up past its sample acts from the next.
+/// A row acts from the first sample at or after its time (early by at most 1e-4 of an interval).
+/// One whose time was rounded up past its sample acts from the next.
 struct LateRows {
   std::uint64_t rows{};  ///< up to 2 % of a sample after one, and not early enough for it
   std::uint64_t of{};    ///< rows within the run, the first one of a file left out
@@ -14,7 +14,7 @@ struct LateRows {
   bool isRounding() const { return rows >= 2 && 10 * rows >= of; }
 };
 
-/// As in disturbance.hpp, and adds to `late`; nothing where rows are interpolated.
+/// As in disturbance.hpp, and adds to `late`; no row is late where they are interpolated.
 DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
                                    const std::vector<std::string>& names, const Vector& nominal,
                                    double sample_time_s, std::uint32_t samples, LateRows& late);
