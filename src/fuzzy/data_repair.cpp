@@ -63,10 +63,6 @@ std::vector<Index> sampleNumbers(const Vector& time, const std::vector<Index>& o
                        exactText(time[order[k]] - time[order[k - 1]]));
     numbers.push_back(numbers.back() + static_cast<Index>(whole));
   }
-  const Index holes = numbers.back() + 1 - static_cast<Index>(order.size());
-  require(holes <= static_cast<Index>(order.size()), where(order.back()),
-          "times " + exactText(sample) +
-              " apart (sample_time_s; or another unit?), got more holes than rows");
   return numbers;
 }
 
@@ -98,6 +94,9 @@ TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& stru
               exactText(static_cast<double>(common) * sample) +
               " from each row to the next, or multiples of it");
   const Index holes = numbers.back() + 1 - count;
+  require(holes <= count, where(order.back()),
+          "times " + exactText(sample) +
+              " apart (sample_time_s; or another unit?), got more holes than rows");
   TableRows rows(static_cast<std::size_t>(numbers.back()) + 1, -1);
   Matrix placed = Matrix::Constant(numbers.back() + 1, data.values.cols(), kNaN);
   for (std::size_t k = 0; k < order.size(); ++k) {
