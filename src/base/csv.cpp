@@ -40,6 +40,20 @@ bool isBlank(const std::string& line) {
   return line.find_first_not_of(" \t\r") == std::string::npos;
 }
 
+/// Bytes that no table has, said before they cut a cell or fill a message.
+void requireText(const std::string& line, const std::string& file, std::size_t number) {
+  const auto expected = [&](const char* words) {
+    throw InputError(file + ":" + std::to_string(number) + ": expected " + words);
+  };
+  if (line.rfind("\xFF\xFE", 0) == 0 || line.rfind("\xFE\xFF", 0) == 0)
+    expected("text in UTF-8, got UTF-16 (save it as UTF-8)");
+  if (line.find('\0') != std::string::npos)
+    expected("text in UTF-8, got a NUL byte (UTF-16? a file that is no text?)");
+  const auto alone = line.find('\r');
+  if (alone != std::string::npos && line.find_first_not_of(" \t\r", alone) != std::string::npos)
+    expected("lines that end in LF or CR LF, got CR alone (save it with other line ends)");
+}
+
 /// The separator that this header line seems to have, if it is another one than said.
 std::string otherSeparator(const std::string& line, char said) {
   for (const char c : {';', '\t', '|', ','})
@@ -72,6 +86,7 @@ CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat
   std::string line;
   std::getline(stream, line);
   if (line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
+  requireText(line, file, 1);
   require(!isBlank(line), file + ":1", "a header line");
   readHeader(line, format, table);
   return table;
@@ -109,6 +124,7 @@ std::vector<std::vector<double>> readRows(std::istream& stream, const CsvFormat&
   std::vector<std::vector<double>> rows;
   std::string line;
   for (std::size_t number = 2; std::getline(stream, line); ++number) {
+    requireText(line, table.file, number);
     if (isBlank(line)) continue;
     const auto cells = cellsOf(line, format.separator);
     const std::string hint = format.separator == ',' && line.find(';') != std::string::npos
@@ -124,15 +140,6 @@ std::vector<std::vector<double>> readRows(std::istream& stream, const CsvFormat&
     table.lines.push_back(number);
   }
   return rows;
-}
-
-std::string decimalHint(const std::string& text, char decimal) {
-  const bool point = decimal == '.';
-  const char other = point ? ',' : '.';
-  const bool maybe = text.find(other) != std::string::npos &&
-                     text.find_first_not_of("+-0123456789.,eE") == std::string::npos;
-  if (!maybe) return "";
-  return point ? " (decimal: point; is it comma?)" : " (decimal: comma; is it point?)";
 }
 
 void checkColumn(const CsvTable& table, const CsvFormat& format, const std::string& name,

@@ -135,6 +135,15 @@ std::optional<double> cellNumber(const std::string& cell, const CsvFormat& forma
   return numberOf(pointed);
 }
 
+std::string decimalHint(const std::string& text, char decimal) {
+  const bool point = decimal == '.';
+  const char other = point ? ',' : '.';
+  const bool maybe = text.find(other) != std::string::npos &&
+                     text.find_first_not_of("+-0123456789.,eE") == std::string::npos;
+  if (!maybe) return "";
+  return point ? " (decimal: point; is it comma?)" : " (decimal: comma; is it point?)";
+}
+
 std::optional<CellTime> cellTime(const std::string& cell) {
   Scanner scan(cell);
   const int year = scan.number(4, 0, 9999);

@@ -1,4 +1,4 @@
-// One line of a table, and what a cell of it says. Private to the room.
+// One line of a table, and what a cell of it says. Private to the package.
 #pragma once
 
 #include <optional>
@@ -15,6 +15,13 @@ std::vector<std::string> cellsOf(const std::string& line, char separator);
 
 /// A finite number, or NaN for a missing cell; empty for anything else.
 std::optional<double> cellNumber(const std::string& cell, const CsvFormat& format);
+
+/// " (decimal: point; is it comma?)" of a text that is a number with the other decimal; else empty.
+std::string decimalHint(const std::string& text, char decimal);
+/// The same of a text that was no number: a comma was not the decimal then, nor a point otherwise.
+inline std::string decimalHint(const std::string& text) {
+  return decimalHint(text, text.find(',') != std::string::npos ? '.' : ',');
+}
 
 /// A moment of ISO 8601.
 struct CellTime {

@@ -23,6 +23,11 @@ std::vector<Quantity> disturbancesOf(const LoopFile& loop) {
 }
 
 DisturbanceRecord makeDisturbance(const LoopFile& loop) {
+  LateRows late;
+  return makeDisturbance(loop, late);
+}
+
+DisturbanceRecord makeDisturbance(const LoopFile& loop, LateRows& late) {
   requireSimulated(loop);
   const SimulationParams& sim = loop.simulation;
   const DisturbanceParams& params = loop.disturbance;
@@ -39,7 +44,7 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop) {
                        sim.samples);
   checkCsvUnits(loop, disturbances);
   DisturbanceRecord record = readDisturbanceSequence(params.csv, names, sim.disturbance_nominal,
-                                                     sim.sample_time_s, sim.samples);
+                                                     sim.sample_time_s, sim.samples, late);
   checkCsvRanges(params.csv, disturbances, record.values);
   return record;
 }

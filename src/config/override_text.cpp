@@ -37,6 +37,14 @@ bool beginsOverride(const std::string& word) {
   return true;
 }
 
+/// What stands in quotes around a whole override, as a shell would take it; empty for other words.
+std::string insideQuotes(const std::string& word) {
+  const bool quoted = word.size() > 2 && (word.front() == '\'' || word.front() == '"') &&
+                      word.find(word.front(), 1) == word.size() - 1;
+  const std::string inside = quoted ? word.substr(1, word.size() - 2) : "";
+  return beginsOverride(inside) ? inside : "";
+}
+
 }  // namespace
 
 Overrides parseOverrides(const std::string& text) {
@@ -47,7 +55,9 @@ Overrides parseOverrides(const std::string& text) {
       continue;
     }
     const std::size_t end = endOfWord(text, at);
-    const std::string word = text.substr(at, end - at);
+    std::string word = text.substr(at, end - at);
+    const std::string inside = insideQuotes(word);
+    if (!inside.empty()) word = inside;
     if (beginsOverride(word) || parts.empty())
       parts.push_back(word);
     else

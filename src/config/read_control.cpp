@@ -43,6 +43,20 @@ SetpointStep readSetpointStep(YamlSection& item, const std::vector<std::string>&
   return step;
 }
 
+/// Of two setpoints of an output at one time the first would pass for one that was played.
+void requireOnce(const YamlSection& item, const std::vector<SetpointStep>& schedule,
+                 const std::vector<std::string>& outputs) {
+  const SetpointStep& last = schedule.back();
+  for (auto before = schedule.rbegin() + 1; before != schedule.rend(); ++before) {
+    if (before->time_h != last.time_h) return;
+    for (std::size_t i = 0; i < outputs.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if (!std::isnan(before->value[k]) && !std::isnan(last.value[k]))
+        item.fail(outputs[i], "one setpoint of " + outputs[i] + " at one time");
+    }
+  }
+}
+
 void defaultClp(ClpParams& clp, Eigen::Index n_y, Eigen::Index n_u) {
   clp.weight_perturbation = Vector::Ones(n_u);
   clp.weight_tracking = Vector::Zero(n_y);
@@ -120,6 +134,7 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
     if (params.schedule.size() > 1 &&
         params.schedule.end()[-2].time_h > params.schedule.back().time_h)
       item.fail("time_h", "times that do not decrease");
+    requireOnce(item, params.schedule, names.outputs);
   }
   const std::vector<SetpointStep> recipe = readRecipe(section, names.outputs);
   if (!recipe.empty() && !params.schedule.empty())

@@ -38,7 +38,10 @@ void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
     value.name = name;
     need(channel, "column", "the name of a column");
     channel.text("column", value.column);
+    if (value.column == params.time_column)
+      channel.fail("column", "another column than disturbance.csv.time_column");
     channel.number("scale", value.scale, kFinite);
+    if (value.scale == 0.0) channel.fail("scale", "a number other than 0");
     channel.number("offset", value.offset, kFinite);
     channel.number("mean", value.mean, kFinite);
     readPlausible(channel, value);

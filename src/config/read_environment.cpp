@@ -1,6 +1,7 @@
 // Sections `disturbance`, `actuator`, `noise`: what acts on the plant and how its ends behave.
 #include <algorithm>
 
+#include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
@@ -113,6 +114,10 @@ void readDisturbance(YamlSection& root, LoopFile& loop, const LoopNames& names) 
     nominal[static_cast<Eigen::Index>(i)] = names.plant.disturbances[i].nominal;
   section.byName("nominal", nominal, names.disturbances, kFinite);
   readOption(section, "source", params.source);
+  for (const char* unused : {"csv", "pattern"})  // forgotten, not overridden
+    if (!section.has("source") && section.has(unused) && section.raw(unused).size() > 0)
+      section.fail(unused, std::string("disturbance.source: ") + unused +
+                               " with it (constant leaves it out)");
   YamlSection pattern = section.section("pattern");
   readPattern(pattern, params.pattern, names.disturbances);
   if (params.source == DisturbanceSource::kPattern && params.pattern.channels.empty())

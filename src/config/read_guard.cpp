@@ -8,7 +8,7 @@ namespace fpc {
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("guard");
   GuardParams& guard = loop.guard;
-  if (!root.has("guard")) {
+  if (!root.has("guard") || root.raw("guard").IsNull()) {  // lines that are commented out
     guard.lock_samples = 0;
     guard.swing_move = 0.0;
   }

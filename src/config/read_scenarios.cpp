@@ -1,6 +1,7 @@
 // What tuning files and study files share: fitness, changes of a loop, scenarios.
 #include "config/read_scenarios.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -66,6 +67,9 @@ FitnessParams readFitness(YamlSection& root, bool of_tuning) {
   YamlSection section = root.section("fitness");
   for (auto& item : section.list("terms")) fitness.terms.push_back(readTerm(item, of_tuning));
   if (fitness.terms.empty()) section.fail("terms", "a list of at least one {index, ...}");
+  if (std::none_of(fitness.terms.begin(), fitness.terms.end(),
+                   [](const FitnessTerm& term) { return term.weight > 0.0; }))
+    section.fail("terms", "at least one term with a weight > 0");
   section.number("band", fitness.band, kFinitePositive);
   section.oneOf("time_unit", fitness.time_unit, {"s", "min", "h"});
   if (of_tuning) {

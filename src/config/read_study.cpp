@@ -150,7 +150,9 @@ void StudyFile::validate() const {
   std::set<std::string> keys;
   for (const auto& v : vary) {
     require(keys.insert(v.key).second, "vary." + v.key, "every key only once");
-    require(v.lower <= v.upper, "vary." + v.key, "lower <= upper");
+    require(v.lower < v.upper, "vary." + v.key,
+            "lower < upper (a number that does not vary stands under set), got " +
+                exactText(v.lower) + " and " + exactText(v.upper));
   }
   for (const auto& scenario : scenarios)
     require(!scenario.has_seed, "scenarios", "scenarios without seeds: those stand under seeds");

@@ -170,6 +170,8 @@ void validate(const MergedLoop& merged, const std::string& file) {
 std::pair<std::string, std::string> parseOverride(const std::string& text) {
   const auto equals = text.find('=');
   require(equals != std::string::npos && equals > 0, "--set " + text, "path=value");
+  require(text.find_first_of("'\"") > equals, "--set " + text,
+          "path=value without quotes around the path");
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 

@@ -220,6 +220,19 @@ void readTime(YamlSection section, Structure& structure) {
   section.finish();
 }
 
+/// A model that takes the clock for a signal explains everything by it.
+void requireNoTimes(const YamlSection& top, const Structure& structure) {
+  const std::pair<const char*, const std::vector<StructureSignal>*> groups[] = {
+      {"outputs", &structure.outputs},
+      {"inputs", &structure.inputs},
+      {"disturbances", &structure.disturbances}};
+  for (const auto& [key, signals] : groups)
+    for (const StructureSignal& signal : *signals)
+      if (!structure.time_column.empty() && signal.column == structure.time_column)
+        throw InputError(top.where(key) + "." + signal.info.name +
+                         ": expected another column than time.column, '" + signal.column + "'");
+}
+
 void readValidation(YamlSection section, ValidationParams& v) {
   section.integer("correlation_lags", v.correlation_lags, 1);
   section.number("confidence", v.confidence);
@@ -238,6 +251,7 @@ Structure readSections(YamlSection& top, std::vector<PriorKnowledge>* known) {
   structure.outputs = readSignals(top, "outputs");
   structure.inputs = readSignals(top, "inputs");
   structure.disturbances = readSignals(top, "disturbances");
+  requireNoTimes(top, structure);
   readPartition(top.section("partition"), structure.partition);
   readConsequents(top.section("consequents"), structure.consequents);
   readRepair(top.section("repair"), structure.repair);

@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 
+#include "base/csv_cell.hpp"
 #include "base/time_cells.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -39,15 +40,12 @@ std::vector<Index> timeOrder(const Vector& time, const RowName& where, bool may_
   return order;
 }
 
-/// How many samples all rows lie apart, if that is a whole number of them and more than one;
-/// else 1.
-double commonStep(const Vector& time, const std::vector<Index>& order, double sample) {
-  if (order.size() < 3) return 1.0;
-  const double first = std::round((time[order[1]] - time[order[0]]) / sample);
-  for (std::size_t k = 1; k < order.size(); ++k)
-    if (std::abs((time[order[k]] - time[order[k - 1]]) / sample - first) > kSpacingTolerance)
-      return 1.0;
-  return std::max(first, 1.0);
+/// The largest number of samples of which all rows lie whole multiples apart; 1 for a few rows.
+Index commonStep(const std::vector<Index>& numbers) {
+  if (numbers.size() < 3) return 1;
+  Index common = 0;
+  for (const Index number : numbers) common = std::gcd(common, number);
+  return std::max<Index>(common, 1);
 }
 
 /// Sample number of each row after the first. @throws InputError unless all are whole numbers of
@@ -65,10 +63,6 @@ std::vector<Index> sampleNumbers(const Vector& time, const std::vector<Index>& o
                        exactText(time[order[k]] - time[order[k - 1]]));
     numbers.push_back(numbers.back() + static_cast<Index>(whole));
   }
-  const Index holes = numbers.back() + 1 - static_cast<Index>(order.size());
-  require(holes <= static_cast<Index>(order.size()), where(order.back()),
-          "times " + exactText(sample) +
-              " apart (sample_time_s; or another unit?), got more holes than rows");
   return numbers;
 }
 
@@ -87,17 +81,22 @@ TableRows repairTime(DataSet& data, const CsvTable& table, const Structure& stru
           table.file + ": column '" + structure.time_column + "'",
           "the unit [" + unit_expected + "] of the structure, got [" + unit + "]");
   const std::string text = index < table.texts.size() ? table.texts[index] : "";
-  require(text.empty(), where(0), "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
+  require(text.empty(), where(0),
+          "numbers, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'" + decimalHint(text));
   const Vector time = table.values.col(column).segment(first, count);
   const double sample = structure.sample_time_s / secondsPer(unit_expected);
   Index moved = 0;
   const auto order = timeOrder(time, where, structure.repair.sort_time, moved);
   const auto numbers = sampleNumbers(time, order, sample, where);
-  const double common = commonStep(time, order, sample);
-  require(common == 1.0 || structure.repair.missing != MissingCells::kError, where(0),
+  const Index common = commonStep(numbers);
+  require(common == 1 || structure.repair.missing != MissingCells::kError, where(0),
           "times " + exactText(sample) + " apart (another unit? or another sample_time_s), got " +
-              exactText(common * sample) + " from each row to the next");
+              exactText(static_cast<double>(common) * sample) +
+              " from each row to the next, or multiples of it");
   const Index holes = numbers.back() + 1 - count;
+  require(holes <= count, where(order.back()),
+          "times " + exactText(sample) +
+              " apart (sample_time_s; or another unit?), got more holes than rows");
   TableRows rows(static_cast<std::size_t>(numbers.back()) + 1, -1);
   Matrix placed = Matrix::Constant(numbers.back() + 1, data.values.cols(), kNaN);
   for (std::size_t k = 0; k < order.size(); ++k) {

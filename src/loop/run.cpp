@@ -69,7 +69,6 @@ class Ring {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimizer_ ? optimize(answer) : answer.base);
       plant_.advance(0.0);
-      watchInputs(now.header.step);
     }
     if (loop_.has_identify) learn(now);
     return !now.final;
@@ -86,14 +85,6 @@ class Ring {
   }
 
  private:
-  /// What the plant says of inputs that do not follow, once; over topics diagnostics say it. The
-  /// summary counts it from the record.
-  void watchInputs(std::uint32_t step) {
-    if (plant_.stuck() == stuck_) return;
-    stuck_ = plant_.stuck();
-    if (!stuck_.empty()) tell(step, stuck_);
-  }
-
   const ControlAction& optimize(const ControllerAnswer& answer) {
     if (answer.has_prediction) optimizer_->receive(answer.prediction);
     optimizer_->receive(answer.base);
@@ -169,7 +160,6 @@ class Ring {
 
   const LoopFile& loop_;
   const RunOptions& options_;
-  std::string stuck_;
   std::string missed_;       // what went wrong with models since the sample answered last, by line
   std::uint32_t present_{};  // the sample that is answered
   std::unique_ptr<SimulatedProcess> made_;  // until it is the session's

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "fmbpc/analysis/running_indices.hpp"
-#include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/disturbance_source.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/run_summary.hpp"
+#include "loop/disturbance_remarks.hpp"
 #include "loop/model_use.hpp"
 #include "loop/overruled.hpp"
 #include "loop/record_remarks.hpp"
@@ -31,18 +30,6 @@ double toleranceOf(const InputLimits& limits, Index i) {
 bool isOfLaw(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kConstrained ||
          source == ActionSource::kClipped;
-}
-
-/// Counted again from the record; 0 where the record is not at hand (it is the plant's, maybe of
-/// another machine).
-void countCells(const LoopFile& loop, Summary& summary) {
-  if (loop.external_plant || loop.disturbance.source != DisturbanceSource::kCsv) return;
-  try {
-    const DisturbanceRecord record = makeDisturbance(loop);
-    summary.repaired_cells = record.repaired;
-    summary.implausible_cells = record.implausible;
-  } catch (const InputError&) {  // not on this machine
-  }
 }
 
 void addUnplayed(const LoopFile& loop, Summary& summary) {
@@ -250,6 +237,7 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
   result.remarks = sums_->tally.remarks;
   for (RunRemark& remark : sums_->of_record.remarks()) result.remarks.push_back(std::move(remark));
   addUnplayed(sums_->loop, result);
+  addDisturbances(sums_->loop, result);
   result.complete = nothing_missing && result.failed_samples == 0;
   for (const RunningOutput& output : sums_->outputs) result.outputs.push_back(output.indices());
   for (const RunningInput& input : sums_->inputs) result.inputs.push_back(input.indices());
@@ -263,7 +251,6 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
   result.clp_solves = sums_->solve_us.count();
   result.clp_median_us = sums_->solve_us.quantile(0.5);
   result.clp_p99_us = sums_->solve_us.quantile(0.99);
-  countCells(sums_->loop, result);
   return result;
 }
 

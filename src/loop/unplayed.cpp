@@ -68,6 +68,14 @@ void addDisturbances(const LoopFile& loop, Unplayed& found) {
               exactText(next_h) + " h");
 }
 
+/// A window of which the run holds no sample has no figures.
+void addWindows(const LoopFile& loop, Unplayed& found) {
+  for (const ReportWindow& window : loop.report.windows)
+    if (found.isLate(window.from_h))
+      found.say("the window " + window.name + " of report.windows begins only at " +
+                exactText(window.from_h) + " h and has no figures");
+}
+
 /// The final sample is one more to learn from.
 void addIdentification(const LoopFile& loop, Unplayed& found) {
   const auto after = static_cast<std::int64_t>(loop.has_identify ? loop.identify.after : 0);
@@ -85,6 +93,7 @@ std::vector<RunRemark> unplayedIn(const LoopFile& loop) {
   addIdentification(loop, found);
   addSetpoints(loop, found);
   addDisturbances(loop, found);
+  addWindows(loop, found);
   return found.take();
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/csv_cell.hpp"
 #include "base/time_cells.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/order_statistics.hpp"
@@ -52,7 +53,8 @@ std::vector<double> timesOf(const CsvTable& table, const std::string& time_colum
     const std::string row = table.at(r, column);
     require(!std::isnan(cells[r]), row,
             text.empty() ? "a time, the cell is missing"
-                         : "a number, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'");
+                         : "a number, YYYY-MM-DD or YYYY-MM-DDThh:mm:ss, got '" + text + "'" +
+                               decimalHint(text));
     const double time = (cells[r] - cells[0]) * unit_s;
     require(times.empty() || time > times.back(), row,
             "increasing times, got " + exactText(cells[r]) + " after " +

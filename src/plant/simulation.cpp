@@ -257,14 +257,15 @@ void Simulation::checkRanges(const Command& command) const {
       const double span = ranges[row].upper - ranges[row].lower;
       require(std::abs(command.value[i]) <= span, "value of " + command.name[i],
               "an offset of at most " + exactText(span) + " [" + ranges[row].unit +
-                  "], the width of its range");
+                  "], the width of its range, got " + exactText(command.value[i]));
       continue;
     }
     const bool inside =
         command.value[i] >= ranges[row].lower && command.value[i] <= ranges[row].upper;
     require(inside, "value of " + command.name[i],
             "a number >= " + exactText(ranges[row].lower) +
-                " and <= " + exactText(ranges[row].upper) + " [" + ranges[row].unit + "]");
+                " and <= " + exactText(ranges[row].upper) + " [" + ranges[row].unit + "], got " +
+                exactText(command.value[i]));
   }
 }
 

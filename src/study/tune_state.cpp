@@ -63,7 +63,7 @@ TuneState parseState(const std::string& text, const std::string& file,
     const Json json = Json::parse(text);
     require(json.at("tuning") == identity, file,
             "the state of this tuning: loop, tuning file, method, seed, population and evaluations "
-            "as they were when it stopped");
+            "as they were when it stopped, and so the files that the loop names");
     TuneState state;
     state.seconds = json.at("seconds");
     for (const Json& step : json.at("evaluations")) state.steps.push_back(stepOf(step));

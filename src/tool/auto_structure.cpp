@@ -26,13 +26,14 @@ std::vector<StructureSignal> signalsOf(const CsvTable& table,
 
 void setSampleTime(const CsvTable& table, const AutoColumns& columns, Structure& structure,
                    std::vector<std::string>& remarks) {
+  std::vector<std::string> used = columns.outputs;
+  used.insert(used.end(), columns.inputs.begin(), columns.inputs.end());
+  used.insert(used.end(), columns.disturbances.begin(), columns.disturbances.end());
+  requireNoClock(table, used);
   if (columns.sample_time_s > 0.0) {
     structure.sample_time_s = columns.sample_time_s;
     return;
   }
-  std::vector<std::string> used = columns.outputs;
-  used.insert(used.end(), columns.inputs.begin(), columns.inputs.end());
-  used.insert(used.end(), columns.disturbances.begin(), columns.disturbances.end());
   const TimeColumn time = timeColumn(table, columns.time, used);
   if (time.name.empty()) {
     structure.sample_time_s = 1.0;

@@ -118,6 +118,12 @@ void requireRising(const CsvTable& table, const std::string& name, const Spacing
 
 }  // namespace
 
+void requireNoClock(const CsvTable& table, const std::vector<std::string>& used) {
+  for (const auto& name : used)
+    require(!(isCalledTime(name) && alwaysRisesOrFalls(table.values.col(table.column(name)))),
+            table.file + ": column '" + name + "'", "a signal, not the times");
+}
+
 void TimeColumn::fitTo(double sample_time_s) {
   if (!unit.empty()) return;
   for (const std::string& guess : timeUnits())

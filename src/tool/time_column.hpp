@@ -25,6 +25,10 @@ struct TimeColumn {
 TimeColumn timeColumn(const CsvTable& table, const std::string& named,
                       const std::vector<std::string>& used);
 
+/// @throws InputError naming file and column if one among `used` is a clock: called a time, and
+/// always rising or falling.
+void requireNoClock(const CsvTable& table, const std::vector<std::string>& used);
+
 /// The table with equally spaced times where those of column `name` (empty: none) jitter by more
 /// than rounding and less than a quarter of a sample, with a remark; otherwise as it is.
 CsvTable withEvenTimes(CsvTable table, const std::string& name, std::vector<std::string>& remarks);

@@ -140,6 +140,21 @@ TEST(Csv, ImpossibleDatesAndMixedColumnsAreErrors) {
   EXPECT_NE(errorOf("date\n1999-01-01\n7\n").find("either dates or numbers"), std::string::npos);
 }
 
+// Spreadsheets save "Unicode text" as UTF-16; a NUL once cut its cell, "1\\0" + "99" was 1.
+TEST(Csv, OtherBytesThanTextAreNamedAndNotShown) {
+  const std::string utf16("\xFF\xFEt\0,\0x\0\n\0", 10);
+  EXPECT_NE(errorOf(utf16).find(":1: expected text in UTF-8, got UTF-16"), std::string::npos);
+  EXPECT_NE(errorOf(std::string("t\0,\0x\0\n\0", 8)).find(":1: expected text in UTF-8, got a NUL"),
+            std::string::npos);
+  EXPECT_NE(errorOf(std::string("t,x\n0,1\n1,2\0009\n", 14)).find(":3: expected text in UTF-8"),
+            std::string::npos);
+  const std::string mac = errorOf("t,x\r0,1\r1,2\r");
+  EXPECT_NE(mac.find(":1: expected lines that end in LF or CR LF, got CR alone"),
+            std::string::npos);
+  EXPECT_EQ(mac.find('\r'), std::string::npos);
+  EXPECT_NE(errorOf("t,x\n0,1\r1,2\n").find(":2: expected lines"), std::string::npos);
+}
+
 TEST(Csv, MalformedTablesNameFileAndLine) {
   EXPECT_NE(errorOf("").find(":1: expected a header line"), std::string::npos);
   EXPECT_NE(errorOf("a,a\n1,2\n").find("only once"), std::string::npos);

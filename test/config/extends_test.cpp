@@ -123,6 +123,12 @@ TEST_F(Extends, AnEmptyMappingKeepsAndAnEmptySectionOverNothingIsNone) {
   };
   EXPECT_TRUE(same(readLoop(write("a.yaml", "extends: heated_tank\nactuator: {}\n"))));
   EXPECT_TRUE(same(readLoop(write("b.yaml", "extends: heated_tank\nguard:\nclp:\n"))));
+  for (const char* none : {"", "guard:\n  # lock_samples: 6\n", "guard: ~\n"})
+    EXPECT_EQ(
+        readLoop(write("g.yaml", "extends: heated_tank\n" + std::string(none))).guard.lock_samples,
+        0)
+        << none;
+  EXPECT_GT(readLoop("heated_tank", {{"guard", "{}"}}).guard.lock_samples, 0);
   EXPECT_FALSE(same(readLoop("heated_tank", {{"actuator", "{}"}}))) << "begins with the defaults";
   EXPECT_TRUE(readLoop("asp_case1_clp").has_clp);
   EXPECT_FALSE(

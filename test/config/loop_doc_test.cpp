@@ -74,7 +74,7 @@ std::string controlled(const std::string& rest) {
 std::set<std::string> readerKeys() {
   const std::string lists =
       "setpoint:\n  schedule: [{time_h: 0, s: 1}]\n  commands: [{time_h: 0, name: s, value: 1}]\n"
-      "disturbance:\n  commands: [{time_h: 0, name: q_i, value: 1}]\n"
+      "disturbance:\n  source: constant\n  commands: [{time_h: 0, name: q_i, value: 1}]\n"
       "  pattern: {channels: {q_i: {shape: flow, lower: 1, upper: 3, mean: 2}}}\n"
       "  csv: {channels: {q_i: {column: a, plausible: [0, 1]}}}\n"
       "sensors: {s: {class: A}}\nactuator: {lag: {q_r: {t90_s: 6}}}\ntf:\n  frames: {plant: {x: "

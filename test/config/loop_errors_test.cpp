@@ -180,6 +180,54 @@ std::string nameOf(const ::testing::TestParamInfo<Mistake>& info) { return info.
 
 INSTANTIATE_TEST_SUITE_P(Loop, EveryMistake, ::testing::ValuesIn(kMistakes), nameOf);
 
+TEST_F(LoopErrors, APairThatLacksInAModelIsNamed) {
+  const auto error = [](const char* key, const char* value) {
+    return errorOf([&] { readLoop("column_adaptive", {{key, value}}); });
+  };
+  expectWords(error("controller.model", "[]"),
+              {"--set controller.model: expected an item", "y_D from L lacks", "got []"});
+  expectWords(error("controller.model.3.input", "L"), {"controller.model[3].output", "only once"});
+  expectWords(error("controller.model.3.gain", "0"), {"controller.model", "x_B from V lacks"});
+}
+
+TEST_F(LoopErrors, ARecordWithoutItsSourceIsNoConstant) {
+  const std::string csv = "disturbance: {csv: {file: r.csv, time_column: t, channels: ";
+  expectWords(
+      errorOf([&] {
+        readLoop(write("a.yaml", "extends: heated_tank\n" + csv + "{T_in: {column: v}}}}\n"));
+      }),
+      {"disturbance.csv: expected disturbance.source: csv with it"});
+  write("r.csv", "t,v\n0,15\n3,15\n6,15\n");
+  const auto channel = [&](const std::string& text) {
+    return errorOf([&] {
+      readLoop(write("b.yaml", "extends: heated_tank\n" + csv + "{T_in: {" + text + "}}}}\n"),
+               {{"disturbance.source", "csv"}});
+    });
+  };
+  expectWords(channel("column: t"), {"T_in.column", "another column", "got 't'"});
+  expectWords(channel("column: v, scale: 0"), {"T_in.scale", "other than 0"});
+}
+
+TEST_F(LoopErrors, OneSetpointOfAnOutputAtOneTime) {
+  const auto error = [](const char* schedule) {
+    return errorOf([&] { readLoop("asp_case1_pi_x", {{"setpoint.schedule", schedule}}); });
+  };
+  expectWords(error("[{time_h: 1, x: 1900}, {time_h: 1, s: 50}, {time_h: 1, x: 2000}]"),
+              {"setpoint.schedule[2].x", "one setpoint of x at one time", "got '2000'"});
+  EXPECT_EQ(error("[{time_h: 1, x: 1900}, {time_h: 1, s: 50}, {time_h: 2, x: 2000}]"),
+            "nothing was thrown");
+}
+
+TEST_F(LoopErrors, AValueOfACommandBeyondTheRangeIsRepeated) {
+  const auto error = [](const char* command) {
+    return errorOf([&] { readLoop("heated_tank", {{"disturbance.commands", command}}); });
+  };
+  expectWords(error("[{time_h: 0.5, name: T_in, value: 50}]"),
+              {"disturbance.commands[0].value", "<= 40 [degC], got 50"});
+  expectWords(error("[{time_h: 0.5, name: T_in, value: -60, mode: offset}]"),
+              {"disturbance.commands[0].value", "width of its range, got -60"});
+}
+
 TEST_F(LoopErrors, ARecordForYearsOfSamplesIsRefusedBeforeItIsMade) {
   const std::string file =
       write("long.yaml", smallLoop() +

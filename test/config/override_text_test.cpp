@@ -22,6 +22,16 @@ TEST(OverrideText, WordsWithoutAKeyBelongToTheValueBefore) {
             (Overrides{{"title", "The operator's day"}, {"noise.seed", "3"}}));
 }
 
+// roslaunch ... "set:='setpoint.initial={T: 45}'": the shell takes the outer quotes only.
+TEST(OverrideText, QuotesAroundAWholeOverrideAreTakenOff) {
+  const Overrides both{{"setpoint.initial", "{T: 45}"}, {"noise.seed", "3"}};
+  EXPECT_EQ(parseOverrides("'setpoint.initial={T: 45}' noise.seed=3"), both);
+  EXPECT_EQ(parseOverrides("\"setpoint.initial={T: 45}\" 'noise.seed=3'"), both);
+  EXPECT_EQ(parseOverrides("title='a b'"), (Overrides{{"title", "'a b'"}}));
+  EXPECT_EQ(parseOverrides("title=The 'big' day"), (Overrides{{"title", "The 'big' day"}}));
+  expectWords(errorOf([] { parseOverride("'loop.pace=paced"); }), {"without quotes"});
+}
+
 TEST(OverrideText, NothingIsNoOverride) {
   EXPECT_TRUE(parseOverrides("").empty());
   EXPECT_TRUE(parseOverrides("  ").empty());

@@ -78,6 +78,9 @@ TEST(StructureFile, GridsOfGivenSetsAreRead) {
 
 TEST(StructureFile, MistakesAreNamedWithFileAndKey) {
   const std::string z = "  z: {N_y: {z: 1}}\n";
+  EXPECT_NE(errorOf(kSignals + "time: {column: U1}\nsubmodels:\n  y: {N_y: {y: 1}}\n" + z)
+                .find("expected another column than time.column, 'U1'"),
+            std::string::npos);
   EXPECT_NE(errorOf(kSignals + "submodels:\n  y: {N_y: {q: 1}}\n" + z).find("N_y.q"),
             std::string::npos);
   EXPECT_NE(errorOf(kSignals + "submodels:\n  y: {N_y: {y: 1.5}}\n" + z).find("whole numbers"),

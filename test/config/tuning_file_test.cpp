@@ -77,6 +77,9 @@ TEST(TuningFile, MistakesNameFileKeyAndWhatWasExpected) {
   expectWords(errorIn(with("index: ise", "index: isse")), {"index", "ise", "step_cost"});
   expectWords(errorIn(with("output: y", "input: y")), {"input", "unknown key"});
   expectWords(errorIn(with("weight: 0.1", "weight: -1")), {"weight", ">= 0"});
+  std::string weightless = with("weight: 0.1", "weight: 0");
+  weightless.replace(weightless.find("output: y"), 9, "output: y, weight: 0");
+  expectWords(errorIn(weightless), {"fitness.terms", "a weight > 0"});
   expectWords(errorIn(with("    - {index: ise, output: y}\n    - {index: effort, input: u, weight: "
                            "0.1}\n",
                            "    []\n")),

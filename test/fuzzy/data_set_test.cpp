@@ -189,6 +189,11 @@ TEST(DataSet, ARecordOfAnotherSampleTimeIsNotOneWithMissingRows) {
   const auto slower = [](CsvTable& t) { t.values.col(0) *= 2.0; };
   contains(errorOf(slower),
            "times 1 apart (another unit? or another sample_time_s), got 2 from each row");
+  contains(errorOf([&](CsvTable& t) {
+             slower(t);
+             t.values(19, 0) += 2.0;  // and a row lacks
+           }),
+           "got 2 from each row to the next, or multiples of it");
   CsvTable t = table();
   slower(t);
   EXPECT_EQ(makeDataSet(t, structureWith("repair: {missing: interpolate}\n")).rows(), 39)

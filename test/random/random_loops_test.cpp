@@ -71,6 +71,7 @@ class RandomLoops : public LoopFolder {
 
 TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
   std::map<std::string, int> ran, plants;
+  std::size_t plain = 0;
   each(seeds(), [&](const RandomLoop& random, const LoopFile& loop, const RunRecord& record) {
     ++ran[random.controller];
     ++plants[loop.simulation.plant];
@@ -80,6 +81,10 @@ TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
     EXPECT_EQ(notFinite(record), "") << random.told();
     EXPECT_EQ(beyondLimits(loop, record), "") << random.told();
     EXPECT_EQ(summary.input_violations + summary.move_violations, 0U) << random.told();
+    if (isPlain(loop, record)) {
+      ++plain;
+      EXPECT_EQ(beyondMoves(loop, record), "") << random.told();
+    }
     for (const auto& u : summary.inputs) EXPECT_TRUE(std::isfinite(u.travel)) << random.told();
     for (const auto& y : summary.outputs)
       EXPECT_TRUE(std::isfinite(y.rmse) || loop.controllerType().open_loop) << random.told();
@@ -90,7 +95,9 @@ TEST_F(RandomLoops, EndWithFiniteFiguresOrANamedFailureInsideAllLimits) {
     std::cout << errors.size() << " refused, " << kind << ": " << errors.front() << "\n";
   }
   for (const auto& [controller, count] : ran) std::cout << controller << ": " << count << " runs\n";
+  std::cout << plain << " runs in which nothing but the law acted\n";
   if (seeds().size() < kQuick) return;
+  EXPECT_GT(plain, seeds().size() / 10) << "moves by commands alone are checked in too few runs";
   EXPECT_LT(refused, seeds().size() / 20) << "the generator writes files that a user would not";
   for (const auto& type : controllerNames()) EXPECT_GT(ran[type], 0) << type;
   for (const auto& type : plantNames()) EXPECT_GT(plants[type], 0) << type;

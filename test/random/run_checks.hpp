@@ -66,6 +66,35 @@ inline std::string beyondLimits(const LoopFile& loop, const RunRecord& record) {
   return "";
 }
 
+/// Whether nothing but the law acted in the whole run and every valve went where it was told.
+inline bool isPlain(const LoopFile& loop, const RunRecord& record) {
+  const InputLimits& limits = loop.simulation.actuator.limits;
+  const Vector slack = kTolerance * (limits.upper - limits.lower);
+  for (std::size_t k = 0; k + 1 < record.samples.size(); ++k) {
+    const SampleRecord& s = record.samples[k];
+    if (!s.has_action || !isOfLaw(s.action.source)) return false;
+    const Vector& shown = record.samples[k + 1].measurement.input_applied;
+    if (!((slack - (shown - s.action.input).cwiseAbs()).array() >= 0.0).all()) return false;
+  }
+  return record.samples.size() > 1;
+}
+
+/// In a plain run: the first command that is further from the one before than the move limit, by
+/// commands alone and without a choice of origin; empty if there is none.
+inline std::string beyondMoves(const LoopFile& loop, const RunRecord& record) {
+  const InputLimits& limits = loop.simulation.actuator.limits;
+  const Vector slack = kTolerance * (limits.upper - limits.lower);
+  Vector last = record.samples.front().measurement.input_applied;
+  for (std::size_t k = 0; k + 1 < record.samples.size(); ++k) {
+    const Vector& u = record.samples[k].action.input;
+    for (Eigen::Index i = 0; i < u.size(); ++i)
+      if (!(std::abs(u[i] - last[i]) <= limits.move[i] + slack[i]))
+        return "command " + std::to_string(i) + " of sample " + std::to_string(k);
+    last = u;
+  }
+  return "";
+}
+
 /// The same bits; what is missing (a setpoint that nobody follows) equals what is missing.
 inline bool same(const Vector& a, const Vector& b) {
   if (a.size() != b.size()) return false;

@@ -100,6 +100,9 @@ TEST_F(AutoTool, RowsThatTheTimesLackKeepThePastsOnBothSidesApart) {
 TEST_F(AutoTool, TimesThatDoNotRiseOrHaveAnotherSpacingAreRefused) {
   const std::string model = path("plain.yaml"), by_name = " --auto --inputs u --outputs y";
   ASSERT_EQ(tool(onRecord("--out " + model)).code, 0);
+  expectWords(refusal("identify " + writeRecord("plain.csv", record()) +
+                      " --auto --inputs u time --outputs y"),
+              {"plain.csv: column 'time'", "a signal, not the times"});
   CsvTable table = record();
   table.values(50, 0) = table.values(49, 0);
   const std::string twice = writeRecord("twice.csv", table);

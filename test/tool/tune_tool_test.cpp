@@ -56,6 +56,7 @@ TEST_F(TuneTool, ResumesToTheSameTuning) {
   const Outcome other = tool("tune " + files() + " --resume --out " + path("part"), true);
   EXPECT_EQ(other.code, 1);
   EXPECT_NE(other.printed.find("state of this tuning"), std::string::npos) << other.printed;
+  EXPECT_NE(other.printed.find("the files that the loop names"), std::string::npos);
   // The state as a stop after three generations leaves it.
   std::ifstream stream(path("whole") + "/state.json");
   auto state = nlohmann::json::parse(stream);

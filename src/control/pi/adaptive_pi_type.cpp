@@ -39,12 +39,31 @@ void readElements(YamlSection& section, AdaptivePiParams& params,
     const int input = indexByName(item, "input", context.inputs());
     Fopdt& element = params.model[loopOf(params, output, &AdaptiveLoop::output)]
                                  [loopOf(params, input, &AdaptiveLoop::input)];
+    if (element.gain != 0.0) item.fail("output", "every pair of output and input only once");
     for (const char* key : {"gain", "time_constant_min"}) need(item, key, "a number");
     item.number("gain", element.gain, kFinite);
     item.number("time_constant_min", element.time_constant, kFinitePositive);
     item.number("dead_time_min", element.dead_time, kFiniteNotNegative);
     item.finish();
   }
+}
+
+/// An element that nobody wrote would be told as one whose gain is 0.
+void requireElements(const YamlSection& section, const AdaptivePiParams& params,
+                     const ControllerContext& context) {
+  const bool needed =
+      params.decoupling || params.adaptation.enabled || params.tuning != PiTuningRule::kGiven;
+  const bool paired = params.loops[0].input != params.loops[1].input &&
+                      params.loops[0].output != params.loops[1].output;
+  if (!needed || !paired) return;
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) {
+      if (params.model[i][j].gain != 0.0) continue;
+      const auto y = static_cast<std::size_t>(params.loops[i].output);
+      const auto u = static_cast<std::size_t>(params.loops[j].input);
+      section.fail("model", "an item with a gain other than 0 for every pair; " +
+                                context.outputs()[y] + " from " + context.inputs()[u] + " lacks");
+    }
 }
 
 void readAdaptation(YamlSection& section, AdaptationParams& params) {
@@ -73,6 +92,7 @@ AdaptivePiParams readAdaptivePi(YamlSection& section, const ControllerContext& c
   section.boolean("decoupling", params.decoupling);
   readElements(section, params, context);
   readAdaptation(section, params.adaptation);
+  requireElements(section, params, context);
   checked(section, [&] {
     params.validate(2, 2);
     if (params.decoupling) InvertedDecoupling(params.model, context.plant.sample_time_s / 60.0);
