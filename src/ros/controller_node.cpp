@@ -52,7 +52,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       hold_(private_node.advertiseService(topics::kHold, &ControllerNode::onHold, this)),
       adapt_(private_node.advertiseService(topics::kAdapt, &ControllerNode::onAdapt, this)),
       parked_timer_(node.createSteadyTimer(
-          ros::WallDuration(kLookAgain), [this](const ros::SteadyTimerEvent&) { answerParked(); },
+          ros::WallDuration(kLookAgain),
+          [this](const ros::SteadyTimerEvent&) { guarded("parked", [this] { answerParked(); }); },
           false, false)),
       settings_(
           private_node, loop.controllerType().settings,

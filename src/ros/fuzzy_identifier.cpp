@@ -131,7 +131,7 @@ void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
       ROS_WARN("fuzzy_identifier: sample %u: the model learned online is not published: %s",
                measurement.header.step, due.refusal.c_str());
     if (due.model != nullptr) failure_.clear();
-    if (!due.refusal.empty()) hadNoModel(due.refusal);
+    if (!due.refusal.empty()) hadNoModel(due.refusal, measurement.header);
     if (due.model != nullptr) publish(*due.model, measurement.header);
     if (auto job = duty_.next()) begin(std::move(*job), true);
     say(duty_.settle());
@@ -182,7 +182,7 @@ void FuzzyIdentifier::onGoal(Server::GoalHandle goal) {
   } catch (const std::exception& error) {
     result.message = error.what();
     ROS_WARN("fuzzy_identifier: goal rejected: %s", error.what());
-    remark(std::string("command refused: ") + error.what());
+    remark(std::string("command refused: ") + error.what(), session_.present());
     goal.setRejected(result, error.what());
     return;
   }
@@ -234,7 +234,7 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   }
   if (!outcome.error.empty()) {
     result.message = outcome.error;
-    hadNoModel("identification: " + outcome.error);
+    hadNoModel("identification: " + outcome.error, duty_.jobFrom());
     return;
   }
   result = toResult(outcome.result);
@@ -250,20 +250,21 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   } catch (const InputError& error) {
     result.ok = 0;
     result.message = std::string("identified, but refused: ") + error.what();
-    hadNoModel(std::string("identification: ") + error.what());
+    hadNoModel(std::string("identification: ") + error.what(), duty_.jobFrom());
   }
 }
 
 // The loop goes on with the model it has: that is news for a while, no state.
-void FuzzyIdentifier::hadNoModel(const std::string& why) {
+void FuzzyIdentifier::hadNoModel(const std::string& why, const StepHeader& made_from) {
   failure_ = inOneLine(why);
   failed_s_ = steadyNow();
-  remark(failure_);
+  remark(failure_, made_from);
 }
 
-// The record tells it with the next sample that the controller answers.
-void FuzzyIdentifier::remark(const std::string& words) {
-  identified_.publish(toMsg(IdentifierWord{session_.present(), false, inOneLine(words)}));
+// The record tells it with the next sample that the controller answers. The one at which a job
+// began may be over by now.
+void FuzzyIdentifier::remark(const std::string& words, const StepHeader& of) {
+  identified_.publish(toMsg(IdentifierWord{of, false, inOneLine(words)}));
 }
 
 }  // namespace fpc

@@ -70,7 +70,7 @@ TEST_F(DisturbanceRemarks, AWindowBeyondTheRunIsSaid) {
 }
 
 TEST_F(DisturbanceRemarks, OffsetsAreCutAgainstTheRecord) {
-  const std::string cut = "an offset of T_in was asked beyond its range (-5)";
+  const std::string cut = "an offset of T_in was asked beyond its range, 0..40";
   EXPECT_TRUE(says(summaryWith(10, "[{time_h: 0.5, name: T_in, value: -20, mode: offset}]"), cut));
   EXPECT_FALSE(says(summaryWith(10, "[{time_h: 0.5, name: T_in, value: -9, mode: offset}]"), cut));
 }

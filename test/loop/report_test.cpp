@@ -197,7 +197,7 @@ TEST_F(Report, AnInputThatNobodyMovesIsNotLocked) {
 }
 
 TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {
-  write("d.csv", "t[h],v[degC]\n0,15\n10,16\n");
+  write("d.csv", "t[h],v[degC]\n0,15\n0.5,16\n");
   const std::string csv = "{file: " + path("d.csv") +
                           ", time_column: t, end: hold, channels: {T_in: {column: v}}, lead_in_h: ";
   const auto told = [&](Overrides overrides) {
