@@ -10,7 +10,7 @@ namespace fpc {
 
 void ModelInbox::put(TsModel model, const StepHeader& made_from) {
   if (owed_ && isSameSample(*owed_, made_from)) owed_.reset();
-  if (made_from.run_id != 0 && used_ && isSameSample(*used_, made_from)) return;
+  if (made_from.run_id != 0 && used_ && used_->is(model, made_from)) return;
   items_.push_back({made_from, std::move(model)});
 }
 
@@ -22,11 +22,17 @@ void ModelInbox::hear(const IdentifierWord& word) {
   }
   word_ = word.header;
   if (!word.model) return;
-  const bool used = used_ && isSameSample(*used_, word.header);  // it was faster than its word
+  const bool used =
+      used_ && isSameSample(used_->made_from, word.header);  // it was faster than its word
   const bool here = used || std::any_of(items_.begin(), items_.end(), [&](const Item& item) {
                       return isSameSample(item.made_from, word.header);
                     });
   if (!here) owed_ = word.header;
+}
+
+// One sample may give two: what is learned online, and what was identified on demand.
+bool ModelInbox::Used::is(const TsModel& model, const StepHeader& other) const {
+  return isSameSample(made_from, other) && name == model.name && source == model.source;
 }
 
 bool ModelInbox::belongsBefore(const StepHeader& made_from, const StepHeader& next) const {
@@ -48,7 +54,7 @@ std::vector<TsModel> ModelInbox::take(const StepHeader& next) {
       later.push_back(std::move(item));
       continue;
     }
-    used_ = item.made_from;
+    used_ = Used{item.made_from, item.model.name, item.model.source};
     due.push_back(std::move(item.model));
   }
   items_ = std::move(later);

@@ -105,6 +105,7 @@ void FuzzyIdentifier::publishStartModel() {
     if (const TsModel* model = session_.start()) publish(*model, {});
     problem_.clear();
   } catch (const InputError& error) {
+    if (problem_ == error.what()) return;  // said, and tried again at every poll
     problem_ = error.what();
     ROS_ERROR("fuzzy_identifier: the model does not fit the plant: %s", problem_.c_str());
   }

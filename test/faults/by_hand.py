@@ -42,6 +42,11 @@ def input_is_kept(loop):
     return None
 
 
+def in_control(state):
+    """The law has the inputs; where manual left the plant its model may have no data, which degrades it."""
+    return state.summary and (state.word == "automatic" or state.word == "degraded" and "the model" in state.reason)
+
+
 def in_manual(name, *victims):
     """Manual, then nodes die: manual again, with the same input, and back without a bump."""
     def do(loop):
@@ -51,8 +56,9 @@ def in_manual(name, *victims):
     def after(loop):
         complaint = input_is_kept(loop)
         automatic(loop)
-        back = loop.wait_for_summary("automatic", time.monotonic(), 10.0)
-        return complaint or (None if back else "manual was not released")
+        back = loop.logs["loop_state"].wait(in_control, time.monotonic(), 10.0)
+        last = loop.summary()
+        return complaint or (None if back else f"not automatic 10 s after manual: {last and last.word}, {last and last.reason}")
     return Fault(name, do, end="manual", touches=victims, after=after, lasts=1.0,
                  needs=("optimizer",) if "clp_optimizer" in victims else ())
 

@@ -41,6 +41,19 @@ TEST(ModelInbox, AModelThatWasUsedBeforeItsWordCameIsNotOwed) {
   EXPECT_TRUE(inbox.complete(header(1)));
 }
 
+TEST(ModelInbox, ASecondModelOfASampleIsUsedTooButNotTheSameAgain) {
+  ModelInbox inbox(true);
+  inbox.announce(7);
+  inbox.put(model("learned"), header(4));
+  ASSERT_EQ(inbox.take(header(5)).size(), 1U);
+  inbox.put(model("learned"), header(4));  // its identifier came back
+  EXPECT_TRUE(inbox.take(header(5)).empty());
+  TsModel asked = model("learned");
+  asked.source = "identified on demand";
+  inbox.put(asked, header(4));
+  EXPECT_EQ(inbox.take(header(5)).size(), 1U);
+}
+
 TEST(ModelInbox, AModelOfNoSampleIsUsedAtOnce) {
   ModelInbox inbox(true);
   inbox.announce(7);

@@ -52,12 +52,17 @@ class ModelInbox {
     StepHeader made_from;
     TsModel model;
   };
+  struct Used {
+    StepHeader made_from;
+    std::string name, source;
+    bool is(const TsModel& model, const StepHeader& other) const;
+  };
   bool in_step_;
   std::uint64_t run_id_{};
   std::deque<Item> items_;
   std::deque<IdentifierWord> remarks_;
   std::optional<StepHeader> word_;  // the latest
-  std::optional<StepHeader> used_;  // the model taken last
+  std::optional<Used> used_;        // the model taken last
   std::optional<StepHeader> owed_;  // a model that was announced and has not come
 };
 
