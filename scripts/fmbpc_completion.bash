@@ -12,6 +12,7 @@ _fmbpc_names() { # names of config/KIND
 
 _fmbpc_values() { # TOOL COMMAND OPTION: the words of an option's value, as its help lists them; fails if it takes none
   local line
+  [[ $3 =~ ^--[a-z-]+$ ]] || return 1
   line=$("$1" "$2" --help 2>/dev/null | sed -nE "s/^ *(-[a-z], *)?$3 +(TEXT|INT|UINT|FLOAT)/\\2/p" | head -n 1)
   [ -n "$line" ] || return 1
   sed -nE 's/^[^ ]*\{([a-z_,]*)\}.*/\1/p; s/^TEXT +([a-z]+(, [a-z]+)+)( \(.*)?$/\1/p' <<<"$line" | tr -d ' ' | tr ',' '\n'
@@ -21,6 +22,7 @@ _fmbpc() {
   local before=${COMP_WORDS[COMP_CWORD - 1]} # --option VALUE and --option=VALUE
   if [ "$before" = "=" ]; then before=${COMP_WORDS[COMP_CWORD - 2]}; fi
   local word=${COMP_WORDS[COMP_CWORD]} command=${COMP_WORDS[1]:-} tool=${COMP_WORDS[0]} words
+  if [ "$word" = "=" ]; then word=; fi
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
     words=$("$tool" --help 2>/dev/null | sed -n '/^Subcommands:/,$s/^  \([a-z]*\) .*/\1/p')

@@ -47,6 +47,7 @@ SetpointStep readSetpointStep(YamlSection& item, const std::vector<std::string>&
 void requireOnce(const YamlSection& item, const std::vector<SetpointStep>& schedule,
                  const std::vector<std::string>& outputs) {
   const SetpointStep& last = schedule.back();
+  if (last.ramp_h > 0.0) return;  // the one before is where the ramp begins
   for (auto before = schedule.rbegin() + 1; before != schedule.rend(); ++before) {
     if (before->time_h != last.time_h) return;
     for (std::size_t i = 0; i < outputs.size(); ++i) {

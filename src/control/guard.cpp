@@ -129,9 +129,9 @@ WorstError GuardedController::worstError(const Measurement& now,
   for (const Index i : params_.lock_outputs) {
     const double asked = setpoint.present()[i];
     const double tolerated = params_.lock_error * std::abs(asked);
-    if (tolerated <= 0.0) continue;
+    if (!(tolerated > 0.0)) continue;
     const double error = (asked - now.outputs[i]) / tolerated;
-    if (std::abs(error) <= worst.size) continue;
+    if (!(std::abs(error) > worst.size)) continue;  // NaN is none
     worst.size = std::abs(error);
     worst.whose = static_cast<int>(error > 0.0 ? i + 1 : -(i + 1));
   }

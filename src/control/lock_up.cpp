@@ -88,7 +88,7 @@ bool LockUpWatch::observe(double applied, double error, int whose) {
   if (isInTheWay(error, whose)) {
     known_ = 0;
     trying_ = false;
-    open(step_ / static_cast<double>(past_.size()));
+    open(std::max(step_ / static_cast<double>(past_.size()), range_ / release_));
     return locked_;
   }
   const int side = sideOf(applied);

@@ -1,7 +1,10 @@
 #include "fmbpc/loop/cut_offsets.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
 #include "loop/remark_lines.hpp"
@@ -14,6 +17,15 @@ using Eigen::Index;
 std::string wordsOf(const SignalInfo& of) {
   return "an offset of " + of.name + " was asked beyond its range, " + exactText(of.lower) + ".." +
          exactText(of.upper) + (of.unit.empty() ? "" : " [" + of.unit + "]") + ", and clamped";
+}
+
+/// Read when it is needed first. A record that has gone since the run began: NaN, beyond no range.
+Matrix valuesOf(const LoopFile& loop) {
+  try {
+    return makeDisturbance(loop).values;
+  } catch (const InputError&) {
+    return Matrix::Constant(countOf(disturbancesOf(loop)), 1, std::nan(""));
+  }
 }
 
 }  // namespace
@@ -48,7 +60,7 @@ void CutOffsets::take(const Command& command) {
 }
 
 double CutOffsets::scheduled(std::size_t index, std::uint32_t step) {
-  if (!values_) values_ = makeDisturbance(loop_).values;
+  if (!values_) values_ = valuesOf(loop_);
   const auto row = static_cast<Index>(index);
   return values_->size() == 0 ? loop_.simulation.disturbance_nominal[row]
                               : (*values_)(row, std::min<Index>(step, values_->cols() - 1));

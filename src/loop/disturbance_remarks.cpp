@@ -11,7 +11,9 @@ void add(const LoopFile& loop, Summary& summary) {
   const DisturbanceRecord record = makeDisturbance(loop, late);
   summary.repaired_cells = record.repaired;
   summary.implausible_cells = record.implausible;
-  if (late.of == 0)
+  const double run_h = loop.simulation.samples * loop.simulation.sample_time_s / 3600.0;
+  const bool begins = loop.disturbance.csv.lead_in_h < run_h * (1.0 - 1e-9);
+  if (late.of == 0 && begins)
     summary.remarks.push_back(
         {"only the first row of the disturbance record falls into the run "
          "(disturbance.csv.time_unit?)",

@@ -53,20 +53,32 @@ IdentifierSession::Due IdentifierSession::take(const Measurement& measurement) {
   Due due;
   due.arrival = collector_.take(measurement);
   if (!isNew(due.arrival)) return due;
-  learn(measurement, due);
   const auto after = static_cast<std::uint64_t>(params_.after);
-  if (after == 0 || done_by_itself_ || collector_.counts().samples < after) return due;
-  done_by_itself_ = true;
-  due.job = job(params_.structure, 0, params_.validation_share);
+  const bool asked = after > 0 && !done_by_itself_ && collector_.counts().samples >= after;
+  const bool learned = learner_ && learner_->take(measurement, due.arrival);
+  if (asked)
+    identify(due);  // what was learned would be used for no sample
+  else if (learned)
+    learn(due);
   return due;
 }
 
-void IdentifierSession::learn(const Measurement& measurement, Due& due) {
-  if (!learner_ || !learner_->take(measurement, due.arrival)) return;
+void IdentifierSession::identify(Due& due) {
+  done_by_itself_ = true;
+  try {
+    due.job = job(params_.structure, 0, params_.validation_share);
+  } catch (const InputError& error) {
+    due.refusal = std::string("identification: ") + error.what();
+  }
+}
+
+void IdentifierSession::learn(Due& due) {
   try {
     due.model = &use(checked(learner_->model()));
   } catch (const InputError& error) {  // counted, and told by lastRefusal()
-    due.refusal = error.what();
+    due.refusal = refused_ <= kRefusalsInWords
+                      ? error.what()
+                      : "a model learned online is refused, as others before it";
   }
 }
 

@@ -19,6 +19,10 @@ void RunTally::keep(const std::string& words) {
     ++known->samples;
   else if (remarks.size() < kMostRemarks)
     remarks.push_back({words, 1, step_});
+  else if (remarks.size() == kMostRemarks)
+    remarks.push_back({"more remarks, not listed", 1, step_});
+  else
+    ++remarks.back().samples;
 }
 
 void RunTally::add(const SampleRecord& sample) {

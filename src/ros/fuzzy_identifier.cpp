@@ -129,8 +129,8 @@ void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
     if (!isNew(due.arrival)) return;
     duty_.take(measurement.header, std::move(due.job));
     if (!due.refusal.empty())
-      ROS_WARN("fuzzy_identifier: sample %u: the model learned online is not published: %s",
-               measurement.header.step, due.refusal.c_str());
+      ROS_WARN("fuzzy_identifier: sample %u: no new model: %s", measurement.header.step,
+               due.refusal.c_str());
     if (due.model != nullptr) failure_.clear();
     if (!due.refusal.empty()) hadNoModel(due.refusal, measurement.header);
     if (due.model != nullptr) publish(*due.model, measurement.header);
@@ -165,10 +165,10 @@ void FuzzyIdentifier::write(const TsModel& model) const {
 
 void FuzzyIdentifier::begin(IdentificationJob job, bool publish) {
   publish_ = publish;
-  duty_.begin();
   ROS_INFO("fuzzy_identifier: identifies %s from %zu rows", job.structure.name.c_str(),
            static_cast<std::size_t>(job.values.rows()));
   worker_.start(std::move(job));
+  duty_.begin();  // it is at work only now
 }
 
 void FuzzyIdentifier::onGoal(Server::GoalHandle goal) {
@@ -183,7 +183,9 @@ void FuzzyIdentifier::onGoal(Server::GoalHandle goal) {
   } catch (const std::exception& error) {
     result.message = error.what();
     ROS_WARN("fuzzy_identifier: goal rejected: %s", error.what());
-    remark(std::string("command refused: ") + error.what(), session_.present());
+    StepHeader of = session_.present();
+    if (of.run_id != plant_.runId()) of = {0, plant_.runId(), 0};  // nothing is collected
+    remark(std::string("command refused: ") + error.what(), of);
     goal.setRejected(result, error.what());
     return;
   }
@@ -248,7 +250,7 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   try {
     publish(session_.accept(model), duty_.jobFrom());
     write(session_.model());
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {
     result.ok = 0;
     result.message = std::string("identified, but refused: ") + error.what();
     hadNoModel(std::string("identification: ") + error.what(), duty_.jobFrom());

@@ -149,7 +149,13 @@ void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::st
 void PlantNode::tryAdvance() {
   exchange();
   const std::uint64_t missed = session_.missingInputs();
-  if (!session_.advance(steadyNow())) return armTimer();
+  try {
+    if (!session_.advance(steadyNow())) return armTimer();
+  } catch (const std::exception& error) {  // of a user's plant: nothing would move any more
+    failure_ = std::string("the plant cannot go on: ") + error.what();
+    end_.say(failure_);
+    return fail(failure_);
+  }
   if (session_.missingInputs() > missed && trouble_log_.pass())
     ROS_WARN("%s: no action in time (%lu so far)", name().c_str(), session_.missingInputs());
   publishSample();

@@ -216,6 +216,8 @@ TEST_F(LoopErrors, OneSetpointOfAnOutputAtOneTime) {
               {"setpoint.schedule[2].x", "one setpoint of x at one time", "got '2000'"});
   EXPECT_EQ(error("[{time_h: 1, x: 1900}, {time_h: 1, s: 50}, {time_h: 2, x: 2000}]"),
             "nothing was thrown");
+  EXPECT_EQ(error("[{time_h: 1, x: 1900}, {time_h: 1, x: 2000, ramp_h: 5}]"),
+            "nothing was thrown");  // a jump, then a ramp
 }
 
 TEST_F(LoopErrors, AValueOfACommandBeyondTheRangeIsRepeated) {

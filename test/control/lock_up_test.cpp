@@ -79,8 +79,8 @@ TEST(LockUp, ABoundOpensAgainWhenTheLawLeavesIt) {
 }
 
 /// A watch whose upper bound was drawn in for an output that lay above its setpoint.
-LockUpWatch drawnForTooMuch() {
-  LockUpWatch lock(params(), 0.0, 1.0);
+LockUpWatch drawnForTooMuch(const GuardParams& p = params()) {
+  LockUpWatch lock(p, 0.0, 1.0);
   double error = 5.0;
   for (int k = 0; k < 24; ++k) {
     error += k < 12 ? 0.1 : -0.05;  // the trial helps
@@ -90,17 +90,28 @@ LockUpWatch drawnForTooMuch() {
 }
 
 // What was drawn in against too much of an output holds it down once there is too little of it: the
-// bound opens by lock_step 0.1 in lock_samples 12, not over the 100 samples of lock_release.
+// bound opens by lock_step 0.1 in lock_samples 12, not over the 200 samples of lock_release.
 TEST(LockUp, OnTheOtherSideOfTheSetpointTheBoundOpensAsFastAsItWasDrawnIn) {
-  LockUpWatch lock = drawnForTooMuch();
+  GuardParams slow = params();
+  slow.lock_release = 200;
+  LockUpWatch lock = drawnForTooMuch(slow);
   const double drawn = 1.0 - lock.upper();
-  ASSERT_NEAR(drawn, 0.09, 1e-12);  // it has begun to open, by a hundredth
+  ASSERT_NEAR(drawn, 0.095, 1e-12);  // it has begun to open, by a two-hundredth
   for (int k = 1; k <= 6; ++k) {
     lock.observe(lock.upper(), 2.0 + k, 1);  // at the bound, and the error grows
     EXPECT_NEAR(lock.upper(), 1.0 - drawn + k * 0.1 / 12.0, 1e-12) << k;
   }
   for (int k = 0; k < 40; ++k) lock.observe(0.5, 9.0, 1);
   EXPECT_FALSE(lock.drawnIn());
+}
+
+TEST(LockUp, OnTheOtherSideItNeverOpensMoreSlowlyThanElsewhere) {
+  GuardParams quick = params();
+  quick.lock_release = 20;  // 0.05 a sample beside 0.1 / 12
+  LockUpWatch lock = drawnForTooMuch(quick);
+  ASSERT_NEAR(lock.upper(), 0.95, 1e-12);
+  lock.observe(lock.upper(), 3.0, 1);
+  EXPECT_NEAR(lock.upper(), 1.0, 1e-12);
 }
 
 TEST(LockUp, AnotherOutputOrALittleErrorOnTheOtherSideOpensItSlowly) {

@@ -1,6 +1,7 @@
 // What the record of the disturbances adds to a summary, from one reading of it.
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
@@ -56,6 +57,30 @@ TEST_F(DisturbanceRemarks, ARecordOfWhichOnlyOneRowActsIsSaid) {
   };
   EXPECT_FALSE(remark("h"));
   EXPECT_TRUE(remark("d"));
+}
+
+TEST_F(DisturbanceRemarks, ARecordThatIsLedInForTheWholeRunIsNotCalledOneRow) {
+  write("long.csv", "t,v\n0,15\n1,16\n2,17\n");
+  const LoopFile loop = readLoop(
+      write("l.yaml",
+            "extends: heated_tank\nsampling: {duration_h: 1.5}\ndisturbance:\n  source: csv\n"
+            "  commands: []\n  csv: {file: long.csv, time_column: t, time_unit: h, lead_in_h: 1.5, "
+            "channels: {T_in: {column: v}}}\n"));
+  EXPECT_FALSE(says(summarize(loop, runLoop(loop), 0.0), "only the first row"));
+}
+
+TEST_F(DisturbanceRemarks, ARecordThatGoesDuringTheRunCostsNoRun) {
+  write("long.csv", "t,v\n0,15\n1,16\n2,17\n");
+  const LoopFile loop = readLoop(write(
+      "l.yaml",
+      "extends: heated_tank\nsampling: {duration_h: 1.5}\ndisturbance:\n  source: csv\n"
+      "  commands: [{time_h: 1, name: T_in, value: 2, mode: offset}]\n"
+      "  csv: {file: long.csv, time_column: t, time_unit: h, channels: {T_in: {column: v}}}\n"));
+  RunOptions options;
+  options.progress = [&](std::uint32_t step, std::uint32_t) {
+    if (step == 20) std::filesystem::remove(path("long.csv"));
+  };
+  EXPECT_TRUE(runLoop(loop, options).complete);
 }
 
 TEST_F(DisturbanceRemarks, AWindowBeyondTheRunIsSaid) {

@@ -42,6 +42,28 @@ TEST(IdentifierSession, SaysWhenToIdentifyAndThatOnce) {
   EXPECT_EQ(session.take(record.samples[100].measurement).arrival, Arrival::kOld);
 }
 
+TEST(IdentifierSession, AJobThatCannotBeMadeIsToldAndTheRunGoesOn) {
+  const Told told = run(readLoop("asp_case1", {{"sampling.duration_h", "4"},
+                                               {"model.identify.structure", "cstr.yaml"},
+                                               {"model.identify.after", "5"}}));
+  EXPECT_EQ(told.record.samples.size(), 21U);
+  EXPECT_TRUE(told.models.empty());
+  ASSERT_EQ(told.record.remarks.size(), 1U);
+  expectWords(told.record.remarks[0].words, {"identification: ", "sample_time_s", "720"});
+}
+
+TEST(IdentifierSession, WhatIsLearnedInVainDoesNotDrownOtherRemarks) {
+  const RunRecord record = run(readLoop("asp_case1", {{"sampling.duration_h", "24"},
+                                                      {"model.identify.structure", "asp_d.yaml"},
+                                                      {"model.identify.online.every", "1"},
+                                                      {"model.max_pole", "0.9"}}))
+                               .record;
+  ASSERT_EQ(record.remarks.size(), 8U);  // five refusals in full, 61 in short, two of the law
+  EXPECT_EQ(record.remarks[5].words, "a model learned online is refused, as others before it");
+  EXPECT_EQ(record.remarks[5].samples, 61U);
+  EXPECT_EQ(record.remarks[6].words, "what the law expects leaves the model");
+}
+
 TEST(IdentifierSession, AModelThatIsUnstableWhereThePlantIsIsRefusedAndTheOldOneStays) {
   const LoopFile loop =
       readLoop("asp_case1", {{"model.identify.online.every", "40"}, {"sampling.duration_h", "4"}});

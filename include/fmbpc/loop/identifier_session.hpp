@@ -29,7 +29,8 @@ class IdentifierSession {
  public:
   explicit IdentifierSession(const LoopFile& loop);
 
-  static constexpr double kKeptPatience = 1.0;  ///< [s] for a plant that keeps models
+  static constexpr double kKeptPatience = 1.0;          ///< [s] for a plant that keeps models
+  static constexpr std::uint64_t kRefusalsInWords = 5;  ///< of learned models; later ones in short
 
   /// The plant has announced a run, at this time [s] of any steady clock.
   void announce(std::uint64_t run_id, double now_s = 0.0);
@@ -49,7 +50,7 @@ class IdentifierSession {
   struct Due {
     Arrival arrival{Arrival::kOld};
     const TsModel* model{nullptr};           ///< learned online: to be handed over now
-    std::string refusal{};                   ///< why what was learned is not handed over
+    std::string refusal{};                   ///< why there is no model, or no job
     std::optional<IdentificationJob> job{};  ///< model.identify.after: to be identified, once
   };
   /// @throws InputError naming a wrong size.
@@ -70,7 +71,8 @@ class IdentifierSession {
   std::uint64_t learned() const { return learner_ ? learner_->samples() : 0; }
 
  private:
-  void learn(const Measurement& measurement, Due& due);
+  void identify(Due& due);
+  void learn(Due& due);
   TsModel checked(const TsModel& model);
   const TsModel& use(TsModel matched);
 
