@@ -19,6 +19,9 @@ from fmbpc.msg import LoopState
 
 import ring
 
+# Debian 11's roslaunch asks its own thread by a name that its Python knows no more, and says so at its end.
+OLD_ROSLAUNCH = re.compile(r"exception in shutdown_process_monitor: .*\nTraceback .*\n(?:  .*\n)+AttributeError: 'ProcessMonitor' object .*\n")
+
 
 class Launch:
     """loop.launch as a person types it; what it has said is in text()."""
@@ -145,7 +148,7 @@ class Records(unittest.TestCase):
         self.assertTrue(os.path.isfile(os.path.join(out, "loop.bag")), text)
         self.assertEqual(10, self.summary("it's mine")["steps"], text)
         self.assertNotIn("No closing quotation", text)
-        self.assertNotIn("Traceback", text)
+        self.assertNotIn("Traceback", OLD_ROSLAUNCH.sub("", text))
 
 
 if __name__ == "__main__":
