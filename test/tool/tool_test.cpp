@@ -87,11 +87,17 @@ TEST_F(Tool, HelpNamesTheToolAndGivesAnExampleOfEveryCommand) {
   }
 }
 
+/// Older CLI11 writes TEXT=word, newer TEXT [word].
+bool showsDefault(const std::string& help, const std::string& word) {
+  return help.find("=" + word) != std::string::npos ||
+         help.find(" [" + word + "]") != std::string::npos;
+}
+
 TEST_F(Tool, HelpShowsDefaults) {
   const std::string identify = tool("identify --help").printed;
-  for (const char* words : {"=best", "=45", "=comma", "=point", "--seed UINT=1"})
-    EXPECT_NE(identify.find(words), std::string::npos) << words << "\n" << identify;
-  EXPECT_NE(tool("validate --help").printed.find("=10"), std::string::npos);
+  for (const char* word : {"best", "45", "comma", "point", "1"})
+    EXPECT_TRUE(showsDefault(identify, word)) << word << "\n" << identify;
+  EXPECT_TRUE(showsDefault(tool("validate --help").printed, "10"));
   EXPECT_NE(tool("study --help").printed.find("(default: ise)"), std::string::npos);
 }
 
