@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "fmbpc/base/same_sample.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "loop/remark_lines.hpp"
@@ -168,8 +169,7 @@ bool ControllerNode::mayAnswer(const Measurement& measurement) {
 // Kept, since the plant does not send a sample again that somebody has answered: a controller that
 // comes back would have nothing to do until the next one.
 void ControllerNode::park(const Measurement& measurement) {
-  const bool known = parked_ && parked_->header.run_id == measurement.header.run_id &&
-                     parked_->header.step == measurement.header.step;
+  const bool known = parked_ && isSameSample(parked_->header, measurement.header);
   if (!known) parked_since_s_ = steadyNow();
   parked_ = measurement;
   parked_timer_.start();

@@ -54,8 +54,7 @@ std::vector<std::optional<RunJudgement>> readStudyState(const std::string& file,
     const Json json = Json::parse(stream);
     require(json.at("study") == fingerprint, file,
             "the state of this study: loops, seeds and options as they were when it stopped, and "
-            "so the "
-            "files that the loops name");
+            "so the files that the loops name");
     std::vector<std::optional<RunJudgement>> done(runs);
     for (const auto& [index, run] : json.at("runs").items()) {
       const std::size_t at = std::stoul(index);
