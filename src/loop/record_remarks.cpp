@@ -13,7 +13,9 @@ constexpr double kRounding = 1e-6;  // of a limit: what a solver leaves
 }  // namespace
 
 RecordRemarks::RecordRemarks(const LoopFile& loop)
-    : stuck_(loop.stuck, loop.simulation.actuator.limits, loop.plant_info.inputs) {
+    : stuck_(loop.stuck, loop.simulation.actuator.limits, loop.plant_info.inputs),
+      has_optimizer_(loop.has_clp),
+      has_state_(!loop.external_plant) {
   if (!loop.has_clp) return;
   addLimits(loop, -1.0);
   addLimits(loop, 1.0);
@@ -35,6 +37,7 @@ void RecordRemarks::addLimits(const LoopFile& loop, double sign) {
 void RecordRemarks::add(const SampleRecord& sample) {
   watchInputs(sample);
   if (step_ > 0) watchOutputs(sample);  // nothing was decided before the first
+  watchGaps(sample);
   ++step_;
 }
 
@@ -60,6 +63,23 @@ void RecordRemarks::watchOutputs(const SampleRecord& sample) {
     const double beyond = soft.sign * (outputs[soft.output] - soft.limit);
     if (beyond > kRounding * std::max(1.0, std::abs(soft.limit))) keep(soft.words, step_);
   }
+}
+
+/// What a sample lacks is a gap once another one follows.
+void RecordRemarks::watchGaps(const SampleRecord& sample) {
+  for (const char* what : missing_) keep(std::string("no ") + what + " in the record", step_ - 1);
+  missing_.clear();
+  const auto need = [this](bool there, const char* what) {
+    if (!there) missing_.push_back(what);
+  };
+  need(sample.has_measurement, "measurement");
+  need(sample.has_tracking, "tracking");
+  if (has_state_) need(sample.has_state, "plant_state");
+  if (sample.has_measurement && sample.measurement.final) return;
+  need(sample.has_action, "control_action");
+  if (!has_optimizer_) return;
+  need(sample.has_base, "base_action");
+  need(sample.has_report, "solver_report");
 }
 
 void RecordRemarks::keep(const std::string& words, std::uint32_t step) {

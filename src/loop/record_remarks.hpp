@@ -1,5 +1,5 @@
-// What only the record of a run tells: inputs that do not follow, soft limits that were exceeded.
-// Private to the room.
+// What only the record of a run tells: inputs that do not follow, soft limits that were exceeded,
+// messages that never came. Private to the room.
 #pragma once
 
 #include <vector>
@@ -27,11 +27,15 @@ class RecordRemarks {
   void addLimits(const LoopFile& loop, double sign);
   void watchInputs(const SampleRecord& sample);
   void watchOutputs(const SampleRecord& sample);
+  void watchGaps(const SampleRecord& sample);
   void keep(const std::string& words, std::uint32_t step);
 
   StuckWatch stuck_;
+  bool has_optimizer_, has_state_;
   std::vector<SoftLimit> soft_;
   SampleRecord before_;  // the sample before, as far as inputs go
+  std::vector<const char*>
+      missing_;  // of the sample before: the last one of a run cut short may lack
   std::vector<RunRemark> remarks_;
   std::uint32_t step_{};
 };

@@ -20,23 +20,12 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 #include "ros/conversions.hpp"
+#include "ros/open_bag.hpp"
 #include "ros/operator_desk.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
 namespace {
-
-template <typename Function>
-auto withBag(const std::string& file, Function function) {
-  try {
-    const rosbag::Bag bag(file, rosbag::bagmode::Read);
-    return function(bag);
-  } catch (const rosbag::BagUnindexedException&) {
-    throw InputError(file + ": expected a bag that was closed (rosbag reindex mends it)");
-  } catch (const rosbag::BagException& e) {
-    throw InputError(file + ": expected a readable bag (" + e.what() + ")");
-  }
-}
 
 /// "/ns/" of the one loop in the bag: whatever is before a topic of this name.
 std::string spaceOf(const rosbag::Bag& bag, const std::string& file, const std::string& topic) {

@@ -14,6 +14,7 @@
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/base/text.hpp"
 #include "ros/conversions.hpp"
+#include "ros/open_bag.hpp"
 
 namespace fpc {
 namespace {
@@ -115,13 +116,7 @@ CsvTable tableOf(const rosbag::Bag& bag, const std::string& file) {
 }  // namespace
 
 CsvTable readBag(const std::string& file) {
-  try {
-    return tableOf(rosbag::Bag(file, rosbag::bagmode::Read), file);
-  } catch (const rosbag::BagUnindexedException&) {
-    throw InputError(file + ": expected a bag that was closed (rosbag reindex mends it)");
-  } catch (const rosbag::BagException& e) {
-    throw InputError(file + ": expected a readable bag (" + e.what() + ")");
-  }
+  return withBag(file, [&](const rosbag::Bag& bag) { return tableOf(bag, file); });
 }
 
 }  // namespace fpc

@@ -1,7 +1,9 @@
 #include "ros/conversions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "conversion_parts.hpp"
 #include "fmbpc/base/no_value.hpp"
@@ -60,9 +62,14 @@ fmbpc::Matrix toMsg(const Matrix& matrix) {
   return msg;
 }
 
+// An empty matrix of four billion columns has no data and would keep a reader busy for a minute.
+constexpr std::uint32_t kMostRows = 100000;
+
 Matrix fromMsg(const fmbpc::Matrix& msg) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   require(msg.data.size() == std::uint64_t{msg.rows} * msg.cols, "matrix", "rows * cols numbers");
+  require(std::max(msg.rows, msg.cols) <= kMostRows, "matrix",
+          "at most " + std::to_string(kMostRows) + " rows and columns");
   return Eigen::Map<const RowMajor>(msg.data.data(), msg.rows, msg.cols);
 }
 

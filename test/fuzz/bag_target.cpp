@@ -20,7 +20,7 @@
 namespace fpc::fuzz {
 namespace {
 
-const RunRecord& example() {
+const RunRecord& exampleRecord() {
   static const RunRecord record =
       runLoop(readLoop("asp_case1_pi_x", {{"sampling.duration_h", "2"}}), {});
   return record;
@@ -37,10 +37,10 @@ void put(rosbag::Bag& bag, const std::string& topic, const Message& message, Byt
 
 void writeBag(const std::string& file, Bytes& bytes) {
   rosbag::Bag bag(file, rosbag::bagmode::Write);
-  PlantInfo info = example().info;
-  info.header = example().samples.front().measurement.header;
+  PlantInfo info = exampleRecord().info;
+  info.header = exampleRecord().samples.front().measurement.header;
   put(bag, "/plant_info", toMsg(info), bytes);
-  for (const SampleRecord& sample : example().samples)
+  for (const SampleRecord& sample : exampleRecord().samples)
     put(bag, "/measurement", toMsg(sample.measurement), bytes);
 }
 

@@ -13,7 +13,7 @@
 namespace fpc::fuzz {
 namespace {
 
-const LoopFile& example() {
+const LoopFile& exampleLoop() {
   static const LoopFile loop = readLoop("asp_case1_clp");
   return loop;
 }
@@ -35,15 +35,15 @@ void any(Message message, Bytes& bytes) {
 }
 
 void model(Bytes& bytes) {
-  const fmbpc::FuzzyModel message = mutated(toMsg(example().model), bytes);
+  const fmbpc::FuzzyModel message = mutated(toMsg(exampleLoop().model), bytes);
   comesBack(message, [](const TsModel& read) { return toMsg(read); });
-  tolerant([&] { matchToPlant(fromMsg(message), example().plant_info); });
+  tolerant([&] { matchToPlant(fromMsg(message), exampleLoop().plant_info); });
 }
 
 void plantInfo(Bytes& bytes) {
-  const fmbpc::PlantInfo message = mutated(toMsg(example().plant_info), bytes);
+  const fmbpc::PlantInfo message = mutated(toMsg(exampleLoop().plant_info), bytes);
   comesBack(message, [](const PlantInfo& read) { return toMsg(read); });
-  tolerant([&] { plantMismatch(example().plant_info, fromMsg(message)); });
+  tolerant([&] { plantMismatch(exampleLoop().plant_info, fromMsg(message)); });
 }
 
 }  // namespace

@@ -115,5 +115,20 @@ TEST_F(BagTable, WhatIsNoRecordedLoopIsRefused) {
   expectWords(errorOf([&] { readBag(path("sizes.bag")); }), {"sizes.bag", "sizes"});
 }
 
+TEST_F(BagTable, DamagedBytesOfAMessageAreToldInWords) {
+  const std::string file = bagWithout({});
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  std::string content = text.str();
+  const Vector& outputs = samples_[3].measurement.outputs;
+  const std::string numbers(reinterpret_cast<const char*>(outputs.data()),
+                            sizeof(double) * static_cast<std::size_t>(outputs.size()));
+  const std::size_t at = content.find(numbers);
+  ASSERT_NE(at, std::string::npos);
+  content[at - 4] = static_cast<char>(200);  // so many numbers are not in the message
+  std::ofstream(path("damaged.bag"), std::ios::binary) << content;
+  expectWords(errorOf([&] { readBag(path("damaged.bag")); }), {"damaged.bag", "a readable bag"});
+}
+
 }  // namespace ros_bag_table_test
 }  // namespace fpc

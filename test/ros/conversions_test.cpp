@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 #include "same_bits.hpp"
@@ -191,6 +192,14 @@ TEST(PlainConversions, MatrixWithMissingDataIsRefused) {
   EXPECT_THROW(fromMsg(msg), InputError);
   msg.A.rows = msg.A.cols = 65536;  // their product overflows 32 bits to 0
   msg.A.data.clear();
+  EXPECT_THROW(fromMsg(msg), InputError);
+}
+
+TEST(PlainConversions, AnEmptyMatrixOfBillionsOfColumnsIsRefusedAtOnce) {
+  fmbpc::PredictiveAction msg;
+  msg.B.cols = 4294967295;
+  EXPECT_THROW(fromMsg(msg), InputError);
+  msg.B.rows = std::exchange(msg.B.cols, 0);
   EXPECT_THROW(fromMsg(msg), InputError);
 }
 

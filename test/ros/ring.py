@@ -222,8 +222,9 @@ class NodeStatus:
 
 
 def action_end(client, patience=PATIENCE):
-    """(state, result) of a SimpleActionClient's goal."""
-    wait_until(lambda: client.simple_state == actionlib.SimpleGoalState.DONE, "the end of the action", patience)
+    """(state, result) of a SimpleActionClient's goal. Its own simple_state stays "pending" for ever if the answer comes before its
+    send_goal() has returned; the goal's handle knows."""
+    wait_until(lambda: client.gh.get_comm_state() == actionlib.CommState.DONE, "the end of the action", patience)
     return client.get_state(), client.get_result()
 
 
