@@ -65,6 +65,7 @@ struct BareRules {
 /// The exponentials, sums and powers that a step of the law with FM_1 needs: 6 rules of 6
 /// antecedents, 5 of 3, three states, A^H and I + A + ... + A^(H-1) by doubling.
 struct BareLaw {
+  explicit BareLaw(int H) : horizon(H) {}
   int horizon;
   BareRules substrate{6, 6}, biomass{5, 3};
   Eigen::Matrix3d A = Eigen::Matrix3d::Zero(), power, sum, next;
@@ -94,7 +95,7 @@ void lawStep(const std::string& name, int horizon) {
   if (loop.has_model) session.setModel(loop.model);
   Measurement measurement = makeSimulation(loop).measurement();
   const Vector rest = measurement.outputs;
-  BareLaw bare{horizon};
+  BareLaw bare(horizon);
   printPairs(
       "1000 steps of the published law, " + name + ", H " + std::to_string(horizon),
       "its exponentials, sums and powers", "0.33",
