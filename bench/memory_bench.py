@@ -3,7 +3,7 @@
 memory_bench.py [--tool FILE] [--topics] [--quick]
 
 Prints one line of JSON each: {"what", "peak_mb", "private_mb"} of a process, {"what", "mb_per_million"} of a growth (by two
-sizes). The nodes (--topics) are looked at after 10 s in lockstep; source scripts/env.sh before.
+sizes; the larger is a million samples, which identification is to hold in 2 GB). The nodes (--topics) are looked at after 10 s in lockstep; source scripts/env.sh before.
 """
 import argparse
 import json
@@ -32,19 +32,22 @@ def peak_mb(words):
     return used.ru_maxrss / 1024
 
 
-def growth(what, sizes, words):
+def growth(what, sizes, words, **more):
     """Megabytes per million samples between two sizes."""
     small, large = (peak_mb(words(n)) for n in sizes)
-    print_json(what=what, mb_per_million=(large - small) * 1e6 / (sizes[1] - sizes[0]), peak_mb=large, samples=sizes[1])
+    print_json(what=f"{what}, {sizes[1]:,} samples", mb_per_million=(large - small) * 1e6 / (sizes[1] - sizes[0]), peak_mb=large, samples=sizes[1], **more)
 
 
-def tool_growth(tool, sizes):
+def tool_growth(tool, sizes, budget):
     with tempfile.TemporaryDirectory() as folder:
         def run(n):
             return [tool, "run", "asp_case1", "--set", f"sampling.duration_h={n * HOURS}", "--out", f"{folder}/{n}", "--no-plot"]
         growth("record of a run (asp_case1: 2 outputs, 1 input, 2 disturbances, 6 states)", sizes, run)
         growth("identification of it (asp_d)", sizes,
-               lambda n: [tool, "identify", f"{folder}/{n}/trajectory.csv", "asp_d", "--out", f"{folder}/m.yaml"])
+               lambda n: [tool, "identify", f"{folder}/{n}/trajectory.csv", "asp_d", "--out", f"{folder}/m.yaml"], aim_mb=2048)
+        growth("identify --auto of it", sizes,
+               lambda n: [tool, "identify", f"{folder}/{n}/trajectory.csv", "--auto", "--inputs", "q_r", "--outputs", "x",
+                          "--disturbances", "q_i", "s_i", "--budget", budget, "--out", f"{folder}/m.yaml"], aim_mb=2048)
 
 
 def field_mb(pid, file, names):
@@ -82,7 +85,8 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small sizes: shows that it works")
     parser.add_argument("--tool", default=str(TOP / "scripts/fmbpc"))
     options = parser.parse_args()
-    tool_growth(options.tool, (1000, 3000) if options.quick else (50000, 200000))
+    sizes, budget = ((1000, 3000), "1") if options.quick else ((200000, 1000000), "10")
+    tool_growth(options.tool, sizes, budget)
     if options.topics:
         nodes(1 if options.quick else 10)
 

@@ -4,13 +4,16 @@
 #include <cmath>
 #include <random>
 #include <string>
+#include <vector>
 
+#include "arithmetic_peak.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fmbpc/fuzzy/clustering.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/plant/integrator.hpp"
+#include "fuzzy/cluster_kernels.hpp"
 #include "pairs.hpp"
 
 namespace fpc::bench {
@@ -40,51 +43,62 @@ void inProcess(const std::string& name, const std::string& aim) {
       });
 }
 
-/// One step of the law of a loop beside the exponentials, sums and powers that it needs.
-struct BareLaw {
-  static constexpr int kRules = 11, kAntecedents = 4, kStates = 3, kPowers = 8;
-  Matrix centers = Matrix::Random(kAntecedents, kRules);
-  Matrix widths = Matrix::Constant(kAntecedents, kRules, 0.7);
-  Matrix consequents = Matrix::Random(kAntecedents + 1, kRules);
-  Matrix A[2] = {0.3 * Matrix::Random(kStates, kStates), 0.3 * Matrix::Random(kStates, kStates)};
-  Vector z = Vector::Random(kAntecedents), weight = Vector::Zero(kRules);
-  Vector blended = Vector::Zero(kAntecedents + 1);
-  Eigen::Matrix3d power, sum, next;
-  double total{};
+/// The rules of one output: a blend of consequents by products of memberships.
+struct BareRules {
+  Matrix centers, widths, consequents, member;
+  Vector z, weight, blended;
 
-  void step() {
+  BareRules(Eigen::Index rules, Eigen::Index antecedents)
+      : centers(Matrix::Random(antecedents, rules)),
+        widths(Matrix::Constant(antecedents, rules, 0.7)),
+        consequents(Matrix::Random(antecedents + 1, rules)),
+        z(Vector::Random(antecedents)) {}
+  void blend() {
     z(0) = -z(0);
-    weight = ((centers.colwise() - z).array() / widths.array())
-                 .square()
-                 .colwise()
-                 .sum()
-                 .transpose()
-                 .unaryExpr([](double v) { return std::exp(-0.5 * v); });
+    member = (-0.5 * ((centers.colwise() - z).array() / widths.array()).square()).exp();
+    weight = member.colwise().prod().transpose();
     weight /= weight.sum();
     blended.noalias() = consequents * weight;
-    for (const Matrix& a : A) {
-      power = a;
-      sum.setIdentity();
-      for (int i = 0; i < kPowers; ++i) {
-        next.noalias() = sum + power * sum;
-        sum = next;
-        next.noalias() = power * power;
-        power = next;
-      }
-      total += sum(0, 0) + blended(0);
-    }
   }
 };
 
-void lawStep(const std::string& name) {
-  const LoopFile loop = readLoop(name);
+/// The exponentials, sums and powers that a step of the law with FM_1 needs: 6 rules of 6
+/// antecedents, 5 of 3, three states, A^H and I + A + ... + A^(H-1) by doubling.
+struct BareLaw {
+  explicit BareLaw(int H) : horizon(H) {}
+  int horizon;
+  BareRules substrate{6, 6}, biomass{5, 3};
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero(), power, sum, next;
+  double total{};
+
+  void step() {
+    substrate.blend();
+    biomass.blend();
+    A.row(0) = 0.1 * substrate.blended.head<3>();
+    A.row(1) = 0.1 * biomass.blended.head<3>();
+    power = A;
+    sum.setIdentity();
+    for (int n = 1; 2 * n <= horizon; n *= 2) {
+      next.noalias() = power * sum;
+      sum += next;
+      next.noalias() = power * power;
+      power = next;
+    }
+    total += sum(0, 0) + power(1, 1) + substrate.blended(3) + biomass.blended(3);
+  }
+};
+
+/// One step of the law of a loop beside the arithmetic that it needs, H samples ahead.
+void lawStep(const std::string& name, int horizon) {
+  const LoopFile loop = readLoop(name, {{"controller.coincidence_steps", std::to_string(horizon)}});
   ControllerSession session = makeControllerSession(loop);
   if (loop.has_model) session.setModel(loop.model);
   Measurement measurement = makeSimulation(loop).measurement();
   const Vector rest = measurement.outputs;
-  BareLaw bare;
+  BareLaw bare(horizon);
   printPairs(
-      "step of the published law, " + name, "its exponentials, sums and powers", "0.33",
+      "1000 steps of the published law, " + name + ", H " + std::to_string(horizon),
+      "its exponentials, sums and powers", "0.33",
       [&] {
         for (int i = 0; i < 1000; ++i) {
           session.receive(measurement);
@@ -144,7 +158,7 @@ void plantSample(IntegrationMethod own) {
     if (relativeError(theirs, truth) <= relativeError(ours, truth)) break;
   }
   printPairs(
-      "plant sample, activated sludge, " + wordOf(own),
+      "1000 plant samples, activated sludge, " + wordOf(own),
       "Runge-Kutta 4, " + std::to_string(steps) + " steps", "0.5",
       [&] {
         for (int i = 0; i < 1000; ++i) {
@@ -195,6 +209,30 @@ void clusteringThreads() {
       [&] { clustering.run(2); }, [&] { clustering.run(1); });
 }
 
+/// Sums of 10 x 10 scatters over samples in the cache beside the core's peak. A sample needs 110
+/// operations for the lower triangle and 44 for scaling, mean and sums; two make a multiply-add.
+void covariancePass() {
+  constexpr std::size_t kSize = 10, kRows = 12, kTimes = 1000;
+  constexpr double kNeeded = 0.5 * (110 + 44) * clusters::kBlock * kTimes;
+  std::vector<double> points(kRows * clusters::kBlock, 0.1), center(kRows, 0.05),
+      root(clusters::kBlock, 0.5), squared(clusters::kBlock, 1.0), scaled(kRows * clusters::kBlock),
+      offset(kRows * clusters::kLanes), sums(2 * clusters::kLanes),
+      scatter(kRows * kRows * clusters::kLanes);
+  const int bits = widestBits();
+  volatile double kept = 0.0;  // so that nothing is left out
+  printPairs(
+      "covariance pass of Gustafson-Kessel, 64,000 x 10, one cluster",
+      "as much arithmetic at the peak of a core, " + std::to_string(bits) + " bits", "0.3",
+      [&] {
+        for (std::size_t i = 0; i < kTimes; ++i) {
+          clusters::scaleBlock(points.data(), center.data(), root.data(), squared.data(), kSize,
+                               scaled.data(), offset.data(), sums.data());
+          clusters::addScatter(scaled.data(), kSize, scatter.data());
+        }
+      },
+      [&] { kept = multiplyAdds(kNeeded, bits); });
+}
+
 /// For scripts/bench, which has numpy beside it: seconds of one iteration.
 void clusteringIteration() {
   Clustering clustering;
@@ -223,8 +261,9 @@ int main(int count, char** arguments) {
   }
   inProcess("asp_case1", "0.8");
   inProcess("asp_case1_clp", "0.4");
-  lawStep("asp_case1");
+  for (const int horizon : {6, 180}) lawStep("asp_case1", horizon);
   plantSamples();
+  covariancePass();
   clusteringThreads();
   runsInParallel();
   return 0;

@@ -1,10 +1,12 @@
 // Our QP solver beside others' in one run: the public MPC set (with FMBPC_DATA) and a controller's
 // problems of 42 inputs, cold and warm with a new Hessian each time, and warm with the same. One
 // line of JSON per pair; a family's time is that of one pass over its problems.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "baselines/baseline_qp.hpp"
+#include "baselines/judge.hpp"
 #include "optim/mpc_qp_set.hpp"
 #include "optim/qp_problems.hpp"
 #include "pairs.hpp"
@@ -43,22 +45,6 @@ class Ours {
   std::size_t turn_{};
 };
 
-double costOf(const QpProblem& p, const Vector& x) { return 0.5 * x.dot(p.H * x) + p.g.dot(x); }
-
-/// Largest violation of a limit, relative to 1 + |x|, and how far the cost is from ours. (Where the
-/// Hessian is semidefinite there may be many answers.)
-double errorOf(const QpProblem& p, const Vector& x, const Vector& ours) {
-  double violation = 0.0;
-  const Vector Ax = p.A * x;
-  for (Eigen::Index i = 0; i < x.size(); ++i)
-    violation = std::max({violation, p.x_lower(i) - x(i), x(i) - p.x_upper(i)});
-  for (Eigen::Index i = 0; i < Ax.size(); ++i)
-    violation = std::max({violation, p.a_lower(i) - Ax(i), Ax(i) - p.a_upper(i)});
-  const double cost = costOf(p, ours);
-  return std::max(violation / (1.0 + ours.lpNorm<Eigen::Infinity>()),
-                  std::abs(costOf(p, x) - cost) / (1.0 + std::abs(cost)));
-}
-
 std::string text(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.0e", value);
@@ -74,12 +60,13 @@ class Beside {
       solvers_.back()->prepare(p);
     }
   }
-  /// Solves all and says how well, beside our answers.
-  std::string judge(const Family& family, const std::vector<Vector>& ours) {
+  /// Solves all as a pass does and says how well, beside our answers.
+  std::string judge(const Family& family, Mode mode, const std::vector<Vector>& ours) {
     int solved = 0;
     double worst = 0.0;
     for (std::size_t i = 0; i < solvers_.size(); ++i) {
-      const bool claims = solvers_[i]->solve();
+      bool claims = solvers_[i]->solve();
+      if (mode != Mode::kCold) claims = solveOne(*solvers_[i], mode);
       const double error = errorOf(family.problems[i], solvers_[i]->x(), ours[i]);
       worst = std::max(worst, error);
       solved += claims && error <= 1e-6;
@@ -89,14 +76,23 @@ class Beside {
   }
   bool canWarm() const { return solvers_.front()->canWarm(); }
   void pass(Mode mode) {
-    for (auto& one : solvers_)
-      mode == Mode::kCold ? one->solve() : one->solveWarm(mode == Mode::kWarm);
+    for (auto& one : solvers_) solveOne(*one, mode);
   }
 
  private:
+  static bool solveOne(BaselineQp& one, Mode mode) {
+    return mode == Mode::kCold ? one.solve() : one.solveWarm(mode == Mode::kWarm);
+  }
+
   std::string name_;
   std::vector<std::unique_ptr<BaselineQp>> solvers_;
 };
+
+bool canTakeAll(const BaselineType& type, const Family& family) {
+  const auto one = type.make();
+  return std::all_of(family.problems.begin(), family.problems.end(),
+                     [&](const QpProblem& p) { return one->canTake(p); });
+}
 
 void compare(const Family& family, Mode mode) {
   std::vector<Ours> ours;
@@ -104,18 +100,21 @@ void compare(const Family& family, Mode mode) {
   int solved = 0;
   for (const QpProblem& p : family.problems) {
     ours.emplace_back(p);
-    const QpResult& r = ours.back().solve(Mode::kCold);
-    answers.push_back(r.x);
-    solved += r.usable() && r.kkt_residual <= 1e-9;
+    const QpResult* r = &ours.back().solve(Mode::kCold);
+    answers.push_back(r->x);
+    if (mode != Mode::kCold) r = &ours.back().solve(mode);
+    solved += r->usable() && r->kkt_residual <= 1e-9;
   }
   if (mode == Mode::kCold)
     std::printf("{\"family\": \"%s\", \"solved\": %d, \"problems\": %zu}\n", family.name.c_str(),
                 solved, family.problems.size());
   std::vector<Baseline> others;
   for (const BaselineType& type : baselines()) {
+    if (!canTakeAll(type, family)) continue;
     const auto beside = std::make_shared<Beside>(family, type);
     if (mode != Mode::kCold && !beside->canWarm()) continue;
-    others.push_back({beside->judge(family, answers), [beside, mode] { beside->pass(mode); }});
+    others.push_back(
+        {beside->judge(family, mode, answers), [beside, mode] { beside->pass(mode); }});
   }
   Effort effort = Effort::fromEnvironment();
   effort.seconds *= 0.5;  // hundreds of passes all the same

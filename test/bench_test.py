@@ -19,12 +19,13 @@ class Bench(unittest.TestCase):
         page = subprocess.run([TOP / "scripts/bench", "--build", BUILD, "--quick", "--no-build"], check=True,
                               capture_output=True, text=True, timeout=300, env=dict(os.environ)).stdout
         rows = [line for line in page.splitlines() if re.search(r"\| (yes|\*\*no\*\*) \|", line)]
-        for path in ("166 h in process", "step of the published law", "plant sample", "Gustafson-Kessel", "eight runs", "iterated law", "branch and bound", "fit to free runs"):
+        for path in ("166 h in process", "steps of the published law, asp_case1, H 6 ", "steps of the published law, asp_case1, H 180 ", "covariance pass", "fmbpc study", "fmbpc tune", "plant sample", "Gustafson-Kessel", "eight runs", "iterated law", "branch and bound", "fit to free runs"):
             self.assertTrue(any(path in row for row in rows), path)
         for curve in ("law, outputs = inputs", "law, rules", "law, coincidence", "CLP cold", "CLP warm", "plant sample, tanks"):
             self.assertRegex(page, rf"\| {curve}[^|]*\| \d+ to \d+ \| [\d.e+]+ \|")
         self.assertRegex(page, r"CLP step, n_c 42.* 0 unsolved")
-        self.assertRegex(page, r"\| record of a run .*\| \d+ \|  \| -?\d+ \|")
+        self.assertRegex(page, r"\| record of a run .*\| \d+ \|  \|  \| -?\d+ \|")
+        self.assertRegex(page, r"\| identify --auto of it.*\| \d+ \| 2048 \|  \| -?\d+ \|")
         families = re.findall(r"^- QP .*: (\d+) of (\d+) solved by ours", page, re.MULTILINE)
         self.assertGreaterEqual(len(families), 3)
         for solved, count in families:

@@ -11,7 +11,10 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr int kEverything = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | DAQP_UPDATE_v | DAQP_UPDATE_d;
+constexpr int kVectors = DAQP_UPDATE_v | DAQP_UPDATE_d;
+constexpr int kEverything = DAQP_UPDATE_Rinv | DAQP_UPDATE_M | kVectors;
+constexpr int kFreeFirst =
+    DAQP_UPDATE_unconstrained;  // the minimum without limits, as its quadprog
 
 class Daqp final : public BaselineQp {
  public:
@@ -56,9 +59,13 @@ class Daqp final : public BaselineQp {
     if (!ready_) return false;
     daqp_deactivate_constraints(&work_);
     reset_daqp_workspace(&work_);
-    return update(kEverything | DAQP_UPDATE_sense);
+    return update(kEverything | kFreeFirst | DAQP_UPDATE_sense);
   }
-  bool solveWarm(bool new_hessian) override { return ready_ && update(kEverything, new_hessian); }
+  bool solveWarm(bool new_hessian) override {
+    if (!ready_) return false;
+    if (new_hessian) return update(kEverything | kFreeFirst, true);
+    return unformed_ ? update(kEverything, true) : update(kVectors);
+  }
   bool canWarm() const override { return true; }
   Vector x() const override { return x_; }
 
@@ -66,7 +73,8 @@ class Daqp final : public BaselineQp {
   /// An update takes a new Hessian in but keeps the factor of the working set, that of the old one.
   bool update(int mask, bool factor_anew = false) {
     if (daqp_update_ldp(mask, &work_, &data_) < 0) return false;
-    if (factor_anew) {
+    unformed_ = work_.sing_ind == DAQP_UNCONSTRAINED_OPTIMAL;
+    if (factor_anew && !unformed_) {
       reset_daqp_workspace(&work_);
       if (daqp_activate_constraints(&work_) < 0) return false;
     }
@@ -88,6 +96,7 @@ class Daqp final : public BaselineQp {
   DAQPWorkspace work_{};
   DAQPResult result_{};
   bool ready_{};
+  bool unformed_{};  // the limits, because they were not needed
 };
 
 const bool kRegistered = registerBaseline(
