@@ -31,9 +31,9 @@ void requireNoHole(const CsvTable& table, const Vector& hours, Eigen::Index firs
   for (Eigen::Index r = std::max<Eigen::Index>(first, 1); r <= last; ++r) {
     const double step = hours[r] - hours[r - 1];
     require(std::abs(step - sample) <= kRounded * sample, table.at(r, table.column("time")),
-            exactText(60.0 * sample) +
+            exactText(std::round(6e4 * sample) / 1e3) +
                 " min after the row before it, as at the record's begin, got " +
-                exactText(60.0 * step) + " (--from-h and --to-h leave rows out)");
+                exactText(std::round(6e4 * step) / 1e3) + " (--from-h and --to-h leave rows out)");
   }
 }
 
