@@ -105,7 +105,7 @@ double pollution(const Water& w, double tss, double bod_share, double flow, bool
   return (2.0 * tss + codOf(w) + nitrogen + 2.0 * bodOf(w, bod_share)) * flow / 1000.0;
 }
 
-bool near(double value, double wanted) { return std::abs(value - wanted) <= 1e-6 * wanted; }
+bool near(double value, double expected) { return std::abs(value - expected) <= 1e-6 * expected; }
 
 /// What moved in the judged rows beyond what the benchmark leaves to a controller of class A.
 Levers leversOf(const Record& record, const std::vector<Eigen::Index>& rows) {
