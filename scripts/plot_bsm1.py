@@ -4,8 +4,8 @@
     plot_bsm1.py DIR [DIR ...] [--names NAME,..] [--from DAY] [--out FILE]
 
 DIR is a folder of `fmbpc run LOOP --out DIR`. Ammonium and total nitrogen of the effluent with their limits, aeration of tanks 3 to 5,
-internal recirculation, influent; days on the axis, counted from the beginning of the test file (the last 14 days of the
-protocol). Without --out: bsm1.png in the first folder.
+internal recirculation, influent (of the first run, and of others if theirs is another); days on the axis, counted from the beginning of
+the test file (the last 14 days of the protocol), or of the run where it is shorter. Without --out: bsm1.png in the first folder.
 """
 import argparse
 import csv
@@ -16,6 +16,7 @@ import sys
 COLOURS = ["#8a8a8a", "#c98a1b", "#1f5fa8", "#c8452d", "#3a8a4d"]
 LIMITS = {"NH": 4.0, "TN": 18.0}
 SOLIDS_PER_COD = 0.75
+TEST_H = 336.0
 XB, XP = 0.08, 0.06  # nitrogen in biomass and in its products
 
 
@@ -30,7 +31,9 @@ class Run:
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as stream:
             self.name = json.load(stream)["loop"]
         end = self.columns["time"][-1]
-        self.days = [14.0 - (end - t) / 24.0 for t in self.columns["time"]]
+        self.whole = end >= TEST_H
+        begin = end - TEST_H if self.whole else 0.0
+        self.days = [(t - begin) / 24.0 for t in self.columns["time"]]
 
     def __getitem__(self, name):
         return self.columns.get(name + "_true", self.columns.get(name))
@@ -53,7 +56,7 @@ class Run:
 
 
 def panels(axes, run, colour, first, day):
-    kept = [i for i, d in enumerate(run.days) if d >= day]
+    kept = [i for i, d in enumerate(run.days) if d >= day or not run.whole]
     days = [run.days[i] for i in kept]
 
     def draw(axis, values, **style):
@@ -70,6 +73,17 @@ def panels(axes, run, colour, first, day):
     return days
 
 
+def draw_other_influent(axis, run, first, day):
+    """The flow of a run under another influent than the first one's: nobody should read it off the wrong curve."""
+    rows = {round(t, 4): (q, n) for t, q, n in zip(first["time"], first["Q_in"], first["S_NH_in"])}
+    if all(rows.get(round(t, 4), (q, n)) == (q, n) for t, q, n in zip(run["time"], run["Q_in"], run["S_NH_in"])):
+        return
+    kept = [i for i, d in enumerate(run.days) if d >= day or not run.whole]
+    axis.plot([run.days[i] for i in kept], [run["Q_in"][i] / 1000.0 for i in kept], linestyle="--", linewidth=1.0,
+              label="flow, " + run.name)
+    axis.legend(loc="upper right", ncol=2, fontsize=8)
+
+
 def draw_all(runs, day, out):
     import matplotlib
     matplotlib.use("Agg")
@@ -77,6 +91,7 @@ def draw_all(runs, day, out):
     figure, axes = plt.subplots(5, 1, sharex=True, figsize=(10, 11), constrained_layout=True)
     for number, run in enumerate(runs):
         panels(axes, run, COLOURS[number % len(COLOURS)], number == 0, day)
+        draw_other_influent(axes[4], run, runs[0], day)
     labels = ("ammonium, effluent\n[g N/m3]", "total nitrogen,\neffluent [g N/m3]", "mean KLa of tanks\n3, 4, 5 [1/d]",
               "internal recirculation\n[1000 m3/d]", "influent: flow\n[1000 m3/d]")
     for axis, label in zip(axes, labels):
@@ -86,7 +101,7 @@ def draw_all(runs, day, out):
     for axis, key in zip(axes, ("NH", "TN")):
         axis.axhline(LIMITS[key], color="black", linestyle=":", linewidth=1.2)
     axes[0].legend(loc="upper right", ncol=len(runs), fontsize=9)
-    axes[-1].set_xlabel("day of the test")
+    axes[-1].set_xlabel("day of the test" if all(run.whole for run in runs) else "day of the run")
     figure.savefig(out, dpi=110)
 
 

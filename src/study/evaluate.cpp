@@ -6,20 +6,34 @@
 #include <map>
 
 #include "fmbpc/base/input_error.hpp"
+#include "study/judged_rows.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr int kTanks = 5;
+constexpr int kTanks = 5, kMixed = 2;                                   // the first two without air
 constexpr double kVolume[] = {1000.0, 1000.0, 1333.0, 1333.0, 1333.0};  // [m3]
 constexpr double kLayerVolume = 600.0;
-constexpr double kSample_h = 0.25;
 constexpr double kXB = 0.08, kXP = 0.06, kInert = 0.08;  // nitrogen in biomass, in products; f_P
 constexpr double kSolidsPerCod = 0.75;
 const std::array<const char*, 13> kNames = {"S_I", "S_S",  "X_I",  "X_S",  "X_BH", "X_BA", "X_P",
                                             "S_O", "S_NO", "S_NH", "S_ND", "X_ND", "S_ALK"};
 enum { kI, kS, kXi, kXs, kBH, kBA, kP, kO, kNO, kNH, kND, kXND, kALK };
 using Water = std::array<double, 13>;
+
+/// What the indices take a column for, by the beginning of its name; empty: nothing of theirs.
+std::string unitOf(const std::string& name) {
+  const auto begins = [&](const char* stem) { return name.rfind(stem, 0) == 0; };
+  if (begins("S_ALK")) return "mol/m3";
+  if (begins("S_") || begins("X_") || begins("TSS_L")) return "g/m3";
+  if (begins("KLa")) return "1/d";
+  return begins("Q") || begins("dose") ? "m3/d" : "";
+}
+
+bool sameUnit(const std::string& header, const std::string& unit) {
+  return header.empty() || unit.empty() || header == unit ||
+         (unit == "g/m3" && (header == "mg/l" || header == "mg/L"));
+}
 
 /// Columns of the record by name; what is measured has its true value beside it.
 class Record {
@@ -34,9 +48,16 @@ class Record {
     const auto found = truth != places_.end() ? truth : places_.find(name);
     require(found != places_.end(), table_.file + ": column '" + name + "'",
             "a record of plant bsm1, bsm1_pi or bsm1_air");
-    return table_.values(row, found->second);
+    const auto column = static_cast<std::size_t>(found->second);
+    const std::string& header = table_.units[column];
+    require(sameUnit(header, unitOf(name)), table_.file + ": column '" + table_.names[column] + "'",
+            "[" + unitOf(name) + "], got [" + header + "]");
+    const double value = table_.values(row, found->second);
+    require(std::isfinite(value), table_.at(row, found->second),
+            "a number in the judged part (--from-h and --to-h leave rows out)");
+    return value;
   }
-  /// Inputs that a form of the plant may lack.
+  /// Carbon, which a form of the plant may lack.
   double orZero(const std::string& name, Eigen::Index row) const {
     return has(name) ? at(name, row) : 0.0;
   }
@@ -84,6 +105,24 @@ double pollution(const Water& w, double tss, double bod_share, double flow, bool
   return (2.0 * tss + codOf(w) + nitrogen + 2.0 * bodOf(w, bod_share)) * flow / 1000.0;
 }
 
+bool near(double value, double expected) { return std::abs(value - expected) <= 1e-6 * expected; }
+
+/// What moved in the judged rows beyond what the benchmark leaves to a controller of class A.
+Levers leversOf(const Record& record, const std::vector<Eigen::Index>& rows) {
+  Levers levers = Levers::kClassA;
+  for (const Eigen::Index row : rows) {
+    bool sludge = !near(record.at("Qr", row), 18446.0) || !near(record.at("Qw", row), 385.0);
+    bool blowers = false;
+    for (int t = 1; t <= kTanks; ++t) {
+      sludge = sludge || record.orZero(numbered("dose", t), row) > 1e-9;
+      blowers = blowers || (t > kMixed && record.at(numbered("KLa", t), row) > 240.0 + 1e-6);
+    }
+    if (sludge) return Levers::kClassB;
+    if (blowers) levers = Levers::kLargerBlowers;
+  }
+  return levers;
+}
+
 /// Sums over the judged rows.
 struct Sums {
   std::array<std::vector<double>, 5> values;  // of the limited quantities
@@ -99,7 +138,7 @@ struct PlantRow {
 
 void addEnergy(const PlantRow& at, bool old, EffluentReport& report) {
   for (int t = 0; t < kTanks; ++t) {
-    const double KLa = at.record.orZero(numbered("KLa", t + 1), at.row);
+    const double KLa = t < kMixed ? 0.0 : at(numbered("KLa", t + 1));
     report.AE += old ? 24.0 * kVolume[t] / 1333.0 * (0.0007 * KLa * KLa + 0.3267 * KLa)
                      : 8.0 / 1800.0 * kVolume[t] * KLa;
     if (KLa < 20.0) report.ME += 24.0 * 0.005 * kVolume[t];
@@ -130,6 +169,16 @@ void addWater(const PlantRow& at, bool old, EffluentReport& report, Sums& sums) 
   sums.flow.push_back(Q_e);
 }
 
+/// As users of the benchmark have it (prctile): the sorted values stand in the middles of n equal
+/// parts, joined by straight lines.
+double percentile(const std::vector<double>& sorted, double share) {
+  const auto n = static_cast<double>(sorted.size());
+  const double place = std::clamp(share * n - 0.5, 0.0, n - 1.0);
+  const auto below = static_cast<std::size_t>(place);
+  const std::size_t above = std::min(below + 1, sorted.size() - 1);
+  return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
+}
+
 LimitIndices judge(const std::string& name, double limit, std::vector<double> values,
                    const std::vector<double>& flow) {
   LimitIndices indices{name, limit, 0.0, 0, 0.0, 0.0};
@@ -146,38 +195,26 @@ LimitIndices judge(const std::string& name, double limit, std::vector<double> va
   indices.mean /= total;
   indices.share_percent = 100.0 * above / n;
   std::sort(values.begin(), values.end());
-  indices.percentile_95 = values[static_cast<std::size_t>(std::ceil(0.95 * n)) - 1];
+  indices.percentile_95 = percentile(values, 0.95);
   return indices;
-}
-
-/// Rows of the judged part, 15 minutes apart if the record is finer.
-std::vector<Eigen::Index> judgedRows(const CsvTable& table, const EvaluateParams& params) {
-  const Eigen::Index time = table.column("time");
-  const Eigen::Index rows = table.rows();
-  require(rows >= 3, table.file,
-          "a record of three rows at least: a longer run, or an earlier report.record_from_h");
-  const double start = table.values(0, time);
-  const double sample = table.values(1, time) - start;
-  const double end = table.values(rows - 1, time) - start;
-  const double to = params.to_h < 0.0 ? end : params.to_h;
-  const double from = params.from_h < 0.0 ? std::max(0.0, to - 168.0) : params.from_h;
-  const double ratio = kSample_h / sample;
-  const bool thin = ratio > 1.5 && std::abs(ratio - std::round(ratio)) < 1e-6;
-  const auto stride = static_cast<Eigen::Index>(thin ? std::lround(ratio) : 1);
-  const auto first = static_cast<Eigen::Index>(std::ceil(from / sample - 1e-6));
-  std::vector<Eigen::Index> judged;
-  for (Eigen::Index r = first; r < rows - 1; r += stride)
-    if (table.values(r, time) - start < to - 1e-6) judged.push_back(r);
-  require(judged.size() >= 2, table.file,
-          "two rows or more in the judged part, --from-h to --to-h after the record's begin "
-          "(report.record_from_h)");
-  return judged;
 }
 
 }  // namespace
 
 void EvaluateParams::validate() const {
   require(to_h < 0.0 || to_h > from_h, "to_h", "a time after from_h");
+}
+
+std::string wordOf(Levers levers) {
+  switch (levers) {
+    case Levers::kClassA:
+      return "A";
+    case Levers::kLargerBlowers:
+      return "A, KLa > 240";
+    case Levers::kClassB:
+      return "B";
+  }
+  return "";
 }
 
 const LimitIndices& EffluentReport::limit(const std::string& name) const {
@@ -189,8 +226,8 @@ const LimitIndices& EffluentReport::limit(const std::string& name) const {
 EffluentReport evaluateEffluent(const CsvTable& table, const EvaluateParams& params) {
   params.validate();
   const Record record(table);
-  const auto rows = judgedRows(table, params);
-  const Eigen::Index time = table.column("time");
+  const JudgedRows judged = judgedRows(table, params);
+  const auto& rows = judged.rows;
   EffluentReport report;
   Sums sums;
   for (const Eigen::Index row : rows) {
@@ -201,7 +238,9 @@ EffluentReport evaluateEffluent(const CsvTable& table, const EvaluateParams& par
   }
   const auto n = static_cast<double>(rows.size());
   report.samples = rows.size();
-  report.days = n * (table.values(rows[1], time) - table.values(rows[0], time)) / 24.0;
+  report.sample_min = 60.0 * judged.spacing_h;
+  report.days = n * judged.spacing_h / 24.0;
+  report.levers = leversOf(record, rows);
   for (double* mean :
        {&report.EQI, &report.IQI, &report.AE, &report.PE, &report.ME, &report.SP, &report.EC})
     *mean /= n;

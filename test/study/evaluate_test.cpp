@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -111,6 +113,69 @@ TEST(Evaluate, TrueValuesStandForMeasuredOnes) {
   run.table.names[static_cast<std::size_t>(run.table.column("S_NH_L1"))] = "S_NH_L1_true";
   run.set("S_NH_L1_true", 3.0);
   EXPECT_NEAR(evaluateEffluent(run.table).limit("NH").mean, 3.0, 1e-12);
+}
+
+// prctile of 1 to 10: 0.95 * 10 + 0.5 = 10.0, and of 1 to 20 the middle of 19 and 20.
+TEST(Evaluate, ThePercentileIsTheBenchmarkUsersOwn) {
+  for (const Eigen::Index n : {10, 20}) {
+    ByHand run(n + 1, 0.25);
+    for (Eigen::Index k = 0; k < n; ++k)
+      run.set("S_NH_L1", n - 1 - k, 1.0 + static_cast<double>(k));
+    EXPECT_NEAR(evaluateEffluent(run.table).limit("NH").percentile_95, n == 10 ? 10.0 : 19.5,
+                1e-12);
+  }
+}
+
+TEST(Evaluate, TimesAreReadInTheUnitOfTheirHeader) {
+  ByHand run(10 * 96 + 1, 0.25 / 24.0);
+  run.table.units[0] = "d";
+  const EffluentReport r = evaluateEffluent(run.table);
+  EXPECT_EQ(r.samples, 672U);
+  EXPECT_NEAR(r.days, 7.0, 1e-9);
+  EXPECT_NEAR(r.sample_min, 15.0, 1e-9);
+  run.table.units[0] = "fortnight";
+  EXPECT_THROW(evaluateEffluent(run.table), InputError);
+}
+
+TEST(Evaluate, TheClassIsReadFromWhatMoved) {
+  ByHand run(9, 0.25);
+  run.set("Qr", 18446.0);
+  run.set("Qw", 385.0);
+  run.set("KLa5", 240.0);
+  EXPECT_EQ(wordOf(evaluateEffluent(run.table).levers), "A");
+  run.set("KLa5", 3, 300.0);
+  EXPECT_EQ(wordOf(evaluateEffluent(run.table).levers), "A, KLa > 240");
+  run.set("Qw", 4, 300.0);
+  EXPECT_EQ(wordOf(evaluateEffluent(run.table).levers), "B");
+  run.set("Qw", 385.0);
+  run.set("dose2", 1.0);
+  EXPECT_EQ(wordOf(evaluateEffluent(run.table).levers), "B");
+}
+
+/// The words of the error that a record is refused with.
+std::string refusal(const CsvTable& table) {
+  try {
+    evaluateEffluent(table);
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  ADD_FAILURE() << "nothing was thrown";
+  return "";
+}
+
+TEST(Evaluate, NoFigureOfARecordWithHolesOrOtherUnits) {
+  ByHand missing(9, 0.25);
+  missing.set("S_NH_L1", 3, std::nan(""));
+  EXPECT_NE(refusal(missing.table).find("S_NH_L1"), std::string::npos);
+  ByHand hole(9, 0.25);
+  for (Eigen::Index k = 5; k < 9; ++k) hole.set("time", k, 10.0 + 0.25 * static_cast<double>(k));
+  EXPECT_NE(refusal(hole.table).find("min after the row before it"), std::string::npos);
+  ByHand unit(9, 0.25);
+  unit.table.units[static_cast<std::size_t>(unit.table.column("Q_in"))] = "m3/h";
+  EXPECT_NE(refusal(unit.table).find("[m3/d], got [m3/h]"), std::string::npos);
+  ByHand blower(9, 0.25);
+  blower.table.names[static_cast<std::size_t>(blower.table.column("KLa5"))] = "other";
+  EXPECT_NE(refusal(blower.table).find("KLa5"), std::string::npos) << "no air is not free air";
 }
 
 TEST(Evaluate, MissingColumnsAndEmptyPartsAreErrors) {

@@ -24,13 +24,23 @@ struct LimitIndices {
   double limit{};          ///< [g/m3]
   double share_percent{};  ///< of the samples above it
   int crossings{};         ///< times it was crossed upwards
-  double percentile_95{};  ///< of the samples, nearest rank
+  double percentile_95{};  ///< of the samples, as prctile: (i - 0.5)/n, joined linearly
   double mean{};           ///< weighted by the effluent flow
 };
 
+/// What was moved in the judged part. Runs of different levers are not to be compared.
+enum class Levers {
+  kClassA,         ///< Qr and Qw as in the benchmark, no carbon, KLa at most 240 1/d
+  kLargerBlowers,  ///< the same with more than 240 1/d
+  kClassB          ///< another Qr, Qw, or carbon
+};
+std::string wordOf(Levers levers);  ///< "A", "A, KLa > 240", "B"
+
 struct EffluentReport {
   std::uint64_t samples{};
-  double days{};
+  double sample_min{};  ///< spacing of the judged samples [min]; the benchmark's: 15
+  double days{};        ///< judged; the benchmark's: 7
+  Levers levers{Levers::kClassA};
   double EQI{}, IQI{};               ///< [kg pollution units/d]
   double AE{}, PE{}, ME{};           ///< aeration, pumping, mixing [kWh/d]
   double SP{};                       ///< sludge for disposal [kg/d]
@@ -41,7 +51,9 @@ struct EffluentReport {
 };
 
 /// @param trajectory of `run --out`, of plant bsm1, bsm1_pi or bsm1_air. Samples closer than 15
-/// minutes are thinned to these. @throws InputError naming the missing column or the empty window.
+/// minutes are thinned to these. Times in the unit of their header, hours if it has none.
+/// @throws InputError naming the missing column, one of another unit, a missing cell or a hole in
+/// the judged part, or the empty window.
 EffluentReport evaluateEffluent(const CsvTable& trajectory, const EvaluateParams& params = {});
 
 }  // namespace fpc
