@@ -4,13 +4,15 @@
 
 #include <cmath>
 
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
 
 Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
     : timeout_s_(loop.gateway.stale_s),
-      setpoint_(node.advertise<fmbpc::Setpoint>(topics::kSetpoint, topics::kViewQueue)) {
+      setpoint_(
+          node.advertise<fmbpc::Setpoint>(topics::kSetpoint, queueOf(ListenerKind::kViewer))) {
   const GatewayParams& gateway = loop.gateway;
   const std::size_t n_y = gateway.outputs.size();
   for (std::size_t i = 0; i < n_y; ++i) {
@@ -21,8 +23,8 @@ Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
     listen(node, gateway.disturbances[i].topic, signals_, n_y + i);
   for (std::size_t i = 0; i < gateway.inputs.size(); ++i) {
     listen(node, gateway.inputs[i].readback_topic, positions_, i);
-    efforts_.push_back(
-        node.advertise<std_msgs::Float64>(gateway.inputs[i].topic, topics::kPairQueue, true));
+    efforts_.push_back(node.advertise<std_msgs::Float64>(gateway.inputs[i].topic,
+                                                         queueOf(ListenerKind::kPeer), true));
   }
   if (gateway.enable_topic.empty()) return;
   const boost::function<void(const std_msgs::Bool::ConstPtr&)> enable =
@@ -46,8 +48,9 @@ void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::
           }
         to.push_back(reading);
       };
-  subscribers_.push_back(node.subscribe<std_msgs::Float64>(
-      topic, topics::kPairQueue, keep, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+  subscribers_.push_back(node.subscribe<std_msgs::Float64>(topic, queueOf(ListenerKind::kPeer),
+                                                           keep, ros::VoidConstPtr(),
+                                                           ros::TransportHints().tcpNoDelay()));
 }
 
 bool Float64Field::admits(TagOwner& owner, const std::string& publisher, double value) {
@@ -89,7 +92,8 @@ void Float64Field::forwardSetpoint(ros::NodeHandle& node, const std::string& top
         setpoint.mode = fmbpc::Setpoint::OVERRIDE;
         setpoint_.publish(setpoint);
       };
-  subscribers_.push_back(node.subscribe<std_msgs::Float64>(topic, topics::kViewQueue, forward));
+  subscribers_.push_back(
+      node.subscribe<std_msgs::Float64>(topic, queueOf(ListenerKind::kViewer), forward));
 }
 
 void Float64Field::exchange(PlantGateway& gateway, bool automatic, double now_s) {

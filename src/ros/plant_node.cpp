@@ -7,6 +7,7 @@
 
 #include "fmbpc/base/text.hpp"
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -46,20 +47,16 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
       begun_s_(steadyNow()),
       end_(node),
       node_(node),
-      action_subscriber_(
-          subscribe(node, topics::kControlAction, topics::kPairQueue, &PlantNode::onAction, this)),
-      state_subscriber_(
-          subscribe(node, topics::kLoopState, topics::kPairQueue, &PlantNode::onLoopState, this)),
+      action_subscriber_(subscribe(node, topics::kControlAction, queueOf(ListenerKind::kPeer),
+                                   &PlantNode::onAction, this)),
+      state_subscriber_(subscribe(node, topics::kLoopState, queueOf(ListenerKind::kPeer),
+                                  &PlantNode::onLoopState, this)),
       pause_(private_node.advertiseService(topics::kPause, &PlantNode::onPause, this)),
       step_(private_node.advertiseService(topics::kStep, &PlantNode::onStep, this)),
       reset_(private_node.advertiseService(topics::kReset, &PlantNode::onReset, this)),
-      poll_timer_(node.createSteadyTimer(
-          ros::WallDuration(kPoll),
-          [this](const ros::SteadyTimerEvent&) { guarded("poll", [this] { onPoll(); }); })),
-      pace_timer_(node.createSteadyTimer(
-          ros::WallDuration(kPoll),
-          [this](const ros::SteadyTimerEvent&) { guarded("pace", [this] { tryAdvance(); }); }, true,
-          false)),
+      poll_timer_(guardedTimer(node, kPoll, "poll", [this] { onPoll(); })),
+      pace_timer_(guardedTimer(
+          node, kPoll, "pace", [this] { tryAdvance(); }, true, false)),
       health_(node, private_node, "plant", loop.name, true,
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.process().measurement().header; },
@@ -171,8 +168,8 @@ void PlantNode::publishSample() {
     ROS_WARN("%s: %s", name().c_str(), process.trouble().c_str());
   if (session_.phase() == PlantPhase::kFinished) {
     ROS_INFO("%s: final sample %u sent", name().c_str(), process.measurement().header.step);
-    tracking_subscriber_ =
-        subscribe(node_, topics::kTracking, topics::kPairQueue, &PlantNode::onTracking, this);
+    tracking_subscriber_ = subscribe(node_, topics::kTracking, queueOf(ListenerKind::kPeer),
+                                     &PlantNode::onTracking, this);
   } else {
     armTimer();
   }

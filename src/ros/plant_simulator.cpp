@@ -7,6 +7,7 @@
 #include "fmbpc/loop/factory.hpp"
 #include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
@@ -35,9 +36,11 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
       commands_(loop.ring.commands_per_s, kBurst),
       forced_(simulation_.info()),
       cut_(loop),
-      state_(node.advertise<fmbpc::PlantState>(topics::kPlantState, topics::kRingQueue)),
-      effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect, topics::kRingQueue)),
-      disturbance_subscriber_(subscribe(node, topics::kDisturbance, topics::kViewQueue,
+      state_(
+          node.advertise<fmbpc::PlantState>(topics::kPlantState, queueOf(ListenerKind::kRecord))),
+      effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect,
+                                                   queueOf(ListenerKind::kRecord))),
+      disturbance_subscriber_(subscribe(node, topics::kDisturbance, queueOf(ListenerKind::kViewer),
                                         &PlantSimulator::onDisturbance, this)) {
   begin();
 }

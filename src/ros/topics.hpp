@@ -46,13 +46,6 @@ inline constexpr char kSettings[] = "settings";
 inline constexpr char kLoopText[] = "loop_text";
 inline constexpr char kLoopName[] = "loop_name";
 
-/// Queues of ring topics: so much a listener may lag; a hung one costs no more.
-inline constexpr unsigned kRingQueue = 10000;
-/// Of what only the other members of the ring need: in realtime the newest counts.
-inline constexpr unsigned kPairQueue = 100;
-/// Queues of everything that only people look at.
-inline constexpr unsigned kViewQueue = 1000;
-
 /// The reason in loop_state of a plant that is paused.
 inline constexpr char kPausedReason[] = "paused";
 
