@@ -63,6 +63,9 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
                [this](Diagnostics::Status& status) { report(status); }}) {}
 
 void PlantNode::begin() {
+  std::vector<ros::Publisher> recorded = publishers_.recorded();
+  for (const ros::Publisher& own : alsoRecorded()) recorded.push_back(own);
+  listeners_.emplace(std::move(recorded));
   beginRun();
   frames_.broadcast(loop_.tf, session_.process().info().header.time_ns);
 }
@@ -107,7 +110,8 @@ void PlantNode::waitForOthers() {
   missing_ = ready_.missing();
   const std::vector<std::string> own = plantMissing();
   missing_.insert(missing_.end(), own.begin(), own.end());
-  if (missing_.empty() && keeper_.knowsWhatStands(steadyNow())) return start();
+  if (missing_.empty() && keeper_.knowsWhatStands(steadyNow()) && listeners_->open())
+    return start();
   if (missing_.empty()) return;
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
   failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
@@ -217,7 +221,7 @@ Health PlantNode::health(double now_s) const {
   if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
     return {LoopMode::kStarting,
-            "waiting for " + (missing_.empty() ? "what the controller was asked" : join(missing_)),
+            "waiting for " + (missing_.empty() ? "controller and listeners" : join(missing_)),
             missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};
