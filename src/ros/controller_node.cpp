@@ -48,11 +48,11 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                                        &ControllerNode::onIdentified, this)),
       setpoint_subscriber_(subscribe(node, topics::kSetpoint, queueOf(ListenerKind::kViewer),
                                      &ControllerNode::onSetpoint, this)),
-      manual_(private_node.advertiseService(topics::kManual, &ControllerNode::onManual, this)),
-      manual_input_(private_node.advertiseService(topics::kManualInput,
-                                                  &ControllerNode::onManualInput, this)),
-      hold_(private_node.advertiseService(topics::kHold, &ControllerNode::onHold, this)),
-      adapt_(private_node.advertiseService(topics::kAdapt, &ControllerNode::onAdapt, this)),
+      manual_(serve(private_node, topics::kManual, &ControllerNode::onManual, this)),
+      manual_input_(
+          serve(private_node, topics::kManualInput, &ControllerNode::onManualInput, this)),
+      hold_(serve(private_node, topics::kHold, &ControllerNode::onHold, this)),
+      adapt_(serve(private_node, topics::kAdapt, &ControllerNode::onAdapt, this)),
       parked_timer_(guardedTimer(
           node, kLookAgain, "parked", [this] { answerParked(); }, false, false)),
       settings_(
@@ -62,7 +62,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
             session_.retune(settings);
             tell();
           },
-          [this](const std::string& why) { refuse(topics::kSettings, why); }),
+          [this](const std::string& why) { refuse(topics::kSettings, why); },
+          [this](const std::string& caller) { return mayPass(topics::kServices, caller); }),
       summary_(node, loop, name()),
       commands_(loop.ring.commands_per_s, kBurst),
       health_(node, private_node, "controller", loop.name, false,

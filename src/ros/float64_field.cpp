@@ -3,14 +3,16 @@
 #include <fmbpc/Setpoint.h>
 
 #include <cmath>
+#include <utility>
 
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
 
-Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
-    : timeout_s_(loop.gateway.stale_s),
+Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop, std::string name)
+    : Node(node, loop, std::move(name)),
+      timeout_s_(loop.gateway.stale_s),
       setpoint_(
           node.advertise<fmbpc::Setpoint>(topics::kSetpoint, queueOf(ListenerKind::kViewer))) {
   const GatewayParams& gateway = loop.gateway;
@@ -26,10 +28,18 @@ Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
     efforts_.push_back(node.advertise<std_msgs::Float64>(gateway.inputs[i].topic,
                                                          queueOf(ListenerKind::kPeer), true));
   }
-  if (gateway.enable_topic.empty()) return;
-  const boost::function<void(const std_msgs::Bool::ConstPtr&)> enable =
-      [this](const std_msgs::Bool::ConstPtr& msg) { enabled_ = msg->data != 0; };
-  subscribers_.push_back(node.subscribe<std_msgs::Bool>(gateway.enable_topic, 1, enable));
+  listenToEnable(node, gateway.enable_topic);
+}
+
+void Float64Field::listenToEnable(ros::NodeHandle& node, const std::string& topic) {
+  if (topic.empty()) return;
+  const boost::function<void(const ros::MessageEvent<const std_msgs::Bool>&)> enable =
+      [this](const ros::MessageEvent<const std_msgs::Bool>& event) {
+        if (mayPass(topics::kEnable, event.getPublisherName()))
+          enabled_ = event.getConstMessage()->data != 0;
+      };
+  subscribers_.push_back(
+      node.subscribe<std_msgs::Bool>(topic, queueOf(ListenerKind::kPeer), enable));
 }
 
 void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::vector<Reading>& to,
@@ -78,6 +88,7 @@ void Float64Field::forwardSetpoint(ros::NodeHandle& node, const std::string& top
   if (topic.empty()) return;
   const boost::function<void(const ros::MessageEvent<const std_msgs::Float64>&)> forward =
       [this, output](const ros::MessageEvent<const std_msgs::Float64>& event) {
+        if (!mayPass(topics::kSetpoint, event.getPublisherName())) return;
         const double value = event.getConstMessage()->data;
         if (!std::isfinite(value)) {
           ++strange_;
@@ -115,9 +126,13 @@ void Float64Field::exchange(PlantGateway& gateway, bool automatic, double now_s)
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> Float64Field::counts() const {
-  return {{"values received", heard_},
-          {"values refused: a second publisher's, setpoints that are not finite", strange_},
-          {"commands sent", told_}};
+  std::vector<std::pair<std::string, std::uint64_t>> counts = {
+      {"values received", heard_},
+      {"values refused: a second publisher's, setpoints that are not finite", strange_},
+      {"commands sent", told_}};
+  for (const auto& [what, count] : authority().refused())
+    counts.emplace_back("refused: " + what, count);
+  return counts;
 }
 
 }  // namespace fpc

@@ -17,6 +17,7 @@
 #include "ros/master_watch.hpp"
 #include "ros/newest.hpp"
 #include "ros/queues.hpp"
+#include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -104,10 +105,29 @@ class Node {
                                    (object->*handler)(event.getMessage(), event.getPublisherName());
                                  });
   }
+  /// False: what `publisher` said (by a key of loop.publishers) does not count; it has been counted
+  /// and logged.
+  bool mayPass(const char* topic, const std::string& publisher);
+  /// Advertises a private service; who may not call it (loop.publishers.services) gets
+  /// success = false with the reason.
+  template <typename Request, typename Response, typename Class>
+  ros::ServiceServer serve(ros::NodeHandle& private_node, const char* service,
+                           bool (Class::*handler)(Request&, Response&), Class* object) {
+    using Event = ros::ServiceEvent<Request, Response>;
+    const boost::function<bool(Event&)> guard = [this, handler, object](Event& event) {
+      if (mayPass(topics::kServices, event.getCallerName())) {
+        Request request = event.getRequest();
+        return (object->*handler)(request, event.getResponse());
+      }
+      event.getResponse().success = false;
+      event.getResponse().message = "refused: loop.publishers.services does not name the caller";
+      return true;
+    };
+    return private_node.advertiseService(service, guard);
+  }
 
  private:
   void noteCommand(std::string line);
-  bool mayPass(const char* topic, const std::string& publisher);
   bool mayLog(const std::string& what);
   template <typename Msg, typename Handler>
   ros::Subscriber subscribeGuarded(ros::NodeHandle& node, const char* topic, std::uint32_t queue,

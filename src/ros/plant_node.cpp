@@ -51,9 +51,9 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
                                    &PlantNode::onAction, this)),
       state_subscriber_(subscribe(node, topics::kLoopState, queueOf(ListenerKind::kPeer),
                                   &PlantNode::onLoopState, this)),
-      pause_(private_node.advertiseService(topics::kPause, &PlantNode::onPause, this)),
-      step_(private_node.advertiseService(topics::kStep, &PlantNode::onStep, this)),
-      reset_(private_node.advertiseService(topics::kReset, &PlantNode::onReset, this)),
+      pause_(serve(private_node, topics::kPause, &PlantNode::onPause, this)),
+      step_(serve(private_node, topics::kStep, &PlantNode::onStep, this)),
+      reset_(serve(private_node, topics::kReset, &PlantNode::onReset, this)),
       poll_timer_(guardedTimer(node, kPoll, "poll", [this] { onPoll(); })),
       pace_timer_(guardedTimer(
           node, kPoll, "pace", [this] { tryAdvance(); }, true, false)),

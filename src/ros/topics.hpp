@@ -29,6 +29,10 @@ inline constexpr char kModelKept[] = "model_kept";
 inline constexpr char kSignalPrefix[] = "signal/";
 inline constexpr char kClock[] = "/clock";
 
+// Keys of loop.publishers that are no topics: gateway.enable_topic, private services.
+inline constexpr char kEnable[] = "enable";
+inline constexpr char kServices[] = "services";
+
 // Private action.
 inline constexpr char kIdentify[] = "identify";
 
