@@ -71,17 +71,5 @@ TEST_F(NewestOfTheQueue, NothingIsCalledOnceItIsGone) {
   EXPECT_TRUE(answered_.empty());
 }
 
-TEST_F(NewestOfTheQueue, AHandlerThatThrowsLosesOnlyItsItem) {
-  Newest<int> newest(queue_, [this](int item) {
-    answered_.push_back(item);
-    if (item == 1) throw item;
-  });
-  newest.put(1);
-  EXPECT_ANY_THROW(queue_.callAvailable());
-  arrive(newest, {2});
-  spin();
-  EXPECT_EQ(answered_, std::vector<int>({1, 2}));
-}
-
 }  // namespace ros_newest_test
 }  // namespace fpc
