@@ -114,6 +114,13 @@ class House(unittest.TestCase):
     def test_a_type_of_plant_is_known_to_no_other_file_of_the_library(self):
         self.assertEqual([], named_by_others(plant_types(), "plant"))
 
+    def test_every_timer_of_a_node_is_guarded(self):
+        """Whatever is thrown in a timer ends the process: they are made by Node::guardedTimer(), or call callGuarded()."""
+        made = [(p, m) for p in sources("src/ros") for m in re.finditer(r"createSteadyTimer\(", p.read_text())]
+        self.assertEqual({"node.hpp", "health_reporter.cpp", "diagnostics.cpp"}, {p.name for p, _ in made})
+        for path, match in made:
+            self.assertRegex(path.read_text()[match.end():][:400], r"\b(callGuarded|guarded)\(", path)
+
     def test_our_nodes_never_read_the_ros_clock(self):
         paths = list(sources("include", "src")) + sorted((TOP / "scripts").glob("*.py"))
         for path in paths:

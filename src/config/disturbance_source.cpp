@@ -23,11 +23,6 @@ std::vector<Quantity> disturbancesOf(const LoopFile& loop) {
 }
 
 DisturbanceRecord makeDisturbance(const LoopFile& loop) {
-  LateRows late;
-  return makeDisturbance(loop, late);
-}
-
-DisturbanceRecord makeDisturbance(const LoopFile& loop, LateRows& late) {
   requireSimulated(loop);
   const SimulationParams& sim = loop.simulation;
   const DisturbanceParams& params = loop.disturbance;
@@ -44,7 +39,7 @@ DisturbanceRecord makeDisturbance(const LoopFile& loop, LateRows& late) {
                        sim.samples);
   checkCsvUnits(loop, disturbances);
   DisturbanceRecord record = readDisturbanceSequence(params.csv, names, sim.disturbance_nominal,
-                                                     sim.sample_time_s, sim.samples, late);
+                                                     sim.sample_time_s, sim.samples);
   checkCsvRanges(params.csv, disturbances, record.values);
   return record;
 }

@@ -33,17 +33,35 @@ std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& l
   const Names law{controller};
   const Names answers = loop.has_clp ? Names{"clp_optimizer", controller} : law;
   const Names model{"fuzzy_identifier"};
-  return {{"plant_info", plant},       {"measurement", plant},     {"plant_state", plant},
-          {"base_action", law},        {"tracking", law},          {"predictive_action", law},
-          {"control_action", answers}, {"solver_report", answers}, {"fuzzy_model", model},
-          {"identified", model},       {"setpoint", {}},           {"disturbance", {}},
-          {"operator_kept", plant},    {"model_kept", plant}};
+  return {{"plant_info", plant},
+          {"measurement", plant},
+          {"plant_state", plant},
+          {"base_action", law},
+          {"tracking", law},
+          {"predictive_action", law},
+          {"control_action", answers},
+          {"solver_report", answers},
+          {"fuzzy_model", model},
+          {"identified", model},
+          {"setpoint", {}},
+          {"disturbance", {}},
+          {"operator_kept", plant},
+          {"model_kept", plant},
+          {"enable", {}},
+          {"services", {}}};
 }
 
 void readPublishers(YamlSection& section, RingParams& ring) {
   YamlSection publishers = section.section("publishers");
   for (auto& [topic, names] : ring.publishers) publishers.names(topic, names);
   publishers.finish();
+}
+
+/// Setpoints on Float64 topics go on to the controller in the gateway's name, which has asked
+/// whether their publishers may set them.
+void letGatewayForward(const GatewayParams& gateway, std::vector<std::string>& setpoint) {
+  if (gateway.type == GatewayType::kFloat64 && !setpoint.empty())
+    setpoint.emplace_back("plant_gateway");
 }
 
 void readFrame(YamlSection& item, EquipmentFrame& frame) {
@@ -167,6 +185,7 @@ void readRing(YamlSection& root, LoopFile& loop) {
   section.number("commands_per_s", loop.ring.commands_per_s, kFinitePositive);
   loop.ring.publishers = ringPublishers(loop);
   readPublishers(section, loop.ring);
+  letGatewayForward(loop.gateway, loop.ring.publishers["setpoint"]);
   section.finish();
 }
 

@@ -1,49 +1,32 @@
 #include "fmbpc/loop/cut_offsets.hpp"
 
-#include <algorithm>
-#include <cmath>
+#include <utility>
 
-#include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/disturbance_source.hpp"
 #include "loop/remark_lines.hpp"
 
 namespace fpc {
 namespace {
 
-using Eigen::Index;
-
-std::string wordsOf(const SignalInfo& of) {
+std::string wordsOf(const Quantity& of) {
   return "an offset of " + of.name + " was asked beyond its range, " + exactText(of.lower) + ".." +
          exactText(of.upper) + (of.unit.empty() ? "" : " [" + of.unit + "]") + ", and clamped";
 }
 
-/// Read when it is needed first. A record that has gone since the run began: NaN, beyond no range.
-Matrix valuesOf(const LoopFile& loop) {
-  try {
-    return makeDisturbance(loop).values;
-  } catch (const InputError&) {
-    return Matrix::Constant(countOf(disturbancesOf(loop)), 1, std::nan(""));
-  }
-}
-
 }  // namespace
 
-CutOffsets::CutOffsets(const LoopFile& loop) : loop_(loop) {
-  if (loop.external_plant) return;
-  for (const Quantity& q : disturbancesOf(loop)) all_.push_back({q.name, q.unit, q.lower, q.upper});
-  offsets_.resize(all_.size());
-}
+CutOffsets::CutOffsets(std::vector<Quantity> disturbances)
+    : all_(std::move(disturbances)), offsets_(all_.size()) {}
 
-void CutOffsets::look(const Measurement& now, const std::vector<CommandEffect>& effects) {
+void CutOffsets::look(const Measurement& now, const std::vector<CommandEffect>& effects,
+                      VectorRef scheduled) {
   if (now.header.step == 0) offsets_.assign(all_.size(), {});
   for (const CommandEffect& effect : effects) take(effect.command);
   lines_.clear();
   if (now.final) return;
   for (std::size_t i = 0; i < all_.size(); ++i) {
     if (!offsets_[i].active) continue;
-    const double asked = scheduled(i, now.header.step) + offsets_[i].value;
+    const double asked = scheduled[static_cast<Eigen::Index>(i)] + offsets_[i].value;
     if (asked < all_[i].lower || asked > all_[i].upper)
       lines_ = joinedLines(lines_, wordsOf(all_[i]));
   }
@@ -57,13 +40,6 @@ void CutOffsets::take(const Command& command) {
       const bool offset = command.mode == CommandMode::kOffset && i < command.value.size();
       offsets_[j] = {offset, command.mode, offset ? command.value[i] : 0.0};
     }
-}
-
-double CutOffsets::scheduled(std::size_t index, std::uint32_t step) {
-  if (!values_) values_ = valuesOf(loop_);
-  const auto row = static_cast<Index>(index);
-  return values_->size() == 0 ? loop_.simulation.disturbance_nominal[row]
-                              : (*values_)(row, std::min<Index>(step, values_->cols() - 1));
 }
 
 }  // namespace fpc

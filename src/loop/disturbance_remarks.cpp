@@ -7,19 +7,19 @@ namespace fpc {
 namespace {
 
 void add(const LoopFile& loop, Summary& summary) {
-  LateRows late;
-  const DisturbanceRecord record = makeDisturbance(loop, late);
+  const DisturbanceRecord record = makeDisturbance(loop);
   summary.repaired_cells = record.repaired;
   summary.implausible_cells = record.implausible;
   const double run_h = loop.simulation.samples * loop.simulation.sample_time_s / 3600.0;
   const bool begins = loop.disturbance.csv.lead_in_h < run_h * (1.0 - 1e-9);
-  if (late.of == 0 && begins)
+  if (record.late.of == 0 && begins)
     summary.remarks.push_back(
         {"only the first row of the disturbance record falls into the run "
          "(disturbance.csv.time_unit?)",
          0, 0});
-  if (late.isRounding())
-    summary.remarks.push_back({std::to_string(late.rows) + " of " + std::to_string(late.of) +
+  if (record.late.isRounding())
+    summary.remarks.push_back({std::to_string(record.late.rows) + " of " +
+                                   std::to_string(record.late.of) +
                                    " rows of the disturbance record come at most 2 % of a sample "
                                    "after one and act from the next: rounded times?",
                                0, 0});

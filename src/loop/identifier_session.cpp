@@ -75,7 +75,7 @@ void IdentifierSession::identify(Due& due) {
 void IdentifierSession::learn(Due& due) {
   try {
     due.model = &use(checked(learner_->model()));
-  } catch (const InputError& error) {  // counted, and told by lastRefusal()
+  } catch (const InputError& error) {  // counted
     due.refusal = refused_ <= kRefusalsInWords
                       ? error.what()
                       : "a model learned online is refused, as others before it";
@@ -104,9 +104,8 @@ TsModel IdentifierSession::checked(const TsModel& model) {
     if (collector_.present().outputs.size() > 0)
       requireStable(matched, collector_.present(), max_pole_);
     return matched;
-  } catch (const InputError& error) {
+  } catch (const InputError&) {
     ++refused_;
-    last_refusal_ = error.what();
     throw;
   }
 }

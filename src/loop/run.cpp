@@ -38,7 +38,7 @@ class Ring {
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
         remarks_(loop),
         forced_(simulation_.info()),
-        cut_(loop),
+        cut_(simulation_.description().disturbances),
         targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
                  [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
@@ -59,7 +59,7 @@ class Ring {
     player_.advance(present_, targets_);
     recorder_.receive(now);
     forced_.look(now.header.step, simulation_.effects());
-    cut_.look(now, simulation_.effects());
+    cut_.look(simulation_);
     recorder_.receive(simulation_.state(), joinedLines(forced_.lines(), cut_.lines()));
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();

@@ -6,7 +6,7 @@
 #include "fmbpc/base/csv.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/plant/late_rows.hpp"
+#include "fmbpc/plant/disturbance.hpp"
 #include "plant/channel_rows.hpp"
 #include "plant/csv_rows.hpp"
 
@@ -79,8 +79,9 @@ struct Record {
 constexpr double kLate = 0.02;  // of a sample: what files round
 
 /// The rows of a file by their times, before the end is added.
-void countLate(const CsvRows& rows, const CsvDisturbanceParams& params, double sample_time_s,
-               std::uint32_t samples, LateRows& late) {
+LateRows lateOf(const CsvRows& rows, const CsvDisturbanceParams& params, double sample_time_s,
+                std::uint32_t samples) {
+  LateRows late;
   const bool held = params.interpolation == Interpolation::kHold;
   for (std::size_t r = 1; r < rows.times.size(); ++r) {
     const double t = rows.times[r];
@@ -89,6 +90,7 @@ void countLate(const CsvRows& rows, const CsvDisturbanceParams& params, double s
     ++late.of;
     late.rows += held && after > kEarly * (t - rows.times[r - 1]) && after <= kLate * sample_time_s;
   }
+  return late;
 }
 
 /// Adds the end: the last row acts as long as the one before it, or, if it repeats the first one,
@@ -155,13 +157,6 @@ void validate(const CsvDisturbanceParams& params, std::uint32_t samples, double 
 DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
                                    const std::vector<std::string>& names, const Vector& nominal,
                                    double sample_time_s, std::uint32_t samples) {
-  LateRows late;
-  return readDisturbances(params, names, nominal, sample_time_s, samples, late);
-}
-
-DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
-                                   const std::vector<std::string>& names, const Vector& nominal,
-                                   double sample_time_s, std::uint32_t samples, LateRows& late) {
   validate(params, samples, sample_time_s);
   require(nominal.size() == static_cast<Eigen::Index>(names.size()), "disturbance.nominal",
           std::to_string(names.size()) + " numbers");
@@ -175,7 +170,7 @@ DisturbanceRecord readDisturbances(const CsvDisturbanceParams& params,
     record.values.row(row) =
         channelValues(table, rows, channel, params.missing, result).transpose();
   }
-  countLate(rows, params, sample_time_s, samples, late);
+  result.late = lateOf(rows, params, sample_time_s, samples);
   close(record, params.end == RecordEnd::kRepeat);
   const double needed = samples * sample_time_s;
   require(params.end != RecordEnd::kError || needed <= record.length() * (1.0 + kEarly), table.file,

@@ -5,7 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/plant/late_rows.hpp"
+#include "fmbpc/plant/disturbance.hpp"
 
 namespace fpc {
 namespace {
@@ -27,16 +27,8 @@ DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
                                           const std::vector<std::string>& names,
                                           const Vector& nominal, double sample_time_s,
                                           std::uint32_t samples) {
-  LateRows late;
-  return readDisturbanceSequence(params, names, nominal, sample_time_s, samples, late);
-}
-
-DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
-                                          const std::vector<std::string>& names,
-                                          const Vector& nominal, double sample_time_s,
-                                          std::uint32_t samples, LateRows& late) {
   if (params.lead_in_h == 0.0 && params.next_file.empty())
-    return readDisturbances(params, names, nominal, sample_time_s, samples, late);
+    return readDisturbances(params, names, nominal, sample_time_s, samples);
   const std::uint32_t lead =
       wholeSamples(params.lead_in_h, sample_time_s, samples, "disturbance.csv.lead_in_h");
   std::uint32_t first = samples - lead;
@@ -45,7 +37,7 @@ DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
     require(params.next_after_h > 0.0, "disturbance.csv.next.after_h", "a time > 0");
   }
   if (lead == samples) return {nominal.replicate(1, static_cast<Eigen::Index>(samples) + 1), 0};
-  DisturbanceRecord result = readDisturbances(params, names, nominal, sample_time_s, first, late);
+  DisturbanceRecord result = readDisturbances(params, names, nominal, sample_time_s, first);
   Matrix values(nominal.size(), static_cast<Eigen::Index>(samples) + 1);
   values.leftCols(lead) = nominal.replicate(1, lead);
   values.middleCols(lead, first + 1) = result.values;
@@ -53,10 +45,12 @@ DisturbanceRecord readDisturbanceSequence(const CsvDisturbanceParams& params,
     CsvDisturbanceParams next = params;
     next.file = params.next_file;
     const DisturbanceRecord second =
-        readDisturbances(next, names, nominal, sample_time_s, samples - lead - first, late);
+        readDisturbances(next, names, nominal, sample_time_s, samples - lead - first);
     values.rightCols(samples - lead - first + 1) = second.values;
     result.repaired += second.repaired;
     result.implausible += second.implausible;
+    result.late.rows += second.late.rows;
+    result.late.of += second.late.of;
   }
   result.values = std::move(values);
   return result;

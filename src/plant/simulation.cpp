@@ -88,7 +88,7 @@ Simulation::Simulation(SimulationParams params)
   state_.outputs.resize(n_y);
   true_outputs_.resize(n_y);
   true_measured_.resize(measurement_.disturbances.size());
-  state_.disturbances = params_.disturbance_nominal;
+  state_.disturbances = scheduled_ = params_.disturbance_nominal;
   reset(1);
 }
 
@@ -218,10 +218,9 @@ void Simulation::updateDisturbances() {
   const auto step = static_cast<Eigen::Index>(measurement_.header.step);
   for (Eigen::Index i = 0; i < state_.disturbances.size(); ++i) {
     const auto name = static_cast<std::size_t>(i);
-    const double scheduled = record.size() == 0 ? params_.disturbance_nominal[i]
-                                                : record(i, std::min(step, record.cols() - 1));
+    if (record.size() > 0) scheduled_[i] = record(i, std::min(step, record.cols() - 1));
     state_.disturbances[i] =
-        std::clamp(commands_.apply(name, scheduled), ranges[name].lower, ranges[name].upper);
+        std::clamp(commands_.apply(name, scheduled_[i]), ranges[name].lower, ranges[name].upper);
   }
 }
 

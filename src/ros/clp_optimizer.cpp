@@ -3,6 +3,7 @@
 #include "fmbpc/base/same_sample.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -55,9 +56,9 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
       listeners_({action_.publisher(), report_.publisher()}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ClpOptimizer::onPlantInfo, this)),
       base_subscriber_(
-          subscribe(node, topics::kBaseAction, topics::kRingQueue, &ClpOptimizer::onBase, this)),
-      prediction_subscriber_(subscribe(node, topics::kPredictiveAction, topics::kRingQueue,
-                                       &ClpOptimizer::onPrediction, this)),
+          subscribeLaw(node, topics::kBaseAction, loop.ring.pace, &ClpOptimizer::onBase, this)),
+      prediction_subscriber_(subscribeLaw(node, topics::kPredictiveAction, loop.ring.pace,
+                                          &ClpOptimizer::onPrediction, this)),
       summary_(node, loop, name()),
       pace_(loop.ring.pace),
       period_s_(loop.plant_info.sample_time_s / loop.ring.speedup),

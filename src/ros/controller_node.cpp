@@ -7,6 +7,7 @@
 #include "fmbpc/loop/factory.hpp"
 #include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -41,21 +42,19 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
           {base_.publisher(), prediction_.publisher(), tracking_.publisher(), effect_.publisher()}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &ControllerNode::onModel, this)),
-      measurement_subscriber_(subscribe(node, topics::kMeasurement, topics::kRingQueue,
-                                        &ControllerNode::onMeasurement, this)),
-      identified_subscriber_(subscribe(node, topics::kIdentified, topics::kPairQueue,
+      measurement_subscriber_(subscribeLaw(node, topics::kMeasurement, loop.ring.pace,
+                                           &ControllerNode::onMeasurement, this)),
+      identified_subscriber_(subscribe(node, topics::kIdentified, queueOf(ListenerKind::kPeer),
                                        &ControllerNode::onIdentified, this)),
-      setpoint_subscriber_(subscribe(node, topics::kSetpoint, topics::kViewQueue,
+      setpoint_subscriber_(subscribe(node, topics::kSetpoint, queueOf(ListenerKind::kViewer),
                                      &ControllerNode::onSetpoint, this)),
-      manual_(private_node.advertiseService(topics::kManual, &ControllerNode::onManual, this)),
-      manual_input_(private_node.advertiseService(topics::kManualInput,
-                                                  &ControllerNode::onManualInput, this)),
-      hold_(private_node.advertiseService(topics::kHold, &ControllerNode::onHold, this)),
-      adapt_(private_node.advertiseService(topics::kAdapt, &ControllerNode::onAdapt, this)),
-      parked_timer_(node.createSteadyTimer(
-          ros::WallDuration(kLookAgain),
-          [this](const ros::SteadyTimerEvent&) { guarded("parked", [this] { answerParked(); }); },
-          false, false)),
+      manual_(serve(private_node, topics::kManual, &ControllerNode::onManual, this)),
+      manual_input_(
+          serve(private_node, topics::kManualInput, &ControllerNode::onManualInput, this)),
+      hold_(serve(private_node, topics::kHold, &ControllerNode::onHold, this)),
+      adapt_(serve(private_node, topics::kAdapt, &ControllerNode::onAdapt, this)),
+      parked_timer_(guardedTimer(
+          node, kLookAgain, "parked", [this] { answerParked(); }, false, false)),
       settings_(
           private_node, loop.controllerType().settings,
           [this] { return session_.controller().settings(); },
@@ -63,7 +62,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
             session_.retune(settings);
             tell();
           },
-          [this](const std::string& why) { refuse(topics::kSettings, why); }),
+          [this](const std::string& why) { refuse(topics::kSettings, why); },
+          [this](const std::string& caller) { return mayPass(topics::kServices, caller); }),
       summary_(node, loop, name()),
       commands_(loop.ring.commands_per_s, kBurst),
       health_(node, private_node, "controller", loop.name, false,

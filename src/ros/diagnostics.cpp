@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "ros/guard.hpp"
+
 namespace fpc {
 
 Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
@@ -10,8 +12,12 @@ Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& pri
     : updater_(node, private_node) {
   updater_.setHardwareID(hardware_id);
   updater_.add(title, [report = std::move(report)](Status& status) { report(status); });
-  timer_ = node.createSteadyTimer(
-      ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) { updater_.force_update(); });
+  timer_ = node.createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
+    const auto say = [this](const char* what) {
+      if (log_.pass()) ROS_ERROR("diagnostics: %s", what);
+    };
+    callGuarded([this] { updater_.force_update(); }, say, say);
+  });
 }
 
 void addCounts(Diagnostics::Status& status, const ArrivalCounts& counts) {

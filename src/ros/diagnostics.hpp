@@ -10,6 +10,7 @@
 #include <string>
 
 #include "fmbpc/base/step_gate.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 
@@ -25,6 +26,7 @@ class Diagnostics {
 
  private:
   diagnostic_updater::Updater updater_;
+  WallThrottle log_{1.0};
   ros::SteadyTimer timer_;
 };
 

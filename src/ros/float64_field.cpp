@@ -3,14 +3,18 @@
 #include <fmbpc/Setpoint.h>
 
 #include <cmath>
+#include <utility>
 
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
 
-Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
-    : timeout_s_(loop.gateway.stale_s),
-      setpoint_(node.advertise<fmbpc::Setpoint>(topics::kSetpoint, topics::kViewQueue)) {
+Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop, std::string name)
+    : Node(node, loop, std::move(name)),
+      timeout_s_(loop.gateway.stale_s),
+      setpoint_(
+          node.advertise<fmbpc::Setpoint>(topics::kSetpoint, queueOf(ListenerKind::kViewer))) {
   const GatewayParams& gateway = loop.gateway;
   const std::size_t n_y = gateway.outputs.size();
   for (std::size_t i = 0; i < n_y; ++i) {
@@ -21,13 +25,21 @@ Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop)
     listen(node, gateway.disturbances[i].topic, signals_, n_y + i);
   for (std::size_t i = 0; i < gateway.inputs.size(); ++i) {
     listen(node, gateway.inputs[i].readback_topic, positions_, i);
-    efforts_.push_back(
-        node.advertise<std_msgs::Float64>(gateway.inputs[i].topic, topics::kPairQueue, true));
+    efforts_.push_back(node.advertise<std_msgs::Float64>(gateway.inputs[i].topic,
+                                                         queueOf(ListenerKind::kPeer), true));
   }
-  if (gateway.enable_topic.empty()) return;
-  const boost::function<void(const std_msgs::Bool::ConstPtr&)> enable =
-      [this](const std_msgs::Bool::ConstPtr& msg) { enabled_ = msg->data != 0; };
-  subscribers_.push_back(node.subscribe<std_msgs::Bool>(gateway.enable_topic, 1, enable));
+  listenToEnable(node, gateway.enable_topic);
+}
+
+void Float64Field::listenToEnable(ros::NodeHandle& node, const std::string& topic) {
+  if (topic.empty()) return;
+  const boost::function<void(const ros::MessageEvent<const std_msgs::Bool>&)> enable =
+      [this](const ros::MessageEvent<const std_msgs::Bool>& event) {
+        if (mayPass(topics::kEnable, event.getPublisherName()))
+          enabled_ = event.getConstMessage()->data != 0;
+      };
+  subscribers_.push_back(
+      node.subscribe<std_msgs::Bool>(topic, queueOf(ListenerKind::kPeer), enable));
 }
 
 void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::vector<Reading>& to,
@@ -46,8 +58,9 @@ void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::
           }
         to.push_back(reading);
       };
-  subscribers_.push_back(node.subscribe<std_msgs::Float64>(
-      topic, topics::kPairQueue, keep, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+  subscribers_.push_back(node.subscribe<std_msgs::Float64>(topic, queueOf(ListenerKind::kPeer),
+                                                           keep, ros::VoidConstPtr(),
+                                                           ros::TransportHints().tcpNoDelay()));
 }
 
 bool Float64Field::admits(TagOwner& owner, const std::string& publisher, double value) {
@@ -75,6 +88,7 @@ void Float64Field::forwardSetpoint(ros::NodeHandle& node, const std::string& top
   if (topic.empty()) return;
   const boost::function<void(const ros::MessageEvent<const std_msgs::Float64>&)> forward =
       [this, output](const ros::MessageEvent<const std_msgs::Float64>& event) {
+        if (!mayPass(topics::kSetpoint, event.getPublisherName())) return;
         const double value = event.getConstMessage()->data;
         if (!std::isfinite(value)) {
           ++strange_;
@@ -89,7 +103,8 @@ void Float64Field::forwardSetpoint(ros::NodeHandle& node, const std::string& top
         setpoint.mode = fmbpc::Setpoint::OVERRIDE;
         setpoint_.publish(setpoint);
       };
-  subscribers_.push_back(node.subscribe<std_msgs::Float64>(topic, topics::kViewQueue, forward));
+  subscribers_.push_back(
+      node.subscribe<std_msgs::Float64>(topic, queueOf(ListenerKind::kViewer), forward));
 }
 
 void Float64Field::exchange(PlantGateway& gateway, bool automatic, double now_s) {
@@ -111,9 +126,13 @@ void Float64Field::exchange(PlantGateway& gateway, bool automatic, double now_s)
 }
 
 std::vector<std::pair<std::string, std::uint64_t>> Float64Field::counts() const {
-  return {{"values received", heard_},
-          {"values refused: a second publisher's, setpoints that are not finite", strange_},
-          {"commands sent", told_}};
+  std::vector<std::pair<std::string, std::uint64_t>> counts = {
+      {"values received", heard_},
+      {"values refused: a second publisher's, setpoints that are not finite", strange_},
+      {"commands sent", told_}};
+  for (const auto& [what, count] : authority().refused())
+    counts.emplace_back("refused: " + what, count);
+  return counts;
 }
 
 }  // namespace fpc

@@ -13,15 +13,18 @@
 
 #include "fmbpc/loop/tag_owner.hpp"
 #include "ros/field.hpp"
+#include "ros/node.hpp"
 #include "ros/wall_throttle.hpp"
 
 namespace fpc {
 
 /// A command counts as received once it is published: where inputs are not read back, nobody knows
-/// better.
-class Float64Field : public Field {
+/// better. Who may say that the plant's own hand has the inputs, and set setpoints:
+/// loop.publishers.enable, .setpoint.
+class Float64Field : public Field, private Node {
  public:
-  Float64Field(ros::NodeHandle node, const LoopFile& loop);
+  /// `name`: of the gateway.
+  Float64Field(ros::NodeHandle node, const LoopFile& loop, std::string name);
   void exchange(PlantGateway& gateway, bool automatic, double now_s) override;
   /// A tag that two nodes publish.
   std::string problem() const override;
@@ -35,6 +38,7 @@ class Float64Field : public Field {
   void listen(ros::NodeHandle& node, const std::string& topic, std::vector<Reading>& to,
               std::size_t index);
   bool admits(TagOwner& owner, const std::string& publisher, double value);
+  void listenToEnable(ros::NodeHandle& node, const std::string& topic);
   void forwardSetpoint(ros::NodeHandle& node, const std::string& topic, const std::string& output);
 
   std::vector<Reading> signals_, positions_;  // since the last exchange

@@ -10,6 +10,7 @@
 #include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
 #include "ros/identify_messages.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -56,7 +57,8 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
       session_(loop),
       duty_(loop.ring.pace == Pace::kLockstep),
       model_publisher_(node.advertise<fmbpc::FuzzyModel>(topics::kFuzzyModel, 1, true)),
-      identified_(node.advertise<fmbpc::Identified>(topics::kIdentified, topics::kPairQueue, true)),
+      identified_(node.advertise<fmbpc::Identified>(topics::kIdentified,
+                                                    queueOf(ListenerKind::kPeer), true)),
       plant_subscriber_(
           subscribe(node, topics::kPlantInfo, 1, &FuzzyIdentifier::onPlantInfo, this)),
       kept_subscriber_(subscribe(node, topics::kModelKept, 1, &FuzzyIdentifier::onModelKept, this)),
@@ -64,15 +66,13 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
           withoutTimer(private_node), topics::kIdentify,
           [this](Server::GoalHandle goal) { onGoal(std::move(goal)); },
           [this](Server::GoalHandle goal) { onCancel(std::move(goal)); }, false),
-      poll_timer_(node.createSteadyTimer(
-          ros::WallDuration(kPollPeriod),
-          [this](const ros::SteadyTimerEvent&) { guarded("poll", [this] { poll(); }); })),
+      poll_timer_(guardedTimer(node, kPollPeriod, "poll", [this] { poll(); })),
       health_(
           node, private_node, "model", loop.name, false,
           {[this](double now_s) { return health(now_s); }, [this] { return session_.present(); },
            [this](Diagnostics::Status& status) { report(status); }}) {
   if (loop.has_identify)  // otherwise nobody needs the samples
-    measurement_subscriber_ = subscribe(node, topics::kMeasurement, topics::kRingQueue,
+    measurement_subscriber_ = subscribe(node, topics::kMeasurement, queueOf(ListenerKind::kRecord),
                                         &FuzzyIdentifier::onMeasurement, this);
   server_.start();
 }

@@ -10,9 +10,10 @@ namespace {
 
 constexpr double kExchange = 0.01;  // [s] between two looks at the field
 
-std::unique_ptr<Field> makeField(const ros::NodeHandle& node, const LoopFile& loop) {
+std::unique_ptr<Field> makeField(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
+                                 const LoopFile& loop) {
   if (loop.gateway.type == GatewayType::kModbus) return makeModbusField(loop);
-  return std::make_unique<Float64Field>(node, loop);
+  return std::make_unique<Float64Field>(node, loop, private_node.getNamespace());
 }
 
 }  // namespace
@@ -22,7 +23,7 @@ std::string GatewayNode::idleReason(const LoopFile& loop) {
 }
 
 GatewayNode::GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop)
-    : GatewayNode(node, std::move(private_node), loop, makeField(node, loop)) {}
+    : GatewayNode(node, private_node, loop, makeField(node, private_node, loop)) {}
 
 GatewayNode::GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
                          std::unique_ptr<Field> field)
@@ -31,9 +32,7 @@ GatewayNode::GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, con
                 namesOf(loop.plant_info.disturbances)),
       field_(std::move(field)),
       gateway_(static_cast<PlantGateway&>(session().process())),
-      field_timer_(node.createSteadyTimer(
-          ros::WallDuration(kExchange),
-          [this](const ros::SteadyTimerEvent&) { guarded("field", [this] { exchange(); }); })) {
+      field_timer_(guardedTimer(node, kExchange, "field", [this] { exchange(); })) {
   begin();
 }
 

@@ -5,9 +5,10 @@
 #include <utility>
 
 #include "ros/conversions.hpp"
+#include "ros/guard.hpp"
 #include "ros/master_watch.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
-#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {
@@ -39,11 +40,16 @@ HealthReporter::HealthReporter(ros::NodeHandle node, const ros::NodeHandle& priv
     : source_(std::move(source)),
       name_(private_node.getNamespace()),
       summary_(summary),
-      publisher_(node.advertise<fmbpc::LoopState>(topics::kLoopState, topics::kPairQueue, true)),
+      publisher_(
+          node.advertise<fmbpc::LoopState>(topics::kLoopState, queueOf(ListenerKind::kPeer), true)),
       diagnostics_(node, private_node, title, hardware_id,
                    [this](Diagnostics::Status& status) { fill(status); }),
-      timer_(node.createSteadyTimer(ros::WallDuration(kLook),
-                                    [this](const ros::SteadyTimerEvent&) { look(); })) {}
+      timer_(node.createSteadyTimer(ros::WallDuration(kLook), [this](const ros::SteadyTimerEvent&) {
+        const auto say = [this](const char* what) {
+          if (log_.pass()) ROS_ERROR("%s: health: %s", name_.c_str(), what);
+        };
+        callGuarded([this] { look(); }, say, say);
+      })) {}
 
 void HealthReporter::look() {
   const double now_s = steadyNow();

@@ -10,6 +10,7 @@
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/loop/health.hpp"
 #include "ros/diagnostics.hpp"
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 
@@ -37,6 +38,7 @@ class HealthReporter {
   Health shown_;
   Hysteresis hysteresis_{1.0};
   double published_s_{-1e9};
+  WallThrottle log_{1.0};
   ros::Publisher publisher_;
   Diagnostics diagnostics_;
   ros::SteadyTimer timer_;

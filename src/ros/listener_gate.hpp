@@ -1,5 +1,6 @@
-// Holds back the first answer of a node that joins a running loop until everybody who listens is
-// connected: otherwise a recorder would miss samples that the plant has already used.
+// Holds back the first answer of a node that joins a running loop, and the first sample of a plant,
+// until everybody who listens is connected: otherwise a recorder, ready long before a plant came
+// back, would miss samples that have been used already.
 #pragma once
 
 #include <ros/ros.h>

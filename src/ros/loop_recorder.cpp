@@ -7,6 +7,7 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/plot.hpp"
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
 
@@ -34,14 +35,12 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       plant_(loop.plant_info),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
       end_(node),
-      poll_timer_(node.createSteadyTimer(
-          ros::WallDuration(kPollPeriod),
-          [this](const ros::SteadyTimerEvent&) { guarded("poll", [this] { poll(); }); })),
+      poll_timer_(guardedTimer(node, kPollPeriod, "poll", [this] { poll(); })),
       health_(node, private_node, "recorder", loop.name, false,
               {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },
                [this](Diagnostics::Status& status) { report(status); }}) {
   const auto listen = [&](const char* topic, auto handler) {
-    ring_.push_back(subscribe(node, topic, topics::kRingQueue, handler, this));
+    ring_.push_back(subscribe(node, topic, queueOf(ListenerKind::kRecord), handler, this));
   };
   listen(topics::kPlantInfo, &LoopRecorder::onPlantInfo);
   listen(topics::kMeasurement, &LoopRecorder::onMeasurement);

@@ -4,7 +4,6 @@
 #include <ros/ros.h>
 
 #include <cstdint>
-#include <exception>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,7 +13,11 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/authority.hpp"
+#include "ros/guard.hpp"
 #include "ros/master_watch.hpp"
+#include "ros/newest.hpp"
+#include "ros/queues.hpp"
+#include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -38,13 +41,19 @@ class Node {
   /// and logged. Whatever else goes wrong in it is logged as an error, and the node goes on.
   template <typename Handler>
   void guarded(const char* topic, Handler handler) {
-    try {
-      handler();
-    } catch (const InputError& error) {
-      refuse(topic, error.what());
-    } catch (const std::exception& error) {
-      mishap(topic, error.what());
-    }
+    callGuarded(
+        handler, [&](const char* why) { refuse(topic, why); },
+        [&](const char* what) { mishap(topic, what); });
+  }
+  /// A timer on the steady clock, every so often or once after its start() (`once`), whose handler
+  /// is guarded. `what`: names it in counters and the log.
+  template <typename Handler>
+  ros::SteadyTimer guardedTimer(ros::NodeHandle& node, double period_s, const char* what,
+                                Handler handler, bool once = false, bool started = true) {
+    return node.createSteadyTimer(
+        ros::WallDuration(period_s),
+        [this, what, handler](const ros::SteadyTimerEvent&) { guarded(what, handler); }, once,
+        started);
   }
   void refuse(const char* topic, const std::string& why);
   void mishap(const char* topic, const std::string& what);
@@ -71,7 +80,21 @@ class Node {
                                    (object->*handler)(event.getMessage());
                                  });
   }
-  /// The same for a handler that is told who has published.
+  /// For a law: in realtime its handler gets the newest of what waits (see queues.hpp).
+  template <typename Msg, typename Class>
+  ros::Subscriber subscribeLaw(ros::NodeHandle& node, const char* topic, Pace pace,
+                               void (Class::*handler)(const boost::shared_ptr<const Msg>&),
+                               Class* object) {
+    using Item = boost::shared_ptr<const Msg>;
+    const std::uint32_t queue = queueOf(ListenerKind::kLaw, pace);
+    if (!answersNewestOnly(pace)) return subscribe(node, topic, queue, handler, object);
+    const auto newest = std::make_shared<Newest<Item>>(
+        *node.getCallbackQueue(), [handler, object](const Item& msg) { (object->*handler)(msg); });
+    return subscribeGuarded<Msg>(
+        node, topic, queue,
+        [newest](const ros::MessageEvent<const Msg>& event) { newest->put(event.getMessage()); });
+  }
+  /// The same as subscribe() for a handler that is told who has published.
   template <typename Msg, typename Class>
   ros::Subscriber subscribe(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
                             void (Class::*handler)(const boost::shared_ptr<const Msg>&,
@@ -82,10 +105,29 @@ class Node {
                                    (object->*handler)(event.getMessage(), event.getPublisherName());
                                  });
   }
+  /// False: what `publisher` said (by a key of loop.publishers) does not count; it has been counted
+  /// and logged.
+  bool mayPass(const char* topic, const std::string& publisher);
+  /// Advertises a private service; who may not call it (loop.publishers.services) gets
+  /// success = false with the reason.
+  template <typename Request, typename Response, typename Class>
+  ros::ServiceServer serve(ros::NodeHandle& private_node, const char* service,
+                           bool (Class::*handler)(Request&, Response&), Class* object) {
+    using Event = ros::ServiceEvent<Request, Response>;
+    const boost::function<bool(Event&)> guard = [this, handler, object](Event& event) {
+      if (mayPass(topics::kServices, event.getCallerName())) {
+        Request request = event.getRequest();
+        return (object->*handler)(request, event.getResponse());
+      }
+      event.getResponse().success = false;
+      event.getResponse().message = "refused: loop.publishers.services does not name the caller";
+      return true;
+    };
+    return private_node.advertiseService(service, guard);
+  }
 
  private:
   void noteCommand(std::string line);
-  bool mayPass(const char* topic, const std::string& publisher);
   bool mayLog(const std::string& what);
   template <typename Msg, typename Handler>
   ros::Subscriber subscribeGuarded(ros::NodeHandle& node, const char* topic, std::uint32_t queue,

@@ -4,6 +4,7 @@
 
 #include "fmbpc/base/text.hpp"
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
 
@@ -36,8 +37,8 @@ OperatorDesk::OperatorDesk(ros::NodeHandle node, const LoopFile& loop, std::stri
       keeper_expected_(!loop.external_plant || loop.gateway.enabled()),
       goes_on_(loop.gateway.enabled()),
       state_(node.advertise<fmbpc::OperatorState>(topics::kOperatorState, 10, true)),
-      setpoint_active_(
-          node.advertise<fmbpc::Setpoint>(topics::kSetpointActive, topics::kPairQueue, true)),
+      setpoint_active_(node.advertise<fmbpc::Setpoint>(topics::kSetpointActive,
+                                                       queueOf(ListenerKind::kPeer), true)),
       subscriber_(subscribe(node, topics::kOperatorKept, 1, &OperatorDesk::onKept, this)) {}
 
 void OperatorDesk::onKept(const fmbpc::OperatorState::ConstPtr& msg) {

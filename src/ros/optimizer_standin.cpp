@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -17,12 +18,10 @@ OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, s
       optimizer_(node.resolveName("clp_optimizer")),
       action_(node, topics::kControlAction, comeback, audienceOf(node, authority())),
       report_(node, topics::kSolverReport, comeback, audienceOf(node, authority())),
-      subscriber_(subscribe(node, topics::kControlAction, topics::kPairQueue,
+      subscriber_(subscribe(node, topics::kControlAction, queueOf(ListenerKind::kPeer),
                             &OptimizerStandin::onAction, this)),
-      timer_(node.createSteadyTimer(
-          ros::WallDuration(1.0),
-          [this](const ros::SteadyTimerEvent&) { guarded("standin", [this] { onTimer(); }); }, true,
-          false)) {}
+      timer_(guardedTimer(
+          node, 1.0, "standin", [this] { onTimer(); }, true, false)) {}
 
 void OptimizerStandin::asked(const ControllerAnswer& answer, bool repeated) {
   if (!answer.has_action) return;

@@ -7,6 +7,7 @@
 
 #include "fmbpc/base/text.hpp"
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -46,26 +47,25 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
       begun_s_(steadyNow()),
       end_(node),
       node_(node),
-      action_subscriber_(
-          subscribe(node, topics::kControlAction, topics::kPairQueue, &PlantNode::onAction, this)),
-      state_subscriber_(
-          subscribe(node, topics::kLoopState, topics::kPairQueue, &PlantNode::onLoopState, this)),
-      pause_(private_node.advertiseService(topics::kPause, &PlantNode::onPause, this)),
-      step_(private_node.advertiseService(topics::kStep, &PlantNode::onStep, this)),
-      reset_(private_node.advertiseService(topics::kReset, &PlantNode::onReset, this)),
-      poll_timer_(node.createSteadyTimer(
-          ros::WallDuration(kPoll),
-          [this](const ros::SteadyTimerEvent&) { guarded("poll", [this] { onPoll(); }); })),
-      pace_timer_(node.createSteadyTimer(
-          ros::WallDuration(kPoll),
-          [this](const ros::SteadyTimerEvent&) { guarded("pace", [this] { tryAdvance(); }); }, true,
-          false)),
+      action_subscriber_(subscribe(node, topics::kControlAction, queueOf(ListenerKind::kPeer),
+                                   &PlantNode::onAction, this)),
+      state_subscriber_(subscribe(node, topics::kLoopState, queueOf(ListenerKind::kPeer),
+                                  &PlantNode::onLoopState, this)),
+      pause_(serve(private_node, topics::kPause, &PlantNode::onPause, this)),
+      step_(serve(private_node, topics::kStep, &PlantNode::onStep, this)),
+      reset_(serve(private_node, topics::kReset, &PlantNode::onReset, this)),
+      poll_timer_(guardedTimer(node, kPoll, "poll", [this] { onPoll(); })),
+      pace_timer_(guardedTimer(
+          node, kPoll, "pace", [this] { tryAdvance(); }, true, false)),
       health_(node, private_node, "plant", loop.name, true,
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.process().measurement().header; },
                [this](Diagnostics::Status& status) { report(status); }}) {}
 
 void PlantNode::begin() {
+  std::vector<ros::Publisher> recorded = publishers_.recorded();
+  for (const ros::Publisher& own : alsoRecorded()) recorded.push_back(own);
+  listeners_.emplace(std::move(recorded));
   beginRun();
   frames_.broadcast(loop_.tf, session_.process().info().header.time_ns);
 }
@@ -110,7 +110,8 @@ void PlantNode::waitForOthers() {
   missing_ = ready_.missing();
   const std::vector<std::string> own = plantMissing();
   missing_.insert(missing_.end(), own.begin(), own.end());
-  if (missing_.empty() && keeper_.knowsWhatStands(steadyNow())) return start();
+  if (missing_.empty() && keeper_.knowsWhatStands(steadyNow()) && listeners_->open())
+    return start();
   if (missing_.empty()) return;
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
   failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
@@ -171,8 +172,8 @@ void PlantNode::publishSample() {
     ROS_WARN("%s: %s", name().c_str(), process.trouble().c_str());
   if (session_.phase() == PlantPhase::kFinished) {
     ROS_INFO("%s: final sample %u sent", name().c_str(), process.measurement().header.step);
-    tracking_subscriber_ =
-        subscribe(node_, topics::kTracking, topics::kPairQueue, &PlantNode::onTracking, this);
+    tracking_subscriber_ = subscribe(node_, topics::kTracking, queueOf(ListenerKind::kPeer),
+                                     &PlantNode::onTracking, this);
   } else {
     armTimer();
   }
@@ -220,7 +221,7 @@ Health PlantNode::health(double now_s) const {
   if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
     return {LoopMode::kStarting,
-            "waiting for " + (missing_.empty() ? "what the controller was asked" : join(missing_)),
+            "waiting for " + (missing_.empty() ? "controller and listeners" : join(missing_)),
             missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};

@@ -11,6 +11,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "fmbpc/loop/plant_session.hpp"
 #include "ros/equipment_frames.hpp"
 #include "ros/health_reporter.hpp"
+#include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
 #include "ros/operator_keeper.hpp"
 #include "ros/plant_publishers.hpp"
@@ -44,6 +46,8 @@ class PlantNode : public Node {
   virtual VectorRef shownDisturbances() const = 0;
   /// Before anything is decided about time, and after a command may have changed.
   virtual void exchange() {}
+  /// What the plant's own class publishes for a record.
+  virtual std::vector<ros::Publisher> alsoRecorded() const { return {}; }
   /// What a measurement says besides its struct.
   virtual void mark(fmbpc::Measurement&) const {}
   /// The sample has been published.
@@ -81,6 +85,7 @@ class PlantNode : public Node {
   PlantPublishers publishers_;
   OperatorKeeper keeper_;
   ReadyListener ready_;
+  std::optional<ListenerGate> listeners_;  // of the first sample: whoever records is connected
   EquipmentFrames frames_;
   RingWatch watch_;
 

@@ -3,6 +3,7 @@
 #include <rosgraph_msgs/Clock.h>
 
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
@@ -12,12 +13,13 @@ PlantPublishers::PlantPublishers(ros::NodeHandle node, const PlantInfo& info,
                                  const std::vector<std::string>& disturbances, bool publish_clock)
     : steps_(info.sample_time_s, static_cast<double>(info.header.time_ns) / 1e9),
       info_(node.advertise<fmbpc::PlantInfo>(topics::kPlantInfo, 1, true)),
-      measurement_(
-          node.advertise<fmbpc::Measurement>(topics::kMeasurement, topics::kRingQueue, true)),
+      measurement_(node.advertise<fmbpc::Measurement>(topics::kMeasurement,
+                                                      queueOf(ListenerKind::kRecord), true)),
       signals_(node) {
   // Latched, so that tools which start while sample 0 is held already have a time that is not 0.
   if (publish_clock)
-    clock_ = node.advertise<rosgraph_msgs::Clock>(topics::kClock, topics::kViewQueue, true);
+    clock_ =
+        node.advertise<rosgraph_msgs::Clock>(topics::kClock, queueOf(ListenerKind::kViewer), true);
   for (const SignalInfo& output : info.outputs) signals_.add(output.name);
   for (const std::string& disturbance : disturbances) signals_.add(disturbance);
   for (const SignalInfo& input : info.inputs) signals_.add(input.name);

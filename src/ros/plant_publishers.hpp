@@ -29,6 +29,8 @@ class PlantPublishers {
               const std::function<void(fmbpc::Measurement&)>& mark);
   /// The measurement once more.
   void resend();
+  /// What a record is made of.
+  std::vector<ros::Publisher> recorded() const { return {info_, measurement_}; }
   std::uint64_t resent() const { return resent_; }
 
  private:

@@ -7,6 +7,7 @@
 #include "fmbpc/loop/factory.hpp"
 #include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
+#include "ros/queues.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 
@@ -34,10 +35,12 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
       lines_(loop.tf.sample_lines),
       commands_(loop.ring.commands_per_s, kBurst),
       forced_(simulation_.info()),
-      cut_(loop),
-      state_(node.advertise<fmbpc::PlantState>(topics::kPlantState, topics::kRingQueue)),
-      effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect, topics::kRingQueue)),
-      disturbance_subscriber_(subscribe(node, topics::kDisturbance, topics::kViewQueue,
+      cut_(simulation_.description().disturbances),
+      state_(
+          node.advertise<fmbpc::PlantState>(topics::kPlantState, queueOf(ListenerKind::kRecord))),
+      effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect,
+                                                   queueOf(ListenerKind::kRecord))),
+      disturbance_subscriber_(subscribe(node, topics::kDisturbance, queueOf(ListenerKind::kViewer),
                                         &PlantSimulator::onDisturbance, this)) {
   begin();
 }
@@ -56,7 +59,7 @@ std::vector<std::string> PlantSimulator::plantMissing() {
 void PlantSimulator::afterSample() {
   const std::string before = clamped();
   forced_.look(simulation_.measurement().header.step, simulation_.effects());
-  cut_.look(simulation_.measurement(), simulation_.effects());
+  cut_.look(simulation_);
   const std::string now = clamped();
   if (!now.empty() && now != before) ROS_WARN("plant_simulator: %s", inOneLine(now).c_str());
   publishState();

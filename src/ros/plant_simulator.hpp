@@ -32,6 +32,7 @@ class PlantSimulator : public PlantNode {
   std::vector<std::string> plantMissing() override;
   VectorRef shownDisturbances() const override { return simulation_.state().disturbances; }
   void afterSample() override;
+  std::vector<ros::Publisher> alsoRecorded() const override { return {state_, effect_}; }
   Health plantHealth() const override;
   void addValues(Diagnostics::Status& status) const override;
 

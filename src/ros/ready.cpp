@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
@@ -23,7 +24,8 @@ ReadyListener::ReadyListener(ros::NodeHandle node, const LoopFile& loop, std::st
                              const std::vector<std::string>& names)
     : Node(node, loop, std::move(name)) {
   for (const std::string& one : names) missing_.insert(node.resolveName(one));
-  subscriber_ = subscribe(node, topics::kReady, topics::kViewQueue, &ReadyListener::onReady, this);
+  subscriber_ = subscribe(node, topics::kReady, queueOf(ListenerKind::kViewer),
+                          &ReadyListener::onReady, this);
 }
 
 std::vector<std::string> ReadyListener::missing() const {

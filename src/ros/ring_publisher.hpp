@@ -8,6 +8,7 @@
 
 #include "fmbpc/loop/authority.hpp"
 #include "fmbpc/loop/first_answers.hpp"
+#include "ros/queues.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
@@ -25,7 +26,7 @@ class RingPublisher {
       : comeback_(comeback),
         audience_(std::move(audience)),
         publisher_(node.advertise<Msg>(
-            topic, topics::kRingQueue,
+            topic, queueOf(ListenerKind::kRecord),
             [this](const ros::SingleSubscriberPublisher& listener) { catchUp(listener); })) {}
   RingPublisher(const RingPublisher&) = delete;
   RingPublisher& operator=(const RingPublisher&) = delete;

@@ -148,12 +148,13 @@ Settings settingsOf(const std::vector<SettingInfo>& table, const Config& config)
 }
 
 SettingsServer::SettingsServer(ros::NodeHandle private_node, std::vector<SettingInfo> table,
-                               Current current, Change change, Refused refused)
+                               Current current, Change change, Refused refused, Allowed allowed)
     : name_(private_node.getNamespace()),
       table_(std::move(table)),
       current_(std::move(current)),
       change_(std::move(change)),
-      refused_(std::move(refused)) {
+      refused_(std::move(refused)),
+      allowed_(std::move(allowed)) {
   if (table_.empty()) return;
   descriptions_ =
       private_node.advertise<ConfigDescription>("parameter_descriptions", 1, /*latch=*/true);
@@ -167,15 +168,16 @@ void SettingsServer::publish() {
   if (!table_.empty()) updates_.publish(settingsMessage(table_, current_()));
 }
 
-bool SettingsServer::onSet(dynamic_reconfigure::Reconfigure::Request& request,
-                           dynamic_reconfigure::Reconfigure::Response& response) {
+bool SettingsServer::onSet(Event& event) {
   try {
-    change_(settingsOf(table_, request.config));
-    ROS_INFO("%s: new settings from the next sample on", name_.c_str());
+    if (allowed_(event.getCallerName())) {
+      change_(settingsOf(table_, event.getRequest().config));
+      ROS_INFO("%s: new settings from the next sample on", name_.c_str());
+    }
   } catch (const InputError& error) {
     refused_(error.what());
   }
-  response.config = settingsMessage(table_, current_());
+  event.getResponse().config = settingsMessage(table_, current_());
   publish();
   return true;
 }

@@ -1,4 +1,5 @@
 #include "ros/signal_publishers.hpp"
+#include "ros/queues.hpp"
 
 #include "ros/conversions.hpp"
 #include "ros/topics.hpp"
@@ -7,7 +8,7 @@ namespace fpc {
 
 std::size_t SignalPublishers::add(const std::string& name) {
   publishers_.push_back(
-      node_.advertise<fmbpc::Signal>(topics::kSignalPrefix + name, topics::kViewQueue));
+      node_.advertise<fmbpc::Signal>(topics::kSignalPrefix + name, queueOf(ListenerKind::kViewer)));
   return publishers_.size() - 1;
 }
 

@@ -20,7 +20,7 @@ class SummaryListener : public Node {
   /// `name`: of the node that listens.
   SummaryListener(ros::NodeHandle node, const LoopFile& loop, std::string name)
       : Node(node, loop, std::move(name)),
-        subscriber_(subscribe(node, topics::kLoopState, topics::kPairQueue,
+        subscriber_(subscribe(node, topics::kLoopState, queueOf(ListenerKind::kPeer),
                               &SummaryListener::onState, this)) {}
 
   /// Why nothing is due: the run is finished or paused. Empty otherwise.

@@ -29,6 +29,10 @@ inline constexpr char kModelKept[] = "model_kept";
 inline constexpr char kSignalPrefix[] = "signal/";
 inline constexpr char kClock[] = "/clock";
 
+// Keys of loop.publishers that are no topics: gateway.enable_topic, private services.
+inline constexpr char kEnable[] = "enable";
+inline constexpr char kServices[] = "services";
+
 // Private action.
 inline constexpr char kIdentify[] = "identify";
 
@@ -45,13 +49,6 @@ inline constexpr char kSettings[] = "settings";
 // Parameters: the loop as text (`fmbpc resolve`), searched upwards from the node's namespace.
 inline constexpr char kLoopText[] = "loop_text";
 inline constexpr char kLoopName[] = "loop_name";
-
-/// Queues of ring topics: so much a listener may lag; a hung one costs no more.
-inline constexpr unsigned kRingQueue = 10000;
-/// Of what only the other members of the ring need: in realtime the newest counts.
-inline constexpr unsigned kPairQueue = 100;
-/// Queues of everything that only people look at.
-inline constexpr unsigned kViewQueue = 1000;
 
 /// The reason in loop_state of a plant that is paused.
 inline constexpr char kPausedReason[] = "paused";

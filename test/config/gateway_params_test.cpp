@@ -48,6 +48,18 @@ TEST(GatewayParams, RunsInRealtimeWhateverTheLoopSays) {
   EXPECT_EQ(loop.ring.publishers.at("measurement"), std::vector<std::string>{"plant_gateway"});
 }
 
+TEST(GatewayParams, WhoMaySetAndEnableIsNamedByTheLoop) {
+  using Names = std::vector<std::string>;
+  const auto publishers = gatewayLoop("  type: float64\n").ring.publishers;
+  for (const char* key : {"setpoint", "enable", "services"})
+    EXPECT_EQ(publishers.at(key), Names()) << key;  // anyone
+  const auto named =
+      gatewayLoop("  type: float64\nloop: {publishers: {setpoint: [hmi], enable: [panel]}}\n")
+          .ring.publishers;
+  EXPECT_EQ(named.at("setpoint"), (Names{"hmi", "plant_gateway"}));  // which forwards those of hmi
+  EXPECT_EQ(named.at("enable"), Names{"panel"});
+}
+
 TEST(GatewayParams, ErrorsNameKeyAndWhatWasExpected) {
   expectWords(errorIn("  type: modbus\n"), {"gateway.tags", "level", "register"});
   expectWords(errorIn("  type: opc\n"), {"gateway.type", "modbus"});

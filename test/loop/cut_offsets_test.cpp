@@ -11,14 +11,14 @@ namespace loop_cut_offsets_test {
 /// Of the heated tank, whose T_in is 15 degC and may be 0..40.
 class CutOffsetsOfTheTank : public ::testing::Test {
  protected:
-  CutOffsetsOfTheTank() : loop_(readLoop("heated_tank")), cut_(loop_) {}
+  CutOffsetsOfTheTank() : loop_(readLoop("heated_tank")), cut_(disturbancesOf(loop_)) {}
   std::string look(std::uint32_t step, std::vector<Command> commands = {}, bool final = false) {
     std::vector<CommandEffect> effects;
     for (Command& command : commands) effects.push_back({{}, std::move(command)});
     Measurement now;
     now.header.step = step;
     now.final = final;
-    cut_.look(now, effects);
+    cut_.look(now, effects, scheduled_);
     return cut_.lines();
   }
   static Command offset(double value) {
@@ -36,6 +36,7 @@ class CutOffsetsOfTheTank : public ::testing::Test {
   }
 
   LoopFile loop_;
+  Vector scheduled_ = loop_.simulation.disturbance_nominal;
   CutOffsets cut_;
 };
 
@@ -58,6 +59,14 @@ TEST_F(CutOffsetsOfTheTank, IsSaidFromTheSampleOnAtWhichItActsUntilItIsReleased)
   EXPECT_EQ(cut_.samples(), 3U);
   EXPECT_NE(look(7), "");
   EXPECT_EQ(look(0), "");  // a reset
+}
+
+TEST_F(CutOffsetsOfTheTank, GoByWhatIsScheduledAtTheSample) {
+  EXPECT_EQ(look(1, {offset(10.0)}), "");
+  scheduled_.setConstant(31.0);
+  EXPECT_NE(look(2), "");
+  scheduled_.setConstant(30.0);
+  EXPECT_EQ(look(3), "");
 }
 
 TEST_F(CutOffsetsOfTheTank, AnOverrideTakesThePlaceOfAnOffset) {

@@ -1,5 +1,5 @@
 // The times of a record: in another decimal, or rounded up past their samples.
-#include "fmbpc/plant/late_rows.hpp"
+#include "fmbpc/plant/disturbance.hpp"
 
 #include <gtest/gtest.h>
 
@@ -55,9 +55,7 @@ LateRows lateRowsOf(int digits, double interval_s, Interpolation interpolation) 
   CsvDisturbanceParams params = paramsFor(text);
   params.time_unit = "d";
   params.interpolation = interpolation;
-  LateRows late;
-  readDisturbances(params, {"q_i"}, Vector::Constant(1, 1300.0), 7.3, 40, late);
-  return late;
+  return readDisturbances(params, {"q_i"}, Vector::Constant(1, 1300.0), 7.3, 40).late;
 }
 
 // Six digits of a day are 0.09 s: half of the rows are rounded up, past their sample.

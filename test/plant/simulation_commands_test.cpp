@@ -77,6 +77,7 @@ TEST(SimulationCommands, OffsetsFollowTheRecordAndReleaseReturnsToIt) {
   simulation.command(command("q_i", 100.0, CommandMode::kOffset));
   EXPECT_EQ(simulation.advance(kU).disturbances[0], 1401.0);
   EXPECT_EQ(simulation.advance(kU).disturbances[0], 1402.0);
+  EXPECT_EQ(simulation.scheduledDisturbances()[0], 1302.0);  // without it
   simulation.command({0, {"q_i"}, {}, CommandMode::kRelease});
   EXPECT_EQ(simulation.advance(kU).disturbances[0], 1303.0);
 }

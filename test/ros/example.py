@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The example of a plant of one's own behind the gateway: every sample is recorded, the level reaches its setpoints, and
-what the tank was told kept all limits. A second publisher of its level is refused and named."""
+what the tank was told kept all limits. A second publisher of its level is refused and named, and a stranger neither takes the
+plant into its own hand nor sets its level where the loop names who may."""
 import csv
 import math
 import os
@@ -10,7 +11,7 @@ import unittest
 import rospy
 import rostest
 from fmbpc.msg import LoopState, Measurement
-from std_msgs.msg import Float64, String
+from std_msgs.msg import Bool, Float64, String
 
 import ring
 
@@ -29,6 +30,12 @@ class Example(unittest.TestCase):
             return any(s.summary and s.mode == LoopState.DEGRADED and
                        "/tank/state has two publishers: /example_plant counts" in s.reason for s in list(states.messages))
         ring.wait_until(said, "the second publisher to be named")
+        counts = {"refused: enable from /example", "refused: setpoint from /example"}
+        enable, level = (ring.publisher(f"tank/{name}", kind, "/plant_gateway")
+                         for name, kind in (("pid_enable", Bool), ("setpoint", Float64)))
+        enable.publish(False)
+        level.publish(3.0)
+        ring.NodeStatus("plant_gateway").wait(lambda s: all(int(ring.values(s).get(key, 0)) > 0 for key in counts))
         folder = recorded.wait().data
         summary = ring.summary(folder)
         self.assertEqual((240, True), (summary["steps"], summary["complete"]))

@@ -15,6 +15,7 @@ from diagnostic_msgs.msg import DiagnosticArray
 from fmbpc.msg import (ControlAction, Disturbance, FuzzyModel, LoopState, Matrix, Measurement, NodeReady, OperatorState,
                        PlantInfo, PlantState, PredictiveAction, Setpoint, SolverReport, Tracking)
 from std_msgs.msg import String
+from std_srvs.srv import SetBool, Trigger
 
 import ring
 
@@ -95,9 +96,10 @@ OPEN = (("plant_simulator", ("actions dropped: wrong size", "actions dropped: ot
         ("loop_recorder", ("dropped: other run", "dropped: wrong size or not finite")))
 CLOSED = (("plant_simulator", ("refused: control_action from /intruder", "refused: disturbance",
                                "refused: loop_state from /intruder", "refused: ready from /intruder",
-                               "refused: operator_state from /intruder")),
+                               "refused: operator_state from /intruder", "refused: services from /intruder")),
           ("fmbpc_controller", ("refused: measurement from /intruder", "refused: plant_info from /intruder",
-                                "refused: fuzzy_model from /intruder", "refused: setpoint")),
+                                "refused: fuzzy_model from /intruder", "refused: setpoint",
+                                "refused: services from /intruder")),
           ("clp_optimizer", ("refused: base_action from /intruder", "refused: plant_info from /intruder")),
           ("loop_recorder", ("refused: measurement from /intruder", "refused: tracking from /intruder",
                              "refused: solver_report from /intruder", "refused: control_action from /intruder")))
@@ -124,6 +126,8 @@ class Intruder(unittest.TestCase):
             disturb(measurements.wait(genuine))
             if not closed:
                 plant.wait(lambda s: int(ring.values(s).get("actions dropped: wrong size", 0)) > 0)
+        if closed:
+            self.call_services()
         for step in itertools.count(1):
             now = measurements.wait(lambda m, s=step: genuine(m) and m.step >= s)
             if now.final:
@@ -140,6 +144,14 @@ class Intruder(unittest.TestCase):
         for node, keys in CLOSED if closed else OPEN:
             diagnostics.wait(lambda m, n=node, k=keys: ring.diagnostics_of(m, n) is not None and all(
                 int(ring.values(ring.diagnostics_of(m, n)).get(key, 0)) > 0 for key in k))
+
+
+    def call_services(self):
+        for service in ("plant_simulator/pause", "fmbpc_controller/manual", "fmbpc_controller/hold"):
+            answer = rospy.ServiceProxy(service, SetBool)(True)
+            self.assertEqual((False, "refused: "), (answer.success, answer.message[:9]), service)
+        for service in ("plant_simulator/step", "plant_simulator/reset"):
+            self.assertFalse(rospy.ServiceProxy(service, Trigger)().success, service)
 
 
 if __name__ == "__main__":

@@ -3,8 +3,10 @@
 samples in lockstep."""
 import math
 import sys
+import time
 import unittest
 
+import rosgraph
 import rospy
 import rostest
 from fmbpc.msg import (CommandEffect, ControlAction, Disturbance, LoopState, Measurement, NodeReady, PlantInfo, PlantState,
@@ -33,8 +35,14 @@ class PlantNode(unittest.TestCase):
         cls.status.wait(lambda s: s.message == "waiting for /plant_node")
         assert cls.measurements.messages == []
         ready = rospy.Publisher("ready", NodeReady, queue_size=1, latch=True)
+        absent = rosgraph.Master("/absent")  # listens, as the master knows, and never connects
+        where = (rospy.resolve_name("plant_state"), "fmbpc/PlantState", "http://127.0.0.1:9/")
+        absent.registerSubscriber(*where)
+        begun = time.monotonic()
         ready.publish(node=rospy.get_name())
         cls.now = cls.measurements.wait()
+        cls.held_back_s = time.monotonic() - begun
+        absent.unregisterSubscriber(where[0], where[2])
 
     def setUp(self):
         before = self.now.run_id
@@ -56,6 +64,10 @@ class PlantNode(unittest.TestCase):
 
     def state(self):
         return self.states.wait(lambda s: (s.run_id, s.step) == (self.now.run_id, self.now.step))
+
+    def test_the_first_sample_waits_a_second_for_who_listens(self):
+        """A recorder that was ready long before this plant came back may connect only now."""
+        self.assertGreater(self.held_back_s, 0.9)
 
     def test_sample_0_is_what_the_loop_file_says(self):
         info = self.infos.wait(lambda m: m.run_id == self.now.run_id)

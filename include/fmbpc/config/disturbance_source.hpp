@@ -2,7 +2,6 @@
 #pragma once
 
 #include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/plant/late_rows.hpp"
 
 namespace fpc {
 
@@ -13,7 +12,5 @@ std::vector<Quantity> disturbancesOf(const LoopFile& loop);
 /// The disturbances of the loop on its own samples. @throws InputError naming file, column or
 /// field.
 DisturbanceRecord makeDisturbance(const LoopFile& loop);
-/// The same, and adds the rows of a CSV file that act late to `late`.
-DisturbanceRecord makeDisturbance(const LoopFile& loop, LateRows& late);
 
 }  // namespace fpc

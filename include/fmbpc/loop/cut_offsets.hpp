@@ -3,23 +3,27 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "fmbpc/base/command_table.hpp"
-#include "fmbpc/config/loop_file.hpp"
+#include "fmbpc/plant/simulation.hpp"
 
 namespace fpc {
 
-/// Offsets of the loop file and of people alike. What is scheduled is read when the first offset
-/// comes into force.
+/// Offsets of the loop file and of people alike.
 class CutOffsets {
  public:
-  explicit CutOffsets(const LoopFile& loop);
-  /// Call it with every sample and the commands that took effect with it; at sample 0 nothing is in
-  /// force any more, and the final sample is not one that an offset acts on.
-  void look(const Measurement& now, const std::vector<CommandEffect>& effects);
+  /// `disturbances`: of the plant.
+  explicit CutOffsets(std::vector<Quantity> disturbances);
+  /// Call it with every sample; at sample 0 nothing is in force any more, and the final sample is
+  /// not one that an offset acts on.
+  void look(const Simulation& simulation) {
+    look(simulation.measurement(), simulation.effects(), simulation.scheduledDisturbances());
+  }
+  /// `effects`: commands that took effect with the sample; `scheduled`: the disturbances without
+  /// any (n_d).
+  void look(const Measurement& now, const std::vector<CommandEffect>& effects, VectorRef scheduled);
   /// "an offset of T_in was asked beyond its range, 0..40 [degC], and clamped": one line per
   /// disturbance, empty while nothing is.
   const std::string& lines() const { return lines_; }
@@ -27,12 +31,9 @@ class CutOffsets {
 
  private:
   void take(const Command& command);
-  double scheduled(std::size_t index, std::uint32_t step);
 
-  LoopFile loop_;
-  std::vector<SignalInfo> all_;         // disturbances of the plant
+  std::vector<Quantity> all_;           // disturbances of the plant
   std::vector<ActiveCommand> offsets_;  // in force, by disturbance
-  std::optional<Matrix> values_;        // scheduled, by step
   std::string lines_;
   std::uint64_t samples_{};
 };

@@ -66,7 +66,6 @@ class IdentifierSession {
   const StepHeader& present() const { return collector_.last(); }  ///< the sample taken last
   std::uint64_t published() const { return published_; }
   std::uint64_t refused() const { return refused_; }
-  const std::string& lastRefusal() const { return last_refusal_; }
   const SampleCollector& collector() const { return collector_; }
   std::uint64_t learned() const { return learner_ ? learner_->samples() : 0; }
 
@@ -84,7 +83,6 @@ class IdentifierSession {
   SampleCollector collector_;
   std::optional<OnlineLearner> learner_;
   std::uint64_t published_{}, refused_{};
-  std::string last_refusal_;
   bool done_by_itself_{false};
   std::optional<double> announced_s_;  // first
   bool kept_known_{false};             // what the plant has kept, if anything

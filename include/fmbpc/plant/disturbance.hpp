@@ -12,11 +12,22 @@
 
 namespace fpc {
 
+/// Rows of a CSV file whose rounded times act a sample late: a row acts from the first sample at or
+/// after its time (early by at most 1e-4 of an interval), one whose time was rounded up past its
+/// sample from the next.
+struct LateRows {
+  std::uint64_t rows{};  ///< up to 2 % of a sample after one, and not early enough for it
+  std::uint64_t of{};    ///< rows within the run, the first one of a file left out
+  /// More than chance: records whose rows fall anywhere between samples have 2 % of such rows.
+  bool isRounding() const { return rows >= 2 && 10 * rows >= of; }
+};
+
 /// A disturbance record on the loop's own samples: column k of `values` acts on [t_k, t_k + Ts).
 struct DisturbanceRecord {
   Matrix values;                ///< n_d (samples + 1)
   std::uint64_t repaired{};     ///< missing cells that were held or interpolated
   std::uint64_t implausible{};  ///< cells outside `plausible` that were clipped, held, interpolated
+  LateRows late{};              ///< of a CSV file; none where it is interpolated
 };
 
 /// One channel of the pattern: [0,1]-scaled shape raised to the power that gives `mean`, mapped to

@@ -89,6 +89,9 @@ class Simulation {
   std::uint32_t command(const Command& command);
   /// Commands that took effect with the present sample.
   const std::vector<CommandEffect>& effects() const { return effects_; }
+  /// Disturbances of the present sample (n_d) as they were without commands: nominal, or of the
+  /// record.
+  const Vector& scheduledDisturbances() const { return scheduled_; }
 
   /// Last sample since the reset at which the plant could not be moved, with the reason; empty if
   /// none. The state was held over it, and state().trouble says so at the sample after it.
@@ -122,6 +125,7 @@ class Simulation {
   std::vector<CommandEffect> effects_;
   std::mt19937_64 noise_;
   std::string trouble_;
+  Vector scheduled_;                     // disturbances without commands
   Vector state_before_;                  // one sample ago
   Vector true_outputs_, true_measured_;  // what the sensors look at
   Vector plant_input_;                   // the applied input as the plant's local loop passes it on
