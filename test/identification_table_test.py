@@ -34,6 +34,11 @@ class Aims(unittest.TestCase):
         self.assertEqual([r[2] for r in rows], ["later rows"] * 2)
         self.assertEqual(rows[0][-1], "not reached")
 
+    def test_linear_beside_itself_is_said(self):
+        told = report("y", 0.3, 0.05, 0.3)
+        told["cross_validation"]["y"]["best"] = "linear"
+        self.assertEqual(self.verdicts("heating", told), ["reached (it is the linear model)"])
+
     def test_fit_is_better_when_higher(self):
         self.assertTrue(table.is_reached("fit", 97.5, 97.0))
         self.assertFalse(table.is_reached("fit", 96.9, 97.0))
