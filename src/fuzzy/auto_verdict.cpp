@@ -9,7 +9,8 @@
 namespace fpc {
 namespace {
 
-constexpr double kTells = 10.0;  // [%] of fit: less is hardly more than the mean
+constexpr double kTells = 10.0;       // [%] of fit: less is hardly more than the mean
+constexpr double kWorseAhead = 1.05;  // of the linear model's error one sample ahead
 
 std::string shortNumber(double value) {
   char text[32];
@@ -22,6 +23,13 @@ std::string lowestFuzzyText(const AutoOutput& found) {
   for (const auto* f : {&found.regressors, &found.state})
     if (!f->blocks.empty()) lowest = std::min(lowest, f->mean);
   return std::isfinite(lowest) ? "free run " + shortNumber(lowest) : "none ran to the end";
+}
+
+/// A model that is chosen by its free runs may be the worse one for who predicts a sample.
+std::string oneStepWords(const AutoFigures& best, const AutoFigures& line) {
+  if (!(best.one_step > kWorseAhead * line.one_step)) return "";
+  return "; one sample ahead it is worse than linear: " + shortNumber(best.one_step) + " beside " +
+         shortNumber(line.one_step);
 }
 
 std::string verdictOf(const AutoOutput& found, const AutoFigures& best) {
@@ -37,7 +45,7 @@ std::string verdictOf(const AutoOutput& found, const AutoFigures& best) {
     words += "; it has a state of its own, for simulation; what control laws take reaches " +
              shortNumber(found.fuzzy_model ? found.regressors.mean : line.mean) +
              (found.fuzzy_model ? "" : " (linear)");
-  return words;
+  return words + oneStepWords(best, line);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+#include "fuzzy/auto_verdict.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace fpc {
+namespace fuzzy_auto_verdict_test {
+
+AutoFigures figures(double free_run, double one_step) {
+  AutoFigures made;
+  made.mean = made.free_run = free_run;
+  made.one_step = one_step;
+  made.fit = 90.0;
+  made.blocks.assign(4, free_run);
+  made.pieces.assign(12, free_run);
+  return made;
+}
+
+std::string verdict(double one_step_of_fuzzy) {
+  AutoOutput found;
+  found.linear = figures(1.0, 0.10);
+  found.regressors = figures(0.5, one_step_of_fuzzy);
+  found.fuzzy_model = true;
+  decide(found);
+  EXPECT_EQ(found.best, ModelKind::kRegressors);
+  return found.verdict;
+}
+
+TEST(AutoVerdict, ABetterFreeRunThatIsWorseOneSampleAheadIsSaidWithBothFigures) {
+  EXPECT_EQ(verdict(0.105).find("one sample ahead"), std::string::npos);
+  EXPECT_NE(verdict(0.12).find("one sample ahead it is worse than linear: 0.12 beside 0.1"),
+            std::string::npos);
+}
+
+}  // namespace fuzzy_auto_verdict_test
+}  // namespace fpc
