@@ -44,6 +44,10 @@ void StepGate::remember(const StepHeader& header, Arrival arrival) {
   if (arrival == Arrival::kGap) {
     before_ = last_.step;
     jumped_ = unconfirmed_ = true;
+  } else if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) {
+    before_ = -1;
+    jumped_ = header.step > 0;
+    unconfirmed_ = false;
   } else {
     jumped_ = jumped_ && arrival == Arrival::kNext;
     unconfirmed_ = false;

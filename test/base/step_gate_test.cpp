@@ -102,6 +102,20 @@ TEST(StepGate, WhatThePlantKeepsSendingWinsOverARepeatedForgery) {
   }
 }
 
+TEST(StepGate, AStrayStepBeforeAllOthersDoesNotKeepTheRunOut) {
+  for (const bool second_run : {false, true})
+    for (const std::uint32_t stray : {1U, 4000000000U}) {
+      StepGate gate;
+      if (second_run) gate.pass(header(1, 0));
+      gate.announce(2);
+      EXPECT_EQ(gate.pass(header(2, stray)), second_run ? Arrival::kNewRun : Arrival::kFirst);
+      EXPECT_EQ(gate.pass(header(2, 0)), Arrival::kOld);
+      EXPECT_EQ(gate.pass(header(2, 0)), Arrival::kOld);
+      EXPECT_EQ(gate.pass(header(2, 0)), Arrival::kResync);
+      EXPECT_EQ(gate.pass(header(2, 1)), Arrival::kNext);
+    }
+}
+
 TEST(StepGate, LateDuplicatesAfterATrueGapAreOld) {
   StepGate gate;
   for (const std::uint32_t step : {5U, 9U, 10U}) gate.pass(header(1, step));

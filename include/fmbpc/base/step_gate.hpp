@@ -31,7 +31,8 @@ struct ArrivalCounts {
 /// - a step more than kFarthest ahead is taken only when the same or the next one follows;
 /// - after a jump, a step that continues what came before it takes the gate back: the next one at
 ///   once if nothing has followed the jump, otherwise three in a row that repeat or follow each
-///   other. What the plant keeps sending wins.
+///   other, as after the first step of a run, which may be a stray one. What the plant keeps
+///   sending wins.
 class StepGate {
  public:
   static constexpr std::uint32_t kFarthest = 1000;  ///< samples that may be missing unquestioned
@@ -55,9 +56,9 @@ class StepGate {
   std::optional<std::uint64_t> announced_;
   StepHeader last_{};
   bool empty_{true};
-  bool jumped_{false};           // a gap, not long ago
+  bool jumped_{false};           // a gap, not long ago; or joined in the middle of a run
   bool unconfirmed_{false};      // nothing has followed the jump yet
-  std::uint32_t before_{};       // accepted last before the jump
+  std::int64_t before_{};        // accepted last before the jump; -1: nothing of this run
   std::uint32_t streak_step_{};  // of the old steps since the jump that follow each other
   int streak_{};
   std::optional<std::uint32_t> suspect_;
