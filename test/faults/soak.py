@@ -108,7 +108,7 @@ class Soak:
         ring.wait_until(lambda: self.latest is not None and self.info is not None and self.latest.step > 0, "the run")
         done, looked = 0, -1
         while self.latest.word != "finished":
-            due = injections * self.latest.step // max(1, self.samples - 1)
+            due = injections * self.latest.step // max(1, int(0.99 * self.samples))  # the last ones before the end
             if done < min(due, injections):
                 self.inject()
                 done += 1
@@ -196,10 +196,11 @@ def main():
         launch.wait(60)
     rows, broken = violations(arguments.out)
     with open(summary, encoding="utf-8") as file:
-        complete = json.load(file)["complete"]
+        said = json.load(file)
+    complete, gaps = said["complete"], [r for r in said["remarks"] if "in the record" in r["words"]]
     grown = growth(soak.rows)
     seconds = soak.finished
-    result = {"samples": rows - 1, "lost": arguments.samples + 1 - rows, "complete": complete, "violations": broken,
+    result = {"samples": rows - 1, "lost": arguments.samples + 1 - rows, "complete": complete, "gaps": gaps, "violations": broken,
               "injections": done, "kinds": soak.counts, "seconds": seconds, "samples_per_s": rows / seconds,
               "grown_kB": grown, "recorder_finish_kB": finishing, "rows": soak.rows}
     pathlib.Path(arguments.out, "soak.json").write_text(json.dumps(result, indent=1), encoding="utf-8")
