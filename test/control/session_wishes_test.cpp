@@ -111,5 +111,19 @@ TEST(SessionWishes, AHeldScheduleAndAPendingCommandGoOnToo) {
   }
 }
 
+TEST(SessionComesBack, ASampleThatWasCalledTheLastByMistakeIsAnsweredWhenItComesAgain) {
+  const auto session = newSession();
+  session->receive(sample(0));
+  Measurement last = sample(1);
+  last.final = true;
+  EXPECT_EQ(session->receive(last), Receipt::kAnswered);
+  EXPECT_FALSE(session->answer().has_action);
+  EXPECT_EQ(session->receive(last), Receipt::kRepeated);
+  EXPECT_EQ(session->receive(sample(1)), Receipt::kAnswered);
+  EXPECT_TRUE(session->answer().has_action);
+  EXPECT_EQ(session->receive(sample(1)), Receipt::kRepeated);
+  EXPECT_EQ(session->receive(sample(2)), Receipt::kAnswered);
+}
+
 }  // namespace control_session_wishes_test
 }  // namespace fpc
