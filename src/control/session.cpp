@@ -94,11 +94,11 @@ Receipt ControllerSession::receive(const Measurement& measurement) {
   if (!ready()) return Receipt::kNotReady;
   const StepHeader before = gate_.last();
   const Arrival arrival = gate_.pass(measurement.header);
-  const bool was_called_last =
-      arrival == Arrival::kRepeat && !answer_.has_action && !measurement.final;
-  if (arrival == Arrival::kRepeat && !was_called_last) return Receipt::kRepeated;
-  if (!isNew(arrival) && !was_called_last) return Receipt::kDropped;
-  begin(measurement, was_called_last ? Arrival::kResync : arrival, before);
+  const bool again = arrival == Arrival::kRepeat;
+  // A sample that was called the last one, and is not, is answered when it comes again.
+  if (again && (answer_.has_action || measurement.final)) return Receipt::kRepeated;
+  if (!again && !isNew(arrival)) return Receipt::kDropped;
+  begin(measurement, again ? Arrival::kResync : arrival, before);
   process(measurement);
   return Receipt::kAnswered;
 }

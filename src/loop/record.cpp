@@ -1,6 +1,7 @@
 #include "fmbpc/loop/record.hpp"
 
 #include "fmbpc/loop/recorder_session.hpp"
+#include "loop/missing_parts.hpp"
 #include "loop/run_tally.hpp"
 
 namespace fpc {
@@ -36,9 +37,9 @@ bool RecordLayout::fits(const SolverReport& r) const {
 }
 
 bool RecordLayout::isComplete(const SampleRecord& s) const {
-  if (!s.has_measurement || !s.has_tracking || (has_state && !s.has_state)) return false;
-  if (s.measurement.final) return true;
-  return s.has_base && s.has_action && (!has_optimizer || s.has_report);
+  bool complete = true;
+  forMissingParts(s, has_optimizer, has_state, [&](const char*) { complete = false; });
+  return complete;
 }
 
 RunRecord RecordLayout::emptyRecord() const {

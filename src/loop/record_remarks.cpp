@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/text.hpp"
+#include "loop/missing_parts.hpp"
 
 namespace fpc {
 namespace {
@@ -69,17 +70,8 @@ void RecordRemarks::watchOutputs(const SampleRecord& sample) {
 void RecordRemarks::watchGaps(const SampleRecord& sample) {
   for (const char* what : missing_) keep(std::string("no ") + what + " in the record", step_ - 1);
   missing_.clear();
-  const auto need = [this](bool there, const char* what) {
-    if (!there) missing_.push_back(what);
-  };
-  need(sample.has_measurement, "measurement");
-  need(sample.has_tracking, "tracking");
-  if (has_state_) need(sample.has_state, "plant_state");
-  if (sample.has_measurement && sample.measurement.final) return;
-  need(sample.has_action, "control_action");
-  if (!has_optimizer_) return;
-  need(sample.has_base, "base_action");
-  need(sample.has_report, "solver_report");
+  forMissingParts(sample, has_optimizer_, has_state_,
+                  [this](const char* what) { missing_.push_back(what); });
 }
 
 void RecordRemarks::keep(const std::string& words, std::uint32_t step) {

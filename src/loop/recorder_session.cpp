@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "loop/journal_entry.hpp"
+#include "loop/missing_parts.hpp"
 #include "loop/remark_lines.hpp"
 
 namespace fpc {
@@ -157,18 +158,9 @@ void RecorderSession::receive(const SolverReport& r) {
 
 void RecorderSession::noteGaps(const SampleRecord& s, std::uint32_t step, std::size_t limit,
                                std::vector<std::string>& lines) const {
-  const auto note = [&](bool there, const char* what) {
-    if (!there && lines.size() < limit)
-      lines.push_back("sample " + std::to_string(step) + ": no " + what);
-  };
-  note(s.has_measurement, "measurement");
-  note(s.has_tracking, "tracking");
-  if (layout_.has_state) note(s.has_state, "plant_state");
-  if (s.has_measurement && s.measurement.final) return;
-  note(s.has_base, layout_.has_optimizer ? "base_action" : "control_action");
-  if (!layout_.has_optimizer) return;
-  note(s.has_action, "control_action");
-  note(s.has_report, "solver_report");
+  forMissingParts(s, layout_.has_optimizer, layout_.has_state, [&](const char* what) {
+    if (lines.size() < limit) lines.push_back("sample " + std::to_string(step) + ": no " + what);
+  });
 }
 
 void RecorderSession::emitFront() {
