@@ -38,8 +38,8 @@ class Listener:
             wait_until(lambda: self.publishers() >= set(of) and self.publishers(), f"{of or 'a publisher'} on {topic}")
 
     def publishers(self):
-        """Nodes that are connected to this listener."""
-        return {connection.callerid_pub for connection in list(self.subscriber.impl.connections)}
+        """Nodes that are connected to this listener: rospy lists a connection before the other side has answered."""
+        return {connection.callerid_pub for connection in list(self.subscriber.impl.connections)} - {"unknown"}
 
     def take(self, message):
         if message._connection_header["callerid"] == rospy.get_name():
