@@ -13,14 +13,17 @@
 namespace fpc::bench {
 
 /// How long and how often: 2 s and 10 pairs, or what FMBPC_BENCH_SECONDS and FMBPC_BENCH_PAIRS say.
+/// FMBPC_BENCH_ONLY: part of the name of a path; the others are left out.
 struct Effort {
   double seconds{2.0};
   int pairs{10};
+  std::string only;
 
   static Effort fromEnvironment() {
     Effort effort;
     if (const char* text = std::getenv("FMBPC_BENCH_SECONDS")) effort.seconds = std::atof(text);
     if (const char* text = std::getenv("FMBPC_BENCH_PAIRS")) effort.pairs = std::atoi(text);
+    if (const char* text = std::getenv("FMBPC_BENCH_ONLY")) effort.only = text;
     effort.pairs = std::max(effort.pairs, 1);
     return effort;
   }
@@ -73,6 +76,7 @@ inline void printRow(const std::string& path, const std::string& baseline, const
 template <class Ours>
 void printRounds(const std::string& path, const std::string& aim, const Ours& ours,
                  const std::vector<Baseline>& others, const Effort& effort) {
+  if (path.find(effort.only) == std::string::npos) return;
   std::vector<double> ours_us;
   std::vector<std::vector<double>> baseline_us(others.size());
   for (int i = 0; i < effort.pairs; ++i) {

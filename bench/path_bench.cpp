@@ -177,7 +177,7 @@ void plantSample(IntegrationMethod own) {
 /// As the shipped loop has it, and by the method that starts anew at no cost.
 void plantSamples() {
   plantSample(IntegrationMethod::kAdams);
-  if (hasRungeKutta()) plantSample(IntegrationMethod::kRungeKutta);
+  plantSample(IntegrationMethod::kRungeKutta);
 }
 
 /// Gustafson-Kessel on 100,000 samples of 10 numbers into 8 clusters.

@@ -1,11 +1,10 @@
 # SUNDIALS::cvode and SUNDIALS::nvecserial: from SUNDIALS' own package (5 and newer), else (3 and 4 have none) by file names.
-# FMBPC_ARKODE: what to link for the integrator method runge_kutta; empty where ARKODE is missing or older than 4.
 find_package(SUNDIALS QUIET)
 if(NOT TARGET SUNDIALS::cvode)
   find_path(FMBPC_SUNDIALS_INCLUDE cvode/cvode.h)
   find_library(FMBPC_SUNDIALS_cvode sundials_cvode)
   get_filename_component(folder "${FMBPC_SUNDIALS_cvode}" DIRECTORY)
-  foreach(library arkode nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)
+  foreach(library nvecserial sunmatrixdense sunlinsoldense sunnonlinsolfixedpoint)
     find_library(FMBPC_SUNDIALS_${library} sundials_${library} PATHS "${folder}" NO_DEFAULT_PATH)  # not of another version
   endforeach()
   if(NOT FMBPC_SUNDIALS_INCLUDE OR NOT FMBPC_SUNDIALS_cvode OR NOT FMBPC_SUNDIALS_nvecserial)
@@ -25,16 +24,4 @@ if(NOT TARGET SUNDIALS::cvode)
   #catkin_lint: ignore_once order_violation
   #catkin_lint: ignore_once catkin_order_violation
   add_library(SUNDIALS::nvecserial INTERFACE IMPORTED)
-endif()
-set(FMBPC_ARKODE "")
-if(TARGET SUNDIALS::arkode)
-  get_target_property(FMBPC_SUNDIALS_INCLUDES SUNDIALS::cvode INTERFACE_INCLUDE_DIRECTORIES)
-  find_path(FMBPC_ARKODE_INCLUDE arkode/arkode_erkstep.h HINTS ${FMBPC_SUNDIALS_INCLUDES})
-elseif(FMBPC_SUNDIALS_arkode)
-  find_path(FMBPC_ARKODE_INCLUDE arkode/arkode_erkstep.h PATHS ${FMBPC_SUNDIALS_INCLUDE} NO_DEFAULT_PATH)
-endif()
-if(FMBPC_ARKODE_INCLUDE AND TARGET SUNDIALS::arkode)
-  set(FMBPC_ARKODE SUNDIALS::arkode)
-elseif(FMBPC_ARKODE_INCLUDE AND FMBPC_SUNDIALS_arkode)
-  set(FMBPC_ARKODE ${FMBPC_SUNDIALS_arkode})
 endif()

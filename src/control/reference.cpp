@@ -1,17 +1,24 @@
 // First-order reference trajectories. Source: vallejo2019, eqs. 29, 30, 37.
 #include "fmbpc/control/reference.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
+namespace {
+
+constexpr Eigen::Index kFar = 32;  // steps that are gone one by one
+
+}  // namespace
 
 ReferenceTrajectory::ReferenceTrajectory(Vector pole, bool preview)
     : pole_(std::move(pole)),
       present_(Vector::Zero(pole_.size())),
       preview_(preview),
-      scheduled_(Vector::Zero(pole_.size())) {
+      scheduled_(Vector::Zero(pole_.size())),
+      last_(scheduled_) {
   for (Eigen::Index i = 0; i < pole_.size(); ++i)
     require(pole_[i] >= 0.0 && pole_[i] < 1.0, "reference_pole", "numbers >= 0 and < 1");
 }
@@ -25,13 +32,37 @@ const Vector& ReferenceTrajectory::target(const SetpointSource& setpoint,
   return scheduled_;
 }
 
-void ReferenceTrajectory::predict(const SetpointSource& setpoint, std::uint32_t step,
-                                  Eigen::Ref<Matrix> future) const {
+/// Every setpoint on the way counts.
+void ReferenceTrajectory::predictAhead(const SetpointSource& setpoint, std::uint32_t step,
+                                       Eigen::Ref<Matrix> future, Eigen::Index first) const {
+  last_ = present_;
   for (Eigen::Index i = 0; i < future.cols(); ++i) {
     const Vector& aim = target(setpoint, step + static_cast<std::uint32_t>(i));
-    for (Eigen::Index row = 0; row < present_.size(); ++row) {
-      const double last = i == 0 ? present_[row] : future(row, i - 1);
-      future(row, i) = pole_[row] * last + (1.0 - pole_[row]) * aim[row];
+    for (Eigen::Index row = 0; row < last_.size(); ++row)
+      last_[row] = pole_[row] * last_[row] + (1.0 - pole_[row]) * aim[row];
+    if (i >= first) future.col(i) = last_;
+  }
+}
+
+void ReferenceTrajectory::predict(const SetpointSource& setpoint, std::uint32_t step,
+                                  Eigen::Ref<Matrix> future, Eigen::Index first) const {
+  if (preview_) {
+    predictAhead(setpoint, step, future, first);
+    return;
+  }
+  const Vector& aim = setpoint.present();
+  for (Eigen::Index row = 0; row < present_.size(); ++row) {
+    const double pole = pole_[row], added = (1.0 - pole) * aim[row];
+    double last = present_[row];
+    Eigen::Index i = 0;
+    if (first > kFar) {  // a^n is there at once
+      const double power = std::pow(pole, static_cast<double>(first));
+      last = power * last + (1.0 - power) * aim[row];
+      i = first;
+    }
+    for (; i < future.cols(); ++i) {
+      last = pole * last + added;
+      if (i >= first) future(row, i) = last;
     }
   }
 }

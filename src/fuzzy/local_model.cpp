@@ -30,8 +30,15 @@ LocalModel::LocalModel(TsModel model) : model_(std::move(model)) {
   firing_.resize(model_.submodels.size());
   for (std::size_t i = 0; i < model_.submodels.size(); ++i) {
     firing_[i].weights = Vector::Zero(static_cast<Eigen::Index>(model_.submodels[i].rules.size()));
-    antecedent_values_.emplace_back(
-        Vector::Zero(static_cast<Eigen::Index>(model_.submodels[i].antecedents.size())));
+    const auto place = [this](const std::vector<Regressor>& variables,
+                              std::vector<std::vector<Place>>& places,
+                              std::vector<Vector>& values) {
+      places.emplace_back();
+      for (const Regressor& variable : variables) places.back().push_back(placeOf(variable));
+      values.emplace_back(Vector::Zero(static_cast<Eigen::Index>(variables.size())));
+    };
+    place(model_.submodels[i].antecedents, antecedents_, antecedent_values_);
+    place(model_.submodels[i].regressors, regressors_, regressor_values_);
     slopes_.emplace_back(Matrix::Zero(firing_[i].weights.size(), antecedent_values_[i].size()));
   }
 }
@@ -101,26 +108,27 @@ void LocalModel::fillShifts() {
     shift(disturbance_offset_[i], disturbance_lags_[i]);
 }
 
-Eigen::Index LocalModel::stateOf(const Regressor& variable) const {
-  if (variable.kind == SignalKind::kOutput) return outputState(variable.index, variable.lag);
-  if (variable.lag == 0) return -1;
-  return variable.kind == SignalKind::kInput ? inputState(variable.index, variable.lag)
-                                             : disturbanceState(variable.index, variable.lag);
+LocalModel::Place LocalModel::placeOf(const Regressor& variable) const {
+  Place place{-1, variable.index, variable.kind == SignalKind::kInput};
+  if (variable.kind == SignalKind::kOutput)
+    place.row = outputState(variable.index, variable.lag);
+  else if (variable.lag > 0)
+    place.row = place.of_input ? inputState(variable.index, variable.lag)
+                               : disturbanceState(variable.index, variable.lag);
+  return place;
 }
 
-double LocalModel::value(const Regressor& variable, VectorRef state, VectorRef input,
-                         VectorRef disturbances) const {
-  const Eigen::Index row = stateOf(variable);
-  if (row >= 0) return state[row];
-  return variable.kind == SignalKind::kInput ? input[variable.index] : disturbances[variable.index];
-}
-
-void LocalModel::addTerm(Eigen::Index output, const Regressor& regressor, double coefficient,
+double LocalModel::value(const Place& place, VectorRef state, VectorRef input,
                          VectorRef disturbances) {
-  const Eigen::Index row = outputState(output), column = stateOf(regressor);
-  if (column >= 0)
-    affine_.A(row, column) += coefficient;
-  else if (regressor.kind == SignalKind::kInput)
+  if (place.row >= 0) return state[place.row];
+  return place.of_input ? input[place.index] : disturbances[place.index];
+}
+
+void LocalModel::addTerm(Eigen::Index row, const Place& regressor, double coefficient,
+                         VectorRef disturbances) {
+  if (regressor.row >= 0)
+    affine_.A(row, regressor.row) += coefficient;
+  else if (regressor.of_input)
     affine_.B(row, regressor.index) += coefficient;
   else
     affine_.g[row] += coefficient * disturbances[regressor.index];
@@ -132,7 +140,7 @@ bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef inp
   Vector& values = antecedent_values_[at(output)];
   for (std::size_t i = 0; i < submodel.antecedents.size(); ++i)
     values[static_cast<Eigen::Index>(i)] =
-        value(submodel.antecedents[i], state, input, disturbances);
+        value(antecedents_[at(output)][i], state, input, disturbances);
   FiringResult& firing = firing_[at(output)];
   firingWeights(submodel, values, firing);
 
@@ -147,7 +155,7 @@ bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef inp
     for (std::size_t r = 0; r < submodel.rules.size(); ++r)
       coefficient += firing.weights[static_cast<Eigen::Index>(r)] *
                      submodel.rules[r].coefficients[static_cast<Eigen::Index>(i)];
-    addTerm(output, submodel.regressors[i], coefficient, disturbances);
+    addTerm(row, regressors_[at(output)][i], coefficient, disturbances);
   }
   return firing.fired;
 }
@@ -173,20 +181,23 @@ void LocalModel::addSlopes(VectorRef state, VectorRef input, VectorRef disturban
     const OutputModel& submodel = model_.submodels[o];
     Matrix& slopes = slopes_[o];
     firingSlopes(submodel, antecedent_values_[o], firing_[o], slopes);
+    Vector& values = regressor_values_[o];
+    for (Eigen::Index j = 0; j < values.size(); ++j)
+      values[j] = value(regressors_[o][at(j)], state, input, disturbances);
     for (std::size_t r = 0; r < submodel.rules.size(); ++r) {
+      const Vector& coefficients = submodel.rules[r].coefficients;
       double consequent = submodel.rules[r].offset;
-      for (std::size_t j = 0; j < submodel.regressors.size(); ++j)
-        consequent += submodel.rules[r].coefficients[static_cast<Eigen::Index>(j)] *
-                      value(submodel.regressors[j], state, input, disturbances);
-      slopes.row(static_cast<Eigen::Index>(r)) *= consequent;
+      for (Eigen::Index j = 0; j < values.size(); ++j) consequent += coefficients[j] * values[j];
+      for (Eigen::Index i = 0; i < slopes.cols(); ++i)
+        slopes(static_cast<Eigen::Index>(r), i) *= consequent;
     }
     const Eigen::Index row = outputState(static_cast<Eigen::Index>(o));
     for (std::size_t i = 0; i < submodel.antecedents.size(); ++i) {
-      const Regressor& z = submodel.antecedents[i];
+      const Place& z = antecedents_[o][i];
       const double slope = slopes.col(static_cast<Eigen::Index>(i)).sum();
-      if (const Eigen::Index column = stateOf(z); column >= 0)
-        A(row, column) += slope;
-      else if (z.kind == SignalKind::kInput)
+      if (z.row >= 0)
+        A(row, z.row) += slope;
+      else if (z.of_input)
         B(row, z.index) += slope;
     }
   }

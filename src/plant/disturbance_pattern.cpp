@@ -20,7 +20,11 @@ namespace {
 constexpr double kPi = 3.141592653589793;
 constexpr double kShortestRecordH = 24.0;
 constexpr Eigen::Index kMostValues = 10'000'000;
-constexpr double kNear = 1e-9;  // in log p: farther from the root than this, the side is certain
+/// In log p: farther from the root than this, the side is certain; at a usual slope of the mean
+/// much less will do.
+constexpr double kNear = 1e-9;
+constexpr double kSmallMean = 1e-14;  // difference of means that is rounding
+constexpr double kDoubt = 1e-13;      // ten times that, for the way to the sum
 constexpr double kLogPowerLimit = 7.0;  // powers e^-7..e^7 reach any mean a usable shape can have
 
 struct Shape {
@@ -59,13 +63,18 @@ Vector interpolated(const Vector& hourly, double sample_time_h, Eigen::Index cou
   return values;
 }
 
+struct Near {
+  double at;
+  bool met;  ///< f(at) is rounding
+};
+
 /// Where decreasing `f` is zero, nearly: regula falsi (Illinois) in low..high.
-double nearRoot(const std::function<double(double)>& f, double low, double high) {
+Near nearRoot(const std::function<double(double)>& f, double low, double high) {
   double f_low = f(low), f_high = f(high), at = low;
-  for (int i = 0; i < 40 && high - low > kNear; ++i) {
+  for (int i = 0; i < 40; ++i) {
     at = std::clamp((low * f_high - high * f_low) / (f_high - f_low), low, high);
     const double f_at = f(at);
-    if (std::abs(f_at) < 1e-14) break;
+    if (std::abs(f_at) < kSmallMean) return {at, true};
     if (f_at > 0.0) {
       low = at;
       f_low = f_at;
@@ -76,7 +85,16 @@ double nearRoot(const std::function<double(double)>& f, double low, double high)
       f_low *= 0.5;
     }
   }
-  return at;
+  return {at, false};
+}
+
+/// -d mean(unit^p) / d log p; `logs` are those of unit, one of which is 0 and has no share.
+double steepness(const Vector& logs, double log_p) {
+  const double p = std::exp(log_p);
+  double sum = 0.0;
+  for (const double value : logs)
+    if (std::isfinite(value)) sum -= p * value * std::exp(p * value);
+  return sum / static_cast<double>(logs.size());
 }
 
 /// The power p for which mean(unit^p) = mean; unit in [0,1], so the mean falls as p grows.
@@ -87,13 +105,14 @@ double powerForMean(const Vector& unit, double mean, const std::string& where) {
   require(mean_at(low) >= mean && mean_at(high) <= mean, where + ": mean",
           "a value that the shape can have; nearer to the middle of lower..upper");
   const Vector logs = unit.array().log();
-  const double near =
+  const Near near =
       nearRoot([&](double log_p) { return (std::exp(log_p) * logs.array()).exp().mean() - mean; },
                low, high);
+  const double open = near.met ? std::min(kNear, kDoubt / steepness(logs, near.at)) : kNear;
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
     const bool last = middle == low || middle == high;
-    const bool above = std::abs(middle - near) > kNear ? middle < near : mean_at(middle) > mean;
+    const bool above = std::abs(middle - near.at) > open ? middle < near.at : mean_at(middle) > mean;
     (above ? low : high) = middle;
     if (last) break;
   }

@@ -26,6 +26,24 @@ TEST(ReferenceTrajectory, StartsAtTheOutputAndApproachesAHeldSetpointGeometrical
   }
 }
 
+TEST(ReferenceTrajectory, ColumnsThatAreAskedForAloneAreThoseOfTheWholePath) {
+  SetpointSource setpoint = test::setpointOf(test::activatedSludgeInfo(), pair(55.0, 2200.0),
+                                             {{10.0, pair(60.0, 2100.0)}});
+  setpoint.advance(0);
+  for (const bool preview : {false, true})
+    for (const Eigen::Index first : {0, 1, 32, 33, 100, 199}) {
+      ReferenceTrajectory reference(pair(0.0, 0.96), preview);
+      reference.reset(pair(200.0, 2000.0));
+      Matrix whole(2, 200), part = Matrix::Constant(2, 200, -1.0);
+      reference.predict(setpoint, 0, whole);
+      reference.predict(setpoint, 0, part, first);
+      EXPECT_TRUE((part.leftCols(first).array() == -1.0).all()) << "left as they were";
+      const double tolerance = first > 32 && !preview ? 1e-12 : 0.0;  // a power at once
+      EXPECT_LE((part - whole).rightCols(200 - first).cwiseAbs().maxCoeff(), 2200.0 * tolerance)
+          << first;
+    }
+}
+
 TEST(ReferenceTrajectory, AdvancesOntoItsOwnPrediction) {
   for (const bool preview : {false, true}) {
     ReferenceTrajectory reference(pair(0.5, 0.9), preview);

@@ -5,7 +5,6 @@
 #include <random>
 #include <stdexcept>
 
-#include "fmbpc/base/input_error.hpp"
 #include "plant/integrator_fixture.hpp"
 
 namespace fpc {
@@ -13,15 +12,8 @@ namespace plant_runge_kutta_test {
 
 using namespace integrator_fixture;
 
-class RungeKuttaTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!hasRungeKutta()) GTEST_SKIP() << "no ARKODE";
-  }
-};
-
 // dx/dt = 1e6 (1 - x): steps of the size that stability allows, until it says so.
-TEST_F(RungeKuttaTest, SaysThatAStiffPlantIsTooMuchWork) {
+TEST(RungeKutta, SaysThatAStiffPlantIsTooMuchWork) {
   const TestPlant plant(1, 1.0, [](VectorRef x, VectorRef, VectorRef, Eigen::Ref<Vector> dxdt) {
     dxdt[0] = 1e6 * (1.0 - x[0]);
   });
@@ -35,7 +27,7 @@ TEST_F(RungeKuttaTest, SaysThatAStiffPlantIsTooMuchWork) {
 
 // A tank that drains, dx/dt = -x, with equations that hold above -0.1 only: a step over the whole
 // sample leads below that and is tried again from a short one.
-TEST_F(RungeKuttaTest, AShortStepIsTriedWhereALongOneLeavesTheModel) {
+TEST(RungeKutta, AShortStepIsTriedWhereALongOneLeavesTheModel) {
   int refused = 0;
   const TestPlant plant(1, 1.0, [&](VectorRef x, VectorRef, VectorRef, Eigen::Ref<Vector> dxdt) {
     if (x[0] < -0.1) {
@@ -66,7 +58,7 @@ std::pair<long, double> oscillate(double tolerance) {
 
 // An error estimate of order 4 allows steps in proportion to tolerance^(1/5): 1e-5 of the tolerance
 // costs ten times the steps (a pair of orders 3 and 2 would need 46 times, one of 8 and 7 four).
-TEST_F(RungeKuttaTest, IsOfOrdersFiveAndFour) {
+TEST(RungeKutta, IsOfOrdersFiveAndFour) {
   const auto loose = oscillate(1e-6), tight = oscillate(1e-11);
   EXPECT_LT(loose.second, 1e-4);
   EXPECT_LT(tight.second, 1e-9);
@@ -87,7 +79,7 @@ Vector near(const std::vector<Quantity>& quantities, std::mt19937_64& generator)
 // A sample by the explicit method, default tolerances, beside CVODE with narrow ones: the error
 // adds up over the steps to less than a hundred tolerances. BSM1, which a loop file leaves to its
 // own steps, has kinks that no error estimate sees.
-TEST_F(RungeKuttaTest, AgreesWithATightReferenceOnEveryPlant) {
+TEST(RungeKutta, AgreesWithATightReferenceOnEveryPlant) {
   constexpr unsigned kSeed = 11;
   SCOPED_TRACE("seed " + std::to_string(kSeed));
   std::mt19937_64 generator(kSeed);
@@ -108,26 +100,6 @@ TEST_F(RungeKuttaTest, AgreesWithATightReferenceOnEveryPlant) {
       EXPECT_LT(error, 1e-6) << "trial " << i;
     }
   }
-}
-
-TEST(RungeKutta, AMethodThatTheBuildHasNotIsRefusedByItsKey) {
-  IntegratorParams params = with(kRungeKutta);
-  EXPECT_NO_THROW(params.validate(true));
-  try {
-    params.validate(false);
-    FAIL() << "nothing was thrown";
-  } catch (const InputError& e) {
-    const std::string words = e.what();
-    for (const char* word : {"integrator.method", "bdf or adams", "ARKODE"})
-      EXPECT_NE(words.find(word), std::string::npos) << words;
-  }
-  const TestPlant plant(1, 1.0, firstOrder);
-  if (hasRungeKutta())
-    EXPECT_NO_THROW(Integrator(plant, params));
-  else
-    EXPECT_THROW(Integrator(plant, params), InputError);
-  for (const IntegrationMethod method : {kBdf, kAdams})
-    EXPECT_NO_THROW(with(method).validate(false));
 }
 
 }  // namespace plant_runge_kutta_test

@@ -17,16 +17,20 @@ class ReferenceTrajectory {
   ReferenceTrajectory(Vector pole, bool preview);
   void reset(VectorRef outputs);                      ///< y_r = y
   const Vector& present() const { return present_; }  ///< y_r(k)
-  /// future.col(i) = y_r(k+1+i) for the columns given; no memory touched, no allocation.
-  void predict(const SetpointSource& setpoint, std::uint32_t step, Eigen::Ref<Matrix> future) const;
+  /// future.col(i) = y_r(k+1+i) for the columns from `first` on; the others are left as they are.
+  /// Without preview those far off cost nothing. No memory touched, no allocation.
+  void predict(const SetpointSource& setpoint, std::uint32_t step, Eigen::Ref<Matrix> future,
+               Eigen::Index first = 0) const;
   void advance(const SetpointSource& setpoint, std::uint32_t step);  ///< from k = step to k+1
 
  private:
   const Vector& target(const SetpointSource& setpoint, std::uint32_t step) const;
+  void predictAhead(const SetpointSource& setpoint, std::uint32_t step, Eigen::Ref<Matrix> future,
+                    Eigen::Index first) const;
 
   Vector pole_, present_;
   bool preview_;
-  mutable Vector scheduled_;
+  mutable Vector scheduled_, last_;
 };
 
 }  // namespace fpc

@@ -49,11 +49,15 @@ class LocalModel {
   const std::vector<FiringResult>& firing() const { return firing_; }
 
  private:
-  double value(const Regressor& variable, VectorRef state, VectorRef input,
-               VectorRef disturbances) const;
-  Eigen::Index stateOf(const Regressor& variable) const;  ///< -1 for u(k) and d(k)
+  /// Where a variable stands: a row of the state, or else (row -1) u(k) or d(k).
+  struct Place {
+    Eigen::Index row, index;
+    bool of_input;
+  };
+  Place placeOf(const Regressor& variable) const;
+  static double value(const Place& place, VectorRef state, VectorRef input, VectorRef disturbances);
   bool blendOutput(Eigen::Index output, VectorRef state, VectorRef input, VectorRef disturbances);
-  void addTerm(Eigen::Index output, const Regressor& regressor, double coefficient,
+  void addTerm(Eigen::Index row, const Place& regressor, double coefficient,
                VectorRef disturbances);
   void layOut();
   void fillShifts();
@@ -65,7 +69,8 @@ class LocalModel {
   std::vector<int> output_lags_, input_lags_, disturbance_lags_;
   AffineModel affine_;
   std::vector<FiringResult> firing_;
-  std::vector<Vector> antecedent_values_;
+  std::vector<std::vector<Place>> antecedents_, regressors_;  ///< of each output
+  std::vector<Vector> antecedent_values_, regressor_values_;
   std::vector<Matrix> slopes_;  ///< of an output's weights: rules x antecedents
   Vector last_input_;           ///< u(k-1) out of a state
 };

@@ -1,4 +1,4 @@
-// One sample of a plant by SUNDIALS (CVODE or ARKODE), inputs and disturbances held.
+// One sample of a plant by CVODE or an explicit method, inputs and disturbances held.
 #pragma once
 
 #include <memory>
@@ -9,22 +9,19 @@
 
 namespace fpc {
 
-/// kBdf: stiff, Newton, dense. kRungeKutta: explicit, orders 5 and 4; one-step, so that it loses
-/// nothing by starting anew at each sample.
+/// kBdf: stiff, Newton, dense. kAdams: functional iteration. Both by CVODE. kRungeKutta: explicit,
+/// orders 5 and 4; one-step, so that it loses nothing by starting anew at each sample.
 enum class IntegrationMethod { kBdf, kAdams, kRungeKutta };
 inline std::vector<std::string> wordsOf(IntegrationMethod) {
   return {"bdf", "adams", "runge_kutta"};
 }
-/// Whether this build has kRungeKutta: SUNDIALS 4 or newer with ARKODE.
-bool hasRungeKutta();
 
 struct IntegratorParams {
   double relative_tolerance{1e-8};
   double absolute_tolerance{1e-8};
   int max_steps{5000};
   IntegrationMethod method{IntegrationMethod::kBdf};
-  /// @throws InputError naming the field, also for a method that the build has not.
-  void validate(bool has_runge_kutta = hasRungeKutta()) const;
+  void validate() const;  ///< @throws InputError naming the field
 };
 
 enum class IntegrationStatus { kOk, kTooMuchWork, kModelFailed, kSolverFailed };
@@ -32,11 +29,11 @@ enum class IntegrationStatus { kOk, kTooMuchWork, kModelFailed, kSolverFailed };
 struct IntegrationResult {
   IntegrationStatus status{IntegrationStatus::kSolverFailed};
   std::string reason;  ///< words for a person, empty when ok
-  long steps{};
+  long steps{};        ///< within the sample; of kRungeKutta with those refused
   bool ok() const { return status == IntegrationStatus::kOk; }
 };
 
-class SundialsMethod;  // private to the room
+class SampleMethod;  // private to the room
 
 /// Starts anew at each sample, so that advance() depends on its arguments only (bit for bit).
 class Integrator {
@@ -51,7 +48,7 @@ class Integrator {
   IntegrationResult advance(Eigen::Ref<Vector> x, VectorRef u, VectorRef d, double seconds);
 
  private:
-  std::unique_ptr<SundialsMethod> method_;
+  std::unique_ptr<SampleMethod> method_;
 };
 
 }  // namespace fpc

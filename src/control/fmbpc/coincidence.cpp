@@ -7,7 +7,27 @@ namespace fpc {
 namespace {
 
 constexpr double kSingular = 1e-12;  // relative size below which a pivot counts as rounding
-constexpr int kWalked = 32;          // steps that are summed one by one
+constexpr int kWalked = 32;          // horizons that are summed step by step
+constexpr int kStart = 8;            // of longer ones fewer than these steps
+constexpr Eigen::Index kSmall = 20;  // rows and columns below which Eigen multiplies by definition
+
+/// to = a b by definition: the same bits as Eigen's below kSmall, without its way there.
+void multiply(const Matrix& a, const Matrix& b, Matrix& to) {
+  if (a.rows() + a.cols() + b.cols() >= kSmall) {
+    to.noalias() = a * b;
+    return;
+  }
+  const Eigen::Index rows = a.rows(), depth = a.cols(), cols = b.cols();
+  for (Eigen::Index j = 0; j < cols; ++j) {
+    const double* factor = b.data() + j * depth;
+    double* out = to.data() + j * rows;
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      double sum = 0.0;
+      for (Eigen::Index k = 0; k < depth; ++k) sum += a.data()[k * rows + i] * factor[k];
+      out[i] = sum;
+    }
+  }
+}
 
 }  // namespace
 
@@ -23,41 +43,68 @@ CoincidenceGains::CoincidenceGains(Eigen::Index n_x, Eigen::Index n_u, Eigen::In
       normal_(n_u, n_u),
       gain_(n_u, n_y),
       move_gain_(n_u, n_u),
-      beyond_(n_x),
+      power_(n_x, n_x),
+      square_(n_x, n_x),
       factor_(n_u) {}
 
 void CoincidenceGains::walk(const AffineModel& model, int steps) {
   for (int i = 0; i < steps; ++i) {
     sum_ += free_;
-    effect_.noalias() = free_ * model.B;
+    multiply(free_, model.B, effect_);
     effect_size_ += effect_.cwiseAbs();
-    next_.noalias() = free_ * model.A;
+    multiply(free_, model.A, next_);
     free_.swap(next_);
   }
 }
 
-// False, with nothing done, if powers of A overflow: then only walking keeps the outputs apart.
-bool CoincidenceGains::leap(const AffineModel& model, int steps) {
-  beyond_.compute(model.A, steps);
-  if (!beyond_.power().allFinite() || !beyond_.sum().allFinite()) return false;
-  next_.noalias() = free_ * beyond_.sum();
+/// From n steps to 2 n, and to 2 n + 1 if `odd`; power_ is A^n and goes along unless `last`.
+void CoincidenceGains::twice(const AffineModel& model, bool odd, bool last) {
+  multiply(sum_, power_, next_);
   sum_ += next_;
-  effect_.noalias() = next_ * model.B;
+  multiply(next_, model.B, effect_);
   effect_size_ += effect_.cwiseAbs();
-  next_.noalias() = free_ * beyond_.power();
+  multiply(free_, power_, next_);
   free_.swap(next_);
-  return true;
+  if (odd) walk(model, 1);
+  if (last) return;
+  multiply(power_, power_, square_);
+  power_.swap(square_);
+  if (!odd) return;
+  multiply(power_, model.A, square_);
+  power_.swap(square_);
 }
 
-void CoincidenceGains::predict(const AffineModel& model, int horizon, VectorRef weight_output) {
+void CoincidenceGains::begin(const AffineModel& model, VectorRef weight_output) {
   free_ = model.C;
   for (Eigen::Index i = 0; i < free_.rows(); ++i)
     if (weight_output[i] == 0.0) free_.row(i).setZero();
   sum_.setZero();
   effect_size_.setZero();
-  walk(model, std::min(horizon, kWalked));
-  const int rest = horizon - kWalked;
-  if (rest > 0 && !leap(model, rest)) walk(model, rest);
+}
+
+// False if powers of A overflow: then only walking keeps the outputs apart.
+bool CoincidenceGains::leap(const AffineModel& model, int horizon) {
+  int bits = 0;
+  while ((horizon >> bits) >= kStart) ++bits;
+  const int start = horizon >> bits;
+  walk(model, start);
+  power_ = model.A;
+  for (int i = 1; i < start; ++i) {
+    multiply(power_, model.A, square_);
+    power_.swap(square_);
+  }
+  for (int bit = bits - 1; bit >= 0; --bit) twice(model, (horizon >> bit) % 2 == 1, bit == 0);
+  return power_.allFinite();
+}
+
+void CoincidenceGains::predict(const AffineModel& model, int horizon, VectorRef weight_output) {
+  begin(model, weight_output);
+  if (horizon <= kWalked) {
+    walk(model, horizon);
+  } else if (!leap(model, horizon)) {
+    begin(model, weight_output);
+    walk(model, horizon);
+  }
   effect_.noalias() = sum_ * model.B;
   // An effect that is nothing but the rounding of what cancelled is none.
   effect_ = (effect_.array().abs() > kSingular * effect_size_.array()).select(effect_, 0.0);

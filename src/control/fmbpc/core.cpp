@@ -3,6 +3,11 @@
 #include <utility>
 
 namespace fpc {
+namespace {
+
+constexpr Eigen::Index kGap = 32;  // columns of the reference that are worth leaving out
+
+}  // namespace
 
 FmbpcCore::FmbpcCore(const TsModel& model, const FmbpcParams& params, const InputLimits& limits,
                      DisturbanceForecast& forecast)
@@ -31,8 +36,21 @@ bool FmbpcCore::look(const LawSample& sample) {
   return fired;
 }
 
+/// Of the columns that nobody reads, those between the prediction and the sample aimed at, none.
+void FmbpcCore::drawReference(const LawSample& sample) {
+  const std::uint32_t step = sample.now.header.step;
+  const Eigen::Index near = params_.reference_lead_steps + params_.prediction_steps;
+  const Eigen::Index aimed = params_.aimedColumn();
+  if (params_.law == FmbpcForm::kIterated || aimed <= near + kGap) {
+    sample.reference.predict(sample.setpoint, step, future_);
+    return;
+  }
+  sample.reference.predict(sample.setpoint, step, future_.leftCols(near));
+  sample.reference.predict(sample.setpoint, step, future_, aimed);
+}
+
 Proposal FmbpcCore::propose(const LawSample& sample, Vector& input) {
-  sample.reference.predict(sample.setpoint, sample.now.header.step, future_);
+  drawReference(sample);
   return law_->propose(*model_, sample, future_, input);
 }
 

@@ -32,6 +32,8 @@ class FmbpcCore final : public LawCore {
   void adoptTuning() override;
 
  private:
+  void drawReference(const LawSample& sample);
+
   FmbpcParams params_;
   std::unique_ptr<InternalModel> model_;
   std::unique_ptr<InputLaw> law_;

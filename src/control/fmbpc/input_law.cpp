@@ -21,7 +21,8 @@ CoincidenceLaw::CoincidenceLaw(const InternalModel& model, const FmbpcParams& pa
     : gains_(model.state().size(), n_u, model.outputs().size()),
       coincidence_steps_(params.coincidence_steps),
       aim_(params.aimedColumn()),
-      shortfall_(model.outputs().size()) {}
+      shortfall_(model.outputs().size()),
+      settled_(model.outputs().size()) {}
 
 void CoincidenceLaw::retune(const FmbpcParams& params) {
   coincidence_steps_ = params.coincidence_steps;
@@ -31,13 +32,14 @@ void CoincidenceLaw::retune(const FmbpcParams& params) {
 const Vector& CoincidenceLaw::shortfall(const InternalModel& model, const Matrix& future,
                                         Eigen::Index column) const {
   shortfall_ = future.col(column) - model.offsetOutput();
-  shortfall_.noalias() -= gains_.sum() * model.offsetState();
+  shortfall_ -= settled_;
   return shortfall_;
 }
 
 Proposal CoincidenceLaw::propose(InternalModel& model, const LawSample& sample,
                                  const Matrix& future, Vector& input) {
   const bool solvable = computeGains(model.affine());
+  settled_.noalias() = gains_.sum() * model.offsetState();
   shortfall(model, future, aim_);
   shortfall_.noalias() -= gains_.free() * model.state();
   input.noalias() = gains_.gain() * shortfall_;

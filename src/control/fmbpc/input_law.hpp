@@ -57,6 +57,7 @@ class CoincidenceLaw : public InputLaw {
 
   Eigen::Index aim_;  ///< column of the references that u(k) aims at
   mutable Vector shortfall_;
+  Vector settled_;  ///< what the offset of the state adds to y(k+H)
 };
 
 class PublishedLaw final : public CoincidenceLaw {

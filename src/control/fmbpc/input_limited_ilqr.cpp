@@ -51,7 +51,38 @@ InputLimitedIlqr::InputLimitedIlqr(const LocalModel& model, IlqrParams params, I
       disturbances_(model.model().disturbances.size(), N_),
       reference_(n_y_, N_),
       fixed_(static_cast<std::size_t>(n_u_)),
-      factor_(n_u_) {}
+      factor_(n_u_) {
+  findPattern();
+}
+
+/// The rules write the rows of the outputs; the others hand on what is past, once and for all.
+void InputLimitedIlqr::findPattern() {
+  const Matrix& A = model_.affine().A;
+  std::vector<bool> ruled(static_cast<std::size_t>(n_x_));
+  for (std::size_t o = 0; o < model_.model().outputs.size(); ++o)
+    ruled[static_cast<std::size_t>(model_.outputState(static_cast<Eigen::Index>(o)))] = true;
+  rows_.resize(static_cast<std::size_t>(n_x_));
+  for (Eigen::Index j = 0; j < n_x_; ++j)
+    for (Eigen::Index k = 0; k < n_x_; ++k)
+      if (ruled[static_cast<std::size_t>(k)] || A(k, j) != 0.0)
+        rows_[static_cast<std::size_t>(j)].push_back(k);
+}
+
+/// PA_ = P A and Qxx_ = A' P A; what is 0 in A for ever is left out.
+void InputLimitedIlqr::multiplyByA(const Matrix& A) {
+  PA_.setZero();
+  for (Eigen::Index j = 0; j < n_x_; ++j) {
+    for (const Eigen::Index k : rows_[static_cast<std::size_t>(j)]) {
+      const double factor = A(k, j);
+      for (Eigen::Index i = 0; i < n_x_; ++i) PA_(i, j) += P_(i, k) * factor;
+    }
+    for (Eigen::Index i = 0; i < n_x_; ++i) {
+      double sum = 0.0;
+      for (const Eigen::Index k : rows_[static_cast<std::size_t>(i)]) sum += A(k, i) * PA_(k, j);
+      Qxx_(i, j) = sum;
+    }
+  }
+}
 
 void InputLimitedIlqr::forget() { warm_ = false; }
 
@@ -180,7 +211,13 @@ bool InputLimitedIlqr::chooseInput(Eigen::Index i) {
   K = -Qux_;
   for (Eigen::Index a = 0; a < n_u_; ++a)
     if (fixed_[static_cast<std::size_t>(a)]) K.row(a).setZero();
-  for (Eigen::Index j = 0; j < n_x_; ++j) factor_.solveInPlace(K.col(j));
+  if (n_u_ == 1) {  // a solver's call for each column costs more than its two divisions
+    const double root = factor_.matrixLLT()(0, 0);
+    K /= root;
+    K /= root;
+  } else {
+    for (Eigen::Index j = 0; j < n_x_; ++j) factor_.solveInPlace(K.col(j));
+  }
   step_.col(i) = wish_;
   return K.allFinite() && wish_.allFinite();
 }
@@ -197,9 +234,8 @@ bool InputLimitedIlqr::sweep() {
       P_(row, row) += params_.weight_output[o];
       p_[row] += params_.weight_output[o] * (states_(row, i + 1) + offset_[o] - reference_(o, i));
     }
-    PA_.noalias() = P_.lazyProduct(A);
+    multiplyByA(A);
     PB_.noalias() = P_.lazyProduct(B);
-    Qxx_.noalias() = A.transpose().lazyProduct(PA_);
     Qux_.noalias() = B.transpose().lazyProduct(PA_);
     Quu_.noalias() = B.transpose().lazyProduct(PB_);
     Qx_.noalias() = A.transpose().lazyProduct(p_);

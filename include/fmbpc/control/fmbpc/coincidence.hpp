@@ -12,8 +12,8 @@ namespace fpc {
 ///   y(k+H) = P x + S (B u + g),   P = C A^H,   S = C (I + A + ... + A^(H-1)),   M = S B,
 ///   u = F e + V u(k-1),           e = what y(k+H) lacks when u = 0.
 /// Rows of outputs without weight stay zero. Row by row, so that a diverging submodel that an
-/// output does not depend on cannot reach it; what is beyond some steps by doubling, so that the
-/// work grows with log H. No allocation after construction; work is fixed by the sizes and H.
+/// output does not depend on cannot reach it; long horizons by doubling, so that the work grows with
+/// log H. No allocation after construction; work is fixed by the sizes and H.
 /// Source: vallejo2019, eqs. 19-28; richalet2009 for the single variable. Symbols: P, S n_y n_x, M
 /// n_y n_u, F n_u n_y, V n_u n_u
 class CoincidenceGains {
@@ -42,12 +42,14 @@ class CoincidenceGains {
  private:
   void predict(const AffineModel& model, int horizon, VectorRef weight_output);
   void walk(const AffineModel& model, int steps);
-  bool leap(const AffineModel& model, int steps);
+  void begin(const AffineModel& model, VectorRef weight_output);
+  void twice(const AffineModel& model, bool odd, bool last);
+  bool leap(const AffineModel& model, int horizon);
   bool factor();
 
   Vector last_output_, scale_;
   Matrix free_, sum_, next_, effect_, effect_size_, weighted_, normal_, gain_, move_gain_;
-  PowerSum beyond_;
+  Matrix power_, square_;  ///< of A
   Eigen::LLT<Matrix> factor_;
 };
 

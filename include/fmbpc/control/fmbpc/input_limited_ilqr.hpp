@@ -44,6 +44,8 @@ class InputLimitedIlqr {
   double simulate(double share, Matrix& states, Matrix& inputs);
   void linearise();
   bool sweep();
+  void findPattern();
+  void multiplyByA(const Matrix& A);
   bool chooseInput(Eigen::Index i);
   bool solveFree();
   bool fixMore();
@@ -59,6 +61,7 @@ class InputLimitedIlqr {
   long evaluations_{};
   Matrix states_, inputs_, trial_states_, trial_inputs_, step_;  ///< columns: samples
   std::vector<Matrix> A_, B_, K_;                                ///< one per sample
+  std::vector<std::vector<Eigen::Index>> rows_;  ///< of each column of A, that may not be 0
   Matrix P_, PA_, PB_, Quu_, Qux_, Qxx_, free_Quu_;
   Vector p_, Qu_, Qx_, wish_, state_, next_, moved_, lower_, upper_, input_, correction_, offset_;
   Matrix disturbances_, reference_;
