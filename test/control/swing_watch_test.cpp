@@ -46,6 +46,18 @@ TEST(SwingWatch, StepsWithPausesAndOneWayTravelAreNoSwings) {
   }
 }
 
+TEST(SwingWatch, WishHeldOneWayForMoreThanAWindowIsNoSwing) {
+  SwingWatch watch(0.25, 250);
+  for (int k = 0; k < 30; ++k) watch.allow(k % 2 == 0 ? -0.5 : 0.5);
+  ASSERT_TRUE(watch.swings());
+  double allowed = 0.0;
+  for (int k = 0; k < 12; ++k) allowed = watch.allow(-0.5);
+  EXPECT_LT(allowed, 0.03) << "within the window it may still be one";
+  for (int k = 0; k < 12; ++k) allowed = watch.allow(-0.5);
+  EXPECT_EQ(allowed, 1.0);
+  EXPECT_FALSE(watch.swings());
+}
+
 TEST(SwingWatch, OffMeansOff) {
   SwingWatch watch(0.0, 100);
   for (int k = 0; k < 50; ++k) EXPECT_EQ(watch.allow(k % 2 == 0 ? -1.0 : 1.0), 1.0);

@@ -10,7 +10,8 @@ namespace fpc {
 /// change of the gain's sign, or at a setpoint that the model holds for possible and the plant does
 /// not. The third and every further turn halves the moves that are allowed, from an eighth of the
 /// range down to a fiftieth; while they are less than all, wishes for more than them count as
-/// large. Without a turn they open again by half in `release` samples.
+/// large. Without a turn they open again by half in `release` samples, and by half in every sample
+/// once all wishes of more than a window were large and one way: that is no swing.
 class SwingWatch {
  public:
   /// @param large in parts of the range; 0 never finds a swing.
@@ -26,6 +27,7 @@ class SwingWatch {
 
   double large_, opening_;
   double allowed_{1.0};
+  int one_way_{0};                ///< samples in a row of large wishes in that direction
   int last_{0};                   ///< direction of the newest large wish ...
   int since_{kWindow};            ///< ... and how long ago
   int turned_[kWindow]{}, at_{};  ///< a ring: 1 where the direction changed
