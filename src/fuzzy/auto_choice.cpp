@@ -94,7 +94,8 @@ Committee chooseCommittee(const AutoData& data, const StructureSearch& found) {
   return best;
 }
 
-AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step) {
+AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step,
+                      const Vector& confirmed) {
   const Vector measured = data.data->values.col(data.output);
   AutoFigures f;
   const FitFigures free = fitFigures(measured, free_run), one = fitFigures(measured, one_step);
@@ -103,7 +104,9 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
   f.one_step = one.samples > 0 ? one.rmse : kNaN;
   f.blocks = blockErrors(data, free_run);
   f.mean = meanBlockError(data, free_run);
-  f.pieces = pieceErrors(data, free_run);
+  const Vector& judged = confirmed.size() > 0 ? confirmed : free_run;
+  f.confirmed = meanBlockError(data, judged);
+  f.pieces = pieceErrors(data, judged);
   f.width = widthOf(measured - free_run);
   f.one_step_width = widthOf(measured - one_step);
   return f;
@@ -139,7 +142,7 @@ void dropStuck(const Committee& committee, std::vector<Fitted>& fitted) {
 }
 
 bool isLower(const AutoFigures& other, const AutoFigures& than) {
-  return other.mean < kWorth * than.mean;
+  return other.confirmed < kWorth * than.confirmed;
 }
 
 bool isWorthIt(const AutoFigures& other, const AutoFigures& linear) {
@@ -147,7 +150,7 @@ bool isWorthIt(const AutoFigures& other, const AutoFigures& linear) {
 }
 
 bool beyondSpread(const AutoFigures& other, const AutoFigures& linear) {
-  if (!(other.mean < linear.mean)) return false;
+  if (!(other.confirmed < linear.confirmed)) return false;
   std::vector<double> ratios;
   for (std::size_t b = 0; b < std::min(other.pieces.size(), linear.pieces.size()); ++b) {
     const double ratio = std::log(other.pieces[b] / linear.pieces[b]);

@@ -13,8 +13,10 @@ struct Committee {
 };
 Committee chooseCommittee(const AutoData& data, const StructureSearch& found);
 
-/// Figures of held-out predictions.
-AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step);
+/// Figures of held-out predictions. `confirmed`: by choices that did not look at the block, see
+/// confirmChoices(); empty: free_run, where nothing was chosen.
+AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step,
+                      const Vector& confirmed = {});
 
 /// Fits a candidate to all rows; from other seeds where that fails by the measure of its held-out
 /// error. Not finite: none came within `most` times that error.
@@ -24,7 +26,7 @@ Fitted fitWhole(const AutoData& data, const Judgement& judged, int window, doubl
 /// finite.
 void dropStuck(const Committee& committee, std::vector<Fitted>& fitted);
 
-/// The mean of the blocks' errors is lower by 3 %.
+/// The confirmed mean of the blocks' errors is lower by 3 %.
 bool isLower(const AutoFigures& other, const AutoFigures& than);
 /// The same, and beyond the spread.
 bool isWorthIt(const AutoFigures& other, const AutoFigures& linear);

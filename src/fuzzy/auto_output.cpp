@@ -7,6 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/parallel.hpp"
 #include "fuzzy/auto_choice.hpp"
+#include "fuzzy/auto_confirm.hpp"
 #include "fuzzy/auto_delay.hpp"
 #include "fuzzy/contradiction.hpp"
 
@@ -43,6 +44,7 @@ class OutputSearch {
                 std::to_string(data_.windows.size()) +
                 " blocks (fewer --blocks or a smaller --window, if a block has only few rows)" +
                 (contradiction_.empty() ? "" : "; " + contradiction_));
+    confirmed_ = confirmChoices(data_, searched_);
     chooseModels();
     chooseState();
     keepTrials();
@@ -130,14 +132,14 @@ class OutputSearch {
     require(line >= 0, data_.data->source + ": output '" + name() + "'",
             "a linear model that can be fitted to all rows");
     const Judgement& l = lines[static_cast<std::size_t>(line)];
-    found_.linear = figuresOf(data_, l.free_run, l.one_step);
+    found_.linear = figuresOf(data_, l.free_run, l.one_step, confirmed_.linear);
     linear_text_ = l.candidate.text();
     result_.linear.submodels.push_back(linear);
     const int rules = settle(searched_.regressors, fuzzy, 2.0);
     fuzzy_chosen_ = false;
     if (rules >= 0) {
       const Judgement& r = searched_.regressors[static_cast<std::size_t>(rules)];
-      found_.regressors = figuresOf(data_, r.free_run, r.one_step);
+      found_.regressors = figuresOf(data_, r.free_run, r.one_step, confirmed_.regressors);
       fuzzy_chosen_ = found_.regressors.fit > 0.0 && isWorthIt(found_.regressors, found_.linear);
       fuzzy_text_ = r.candidate.text();
       alone_.fuzzy = r.candidate;
@@ -168,7 +170,7 @@ class OutputSearch {
       return;
     }
     state.correction = committee.correction;
-    found_.state = figuresOf(data_, committee.free_run, committee.one_step);
+    found_.state = figuresOf(data_, committee.free_run, committee.one_step, confirmed_.state);
     state.free_run_width = found_.state.width;
     state.one_step_width = found_.state.one_step_width;
     for (const auto* j : committee.members) members_.push_back(j->candidate.text());
@@ -221,6 +223,7 @@ class OutputSearch {
   AutoOutput found_;
   SearchedOutput alone_;
   StructureSearch searched_;
+  Confirmation confirmed_;
   bool fuzzy_chosen_{false}, states_complete_{true};
   std::string linear_text_, fuzzy_text_, contradiction_;
   std::vector<std::string> members_;

@@ -170,11 +170,7 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
     }
     j.rmse = complete ? rmseOf(data_, j.free_run) : kInfinity;
     j.blocks = blockErrors(data_, j.free_run);
-    const double one_step = rmseOf(data_, j.one_step);
-    const double weight = std::isfinite(one_step) && one_step > 0.0 ? kOneStepShare : 0.0;
-    const double error = complete ? meanBlockError(data_, j.free_run) : kInfinity;
-    j.score = std::pow(error, 1.0 - weight) * (weight > 0.0 ? std::pow(one_step, weight) : 1.0) *
-              penalty(j.parameters, data_);
+    j.score = complete ? scoreOf(data_, j) : kInfinity;
   }
   return judged;
 }
@@ -195,6 +191,13 @@ void Search::sortAll() {
 }
 
 }  // namespace
+
+double scoreOf(const AutoData& data, const Judgement& judged) {
+  const double one_step = rmseOf(data, judged.one_step);
+  const double weight = std::isfinite(one_step) && one_step > 0.0 ? kOneStepShare : 0.0;
+  return std::pow(meanBlockError(data, judged.free_run), 1.0 - weight) *
+         (weight > 0.0 ? std::pow(one_step, weight) : 1.0) * penalty(judged.parameters, data);
+}
 
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
                                  std::uint64_t seed, const SearchLimits& limits) {

@@ -78,6 +78,8 @@ double meanBlockError(const AutoData& data, const Vector& predicted);
 /// rmse of free runs over the stretches a model was fitted to.
 double seenError(const AutoData& data, const Fitted& fitted, const std::vector<Stretch>& stretches,
                  int window);
+/// Score of a judgement on the blocks of `data`, all of which it was judged on.
+double scoreOf(const AutoData& data, const Judgement& judged);
 /// Akaike's final prediction error, as a factor on the rms.
 double penalty(Eigen::Index parameters, const AutoData& data);
 std::vector<double> blockErrors(const AutoData& data, const Vector& predicted);

@@ -21,7 +21,7 @@ std::string shortNumber(double value) {
 std::string lowestFuzzyText(const AutoOutput& found) {
   double lowest = kInfinity;
   for (const auto* f : {&found.regressors, &found.state})
-    if (!f->blocks.empty()) lowest = std::min(lowest, f->mean);
+    if (!f->blocks.empty()) lowest = std::min(lowest, f->confirmed);
   return std::isfinite(lowest) ? "free run " + shortNumber(lowest) : "none ran to the end";
 }
 
@@ -36,14 +36,15 @@ std::string verdictOf(const AutoOutput& found, const AutoFigures& best) {
   const AutoFigures& line = found.linear;
   if (!found.beats_linear)
     return "no fuzzy model beats the best linear one beyond the spread over held-out blocks (" +
-           lowestFuzzyText(found) + ", beside " + shortNumber(line.mean) +
+           lowestFuzzyText(found) + ", beside " + shortNumber(line.confirmed) +
            "): the linear model is written";
   std::string words =
       "the fuzzy model beats linear beyond the spread over held-out blocks: free run " +
-      shortNumber(best.mean) + " beside " + shortNumber(line.mean) + " of the best linear one";
+      shortNumber(best.confirmed) + " beside " + shortNumber(line.confirmed) +
+      " of the best linear one, each block by a choice that did not look at it";
   if (found.best == ModelKind::kState)
     words += "; it has a state of its own, for simulation; what control laws take reaches " +
-             shortNumber(found.fuzzy_model ? found.regressors.mean : line.mean) +
+             shortNumber(found.fuzzy_model ? found.regressors.confirmed : line.confirmed) +
              (found.fuzzy_model ? "" : " (linear)");
   return words + oneStepWords(best, line);
 }

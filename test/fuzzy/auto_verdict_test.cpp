@@ -10,7 +10,7 @@ namespace fuzzy_auto_verdict_test {
 
 AutoFigures figures(double free_run, double one_step) {
   AutoFigures made;
-  made.mean = made.free_run = free_run;
+  made.mean = made.free_run = made.confirmed = free_run;
   made.one_step = one_step;
   made.fit = 90.0;
   made.blocks.assign(4, free_run);

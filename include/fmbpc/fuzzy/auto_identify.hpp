@@ -48,8 +48,9 @@ struct AutoFigures {
   double free_run{}, one_step{};  ///< rmse over all held-out rows, unit of the output
   double fit{};                   ///< [%] of the free run
   std::vector<double> blocks;     ///< free-run rmse of each
-  std::vector<double> pieces;     ///< the same of shorter parts, by which models are compared
-  double width{};                 ///< half width of the 95 % interval of the free run
+  double confirmed{};  ///< mean over the blocks, each of a choice that did not look at that block
+  std::vector<double> pieces;  ///< of that choice, of shorter parts: models are compared by them
+  double width{};              ///< half width of the 95 % interval of the free run
   double one_step_width{};
 };
 
