@@ -180,14 +180,15 @@ void plantSamples() {
   plantSample(IntegrationMethod::kRungeKutta);
 }
 
-/// Gustafson-Kessel on 100,000 samples of 10 numbers into 8 clusters.
+/// Gustafson-Kessel on 100,000 samples of 10 numbers into 8 clusters, or as many as are asked for.
 class Clustering {
  public:
-  Clustering() : points_(10, 100000) {
+  explicit Clustering(Eigen::Index samples = 100000, Eigen::Index numbers = 10, int clusters = 8)
+      : points_(numbers, samples) {
     std::mt19937_64 generator(1);
     std::normal_distribution<double> normal;
     for (double& value : flat(points_)) value = normal(generator);
-    params_.clusters = 8;
+    params_.clusters = clusters;
     params_.max_iterations = kIterations;
     params_.tolerance = 1e-14;
   }
@@ -233,9 +234,8 @@ void covariancePass() {
       [&] { kept = multiplyAdds(kNeeded, bits); });
 }
 
-/// For scripts/bench, which has numpy beside it: seconds of one iteration.
-void clusteringIteration() {
-  Clustering clustering;
+/// For scripts/bench, which has numpy and Octave beside it: seconds of one iteration.
+void clusteringIteration(Clustering clustering) {
   const double seconds = Effort::fromEnvironment().seconds;
   std::printf("%.6g\n",
               1e-6 * microseconds([&] { clustering.run(0); }, seconds) / Clustering::kIterations);
@@ -256,7 +256,11 @@ void runsInParallel() {
 int main(int count, char** arguments) {
   using namespace fpc::bench;
   if (count > 1 && std::string(arguments[1]) == "clustering") {
-    clusteringIteration();
+    if (count == 5)
+      clusteringIteration(Clustering(std::stol(arguments[2]), std::stol(arguments[3]),
+                                     static_cast<int>(std::stol(arguments[4]))));
+    else
+      clusteringIteration(Clustering());
     return 0;
   }
   inProcess("asp_case1", "0.8");

@@ -111,7 +111,8 @@ TEST(OffsetValve, AnIdentificationThatFailsOrNeverBeginsIsTold) {
   const LoopFile few =
       readLoop("asp_identify", {{"sampling.duration_h", "4"}, {"model.identify.after", "10"}});
   const RunRecord record = runLoop(few);
-  const RunRemark* told = remarkWith(summarize(few, record, 0.0), "identification: ");
+  const Summary summary = summarize(few, record, 0.0);
+  const RunRemark* told = remarkWith(summary, "identification: ");
   ASSERT_NE(told, nullptr);
   EXPECT_EQ(told->first, 10U);  // from sample 9; its model was to be used from the next one on
   EXPECT_EQ(told->samples, 1U);
