@@ -75,9 +75,7 @@ void collectError(int, const char*, const char*, char* message, void* text) {
   *static_cast<std::string*>(text) = message != nullptr ? message : "";
 }
 
-void Cvode::failCreation() {
-  throw std::runtime_error("integrator: SUNDIALS could not be set up");
-}
+void Cvode::failCreation() { throw std::runtime_error("integrator: SUNDIALS could not be set up"); }
 
 void Cvode::makeVector() {
 #if SUNDIALS_VERSION_MAJOR >= 7

@@ -23,8 +23,8 @@ constexpr Eigen::Index kMostValues = 10'000'000;
 /// In log p: farther from the root than this, the side is certain; at a usual slope of the mean
 /// much less will do.
 constexpr double kNear = 1e-9;
-constexpr double kSmallMean = 1e-14;  // difference of means that is rounding
-constexpr double kDoubt = 1e-13;      // ten times that, for the way to the sum
+constexpr double kSmallMean = 1e-14;    // difference of means that is rounding
+constexpr double kDoubt = 1e-13;        // ten times that, for the way to the sum
 constexpr double kLogPowerLimit = 7.0;  // powers e^-7..e^7 reach any mean a usable shape can have
 
 struct Shape {
@@ -112,7 +112,8 @@ double powerForMean(const Vector& unit, double mean, const std::string& where) {
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
     const bool last = middle == low || middle == high;
-    const bool above = std::abs(middle - near.at) > open ? middle < near.at : mean_at(middle) > mean;
+    const bool above =
+        std::abs(middle - near.at) > open ? middle < near.at : mean_at(middle) > mean;
     (above ? low : high) = middle;
     if (last) break;
   }

@@ -14,7 +14,8 @@ namespace fpc {
 namespace {
 
 constexpr std::size_t kStages = 7;  // the last one is the first of the next step
-/// Row i: x + h (sum over j of a_ij k_j) is where stage i + 2 stands; the last row is the new state.
+/// Row i: x + h (sum over j of a_ij k_j) is where stage i + 2 stands; the last row is the new
+/// state.
 constexpr std::array<std::array<double, kStages - 1>, kStages - 1> kNodes{{
     {1.0 / 5.0},
     {3.0 / 40.0, 9.0 / 40.0},
@@ -24,10 +25,9 @@ constexpr std::array<std::array<double, kStages - 1>, kStages - 1> kNodes{{
     {35.0 / 384.0, 0.0, 500.0 / 1113.0, 125.0 / 192.0, -2187.0 / 6784.0, 11.0 / 84.0},
 }};
 /// Order 5 less order 4.
-constexpr std::array<double, kStages> kError{71.0 / 57600.0,      0.0,
-                                             -71.0 / 16695.0,     71.0 / 1920.0,
-                                             -17253.0 / 339200.0, 22.0 / 525.0,
-                                             -1.0 / 40.0};
+constexpr std::array<double, kStages> kError{
+    71.0 / 57600.0,      0.0,          -71.0 / 16695.0, 71.0 / 1920.0,
+    -17253.0 / 339200.0, 22.0 / 525.0, -1.0 / 40.0};
 constexpr double kSafety = 0.9, kLeastChange = 0.1, kMostChange = 5.0;
 constexpr double kShortest = 1e-13;  // of the sample: below it, time does not go on
 constexpr double kRounding = 1e-6;   // of a step: no step of its own

@@ -211,13 +211,9 @@ bool InputLimitedIlqr::chooseInput(Eigen::Index i) {
   K = -Qux_;
   for (Eigen::Index a = 0; a < n_u_; ++a)
     if (fixed_[static_cast<std::size_t>(a)]) K.row(a).setZero();
-  if (n_u_ == 1) {  // a solver's call for each column costs more than its two divisions
-    const double root = factor_.matrixLLT()(0, 0);
-    K /= root;
-    K /= root;
-  } else {
-    for (Eigen::Index j = 0; j < n_x_; ++j) factor_.solveInPlace(K.col(j));
-  }
+  const double root = factor_.matrixLLT()(0, 0);
+  if (n_u_ == 1) (K /= root) /= root;  // what a solver's call does, at a tenth of the cost
+  for (Eigen::Index j = 0; j < n_x_ && n_u_ > 1; ++j) factor_.solveInPlace(K.col(j));
   step_.col(i) = wish_;
   return K.allFinite() && wish_.allFinite();
 }

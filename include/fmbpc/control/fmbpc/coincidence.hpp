@@ -12,10 +12,10 @@ namespace fpc {
 ///   y(k+H) = P x + S (B u + g),   P = C A^H,   S = C (I + A + ... + A^(H-1)),   M = S B,
 ///   u = F e + V u(k-1),           e = what y(k+H) lacks when u = 0.
 /// Rows of outputs without weight stay zero. Row by row, so that a diverging submodel that an
-/// output does not depend on cannot reach it; long horizons by doubling, so that the work grows with
-/// log H. No allocation after construction; work is fixed by the sizes and H.
-/// Source: vallejo2019, eqs. 19-28; richalet2009 for the single variable. Symbols: P, S n_y n_x, M
-/// n_y n_u, F n_u n_y, V n_u n_u
+/// output does not depend on cannot reach it; long horizons by doubling, so that the work grows
+/// with log H. No allocation after construction; work is fixed by the sizes and H. Source:
+/// vallejo2019, eqs. 19-28; richalet2009 for the single variable. Symbols: P, S n_y n_x, M n_y n_u,
+/// F n_u n_y, V n_u n_u
 class CoincidenceGains {
  public:
   CoincidenceGains(Eigen::Index n_x, Eigen::Index n_u, Eigen::Index n_y);
