@@ -11,6 +11,8 @@ LINK = re.compile(r"\]\(([^)\s]+)\)")
 KEY = re.compile(r"\b([a-z]{3,}(?:19|20)\d\d[a-z]?|vallejo2021thesis|mekki)\b(?=[\])};:,. ]|$)", re.MULTILINE)
 FREE = re.compile(r"\b(?!COST|Debian|Ubuntu|Eigen|SUNDIALS)[A-Z][a-z']+(?: et al\.|(?:, [A-Z][a-z]+)* and(?: [A-Z]\w+)+)?,? \(?(?:19|20)\d\d\b")
 FENCED = re.compile(r"^```.*?^```|^    .*?$", re.MULTILINE | re.DOTALL)
+STUDY = re.compile(r"fmbpc study\s+(\w+(?:`, `\w+|`,\s+`\w+)*)")
+SOURCE = re.compile(r"fmbpc (?:study|reproduce)\s+\w+|test/\w[\w/]*\.cpp")  # what makes a table
 CONFIG = sorted((TOP / "config").rglob("*.yaml"))
 
 
@@ -64,6 +66,25 @@ class Docs(unittest.TestCase):
         entries = re.findall(r"^@article\{(\w+),(.*?)(?=^@|\Z)", (TOP / "docs/references.bib").read_text(), re.MULTILINE | re.DOTALL)
         without = {key for key, text in entries if "doi" not in text and "year" in text}
         self.assertLessEqual(without, {"rieger2003", "vallejo2026", "vinante1972"})
+
+    def test_studies_that_are_named_ship(self):
+        for page in PAGES:
+            for names in STUDY.findall(page.read_text()):
+                for name in re.findall(r"\w+", names):
+                    known = (TOP / "config/study" / f"{name}.yaml").exists() or list((TOP / "config/loop").rglob(f"{name}.yaml"))
+                    self.assertTrue(known, f"{page.name}: fmbpc study {name}")
+
+    def test_every_table_of_comparisons_says_what_makes_it(self):
+        """In the words before it, since the table before or the heading."""
+        before = []
+        for line in (TOP / "docs/comparisons.md").read_text().splitlines():
+            if line.startswith("#"):
+                before = []
+            elif line.startswith("|---"):
+                self.assertRegex(" ".join(before), SOURCE)
+                before = []
+            elif not line.startswith("|"):
+                before.append(line)
 
     def test_the_readme_is_a_page(self):
         self.assertLessEqual(len((TOP / "README.md").read_text().splitlines()), 120)

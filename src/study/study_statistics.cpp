@@ -109,7 +109,7 @@ Interval wilsonInterval(double wins, std::size_t n, double confidence) {
   const double centre = (share + z * z / (2.0 * count)) / scale;
   const double half =
       z / scale * std::sqrt(share * (1.0 - share) / count + z * z / (4.0 * count * count));
-  return {std::max(0.0, centre - half), std::min(1.0, centre + half)};
+  return {wins > 0.0 ? centre - half : 0.0, wins < count ? centre + half : 1.0};
 }
 
 Interval medianInterval(const std::vector<double>& sorted, double confidence) {

@@ -231,6 +231,8 @@ TEST(StudyStatistics, QuantilesAndIntervalsAreThoseOfTheBooks) {
   const Interval share = wilsonInterval(81, 263, 0.95);
   EXPECT_NEAR(share.lower, 0.2553, 5e-5);
   EXPECT_NEAR(share.upper, 0.3662, 5e-5);
+  EXPECT_EQ(wilsonInterval(0, 8, 0.95).lower, 0.0);  // not a rounding of it
+  EXPECT_EQ(wilsonInterval(8, 8, 0.95).upper, 1.0);
   // n = 10: the 2nd and the 9th value hold the median with 97.9 %, the 3rd and 8th only with 89 %.
   const std::vector<double> ten{1, 2, 3, 4, 5, 6, 7, 8, 9, 10};
   EXPECT_EQ(medianInterval(ten, 0.95).lower, 2.0);
