@@ -2,7 +2,9 @@
 """The figures of `fmbpc identify --auto` on public records, as in docs/identification.md: identified from the first rows of each
 record, judged on the others in free run and one step ahead.
 
-    FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--budget S]
+    FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--budget S] [--write]
+
+--write puts both tables of all records between their marks in docs/identification.md.
 """
 import argparse
 import json
@@ -13,6 +15,8 @@ import sys
 import tempfile
 
 TOOL = pathlib.Path(__file__).resolve().parent / "fmbpc"
+PAGE = TOOL.parent.parent / "docs" / "identification.md"
+BEGIN, END = "<!-- identification_table.py -->", "<!-- end -->"
 PLANT_INPUTS = "u1_gas_flow,u2_turbine_valves,u3_superheater_spray,u4_gas_dampers,u5_air_flow"
 PLANT_OUTPUTS = "y1_steam_pressure,y2_main_steam_temp,y3_reheat_steam_temp"
 COLUMN_INPUTS = "u_reboil_ratio_n0,u_reflux_ratio_n0,u_distillate_ratio_n0,u_feed_ethane_n0,u_top_pressure_n0"
@@ -109,10 +113,40 @@ def aim_rows(name, report):
                    ("reached" if reached else "not reached") + (" (it is the linear model)" if own_is_linear else "")]
 
 
+def written(page, tables):
+    """The page with these tables between its marks."""
+    before, rest = page.split(BEGIN + "\n", 1)
+    return before + BEGIN + "\n\n" + tables + "\n" + END + rest.split(END, 1)[1]
+
+
+def tables_of(names, budget):
+    """Both tables, each row printed as it is found."""
+    lines = []
+
+    def say(line):
+        lines.append(line)
+        print(line, flush=True)
+
+    say("| record, output | best | blocks: free run / one step | linear | held out: free run / one step | linear | fit %, best / linear |")
+    say("|---" * 7 + "|")
+    aims = []
+    for name in names:
+        report = identified(name, budget)
+        aims += aim_rows(name, report)
+        for cells in rows(name, report):
+            say("| " + " | ".join(cells) + " |")
+    say("\n| record, output | figure | held out | linear, published | best published | here | aim | |")
+    say("|---" * 8 + "|")
+    for cells in aims:
+        say("| " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(RECORDS))
     parser.add_argument("--budget", type=float, default=45.0, help="[s] per record")
+    parser.add_argument("--write", action="store_true", help="into docs/identification.md as well; of all records")
     arguments = parser.parse_args()
     if "FMBPC_DATA" not in os.environ:
         print("identification_table.py: FMBPC_DATA must name the folder of the records", file=sys.stderr)
@@ -121,17 +155,12 @@ def main():
     if unknown:
         print("identification_table.py: unknown record %s; known: %s" % (unknown[0], ", ".join(RECORDS)), file=sys.stderr)
         return 1
-    print("| record, output | best | blocks: free run / one step | linear | held out: free run / one step | linear | "
-          "fit %, best / linear |\n|---|---|---|---|---|---|---|")
-    aims = []
-    for name in arguments.names or RECORDS:
-        report = identified(name, arguments.budget)
-        aims += aim_rows(name, report)
-        for cells in rows(name, report):
-            print("| " + " | ".join(cells) + " |", flush=True)
-    print("\n| record, output | figure | held out | linear, published | best published | here | aim | |\n" + "|---" * 8 + "|")
-    for cells in aims:
-        print("| " + " | ".join(cells) + " |")
+    if arguments.write and arguments.names:
+        print("identification_table.py: --write writes the tables of all records: name none", file=sys.stderr)
+        return 1
+    tables = tables_of(arguments.names or RECORDS, arguments.budget)
+    if arguments.write:
+        PAGE.write_text(written(PAGE.read_text(encoding="utf-8"), tables), encoding="utf-8")
     return 0
 
 

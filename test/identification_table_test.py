@@ -44,5 +44,16 @@ class Aims(unittest.TestCase):
         self.assertFalse(table.is_reached("fit", 96.9, 97.0))
 
 
+class Page(unittest.TestCase):
+    def test_tables_stand_between_their_marks(self):
+        page = "before\n" + table.BEGIN + "\n\nold\n\n" + table.END + "\nafter\n"
+        self.assertEqual(table.written(page, "new\n"), "before\n" + table.BEGIN + "\n\nnew\n\n" + table.END + "\nafter\n")
+
+    def test_the_page_has_the_marks_once(self):
+        page = table.PAGE.read_text(encoding="utf-8")
+        self.assertEqual((1, 1), (page.count(table.BEGIN), page.count(table.END)))
+        self.assertEqual(table.written(page, "x"), table.written(table.written(page, "y"), "x"))
+
+
 if __name__ == "__main__":
     unittest.main()
