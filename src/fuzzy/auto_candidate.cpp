@@ -98,6 +98,7 @@ class CandidateFit {
       straight.shape = linear_;
       straight.parameters = line.parameters;
       fitted_.finite = endures(fitted_, straight, record_, stretches_);
+      fitted_.wild = !fitted_.finite;
     }
     if (c_.hidden && best.finite) {
       settlePrior(best);

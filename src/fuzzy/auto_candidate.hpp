@@ -12,7 +12,7 @@ namespace fpc {
 enum class AntecedentChoice {
   kOutput,
   kOutputs,
-  kInputs,
+  kInputs,  ///< and disturbances, and the present values of partners
   kOutputAndInputs,
   kState,
   kStateAndInputs,
@@ -48,6 +48,8 @@ struct Fitted {
   Vector parameters;
   StartPrior prior;  ///< hidden only
   bool finite{false};
+  bool wild{false};     ///< not finite since it runs away under larger inputs, see endures()
+  Eigen::Index rows{};  ///< that it was fitted to; fitWhole()
   double error{};  ///< free-run rmse over the rows it was fitted to, unit of the output; fitWhole()
 };
 

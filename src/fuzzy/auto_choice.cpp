@@ -117,13 +117,18 @@ Fitted fitWhole(const AutoData& data, const Judgement& judged, int window, doubl
   c.iterations = kLastIterations;
   Fitted best;
   best.error = kInfinity;
-  const int attempts = c.hidden ? 1 : 3;  // hidden states have other members
-  for (int attempt = 0; attempt < attempts; ++attempt, ++c.seed) {
-    Fitted fitted = fitCandidate(data, c, data.all);
+  const auto isGood = [&](const std::vector<Stretch>& stretches) {
+    Fitted fitted = fitCandidate(data, c, stretches);
+    fitted.rows = rowsOf(stretches);
     fitted.error = fitted.finite ? seenError(data, fitted, data.all, window) : kInfinity;
-    if (fitted.error < best.error) best = std::move(fitted);
-    if (best.error < kSuspicious * judged.rmse) return best;
-  }
+    if (fitted.error < best.error || !best.finite) best = std::move(fitted);
+    return best.error < kSuspicious * judged.rmse;
+  };
+  const int attempts = c.hidden ? 1 : 3;  // hidden states have other members
+  for (int attempt = 0; attempt < attempts; ++attempt, ++c.seed)
+    if (isGood(data.all)) return best;
+  c.seed = judged.candidate.seed;
+  if (best.wild && rowsOf(data.windows) < rowsOf(data.all)) isGood(data.windows);
   best.finite = best.finite && best.error < most * judged.rmse;
   return best;
 }

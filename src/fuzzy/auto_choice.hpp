@@ -19,7 +19,8 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
                       const Vector& confirmed = {});
 
 /// Fits a candidate to all rows; from other seeds where that fails by the measure of its held-out
-/// error. Not finite: none came within `most` times that error.
+/// error; to the rows of the search where all fits to more run away under larger inputs. Not
+/// finite: none came within `most` times that error.
 Fitted fitWhole(const AutoData& data, const Judgement& judged, int window, double most = 2.0);
 
 /// Of several starts of one structure, those that got stuck in the fit to all rows become not

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
+#include "fuzzy/coupled_candidates.hpp"
 #include "fuzzy/coupled_options.hpp"
 
 namespace fpc {
@@ -14,19 +15,7 @@ using Eigen::Index;
 using Choice = CoupledChoice;
 using Figures = std::vector<AutoFigures>;
 
-constexpr int kIterations = 60;
 constexpr double kHurt = 1.03;  // of a linear model whose partner became fuzzy
-
-/// Sets of other outputs: each one, then all.
-std::vector<std::vector<int>> partnersOf(int output, int outputs) {
-  std::vector<std::vector<int>> sets;
-  std::vector<int> all;
-  for (int j = 0; j < outputs; ++j)
-    if (j != output) all.push_back(j);
-  for (const int j : all) sets.push_back({j});
-  if (all.size() > 1) sets.push_back(all);
-  return sets;
-}
 
 class Coupling {
  public:
@@ -53,30 +42,13 @@ class Coupling {
   }
 
  private:
-  bool isFree(std::size_t i) const { return alone_[i].data.known.empty(); }
-
   /// Option 0 of each output is its linear model alone. false: no time.
   bool addLines() {
     for (std::size_t i = 0; i < n_; ++i) {
       if (lines_.add(i, {alone_[i].linear}).front() != 0) return false;
-      std::vector<Candidate> list;
-      const auto sets = partnersOf(static_cast<int>(i), static_cast<int>(n_));
-      Candidate c = alone_[i].linear;
-      c.iterations = kIterations;
-      for (const auto& set : sets)
-        for (const auto& [order, terms] :
-             std::vector<std::pair<int, int>>{{1, 1}, {2, 1}, {2, 2}, {3, 2}, {3, 3}})
-          for (const bool free : {false, true}) {
-            if (!isFree(i)) continue;
-            c.partners = set;
-            c.order = order;
-            c.input_terms = terms;
-            c.free_run = free;
-            c.linear_ridge = Candidate{}.linear_ridge;
-            list.push_back(c);
-          }
+      const auto list = linearForms(alone_[i], static_cast<int>(i), static_cast<int>(n_));
       std::vector<std::size_t> places = lines_.add(i, list);
-      const std::size_t forms = places.size() / std::max<std::size_t>(1, sets.size());
+      const std::size_t forms = places.size() / (n_ > 2 ? n_ : 1);  // each other output, then all
       together_.emplace_back(places.end() - static_cast<std::ptrdiff_t>(forms), places.end());
     }
     return true;
@@ -170,33 +142,17 @@ class Coupling {
     for (std::size_t i = 0; i < n_; ++i) {
       if (rules_.add(i, {lines_.option(i, line_[i]).candidate}).front() != 0) return false;
       if (aloneRules(i) != 0 && rules_.add(i, {*alone_[i].fuzzy}).front() != 1) return false;
-      if (isFree(i)) rules_.add(i, ruleList(i));
+      rules_.add(i, ruleForms(alone_[i], static_cast<int>(i), static_cast<int>(n_)));
     }
     return true;
   }
 
-  /// The fuzzy model found alone with other outputs; rules on these; two rules on all.
-  std::vector<Candidate> ruleList(std::size_t i) const {
-    std::vector<Candidate> list;
-    Candidate base = alone_[i].linear;
-    base.iterations = kIterations;
-    base.free_run = true;
-    base.order = base.input_terms = base.rules = 2;
-    const auto add = [&list](Candidate c, AntecedentChoice on, int rules) {
-      c.antecedents = on;
-      c.rules = rules;
-      list.push_back(c);
-    };
-    for (const auto& set : partnersOf(static_cast<int>(i), static_cast<int>(n_))) {
-      if (alone_[i].fuzzy) base = *alone_[i].fuzzy;
-      base.partners = set;
-      add(base, base.antecedents, base.rules);
-      add(base, AntecedentChoice::kPartners, 2);
-      add(base, AntecedentChoice::kPartners, 3);
-      if (base.antecedents != AntecedentChoice::kOutputAndInputs)
-        add(base, AntecedentChoice::kOutputAndInputs, 2);
-    }
-    return list;
+  /// Then what is near the rules that were chosen with other outputs.
+  Choice descended(Choice choice) {
+    choice = rules_.descend(choice);
+    for (std::size_t i = 0; i < n_; ++i)
+      rules_.add(i, nearForms(rules_.option(i, choice[i]).candidate));
+    return rules_.descend(choice);
   }
 
   std::size_t aloneRules(std::size_t i) const { return result_.outputs[i].fuzzy_model ? 1 : 0; }
@@ -225,7 +181,7 @@ class Coupling {
     Choice choice(n_);
     for (std::size_t i = 0; i < n_; ++i) choice[i] = aloneRules(i);
     const Figures line = rules_.figures(Choice(n_, 0)), alone = rules_.figures(choice);
-    choice = rules_.descend(choice);
+    choice = descended(choice);
     for (std::size_t i = 0; i < n_; ++i) choice[i] = std::max(choice[i], aloneRules(i));
     choice = prunedRules(choice, line, alone);
     std::vector<OutputModel> models(n_);

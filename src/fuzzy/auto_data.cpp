@@ -129,6 +129,12 @@ RecurrentData recurrentData(const AutoData& p, const std::vector<Regressor>& exo
   return r;
 }
 
+Index rowsOf(const std::vector<Stretch>& stretches) {
+  Index rows = 0;
+  for (const auto& s : stretches) rows += s.last - s.first;
+  return rows;
+}
+
 std::vector<Stretch> trainingStretches(const AutoData& p, int left_out) {
   std::vector<Stretch> kept;
   for (int b = 0; b < static_cast<int>(p.windows.size()); ++b) {

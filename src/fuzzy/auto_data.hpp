@@ -37,6 +37,8 @@ AutoData prepareAuto(const DataSet& data, int output, int blocks, Eigen::Index m
 RecurrentData recurrentData(const AutoData& prepared, const std::vector<Regressor>& exogenous,
                             bool absolute);
 
+Eigen::Index rowsOf(const std::vector<Stretch>& stretches);
+
 /// Stretches without the block `left_out` (-1: none), neighbours joined.
 std::vector<Stretch> trainingStretches(const AutoData& prepared, int left_out);
 

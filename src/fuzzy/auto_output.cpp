@@ -112,9 +112,14 @@ class OutputSearch {
       const Fitted whole = fitWhole(data_, judged[i], params_.window, most);
       if (!whole.finite) {
         remark("'" + judged[i].candidate.text() + "' is passed over: fitted to all rows, it runs " +
-               (std::isfinite(whole.error) ? "more than twice as far off as held out" : "away"));
+               (std::isfinite(whole.error) ? "more than twice as far off as held out"
+                : whole.wild               ? "away under larger inputs"
+                                           : "away"));
         continue;
       }
+      if (whole.rows < rowsOf(data_.all))
+        remark("'" + judged[i].candidate.text() + "' is fitted to " + std::to_string(whole.rows) +
+               " rows only: fitted to all, it runs away under larger inputs");
       model = toSubmodel(data_, whole);
       for (auto& rule : model.rules)
         rule.data_count = static_cast<std::uint64_t>(data_.data->rows()) / model.rules.size();

@@ -11,6 +11,7 @@
 #include "base/random.hpp"
 #include "fmbpc/fuzzy/auto_identify.hpp"
 #include "fmbpc/fuzzy/prediction.hpp"
+#include "fuzzy/coupled_candidates.hpp"
 
 namespace fpc {
 namespace fuzzy_auto_coupling_test {
@@ -144,6 +145,33 @@ TEST(AutoCoupling, WhatIsKnownKeepsAnOutputAlone) {
   params.known[0].max_pole = 0.99;
   const AutoIdentification found = autoIdentify(data, params);
   EXPECT_FALSE(takesOthers(found.linear, 0));
+}
+
+TEST(AutoCoupling, FormsAreOnePerSetOfOtherOutputs) {
+  SearchedOutput alone;
+  EXPECT_EQ(linearForms(alone, 0, 2).size(), 10U) << "five orders, one step or free run";
+  const auto forms = linearForms(alone, 1, 3);
+  ASSERT_EQ(forms.size(), 30U);
+  EXPECT_EQ(forms.front().partners, std::vector<int>{0});
+  EXPECT_EQ(forms.back().partners, (std::vector<int>{0, 2}));
+  for (const auto& c : ruleForms(alone, 1, 3)) EXPECT_GT(c.rules, 1) << c.text();
+  alone.data.known.max_pole = 0.9;
+  EXPECT_TRUE(linearForms(alone, 1, 3).empty());
+  EXPECT_TRUE(ruleForms(alone, 1, 3).empty());
+}
+
+TEST(AutoCoupling, MoreRulesAroundAChoiceWithOthersOnly) {
+  Candidate c;
+  c.rules = 4;
+  c.antecedents = AntecedentChoice::kInputs;
+  EXPECT_TRUE(nearForms(c).empty());
+  c.partners = {1};
+  const auto near = nearForms(c);
+  ASSERT_EQ(near.size(), 3U);
+  EXPECT_EQ(near[0].rules, 6);
+  EXPECT_EQ(near[1].antecedents, AntecedentChoice::kOutputAndInputs);
+  c.rules = 1;
+  EXPECT_TRUE(nearForms(c).empty());
 }
 
 }  // namespace fuzzy_auto_coupling_test
