@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""The figures of `fmbpc identify --auto` on public records, as in docs/identification.md: identified from the first rows of each
-record, judged on the others in free run and one step ahead.
+"""Every table of figures in docs/identification.md: `fmbpc identify --auto` on public records (identified from the first rows of each,
+judged on the others in free run and one step ahead), then the sections of identification_runs.py.
 
-    FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--budget S] [--write]
+    FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--section SECTION]... [--budget S] [--write]
 
---write puts both tables of all records between their marks in docs/identification.md.
+NAME: of a record, and no other section. --write puts each table between its marks in docs/identification.md, and the models of the
+section `loops` into config/model.
 """
 import argparse
 import json
@@ -14,9 +15,11 @@ import subprocess
 import sys
 import tempfile
 
+from identification_runs import SECTIONS, Records
+
 TOOL = pathlib.Path(__file__).resolve().parent / "fmbpc"
 PAGE = TOOL.parent.parent / "docs" / "identification.md"
-BEGIN, END = "<!-- identification_table.py -->", "<!-- end -->"
+BEGIN, END = "<!-- identification_table.py %s -->", "<!-- end -->"
 PLANT_INPUTS = "u1_gas_flow,u2_turbine_valves,u3_superheater_spray,u4_gas_dampers,u5_air_flow"
 PLANT_OUTPUTS = "y1_steam_pressure,y2_main_steam_temp,y3_reheat_steam_temp"
 COLUMN_INPUTS = "u_reboil_ratio_n0,u_reflux_ratio_n0,u_distillate_ratio_n0,u_feed_ethane_n0,u_top_pressure_n0"
@@ -113,10 +116,13 @@ def aim_rows(name, report):
                    ("reached" if reached else "not reached") + (" (it is the linear model)" if own_is_linear else "")]
 
 
-def written(page, tables):
-    """The page with these tables between its marks."""
-    before, rest = page.split(BEGIN + "\n", 1)
-    return before + BEGIN + "\n\n" + tables + "\n" + END + rest.split(END, 1)[1]
+def written(page, section, tables):
+    """The page with these tables between the marks of the section."""
+    begin = BEGIN % section + "\n"
+    if page.count(begin) != 1:
+        raise SystemExit("identification_table.py: %s has %s %d times, not once" % (PAGE.name, begin.strip(), page.count(begin)))
+    before, rest = page.split(begin)
+    return before + begin + "\n" + tables + "\n" + END + rest.split(END, 1)[1]
 
 
 def tables_of(names, budget):
@@ -142,25 +148,43 @@ def tables_of(names, budget):
     return "\n".join(lines) + "\n"
 
 
+def tables_of_section(section, budget, write):
+    with tempfile.TemporaryDirectory() as folder:
+        lines = SECTIONS[section](Records(folder), budget, write)
+    print("\n%s\n\n%s" % (section, "\n".join(lines)), flush=True)
+    return "\n".join(lines) + "\n"
+
+
+def refused(arguments):
+    """What is wrong with the command, or nothing."""
+    if "FMBPC_DATA" not in os.environ:
+        return "FMBPC_DATA must name the folder of the records"
+    unknown = [name for name in arguments.names if name not in RECORDS]
+    if unknown:
+        return "unknown record %s; known: %s" % (unknown[0], ", ".join(RECORDS))
+    if arguments.names and (arguments.write or arguments.section):
+        return "--write and --section take all records: name none"
+    return ""
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(RECORDS))
+    parser.add_argument("--section", action="append", choices=["records", *SECTIONS], help="all, if none is named")
     parser.add_argument("--budget", type=float, default=45.0, help="[s] per record")
-    parser.add_argument("--write", action="store_true", help="into docs/identification.md as well; of all records")
+    parser.add_argument("--write", action="store_true", help="into docs/identification.md as well")
     arguments = parser.parse_args()
-    if "FMBPC_DATA" not in os.environ:
-        print("identification_table.py: FMBPC_DATA must name the folder of the records", file=sys.stderr)
+    wrong = refused(arguments)
+    if wrong:
+        print("identification_table.py: " + wrong, file=sys.stderr)
         return 1
-    unknown = [name for name in arguments.names if name not in RECORDS]
-    if unknown:
-        print("identification_table.py: unknown record %s; known: %s" % (unknown[0], ", ".join(RECORDS)), file=sys.stderr)
-        return 1
-    if arguments.write and arguments.names:
-        print("identification_table.py: --write writes the tables of all records: name none", file=sys.stderr)
-        return 1
-    tables = tables_of(arguments.names or RECORDS, arguments.budget)
-    if arguments.write:
-        PAGE.write_text(written(PAGE.read_text(encoding="utf-8"), tables), encoding="utf-8")
+    for section in arguments.section or (["records"] if arguments.names else ["records", *SECTIONS]):
+        if section == "records":
+            tables = tables_of(arguments.names or RECORDS, arguments.budget)
+        else:
+            tables = tables_of_section(section, arguments.budget, arguments.write)
+        if arguments.write:
+            PAGE.write_text(written(PAGE.read_text(encoding="utf-8"), section, tables), encoding="utf-8")
     return 0
 
 

@@ -2,12 +2,15 @@
 """The aims below scripts/identification_table.py: of held-out figures only, and none is called reached that is not."""
 import importlib.util
 import pathlib
+import sys
 import unittest
 
 PATH = pathlib.Path(__file__).resolve().parents[1] / "scripts" / "identification_table.py"
+sys.path.insert(0, str(PATH.parent))
 SPEC = importlib.util.spec_from_file_location("identification_table", PATH)
 table = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(table)
+import identification_runs as runs  # noqa: E402
 
 
 def report(output, free_run, one_step, linear, validation=None):
@@ -45,14 +48,36 @@ class Aims(unittest.TestCase):
 
 
 class Page(unittest.TestCase):
-    def test_tables_stand_between_their_marks(self):
-        page = "before\n" + table.BEGIN + "\n\nold\n\n" + table.END + "\nafter\n"
-        self.assertEqual(table.written(page, "new\n"), "before\n" + table.BEGIN + "\n\nnew\n\n" + table.END + "\nafter\n")
+    SECTIONS = ["records", *table.SECTIONS]
 
-    def test_the_page_has_the_marks_once(self):
+    def test_tables_stand_between_their_marks(self):
+        begin = table.BEGIN % "loops"
+        page = "before\n" + begin + "\n\nold\n\n" + table.END + "\nafter\n"
+        self.assertEqual(table.written(page, "loops", "new\n"), "before\n" + begin + "\n\nnew\n\n" + table.END + "\nafter\n")
+        with self.assertRaises(SystemExit):
+            table.written(page, "cases", "new\n")
+
+    def test_the_page_has_the_marks_of_each_section_once(self):
         page = table.PAGE.read_text(encoding="utf-8")
-        self.assertEqual((1, 1), (page.count(table.BEGIN), page.count(table.END)))
-        self.assertEqual(table.written(page, "x"), table.written(table.written(page, "y"), "x"))
+        self.assertEqual(len(self.SECTIONS), page.count(table.END))
+        for section in self.SECTIONS:
+            self.assertEqual(table.written(page, section, "x"), table.written(table.written(page, section, "y"), section, "x"))
+
+
+class ClosedLoop(unittest.TestCase):
+    def told(self, ratio):
+        return {"title": "Tank, model found", "loops": [{"name": "auto", "median": 2.0}, {"name": "shipped", "median": 1.0}],
+                "pairs": [{"median_ratio": ratio, "ratio_interval": [ratio, ratio]}]}
+
+    def test_within_five_per_cent_of_the_shipped_model(self):
+        self.assertEqual("yes", runs.loop_row("auto_tank", self.told(1.05))[-1])
+        self.assertEqual("**no**", runs.loop_row("auto_tank", self.told(1.051))[-1])
+
+    def test_each_study_ships_and_names_the_model_once(self):
+        for name, (_, _, _, model) in runs.LOOPS.items():
+            text = (runs.CONFIG / "study" / (name + ".yaml")).read_text(encoding="utf-8")
+            self.assertEqual(1, text.count(model + ".yaml"), name)
+            self.assertTrue((runs.CONFIG / "model" / (model + ".yaml")).exists(), name)
 
 
 if __name__ == "__main__":

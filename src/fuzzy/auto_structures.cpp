@@ -80,8 +80,8 @@ Candidates ruleCandidates(const Candidate& base, const std::vector<Judgement>& l
     if (orders.size() < 2 && std::find(orders.begin(), orders.end(), o) == orders.end())
       orders.push_back(o);
   }
-  if (std::find(orders.begin(), orders.end(), std::pair<int, int>{2, 2}) == orders.end())
-    orders.emplace_back(2, 2);
+  for (const auto& o : {std::pair<int, int>{2, 2}, std::pair<int, int>{1, 1}})
+    if (std::find(orders.begin(), orders.end(), o) == orders.end()) orders.push_back(o);
   Candidate c = base;
   c.iterations = kSearchIterations;
   for (const int rules : {2, 3})
