@@ -109,10 +109,7 @@ def page(families, seeds, percent):
             lines.append("| " + " | ".join(row) + " |")
             if ratio > LIMIT:
                 above.append(row[0])
-    lines += ["", "Beyond it: %s." % (", ".join("`%s`" % name for name in above) or "none"), "",
-              "The nonlinear MPC of the reactor that is measured late (`cstr_*_nmpc`) is the best of all without noise and of no use with it:",
-              "the input is thrown from end to end within the first ten samples and the reactor runs away;",
-              "with the temperature measured it holds (`cstr_tracking_told`, `fmbpc study cstr_noise`)."]
+    lines += ["", "Beyond it: %s." % (", ".join("`%s`" % name for name in above) or "none")]
     return "\n".join(lines) + "\n"
 
 

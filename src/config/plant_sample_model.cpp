@@ -1,5 +1,6 @@
 #include "config/plant_sample_model.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -13,8 +14,10 @@ namespace {
 using Eigen::Index;
 
 constexpr int kRestSamples = 10000;
-constexpr double kWhole = 1e-6;   // of a sample
-constexpr double kStill = 1e-12;  // relative change of a state that rests
+constexpr int kNewtonSteps = 30;
+constexpr double kDifference = 1e-6;  // relative, of finite differences
+constexpr double kWhole = 1e-6;       // of a sample
+constexpr double kStill = 1e-12;      // relative change of a state that rests
 
 /// All outputs are measured so many samples late.
 int delayOf(const SimulationParams& params, const std::string& where) {
@@ -52,6 +55,11 @@ class PlantSampleModel final : public SampleModel {
     d_ = params.disturbance_nominal;
     n_ = nominal_.size();
     for (Vector* v : {&x_, &start_, &sum_, &rate_, &point_}) *v = Vector::Zero(n_);
+    const auto hidden = static_cast<Index>(hidden_.size());
+    moved_ = Vector::Zero(2 * n_);
+    drift_ = shifted_ = Vector::Zero(hidden);
+    jacobian_ = Matrix::Zero(hidden, hidden);
+    lu_ = Eigen::PartialPivLU<Matrix>(hidden);
   }
 
   int delaySteps() const override { return delay_; }
@@ -62,20 +70,11 @@ class PlantSampleModel final : public SampleModel {
 
   void rest(VectorRef outputs, VectorRef input, VectorRef disturbances,
             Eigen::Ref<Vector> state) override {
-    state.head(n_) = nominal_;
-    for (int k = 0; k < kRestSamples; ++k) {
-      for (std::size_t i = 0; i < outputs_.size(); ++i)
-        state[outputs_[i]] = outputs[static_cast<Index>(i)];
-      state.tail(n_) = state.head(n_);
-      if (hidden_.empty() || !step(input, disturbances, state)) break;
-      bool still = true;
-      for (const Index i : hidden_)
-        still = still && std::abs(state[i] - state[n_ + i]) <= kStill * std::abs(state[i]);
-      if (still) break;
+    start(outputs, state);
+    if (!hidden_.empty() && !solveRest(input, disturbances, state)) {
+      start(outputs, state);
+      settle(outputs, input, disturbances, state);
     }
-    for (std::size_t i = 0; i < outputs_.size(); ++i)
-      state[outputs_[i]] = outputs[static_cast<Index>(i)];
-    state.tail(n_) = state.head(n_);
   }
 
   bool step(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> state) override {
@@ -93,6 +92,76 @@ class PlantSampleModel final : public SampleModel {
   }
 
  private:
+  void start(VectorRef outputs, Eigen::Ref<Vector> state) const {
+    state.head(n_) = nominal_;
+    for (std::size_t i = 0; i < outputs_.size(); ++i)
+      state[outputs_[i]] = outputs[static_cast<Index>(i)];
+    state.tail(n_) = state.head(n_);
+  }
+
+  /// What a sample adds to the hidden states at rest.
+  bool drift(VectorRef input, VectorRef disturbances, VectorRef state, Vector& change) {
+    moved_ = state;
+    if (!step(input, disturbances, moved_)) return false;
+    for (std::size_t i = 0; i < hidden_.size(); ++i)
+      change[static_cast<Index>(i)] = moved_[hidden_[i]] - state[hidden_[i]];
+    return change.allFinite();
+  }
+
+  bool takeJacobian(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> state) {
+    for (std::size_t j = 0; j < hidden_.size(); ++j) {
+      const Index row = hidden_[j];
+      const double at = state[row], h = kDifference * std::max(kDifference, std::abs(at));
+      state[row] = state[n_ + row] = at + h;
+      if (!drift(input, disturbances, state, shifted_)) return false;
+      state[row] = state[n_ + row] = at;
+      jacobian_.col(static_cast<Index>(j)) = (shifted_ - drift_) / h;
+    }
+    return true;
+  }
+
+  bool isPossible(Index row, double value) const {
+    const Quantity& known = plant_->description().states[static_cast<std::size_t>(row)];
+    return value >= known.lower && value <= known.upper;
+  }
+
+  /// Newton's method on the hidden states, the measured ones held: also where they would run away
+  /// by themselves. False if it does not end at states that the plant can have.
+  bool solveRest(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> state) {
+    for (int k = 0; k < kNewtonSteps; ++k) {
+      if (!drift(input, disturbances, state, drift_)) return false;
+      if (!takeJacobian(input, disturbances, state)) return false;
+      lu_.compute(jacobian_);
+      shifted_ = lu_.solve(drift_);
+      bool still = true;
+      for (std::size_t i = 0; i < hidden_.size(); ++i) {
+        const Index row = hidden_[i];
+        const double change = shifted_[static_cast<Index>(i)];
+        state[row] -= change;
+        state[n_ + row] = state[row];
+        if (!isPossible(row, state[row])) return false;
+        still = still && std::abs(change) <= kStill * std::abs(state[row]);
+      }
+      if (still) return true;
+    }
+    return false;
+  }
+
+  /// The hidden states by themselves, the measured ones held.
+  void settle(VectorRef outputs, VectorRef input, VectorRef disturbances,
+              Eigen::Ref<Vector> state) {
+    for (int k = 0; k < kRestSamples; ++k) {
+      if (!step(input, disturbances, state)) break;
+      bool still = true;
+      for (const Index i : hidden_)
+        still = still && std::abs(state[i] - state[n_ + i]) <= kStill * std::abs(state[i]);
+      for (std::size_t i = 0; i < outputs_.size(); ++i)
+        state[outputs_[i]] = outputs[static_cast<Index>(i)];
+      state.tail(n_) = state.head(n_);
+      if (still) break;
+    }
+  }
+
   void passLocalLoop(VectorRef input, VectorRef before) {
     u_ = input;
     plant_->localLoop(x_, before, u_);
@@ -123,6 +192,9 @@ class PlantSampleModel final : public SampleModel {
   Index n_{};
   std::vector<Index> outputs_, measured_, hidden_;
   Vector nominal_, d_, u_, x_, start_, sum_, rate_, point_;
+  Vector moved_, drift_, shifted_;  // of the search for rest
+  Matrix jacobian_;
+  Eigen::PartialPivLU<Matrix> lu_;
 };
 
 }  // namespace

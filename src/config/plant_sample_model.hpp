@@ -12,8 +12,9 @@ namespace fpc {
 /// and Kutta's rule, and its local loop. Measured disturbances as measured, the others nominal.
 /// State: the plant's states, then those of one sample before. Where all states are measured that
 /// is all there is to know; otherwise the other states are simulated beside the plant, and rest()
-/// brings them to where they rest while the measured ones are held: which works where they settle
-/// by themselves.
+/// brings them to where they rest while the measured ones are held: by Newton's method from the
+/// plant's initial state, so that they need not settle by themselves; where that ends at values the
+/// plant cannot have, by simulation.
 /// @throws InputError for a plant that remembers more than its states (dead times) or whose outputs
 /// are measured late.
 std::unique_ptr<SampleModel> makePlantSampleModel(const SimulationParams& params,

@@ -16,6 +16,8 @@ void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   section.number("trust_low", guard.trust_low, {0.0, 1.0});
   section.number("trust_high", guard.trust_high, {0.0, 1.0});
   section.number("least_move", guard.least_move, {0.0, 1.0, true});
+  section.integer("look_ahead", guard.look_ahead, 0);
+  section.integer("horizon_least", guard.horizon_least, 0);
   section.integer("return_samples", guard.return_samples, 1);
   section.integer("lock_samples", guard.lock_samples, 0);
   section.number("lock_error", guard.lock_error, kFinitePositive);

@@ -20,6 +20,10 @@ constexpr double kLeastNoise = 1e-6;  // of the variance of d's change: keeps S 
 void ObserverParams::validate(Index n_y) const {
   requireNonNegative(noise_std, n_y, "controller.observer.noise_std");
   requirePositive(disturbance_std, n_y, "controller.observer.disturbance_std");
+  const std::string at_inputs = "controller.observer.input_std";
+  if (atInputs()) requireNonNegative(input_std, input_std.size(), at_inputs);
+  require((input_std.array() > 0.0).count() <= n_y, at_inputs,
+          "no more inputs with a disturbance than outputs that show it");
   require(adaptation > 0.0 && adaptation < 1.0, "controller.observer.adaptation",
           "a number > 0 and < 1");
 }
@@ -29,20 +33,22 @@ DisturbanceObserver::DisturbanceObserver(ObserverParams params, Index n_x,
     : params_((params.validate(static_cast<Index>(output_rows.size())), std::move(params))),
       n_x_(n_x),
       n_y_(static_cast<Index>(output_rows.size())),
+      n_d_(params_.atInputs() ? params_.input_std.size() : n_y_),
       rows_(std::move(output_rows)),
-      F_(Matrix::Identity(n_x_ + n_y_, n_x_ + n_y_)),
-      P_(Matrix::Zero(n_x_ + n_y_, n_x_ + n_y_)),
+      F_(Matrix::Identity(n_x_ + n_d_, n_x_ + n_d_)),
+      P_(Matrix::Zero(n_x_ + n_d_, n_x_ + n_d_)),
       PF_(P_),
-      PC_(Matrix::Zero(n_x_ + n_y_, n_y_)),
+      PC_(Matrix::Zero(n_x_ + n_d_, n_y_)),
       S_(Matrix::Zero(n_y_, n_y_)),
       K_(PC_),
       IKC_(P_),
       R_(Vector::Zero(n_y_)),
-      disturbance_(R_),
+      disturbance_(Vector::Zero(n_d_)),
       innovation_(R_),
-      correction_(Vector::Zero(n_x_ + n_y_)),
+      correction_(Vector::Zero(n_x_ + n_d_)),
       factor_(n_y_) {
-  for (Index i = 0; i < n_y_; ++i) F_(rows_[static_cast<std::size_t>(i)], n_x_ + i) = 1.0;
+  for (Index i = 0; i < n_y_ && !params_.atInputs(); ++i)
+    F_(rows_[static_cast<std::size_t>(i)], n_x_ + i) = 1.0;
   reset();
 }
 
@@ -55,8 +61,16 @@ void DisturbanceObserver::reset() {
     const double noise = params_.noise_std[i], change = params_.disturbance_std[i];
     R_[i] = std::max(noise * noise, noise > 0.0 ? kLeastNoise * change * change : 0.0);
     P_(row, row) = noise * noise;
-    P_(n_x_ + i, n_x_ + i) = std::pow(kUnknown * std::max(noise, change), 2);
+    if (!params_.atInputs())
+      P_(n_x_ + i, n_x_ + i) = std::pow(kUnknown * std::max(noise, change), 2);
   }
+  for (Index j = 0; j < n_d_ && params_.atInputs(); ++j)
+    P_(n_x_ + j, n_x_ + j) = std::pow(kUnknown * params_.input_std[j], 2);
+}
+
+void DisturbanceObserver::reset(MatrixRef root) {
+  reset();
+  P_.topLeftCorner(n_x_, n_x_).noalias() = root.lazyProduct(root.transpose());
 }
 
 void DisturbanceObserver::startFrom(VectorRef shortfall) {
@@ -70,8 +84,12 @@ void DisturbanceObserver::predict(const Matrix& A) {
   F_.topLeftCorner(n_x_, n_x_) = A;
   PF_.noalias() = P_.lazyProduct(F_.transpose());
   P_.noalias() = F_.lazyProduct(PF_);
-  for (Index i = 0; i < n_y_; ++i)
-    P_(n_x_ + i, n_x_ + i) += params_.disturbance_std[i] * params_.disturbance_std[i];
+  for (Index i = 0; i < n_d_; ++i) P_(n_x_ + i, n_x_ + i) += change()[i] * change()[i];
+}
+
+void DisturbanceObserver::predict(const Matrix& A, const Matrix& E) {
+  F_.topRightCorner(n_x_, n_d_) = E;
+  predict(A);
 }
 
 bool DisturbanceObserver::computeGain() {
@@ -108,7 +126,7 @@ bool DisturbanceObserver::correct(VectorRef outputs, Eigen::Ref<Vector> state) {
   correction_.noalias() = K_.lazyProduct(innovation_);
   if (!correction_.allFinite()) return false;
   state += correction_.head(n_x_);
-  disturbance_ += correction_.tail(n_y_);
+  disturbance_ += correction_.tail(n_d_);
   IKC_.setIdentity();
   for (Index i = 0; i < n_y_; ++i) IKC_.col(rows_[static_cast<std::size_t>(i)]) -= K_.col(i);
   PF_.noalias() = P_.lazyProduct(IKC_.transpose());

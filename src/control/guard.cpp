@@ -20,6 +20,7 @@ constexpr const char* kOutside = "outside the model: moves shrink";
 constexpr const char* kFallback = "outside the model: the fallback acts";
 constexpr const char* kOutsideOnly = "outside the model";
 constexpr const char* kOutsideAhead = "what the law expects leaves the model";
+constexpr const char* kShrinkAhead = "what the law expects leaves the model: moves shrink";
 constexpr const char* kSwings = "swings from end to end: moves shrink";
 constexpr const char* kLocked = "locked up: the input's bound is drawn in";
 
@@ -44,6 +45,8 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
   require(trust_high >= trust_low && trust_high <= 1.0, "guard.trust_high",
           "a number from trust_low to 1");
   require(least_move > 0.0 && least_move <= 1.0, "guard.least_move", "a number > 0 and <= 1");
+  require(look_ahead >= 0, "guard.look_ahead", "an integer >= 0");
+  require(horizon_least >= 0, "guard.horizon_least", "an integer >= 0");
   require(return_samples >= 1, "guard.return_samples", "an integer >= 1");
   require(lock_samples >= 0, "guard.lock_samples", "an integer >= 0");
   require(lock_error > 0.0 && std::isfinite(lock_error), "guard.lock_error", "a number > 0");
@@ -59,7 +62,7 @@ void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
 GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardParams params,
                                      InputLimits limits, PlantInfo plant)
     : ControllerAround(std::move(inside), "guard"),
-      plan_(dynamic_cast<const PlanView*>(inside_.get())),
+      plan_(dynamic_cast<PlanView*>(inside_.get())),
       params_(std::move(params)),
       limits_(std::move(limits)),
       shrunk_(limits_),
@@ -67,6 +70,8 @@ GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardPa
   const Index n_y = countOf(plant_.outputs), n_u = countOf(plant_.inputs);
   params_.validate(n_y, n_u, countOf(plant_.disturbances));
   limits_.validate(n_u);
+  if (plan_ && params_.horizon_least > 0)
+    plan_->heedTrust(params_.trust_low, params_.horizon_least);
   if (params_.pi) pi_ = std::make_unique<PiController>(*params_.pi, limits_, plant_);
   for (Index i = 0; i < n_u; ++i) locks_.emplace_back(params_, limits_.lower[i], limits_.upper[i]);
   moved_.assign(locks_.size(), true);
@@ -108,10 +113,12 @@ double GuardedController::trustAt(const Measurement& now, VectorRef input) {
 void GuardedController::lookAhead(const Measurement& now, const ControllerOutput& output) {
   ahead_.reset();
   if (!known_ || !output.ok) return;
-  if (plan_ && plan_->plannedSteps() > 0)
+  if (plan_ && plan_->plannedSteps() > 0) {
     ahead_.judge(model_, *plan_, params_.trust_low);
-  else if (output.predictive)
+    view_.near = ahead_.leastOfProcess(model_, *plan_, params_.look_ahead);
+  } else if (output.predictive) {
     ahead_.judge(model_, output.prediction, now.disturbances, params_.trust_low);
+  }
   view_.ahead = ahead_.least();
 }
 
@@ -178,6 +185,12 @@ void GuardedController::calm(const Measurement& now) {
   }
 }
 
+double GuardedController::trustForMoves(const Measurement& now) {
+  if (fallback_ || !known_) return 1.0;
+  place(now, now.input_applied, point_);
+  return processTrustOf(model_, point_);
+}
+
 /// Limits that are drawn in are reached by allowed moves only.
 void GuardedController::act(const Measurement& now, const SetpointSource& setpoint,
                             ControllerOutput& output) {
@@ -185,8 +198,8 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     pi_->step(now, setpoint, pi_output_);
     output.input = pi_output_.input;
   }
-  place(now, now.input_applied, point_);
-  shrink(fallback_ || !known_ ? 1.0 : processTrustOf(model_, point_));
+  const double trust = trustForMoves(now);
+  shrink(std::min(trust, fallback_ ? 1.0 : view_.near));
   bool drawn = false;
   proposed_ = output.input;
   calm(now);
@@ -212,7 +225,14 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   if (!view_.acting) return;
   output.source = ActionSource::kFallback;
   output.predictive = false;
-  output.remark = fallback_ ? kFallback : drawn ? kLocked : view_.swinging ? kSwings : kOutside;
+  if (fallback_)
+    output.remark = kFallback;
+  else if (drawn)
+    output.remark = kLocked;
+  else if (view_.swinging)
+    output.remark = kSwings;
+  else
+    output.remark = trust < params_.trust_high ? kOutside : kShrinkAhead;
 }
 
 void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,

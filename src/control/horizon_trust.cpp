@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "fmbpc/fuzzy/domain.hpp"
+#include "fmbpc/fuzzy/process_trust.hpp"
 
 namespace fpc {
 
@@ -33,6 +34,17 @@ void HorizonTrust::judge(const TsModel& model, const PlanView& plan, double thre
     plan.planned(i, point_);
     take(model, i, threshold);
   }
+}
+
+double HorizonTrust::leastOfProcess(const TsModel& model, const PlanView& plan, Index steps) {
+  point_.resize(
+      static_cast<Index>(model.outputs.size() + model.inputs.size() + model.disturbances.size()));
+  double least = 1.0;
+  for (Index i = 1; i <= std::min(steps, plan.plannedSteps() - 1); ++i) {
+    plan.planned(i, point_);
+    least = std::min(least, processTrustOf(model, point_));
+  }
+  return least;
 }
 
 void HorizonTrust::judge(const TsModel& model, const PredictiveAction& p, VectorRef disturbances,

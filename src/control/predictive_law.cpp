@@ -60,12 +60,20 @@ void PredictiveLaw::prepareReference(const Vector& pole) {
 void PredictiveLaw::takeOver(std::unique_ptr<LawCore> core) {
   retired_.reset();
   successor_ = std::move(core);
+  successor_->heedTrust(trust_heeded_, trust_least_);
   prepareReference(successor_->referencePole());
   if (inRun()) return;
   adopt();
   retired_.reset();
   start_pending_ = true;
   if (running_) transfer_.reset(true);
+}
+
+void PredictiveLaw::heedTrust(double threshold, Eigen::Index least) {
+  trust_heeded_ = threshold;
+  trust_least_ = least;
+  for (LawCore* core : {core_.get(), successor_.get()})
+    if (core) core->heedTrust(threshold, least);
 }
 
 void PredictiveLaw::tuningPrepared(const Vector& reference_pole) {

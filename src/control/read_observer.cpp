@@ -9,7 +9,8 @@ constexpr double kNoNoise = 1.0;  // without noise it does not matter
 
 }  // namespace
 
-bool readObserver(YamlSection& controller, ObserverParams& params, const ControllerContext& loop) {
+bool readObserver(YamlSection& controller, ObserverParams& params, const ControllerContext& loop,
+                  bool at_inputs) {
   YamlSection section = controller.section("observer");
   params.noise_std = loop.noise_std;
   if (params.noise_std.size() == 0) params.noise_std = Vector::Zero(loop.outputCount());
@@ -18,6 +19,10 @@ bool readObserver(YamlSection& controller, ObserverParams& params, const Control
   params.disturbance_std =
       (params.noise_std.array() > 0.0).select(params.disturbance_std, kNoNoise);
   section.byName("disturbance_std", params.disturbance_std, loop.outputs(), kFinitePositive);
+  if (at_inputs && section.has("input_std")) {
+    params.input_std = Vector::Zero(loop.inputCount());
+    section.byName("input_std", params.input_std, loop.inputs(), kFiniteNotNegative);
+  }
   section.boolean("adaptive", params.adaptive);
   section.number("adaptation", params.adaptation, {0.0, 1.0, true});
   if (params.adaptive && !section.has("disturbance_std") && !params.noise_std.any())

@@ -83,6 +83,43 @@ TEST(PlantSampleModel, StatesThatAreNotMeasuredRestUnderTheInputInForce) {
   EXPECT_NEAR(state[1], 0.1 * current, 1e-12);  // k1 I / k0
 }
 
+// With the concentration held the reactor's temperature runs away by itself: 7 1/min at 0.1 mol/l.
+TEST(PlantSampleModel, AStateThatWouldRunAwayIsFoundAtRest) {
+  const LoopFile loop = readLoop("cstr_tracking");
+  const auto model = makePlantSampleModel(loop.simulation, 4);
+  const Vector input = Vector::Constant(1, 103.4066);
+  Vector state(model->stateSize());
+  for (const double shown : {0.099, 0.1001, 0.101}) {
+    model->rest(Vector::Constant(1, shown), input, Vector(0), state);
+    EXPECT_EQ(state[0], shown);
+    EXPECT_NEAR(state[1], 438.5444, 0.5);
+    const double temperature = state[1];
+    ASSERT_TRUE(model->step(input, Vector(0), state));
+    EXPECT_NEAR(state[1], temperature, 1e-9) << shown;
+  }
+}
+
+/// Sum of (y_r - y)^2 with noise of half a percent of the setpoints' span.
+double costUnderNoise(const std::string& name, const std::string& std, const std::string& seed) {
+  const RunRecord record = runLoop(readLoop(name, {{"noise.std.CA", std}, {"noise.seed", seed}}));
+  EXPECT_EQ(record.samples.size(), 401U) << name << " " << seed;
+  double sum = 0.0;
+  for (const auto& sample : record.samples)
+    sum += std::pow(sample.state.outputs[0] - sample.tracking.reference[0], 2);
+  return sum;
+}
+
+// Seeds apart from those that the observer was chosen on.
+TEST(PlantSampleModel, TheLawToldTheTruthStandsTheNoiseThatItsBaselineStands) {
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"cstr_tracking", "0.0005"}, {"cstr_disturbance", "0.0005"}, {"cstr_small_steps", "0.0002"}};
+  for (const auto& [name, std] : cases)
+    for (const char* seed : {"1", "2", "3"})
+      EXPECT_LE(costUnderNoise(name + "_nmpc", std, seed),
+                costUnderNoise(name + "_pi_best", std, seed))
+          << name << " " << seed;
+}
+
 TEST(PlantSampleModel, PlantsThatRememberMoreThanTheirStatesAreRefused) {
   const LoopFile file = readLoop("column_imc");
   try {

@@ -120,6 +120,62 @@ TEST(DisturbanceObserver, AnOutputThatIsNotFiniteChangesNothing) {
   EXPECT_TRUE(std::isfinite(level.observer.disturbance()[0]));
 }
 
+ObserverParams atInput(double noise, double change) {
+  ObserverParams p = params(noise, 1.0);
+  p.input_std = Vector::Constant(1, change);
+  return p;
+}
+
+// x1+ = 0.9 x1 + x2, x2+ = 0.5 x2 + 2 (u + d), y = x1: a disturbance that shows two samples later.
+TEST(DisturbanceObserver, AtTheInputTheSteadyGainSolvesTheRiccatiEquation) {
+  const double r = 0.3, q = 0.05;
+  Matrix A(2, 2), E(2, 1), F = Matrix::Identity(3, 3), P = Matrix::Identity(3, 3);
+  A << 0.9, 1.0, 0.0, 0.5;
+  E << 0.0, 2.0;
+  F.topLeftCorner(2, 2) = A;
+  F.topRightCorner(2, 1) = E;
+  DisturbanceObserver observer(atInput(r, q), 2, {0});
+  Vector state = Vector::Zero(2), gain(3);
+  for (int k = 0; k < 2000; ++k) {
+    observer.predict(A, E);
+    ASSERT_TRUE(observer.correct(Vector::Zero(1), state));
+  }
+  for (int k = 0; k < 5000; ++k) {
+    gain = P.col(0) / (P(0, 0) + r * r);
+    P = (F * (P - gain * P.row(0)) * F.transpose()).eval();
+    P(2, 2) += q * q;
+  }
+  gain = P.col(0) / (P(0, 0) + r * r);
+  for (Eigen::Index i = 0; i < 3; ++i) EXPECT_NEAR(observer.gain()(i, 0), gain[i], 1e-9) << i;
+}
+
+TEST(DisturbanceObserver, AtTheInputAConstantOneIsFound) {
+  Matrix A(2, 2), E(2, 1);
+  A << 0.9, 1.0, 0.0, 0.5;
+  E << 0.0, 2.0;
+  DisturbanceObserver observer(atInput(0.3, 0.05), 2, {0});
+  Vector state = Vector::Zero(2), truth = state;
+  for (int k = 0; k < 400; ++k) {
+    truth = (A * truth + E * 0.7).eval();
+    state = (A * state + E * observer.disturbance()).eval();
+    observer.predict(A, E);
+    ASSERT_TRUE(observer.correct(truth.head(1), state));
+  }
+  EXPECT_NEAR(observer.disturbance()[0], 0.7, 1e-6);
+  EXPECT_NEAR(state[1], truth[1], 1e-6);
+}
+
+// After reset() with a root r the first gain is P c / (c' P c + R), P = r r'.
+TEST(DisturbanceObserver, AStartTakesTheCovarianceItIsGiven) {
+  DisturbanceObserver observer(atInput(0.3, 0.05), 2, {0});
+  observer.reset((Matrix(2, 1) << 0.4, -2.0).finished());
+  observer.predict(Matrix::Identity(2, 2), Matrix::Zero(2, 1));
+  Vector state = Vector::Zero(2);
+  ASSERT_TRUE(observer.correct(Vector::Ones(1), state));
+  EXPECT_NEAR(state[0], 0.16 / (0.16 + 0.09), 1e-12);
+  EXPECT_NEAR(state[1], -0.8 / (0.16 + 0.09), 1e-12);
+}
+
 TEST(DisturbanceObserver, MistakesNameTheirKey) {
   const auto errorWith = [](ObserverParams p) -> std::string {
     try {
@@ -134,6 +190,11 @@ TEST(DisturbanceObserver, MistakesNameTheirKey) {
   ObserverParams p = params(1.0, 1.0);
   p.adaptation = 1.0;
   EXPECT_NE(errorWith(p).find("adaptation"), std::string::npos);
+  EXPECT_EQ(errorWith(atInput(1.0, 0.0)), "");
+  EXPECT_NE(errorWith(atInput(1.0, -1.0)).find("input_std"), std::string::npos);
+  p = atInput(1.0, 1.0);
+  p.input_std = Vector::Ones(2);  // two that one output shows
+  EXPECT_NE(errorWith(p).find("input_std"), std::string::npos);
 }
 
 }  // namespace control_disturbance_observer_test

@@ -13,7 +13,7 @@ namespace control_horizon_trust_test {
 struct Planner final : Controller, PlanView {
   void reset(const Measurement&) override {}
   void step(const Measurement& now, const SetpointSource&, ControllerOutput& output) override {
-    output.input = of({600.0});
+    output.input = of({wish});
     output.source = ActionSource::kBase;
     output.predictive = false;
     output.ok = true;
@@ -26,15 +26,20 @@ struct Planner final : Controller, PlanView {
   void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {
     point << 55.0, x + slope * static_cast<double>(i), 600.0, 1300.0;
   }
-  double x{}, slope{};
+  void heedTrust(double threshold, Eigen::Index least) override {
+    heeded = threshold;
+    counted = least;
+  }
+  double x{}, slope{}, wish{600.0}, heeded{};
+  Eigen::Index counted{};
 };
 
 class PlanAhead : public testing::Test {
  protected:
-  PlanAhead() {
+  PlanAhead() { make({}); }
+  void make(GuardParams params) {
     auto owned = std::make_unique<Planner>();
     planner = owned.get();
-    GuardParams params;
     params.lock_samples = 0;
     guard = std::make_unique<GuardedController>(std::move(owned), params, limits(), plant());
     guard->setModel(boxModel());
@@ -78,6 +83,33 @@ TEST_F(PlanAhead, HowFarItIsTrustedIsSaidAndNothingIsChanged) {
   EXPECT_EQ(signal("model_trust_steps"), 3.0);
   step(2000.0, 0.0);
   EXPECT_EQ(signal("model_trust_steps"), 20.0);
+}
+
+// The fourth sample is 2360, where there is no trust: a quarter of the 1600 between the bounds is
+// left to move. With the smaller slope the tenth is 2180, inside.
+TEST_F(PlanAhead, MovesShrinkForWhatIsExpectedSoon) {
+  planner->wish = 1500.0;
+  step(2000.0, 18.0);
+  EXPECT_EQ(out.input[0], 1500.0);
+  step(2000.0, 90.0);
+  EXPECT_DOUBLE_EQ(out.input[0], 590.0 + 0.25 * 1600.0);
+  EXPECT_EQ(out.source, ActionSource::kFallback);
+  EXPECT_STREQ(out.remark, "what the law expects leaves the model: moves shrink");
+}
+
+TEST_F(PlanAhead, WithoutLookingAheadOnlyThePresentCounts) {
+  GuardParams present;
+  present.look_ahead = present.horizon_least = 0;
+  make(present);
+  EXPECT_EQ(planner->heeded, 0.0);
+  planner->wish = 1500.0;
+  step(2000.0, 90.0);
+  EXPECT_EQ(out.input[0], 1500.0);
+}
+
+TEST_F(PlanAhead, ThePlannerIsToldHowFarItsErrorsCount) {
+  EXPECT_EQ(planner->heeded, 0.25);
+  EXPECT_EQ(planner->counted, 12);
 }
 
 // x(k+1) = x + 100 under its own feedback u = 600: 2000, 2100, ..., the third is 2300.

@@ -1,5 +1,5 @@
 // How much of what a model did not foresee is disturbance, and how much is noise: a Kalman filter
-// over the model's state and one constant disturbance per output.
+// over the model's state and one constant disturbance per output, or per input.
 #pragma once
 
 #include <Eigen/Cholesky>
@@ -14,9 +14,11 @@ namespace fpc {
 struct ObserverParams {
   Vector noise_std;         ///< n_y, of the measurements; 0: all of an error is disturbance
   Vector disturbance_std;   ///< n_y, of the change of d per sample, > 0
+  Vector input_std;         ///< n_u: d adds to the inputs instead and changes by this; empty: not
   bool adaptive{false};     ///< the noise's variance is learned from the innovations
   double adaptation{0.02};  ///< how fast, per sample, (0, 1)
   bool noisy() const { return adaptive || noise_std.any(); }
+  bool atInputs() const { return input_std.size() > 0; }
   /// @throws InputError naming controller.observer.KEY.
   void validate(Eigen::Index n_y) const;
 };
@@ -24,8 +26,9 @@ struct ObserverParams {
 /// For x(k+1) = A x + B u + g + E d, d(k+1) = d + w, y = C x + v, where the outputs are rows of x
 /// and E adds d to them: covariances and gains; the caller moves the state. Per sample predict()
 /// with the A that led from k-1 to k, then correct(). Without noise the corrected output is the
-/// measurement and d takes all of the error, as from raw differences. Joseph's form; fixed work, no
-/// allocation. Source: kalman1960; the disturbance model is muske2002.
+/// measurement and d takes all of the error, as from raw differences. With input_std d adds to the
+/// inputs, E = dx(k+1)/du, and takes the change of d per sample from there. Joseph's form; fixed
+/// work, no allocation. Source: kalman1960; the disturbance model is muske2002.
 /// Symbols: P covariance of (x, d), S = C P C' + R of the innovation, K gain.
 class DisturbanceObserver {
  public:
@@ -34,24 +37,31 @@ class DisturbanceObserver {
                       std::vector<Eigen::Index> output_rows);
   /// d = 0; the state is known as well as the measurements are, the disturbance badly.
   void reset();
+  /// The same, but for the state: its covariance is root root', root n_x m.
+  void reset(MatrixRef root);
   /// After reset(): d = its rows of `shortfall`, n_x, what the model lacks to rest.
   void startFrom(VectorRef shortfall);
   void predict(const Matrix& A);
+  /// With disturbances at the inputs. E: n_x n_u.
+  void predict(const Matrix& A, const Matrix& E);
   /// state: x(k|k-1), d(k-1) already in it; becomes x(k|k). Not finite: nothing changes, false.
   bool correct(VectorRef outputs, Eigen::Ref<Vector> state);
-  const Vector& disturbance() const { return disturbance_; }  ///< n_y, d(k|k)
+  const Vector& disturbance() const { return disturbance_; }  ///< n_y or n_u, d(k|k)
   const Vector& innovation() const { return innovation_; }    ///< n_y, y - C x(k|k-1)
   const Matrix& gain() const { return K_; }                   ///< (n_x + n_y) n_y
   const Vector& noiseVariance() const { return R_; }          ///< n_y, as it is used
-  /// x += E d, in place.
+  /// x += E d, in place; of disturbances at the outputs.
   void addDisturbance(Eigen::Ref<Vector> state) const;
 
  private:
+  const Vector& change() const {
+    return params_.atInputs() ? params_.input_std : params_.disturbance_std;
+  }
   bool computeGain();
   void learnNoise();
 
   ObserverParams params_;
-  Eigen::Index n_x_, n_y_;
+  Eigen::Index n_x_, n_y_, n_d_;
   std::vector<Eigen::Index> rows_;
   Matrix F_, P_, PF_, PC_, S_, K_, IKC_;
   Vector R_, disturbance_, innovation_, correction_;

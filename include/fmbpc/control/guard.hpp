@@ -21,6 +21,7 @@ struct GuardView {
   double trust{1.0};     ///< least of now and of what the law wants
   bool outside{false};   ///< trust below GuardParams::trust_low
   double ahead{1.0};     ///< least trust over the horizon of what the law expects
+  double near{1.0};      ///< of outputs and disturbances, GuardParams::look_ahead samples of a plan
   bool locked{false};    ///< some input is locked up
   bool swinging{false};  ///< some input is thrown from end to end
   bool acting{false};    ///< the input is not the law's
@@ -73,12 +74,15 @@ class LockUpWatch {
   Eigen::Index known_{};
 };
 
-/// The law `inside`, and five rules:
+/// The law `inside`, and six rules:
 /// - trust at the measured outputs, disturbances and the input in force, and at the input that the
 ///   law wants: the smaller is said; what is done depends on outputs and disturbances only
-///   (processTrustOf), as the bounds say which inputs are allowed: between trust_high and trust_low
-///   moves shrink from half the range to `least_move`; below trust_low a PI, if there is one, acts
-///   (bumplessly) until trust has been above trust_high for `return_samples`;
+///   (processTrustOf), as the bounds say which inputs are allowed, and where the law shows its plan
+///   (PlanView) on the least of it over `look_ahead` samples: between trust_high and trust_low
+///   moves shrink from half the range to `least_move`; below trust_low at present a PI, if there is
+///   one, acts (bumplessly) until trust has been above trust_high for `return_samples`;
+/// - errors of a plan beyond the samples at which the model is trusted do not count, but the first
+///   `horizon_least` do;
 /// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in, if the
 ///   model knows the input: others stand where the plant has them;
 /// - an input that the law throws from end to end of its range (see SwingWatch) moves less;
@@ -105,13 +109,14 @@ class GuardedController final : public ControllerAround {
   void comeBack(const Measurement& now, double trust);
   void watchLocks(const Measurement& now, const SetpointSource& setpoint);
   WorstError worstError(const Measurement& now, const SetpointSource& setpoint) const;
+  double trustForMoves(const Measurement& now);
   void shrink(double trust);
   void calm(const Measurement& now);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
   void lookAhead(const Measurement& now, const ControllerOutput& output);
   void refreshSignals();
 
-  const PlanView* plan_;  // of inside_, or null
+  PlanView* plan_;  // of inside_, or null
   GuardParams params_;
   InputLimits limits_, shrunk_;
   PlantInfo plant_;

@@ -19,6 +19,8 @@ class HorizonTrust {
   /// Along a prediction, with the measured disturbances held.
   void judge(const TsModel& model, const PredictiveAction& prediction, VectorRef disturbances,
              double threshold);
+  /// Least trust of outputs and disturbances (processTrustOf()) over the plan's first samples.
+  double leastOfProcess(const TsModel& model, const PlanView& plan, Eigen::Index steps);
   static constexpr Eigen::Index kLeastHorizon = 10;
   double least() const { return least_; }  ///< over the horizon; 1 without one
   /// Samples ahead of now before trust falls below the threshold; all of them where it does not.

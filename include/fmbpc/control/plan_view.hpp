@@ -1,4 +1,5 @@
-// What a law shows of its plan, so that others can judge how far ahead its model may be trusted.
+// What a law shows of its plan, so that others can judge how far ahead its model may be trusted,
+// and what it is told then.
 #pragma once
 
 #include "fmbpc/base/types.hpp"
@@ -13,6 +14,10 @@ class PlanView {
   virtual Eigen::Index plannedSteps() const = 0;
   /// Sample k + i, 1 <= i < N: y, u and d as planned, stacked, n_y + n_u + n_d.
   virtual void planned(Eigen::Index i, Eigen::Ref<Vector> point) const = 0;
+  /// From now on the plan's errors count only up to the first sample at which outputs and
+  /// disturbances are where the model is trusted less than `threshold` (see processTrustOf()), the
+  /// first `least` of them always. A law that does not plan by errors has nothing to do.
+  virtual void heedTrust(double /*threshold*/, Eigen::Index /*least*/) {}
 };
 
 }  // namespace fpc

@@ -57,6 +57,7 @@ class LawCore {
   /// See PlanView; none by default.
   virtual Eigen::Index plannedSteps() const { return 0; }
   virtual void planned(Eigen::Index /*i*/, Eigen::Ref<Vector> /*point*/) const {}
+  virtual void heedTrust(double /*threshold*/, Eigen::Index /*least*/) {}
   virtual void adoptTuning() {}  ///< a tuning that was prepared counts from now on
 };
 
@@ -92,6 +93,7 @@ class PredictiveLaw : public Controller, public PlanView {
   void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {
     core_->planned(i, point);
   }
+  void heedTrust(double threshold, Eigen::Index least) override;
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
 
  protected:
@@ -135,6 +137,8 @@ class PredictiveLaw : public Controller, public PlanView {
   std::unique_ptr<LawCore> successor_;  ///< takes over in the next step
   std::unique_ptr<LawCore> retired_;    ///< freed when the next one comes, outside of a step
   std::vector<std::pair<std::string, double>> signals_;
+  double trust_heeded_{0.0};  ///< see PlanView; 0: none is
+  Eigen::Index trust_least_{};
   bool tuning_waits_{false};
   bool start_pending_{true};  ///< the state is to be taken from the next measurement
   bool running_{false};       ///< a step has been asked for since the reset

@@ -7,7 +7,9 @@
 namespace fpc {
 
 /// How noisy the measurements are; defaults: those of `noise`. Returns whether an observer is to
-/// take the place of raw differences: `enabled`, by default where there is noise.
-bool readObserver(YamlSection& controller, ObserverParams& params, const ControllerContext& loop);
+/// take the place of raw differences: `enabled`, by default where there is noise. `input_std` is a
+/// key of laws that can place disturbances at the inputs.
+bool readObserver(YamlSection& controller, ObserverParams& params, const ControllerContext& loop,
+                  bool at_inputs = false);
 
 }  // namespace fpc

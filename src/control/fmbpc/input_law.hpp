@@ -31,6 +31,7 @@ class InputLaw {
   virtual Eigen::Index plannedSteps() const { return 0; }
   virtual void planned(const InternalModel& /*model*/, Eigen::Index /*i*/,
                        Eigen::Ref<Vector> /*point*/) const {}
+  virtual void heedTrust(double /*threshold*/, Eigen::Index /*least*/) {}
 };
 
 /// The outputs meet their references at one sample ahead: see CoincidenceGains. u = F e + V u(k-1).
@@ -99,12 +100,21 @@ class IteratedLaw final : public InputLaw {
   void retune(const FmbpcParams& params) override;
   Eigen::Index plannedSteps() const override { return solver_.inputs().cols(); }
   void planned(const InternalModel& model, Eigen::Index i, Eigen::Ref<Vector> point) const override;
+  void heedTrust(double threshold, Eigen::Index least) override {
+    trust_heeded_ = threshold;
+    trust_least_ = least;
+  }
 
  private:
+  Eigen::Index trustedSteps(const InternalModel& model, const Matrix& expected);
+
   InputLimitedIlqr solver_;
   DisturbanceForecast& forecast_;
   Eigen::Index lead_;
   Matrix aimed_;  ///< n_y N, the references of x(k+1)...x(k+N)
+  double trust_heeded_{0.0};
+  Eigen::Index trust_least_{};
+  Vector point_;
 };
 
 std::unique_ptr<InputLaw> makeInputLaw(const InternalModel& model, const FmbpcParams& params,

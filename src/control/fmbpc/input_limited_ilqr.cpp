@@ -95,7 +95,7 @@ void InputLimitedIlqr::retune(int iterations, VectorRef weight_output, VectorRef
 /// What sample i+1 and the move of sample i cost.
 double InputLimitedIlqr::weigh(Eigen::Index i, const Matrix& states, const Matrix& inputs) const {
   double cost = 0.0;
-  for (Eigen::Index o = 0; o < n_y_; ++o) {
+  for (Eigen::Index o = 0; o < n_y_ && i < counted_; ++o) {
     if (params_.weight_output[o] == 0.0) continue;
     const double error = states(model_.outputState(o), i + 1) + offset_[o] - reference_(o, i);
     cost += params_.weight_output[o] * error * error;
@@ -225,7 +225,7 @@ bool InputLimitedIlqr::sweep() {
     const Matrix& A = A_[static_cast<std::size_t>(i)];
     const Matrix& B = B_[static_cast<std::size_t>(i)];
     const Matrix& K = K_[static_cast<std::size_t>(i)];
-    for (Eigen::Index o = 0; o < n_y_; ++o) {
+    for (Eigen::Index o = 0; o < n_y_ && i < counted_; ++o) {
       const Eigen::Index row = model_.outputState(o);
       P_(row, row) += params_.weight_output[o];
       p_[row] += params_.weight_output[o] * (states_(row, i + 1) + offset_[o] - reference_(o, i));

@@ -1,6 +1,9 @@
 #include <algorithm>
 
 #include "control/fmbpc/input_law.hpp"
+#include "fmbpc/base/signals.hpp"
+#include "fmbpc/fuzzy/domain.hpp"
+#include "fmbpc/fuzzy/process_trust.hpp"
 
 namespace fpc {
 namespace {
@@ -16,17 +19,37 @@ IteratedLaw::IteratedLaw(const InternalModel& model, const FmbpcParams& params,
     : solver_(model.local(), solverParams(params), limits),
       forecast_(forecast),
       lead_(params.reference_lead_steps),
-      aimed_(Matrix::Zero(model.outputs().size(), params.horizon_steps)) {}
+      aimed_(Matrix::Zero(model.outputs().size(), params.horizon_steps)),
+      point_(Vector::Zero(model.outputs().size() + limits.lower.size() +
+                          countOf(model.local().model().disturbances))) {}
 
 void IteratedLaw::follow(InternalModel& model, const LawSample& sample) {
   model.blendAt(sample.now.input_applied, sample.past_disturbances);
 }
 
+/// Samples ahead whose errors count: where the last plan leads under what is expected now.
+Eigen::Index IteratedLaw::trustedSteps(const InternalModel& model, const Matrix& expected) {
+  const Eigen::Index N = solver_.inputs().cols(), n_y = aimed_.rows(), n_d = expected.rows();
+  const TsModel& known = model.local().model();
+  if (trust_heeded_ == 0.0 || !solver_.warm() || !knowsDomain(known)) return N;
+  for (Eigen::Index i = 1; i <= N; ++i) {
+    for (Eigen::Index o = 0; o < n_y; ++o)
+      point_[o] = solver_.states()(model.local().outputState(o), std::min(i + 1, N)) +
+                  model.offsetOutput()[o];
+    point_.tail(n_d) = expected.col(std::min(i, N - 1));
+    if (processTrustOf(known, point_) < trust_heeded_)
+      return std::clamp(i - 1, std::min(trust_least_, N), N);
+  }
+  return N;
+}
+
 Proposal IteratedLaw::propose(InternalModel& model, const LawSample& sample, const Matrix& future,
                               Vector& input) {
   aimed_ = future.middleCols(lead_, aimed_.cols());
-  if (!solver_.plan(model.state(), model.correction(), model.offsetOutput(), forecast_.predict(),
-                    aimed_, sample.now.input_applied))
+  const Matrix& expected = forecast_.predict();
+  solver_.countErrors(trustedSteps(model, expected));
+  if (!solver_.plan(model.state(), model.correction(), model.offsetOutput(), expected, aimed_,
+                    sample.now.input_applied))
     return {"the law gave no finite input"};
   input = solver_.inputs().col(0);
   model.replan(input, sample.disturbances);

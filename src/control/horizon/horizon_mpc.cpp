@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/horizon/shifted_model.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 
@@ -12,6 +13,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double kDifference = 1e-5;  // relative, of finite differences
+constexpr double kUnknown = 10.0;     // changes of an input's disturbance, at a start
 constexpr double kTrial = 1e-3;       // of an input's range: a move whose effect is looked for
 constexpr const char* kShortSighted =
     "controller.horizon_steps is too short: an input hardly acts within it";
@@ -35,11 +37,19 @@ HorizonMpc::HorizonMpc(HorizonParams params, InputLimits limits, const PlantInfo
   range_ = (range_.array() > 0.0).select(range_, 1.0);
   for (const SignalInfo& output : plant.outputs)
     signals_.emplace_back(output.name + "_correction", 0.0);
+  if (params_.observe && params_.observer.atInputs())
+    for (const SignalInfo& input : plant.inputs)
+      signals_.emplace_back(input.name + "_disturbance", 0.0);
   signals_.emplace_back("plan_cost", 0.0);
   signals_.emplace_back("plan_effort", 0.0);
 }
 
 void HorizonMpc::predictWith(std::unique_ptr<SampleModel> model) {
+  if (params_.observe && params_.observer.atInputs()) {
+    auto shifted = std::make_unique<ShiftedModel>(std::move(model), n_u_);
+    shifted_ = shifted.get();
+    model = std::move(shifted);
+  }
   cost_ = std::make_unique<PlanCost>(*model, params_);
   model_ = std::move(model);
   state_ = present_ = next_ = moved_ = Vector::Zero(model_->stateSize());
@@ -50,6 +60,10 @@ void HorizonMpc::predictWith(std::unique_ptr<SampleModel> model) {
     for (Index i = 0; i < n_y_; ++i) rows.push_back(model_->outputState(i));
     observer_.emplace(params_.observer, state_.size(), rows);
     A_ = Matrix::Zero(state_.size(), state_.size());
+    E_ = Matrix::Zero(state_.size(), n_u_);
+    root_ = Matrix::Zero(state_.size(), n_y_ + n_u_);
+    measured_ = Vector::Zero(n_y_);
+    input_ = Vector::Zero(n_u_);
   }
   fresh_ = true;
 }
@@ -104,20 +118,61 @@ bool HorizonMpc::runForward() {
   return true;
 }
 
-/// A at the state a sample before the outputs were true, and the state then; false if something is
-/// not finite.
+/// (F(moved_) - F) / h with the inputs input_; false if something is not finite.
+bool HorizonMpc::takeColumn(Eigen::Ref<Vector> column, double h) {
+  if (!model_->step(input_, past_.col(0), moved_)) return false;
+  column = (moved_ - next_) / h;
+  return column.allFinite();
+}
+
+/// A and E at the state a sample before the outputs were true, and the state then; false if
+/// something is not finite.
 bool HorizonMpc::linearise() {
   next_ = state_;
   if (!model_->step(inputs_.col(0), past_.col(0), next_)) return false;
+  input_ = inputs_.col(0);
   for (Index j = 0; j < state_.size(); ++j) {
     moved_ = state_;
     const double h = kDifference * std::max(kDifference, std::abs(state_[j]));
     moved_[j] += h;
-    if (!model_->step(inputs_.col(0), past_.col(0), moved_)) return false;
-    A_.col(j) = (moved_ - next_) / h;
+    if (!takeColumn(A_.col(j), h)) return false;
+  }
+  for (Index a = 0; a < n_u_ && shifted_; ++a) {
+    moved_ = state_;
+    const bool high = input_[a] > limits_.lower[a] + 0.5 * range_[a];  // away from the bound
+    const double before = input_[a], h = (high ? -kDifference : kDifference) * range_[a];
+    input_[a] = before + h;
+    if (!takeColumn(E_.col(a), h)) return false;
+    input_[a] = before;
   }
   state_ = next_;
-  return A_.allFinite();
+  return true;
+}
+
+/// At rest, and how uncertain that is: by the noise of what is measured and, where the inputs are
+/// disturbed, by a disturbance that nobody has seen yet.
+void HorizonMpc::restAnew(const Measurement& now) {
+  const ObserverParams& stated = params_.observer;
+  measured_ = now.outputs;
+  input_ = now.input_applied;
+  model_->rest(measured_, input_, disturbances_, state_);
+  root_.setZero();
+  for (Index i = 0; i < n_y_; ++i) {
+    measured_[i] = now.outputs[i] + stated.noise_std[i];
+    model_->rest(measured_, input_, disturbances_, moved_);
+    root_.col(i) = moved_ - state_;
+    measured_[i] = now.outputs[i];
+  }
+  for (Index a = 0; a < n_u_ && shifted_; ++a) {
+    input_[a] = now.input_applied[a] + kUnknown * stated.input_std[a];
+    model_->rest(measured_, input_, disturbances_, moved_);
+    root_.col(n_y_ + a) = moved_ - state_;
+    input_[a] = now.input_applied[a];
+  }
+  if (root_.allFinite())
+    observer_->reset(root_);
+  else
+    observer_->reset();
 }
 
 /// estimate() with the observer.
@@ -125,15 +180,21 @@ bool HorizonMpc::observe(const Measurement& now) {
   const bool follows = !fresh_ && linearise();
   fresh_ = false;
   if (follows) {
-    observer_->addDisturbance(state_);
-    observer_->predict(A_);
+    if (shifted_) {
+      observer_->predict(A_, E_);
+    } else {
+      observer_->addDisturbance(state_);
+      observer_->predict(A_);
+    }
     observer_->correct(now.outputs, state_);
   } else {
-    model_->rest(now.outputs, now.input_applied, disturbances_, state_);
+    restAnew(now);
     for (Index i = 0; i < n_y_; ++i) state_[model_->outputState(i)] = now.outputs[i];
-    observer_->reset();
   }
-  correction_ = observer_->disturbance();
+  if (shifted_)
+    shifted_->setOffset(observer_->disturbance());
+  else
+    correction_ = observer_->disturbance();
   return follows;
 }
 
@@ -199,6 +260,7 @@ void HorizonMpc::lookAhead(const Measurement& now) {
 void HorizonMpc::refreshSignals(const PlanFound& found) {
   std::size_t place = 0;
   for (Index i = 0; i < n_y_; ++i) signals_[place++].second = correction_[i];
+  for (Index a = 0; a < n_u_ && shifted_; ++a) signals_[place++].second = shifted_->offset()[a];
   signals_[place++].second = found.cost;
   signals_[place].second = static_cast<double>(found.effort);
 }

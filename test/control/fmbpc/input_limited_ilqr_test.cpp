@@ -103,6 +103,27 @@ TEST_P(PlanOfALinearModel, IsTheSolutionOfTheQuadraticProgramme) {
   }
 }
 
+// Where only five errors count, the plan is that of a horizon of five, and holds its last input.
+TEST(InputLimitedIlqr, ErrorsThatDoNotCountShortenTheHorizon) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    Task task(linear(generator), test::wideLimits(2, 1.0), seed);
+    task.planner.countErrors(5);
+    ASSERT_TRUE(task.plan());
+    IlqrParams params = task.params;
+    params.horizon_steps = 5;
+    InputLimitedIlqr near(task.local, params, task.limits);
+    ASSERT_TRUE(near.plan(task.state, task.correction, task.offset, task.loads, task.reference,
+                          task.previous));
+    EXPECT_NEAR(task.planner.cost(), near.cost(), 1e-9 * (1.0 + near.cost()));
+    for (Eigen::Index i = 0; i < kHorizon; ++i) {
+      const Vector expected = near.inputs().col(std::min<Eigen::Index>(i, 4));
+      EXPECT_LE((task.planner.inputs().col(i) - expected).cwiseAbs().maxCoeff(), 1e-6) << i;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(FreeAndBound, PlanOfALinearModel, ::testing::Values(1e6, 2.0, 0.6));
 
 TEST(InputLimitedIlqr, KeepsBoundsAndMovesOnEveryModel) {

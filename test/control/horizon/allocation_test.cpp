@@ -41,6 +41,19 @@ TEST(HorizonAllocation, NonlinearPlansAllocateNothing) {
   }
 }
 
+TEST(HorizonAllocation, AnObserverAllocatesNothing) {
+  if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
+  for (const bool at_inputs : {false, true}) {
+    NmpcParams params = test::tankParams(8, 2);
+    params.horizon.observe = true;
+    params.horizon.observer.noise_std = params.horizon.observer.disturbance_std =
+        Vector::Constant(1, 0.1);
+    if (at_inputs) params.horizon.observer.input_std = Vector::Constant(1, 0.1);
+    Nmpc law(params, test::tankLimits(0.3), test::tankInfo(), std::make_unique<test::Tank>());
+    EXPECT_EQ(allocations(law, test::tankInfo()), 0U) << at_inputs;
+  }
+}
+
 TEST(HorizonAllocation, SwarmsAllocateNothing) {
   if (!testing::AllocationCounter::works()) GTEST_SKIP() << "a sanitizer owns malloc";
   const TsModel model = test::firstOrder(0.8, 0.3, 0.05);

@@ -31,15 +31,17 @@ class LateTank final : public SampleModel {
 
 struct Course {
   std::vector<double> level, shown, input, reference;  // of sample k
+  std::vector<double> disturbance;                     // the signal before plan_cost
 };
 
 /// A run from rest at level 1 to setpoint 1.5; the law is told `delay` samples.
 Course courseOf(const NmpcParams& params, int delay, std::size_t samples, bool observe = false,
-                double leak = 0.0) {
+                double leak = 0.0, double input_std = 0.0) {
   NmpcParams chosen = params;
   chosen.horizon.observe = observe;
-  chosen.horizon.observer.noise_std = Vector::Zero(1);
+  chosen.horizon.observer.noise_std = Vector::Constant(1, input_std > 0.0 ? 0.01 : 0.0);
   chosen.horizon.observer.disturbance_std = Vector::Ones(1);
+  if (input_std > 0.0) chosen.horizon.observer.input_std = Vector::Constant(1, input_std);
   Nmpc law(chosen, test::tankLimits(), test::tankInfo(), std::make_unique<LateTank>(delay));
   test::Tank plant(leak);
   SetpointSource source = test::setpointOf(test::tankInfo(), Vector::Constant(1, 1.5));
@@ -61,6 +63,7 @@ Course courseOf(const NmpcParams& params, int delay, std::size_t samples, bool o
     input = output.input[0];
     course.input.push_back(input);
     course.reference.push_back(output.reference[0]);
+    course.disturbance.push_back(law.signals().rbegin()[2].second);
     plant.step(output.input, Vector(0), state);
   }
   return course;
@@ -97,6 +100,15 @@ TEST(NmpcLate, WithTheDelayAsLeadTheReferenceIsMetWhereItIsShown) {
   for (std::size_t k = 0; k < 40; ++k) {
     EXPECT_NEAR(plain.level[k], plain.reference[k], 1e-6) << k;
     if (k > 5) EXPECT_NEAR(ahead.shown[k], ahead.reference[k], 1e-6) << k;
+  }
+}
+
+// The leak is just an input that is missing.
+TEST(NmpcLate, ALeakIsFoundOnTheInput) {
+  for (const int delay : {0, 5}) {
+    const Course course = courseOf(smoothParams(8, 2, 0.01), delay, 300, true, 0.4, 0.1);
+    EXPECT_NEAR(course.level.back(), 1.5, 1e-8) << delay;
+    EXPECT_NEAR(course.disturbance.back(), -0.4, 1e-6) << delay;
   }
 }
 

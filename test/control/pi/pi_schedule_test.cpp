@@ -55,6 +55,15 @@ TEST_F(ScheduledPi, MultipliesBothGainsByTheScheduleAtTheMeasuredOutput) {
   }
 }
 
+// From y = 0.5 to 1.0 in 0.1 h the derivative is -0.3 * 5 = -1.5 whatever g is, 2 and 3 there;
+// the proportional part 10 * 3 * 1, the integral 20 * 2 * 1.5 * 0.1.
+TEST_F(ScheduledPi, LeavesTheDerivativeAsItIs) {
+  params_.loops[0].terms.kd_h = 0.3;
+  PiController pi = make();
+  EXPECT_NEAR(step(pi, 0, 0.5), 5.0 + 10.0 * 2.0 * 1.5, 1e-12);
+  EXPECT_NEAR(step(pi, 1, 1.0), 5.0 + 30.0 + 6.0 - 1.5, 1e-12);
+}
+
 TEST_F(ScheduledPi, PublishesThePathToTheSetpointAndFollowsTheSetpointItself) {
   PiController plain = make();
   const double before = step(plain, 0, 1.0);

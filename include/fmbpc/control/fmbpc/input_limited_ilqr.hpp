@@ -29,6 +29,9 @@ class InputLimitedIlqr {
   void forget();  ///< the next plan starts from the input held
   /// From the next plan on; the horizon stays.
   void retune(int iterations, VectorRef weight_output, VectorRef weight_move);
+  /// From the next plan on only the errors of x(k+1)..x(k+n) count, 0 <= n <= N; at first all.
+  void countErrors(Eigen::Index n) { counted_ = n; }
+  bool warm() const { return warm_; }  ///< the next plan goes on from the last one
   /// state xi(k), correction n_x (added to every prediction), offset_output n_y (y - y_m),
   /// disturbances n_d N, reference n_y N or more columns. Returns false if nothing finite came out.
   bool plan(VectorRef state, VectorRef correction, VectorRef offset_output,
@@ -55,7 +58,7 @@ class InputLimitedIlqr {
   LocalModel model_;
   IlqrParams params_;
   InputLimits limits_;
-  Eigen::Index n_x_, n_u_, n_y_, N_;
+  Eigen::Index n_x_, n_u_, n_y_, N_, counted_{N_};
   bool warm_{false};
   double cost_{};
   long evaluations_{};

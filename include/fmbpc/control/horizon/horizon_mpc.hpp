@@ -14,6 +14,8 @@
 
 namespace fpc {
 
+class ShiftedModel;
+
 /// What a search made of a sample.
 struct PlanFound {
   bool usable{false};      ///< the plan is finite and inside the limits
@@ -25,14 +27,16 @@ struct PlanFound {
 /// Each sample: the model moves on with u(k-1), the measured outputs take the place of the
 /// predicted ones, and what lay between them is added to every predicted sample. With `observe` an
 /// extended Kalman filter moves the whole state, those that are not measured too, and what is added
-/// is its disturbance; the Jacobian comes from differences. Measurements that are late
-/// (SampleModel::delaySteps()) correct the state of their own time, from which the model runs
-/// forward on the inputs applied since, corrected in every sample. The search starts from the plan
-/// of the sample before, moved on by one sample and put inside the limits; if it fails that plan's
-/// input is sent, ok is false and the source `clipped`. Hard limits on inputs and moves. signals():
-/// NAME_correction of each output, plan_cost, plan_effort. A horizon at whose end an input has
-/// hardly begun to act is remarked, as seen where plans begin anew. While somebody else has the
-/// inputs the state moves on (lookOn()); reset() at the next sample keeps it, and plans anew.
+/// is its disturbance, or with input_std stated that of the inputs; Jacobians come from
+/// differences, and the covariance of a start from how its rest changes with what was measured.
+/// Measurements that are late (SampleModel::delaySteps()) correct the state of their own time, from
+/// which the model runs forward on the inputs applied since, corrected in every sample. The search
+/// starts from the plan of the sample before, moved on by one sample and put inside the limits; if
+/// it fails that plan's input is sent, ok is false and the source `clipped`. Hard limits on inputs
+/// and moves. signals(): NAME_correction of each output, NAME_disturbance of each input if it has
+/// one, plan_cost, plan_effort. A horizon at whose end an input has hardly begun to act is
+/// remarked, as seen where plans begin anew. While somebody else has the inputs the state moves on
+/// (lookOn()); reset() at the next sample keeps it, and plans anew.
 class HorizonMpc : public Controller {
  public:
   void reset(const Measurement& start) override;
@@ -62,6 +66,8 @@ class HorizonMpc : public Controller {
   void lookAhead(const Measurement& now);
   bool observe(const Measurement& now);
   bool linearise();
+  bool takeColumn(Eigen::Ref<Vector> column, double h);
+  void restAnew(const Measurement& now);
   void remember(const Measurement& now);
   bool runForward();
   void refreshSignals(const PlanFound& found);
@@ -71,10 +77,13 @@ class HorizonMpc : public Controller {
   Eigen::Index n_y_, n_u_;
   Vector range_;
   std::unique_ptr<SampleModel> model_;
+  ShiftedModel* shifted_{nullptr};  // model_, where disturbances are at the inputs
   std::unique_ptr<PlanCost> cost_;
   std::optional<DisturbanceObserver> observer_;
-  Matrix A_;             // of the model at the state of k-1
+  Matrix A_, E_;         // of the model at the state of k-1
+  Matrix root_;          // of the covariance of a start
   Vector moved_, next_;  // for the differences
+  Vector measured_, input_;
   ReferenceTrajectory reference_;
   Matrix future_;         // n_y, P and the lead
   Matrix inputs_, past_;  // u and d of the samples since the measured outputs were true, and before

@@ -13,8 +13,8 @@
 
 namespace fpc {
 
-/// At this value of the scheduling signal (the followed output, unless PiTerms says another) both
-/// gains, and that of the derivative, are multiplied by `gain`.
+/// At this value of the scheduling signal (the followed output, unless PiTerms says another) kp and
+/// ki are multiplied by `gain`; derivative, feed-forward and steady input are not.
 struct GainPoint {
   double output{};
   double gain{1.0};
@@ -30,7 +30,8 @@ inline std::vector<std::string> wordsOf(PiStart) { return {"bias", "bumpless"}; 
 
 /// u = bias + kp g e + ki int g e dt, e = setpoint - y. Gains in input units per output unit (and
 /// per hour); g = 1 unless scheduled. With `terms` the setpoint may be looked up ahead, filtered
-/// and led, and u takes on derivative, feed-forward and the steady input of the setpoint.
+/// and led, and u takes on derivative, feed-forward and the steady input of the setpoint, which g
+/// leaves as they are.
 struct PiLoop {
   int input{};   ///< index of the input it moves
   int output{};  ///< index of the output it follows

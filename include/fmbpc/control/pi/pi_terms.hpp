@@ -34,7 +34,7 @@ struct PiScheduleSignal {
 };
 
 struct PiTerms {
-  double kd_h{};              ///< input per output, times h; acts on -dy/dt
+  double kd_h{};              ///< input per output, times h; acts on -dy/dt, not scheduled
   double derivative_lag_h{};  ///< of the filter on the derivative; 0: a difference over one sample
   double preview_h{};         ///< the setpoint is that of so much later in the schedule
   double setpoint_pole{};     ///< per sample, of a first-order path that e takes for the setpoint
@@ -54,7 +54,8 @@ class PiTermState {
   void reset();
   /// What e is taken from: setpoint ahead, on its path, with its lead. Once per sample.
   double aim(const Measurement& now, const SetpointSource& setpoint);
-  /// Steady input, derivative (times `gain`, its sign) and feed-forward, in units of the input.
+  /// Steady input, derivative (times `gain`: its sign, -1 in a reverse loop) and feed-forward, in
+  /// units of the input.
   /// After aim(), once a sample.
   double sum(const Measurement& now, double gain);
 
