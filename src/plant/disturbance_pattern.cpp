@@ -101,13 +101,14 @@ double steepness(const Vector& logs, double log_p) {
 /// Bisection in log p; the mean is only computed where a first estimate leaves its side open.
 double powerForMean(const Vector& unit, double mean, const std::string& where) {
   const auto mean_at = [&](double log_p) { return unit.array().pow(std::exp(log_p)).mean(); };
-  double low = -kLogPowerLimit, high = kLogPowerLimit;
-  require(mean_at(low) >= mean && mean_at(high) <= mean, where + ": mean",
-          "a value that the shape can have; nearer to the middle of lower..upper");
   const Vector logs = unit.array().log();
-  const Near near =
-      nearRoot([&](double log_p) { return (std::exp(log_p) * logs.array()).exp().mean() - mean; },
-               low, high);
+  const auto nearly = [&](double log_p) { return (std::exp(log_p) * logs.array()).exp().mean(); };
+  double low = -kLogPowerLimit, high = kLogPowerLimit;
+  require((nearly(low) - mean > kDoubt || mean_at(low) >= mean) &&
+              (mean - nearly(high) > kDoubt || mean_at(high) <= mean),
+          where + ": mean",
+          "a value that the shape can have; nearer to the middle of lower..upper");
+  const Near near = nearRoot([&](double log_p) { return nearly(log_p) - mean; }, low, high);
   const double open = near.met ? std::min(kNear, kDoubt / steepness(logs, near.at)) : kNear;
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);
