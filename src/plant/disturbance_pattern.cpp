@@ -68,22 +68,18 @@ struct Near {
   bool met;  ///< f(at) is rounding
 };
 
-/// Where decreasing `f` is zero, nearly: regula falsi (Illinois) in low..high.
+/// Where decreasing `f` is zero, nearly: regula falsi in low..high; an end that stays twice counts
+/// half (Illinois).
 Near nearRoot(const std::function<double(double)>& f, double low, double high) {
-  double f_low = f(low), f_high = f(high), at = low;
+  double f_low = f(low), f_high = f(high), f_last = 0.0, at = low;
   for (int i = 0; i < 40; ++i) {
     at = std::clamp((low * f_high - high * f_low) / (f_high - f_low), low, high);
     const double f_at = f(at);
     if (std::abs(f_at) < kSmallMean) return {at, true};
-    if (f_at > 0.0) {
-      low = at;
-      f_low = f_at;
-      f_high *= 0.5;
-    } else {
-      high = at;
-      f_high = f_at;
-      f_low *= 0.5;
-    }
+    (f_at > 0.0 ? low : high) = at;
+    (f_at > 0.0 ? f_low : f_high) = f_at;
+    if (f_at * f_last > 0.0) (f_at > 0.0 ? f_high : f_low) *= 0.5;
+    f_last = f_at;
   }
   return {at, false};
 }
