@@ -14,6 +14,7 @@
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/plant/integrator.hpp"
 #include "fuzzy/cluster_kernels.hpp"
+#include "fuzzy/cluster_pass.hpp"
 #include "pairs.hpp"
 
 namespace fpc::bench {
@@ -215,20 +216,21 @@ void clusteringThreads() {
 void covariancePass() {
   constexpr std::size_t kSize = 10, kRows = 12, kTimes = 1000;
   constexpr double kNeeded = 0.5 * (110 + 44) * clusters::kBlock * kTimes;
-  std::vector<double> points(kRows * clusters::kBlock, 0.1), center(kRows, 0.05),
+  clusters::Buffer points(kRows * clusters::kBlock, 0.1), center(kRows, 0.05),
       root(clusters::kBlock, 0.5), squared(clusters::kBlock, 1.0), scaled(kRows * clusters::kBlock),
       offset(kRows * clusters::kLanes), sums(2 * clusters::kLanes),
       scatter(kRows * kRows * clusters::kLanes);
   const int bits = widestBits();
+  const clusters::Kernels& kernels = clusters::kernels();
   volatile double kept = 0.0;  // so that nothing is left out
   printPairs(
       "covariance pass of Gustafson-Kessel, 64,000 x 10, one cluster",
       "as much arithmetic at the peak of a core, " + std::to_string(bits) + " bits", "0.3",
       [&] {
         for (std::size_t i = 0; i < kTimes; ++i) {
-          clusters::scaleBlock(points.data(), center.data(), root.data(), squared.data(), kSize,
-                               scaled.data(), offset.data(), sums.data());
-          clusters::addScatter(scaled.data(), kSize, scatter.data());
+          kernels.scaleBlock(points.data(), center.data(), root.data(), squared.data(), kSize,
+                             scaled.data(), offset.data(), sums.data());
+          kernels.addScatter(scaled.data(), kSize, scatter.data());
         }
       },
       [&] { kept = multiplyAdds(kNeeded, bits); });

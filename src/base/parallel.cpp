@@ -10,7 +10,11 @@
 
 namespace fpc {
 
-int coreCount() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
+/// Asked once: the answer is read from files of the system.
+int coreCount() {
+  static const int count = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return count;
+}
 
 void parallelFor(std::size_t n, int threads, const std::function<void(std::size_t)>& work) {
   require(threads >= 0, "threads", "an integer >= 0 (0: all cores)");

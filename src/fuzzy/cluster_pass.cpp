@@ -94,9 +94,9 @@ void Pass::scatterChunk(const double* center, Chunk& chunk) const {
     Row weight = rowOf(chunk.member, 0);
     weight.setOnes();
     weight.tail(kWidth - size).setZero();
-    scaleBlock(points, center, weight.data(), chunk.squared.data(), n, chunk.scaled.data(),
-               chunk.offset.data(), chunk.sums.data());
-    addScatter(chunk.scaled.data(), n, chunk.scatter.data());
+    kernels().scaleBlock(points, center, weight.data(), chunk.squared.data(), n,
+                         chunk.scaled.data(), chunk.offset.data(), chunk.sums.data());
+    kernels().addScatter(chunk.scaled.data(), n, chunk.scatter.data());
   }
   giveBack(chunk);
 }
@@ -125,7 +125,7 @@ void Pass::approachIn(const double* center, Chunk& chunk) const {
   double sum[kLanes] = {};
   for (Index block = 0; block < blocksOf(chunk.size); ++block) {
     double* nearest = chunk.nearest.data() + block * kWidth;
-    clusters::approach(chunk.points.data() + block * rows_ * kWidth, center, at(rows_), nearest);
+    kernels().approach(chunk.points.data() + block * rows_ * kWidth, center, at(rows_), nearest);
     for (std::size_t s = 0; s < kBlock; ++s) sum[s % kLanes] += nearest[s];
   }
   chunk.nearest_sum = lanesSum(sum);
@@ -209,11 +209,12 @@ void Pass::addBlock(const double* points, Index size, Chunk& chunk) const {
   for (std::size_t i = 0; i < at(clusters_); ++i) {
     Row root = rowOf(chunk.member, static_cast<Index>(i));
     if (size < kWidth) root.tail(kWidth - size).setZero();
-    scaleBlock(points, centers_.data() + i * rows, root.data(), chunk.squared.data() + i * kBlock,
-               n, chunk.scaled.data(), chunk.offset.data() + i * rows * kLanes,
-               chunk.sums.data() + 2 * i * kLanes);
+    kernels().scaleBlock(points, centers_.data() + i * rows, root.data(),
+                         chunk.squared.data() + i * kBlock, n, chunk.scaled.data(),
+                         chunk.offset.data() + i * rows * kLanes,
+                         chunk.sums.data() + 2 * i * kLanes);
     if (scatter_)
-      addScatter(chunk.scaled.data(), n, chunk.scatter.data() + i * rows * rows * kLanes);
+      kernels().addScatter(chunk.scaled.data(), n, chunk.scatter.data() + i * rows * rows * kLanes);
   }
 }
 
@@ -225,12 +226,12 @@ void Pass::runChunk(Chunk& chunk) const {
   double* present = chunk.present.data();
   for (Index from = 0; from < chunk.size; from += kWidth) {
     for (std::size_t i = 0; i < at(clusters_); ++i) {
-      squaredNorms(points, centers_.data() + i * rows, roots_.data() + i * rows * rows, n,
-                   chunk.squared.data() + i * kBlock);
+      kernels().squaredNorms(points, centers_.data() + i * rows, roots_.data() + i * rows * rows, n,
+                             chunk.squared.data() + i * kBlock);
     }
     if (fuzziness_ == 2.0) {
-      chunk.change = std::max(chunk.change, shareOut(chunk.squared.data(), at(clusters_),
-                                                     chunk.member.data(), present));
+      chunk.change = std::max(chunk.change, kernels().shareOut(chunk.squared.data(), at(clusters_),
+                                                               chunk.member.data(), present));
     } else {
       toMemberships(chunk);
       store(present, chunk);

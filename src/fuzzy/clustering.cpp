@@ -40,11 +40,6 @@ double meanSpread(const Matrix& covariance) {
   return std::exp(values.array().max(std::numeric_limits<double>::min()).log().mean());
 }
 
-/// Weighted sum of squared distances to a cluster of this shape: tr(A S), S the weighted scatter.
-double distanceSum(const Matrix& covariance, const Matrix& scatter) {
-  return meanSpread(covariance) * covariance.llt().solve(scatter).trace();
-}
-
 /// Squared distances of one point into its memberships; a point in a centre belongs to it alone.
 void toMemberships(Eigen::Ref<Vector> squared, double exponent) {
   const double nearest = squared.minCoeff();
@@ -53,13 +48,44 @@ void toMemberships(Eigen::Ref<Vector> squared, double exponent) {
   squared /= squared.sum();
 }
 
-/// R lower triangular with |R (z - v)|^2 = (z - v)' A (z - v), A = det(F)^(1/n) F^-1.
-Matrix distanceRoot(const Matrix& covariance) {
-  const Eigen::LLT<Matrix> root(covariance);
-  const double volume = Matrix(root.matrixL()).diagonal().array().log().mean();
+/// F and what distances are measured by: R lower triangular with |R (z - v)|^2 = (z - v)' A (z -
+/// v), A = det(F)^(1/n) F^-1.
+struct Shape {
+  Matrix covariance, root;
+};
+
+/// The inverse of F's triangular factor; not a number where F has none.
+Matrix inverseFactor(const Matrix& covariance) {
+  const Eigen::LLT<Matrix> factor(covariance);
   Matrix inverse = Matrix::Identity(covariance.rows(), covariance.cols());
-  root.matrixL().solveInPlace(inverse);
-  return std::exp(volume) * inverse;
+  if (factor.info() == Eigen::Success)
+    factor.matrixL().solveInPlace(inverse);
+  else
+    inverse.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return inverse;
+}
+
+/// No eigenvalue is below the floor of bounded(): the least is at least 1 / tr(F^-1), the largest
+/// at most tr(F). False where that cannot be told without eigenvalues.
+bool surelyBounded(const Matrix& covariance, const Matrix& inverse_factor) {
+  const double least = 1.0 / inverse_factor.squaredNorm();
+  return least >= covariance.trace() / kLargestCondition &&
+         least >= std::numeric_limits<double>::min();
+}
+
+Shape shapeOf(const Matrix& covariance) {
+  Shape shape{covariance, inverseFactor(covariance)};
+  if (!surelyBounded(shape.covariance, shape.root)) {
+    shape.covariance = bounded(covariance);
+    shape.root = inverseFactor(shape.covariance);
+  }
+  shape.root *= std::exp(-shape.root.diagonal().array().log().mean());
+  return shape;
+}
+
+/// Weighted sum of squared distances to a cluster of this shape: tr(A S), S the weighted scatter.
+double distanceSum(const Matrix& root, const Matrix& scatter) {
+  return root.lazyProduct(scatter).cwiseProduct(root).sum();
 }
 
 class Iteration {
@@ -77,8 +103,9 @@ class Iteration {
     const Index n = points_.rows();
     clusters_ = {};
     clusters_.fuzziness = params_.fuzziness;
-    clusters_.covariances.assign(static_cast<std::size_t>(params_.clusters),
-                                 Matrix::Identity(n, n));
+    const auto count = static_cast<std::size_t>(params_.clusters);
+    clusters_.covariances.assign(count, Matrix::Identity(n, n));
+    metric_.root = clusters_.covariances;
     spreadCenters(generator);
     moveMemberships();
   }
@@ -129,20 +156,19 @@ class Iteration {
           moments_->scatter[i] - weight * shift_.col(column) * shift_.col(column).transpose();
       Matrix covariance = (1.0 - params_.regularisation) * scatter / weight;
       covariance.diagonal().array() += params_.regularisation * spread_;
-      covariance = bounded(covariance);
+      Shape shape = shapeOf(covariance);
       // A regularised shape is not the best one for the objective: it is taken only where it lowers
       // it. Along a line no distance knows the shape, and rounding must not decide.
       if (points_.rows() == 1 ||
-          distanceSum(covariance, scatter) <= distanceSum(clusters_.covariances[i], scatter))
-        clusters_.covariances[i] = covariance;
+          distanceSum(shape.root, scatter) <= distanceSum(metric_.root[i], scatter)) {
+        clusters_.covariances[i].swap(shape.covariance);
+        metric_.root[i].swap(shape.root);
+      }
     }
   }
 
   void moveMemberships() {
     metric_.centers = clusters_.centers;
-    metric_.root.clear();
-    for (const Matrix& covariance : clusters_.covariances)
-      metric_.root.push_back(distanceRoot(covariance));
     moments_ = &pass_.run(metric_, params_.adaptive);
   }
 

@@ -16,6 +16,11 @@ constexpr double kEnough = 1e-6;  // relative fall of the objective below which 
 constexpr double kFirstDamping = 1e-3;  // of the number of rows
 constexpr double kMostDamping = 1e6;
 
+/// What a vector of coefficients reaches.
+struct FreeRunPoint {
+  double objective{}, rms{};  // rms: of the free run
+};
+
 /// The objective and its Gauss-Newton steps.
 class Fit {
  public:
@@ -24,21 +29,22 @@ class Fit {
   Fit(FreeRunSimulator& simulator, const ConsequentParams& params, const Vector& linear,
       Admit admit)
       : simulator_(simulator), params_(params), linear_(linear), admit_(std::move(admit)) {
-    const double free = simulator.run(linear, true, 1.0, 1.0, nullptr);
-    const double rows = static_cast<double>(std::max<Index>(simulator.rows(), 1));
-    free_unit_ = unitOf(free, rows);
-    step_unit_ = unitOf(simulator.run(linear, false, 1.0, 1.0, nullptr), rows);
+    linear_sums_ = runFree(linear);
+    linear_sums_.step = simulator.run(linear, false, 1.0, 1.0, nullptr);
+    const double rows = static_cast<double>(linear_sums_.rows);
+    free_unit_ = unitOf(linear_sums_.free, rows);
+    step_unit_ = unitOf(linear_sums_.step, rows);
   }
 
-  double objective(const Vector& theta) {
-    const double free = simulator_.run(theta, true, 1.0, 1.0, nullptr) / (free_unit_ * free_unit_);
-    if (!std::isfinite(free)) return free;
-    double sum = free + pull() * (theta - linear_).squaredNorm();
-    if (params_.one_step_weight > 0.0)
-      sum += params_.one_step_weight * simulator_.run(theta, false, 1.0, 1.0, nullptr) /
-             (step_unit_ * step_unit_);
-    return sum;
+  FreeRunPoint at(const Vector& theta) {
+    Sums sums = runFree(theta);
+    if (params_.one_step_weight > 0.0 && std::isfinite(sums.free))
+      sums.step = simulator_.run(theta, false, 1.0, 1.0, nullptr);
+    return pointOf(theta, sums);
   }
+
+  /// Of the linear model, whose runs are known.
+  FreeRunPoint atLinear() const { return pointOf(linear_, linear_sums_); }
 
   LeastSquares linearise(const Vector& theta) {
     LeastSquares squares(simulator_.unknowns());
@@ -55,15 +61,15 @@ class Fit {
   }
 
   /// One damped step that lowers the objective. @return false if there is none.
-  bool improve(Vector& theta, double& best) {
+  bool improve(Vector& theta, FreeRunPoint& best) {
     LeastSquares squares = linearise(theta);
     const double rows = static_cast<double>(squares.rows());
     for (; damping_ < kMostDamping; damping_ *= 8.0) {
       Vector next = theta + squares.solve(damping_ * rows).theta;
       if (admit_ && !admit_(squares.metric(), next)) continue;
-      const double reached = objective(next);
-      if (!(reached < best)) continue;
-      const bool settled = reached > (1.0 - kEnough) * best;
+      const FreeRunPoint reached = at(next);
+      if (!(reached.objective < best.objective)) continue;
+      const bool settled = reached.objective > (1.0 - kEnough) * best.objective;
       theta = next;
       best = reached;
       damping_ = std::max(damping_ / 8.0, 1e-12);
@@ -73,6 +79,27 @@ class Fit {
   }
 
  private:
+  /// Sums of squared errors, and the rows of the free run.
+  struct Sums {
+    double free{}, step{};
+    Index rows{};
+  };
+
+  Sums runFree(const Vector& theta) {
+    const double free = simulator_.run(theta, true, 1.0, 1.0, nullptr);
+    return {free, 0.0, std::max<Index>(simulator_.rows(), 1)};
+  }
+
+  FreeRunPoint pointOf(const Vector& theta, const Sums& sums) const {
+    double objective = sums.free / (free_unit_ * free_unit_);
+    if (std::isfinite(objective)) {
+      objective += pull() * (theta - linear_).squaredNorm();
+      if (params_.one_step_weight > 0.0)
+        objective += params_.one_step_weight * sums.step / (step_unit_ * step_unit_);
+    }
+    return {objective, std::sqrt(sums.free / static_cast<double>(sums.rows))};
+  }
+
   static double unitOf(double sum, double rows) {
     const double rms = std::sqrt(sum / rows);
     return std::isfinite(rms) && rms > 0.0 ? rms : 1.0;
@@ -85,6 +112,7 @@ class Fit {
   const ConsequentParams& params_;
   Vector linear_;
   Admit admit_;
+  Sums linear_sums_;
   double free_unit_{1.0}, step_unit_{1.0}, damping_{kFirstDamping};
 };
 
@@ -117,20 +145,15 @@ FreeRunFit fitFreeRun(const DataSet& data, int output, const OutputModel& linear
   const std::vector<Rule> same(model.rules.size(), linear.rules.front());
   const Vector start = simulator.scaled(same);
   Fit fit(simulator, params, start, admission(data, output, model, simulator, known));
-  const auto rms = [&](const Vector& theta) {
-    const double sum = simulator.run(theta, true, 1.0, 1.0, nullptr);
-    return std::sqrt(sum / static_cast<double>(std::max<Index>(simulator.rows(), 1)));
-  };
   FreeRunFit result;
   Vector theta = simulator.scaled(model.rules);
-  result.before = rms(theta);
-  double best = fit.objective(theta);
-  const double best_linear = fit.objective(start);
-  if (best_linear < best) {
+  FreeRunPoint best = fit.at(theta);
+  result.before = best.rms;
+  if (fit.atLinear().objective < best.objective) {
     theta = start;
-    best = best_linear;
+    best = fit.atLinear();
   }
-  if (!std::isfinite(best)) return result;
+  if (!std::isfinite(best.objective)) return result;
   bool going = true;
   while (going && result.iterations < params.free_run_iterations) {
     result.cancelled = proceed && !proceed();
@@ -138,7 +161,7 @@ FreeRunFit fitFreeRun(const DataSet& data, int output, const OutputModel& linear
     going = fit.improve(theta, best);
     ++result.iterations;
   }
-  result.after = rms(theta);
+  result.after = best.rms;
   simulator.write(theta, model.rules);
   return result;
 }

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "optim/qp_kernels.hpp"
+
 namespace fpc {
 namespace {
 
@@ -56,7 +58,9 @@ void judge(const Matrix& scaled, LeastSquaresSolution& solution) {
 }  // namespace
 
 LeastSquares::LeastSquares(Eigen::Index unknowns)
-    : n_(unknowns), stack_(Matrix::Zero(n_ + 1 + std::max(kSmallestBlock, 2 * n_), n_ + 1)) {}
+    : n_(unknowns),
+      stack_(Matrix::Zero(n_ + 1 + std::max(kSmallestBlock, 2 * n_), n_ + 1)),
+      shares_(n_) {}
 
 void LeastSquares::add(VectorRef x, double y, double weight) {
   if (!(weight > 0.0)) return;
@@ -68,10 +72,33 @@ void LeastSquares::add(VectorRef x, double y, double weight) {
   if (n_ + 1 + ++filled_ == stack_.rows()) fold();
 }
 
+/// Reflections that take one column of the block each into the triangle above: of its rows they
+/// touch one only.
 void LeastSquares::fold() {
   if (filled_ == 0) return;
-  Eigen::HouseholderQR<Eigen::Ref<Matrix>> qr(stack_);
-  for (Eigen::Index j = 0; j <= n_; ++j) stack_.col(j).tail(stack_.rows() - j - 1).setZero();
+  auto block = stack_.middleRows(n_ + 1, filled_);
+  for (Eigen::Index j = 0; j <= n_; ++j) {
+    auto column = block.col(j);
+    const double tail = column.squaredNorm(), top = stack_(j, j);
+    if (!(tail > std::numeric_limits<double>::min())) {
+      column.setZero();
+      continue;
+    }
+    const Eigen::Index right = n_ - j;
+    const double length = std::copysign(std::sqrt(top * top + tail), top);
+    stack_(j, j) = -length;
+    column /= top + length;  // the reflection is I - (1 + top / length) v v', v = (1, column)
+    if (right > 0) {
+      auto row = stack_.row(j).tail(right);
+      Eigen::Map<Vector> share(shares_.data(), right);
+      qp::transposedProduct(block.rightCols(right), column, share);
+      share = (1.0 + top / length) * (share + row.transpose());
+      row -= share.transpose();
+      qp::subtractOuter(column.data(), filled_, share.data(), right, block.rightCols(right).data(),
+                        stack_.outerStride());
+    }
+    column.setZero();
+  }
   filled_ = 0;
 }
 

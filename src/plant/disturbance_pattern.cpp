@@ -68,22 +68,18 @@ struct Near {
   bool met;  ///< f(at) is rounding
 };
 
-/// Where decreasing `f` is zero, nearly: regula falsi (Illinois) in low..high.
+/// Where decreasing `f` is zero, nearly: regula falsi in low..high; an end that stays twice counts
+/// half (Illinois).
 Near nearRoot(const std::function<double(double)>& f, double low, double high) {
-  double f_low = f(low), f_high = f(high), at = low;
+  double f_low = f(low), f_high = f(high), f_last = 0.0, at = low;
   for (int i = 0; i < 40; ++i) {
     at = std::clamp((low * f_high - high * f_low) / (f_high - f_low), low, high);
     const double f_at = f(at);
     if (std::abs(f_at) < kSmallMean) return {at, true};
-    if (f_at > 0.0) {
-      low = at;
-      f_low = f_at;
-      f_high *= 0.5;
-    } else {
-      high = at;
-      f_high = f_at;
-      f_low *= 0.5;
-    }
+    (f_at > 0.0 ? low : high) = at;
+    (f_at > 0.0 ? f_low : f_high) = f_at;
+    if (f_at * f_last > 0.0) (f_at > 0.0 ? f_high : f_low) *= 0.5;
+    f_last = f_at;
   }
   return {at, false};
 }
@@ -101,13 +97,14 @@ double steepness(const Vector& logs, double log_p) {
 /// Bisection in log p; the mean is only computed where a first estimate leaves its side open.
 double powerForMean(const Vector& unit, double mean, const std::string& where) {
   const auto mean_at = [&](double log_p) { return unit.array().pow(std::exp(log_p)).mean(); };
-  double low = -kLogPowerLimit, high = kLogPowerLimit;
-  require(mean_at(low) >= mean && mean_at(high) <= mean, where + ": mean",
-          "a value that the shape can have; nearer to the middle of lower..upper");
   const Vector logs = unit.array().log();
-  const Near near =
-      nearRoot([&](double log_p) { return (std::exp(log_p) * logs.array()).exp().mean() - mean; },
-               low, high);
+  const auto nearly = [&](double log_p) { return (std::exp(log_p) * logs.array()).exp().mean(); };
+  double low = -kLogPowerLimit, high = kLogPowerLimit;
+  require((nearly(low) - mean > kDoubt || mean_at(low) >= mean) &&
+              (mean - nearly(high) > kDoubt || mean_at(high) <= mean),
+          where + ": mean",
+          "a value that the shape can have; nearer to the middle of lower..upper");
+  const Near near = nearRoot([&](double log_p) { return nearly(log_p) - mean; }, low, high);
   const double open = near.met ? std::min(kNear, kDoubt / steepness(logs, near.at)) : kNear;
   for (int i = 0; i < 100; ++i) {
     const double middle = 0.5 * (low + high);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <random>
 
@@ -159,6 +160,20 @@ TEST(Clustering, CentersShapesAndMembershipsAreThoseOfTheFormulas) {
       EXPECT_LE((covariance - shape).norm(), 1e-10 * covariance.norm());
     }
     EXPECT_LE((after.membershipsOf(points) - after.memberships).cwiseAbs().maxCoeff(), 1e-11);
+  }
+}
+
+TEST(Clustering, ShapesOfPointsOnALineKeepAnInverse) {
+  Matrix points = flatClouds(3, 600);
+  points.row(1) = 2.0 * points.row(0);
+  points.row(2) = -points.row(0);
+  ClusteringParams params = paramsWith(true, 2, 0.0);
+  params.max_iterations = 20;
+  const Clusters clusters = findClusters(points, params);
+  EXPECT_TRUE(clusters.memberships.allFinite());
+  for (const Matrix& shape : clusters.covariances) {
+    const Vector values = shape.selfadjointView<Eigen::Lower>().eigenvalues();
+    EXPECT_NEAR(values.maxCoeff() / values.minCoeff(), 1e12, 1e10);
   }
 }
 

@@ -34,6 +34,7 @@ class LeastSquares {
 
   Eigen::Index n_, filled_{};
   Matrix stack_;  // the triangle on top, the rows not yet folded in below
+  Vector shares_;
   std::uint64_t rows_{};
 };
 

@@ -11,21 +11,38 @@ constexpr int kWalked = 32;          // horizons that are summed step by step
 constexpr int kStart = 8;            // of longer ones fewer than these steps
 constexpr Eigen::Index kSmall = 20;  // rows and columns below which Eigen multiplies by definition
 
-/// to = a b by definition: the same bits as Eigen's below kSmall, without its way there.
+/// to = a b by definition, the sums' length known to the compiler or, for 0, not.
+template <Eigen::Index kDepth>
+void multiplyOf(const Matrix& a, const Matrix& b, Matrix& to) {
+  const Eigen::Index rows = a.rows(), depth = kDepth > 0 ? kDepth : a.cols();
+  const double *factor = b.data(), *end = factor + depth * b.cols();
+  for (double* out = to.data(); factor != end; factor += depth, out += rows) {
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const double* entry = a.data() + i;
+      double sum = 0.0;
+      for (Eigen::Index k = 0; k < depth; ++k) sum += entry[k * rows] * factor[k];
+      out[i] = sum;
+    }
+  }
+}
+
+/// to = a b: the same bits as Eigen's below kSmall, without its way there.
 void multiply(const Matrix& a, const Matrix& b, Matrix& to) {
   if (a.rows() + a.cols() + b.cols() >= kSmall) {
     to.noalias() = a * b;
     return;
   }
-  const Eigen::Index rows = a.rows(), depth = a.cols(), cols = b.cols();
-  for (Eigen::Index j = 0; j < cols; ++j) {
-    const double* factor = b.data() + j * depth;
-    double* out = to.data() + j * rows;
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      double sum = 0.0;
-      for (Eigen::Index k = 0; k < depth; ++k) sum += a.data()[k * rows + i] * factor[k];
-      out[i] = sum;
-    }
+  switch (a.cols()) {
+    case 2:
+      return multiplyOf<2>(a, b, to);
+    case 3:
+      return multiplyOf<3>(a, b, to);
+    case 4:
+      return multiplyOf<4>(a, b, to);
+    case 6:
+      return multiplyOf<6>(a, b, to);
+    default:
+      return multiplyOf<0>(a, b, to);
   }
 }
 
@@ -105,7 +122,7 @@ void CoincidenceGains::predict(const AffineModel& model, int horizon, VectorRef 
     begin(model, weight_output);
     walk(model, horizon);
   }
-  effect_.noalias() = sum_ * model.B;
+  multiply(sum_, model.B, effect_);
   // An effect that is nothing but the rounding of what cancelled is none.
   effect_ = (effect_.array().abs() > kSingular * effect_size_.array()).select(effect_, 0.0);
 }
