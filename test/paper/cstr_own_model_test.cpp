@@ -18,12 +18,15 @@
 namespace fpc {
 namespace paper_cstr_own_model_test {
 
-TsModel identified(int seed) {
-  const LoopFile loop = readLoop("cstr_excite", {{"controller.seed", std::to_string(seed)}});
+TsModel identified(int seed, const std::string& excitation = "cstr_excite",
+                   const std::string& structure_name = "cstr") {
+  const LoopFile loop = readLoop(excitation, {{"controller.seed", std::to_string(seed)}});
   const RunRecord record = runLoop(loop);
-  const auto folder = std::filesystem::path(resultsDir()) / ("cstr_excite_" + std::to_string(seed));
+  const auto folder =
+      std::filesystem::path(resultsDir()) / (excitation + "_" + std::to_string(seed));
   writeRun(loop, record, summarize(loop, record, 0.0), folder.string());
-  const Structure structure = readStructure(sourceDir() + "/config/structure/cstr.yaml");
+  const Structure structure =
+      readStructure(sourceDir() + "/config/structure/" + structure_name + ".yaml");
   const DataSet data = makeDataSet(readCsv((folder / "trajectory.csv").string()), structure);
   EXPECT_TRUE(data.repairs.empty());
   TsModel model = identify(data, structure).model;
@@ -75,15 +78,40 @@ TEST_P(CstrOwnModel, ControlsTheReactor) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, CstrOwnModel, ::testing::Range(1, 9));
 
-TEST(CstrOwnModelFile, IsTheOneOfTheFirstSeed) {
-  const TsModel model = identified(1);
-  const TsModel shipped = readModel(sourceDir() + "/config/model/cstr_own.yaml");
+/// The rules of config/model/NAME.yaml are those of `model`.
+void expectShipped(const TsModel& model, const std::string& name) {
+  const TsModel shipped = readModel(sourceDir() + "/config/model/" + name + ".yaml");
   ASSERT_EQ(shipped.submodels[0].rules.size(), model.submodels[0].rules.size());
   for (std::size_t i = 0; i < model.submodels[0].rules.size(); ++i) {
     const Rule &a = shipped.submodels[0].rules[i], &b = model.submodels[0].rules[i];
     EXPECT_EQ(a.antecedents, b.antecedents);
     EXPECT_LT((a.coefficients - b.coefficients).norm(), 1e-6 * b.coefficients.norm()) << i;
     EXPECT_NEAR(a.offset, b.offset, 1e-6 * std::abs(b.offset)) << i;
+  }
+}
+
+TEST(CstrOwnModelFile, IsTheOneOfTheFirstSeed) { expectShipped(identified(1), "cstr_own"); }
+
+TEST(CstrLagsModelFile, IsTheOneOfTheFirstSeed) {
+  expectShipped(identified(1, "cstr_excite_fast", "cstr_lags"), "cstr_lags");
+}
+
+double trackingUnder(const std::string& loop, const Overrides& overrides) {
+  const LoopFile file = readLoop(loop, overrides);
+  return summarize(file, runLoop(file), 0.0).outputs[0].ise_reference;
+}
+
+/// The row of config/study/cstr_mismatch.yaml: the aim of 1.5 times the 0.0034 of cstr_tracking
+/// holds under every load; at another reaction rate it is missed, by less than with model A.
+TEST(CstrLagsLoop, MeetsEveryLoadAndGainsAtBothRates) {
+  const std::string load = "disturbance.nominal.d_q_c";
+  for (const char* value : {"-6", "-3", "0", "3", "6"})
+    EXPECT_LE(trackingUnder("cstr_tracking_lags", {{load, value}}), 0.0051) << value;
+  for (const char* value : {"6.48e+10", "7.92e+10"}) {
+    const Overrides rate = {{"plant.parameters.rate_constant", value}};
+    EXPECT_LT(trackingUnder("cstr_tracking_lags", rate),
+              trackingUnder("cstr_tracking_observer_lead", rate))
+        << value;
   }
 }
 
