@@ -14,11 +14,11 @@
 namespace fpc {
 namespace {
 
-constexpr double kPollPeriod = 0.05;  // [s] of wall time
-constexpr double kLastWords = 0.3;    // [s] between run_end and the end of this process
-constexpr double kHeard = 1.0;        // [s] in which a run under way is heard of
+constexpr double kPollPeriod = 0.05;   // [s] of wall time
+constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
 constexpr double kLookForRing = 0.01;  // [s] of wall time, at who is there
-constexpr double kSettled = 0.1;  // [s]: a connection is complete at both ends a moment later
+constexpr double kSettled = 0.1;       // [s]: a connection is complete at both ends a moment later
 
 }  // namespace
 

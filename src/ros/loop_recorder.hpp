@@ -75,7 +75,7 @@ class LoopRecorder : public Node {
   double ending_s_{-1};
   bool written_{false};
   std::string problem_, trouble_;  // of the recorder; of the plant
-  double connected_s_{-1};  // since when every publisher is there
+  double connected_s_{-1};         // since when every publisher is there
 
   ros::Publisher recorded_;
   RunEndPublisher end_;

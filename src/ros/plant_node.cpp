@@ -13,11 +13,11 @@
 namespace fpc {
 namespace {
 
-constexpr double kPoll = 0.05;         // [s] of wall time
+constexpr double kPoll = 0.05;          // [s] of wall time
 constexpr double kLookForStart = 0.01;  // [s] of wall time, at who is there
-constexpr double kIntroduceAgain = 1;  // [s], while nobody answers (in realtime samples go on)
-constexpr double kPatience = 1.0;      // [s] without an action before that is said
-constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr double kIntroduceAgain = 1;   // [s], while nobody answers (in realtime samples go on)
+constexpr double kPatience = 1.0;       // [s] without an action before that is said
+constexpr double kLastWords = 0.3;      // [s] between run_end and the end of this process
 constexpr char kRecorder[] = "loop_recorder";
 
 std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
