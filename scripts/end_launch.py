@@ -18,6 +18,8 @@ if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
     print(__doc__.strip())
     sys.exit(0)
 
+os.nice(10)  # the nodes of the loop first: they start in these moments, this one has nothing to do before the end
+
 import rosgraph
 import rospy
 from fmbpc.msg import LoopState

@@ -14,7 +14,7 @@ namespace fpc {
 namespace {
 
 constexpr double kBurst = 200;       // commands at once
-constexpr double kLookAgain = 0.05;  // [s] at what a parked sample waits for
+constexpr double kLookAgain = 0.01;  // [s] at what a parked sample waits for
 
 const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_node) {
   const bool answers_plant = private_node.param("final_action", !loop.has_clp);

@@ -14,10 +14,11 @@
 namespace fpc {
 namespace {
 
-constexpr double kPollPeriod = 0.05;  // [s] of wall time
-constexpr double kLastWords = 0.3;    // [s] between run_end and the end of this process
-constexpr double kHeard = 1.0;        // [s] in which a run under way is heard of
-constexpr int kPollsConnected = 3;    // a connection is complete at both ends a moment later
+constexpr double kPollPeriod = 0.05;   // [s] of wall time
+constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
+constexpr double kLookForRing = 0.01;  // [s] of wall time, at who is there
+constexpr double kSettled = 0.1;       // [s]: a connection is complete at both ends a moment later
 
 }  // namespace
 
@@ -36,6 +37,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
       end_(node),
       poll_timer_(guardedTimer(node, kPollPeriod, "poll", [this] { poll(); })),
+      ready_timer_(guardedTimer(node, kLookForRing, "ready", [this] { announceIfConnected(); })),
       health_(node, private_node, "recorder", loop.name, false,
               {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },
                [this](Diagnostics::Status& status) { report(status); }}) {
@@ -67,7 +69,6 @@ std::unique_ptr<RecordStore> LoopRecorder::openStore(const std::string& folder) 
 }
 
 void LoopRecorder::poll() {
-  if (!ready_.announced() && unusable_.empty()) announceIfConnected();
   if (!stay_ && ending_s_ >= 0 && steadyNow() - ending_s_ > kLastWords)
     return problem_.empty() ? done() : fail(problem_);
   if (!unusable_.empty()) return giveUp();
@@ -88,11 +89,20 @@ void LoopRecorder::giveUp() {
   end();
 }
 
+// A plant of ours sends sample 0 only when its own ends of the connections are complete, and so do
+// the others their first answers (ListenerGate); for somebody else's plant it has to be waited for.
 void LoopRecorder::announceIfConnected() {
   const bool connected = std::all_of(ring_.begin(), ring_.end(),
                                      [](const auto& s) { return s.getNumPublishers() > 0; });
-  polls_connected_ = connected && plant_.open() ? polls_connected_ + 1 : 0;
-  if (polls_connected_ == kPollsConnected) ready_.announce();
+  if (!connected || !plant_.open() || !unusable_.empty()) {
+    connected_s_ = -1;
+    return;
+  }
+  if (connected_s_ < 0) connected_s_ = steadyNow();
+  const bool gated = !loop_.external_plant || loop_.gateway.enabled();
+  if (!gated && steadyNow() - connected_s_ < kSettled) return;
+  ready_.announce();
+  ready_timer_.stop();
 }
 
 void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {

@@ -75,12 +75,12 @@ class LoopRecorder : public Node {
   double ending_s_{-1};
   bool written_{false};
   std::string problem_, trouble_;  // of the recorder; of the plant
-  int polls_connected_{};
+  double connected_s_{-1};         // since when every publisher is there
 
   ros::Publisher recorded_;
   RunEndPublisher end_;
   std::vector<ros::Subscriber> ring_;  // every publisher that must be connected
-  ros::SteadyTimer poll_timer_;
+  ros::SteadyTimer poll_timer_, ready_timer_;
   HealthReporter health_;
 };
 

@@ -17,6 +17,7 @@
 #include "ros/master_watch.hpp"
 #include "ros/newest.hpp"
 #include "ros/queues.hpp"
+#include "ros/quick_negotiation.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
 
@@ -192,6 +193,7 @@ class Running {
 template <typename Class>
 int runNode(int argc, char** argv, const std::string& name) {
   ros::init(argc, argv, name);
+  negotiateQuickly();
   const ros::NodeHandle node,
       private_node("~");  // outlives the catch: without a node nothing is logged
   try {

@@ -32,6 +32,7 @@ class Hosted : public nodelet::Nodelet {
   // process of its own, nothing is heard before it is.
   void onInit() override {
     ros::NodeHandle node = getNodeHandle(), private_node = getPrivateNodeHandle();
+    negotiateQuickly();
     node.setCallbackQueue(&queue_);
     private_node.setCallbackQueue(&queue_);
     try {

@@ -13,10 +13,11 @@
 namespace fpc {
 namespace {
 
-constexpr double kPoll = 0.05;         // [s] of wall time
-constexpr double kIntroduceAgain = 1;  // [s], while nobody answers (in realtime samples go on)
-constexpr double kPatience = 1.0;      // [s] without an action before that is said
-constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr double kPoll = 0.05;          // [s] of wall time
+constexpr double kLookForStart = 0.01;  // [s] of wall time, at who is there
+constexpr double kIntroduceAgain = 1;   // [s], while nobody answers (in realtime samples go on)
+constexpr double kPatience = 1.0;       // [s] without an action before that is said
+constexpr double kLastWords = 0.3;      // [s] between run_end and the end of this process
 constexpr char kRecorder[] = "loop_recorder";
 
 std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
@@ -55,6 +56,7 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
       step_(serve(private_node, topics::kStep, &PlantNode::onStep, this)),
       reset_(serve(private_node, topics::kReset, &PlantNode::onReset, this)),
       poll_timer_(guardedTimer(node, kPoll, "poll", [this] { onPoll(); })),
+      start_timer_(guardedTimer(node, kLookForStart, "start", [this] { waitForOthers(); })),
       pace_timer_(guardedTimer(
           node, kPoll, "pace", [this] { tryAdvance(); }, true, false)),
       health_(node, private_node, "plant", loop.name, true,
@@ -83,6 +85,7 @@ void PlantNode::beginRun() {
 }
 
 void PlantNode::start() {
+  start_timer_.stop();
   keeper_.start();
   watch_.begin(steadyNow());
   session_.start(steadyNow());
@@ -92,7 +95,6 @@ void PlantNode::start() {
 
 void PlantNode::onPoll() {
   exchange();
-  if (session_.phase() == PlantPhase::kWaiting) return waitForOthers();
   const double now_s = steadyNow();
   if (!session_.mustResend(now_s)) return;
   session_.resent(now_s);

@@ -1,7 +1,5 @@
 #include "ros/plant_publishers.hpp"
 
-#include <rosgraph_msgs/Clock.h>
-
 #include "ros/conversions.hpp"
 #include "ros/queues.hpp"
 #include "ros/shared.hpp"
@@ -16,10 +14,12 @@ PlantPublishers::PlantPublishers(ros::NodeHandle node, const PlantInfo& info,
       measurement_(node.advertise<fmbpc::Measurement>(topics::kMeasurement,
                                                       queueOf(ListenerKind::kRecord), true)),
       signals_(node) {
-  // Latched, so that tools which start while sample 0 is held already have a time that is not 0.
+  // Told to whoever connects, so that tools which start while sample 0 is held already have a time
+  // that is not 0. Not latched: roscpp would wake its thread at every sample though nobody listens.
   if (publish_clock)
-    clock_ =
-        node.advertise<rosgraph_msgs::Clock>(topics::kClock, queueOf(ListenerKind::kViewer), true);
+    clock_ = node.advertise<rosgraph_msgs::Clock>(
+        topics::kClock, queueOf(ListenerKind::kViewer),
+        [this](const ros::SingleSubscriberPublisher& listener) { listener.publish(now_); });
   for (const SignalInfo& output : info.outputs) signals_.add(output.name);
   for (const std::string& disturbance : disturbances) signals_.add(disturbance);
   for (const SignalInfo& input : info.inputs) signals_.add(input.name);
@@ -47,10 +47,8 @@ void PlantPublishers::resend() {
 }
 
 void PlantPublishers::clock(std::int64_t time_ns) {
-  if (!clock_) return;
-  rosgraph_msgs::Clock msg;
-  msg.clock = toStamp(time_ns);
-  clock_.publish(msg);
+  now_.clock = toStamp(time_ns);
+  if (clock_ && clock_.getNumSubscribers() > 0) clock_.publish(now_);
 }
 
 // Outputs and disturbances of sample k; the input that acted until then, at the time from which it

@@ -3,6 +3,7 @@
 
 #include <fmbpc/Measurement.h>
 #include <ros/ros.h>
+#include <rosgraph_msgs/Clock.h>
 
 #include <cstdint>
 #include <functional>
@@ -21,6 +22,8 @@ class PlantPublishers {
   PlantPublishers(ros::NodeHandle node, const PlantInfo& info,
                   const std::vector<std::string>& disturbances, bool publish_clock);
 
+  PlantPublishers(const PlantPublishers&) = delete;
+  PlantPublishers& operator=(const PlantPublishers&) = delete;
   /// plant_info of the present run, and the clock at its sample 0 (both latched).
   void introduce(const Process& process);
   /// The present sample, with values of the disturbances named at construction. `mark` may add to
@@ -41,6 +44,7 @@ class PlantPublishers {
   ros::Publisher info_, measurement_, clock_;
   SignalPublishers signals_;
   fmbpc::Measurement::ConstPtr last_;
+  rosgraph_msgs::Clock now_;
   std::uint64_t resent_{};
 };
 

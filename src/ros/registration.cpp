@@ -59,19 +59,23 @@ int services(const std::string& uri, const std::string& space) {
 }  // namespace
 
 KeptParameters::KeptParameters(const ros::NodeHandle& private_node) {
-  std::vector<std::string> names;
-  ros::param::getParamNames(names);
-  const std::string space = private_node.getNamespace() + "/";
-  for (const std::string& name : names) {
-    if (name.compare(0, space.size(), space) != 0) continue;
-    XmlRpc::XmlRpcValue value;
-    if (ros::param::get(name, value)) values_[name] = value;
-  }
+  XmlRpc::XmlRpcValue own;
+  const std::string& space = private_node.getNamespace();
+  if (ros::param::get(space, own)) keep(space, own);
   for (const char* name : {topics::kLoopText, topics::kLoopName, "/use_sim_time"}) {
     std::string key;
     XmlRpc::XmlRpcValue value;
     if (private_node.searchParam(name, key) && ros::param::get(key, value)) values_[key] = value;
   }
+}
+
+// One call for all of them: each takes the master a third of a millisecond, at the start of a loop.
+void KeptParameters::keep(const std::string& name, XmlRpc::XmlRpcValue& value) {
+  if (value.getType() != XmlRpc::XmlRpcValue::TypeStruct) {
+    values_[name] = value;
+    return;
+  }
+  for (auto& [key, inner] : value) keep(name + "/" + key, inner);
 }
 
 bool KeptParameters::putBack() const {

@@ -17,6 +17,8 @@ class KeptParameters {
   bool putBack() const;
 
  private:
+  void keep(const std::string& name, XmlRpc::XmlRpcValue& value);
+
   std::map<std::string, XmlRpc::XmlRpcValue> values_;  // by full name
 };
 
