@@ -104,6 +104,7 @@ std::string crossTable(const AutoIdentification& found) {
                       shortText(f.one_step), shortText(f.width), blocksText(f)});
       label.clear();
     };
+    add(ModelKind::kBlend, o.blend);
     add(ModelKind::kState, o.state);
     add(ModelKind::kRegressors, o.regressors);
     add(ModelKind::kLinear, o.linear);
@@ -126,12 +127,9 @@ Json toJson(const AutoFigures& f) {
   if (f.blocks.empty()) return nullptr;
   Json blocks = Json::array();
   for (const double b : f.blocks) blocks.push_back(numberOrNull(b));
-  return {{"confirmed", numberOrNull(f.confirmed)},
-          {"mean_of_blocks", numberOrNull(f.mean)},
-          {"free_run", numberOrNull(f.free_run)},
-          {"fit", numberOrNull(f.fit)},
-          {"one_step", numberOrNull(f.one_step)},
-          {"blocks", blocks},
+  return {{"confirmed", numberOrNull(f.confirmed)}, {"mean_of_blocks", numberOrNull(f.mean)},
+          {"free_run", numberOrNull(f.free_run)},   {"fit", numberOrNull(f.fit)},
+          {"one_step", numberOrNull(f.one_step)},   {"blocks", blocks},
           {"half_width", numberOrNull(f.width)}};
 }
 
@@ -150,6 +148,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
     json["verdict"][o.output] = o.verdict;
     json["beats_linear"][o.output] = o.beats_linear;
     json["cross_validation"][o.output] = {{"best", name(o.best)},
+                                          {"blend", toJson(o.blend)},
                                           {"state", toJson(o.state)},
                                           {"regressors", toJson(o.regressors)},
                                           {"linear", toJson(o.linear)}};
