@@ -69,6 +69,8 @@ std::string writeSection(const IdentifiedModel& m) {
     out << YAML::Key << "best" << YAML::Value << name(o.best);
     if (o.sensor_lower < o.sensor_upper) write(out, "sensor", {o.sensor_lower, o.sensor_upper});
     write(out, "interval", {o.free_run_width, o.one_step_width});
+    if (o.blend_free_run_width > 0.0)
+      write(out, "blend_interval", {o.blend_free_run_width, o.blend_one_step_width});
     out << YAML::EndMap;
   }
   out << YAML::EndMap;
@@ -149,11 +151,13 @@ StateOutput readStateOutput(YamlSection section, const TsModel& names) {
 IdentifiedOutput readOutput(YamlSection section) {
   IdentifiedOutput o;
   std::string best = name(o.best);
-  section.oneOf("best", best, {"linear", "regressors", "state"});
-  for (const auto kind : {ModelKind::kLinear, ModelKind::kRegressors, ModelKind::kState})
+  section.oneOf("best", best, {"linear", "regressors", "state", "blend"});
+  for (const auto kind :
+       {ModelKind::kLinear, ModelKind::kRegressors, ModelKind::kState, ModelKind::kBlend})
     if (name(kind) == best) o.best = kind;
   readPair(section, "sensor", o.sensor_lower, o.sensor_upper);
   readPair(section, "interval", o.free_run_width, o.one_step_width);
+  readPair(section, "blend_interval", o.blend_free_run_width, o.blend_one_step_width);
   section.finish();
   return o;
 }
@@ -169,6 +173,10 @@ IdentifiedModel readSections(YamlSection& top) {
   const bool has_linear = section.has("linear"), has_state = section.has("state");
   for (const auto& y : m.model.outputs) {
     m.outputs.push_back(readOutput(outputs.section(y.name)));
+    const IdentifiedOutput& o = m.outputs.back();
+    const bool blend = o.best == ModelKind::kBlend;
+    if ((blend || o.blend_free_run_width > 0.0) && !(has_state && o.blend_free_run_width > 0.0))
+      outputs.fail(y.name, "for a blend: blend_interval > 0 here, and a section state beside it");
     if (has_linear) m.linear.push_back(readSubmodel(linear, m.model, y.name));
     if (has_state) m.state.outputs.push_back(readStateOutput(state.section(y.name), m.model));
   }

@@ -102,7 +102,7 @@ class CandidateFit {
     }
     if (c_.hidden && best.finite) {
       settlePrior(best);
-      fitted_.finite = restsAsKnown(data_, fitted_);
+      fitted_.finite = fitted_.finite && restsAsKnown(data_, fitted_);
     }
     return std::move(fitted_);
   }

@@ -112,6 +112,11 @@ AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector
   return f;
 }
 
+Vector meanOf(const Vector& one, const Vector& other) {
+  if (one.size() != other.size()) return {};
+  return 0.5 * (one + other);
+}
+
 Fitted fitWhole(const AutoData& data, const Judgement& judged, int window, double most) {
   Candidate c = judged.candidate;
   c.iterations = kLastIterations;

@@ -18,6 +18,10 @@ Committee chooseCommittee(const AutoData& data, const StructureSearch& found);
 AutoFigures figuresOf(const AutoData& data, const Vector& free_run, const Vector& one_step,
                       const Vector& confirmed = {});
 
+/// Half of each, where both say something (NaN: nobody). Equal weights need no rows to be found
+/// from.
+Vector meanOf(const Vector& one, const Vector& other);
+
 /// Fits a candidate to all rows; from other seeds where that fails by the measure of its held-out
 /// error; to the rows of the search where all fits to more run away under larger inputs. Not
 /// finite: none came within `most` times that error.

@@ -197,12 +197,14 @@ class Coupling {
       const bool coupled = choice[i] > aloneRules(i);
       if (coupled) {
         found.regressors = now[i];
+        found.blend = {};  // was that of another model
         result_.model.submodels[i] = models[i];
         tell(i, rules_.option(i, choice[i]), now[i], ModelKind::kRegressors);
       } else if (choice[i] == 0) {
         result_.model.submodels[i] = result_.linear.submodels[i];
       }
       found.fuzzy_model = choice[i] > 0;
+      if (!found.fuzzy_model) found.blend = {};
     }
   }
 

@@ -134,8 +134,11 @@ AutoIdentification search(const DataSet& full, const AutoParams& params,
                                   std::chrono::duration<double>(params.budget_s));
   together.proceed = [&stopped] { return !stopped.load(); };
   coupleOutputs(alone, together, result);
+  if (result.state.outputs.size() != n_y) {  // a file holds states of all outputs or of none
+    result.state.outputs.clear();
+    for (auto& found : result.outputs) found.state = found.blend = {};
+  }
   for (auto& found : result.outputs) decide(found);
-  if (result.state.outputs.size() != n_y) result.state.outputs.clear();
   result.cancelled = stopped;
   result.model.validate();
   result.linear.validate();
@@ -146,7 +149,7 @@ AutoIdentification search(const DataSet& full, const AutoParams& params,
 }  // namespace
 
 const std::string& name(ModelKind kind) {
-  static const std::vector<std::string> names{"linear", "regressors", "state"};
+  static const std::vector<std::string> names{"linear", "regressors", "state", "blend"};
   return names.at(static_cast<std::size_t>(kind));
 }
 

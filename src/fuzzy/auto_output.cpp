@@ -47,6 +47,7 @@ class OutputSearch {
     confirmed_ = confirmChoices(data_, searched_);
     chooseModels();
     chooseState();
+    chooseBlend();
     keepTrials();
     for (const auto* model : {&result_.linear, &result_.model})
       for (const auto& key :
@@ -147,6 +148,7 @@ class OutputSearch {
       found_.regressors = figuresOf(data_, r.free_run, r.one_step, confirmed_.regressors);
       fuzzy_chosen_ = found_.regressors.fit > 0.0 && isWorthIt(found_.regressors, found_.linear);
       fuzzy_text_ = r.candidate.text();
+      fuzzy_ = &r;
       alone_.fuzzy = r.candidate;
     }
     alone_.linear = l.candidate;
@@ -156,7 +158,8 @@ class OutputSearch {
 
   void chooseState() {
     if (!params_.states) return;
-    const Committee committee = chooseCommittee(data_, searched_);
+    committee_ = chooseCommittee(data_, searched_);
+    const Committee& committee = committee_;
     std::vector<Fitted> fitted(committee.members.size());
     parallelFor(fitted.size(), params_.threads, [&](std::size_t i) {
       fitted[i] = fitWhole(data_, *committee.members[i], params_.window);
@@ -180,6 +183,15 @@ class OutputSearch {
     state.one_step_width = found_.state.one_step_width;
     for (const auto* j : committee.members) members_.push_back(j->candidate.text());
     result_.state.outputs.push_back(std::move(state));
+  }
+
+  /// The mean of both fuzzy kinds, if the file will hold them: their errors differ, so that part of
+  /// them cancels.
+  void chooseBlend() {
+    if (!fuzzy_chosen_ || found_.state.blocks.empty()) return;
+    found_.blend = figuresOf(data_, meanOf(fuzzy_->free_run, committee_.free_run),
+                             meanOf(fuzzy_->one_step, committee_.one_step),
+                             meanOf(confirmed_.regressors, confirmed_.state));
   }
 
   void keepTrials() {
@@ -229,6 +241,8 @@ class OutputSearch {
   SearchedOutput alone_;
   StructureSearch searched_;
   Confirmation confirmed_;
+  Committee committee_;
+  const Judgement* fuzzy_{nullptr};  ///< of the fuzzy model, in searched_
   bool fuzzy_chosen_{false}, states_complete_{true};
   std::string linear_text_, fuzzy_text_, contradiction_;
   std::vector<std::string> members_;

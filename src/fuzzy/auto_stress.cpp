@@ -13,6 +13,7 @@ constexpr double kStretch = 1.2;  // of the inputs' moves
 constexpr double kBeyond = 0.15;  // of an input's range, below and above it
 constexpr Index kHeld = 150;      // samples
 constexpr double kAllowed = 3.0;  // ranges of y beyond it
+constexpr double kNear = 1.0;     // the same, under the inputs as they were
 constexpr double kTimes = 5.0;    // the linear model's excursion
 
 struct Excursion {
@@ -41,19 +42,26 @@ Excursion excursion(const Fitted& fitted, const Matrix& inputs, double start) {
   return range;
 }
 
-/// The stretches' inputs made larger, then each input at its edges.
-Matrix stressInputs(const RecurrentData& record, const std::vector<Stretch>& stretches) {
-  const Index m = record.v.rows();
-  Index length = 0;
+/// The stretches' inputs behind each other.
+Matrix joinedInputs(const RecurrentData& record, const std::vector<Stretch>& stretches) {
+  Index length = 0, at = 0;
   for (const auto& s : stretches) length += s.last - s.first;
-  Matrix inputs(m, length + 2 * m * kHeld);
-  Vector mean = Vector::Zero(m);
-  std::vector<Excursion> ranges(static_cast<std::size_t>(m));
-  Index at = 0;
+  Matrix inputs(record.v.rows(), length);
   for (const auto& s : stretches) {
     inputs.middleCols(at, s.last - s.first) = record.v.middleCols(s.first, s.last - s.first);
     at += s.last - s.first;
   }
+  return inputs;
+}
+
+/// The stretches' inputs made larger, then each input at its edges.
+Matrix stressInputs(const Matrix& joined) {
+  const Index m = joined.rows(), length = joined.cols();
+  Matrix inputs(m, length + 2 * m * kHeld);
+  inputs.leftCols(length) = joined;
+  Vector mean = Vector::Zero(m);
+  std::vector<Excursion> ranges(static_cast<std::size_t>(m));
+  Index at = length;
   for (Index j = 0; j < m; ++j) {
     double count = 0.0;
     for (Index k = 0; k < length; ++k)
@@ -77,6 +85,26 @@ Matrix stressInputs(const RecurrentData& record, const std::vector<Stretch>& str
   return inputs;
 }
 
+/// The run stays within `room` of the data, or within kTimes the linear model's excursion.
+bool staysNear(const Excursion& run, const Excursion& line, const Excursion& data, double mean,
+               double room) {
+  const double lowest = std::min(data.lower - room, mean + kTimes * (line.lower - mean));
+  const double highest = std::max(data.upper + room, mean + kTimes * (line.upper - mean));
+  return run.lower >= lowest && run.upper <= highest && std::isfinite(run.span());
+}
+
+/// From the lowest and the highest y of the data the inputs as they were bring the output back.
+bool comesBack(const Fitted& fitted, const Matrix& inputs, const Excursion& data) {
+  if (!fitted.shape.companion) return true;  // no state belongs to an output alone
+  for (const double start : {data.lower, data.upper}) {
+    const Excursion run = excursion(fitted, inputs, start);
+    if (!(run.lower >= data.lower - kNear * data.span() &&
+          run.upper <= data.upper + kNear * data.span()))
+      return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool endures(const Fitted& fitted, const Fitted& linear, const RecurrentData& record,
@@ -89,12 +117,11 @@ bool endures(const Fitted& fitted, const Fitted& linear, const RecurrentData& re
       if (std::isfinite(record.y[k])) sum += record.y[k], count += 1.0;
     }
   if (!(count > 0.0)) return false;
-  const Matrix inputs = stressInputs(record, stretches);
-  const double mean = sum / count, room = kAllowed * data.span();
-  const Excursion line = excursion(linear, inputs, mean), run = excursion(fitted, inputs, mean);
-  const double lowest = std::min(data.lower - room, mean + kTimes * (line.lower - mean));
-  const double highest = std::max(data.upper + room, mean + kTimes * (line.upper - mean));
-  return run.lower >= lowest && run.upper <= highest && std::isfinite(run.span());
+  const Matrix own = joinedInputs(record, stretches), larger = stressInputs(own);
+  const double mean = sum / count;
+  return staysNear(excursion(fitted, larger, mean), excursion(linear, larger, mean), data, mean,
+                   kAllowed * data.span()) &&
+         (comesBack(fitted, own, data) || !comesBack(linear, own, data));
 }
 
 }  // namespace fpc

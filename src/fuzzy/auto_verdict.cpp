@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "fuzzy/auto_choice.hpp"
 
@@ -20,7 +21,7 @@ std::string shortNumber(double value) {
 
 std::string lowestFuzzyText(const AutoOutput& found) {
   double lowest = kInfinity;
-  for (const auto* f : {&found.regressors, &found.state})
+  for (const auto* f : {&found.regressors, &found.state, &found.blend})
     if (!f->blocks.empty()) lowest = std::min(lowest, f->confirmed);
   return std::isfinite(lowest) ? "free run " + shortNumber(lowest) : "none ran to the end";
 }
@@ -46,6 +47,11 @@ std::string verdictOf(const AutoOutput& found, const AutoFigures& best) {
     words += "; it has a state of its own, for simulation; what control laws take reaches " +
              shortNumber(found.fuzzy_model ? found.regressors.confirmed : line.confirmed) +
              (found.fuzzy_model ? "" : " (linear)");
+  if (found.best == ModelKind::kBlend)
+    words +=
+        "; it is the mean of the models of the measured past and with a state of its own, for "
+        "simulation; the former, which control laws take, reaches " +
+        shortNumber(found.regressors.confirmed);
   return words + oneStepWords(best, line);
 }
 
@@ -58,11 +64,13 @@ void decide(AutoOutput& found) {
     best = &found.regressors;
     found.best = ModelKind::kRegressors;
   }
-  const AutoFigures& own = found.state;
-  if (!own.blocks.empty() && own.fit > 0.0 && isLower(own, *best) &&
-      beyondSpread(own, found.linear)) {
-    best = &own;
-    found.best = ModelKind::kState;
+  for (const auto& [kind, own] :
+       {std::pair{ModelKind::kState, &found.state}, std::pair{ModelKind::kBlend, &found.blend}}) {
+    if (own->blocks.empty() || !(own->fit > 0.0) || !isLower(*own, *best) ||
+        !beyondSpread(*own, found.linear))
+      continue;
+    best = own;
+    found.best = kind;
   }
   found.beats_linear = found.best != ModelKind::kLinear;
   found.verdict = verdictOf(found, *best);

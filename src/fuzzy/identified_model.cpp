@@ -75,6 +75,10 @@ TsModel IdentifiedModel::linearModel() const {
 
 bool IdentifiedModel::has(ModelKind kind) const {
   if (kind == ModelKind::kLinear) return !linear.empty();
+  if (kind == ModelKind::kBlend)
+    return has(ModelKind::kState) && std::any_of(outputs.begin(), outputs.end(), [](const auto& o) {
+             return o.blend_free_run_width > 0.0;
+           });
   return kind == ModelKind::kRegressors || !state.outputs.empty();
 }
 
@@ -83,12 +87,33 @@ IdentifiedModel toIdentified(const AutoIdentification& found) {
   for (const auto& o : found.outputs) {
     const AutoFigures& f = o.fuzzy_model ? o.regressors : o.linear;
     m.outputs.push_back({o.best, o.sensor_lower, o.sensor_upper, f.width, f.one_step_width});
+    if (!o.fuzzy_model || o.blend.blocks.empty() || found.state.outputs.empty()) continue;
+    m.outputs.back().blend_free_run_width = o.blend.width;
+    m.outputs.back().blend_one_step_width = o.blend.one_step_width;
   }
   return m;
 }
 
+namespace {
+
+/// Half of the regressors and half of the state.
+KindPrediction predictBlend(const IdentifiedModel& model, const DataSet& data) {
+  KindPrediction p = predictKind(model, ModelKind::kRegressors, data);
+  const KindPrediction own = predictKind(model, ModelKind::kState, data);
+  p.one_step = 0.5 * (p.one_step + own.one_step);
+  p.free_run = 0.5 * (p.free_run + own.free_run);
+  for (std::size_t i = 0; i < model.outputs.size(); ++i) {
+    p.one_step_width[static_cast<Index>(i)] = model.outputs[i].blend_one_step_width;
+    p.free_run_width[static_cast<Index>(i)] = model.outputs[i].blend_free_run_width;
+  }
+  return p;
+}
+
+}  // namespace
+
 KindPrediction predictKind(const IdentifiedModel& model, ModelKind kind, const DataSet& data) {
   require(model.has(kind), model.model.name, "a model of kind " + name(kind));
+  if (kind == ModelKind::kBlend) return predictBlend(model, data);
   const auto n_y = static_cast<Index>(model.model.outputs.size());
   KindPrediction p;
   p.one_step_width = Vector::Zero(n_y);
@@ -116,7 +141,7 @@ KindPrediction predictKind(const IdentifiedModel& model, ModelKind kind, const D
 
 KindPrediction predictBest(const IdentifiedModel& model, const DataSet& data) {
   KindPrediction best = predictKind(model, ModelKind::kRegressors, data);
-  for (const auto kind : {ModelKind::kLinear, ModelKind::kState}) {
+  for (const auto kind : {ModelKind::kLinear, ModelKind::kState, ModelKind::kBlend}) {
     if (!model.has(kind)) continue;
     const KindPrediction other = predictKind(model, kind, data);
     for (std::size_t i = 0; i < model.model.outputs.size(); ++i) {
@@ -136,12 +161,14 @@ Matrix predictSteps(const IdentifiedModel& model, const DataSet& data, int steps
   Matrix predicted = stepsAhead(model.model, data, steps);
   if (model.has(ModelKind::kState)) {
     const Matrix free_run = predictFreeRun(model.state, data);
-    for (std::size_t i = 0; i < model.state.outputs.size(); ++i)
-      if (bestOf(model, i) == ModelKind::kState) {
-        const auto c = static_cast<Index>(i);
-        predicted.col(c) = correctedAhead(data.values.col(c), free_run.col(c),
-                                          model.state.outputs[i].correction, steps);
-      }
+    for (std::size_t i = 0; i < model.state.outputs.size(); ++i) {
+      const ModelKind best = bestOf(model, i);
+      if (best != ModelKind::kState && best != ModelKind::kBlend) continue;
+      const auto c = static_cast<Index>(i);
+      const Vector own = correctedAhead(data.values.col(c), free_run.col(c),
+                                        model.state.outputs[i].correction, steps);
+      predicted.col(c) = best == ModelKind::kState ? own : Vector(0.5 * (predicted.col(c) + own));
+    }
   }
   clipToSensors(model, predicted);
   return predicted;

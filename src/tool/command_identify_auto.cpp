@@ -92,22 +92,26 @@ std::string blocksText(const AutoFigures& f) {
 }
 
 std::string crossTable(const AutoIdentification& found) {
-  std::vector<Row> rows{{"held-out blocks", "model", "mean of blocks", "free-run RMSE", "fit %",
-                         "1-step RMSE", "95 % interval +-", "free-run RMSE of the blocks"}};
+  std::vector<Row> rows{{"held-out blocks", "model", "confirmed", "mean of blocks", "free-run RMSE",
+                         "fit %", "1-step RMSE", "95 % interval +-",
+                         "free-run RMSE of the blocks"}};
   for (const auto& o : found.outputs) {
     std::string label = o.output;
     const auto add = [&](ModelKind kind, const AutoFigures& f) {
       if (f.blocks.empty()) return;
-      rows.push_back({label, name(kind) + (kind == o.best ? " *" : ""), shortText(f.mean),
-                      shortText(f.free_run), shortText(f.fit), shortText(f.one_step),
-                      shortText(f.width), blocksText(f)});
+      rows.push_back({label, name(kind) + (kind == o.best ? " *" : ""), shortText(f.confirmed),
+                      shortText(f.mean), shortText(f.free_run), shortText(f.fit),
+                      shortText(f.one_step), shortText(f.width), blocksText(f)});
       label.clear();
     };
+    add(ModelKind::kBlend, o.blend);
     add(ModelKind::kState, o.state);
     add(ModelKind::kRegressors, o.regressors);
     add(ModelKind::kLinear, o.linear);
   }
-  return alignedTable(rows);
+  return alignedTable(rows) +
+         "(confirmed: mean of the blocks' free-run RMSE, each block by the model that the others "
+         "would have chosen;\n the star goes by it)\n";
 }
 
 std::string searchTable(const AutoIdentification& found) {
@@ -123,11 +127,9 @@ Json toJson(const AutoFigures& f) {
   if (f.blocks.empty()) return nullptr;
   Json blocks = Json::array();
   for (const double b : f.blocks) blocks.push_back(numberOrNull(b));
-  return {{"mean_of_blocks", numberOrNull(f.mean)},
-          {"free_run", numberOrNull(f.free_run)},
-          {"fit", numberOrNull(f.fit)},
-          {"one_step", numberOrNull(f.one_step)},
-          {"blocks", blocks},
+  return {{"confirmed", numberOrNull(f.confirmed)}, {"mean_of_blocks", numberOrNull(f.mean)},
+          {"free_run", numberOrNull(f.free_run)},   {"fit", numberOrNull(f.fit)},
+          {"one_step", numberOrNull(f.one_step)},   {"blocks", blocks},
           {"half_width", numberOrNull(f.width)}};
 }
 
@@ -146,6 +148,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
     json["verdict"][o.output] = o.verdict;
     json["beats_linear"][o.output] = o.beats_linear;
     json["cross_validation"][o.output] = {{"best", name(o.best)},
+                                          {"blend", toJson(o.blend)},
                                           {"state", toJson(o.state)},
                                           {"regressors", toJson(o.regressors)},
                                           {"linear", toJson(o.linear)}};

@@ -28,6 +28,7 @@ std::string besideText(const OutputJudgement& o, ModelKind kind) {
 void makeLinear(std::size_t output, AutoIdentification& found) {
   found.model.submodels[output] = found.linear.submodels[output];
   found.outputs[output].fuzzy_model = false;
+  found.outputs[output].blend = {};
 }
 
 }  // namespace
@@ -55,6 +56,11 @@ bool chooseByValidation(const RecordJudgement& validation, AutoIdentification& f
     } else if (was_fuzzy && !o.fuzzy_model) {
       o.verdict += "; on the validation rows what control laws take is worse than linear (" +
                    besideText(judged, ModelKind::kRegressors) + "): they get the linear model";
+      if (before == ModelKind::kBlend) {
+        o.beats_linear = !isWorse(ModelKind::kState);
+        o.best = o.beats_linear ? ModelKind::kState : ModelKind::kLinear;
+        o.verdict += ", and of the mean of both only '" + name(o.best) + "' is left";
+      }
     }
     changed = changed || o.best != before || o.fuzzy_model != was_fuzzy;
   }
@@ -66,7 +72,7 @@ std::vector<std::string> warnings(const RecordJudgement& part) {
   for (const auto& o : part.outputs) {
     std::string text;
     const auto add = [&](const std::string& what) { text += (text.empty() ? "" : "; ") + what; };
-    for (const auto kind : {ModelKind::kState, ModelKind::kRegressors})
+    for (const auto kind : {ModelKind::kBlend, ModelKind::kState, ModelKind::kRegressors})
       if ((kind == o.best || kind == ModelKind::kRegressors) && ratioToLinear(o, kind) > kWorse)
         add("the fuzzy model '" + name(kind) + "' is worse than the linear one (" +
             besideText(o, kind) + "): take the linear model of the file");

@@ -100,12 +100,14 @@ RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
     const SignalInfo& y = model.model.outputs[i];
     part.outputs.push_back({y.name, y.unit, bestOf(model, i), {}, {}, {}});
   }
-  for (const auto kind : {ModelKind::kState, ModelKind::kRegressors, ModelKind::kLinear}) {
+  for (const auto kind :
+       {ModelKind::kBlend, ModelKind::kState, ModelKind::kRegressors, ModelKind::kLinear}) {
     if (!model.has(kind)) continue;
     KindPrediction p = predictKind(model, kind, part.data);
     for (std::size_t i = 0; i < part.outputs.size(); ++i) {
       const auto c = static_cast<Index>(i);
       if (kind == ModelKind::kRegressors && isLinear(model, i)) continue;
+      if (kind == ModelKind::kBlend && !(p.free_run_width[c] > 0.0)) continue;
       if (kind == ModelKind::kLinear && isLinear(model, i) && i < model.outputs.size()) {
         p.one_step_width[c] = model.outputs[i].one_step_width;
         p.free_run_width[c] = model.outputs[i].free_run_width;

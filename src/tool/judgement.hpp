@@ -23,8 +23,9 @@ struct KindFigures {
 struct OutputJudgement {
   std::string output, unit;
   ModelKind best{};
-  std::vector<KindFigures> kinds;  ///< no `regressors` where these are the linear model
-  FitFigures ahead;                ///< of the best kind, `steps` samples ahead
+  /// No `regressors` where these are the linear model; `blend` where there is one.
+  std::vector<KindFigures> kinds;
+  FitFigures ahead;  ///< of the best kind, `steps` samples ahead
   ResidualCorrelation residual;
 };
 

@@ -63,6 +63,50 @@ TEST(IdentifiedFile, IsLossless) {
   EXPECT_EQ(back.state.outputs.front().members.front().shape.upper, 1.0 / 3.0);
 }
 
+TEST(IdentifiedFile, KeepsABlendAndRefusesOneWithoutItsParts) {
+  IdentifiedModel m = example();
+  m.outputs.front().best = ModelKind::kBlend;
+  m.outputs.front().blend_free_run_width = 0.3;
+  m.outputs.front().blend_one_step_width = 0.05;
+  const IdentifiedModel back = parseIdentified(writeIdentified(m), "memory");
+  EXPECT_TRUE(back.has(ModelKind::kBlend));
+  EXPECT_EQ(back.outputs.front().best, ModelKind::kBlend);
+  EXPECT_EQ(back.outputs.front().blend_free_run_width, 0.3);
+  EXPECT_EQ(back.outputs.front().blend_one_step_width, 0.05);
+  IdentifiedModel no_state = m, no_width = m;
+  no_state.state.outputs.clear();
+  no_width.outputs.front().blend_free_run_width = 0.0;
+  EXPECT_THROW(parseIdentified(writeIdentified(no_state), "memory"), InputError);
+  EXPECT_THROW(parseIdentified(writeIdentified(no_width), "memory"), InputError);
+}
+
+TEST(IdentifiedFile, ABlendIsHalfOfTheRegressorsAndHalfOfTheState) {
+  IdentifiedModel m = example();
+  m.outputs.front() = {ModelKind::kBlend, 0.0, 0.0, 0.5, 0.25, 0.3, 0.05};
+  DataSet data;
+  data.outputs = m.model.outputs;
+  data.inputs = m.model.inputs;
+  data.sample_time_s = m.model.sample_time_s;
+  data.values.resize(30, 2);
+  for (Eigen::Index k = 0; k < 30; ++k)
+    data.values.row(k) << 0.2 + 0.01 * k, k % 7 < 3 ? 0.5 : -0.5;
+  const KindPrediction past = predictKind(m, ModelKind::kRegressors, data),
+                       own = predictKind(m, ModelKind::kState, data), best = predictBest(m, data);
+  const Matrix ahead = predictSteps(m, data, 2);
+  m.outputs.front().best = ModelKind::kRegressors;
+  const Matrix past_ahead = predictSteps(m, data, 2);
+  m.outputs.front().best = ModelKind::kState;
+  const Matrix own_ahead = predictSteps(m, data, 2);
+  for (Eigen::Index k = 10; k < 20; ++k) {
+    ASSERT_NE(past.free_run(k, 0), own.free_run(k, 0));
+    EXPECT_EQ(best.free_run(k, 0), 0.5 * (past.free_run(k, 0) + own.free_run(k, 0)));
+    EXPECT_EQ(best.one_step(k, 0), 0.5 * (past.one_step(k, 0) + own.one_step(k, 0)));
+    EXPECT_EQ(ahead(k, 0), 0.5 * (past_ahead(k, 0) + own_ahead(k, 0)));
+  }
+  EXPECT_EQ(best.free_run_width[0], 0.3);
+  EXPECT_EQ(best.one_step_width[0], 0.05);
+}
+
 TEST(IdentifiedFile, IsAModelFileForLoops) {
   const IdentifiedModel m = example();
   const TsModel model = parseModel(writeIdentified(m), "memory");

@@ -65,6 +65,19 @@ TEST(AutoStress, AnExcursionThatLinearMakesTooIsAllowed) {
   EXPECT_TRUE(endures(fuzzy, steep, data, all));
 }
 
+TEST(AutoStress, ASecondRestBeyondTheDataMustNotHoldWhatStartsAtTheirEdge) {
+  const RecurrentData data = record(300);
+  Fitted fuzzy =
+      model(2, 0.9, 0.8);  // the second rule holds for high y and rests at `rest` for u = 0
+  fuzzy.shape.antecedents = {0};
+  const auto resting = [&](double rest) {
+    fuzzy.parameters[5] = 0.2 * rest;
+    return endures(fuzzy, model(1, 0.0, 0.0), data, {{0, 300}});
+  };
+  EXPECT_TRUE(resting(1.0));
+  EXPECT_FALSE(resting(3.0)) << "within three ranges of y, so that larger inputs alone pass it";
+}
+
 TEST(AutoStress, GapsAreSteppedOver) {
   RecurrentData data = record(300);
   data.y.segment(50, 20).setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -34,5 +34,27 @@ TEST(AutoVerdict, ABetterFreeRunThatIsWorseOneSampleAheadIsSaidWithBothFigures) 
             std::string::npos);
 }
 
+ModelKind chosen(double regressors, double state, double blend, bool fuzzy_model = true) {
+  AutoOutput found;
+  found.linear = figures(1.0, 0.1);
+  found.regressors = figures(regressors, 0.1);
+  found.state = figures(state, 0.1);
+  if (blend > 0.0) found.blend = figures(blend, 0.1);
+  found.fuzzy_model = fuzzy_model;
+  decide(found);
+  return found.best;
+}
+
+TEST(AutoVerdict, TheMeanOfBothIsChosenWhereItIsLowerThanEachByThreePercent) {
+  EXPECT_EQ(chosen(0.40, 0.46, 0.36), ModelKind::kBlend);
+  EXPECT_EQ(chosen(0.40, 0.46, 0.39), ModelKind::kRegressors);  // 2.5 %
+  EXPECT_EQ(chosen(0.40, 0.30, 0.295), ModelKind::kState);      // 1.7 % below the lower one
+  EXPECT_EQ(chosen(0.40, 0.46, 0.0), ModelKind::kRegressors);   // there is none
+}
+
+TEST(AutoVerdict, AMeanThatDoesNotBeatLinearIsNotChosen) {
+  EXPECT_EQ(chosen(1.2, 1.3, 0.98, false), ModelKind::kLinear);
+}
+
 }  // namespace fuzzy_auto_verdict_test
 }  // namespace fpc

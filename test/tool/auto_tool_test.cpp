@@ -50,6 +50,22 @@ TEST_F(AutoTool, PrintsTheVerdictFirst) {
   EXPECT_LT(outcome.printed.find("remark: "), outcome.printed.find("held-out blocks  "));
 }
 
+TEST_F(AutoTool, ShowsTheFiguresThatTheStarGoesBy) {
+  const Outcome outcome = tool(search("--rows 1:200 --json"));
+  ASSERT_EQ(outcome.code, 0);
+  const auto found = parsed(outcome.printed);
+  const auto& crossed = found.at("cross_validation").at("y");
+  EXPECT_LT(crossed.at("regressors").at("confirmed").get<double>(),
+            0.97 * crossed.at("linear").at("confirmed").get<double>());
+  for (const auto* kind : {"regressors", "linear"})
+    EXPECT_GE(crossed.at(kind).at("confirmed").get<double>(),
+              crossed.at(kind).at("mean_of_blocks").get<double>() * (1.0 - 1e-9))
+        << kind << ": who never saw a block does not run closer to it than the best on all";
+  const Outcome printed = tool(search("--rows 1:200"));
+  EXPECT_NE(printed.printed.find("confirmed  mean of blocks"), std::string::npos)
+      << printed.printed;
+}
+
 TEST_F(AutoTool, ValidateTakesOtherNames) {
   const std::string model = path("plain.yaml");
   ASSERT_EQ(tool(onRecord("--out " + model)).code, 0);

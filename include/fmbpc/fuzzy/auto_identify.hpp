@@ -13,8 +13,8 @@
 namespace fpc {
 
 /// kRegressors: the outputs' own past, what control laws take. kState: several recursions with a
-/// state of their own, for simulation.
-enum class ModelKind { kLinear, kRegressors, kState };
+/// state of their own, for simulation. kBlend: the mean of what the latter two say.
+enum class ModelKind { kLinear, kRegressors, kState, kBlend };
 const std::string& name(ModelKind kind);
 
 struct AutoParams {
@@ -57,7 +57,8 @@ struct AutoFigures {
 struct AutoOutput {
   std::string output;
   AutoFigures linear, regressors, state;  ///< of the best of each kind; no blocks: not searched
-  ModelKind best{ModelKind::kLinear};     ///< lowest mean of those that beat linear, if any
+  AutoFigures blend;  ///< of the mean of regressors and state; no blocks: `model` is not fuzzy here
+  ModelKind best{ModelKind::kLinear};  ///< lowest mean of those that beat linear, if any
   bool beats_linear{false};  ///< the best fuzzy model is better than linear beyond the spread
   bool fuzzy_model{false};   ///< `model` is fuzzy here, else linear
   std::string verdict;       ///< the same in words

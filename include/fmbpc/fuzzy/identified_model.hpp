@@ -12,6 +12,8 @@ struct IdentifiedOutput {
   ModelKind best{ModelKind::kRegressors};
   double sensor_lower{}, sensor_upper{};      ///< predictions stay inside; equal: no limits
   double free_run_width{}, one_step_width{};  ///< of the regressor model's 95 % intervals; 0: none
+  /// The same of the mean of regressors and state; 0: this output has no blend.
+  double blend_free_run_width{}, blend_one_step_width{};
 };
 
 /// A plain model has no outputs, no linear model and no state model.
@@ -21,8 +23,8 @@ struct IdentifiedModel {
   StateModel state;
   std::vector<IdentifiedOutput> outputs;  ///< one per output, or none
 
-  TsModel linearModel() const;  ///< with the names of `model`; only if there is one
-  bool has(ModelKind kind) const;
+  TsModel linearModel() const;     ///< with the names of `model`; only if there is one
+  bool has(ModelKind kind) const;  ///< kBlend: of any output
 };
 IdentifiedModel toIdentified(const AutoIdentification& found);
 
@@ -31,7 +33,8 @@ struct KindPrediction {
   Matrix one_step, free_run;
   Vector one_step_width, free_run_width;
 };
-/// By one kind; @throws InputError if the model has none of that kind or other signals.
+/// By one kind, kBlend of all outputs; @throws InputError if the model has none of that kind or
+/// other signals.
 KindPrediction predictKind(const IdentifiedModel& model, ModelKind kind, const DataSet& data);
 /// By the best kind of each output.
 KindPrediction predictBest(const IdentifiedModel& model, const DataSet& data);
