@@ -56,5 +56,17 @@ TEST(AutoChoice, WhatRunsAwayFittedToAllRowsIsFittedToThoseOfTheSearch) {
   EXPECT_EQ(tame.rows, 400);
 }
 
+TEST(AutoChoice, StatesOfTheirOwnThatRunAwayAreRefusedToo) {
+  const DataSet data = record();
+  const AutoData prepared = prepareAuto(data, 0, 4, 2000, 8000);
+  Candidate c = judged().candidate;
+  c.hidden = true;
+  const Fitted wild = fitCandidate(prepared, c, {{0, 500}});
+  EXPECT_TRUE(wild.wild);
+  EXPECT_FALSE(wild.finite) << "the rests that are known of it, none, must not make it good";
+  const Fitted tame = fitCandidate(prepared, c, {{0, 400}});
+  EXPECT_TRUE(tame.finite);
+}
+
 }  // namespace fuzzy_auto_choice_test
 }  // namespace fpc
