@@ -1,5 +1,6 @@
 #include "config/read_known.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "fmbpc/base/option.hpp"
@@ -13,13 +14,10 @@ using Eigen::Index;
 
 std::vector<int> readSigns(YamlSection section, const std::vector<std::string>& causes) {
   std::vector<int> signs(causes.size(), 0);
-  bool any = false;
-  for (std::size_t j = 0; j < causes.size(); ++j) {
-    if (!section.has(causes[j])) continue;
+  for (std::size_t j = 0; j < causes.size(); ++j)
     readOption(section, causes[j], signs[j], {{"positive", 1}, {"negative", -1}});
-    any = true;
-  }
   section.finish();
+  const bool any = std::any_of(signs.begin(), signs.end(), [](int sign) { return sign != 0; });
   return any ? signs : std::vector<int>{};
 }
 

@@ -70,7 +70,10 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.answer().tracking.header; },
                [this](Diagnostics::Status& status) { report(status); }}) {
-  if (loop.has_clp) standin_.emplace(node, loop, name(), comeback_);
+  if (loop.has_clp) {
+    standin_.emplace(node, loop, name(), comeback_);
+    listeners_.alsoHear(standin_->hearing());
+  }
   advertiseSignals();
 }
 

@@ -13,25 +13,30 @@ namespace {
 
 constexpr double kPatience = 1.0;  // [s] of wall time
 
-/// Number of listeners by topic; empty if the master does not answer.
-std::map<std::string, std::uint32_t> listeners() {
-  XmlRpc::XmlRpcValue request, response, state;
-  request[0] = ros::this_node::getName();
-  std::map<std::string, std::uint32_t> counts;
-  if (!ros::master::execute("getSystemState", request, response, state, false)) return counts;
-  XmlRpc::XmlRpcValue& subscribers = state[1];
-  for (int i = subscribers.size(); i-- > 0;)
-    counts[subscribers[i][0]] = static_cast<std::uint32_t>(subscribers[i][1].size());
+using Counts = std::map<std::string, std::uint32_t>;
+
+Counts countsOf(XmlRpc::XmlRpcValue& topics) {
+  Counts counts;
+  for (int i = topics.size(); i-- > 0;)
+    counts[topics[i][0]] = static_cast<std::uint32_t>(topics[i][1].size());
   return counts;
 }
 
 }  // namespace
 
+/// True if the master does not answer.
 bool ListenerGate::allConnected() const {
-  auto needed = listeners();
-  return std::all_of(publishers_.begin(), publishers_.end(), [&](const ros::Publisher& p) {
-    return p.getNumSubscribers() >= needed[p.getTopic()];
-  });
+  XmlRpc::XmlRpcValue request, response, state;
+  request[0] = ros::this_node::getName();
+  if (!ros::master::execute("getSystemState", request, response, state, false)) return true;
+  Counts publishers = countsOf(state[0]), listeners = countsOf(state[1]);
+  return std::all_of(publishers_.begin(), publishers_.end(),
+                     [&](const ros::Publisher& p) {
+                       return p.getNumSubscribers() >= listeners[p.getTopic()];
+                     }) &&
+         std::all_of(subscribers_.begin(), subscribers_.end(), [&](const ros::Subscriber& s) {
+           return s.getNumPublishers() >= publishers[s.getTopic()];
+         });
 }
 
 bool ListenerGate::open() {

@@ -9,18 +9,22 @@
 
 namespace fpc {
 
-/// Open as soon as each publisher has as many connections as the master knows listeners; a listener
-/// that died without a word holds it back for a second of wall time only. Once open it stays open.
+/// Open as soon as each publisher has as many connections as the master knows listeners, and each
+/// subscriber as many as it knows publishers; one that died without a word holds it back for a
+/// second of wall time only. Once open it stays open.
 class ListenerGate {
  public:
   explicit ListenerGate(std::vector<ros::Publisher> publishers)
       : publishers_(std::move(publishers)) {}
+  /// An answer to the first answer would be lost before this is connected.
+  void alsoHear(const ros::Subscriber& subscriber) { subscribers_.push_back(subscriber); }
   bool open();
 
  private:
   bool allConnected() const;
 
   std::vector<ros::Publisher> publishers_;
+  std::vector<ros::Subscriber> subscribers_;
   double deadline_s_{-1};
   bool open_{false};
 };

@@ -25,6 +25,7 @@ class OptimizerStandin : public Node {
   void asked(const ControllerAnswer& answer, bool repeated);
   const OptimizerWatch& watch() const { return watch_; }
   const std::string& optimizer() const { return optimizer_; }  ///< its full name
+  const ros::Subscriber& hearing() const { return subscriber_; }
 
  private:
   void onAction(const fmbpc::ControlAction::ConstPtr& msg, const std::string& publisher);

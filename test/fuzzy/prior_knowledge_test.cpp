@@ -176,6 +176,15 @@ TEST(PriorKnowledge, IsReadFromTextOrFile) {
   EXPECT_THROW(readKnown("no_such_file.yaml", structure), InputError);
 }
 
+TEST(PriorKnowledge, AWrongNameIsToldTheRightOnes) {
+  try {
+    readKnown("y: {gain: {v: positive}}", test::knownStructure());
+    FAIL() << "v is no signal";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "--known:1: y.gain.v: unknown key; expected one of u");
+  }
+}
+
 TEST(PriorKnowledge, StandsInStructureFilesForThoseWhoKeepIt) {
   const std::string text =
       "name: t\nsample_time_s: 1\noutputs: {y: {}}\ninputs: {u: {}}\nsubmodels:\n  y:\n"

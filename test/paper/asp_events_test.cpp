@@ -46,9 +46,12 @@ TEST(LockUp, IsLeftWithinAStatedNumberOfSamples) {
   }
 }
 
-/// Inputs of asp_best over 80 h, the influent's flow at 2300 m3/h from 50 to 52 h or not.
+/// Inputs of asp_best over 80 h, the influent's flow at 2300 m3/h from 50 to 52 h or not. The guard
+/// looks at the present sample only: what it does ahead comes on top (docs/comparisons.md).
 std::vector<double> inputsOf(const char* memory_h, bool burst) {
-  Overrides keys{{"sampling.duration_h", "80"}, {"controller.forecast_memory_h", memory_h}};
+  Overrides keys{{"sampling.duration_h", "80"},
+                 {"controller.forecast_memory_h", memory_h},
+                 {"guard.look_ahead", "0"}};
   if (burst)
     keys.emplace_back(
         "disturbance.commands",
