@@ -19,9 +19,10 @@ bool readObserver(YamlSection& controller, ObserverParams& params, const Control
   params.disturbance_std =
       (params.noise_std.array() > 0.0).select(params.disturbance_std, kNoNoise);
   section.byName("disturbance_std", params.disturbance_std, loop.outputs(), kFinitePositive);
-  if (at_inputs && section.has("input_std")) {
-    params.input_std = Vector::Zero(loop.inputCount());
-    section.byName("input_std", params.input_std, loop.inputs(), kFiniteNotNegative);
+  if (at_inputs) {
+    Vector stated = Vector::Zero(loop.inputCount());
+    section.byName("input_std", stated, loop.inputs(), kFiniteNotNegative);
+    if (section.has("input_std")) params.input_std = stated;
   }
   section.boolean("adaptive", params.adaptive);
   section.number("adaptation", params.adaptation, {0.0, 1.0, true});

@@ -19,7 +19,9 @@ PlantPublishers::PlantPublishers(ros::NodeHandle node, const PlantInfo& info,
   if (publish_clock)
     clock_ = node.advertise<rosgraph_msgs::Clock>(
         topics::kClock, queueOf(ListenerKind::kViewer),
-        [this](const ros::SingleSubscriberPublisher& listener) { listener.publish(now_); });
+        [this](const ros::SingleSubscriberPublisher& listener) {
+          if (!now_.clock.isZero()) listener.publish(now_);
+        });
   for (const SignalInfo& output : info.outputs) signals_.add(output.name);
   for (const std::string& disturbance : disturbances) signals_.add(disturbance);
   for (const SignalInfo& input : info.inputs) signals_.add(input.name);

@@ -24,7 +24,7 @@ class PlantPublishers {
 
   PlantPublishers(const PlantPublishers&) = delete;
   PlantPublishers& operator=(const PlantPublishers&) = delete;
-  /// plant_info of the present run, and the clock at its sample 0 (both latched).
+  /// plant_info of the present run (latched), and the clock at its sample 0.
   void introduce(const Process& process);
   /// The present sample, with values of the disturbances named at construction. `mark` may add to
   /// the message what no struct has.
