@@ -8,7 +8,6 @@
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/disturbance_source.hpp"
 #include "fmbpc/config/model_file.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 namespace {
@@ -126,7 +125,7 @@ TsModel readModelOf(YamlSection& entry, const std::string& key, const LoopFile& 
   std::string file;
   entry.text(key, file);
   try {
-    return matchToPlant(readModel(findModelFile(file, entry.file())), loop.plant_info);
+    return matchToLoop(readModel(findModelFile(file, entry.file())), loop);
   } catch (const InputError& error) {
     throw InputError(entry.where(key) + ": " + error.what());
   }

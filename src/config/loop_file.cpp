@@ -8,6 +8,7 @@
 #include "config/read_safety.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/plugins.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 namespace {
@@ -93,6 +94,11 @@ ControllerContext controllerContext(const LoopFile& loop) {
       return makePlantSampleModel(simulation, integration_steps);
     };
   return context;
+}
+
+TsModel matchToLoop(const TsModel& model, const LoopFile& loop) {
+  const SignalUse use = loop.controller->signalUse(controllerContext(loop));
+  return matchToPlant(model, loop.plant_info, use.estimated);
 }
 
 LoopFile readSections(YamlSection& root, const std::string& name) {

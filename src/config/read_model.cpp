@@ -3,7 +3,6 @@
 #include "config/read.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 namespace {
@@ -40,9 +39,9 @@ void readIdentify(YamlSection& model, LoopFile& loop) {
   }
 }
 
-bool suits(const TsModel& model, const PlantInfo& plant) {
+bool suits(const TsModel& model, const LoopFile& loop) {
   try {
-    matchToPlant(model, plant);
+    matchToLoop(model, loop);
     return true;
   } catch (const InputError&) {
     return false;
@@ -65,11 +64,11 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
   if (!loop.has_model) return;
   try {
     loop.model = readModel(loop.model_file);
-    if (!controller.needs_model && !loop.has_identify && !suits(loop.model, loop.plant_info)) {
+    if (!controller.needs_model && !loop.has_identify && !suits(loop.model, loop)) {
       loop.has_model = false;  // inherited, and of no use to this controller
       return;
     }
-    loop.model = matchToPlant(loop.model, loop.plant_info);
+    loop.model = matchToLoop(loop.model, loop);
     loop.controller->checkModel(loop.model, controllerContext(loop));
   } catch (const InputError& e) {
     throw InputError(section.where("file") + ": " + e.what());

@@ -24,6 +24,11 @@ void ObserverParams::validate(Index n_y) const {
   if (atInputs()) requireNonNegative(input_std, input_std.size(), at_inputs);
   require((input_std.array() > 0.0).count() <= n_y, at_inputs,
           "no more inputs with a disturbance than outputs that show it");
+  for (const EstimatedDisturbance& d : estimated) {
+    const std::string key = "controller.observer.estimated." + d.name;
+    require(std::isfinite(d.std) && d.std > 0.0, key + ".std", "a number > 0");
+    require(std::isfinite(d.walk_std) && d.walk_std >= 0.0, key + ".walk_std", "a number >= 0");
+  }
   require(adaptation > 0.0 && adaptation < 1.0, "controller.observer.adaptation",
           "a number > 0 and < 1");
 }

@@ -1,6 +1,11 @@
 #include "fmbpc/control/model_observer.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
+#include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
@@ -25,7 +30,20 @@ ModelObserver::ModelObserver(LocalModel local, const ObserverParams& params, int
       next_(delayed_),
       inputs_(Matrix::Zero(local_.affine().B.cols(), delay + 1)),
       disturbances_(
-          Matrix::Zero(static_cast<Index>(local_.model().disturbances.size()), delay + 1)) {}
+          Matrix::Zero(static_cast<Index>(local_.model().disturbances.size()), delay + 1)) {
+  placeEstimated(params.estimated);
+}
+
+void ModelObserver::placeEstimated(const std::vector<EstimatedDisturbance>& estimated) {
+  const std::vector<std::string> known = namesOf(local_.model().unmeasured);
+  for (const EstimatedDisturbance& d : estimated) {
+    const auto found = std::find(known.begin(), known.end(), d.name);
+    require(found != known.end(), "controller.observer.estimated." + d.name,
+            "an unmeasured disturbance of the model, which has " +
+                (known.empty() ? "none" : join(known)));
+    hidden_.push_back({local_.unmeasuredState(found - known.begin()), d.std, d.walk_std});
+  }
+}
 
 void ModelObserver::rest(VectorRef outputs, VectorRef input, VectorRef disturbances) {
   local_.restState(outputs, input, disturbances, delayed_);
@@ -39,6 +57,7 @@ void ModelObserver::rest(VectorRef outputs, VectorRef input, VectorRef disturban
   state_ = before_ = delayed_;
   inputs_.colwise() = Vector::Map(input.data(), input.size());
   disturbances_.colwise() = Vector::Map(disturbances.data(), disturbances.size());
+  before_start_ = inputs_.cols() - 1;
 }
 
 void ModelObserver::inherit(const ModelObserver& other) {
@@ -48,6 +67,11 @@ void ModelObserver::inherit(const ModelObserver& other) {
   inputs_ = other.inputs_;
   disturbances_ = other.disturbances_;
   filter_ = other.filter_;
+  before_start_ = other.before_start_;
+}
+
+void ModelObserver::loosen(double Hidden::*std) {
+  for (const Hidden& d : hidden_) filter_.loosen(d.row, d.*std);
 }
 
 /// One sample on, with the disturbance; the matrices of the blend stay in local_.
@@ -67,7 +91,10 @@ void ModelObserver::advance(VectorRef outputs, VectorRef input, VectorRef distur
   disturbances_.col(last) = disturbances;
   before_ = delayed_;
   move(inputs_.col(0), disturbances_.col(0), delayed_);
+  if (before_start_ == 0) loosen(&Hidden::std);
   filter_.predict(local_.affine().A);
+  if (before_start_ <= 0) loosen(&Hidden::walk_std);
+  before_start_ = std::max<Index>(before_start_ - 1, -1);
   filter_.correct(outputs, delayed_);
   state_ = delayed_;
   for (Index j = 1; j <= last; ++j) move(inputs_.col(j), disturbances_.col(j), state_);

@@ -9,7 +9,8 @@ template <>
 void requireSameLayout<LawLayout>() {}
 
 PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimits& limits,
-                             const PlantInfo& plant, const std::vector<std::string>& output_signals)
+                             const PlantInfo& plant, const std::vector<std::string>& output_signals,
+                             const std::vector<std::string>& estimated)
     : limits_(limits),
       plant_(plant),
       feedforward_(params.disturbance_feedforward),
@@ -28,6 +29,7 @@ PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimit
   for (const auto& output : plant_.outputs)
     for (const auto& name : output_signals) signals_.emplace_back(output.name + "_" + name, 0.0);
   for (const auto& input : plant_.inputs) signals_.emplace_back(input.name + "_unclipped", 0.0);
+  for (const auto& name : estimated) signals_.emplace_back(name + "_estimate", 0.0);
 }
 
 void PredictiveLaw::reset(const Measurement& start) {
@@ -134,6 +136,8 @@ void PredictiveLaw::refreshSignals() {
     for (std::size_t which = 0; which < output_signals_; ++which)
       signals_[place++].second = core_->signal(i, which);
   for (Eigen::Index i = 0; i < proposal_.size(); ++i) signals_[place++].second = proposal_[i];
+  for (std::size_t i = 0; place < signals_.size(); ++i)
+    signals_[place++].second = core_->estimated(i);
 }
 
 void PredictiveLaw::predict(const LawSample& sample, PredictiveAction& prediction) const {

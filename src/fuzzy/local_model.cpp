@@ -56,6 +56,7 @@ void LocalModel::layOut() {
   place(SignalKind::kOutput, 1, 1, output_offset_, output_lags_);
   place(SignalKind::kInput, 0, 1, input_offset_, input_lags_);
   place(SignalKind::kDisturbance, 0, 0, disturbance_offset_, disturbance_lags_);
+  place(SignalKind::kUnmeasured, 1, 1, unmeasured_offset_, unmeasured_lags_);
 }
 
 Eigen::Index LocalModel::outputState(Eigen::Index output, int lag) const {
@@ -66,6 +67,9 @@ Eigen::Index LocalModel::inputState(Eigen::Index input, int lag) const {
 }
 Eigen::Index LocalModel::disturbanceState(Eigen::Index disturbance, int lag) const {
   return disturbance_offset_[at(disturbance)] + lag - 1;
+}
+Eigen::Index LocalModel::unmeasuredState(Eigen::Index disturbance, int lag) const {
+  return unmeasured_offset_[at(disturbance)] + lag;
 }
 
 void LocalModel::restState(VectorRef outputs, VectorRef input, VectorRef disturbances,
@@ -79,6 +83,8 @@ void LocalModel::restState(VectorRef outputs, VectorRef input, VectorRef disturb
   for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
     state.segment(disturbance_offset_[i], disturbance_lags_[i])
         .setConstant(disturbances[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < unmeasured_lags_.size(); ++i)
+    state.segment(unmeasured_offset_[i], unmeasured_lags_[i]).setZero();
 }
 
 void LocalModel::shiftState(VectorRef outputs, VectorRef input, VectorRef disturbances,
@@ -90,6 +96,8 @@ void LocalModel::shiftState(VectorRef outputs, VectorRef input, VectorRef distur
   for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
     push(state, disturbance_offset_[i], disturbance_lags_[i],
          disturbances[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < unmeasured_lags_.size(); ++i)
+    push(state, unmeasured_offset_[i], unmeasured_lags_[i], state[unmeasured_offset_[i]]);
 }
 
 void LocalModel::fillShifts() {
@@ -106,12 +114,18 @@ void LocalModel::fillShifts() {
   }
   for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
     shift(disturbance_offset_[i], disturbance_lags_[i]);
+  for (std::size_t i = 0; i < unmeasured_lags_.size(); ++i) {
+    shift(unmeasured_offset_[i], unmeasured_lags_[i]);
+    affine_.A(unmeasured_offset_[i], unmeasured_offset_[i]) = 1.0;
+  }
 }
 
 LocalModel::Place LocalModel::placeOf(const Regressor& variable) const {
   Place place{-1, variable.index, variable.kind == SignalKind::kInput};
   if (variable.kind == SignalKind::kOutput)
     place.row = outputState(variable.index, variable.lag);
+  else if (variable.kind == SignalKind::kUnmeasured)
+    place.row = unmeasuredState(variable.index, variable.lag);
   else if (variable.lag > 0)
     place.row = place.of_input ? inputState(variable.index, variable.lag)
                                : disturbanceState(variable.index, variable.lag);

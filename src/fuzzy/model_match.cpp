@@ -72,10 +72,86 @@ ModelDomain reordered(const ModelDomain& model, const std::vector<std::vector<in
   return domain;
 }
 
+/// Where a disturbance goes, in a model whose unmeasured ones count on behind them.
+void renumber(TsModel& model, const std::vector<int>& to, std::size_t measured) {
+  for (auto& submodel : model.submodels)
+    for (auto* list : {&submodel.antecedents, &submodel.regressors})
+      for (auto& r : *list) {
+        if (r.kind != SignalKind::kDisturbance) continue;
+        const int place = to[static_cast<std::size_t>(r.index)];
+        const bool seen = place < static_cast<int>(measured);
+        r.kind = seen ? SignalKind::kDisturbance : SignalKind::kUnmeasured;
+        r.index = seen ? place : place - static_cast<int>(measured);
+      }
+}
+
+/// The domain without these disturbances.
+void dropRows(TsModel& model, const std::vector<bool>& dropped) {
+  if (model.domain.empty()) return;
+  ModelDomain& domain = model.domain;
+  const auto first = static_cast<Eigen::Index>(model.outputs.size() + model.inputs.size());
+  Eigen::Index rows = first;
+  for (std::size_t i = 0; i < dropped.size(); ++i) {
+    if (dropped[i]) continue;
+    const Eigen::Index from = first + static_cast<Eigen::Index>(i);
+    domain.centres.row(rows) = domain.centres.row(from).eval();
+    domain.scale[rows++] = domain.scale[from];
+  }
+  domain.centres.conservativeResize(rows, Eigen::NoChange);
+  domain.scale.conservativeResize(rows);
+}
+
+/// Takes the disturbances that the plant does not measure and somebody estimates out of the others.
+TsModel apart(const TsModel& model, const PlantInfo& plant,
+              const std::vector<std::string>& estimated) {
+  const auto isEstimated = [&](const SignalInfo& signal) {
+    return indexOf(plant.disturbances, signal.name) < 0 &&
+           std::find(estimated.begin(), estimated.end(), signal.name) != estimated.end();
+  };
+  if (std::none_of(model.disturbances.begin(), model.disturbances.end(), isEstimated)) return model;
+  TsModel split = model;
+  split.disturbances.clear();
+  std::vector<bool> dropped;
+  for (const SignalInfo& signal : model.disturbances) {
+    dropped.push_back(isEstimated(signal));
+    (dropped.back() ? split.unmeasured : split.disturbances).push_back(signal);
+  }
+  std::vector<int> to;
+  int seen = 0, hidden = static_cast<int>(split.disturbances.size() + model.unmeasured.size());
+  for (const bool gone : dropped) to.push_back(gone ? hidden++ : seen++);
+  renumber(split, to, split.disturbances.size());
+  dropRows(split, dropped);
+  return split;
+}
+
 }  // namespace
 
-TsModel matchToPlant(const TsModel& model, const PlantInfo& plant) {
-  model.validate();
+TsModel asIdentified(TsModel model) {
+  const auto first = static_cast<int>(model.disturbances.size());
+  for (auto& submodel : model.submodels)
+    for (auto* list : {&submodel.antecedents, &submodel.regressors})
+      for (auto& r : *list)
+        if (r.kind == SignalKind::kUnmeasured)
+          r = {SignalKind::kDisturbance, r.index + first, r.lag};
+  ModelDomain& domain = model.domain;
+  const Eigen::Index rows = domain.scale.size(),
+                     more = static_cast<Eigen::Index>(model.unmeasured.size());
+  if (!domain.empty() && more > 0) {
+    domain.centres.conservativeResize(rows + more, Eigen::NoChange);
+    domain.centres.bottomRows(more).setZero();
+    domain.scale.conservativeResize(rows + more);
+    domain.scale.tail(more).setConstant(std::numeric_limits<double>::infinity());
+  }
+  model.disturbances.insert(model.disturbances.end(), model.unmeasured.begin(),
+                            model.unmeasured.end());
+  model.unmeasured.clear();
+  return model;
+}
+
+TsModel matchToPlant(const TsModel& given, const PlantInfo& plant,
+                     const std::vector<std::string>& estimated) {
+  given.validate();
+  const TsModel model = apart(given, plant, estimated);
   const std::string where = "model '" + model.name + "'";
   require(
       std::abs(model.sample_time_s - plant.sample_time_s) <= kSameTime * plant.sample_time_s,
@@ -100,6 +176,7 @@ TsModel matchToPlant(const TsModel& model, const PlantInfo& plant) {
   for (auto& submodel : matched.submodels)
     for (auto* list : {&submodel.antecedents, &submodel.regressors})
       for (auto& regressor : *list) {
+        if (regressor.kind == SignalKind::kUnmeasured) continue;
         const auto& to = regressor.kind == SignalKind::kOutput  ? outputs
                          : regressor.kind == SignalKind::kInput ? inputs
                                                                 : disturbances;

@@ -100,6 +100,8 @@ const std::vector<SignalInfo>& TsModel::signals(SignalKind kind) const {
       return outputs;
     case SignalKind::kInput:
       return inputs;
+    case SignalKind::kUnmeasured:
+      return unmeasured;
     default:
       return disturbances;
   }
@@ -117,6 +119,7 @@ void TsModel::validate() const {
   checkSignals("outputs", outputs, seen);
   checkSignals("inputs", inputs, seen);
   checkSignals("disturbances", disturbances, seen);
+  checkSignals("unmeasured", unmeasured, seen);
   require(submodels.size() == outputs.size(), "submodels",
           "one for each of " + std::to_string(outputs.size()) + " outputs");
   for (std::size_t i = 0; i < submodels.size(); ++i) {

@@ -5,6 +5,7 @@
 //   dT/dt  = q/V (T0 - T) + k0 D CA exp(-(E/R)/T)                        D = -dH/(rho Cp)
 //            + rho_c Cpc/(rho Cp V) q_j (1 - exp(-hA/(q_j rho_c Cpc))) (Tc0 - T)
 //   q_j    = max(0, q_c + d_q_c)                                         flow through the jacket
+//   k0 stands for k0 (1 + rate / 100).
 //
 // A local loop on the reactor's temperature, sampled with the loop, widens the stable range:
 //   q_c(k) = u(k) + K [T(k) - T(k-1)],  T as it is now, without noise or delay.
@@ -27,7 +28,9 @@ PlantDescription describe() {
   p.states = {{"CA", "mol/l", 0.1000001680476245, 0.0, 10.0},
               {"T", "K", 438.5443805030675, 200.0, 1000.0}};
   p.inputs = {{"q_c", "l/min", 103.4066, 0.0, 500.0}};
-  p.disturbances = {{"d_q_c", "l/min", 0.0, -100.0, 100.0}};
+  p.disturbances = {{"d_q_c", "l/min", 0.0, -100.0, 100.0},
+                     {"rate", "%", 0.0, -90.0, 900.0}};  // of k0, on top of it
+  p.hidden_disturbances = {"rate"};
   p.outputs = {"CA"};
   p.parameters = {
       {"feed_flow", "l/min", 100.0, 0.0, 1e6},                 // q
@@ -80,7 +83,7 @@ Cstr::Cstr(const PlantParameters& parameters) : description_(describe()) {
 void Cstr::derivatives(VectorRef state, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const {
   const double CA = state[0], T = state[1];
   const double q_j = std::max(0.0, u[0] + d[0]);
-  const double reaction = k0_ * CA * std::exp(-E_R_ / T);
+  const double reaction = k0_ * (1.0 + d[1] / 100.0) * CA * std::exp(-E_R_ / T);
   const double coolant = q_j * rho_c_ * Cpc_;  // [cal/(min K)]
   const double cooling = coolant > 0.0 ? coolant * (1.0 - std::exp(-hA_ / coolant)) : 0.0;
   dxdt[0] = q_ / V_ * (CA0_ - CA) - reaction;

@@ -18,7 +18,6 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
 #include "ros/conversions.hpp"
 #include "ros/open_bag.hpp"
 #include "ros/operator_desk.hpp"
@@ -138,7 +137,7 @@ class Reader {
   /// In lockstep from the sample after the one it was made from, else when it came: before sample 0
   /// if not later than that (the bag has no order within one time of /clock).
   void take(const fmbpc::FuzzyModel& msg, std::int64_t came_ns) {
-    const TsModel model = matchToPlant(fromMsg(msg), loop_.plant_info);
+    const TsModel model = matchToLoop(fromMsg(msg), loop_);
     if (msg.run_id != 0 && ofBefore(msg.run_id, model_before_, model)) return;
     const bool at_start =
         run_.measurements.empty() || came_ns <= run_.measurements.begin()->second.header.time_ns;

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "fmbpc/base/same_sample.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/factory.hpp"
 #include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
@@ -102,7 +101,7 @@ void ControllerNode::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
   guarded(topics::kFuzzyModel, [&] {
     const bool needed = session_.controller().needsModel();
     try {
-      inbox_.put(needed ? matchToPlant(fromMsg(*msg), loop_.plant_info) : TsModel(),
+      inbox_.put(needed ? matchToLoop(fromMsg(*msg), loop_) : TsModel(),
                  headerOf(*msg));
     } catch (const InputError& error) {
       return refuseModel(error.what());

@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "conversion_parts.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 namespace {
@@ -131,7 +132,8 @@ ModelDomain domainStruct(const fmbpc::FuzzyModel& msg) {
 
 }  // namespace
 
-fmbpc::FuzzyModel toMsg(const TsModel& model) {
+fmbpc::FuzzyModel toMsg(const TsModel& matched) {
+  const TsModel model = asIdentified(matched);
   fmbpc::FuzzyModel msg;
   msg.name = model.name;
   msg.source = model.source;

@@ -144,6 +144,8 @@ struct LoopFile {
 
 /// What the loop tells its controller.
 ControllerContext controllerContext(const LoopFile& loop);
+/// matchToPlant() with what the loop's controller estimates.
+TsModel matchToLoop(const TsModel& model, const LoopFile& loop);
 
 /// "--set controller.coincidence_steps=3": dotted path (list items by number) -> YAML text.
 using Overrides = std::vector<std::pair<std::string, std::string>>;

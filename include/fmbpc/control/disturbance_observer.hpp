@@ -10,10 +10,18 @@
 
 namespace fpc {
 
+/// A disturbance that the model knows and nobody measures.
+struct EstimatedDisturbance {
+  std::string name;
+  double std{};       ///< of its jump from 0 when a run starts, > 0
+  double walk_std{};  ///< of its change per sample
+};
+
 /// Section `controller.observer`.
 struct ObserverParams {
   Vector noise_std;         ///< n_y, of the measurements; 0: all of an error is disturbance
   Vector disturbance_std;   ///< n_y, of the change of d per sample, > 0
+  std::vector<EstimatedDisturbance> estimated;  ///< by observers on a model
   Vector input_std;         ///< n_u: d adds to the inputs instead and changes by this; empty: not
   bool adaptive{false};     ///< the noise's variance is learned from the innovations
   double adaptation{0.02};  ///< how fast, per sample, (0, 1)
@@ -44,6 +52,8 @@ class DisturbanceObserver {
   void predict(const Matrix& A);
   /// With disturbances at the inputs. E: n_x n_u.
   void predict(const Matrix& A, const Matrix& E);
+  /// This row of the state is less certain by so much.
+  void loosen(Eigen::Index row, double std) { P_(row, row) += std * std; }
   /// state: x(k|k-1), d(k-1) already in it; becomes x(k|k). Not finite: nothing changes, false.
   bool correct(VectorRef outputs, Eigen::Ref<Vector> state);
   const Vector& disturbance() const { return disturbance_; }  ///< n_y or n_u, d(k|k)

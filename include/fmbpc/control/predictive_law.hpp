@@ -53,6 +53,8 @@ class LawCore {
   virtual void predict(PredictiveAction& prediction) const = 0;
   /// Number `which` of the signals of an output.
   virtual double signal(Eigen::Index output, std::size_t which) const = 0;
+  /// Number i of the disturbances that it estimates.
+  virtual double estimated(std::size_t /*i*/) const { return 0.0; }
   virtual const Vector& referencePole() const = 0;  ///< n_y, a_r
   /// See PlanView; none by default.
   virtual Eigen::Index plannedSteps() const { return 0; }
@@ -81,8 +83,8 @@ void readPredictiveLaw(YamlSection& section, const ControllerContext& loop,
 /// (BumplessTransfer). A new core or tuning takes over in the next step: the old one still says
 /// what u(k) would have been, and the new one starts with a bias that makes its u(k) the very same.
 /// If anything is not finite, or the core is in trouble, the last applied input is held (clipped),
-/// ok is false, and there is no prediction. signals(): those of the core for each output, and
-/// NAME_unclipped of each input.
+/// ok is false, and there is no prediction. signals(): those of the core for each output,
+/// NAME_unclipped of each input, and NAME_estimate of each disturbance that it estimates.
 class PredictiveLaw : public Controller, public PlanView {
  public:
   void reset(const Measurement& start) override;
@@ -100,7 +102,8 @@ class PredictiveLaw : public Controller, public PlanView {
   /// output_signals: "model" for the signal NAME_model of each output. @throws InputError of
   /// limits, or without a nominal value for each disturbance.
   PredictiveLaw(const PredictiveLawParams& params, const InputLimits& limits,
-                const PlantInfo& plant, const std::vector<std::string>& output_signals);
+                const PlantInfo& plant, const std::vector<std::string>& output_signals,
+                const std::vector<std::string>& estimated = {});
   /// d(k) is known; once a sample.
   virtual void note(const LawSample& /*sample*/) {}
   /// The core that counts next: one that waits, or the present one; may be null.

@@ -44,6 +44,7 @@ struct SignalUse {
   std::vector<bool> needed;  ///< outputs, then measured disturbances: without one it has no answer
   std::vector<Eigen::Index> followed;  ///< outputs that it steers to their setpoints
   std::vector<bool> moved{};           ///< inputs; the others stay where they are. Empty: all
+  std::vector<std::string> estimated{};  ///< disturbances of its model that nobody measures
 };
 SignalUse everySignal(const ControllerContext& loop);
 SignalUse noSignal(const ControllerContext& loop);

@@ -10,7 +10,8 @@ namespace fpc {
 
 /// xi(k+1) = A xi(k) + B u(k) + g,  y_m = C xi.  g = D d(k) + r (+ w_hat, added by the law).
 /// xi stacks, in this order: for each output its lags 0.., for each input u(k-1), u(k-2).., for
-/// each disturbance d(k-1), d(k-2)... Every input has at least u(k-1), so that moves can be weighed
+/// each disturbance d(k-1), d(k-2).., for each unmeasured one d(k), d(k-1).. : those are taken to
+/// stay as they are, and an observer may say what they are. Every input has at least u(k-1), so that moves can be weighed
 /// and limited. Source: vallejo2019, eqs. 10-17 (there u(k-1) is part of an extended input).
 class LocalModel {
  public:
@@ -23,8 +24,10 @@ class LocalModel {
   Eigen::Index inputState(Eigen::Index input, int lag) const;        ///< row of u(k-lag), lag >= 1
   Eigen::Index disturbanceState(Eigen::Index disturbance,
                                 int lag) const;  ///< row of d(k-lag), lag >= 1
+  Eigen::Index unmeasuredState(Eigen::Index disturbance,
+                               int lag = 0) const;  ///< row of an unmeasured d(k-lag)
 
-  /// State of a process that has rested at these values.
+  /// State of a process that has rested at these values, unmeasured disturbances at 0.
   void restState(VectorRef outputs, VectorRef input, VectorRef disturbances,
                  Eigen::Ref<Vector> state) const;
   /// Moves a state of true values on by one sample: y(k+1) enters, u(k) and d(k) become the newest
@@ -65,8 +68,8 @@ class LocalModel {
   TsModel model_;
   Eigen::Index n_x_{};
   /// Of each signal: its first row, and how many rows it has.
-  std::vector<Eigen::Index> output_offset_, input_offset_, disturbance_offset_;
-  std::vector<int> output_lags_, input_lags_, disturbance_lags_;
+  std::vector<Eigen::Index> output_offset_, input_offset_, disturbance_offset_, unmeasured_offset_;
+  std::vector<int> output_lags_, input_lags_, disturbance_lags_, unmeasured_lags_;
   AffineModel affine_;
   std::vector<FiringResult> firing_;
   std::vector<std::vector<Place>> antecedents_, regressors_;  ///< of each output

@@ -15,12 +15,12 @@
 
 namespace fpc {
 
-enum class SignalKind : std::uint8_t { kOutput = 1, kInput = 2, kDisturbance = 3 };
+enum class SignalKind : std::uint8_t { kOutput = 1, kInput = 2, kDisturbance = 3, kUnmeasured = 4 };
 
 /// A signal at time k - lag, seen from the prediction of k + 1. Lag 0 of an input is u(k).
 struct Regressor {
   SignalKind kind{SignalKind::kOutput};
-  int index{};  ///< into the model's outputs, inputs or disturbances
+  int index{};  ///< into the model's signals of this kind
   int lag{};
   bool operator==(const Regressor& o) const {
     return kind == o.kind && index == o.index && lag == o.lag;
@@ -53,6 +53,7 @@ struct TsModel {
   double sample_time_s{};
   std::vector<SignalInfo> outputs, inputs,
       disturbances;                    ///< lower/upper: range of the data, or infinite
+  std::vector<SignalInfo> unmeasured;  ///< disturbances that this loop estimates: matchToPlant()
   std::vector<OutputModel> submodels;  ///< one per output
   ModelDomain domain;                  ///< where the data were; may be empty
 

@@ -22,6 +22,7 @@ class FmbpcCore final : public LawCore {
   bool finite() const override { return model_->state().allFinite(); }
   void predict(PredictiveAction& prediction) const override;
   double signal(Eigen::Index output, std::size_t which) const override;
+  double estimated(std::size_t i) const override { return model_->estimated(i); }
   const Vector& referencePole() const override { return params_.reference_pole; }
   Eigen::Index plannedSteps() const override { return law_->plannedSteps(); }
   void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {

@@ -3,6 +3,7 @@
 
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/control/model_observer.hpp"
 #include "fmbpc/control/read_observer.hpp"
 #include "fmbpc/control/registry.hpp"
 
@@ -42,7 +43,7 @@ FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
   section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
   readOption(section, "antecedent", params.antecedent);
   section.number("offset_gain", params.offset_gain, {0.0, 1.0});
-  readObserver(section, params.observer, loop);
+  readObserver(section, params.observer, loop, ObserverKey::kEstimated);
   checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
   return params;
 }
@@ -59,7 +60,13 @@ SignalUse usedByFmbpc(const FmbpcParams& params, const ControllerContext& loop) 
     use.followed = {loop.outputCount() - 1};
   else
     use.followed = weighted(params.weight_output);
+  for (const EstimatedDisturbance& d : params.observer.estimated) use.estimated.push_back(d.name);
   return use;
+}
+
+void checkFmbpc(const FmbpcParams& params, const TsModel& model, const ControllerContext&) {
+  if (params.realisation == FmbpcRealisation::kObserver)
+    ModelObserver(LocalModel(model), params.observer, 0);
 }
 
 ControllerType describe() {
@@ -71,7 +78,7 @@ ControllerType describe() {
 }
 
 const bool kRegistered =
-    registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc, nullptr, &usedByFmbpc});
+    registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc, &checkFmbpc, &usedByFmbpc});
 
 }  // namespace
 }  // namespace fpc

@@ -24,6 +24,7 @@ class InternalModel {
   virtual bool inherit(const InternalModel& older) = 0;
   /// What is added to the model's output (or, per sample, to its state) to be offset-free.
   virtual double correctionOf(Eigen::Index output) const { return offset_output_[output]; }
+  virtual double estimated(std::size_t /*i*/) const { return 0.0; }  ///< see LawCore
   /// The model of the undelayed process, as blended last.
   virtual const AffineModel& affine() const { return local_.affine(); }
 

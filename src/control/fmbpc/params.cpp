@@ -18,6 +18,8 @@ void requireCombination(const FmbpcParams& p) {
           "0 for realisation realigned, whose state comes from present measurements");
   require(p.reference_lead_steps >= 0 && p.reference_lead_steps <= 100000,
           "controller.reference_lead_steps", "an integer from 0 to 100000");
+  require(p.observer.estimated.empty() || p.realisation == FmbpcRealisation::kObserver,
+          "controller.realisation", "observer where controller.observer.estimated asks for one");
   require(!literal || p.law == FmbpcForm::kPublished, "controller.law",
           "published for realisation literal");
   require(!literal || p.antecedent == FmbpcAntecedent::kMeasured, "controller.antecedent",

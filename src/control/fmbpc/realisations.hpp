@@ -65,6 +65,7 @@ class ObservedModel final : public InternalModel {
   double correctionOf(Eigen::Index output) const override {
     return observer_.disturbance()[output];
   }
+  double estimated(std::size_t i) const override { return observer_.estimated(i); }
 
  private:
   ModelObserver observer_;

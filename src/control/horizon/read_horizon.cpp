@@ -14,7 +14,7 @@ HorizonParams readHorizon(YamlSection& section, const ControllerContext& loop) {
   section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
   section.boolean("preview", params.preview);
   section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);
-  params.observe = readObserver(section, params.observer, loop, true);
+  params.observe = readObserver(section, params.observer, loop, ObserverKey::kInputStd);
   section.byName("weight_output", params.weight_output, loop.outputs(), kFiniteNotNegative);
   section.byName("weight_move", params.weight_move, loop.inputs(), kFiniteNotNegative);
   return params;

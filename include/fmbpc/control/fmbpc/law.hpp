@@ -67,7 +67,8 @@ const SettingsTable<FmbpcParams>& fmbpcSettings();  ///< what may change in a ru
 /// out, or literal) the new one starts at rest. If no rule fires the nearest one is used, with a
 /// remark. If the gains are singular or anything is not finite the last applied input is held.
 /// signals(): NAME_model (y_m), NAME_correction (y - y_m, or w_hat) of each output and, with a
-/// delay, NAME_undelayed (what the output will be delay_steps later); NAME_unclipped of each input.
+/// delay, NAME_undelayed (what the output will be delay_steps later); NAME_unclipped of each input;
+/// NAME_estimate of each disturbance in observer.estimated.
 class FmbpcLaw final : public PredictiveLaw {
  public:
   FmbpcLaw(const FmbpcParams& params, const InputLimits& limits, const PlantInfo& plant);
