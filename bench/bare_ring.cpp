@@ -72,6 +72,7 @@ void runPlant(ros::NodeHandle& node, std::uint32_t samples, std::uint32_t listen
   auto seconds = node.advertise<std_msgs::Float64>("bare_seconds", 1, true);
   Signals signals(node, "p", kOutputs + kDisturbances + kInputs);
   fmbpc::Measurement sample;
+  sample.header.frame_id = "plant";
   sample.outputs.assign(kOutputs, 1.0);
   sample.disturbances.assign(kDisturbances, 1.0);
   sample.input_applied.assign(kInputs, 1.0);
@@ -123,6 +124,9 @@ void runController(ros::NodeHandle& node) {
   predicted.K = matrix(kInputs, kModelState);
   predicted.feedforward = matrix(kInputs, kSteps);
   predicted.reference = matrix(kOutputs, kSteps);
+  predicted.setpoint.assign(kOutputs, 1.0);
+  predicted.input_base_unclipped.assign(kInputs, 1.0);
+  predicted.input_previous.assign(kInputs, 1.0);
   const auto heard =
       listen<fmbpc::Measurement>(node, "measurement", [&](const fmbpc::Measurement::ConstPtr& m) {
         fmbpc::ControlAction action;

@@ -78,7 +78,7 @@ void PlantNode::beginRun() {
   run_id_ = std::max(run_id_ + 1, ros::WallTime::now().toNSec());
   session_.begin(run_id_);
   keeper_.beginRun(run_id_);
-  publishers_.introduce(session_.process());
+  publishers_.begin(session_.process());
   introduced_s_ = steadyNow();
   tracking_subscriber_.shutdown();
   recorded_ = false;

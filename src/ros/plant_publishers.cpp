@@ -27,10 +27,12 @@ PlantPublishers::PlantPublishers(ros::NodeHandle node, const PlantInfo& info,
   for (const SignalInfo& input : info.inputs) signals_.add(input.name);
 }
 
-void PlantPublishers::introduce(const Process& process) {
-  info_.publish(toMsg(process.info()));
+void PlantPublishers::begin(const Process& process) {
+  introduce(process);
   clock(process.info().header.time_ns);
 }
+
+void PlantPublishers::introduce(const Process& process) { info_.publish(toMsg(process.info())); }
 
 void PlantPublishers::sample(const Process& process, VectorRef disturbances,
                              const std::function<void(fmbpc::Measurement&)>& mark) {

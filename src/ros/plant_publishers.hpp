@@ -24,7 +24,9 @@ class PlantPublishers {
 
   PlantPublishers(const PlantPublishers&) = delete;
   PlantPublishers& operator=(const PlantPublishers&) = delete;
-  /// plant_info of the present run (latched), and the clock at its sample 0.
+  /// A new run: it is introduced, and the clock stands at its sample 0.
+  void begin(const Process& process);
+  /// plant_info of the present run (latched).
   void introduce(const Process& process);
   /// The present sample, with values of the disturbances named at construction. `mark` may add to
   /// the message what no struct has.

@@ -88,6 +88,17 @@ class PlantNode(unittest.TestCase):
         self.assertEqual({0}, {m.step for m in self.measurements.messages})
         self.assertGreater(self.status.counts()["measurements sent again"], 1)
 
+    def test_time_does_not_go_back_while_nobody_answers(self):
+        """The run is introduced again to who may have missed it; who did not must not see its first second again."""
+        clock = ring.Listener("/clock", Clock)
+        self.advance()
+        told = len(self.infos.messages)
+        ring.wait_until(lambda: len(self.infos.messages) > told, "plant_info once more")
+        self.advance()
+        clock.wait(lambda m: m.clock == self.now.header.stamp)
+        times = [m.clock for m in clock.messages]
+        self.assertEqual(sorted(times), times)
+
     def test_what_does_not_answer_the_sample_is_dropped_and_counted_apart(self):
         self.advance()
         self.advance()
