@@ -7,6 +7,7 @@
 
 #include "config/model_file_parts.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fuzzy/regressor_text.hpp"
 
 namespace fpc {
@@ -190,7 +191,8 @@ TsModel parseModel(const std::string& text, const std::string& name) {
   return readModelSections(top);
 }
 
-std::string writeModel(const TsModel& model) {
+std::string writeModel(const TsModel& matched) {
+  const TsModel model = asIdentified(matched);
   YAML::Emitter out;
   out << YAML::BeginMap;
   out << YAML::Key << "name" << YAML::Value << model.name;

@@ -73,6 +73,10 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
   } catch (const InputError& e) {
     throw InputError(section.where("file") + ": " + e.what());
   }
+  if (loop.has_identify && !loop.model.unmeasured.empty())
+    section.fail("identify",
+                 "no such section beside controller.observer.estimated: no record of "
+                 "this loop knows what nobody measures");
 }
 
 }  // namespace fpc

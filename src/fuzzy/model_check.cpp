@@ -7,14 +7,17 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/fuzzy/local_model.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 
 double largestPole(const TsModel& model, const Measurement& at) {
-  LocalModel local(model);
-  Vector state(local.stateSize());
-  local.restState(at.outputs, at.input_applied, at.disturbances, state);
-  local.blend(state, at.disturbances);
+  LocalModel local(asIdentified(model));  // nothing moves an unmeasured disturbance: no pole of it
+  Vector state(local.stateSize()),
+      loads = Vector::Zero(static_cast<Eigen::Index>(local.model().disturbances.size()));
+  loads.head(at.disturbances.size()) = at.disturbances;
+  local.restState(at.outputs, at.input_applied, loads, state);
+  local.blend(state, loads);
   const Matrix& A = local.affine().A;
   if (!A.allFinite()) return std::numeric_limits<double>::infinity();
   const Eigen::EigenSolver<Matrix> solver(A, false);

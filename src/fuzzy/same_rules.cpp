@@ -20,8 +20,8 @@ bool sameSets(const Rule& a, const Rule& b) {
 
 bool sameLags(const TsModel& a, const TsModel& b) {
   if (a.unmeasured.size() != b.unmeasured.size()) return false;
-  for (const SignalKind kind : {SignalKind::kOutput, SignalKind::kInput, SignalKind::kDisturbance,
-                                SignalKind::kUnmeasured})
+  for (const SignalKind kind :
+       {SignalKind::kOutput, SignalKind::kInput, SignalKind::kDisturbance, SignalKind::kUnmeasured})
     for (std::size_t i = 0; i < a.signals(kind).size(); ++i)
       if (a.maxLag(kind, static_cast<int>(i)) != b.maxLag(kind, static_cast<int>(i))) return false;
   return true;

@@ -29,7 +29,7 @@ PlantDescription describe() {
               {"T", "K", 438.5443805030675, 200.0, 1000.0}};
   p.inputs = {{"q_c", "l/min", 103.4066, 0.0, 500.0}};
   p.disturbances = {{"d_q_c", "l/min", 0.0, -100.0, 100.0},
-                     {"rate", "%", 0.0, -90.0, 900.0}};  // of k0, on top of it
+                    {"rate", "%", 0.0, -90.0, 900.0}};  // of k0, on top of it
   p.hidden_disturbances = {"rate"};
   p.outputs = {"CA"};
   p.parameters = {

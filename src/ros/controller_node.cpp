@@ -101,8 +101,7 @@ void ControllerNode::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
   guarded(topics::kFuzzyModel, [&] {
     const bool needed = session_.controller().needsModel();
     try {
-      inbox_.put(needed ? matchToLoop(fromMsg(*msg), loop_) : TsModel(),
-                 headerOf(*msg));
+      inbox_.put(needed ? matchToLoop(fromMsg(*msg), loop_) : TsModel(), headerOf(*msg));
     } catch (const InputError& error) {
       return refuseModel(error.what());
     }

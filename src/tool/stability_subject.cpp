@@ -14,6 +14,7 @@
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/fuzzy/undelayed.hpp"
 #include "tool/commands.hpp"
 
@@ -84,7 +85,7 @@ void settleOn(StabilitySubject& subject) {
 }
 
 void takeLaw(StabilitySubject& subject, const LoopFile& loop, const FmbpcParams& law) {
-  if (loop.has_model) subject.model = withoutDelay(loop.model, law.delay_steps);
+  if (loop.has_model) subject.model = withoutDelay(asIdentified(loop.model), law.delay_steps);
   require(law.law != FmbpcForm::kIterated, loop.name + ": controller.law",
           "published or general: no other law is linear around its model");
   subject.law.coincidence_steps = law.coincidence_steps;

@@ -28,6 +28,26 @@ TEST_F(ErrorKeys, ChecksOfThePlantNameTheWholePathOfTheKey) {
               {"--set plant.parameters.difference_step: expected a whole part"});
 }
 
+TEST_F(ErrorKeys, WhatNobodyMeasuresIsNamedWithWhatItNeeds) {
+  const auto expect = [&](const std::string& override, const std::string& words) {
+    expectWords(errorOfOverride(override, "cstr_tracking_rate"), {words});
+  };
+  const std::string estimated = "controller.observer.estimated";
+  expect(estimated + ".rate.std=-1",
+         "--set " + estimated + ".rate.std: expected a finite number > 0");
+  expect(estimated + ".rate.walk_std=-1",
+         estimated + ".rate.walk_std: expected a finite number >= 0");
+  expect(estimated + ".load.std=3", estimated +
+                                        ".load: expected an unmeasured disturbance of the model, "
+                                        "which has d_q_c, rate");
+  expect("model.file=cstr_lags.yaml",
+         "expected an unmeasured disturbance of the model, which has none");
+  expect("plant.measured_disturbances=[rate]",
+         estimated + ".rate: expected a disturbance that is not measured");
+  expect("model.identify.window=10", "--set model.identify: expected no such section beside");
+  expect("controller.realisation=parallel", "controller.realisation: expected observer where");
+}
+
 TEST_F(ErrorKeys, ChecksOfAMatrixNameItsItems) {
   expectWords(errorOfOverride("plant.matrix.outputs.0.name=Q"),
               {"plant.matrix.elements[0].output: expected one of the matrix's outputs"});

@@ -50,7 +50,7 @@ std::string general(std::string path) {
   path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
   const std::regex named(
       R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|actuator\.lag|)"
-      R"(controller\.inputs\[\]|controller\.levels|controller\.forbidden\[\]|report\.consumption|gateway\.tags|plausibility\.signals|standstill\.signals)\.[\w/]+)");
+      R"(controller\.inputs\[\]|controller\.levels|controller\.observer\.estimated|controller\.forbidden\[\]|report\.consumption|gateway\.tags|plausibility\.signals|standstill\.signals)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
   const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(?!\w+_(?:s|min|h)$)\w+$)");
@@ -136,7 +136,8 @@ std::set<std::string> readerKeys() {
                                  steps,
                                  batch + "inputs: [{kM: 0, kC: 0, kH: 1}]" + rest,
                                  batch + "levels: {kM: [0, 1], kC: [0], kH: [1]}" + rest};
-  for (const char* loop : {"example_external", "cstr_modbus"}) texts.push_back(resolveLoop(loop));
+  for (const char* loop : {"example_external", "cstr_modbus", "cstr_tracking_rate"})
+    texts.push_back(resolveLoop(loop));
   for (const auto& type : controllerNames())
     for (const auto& loop : loopsOfType(type))
       texts.push_back(resolveLoop(loop, withoutRecords(loop)));

@@ -176,6 +176,32 @@ TEST(MatchToPlant, TakesASampleTimeThatARecordRounded) {
   EXPECT_THROW(matchToPlant(model, plant), InputError);
 }
 
+/// Nobody measures q_i: it becomes an unmeasured disturbance where somebody estimates it, and comes
+/// last again, under its name, where the model is written.
+TEST(MatchToPlant, TakesApartWhatTheLoopEstimates) {
+  const TsModel model = test::shippedModel("fm_1");
+  PlantInfo plant = test::activatedSludgeInfo();
+  ASSERT_EQ(plant.disturbances[0].name, "q_i");
+  plant.disturbances.erase(plant.disturbances.begin());
+  EXPECT_THROW(matchToPlant(model, plant), InputError);
+  const TsModel matched = matchToPlant(model, plant, {"q_i"});
+  EXPECT_NO_THROW(matched.validate());
+  ASSERT_EQ(matched.unmeasured.size(), 1U);
+  EXPECT_EQ(matched.unmeasured[0].name, "q_i");
+  EXPECT_EQ(matched.disturbances.size(), plant.disturbances.size());
+  EXPECT_GE(matched.maxLag(SignalKind::kUnmeasured, 0), 0);
+  const TsModel written = parseModel(writeModel(matched), "again");
+  ASSERT_EQ(written.disturbances.size(), 2U);
+  EXPECT_EQ(written.disturbances[1].name, "q_i");
+  for (std::size_t i = 0; i < model.submodels.size(); ++i)
+    for (std::size_t j = 0; j < model.submodels[i].regressors.size(); ++j) {
+      const std::string name = model.text(model.submodels[i].regressors[j]);
+      EXPECT_EQ(matched.text(matched.submodels[i].regressors[j]), name);
+      EXPECT_EQ(written.text(written.submodels[i].regressors[j]), name);
+    }
+  EXPECT_EQ(matchToPlant(matched, plant, {"q_i"}).unmeasured.size(), 1U) << "once more";
+}
+
 TEST(MatchToPlant, NamesWhatDoesNotFit) {
   const TsModel model = test::shippedModel("fm_1");
   const auto expect = [&](const std::string& word, const std::function<void(PlantInfo&)>& spoil) {

@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "fmbpc/base/input_error.hpp"
+
 namespace fpc {
 namespace control_model_observer_test {
 
@@ -70,6 +72,67 @@ TEST(ModelObserver, GoesOnFromAnotherOne) {
   second.advance(one(1.1), one(0.3), Vector());
   EXPECT_EQ(first.state(), second.state());
   EXPECT_EQ(first.disturbance(), second.disturbance());
+}
+
+/// y(k+1) = 0.8 y(k) + 0.5 u(k) + 2 w(k) - 1.5 w(k-1) + 0.1, and nobody measures w.
+TsModel modelOfUnmeasured() {
+  TsModel m = model();
+  m.unmeasured = {{"w", "1", -1, 1}};
+  m.submodels[0].regressors.push_back({SignalKind::kUnmeasured, 0, 0});
+  m.submodels[0].regressors.push_back({SignalKind::kUnmeasured, 0, 1});
+  m.submodels[0].rules[0].coefficients = (Vector(4) << 0.8, 0.5, 2.0, -1.5).finished();
+  return m;
+}
+
+TEST(ModelObserver, EstimatesWhatNobodyMeasures) {
+  constexpr int kDelay = 3;
+  ObserverParams known = params(0.0);
+  known.disturbance_std[0] = 1e-6;
+  known.estimated = {{"w", 1.0, 0.0}};
+  ModelObserver observer(LocalModel(modelOfUnmeasured()), known, kDelay);
+  std::vector<double> y(kDelay + 1, 0.5);
+  observer.rest(one(0.5), one(0.0), Vector());
+  double before = 0.0;
+  for (int k = 0; k < 30; ++k) {
+    const double w = 0.3, u = std::sin(0.3 * k);
+    y.push_back(0.8 * y.back() + 0.5 * u + 2.0 * w - 1.5 * before + 0.1);
+    before = w;
+    observer.advance(one(y[y.size() - 1 - kDelay]), one(u), Vector());
+    if (k < kDelay) {
+      EXPECT_EQ(observer.estimated(0), 0.0) << "it was not there before the start";
+    } else {
+      EXPECT_NEAR(observer.estimated(0), w, 1e-6) << k;
+      EXPECT_NEAR(observer.state()[0], y.back(), 1e-5) << k;
+    }
+  }
+}
+
+TEST(ModelObserver, FollowsAWalkOfWhatNobodyMeasures) {
+  ObserverParams known = params(0.001);
+  known.disturbance_std[0] = 1e-6;
+  known.estimated = {{"w", 1.0, 0.05}};
+  ModelObserver observer(LocalModel(modelOfUnmeasured()), known, 0);
+  observer.rest(one(0.5), one(0.0), Vector());
+  double y = 0.5, before = 0.0;
+  for (int k = 0; k < 200; ++k) {
+    const double w = k < 100 ? 0.3 : -0.2;
+    y = 0.8 * y + 2.0 * w - 1.5 * before + 0.1;
+    before = w;
+    observer.advance(one(y), one(0.0), Vector());
+  }
+  EXPECT_NEAR(observer.estimated(0), -0.2, 0.01);
+}
+
+TEST(ModelObserver, NamesAnEstimatedDisturbanceThatTheModelLacks) {
+  ObserverParams known = params(0.1);
+  known.estimated = {{"v", 1.0, 0.0}};
+  try {
+    ModelObserver(LocalModel(modelOfUnmeasured()), known, 0);
+    ADD_FAILURE();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("controller.observer.estimated.v"), std::string::npos)
+        << e.what();
+  }
 }
 
 }  // namespace control_model_observer_test

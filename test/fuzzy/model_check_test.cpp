@@ -41,6 +41,15 @@ TsModel twoRules(double a1, double b1, double a2, double b2) {
   return model;
 }
 
+TEST(ModelCheck, WhatNobodyMeasuresHasNoPole) {
+  TsModel model = twoRules(0.9, 0.0, 0.9, 0.0);
+  model.unmeasured = {test::signal("w")};
+  model.submodels[0].regressors.push_back({SignalKind::kUnmeasured, 0, 0});
+  for (Rule& rule : model.submodels[0].rules)
+    rule.coefficients = (Vector(4) << 0.9, 0.0, 1.0, 0.5).finished();
+  EXPECT_NEAR(largestPole(model, at(-1.0, 0.0)), 0.9, 1e-9);
+}
+
 TEST(ModelCheck, PolesAreThoseOfTheRulesThatFire) {
   const TsModel model = twoRules(0.9, 0.0, 1.5, 0.0);
   EXPECT_NEAR(largestPole(model, at(-1.0, 0.0)), 0.9, 1e-9);

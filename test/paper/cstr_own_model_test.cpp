@@ -11,6 +11,7 @@
 #include "fmbpc/config/structure_file.hpp"
 #include "fmbpc/fuzzy/identify.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "paths.hpp"
@@ -113,6 +114,50 @@ TEST(CstrLagsLoop, MeetsEveryLoadAndGainsAtBothRates) {
               trackingUnder("cstr_tracking_observer_lead", rate))
         << value;
   }
+}
+
+TEST(CstrRateModelFile, IsTheOneOfTheFirstSeed) {
+  expectShipped(identified(1, "cstr_excite_rate", "cstr_rate"), "cstr_rate");
+}
+
+/// The aim of 1.5 times the 0.003383 of cstr_tracking holds under every load and at both rates.
+TEST(CstrRateLoop, MeetsEveryLoadAndBothRates) {
+  const double aim = 1.5 * trackingUnder("cstr_tracking", {});
+  for (const char* value : {"-6", "-3", "0", "3", "6"})
+    EXPECT_LE(trackingUnder("cstr_tracking_rate", {{"disturbance.nominal.d_q_c", value}}), aim)
+        << value;
+  for (const char* value : {"6.48e+10", "7.92e+10"})
+    EXPECT_LE(trackingUnder("cstr_tracking_rate", {{"plant.parameters.rate_constant", value}}), aim)
+        << value;
+}
+
+/// With models of other experiments: within 3 % of the aim at k0 - 10 %.
+TEST(CstrRateLoop, DoesNotHangOnOneExperiment) {
+  const double aim = 1.5 * trackingUnder("cstr_tracking", {});
+  for (const int seed : {2, 3, 4}) {
+    const TsModel model = identified(seed, "cstr_excite_rate", "cstr_rate");
+    for (const char* value : {"6.48e+10", "7.92e+10"}) {
+      LoopFile loop = readLoop("cstr_tracking_rate", {{"plant.parameters.rate_constant", value}});
+      loop.model = matchToLoop(model, loop);
+      const double found = summarize(loop, runLoop(loop), 0.0).outputs[0].ise_reference;
+      EXPECT_LE(found, 1.03 * aim) << seed << " " << value;
+    }
+  }
+}
+
+/// The law says what it takes load and rate for.
+TEST(CstrRateLoop, SaysWhatLoadAndRateItFinds) {
+  const LoopFile loop = readLoop("cstr_tracking_rate", {{"disturbance.nominal.d_q_c", "6"}});
+  ControllerSession session = makeControllerSession(loop);
+  session.setModel(loop.model);
+  for (const SampleRecord& sample : runLoop(loop).samples) session.receive(sample.measurement);
+  const auto signal = [&](const std::string& name) {
+    for (const auto& [key, value] : session.controller().signals())
+      if (key == name) return value;
+    return std::nan("");
+  };
+  EXPECT_NEAR(signal("d_q_c_estimate"), 6.0, 1.5) << "l/min";
+  EXPECT_NEAR(signal("rate_estimate"), 0.0, 3.0) << "%";
 }
 
 }  // namespace paper_cstr_own_model_test

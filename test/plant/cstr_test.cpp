@@ -20,7 +20,7 @@ SimulationParams reactorParams(double compensator_gain, double delay_s = 0.0) {
   p.integrator.relative_tolerance = p.integrator.absolute_tolerance = 1e-10;
   p.actuator.limits = {one(0.0), one(200.0), one(std::numeric_limits<double>::infinity())};
   p.actuator.initial = p.actuator.fallback = one(103.4066);
-  p.disturbance_nominal = one(0.0);
+  p.disturbance_nominal = Vector::Zero(2);
   p.sample_time_s = kSampleTime;
   p.samples = 2000;
   return p;
@@ -31,7 +31,7 @@ SteadyState rest(double q_c, const Vector& start) {
   const auto f = [&](VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) {
     plant->derivatives(x, u, d, dxdt);
   };
-  return findSteadyState(f, start, one(q_c), one(0.0));
+  return findSteadyState(f, start, one(q_c), Vector::Zero(2));
 }
 
 TEST(Cstr, NominalSteadyState) {
@@ -69,7 +69,7 @@ TEST(Cstr, CompensatorAddsItsShareOncePerSample) {
     const double u = 103.4066 + (k < 20 ? 4.0 : -6.0);
     const double q_c = u + 3.0 * (x[1] - before);
     before = x[1];
-    ASSERT_TRUE(cvode.advance(x, one(q_c), one(0.0), kSampleTime).ok());
+    ASSERT_TRUE(cvode.advance(x, one(q_c), Vector::Zero(2), kSampleTime).ok());
     const Measurement& m = reactor.advance(one(u));
     ASSERT_EQ(reactor.state().state, x) << "sample " << k;
     EXPECT_EQ(m.input_applied[0], u) << "what the compensator adds is not the controller's input";

@@ -14,12 +14,11 @@ namespace fpc {
 /// samples old correct the state of that time; from there the model runs forward on the inputs
 /// applied since, with the disturbance estimated. Unmeasured disturbances of the model are rows of
 /// its state that nothing moves: taken to be 0 until the start, when they jump, and to walk from
-/// there on. Per sample: rest() or advance(). Fixed work, no
-/// allocation after construction.
+/// there on. Per sample: rest() or advance(). Fixed work, no allocation after construction.
 class ModelObserver {
  public:
   /// local: of the undelayed process. delay >= 0 samples. @throws InputError of ObserverParams, and
-  /// naming an estimated disturbance that is not an unmeasured one of the model, or the other way.
+  /// naming an estimated disturbance that is not an unmeasured one of the model.
   ModelObserver(LocalModel local, const ObserverParams& params, int delay);
   /// Everything has rested at these values: d is what the model lacks to rest there, too.
   void rest(VectorRef outputs, VectorRef input, VectorRef disturbances);

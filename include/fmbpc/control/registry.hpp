@@ -42,8 +42,8 @@ struct ControllerContext {
 /// What a controller of a loop looks at, and what it moves.
 struct SignalUse {
   std::vector<bool> needed;  ///< outputs, then measured disturbances: without one it has no answer
-  std::vector<Eigen::Index> followed;  ///< outputs that it steers to their setpoints
-  std::vector<bool> moved{};           ///< inputs; the others stay where they are. Empty: all
+  std::vector<Eigen::Index> followed;    ///< outputs that it steers to their setpoints
+  std::vector<bool> moved{};             ///< inputs; the others stay where they are. Empty: all
   std::vector<std::string> estimated{};  ///< disturbances of its model that nobody measures
 };
 SignalUse everySignal(const ControllerContext& loop);

@@ -10,9 +10,10 @@ namespace fpc {
 
 /// xi(k+1) = A xi(k) + B u(k) + g,  y_m = C xi.  g = D d(k) + r (+ w_hat, added by the law).
 /// xi stacks, in this order: for each output its lags 0.., for each input u(k-1), u(k-2).., for
-/// each disturbance d(k-1), d(k-2).., for each unmeasured one d(k), d(k-1).. : those are taken to
-/// stay as they are, and an observer may say what they are. Every input has at least u(k-1), so that moves can be weighed
-/// and limited. Source: vallejo2019, eqs. 10-17 (there u(k-1) is part of an extended input).
+/// each disturbance d(k-1), d(k-2).., for each unmeasured one d(k), d(k-1)..: those are taken to
+/// stay as they are, and an observer may say what they are. Every input has at least u(k-1), so
+/// that moves can be weighed and limited. Source: vallejo2019, eqs. 10-17 (there u(k-1) is part of
+/// an extended input).
 class LocalModel {
  public:
   /// `model` must be matched to the plant and validated. Keeps a copy.

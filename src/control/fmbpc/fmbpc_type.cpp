@@ -77,8 +77,8 @@ ControllerType describe() {
   return type;
 }
 
-const bool kRegistered =
-    registerController<FmbpcParams>({describe(), &readFmbpc, &makeFmbpc, &checkFmbpc, &usedByFmbpc});
+const bool kRegistered = registerController<FmbpcParams>(
+    {describe(), &readFmbpc, &makeFmbpc, &checkFmbpc, &usedByFmbpc});
 
 }  // namespace
 }  // namespace fpc

@@ -44,7 +44,8 @@ void FmbpcLaw::note(const LawSample& sample) {
 }
 
 void FmbpcLaw::setModel(const TsModel& model) {
-  takeOver(std::make_unique<FmbpcCore>(matchToPlant(model, plant(), estimatedNames(params_)), params_, limits(), forecast_));
+  takeOver(std::make_unique<FmbpcCore>(matchToPlant(model, plant(), estimatedNames(params_)),
+                                       params_, limits(), forecast_));
 }
 
 Settings FmbpcLaw::settings() const {
