@@ -36,7 +36,7 @@ FAMILIES = {
     "activated sludge, CLP 2": ("asp_clp_2a_pi_x", ["x"], {}, ["asp_clp_2a", "asp_clp_2b", "asp_clp_2c"]),
     "reactor measured late": ("cstr_tracking_pi_best", ["CA"], {}, [
         "cstr_tracking", "cstr_tracking_lags", "cstr_tracking_linear", "cstr_tracking_literal", "cstr_tracking_literal_b", "cstr_tracking_nmpc",
-        "cstr_tracking_observer", "cstr_tracking_observer_lead", "cstr_tracking_own", "cstr_tracking_preview"]),
+        "cstr_tracking_observer", "cstr_tracking_observer_lead", "cstr_tracking_own", "cstr_tracking_preview", "cstr_tracking_rate"]),
     "reactor measured late, load": ("cstr_disturbance_pi_best", ["CA"], {}, [
         "cstr_disturbance", "cstr_disturbance_literal", "cstr_disturbance_nmpc", "cstr_disturbance_own",
         "cstr_disturbance_preview"]),

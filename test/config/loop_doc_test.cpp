@@ -171,8 +171,7 @@ TEST(LoopDocs, EveryDocumentedKeyIsKnownToTheReader) {
   ASSERT_GT(rows.size(), 100U);
   for (const auto& [key, row] : rows) {
     EXPECT_EQ(keys.count(key), 1U) << key;
-    EXPECT_FALSE(row.fallback.empty()) << key;
-    EXPECT_FALSE(row.meaning.empty()) << key;
+    EXPECT_FALSE(row.fallback.empty() || row.meaning.empty()) << key;
   }
 }
 
