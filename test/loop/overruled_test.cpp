@@ -35,5 +35,18 @@ TEST(Overruled, ASetpointBeyondTheModelsData) {
               {"x is asked to be 900"});
 }
 
+/// 15 m at 0.5 m/s are five samples, those of the model; at 0.4 m/s six and a quarter.
+TEST(Overruled, ASampleLineThatTheModelDoesNotKnow) {
+  const std::string speed = "tf.sample_lines.0.velocity_m_s";
+  EXPECT_EQ(told("cstr_tracking_lags", {}).find("CA shows"), std::string::npos);
+  EXPECT_EQ(told("cstr_tracking_lags", {{speed, "0.43"}}).find("CA shows"), std::string::npos)
+      << "5.8 samples: what comes in the sixth is less, but not nothing";
+  expectWords(told("cstr_tracking_lags", {{speed, "0.417"}}), {"CA shows an input only after"});
+  expectWords(told("cstr_tracking_lags", {{speed, "0.4"}}),
+              {"CA shows an input only after 37.5 s (tf.sample_lines)", "cstr_lags", "36 s"});
+  EXPECT_EQ(told("cstr_tracking_pi", {{speed, "0.4"}}).find("CA shows"), std::string::npos)
+      << "no model";
+}
+
 }  // namespace loop_overruled_test
 }  // namespace fpc

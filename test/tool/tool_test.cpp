@@ -196,12 +196,13 @@ TEST_F(Tool, OutDrawsAPicture) {
   EXPECT_EQ(std::string(start.data() + 1, 3), "PNG");
 }
 
-TEST_F(Tool, ShippedInfluentIsWhatItsScriptPrints) {
+TEST_F(Tool, ShippedRecordsAreWhatTheirScriptsPrint) {
   const std::string top = sourceDir();
-  const std::string command = "/usr/bin/python3 " + top +
-                              "/scripts/make_influent_week.py | cmp - " + top +
-                              "/config/data/influent_week.csv";
-  EXPECT_EQ(std::system(command.c_str()), 0);
+  for (const std::string name : {"influent_week", "reaction_rates"}) {
+    const std::string command = "/usr/bin/python3 " + top + "/scripts/make_" + name +
+                                ".py | cmp - " + top + "/config/data/" + name + ".csv";
+    EXPECT_EQ(std::system(command.c_str()), 0) << name;
+  }
 }
 
 TEST_F(Tool, StabilityJsonHoldsRulesHorizonsCertificateAndSteadyStates) {
