@@ -11,8 +11,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kSeen = 0.05;  // of a sample: less of an input's effect is none
-
 bool givenByPattern(const LoopFile& loop, const std::string& name) {
   const auto& channels = loop.disturbance.pattern.channels;
   return loop.disturbance.source == DisturbanceSource::kPattern &&
@@ -64,37 +62,12 @@ void addSetpoints(const LoopFile& loop, std::vector<RunRemark>& remarks) {
   }
 }
 
-/// The least lag of an input in the model of this output; -1: none acts on it.
-int leastInputLag(const TsModel& model, Index output) {
-  int least = -1;
-  for (const Regressor& r : model.submodels[static_cast<std::size_t>(output)].regressors)
-    if (r.kind == SignalKind::kInput) least = least < 0 ? r.lag : std::min(least, r.lag);
-  return least;
-}
-
-/// What u(k) does is in y(k + 1 + lag) of the model, and cannot be seen before its line lets it by.
-void addDelays(const LoopFile& loop, std::vector<RunRemark>& remarks) {
-  if (loop.external_plant || !loop.has_model || !loop.controller) return;
-  if (!loop.controllerType().needs_model) return;
-  const std::vector<double>& late = loop.simulation.output_delay_s;
-  for (std::size_t i = 0; i < std::min(late.size(), loop.model.outputs.size()); ++i) {
-    const int lag = leastInputLag(loop.model, static_cast<Index>(i));
-    const double expected_s = (lag + 1) * loop.model.sample_time_s;
-    if (lag < 0 || late[i] < expected_s - kSeen * loop.model.sample_time_s) continue;
-    remarks.push_back({loop.model.outputs[i].name + " shows an input only after " +
-                           shortText(late[i]) + " s (tf.sample_lines), where model '" +
-                           loop.model.name + "' expects it within " + shortText(expected_s) + " s",
-                       0, 0});
-  }
-}
-
 }  // namespace
 
 std::vector<RunRemark> overruledIn(const LoopFile& loop) {
   std::vector<RunRemark> remarks;
   addNominal(loop, remarks);
   addSetpoints(loop, remarks);
-  addDelays(loop, remarks);
   return remarks;
 }
 

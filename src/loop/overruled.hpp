@@ -1,5 +1,5 @@
 // What a loop file asks and cannot have: numbers that something else in it decides, setpoints where
-// its model has no data, a measurement later than its model knows. Private to the room.
+// its model has no data. Private to the room.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,7 @@
 namespace fpc {
 
 /// A remark if disturbance.nominal tells disturbances whose values a pattern gives in the run, and
-/// one per followed output that is asked beyond the range of its data in the model, and per output
-/// whose sample line is longer than the model has an input need.
+/// one per followed output that is asked beyond the range of its data in the model.
 std::vector<RunRemark> overruledIn(const LoopFile& loop);
 
 }  // namespace fpc

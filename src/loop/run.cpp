@@ -11,6 +11,7 @@
 #include "fmbpc/loop/factory.hpp"
 #include "fmbpc/loop/forced_inputs.hpp"
 #include "fmbpc/loop/identifier_session.hpp"
+#include "fmbpc/loop/late_lines.hpp"
 #include "fmbpc/loop/plant_session.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
 #include "fmbpc/loop/sample_remarks.hpp"
@@ -60,7 +61,8 @@ class Ring {
     recorder_.receive(now);
     forced_.look(now.header.step, simulation_.effects());
     cut_.look(simulation_);
-    recorder_.receive(simulation_.state(), joinedLines(forced_.lines(), cut_.lines()));
+    recorder_.receive(simulation_.state(),
+                      joinedLines(late(), joinedLines(forced_.lines(), cut_.lines())));
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
     recorder_.receive(answer.tracking,
@@ -85,6 +87,10 @@ class Ring {
   }
 
  private:
+  std::string late() const {
+    return present_ == 0 ? lateLines(loop_, loop_.simulation.output_delay_s) : "";
+  }
+
   const ControlAction& optimize(const ControllerAnswer& answer) {
     if (answer.has_prediction) optimizer_->receive(answer.prediction);
     optimizer_->receive(answer.base);

@@ -5,6 +5,7 @@
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/factory.hpp"
+#include "fmbpc/loop/late_lines.hpp"
 #include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
 #include "ros/queues.hpp"
@@ -33,6 +34,7 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
                 namesOf(makePlant(loop.simulation)->description().disturbances)),
       simulation_(static_cast<SimulatedProcess&>(session().process()).simulation()),
       lines_(loop.tf.sample_lines),
+      delays_s_(loop.simulation.output_delay_s),
       commands_(loop.ring.commands_per_s, kBurst),
       forced_(simulation_.info()),
       cut_(simulation_.description().disturbances),
@@ -51,7 +53,9 @@ std::vector<std::string> PlantSimulator::plantMissing() {
     const auto found =
         std::find_if(outputs.begin(), outputs.end(),
                      [&name = output](const SignalInfo& o) { return o.name == name; });
-    simulation_.setOutputDelay(static_cast<std::size_t>(found - outputs.begin()), delay_s);
+    const auto place = static_cast<std::size_t>(found - outputs.begin());
+    simulation_.setOutputDelay(place, delay_s);
+    delays_s_.at(place) = delay_s;
   }
   return lines_.missing();
 }
@@ -60,6 +64,7 @@ void PlantSimulator::afterSample() {
   const std::string before = clamped();
   forced_.look(simulation_.measurement().header.step, simulation_.effects());
   cut_.look(simulation_);
+  if (!late().empty()) ROS_WARN("plant_simulator: %s", inOneLine(late()).c_str());
   const std::string now = clamped();
   if (!now.empty() && now != before) ROS_WARN("plant_simulator: %s", inOneLine(now).c_str());
   publishState();
@@ -68,8 +73,12 @@ void PlantSimulator::afterSample() {
 
 std::string PlantSimulator::clamped() const { return joinedLines(forced_.lines(), cut_.lines()); }
 
+std::string PlantSimulator::late() const {
+  return simulation_.measurement().header.step == 0 ? lateLines(loop(), delays_s_) : "";
+}
+
 void PlantSimulator::publishState() {
-  std::string remark = joinedLines(clamped(), takeRefusedCommands());
+  std::string remark = joinedLines(joinedLines(late(), clamped()), takeRefusedCommands());
   if (state_.getNumSubscribers() == 0) return;
   fmbpc::PlantState state = toMsg(simulation_.state());
   state.remark = std::move(remark);
