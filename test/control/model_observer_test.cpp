@@ -111,7 +111,7 @@ TEST(ModelObserver, ARestInTheRunKeepsWhatNobodyMeasuresAndANewRunDoesNot) {
   ObserverParams known = params(0.001);
   known.disturbance_std[0] = 1e-6;
   known.estimated = {{"w", 1.0, 0.01}};
-  ModelObserver observer(LocalModel(modelOfUnmeasured()), known, 2);
+  ModelObserver observer(LocalModel(modelOfUnmeasured()), known, 0);
   observer.rest(one(0.5), one(0.0), Vector(), true);
   EXPECT_EQ(observer.estimated(0), 0.0) << "its first rest: a start all the same";
   const double rest = (0.1 + 0.5 * 0.3) / 0.2;
