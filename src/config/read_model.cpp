@@ -61,6 +61,10 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
   if (controller.needs_model && !loop.has_model && !(loop.has_identify && loop.external_plant))
     section.fail("file", "a model file for controller " + controller.name +
                              " (a simulated plant does not start without one)");
+  if (loop.has_identify && !loop.controller->signalUse(controllerContext(loop)).estimated.empty())
+    section.fail("identify",
+                 "no such section beside controller.observer.estimated: no record of "
+                 "this loop knows what nobody measures");
   if (!loop.has_model) return;
   try {
     loop.model = readModel(loop.model_file);
@@ -73,10 +77,6 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
   } catch (const InputError& e) {
     throw InputError(section.where("file") + ": " + e.what());
   }
-  if (loop.has_identify && !loop.model.unmeasured.empty())
-    section.fail("identify",
-                 "no such section beside controller.observer.estimated: no record of "
-                 "this loop knows what nobody measures");
 }
 
 }  // namespace fpc

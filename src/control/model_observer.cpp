@@ -10,6 +10,8 @@
 namespace fpc {
 namespace {
 
+constexpr double kUnknown = 10.0;  // changes: how uncertain an estimate is after a rest
+
 using Eigen::Index;
 
 std::vector<Index> rowsOf(const LocalModel& local) {
@@ -41,12 +43,17 @@ void ModelObserver::placeEstimated(const std::vector<EstimatedDisturbance>& esti
     require(found != known.end(), "controller.observer.estimated." + d.name,
             "an unmeasured disturbance of the model, which has " +
                 (known.empty() ? "none" : join(known)));
-    hidden_.push_back({local_.unmeasuredState(found - known.begin()), d.std, d.walk_std});
+    const auto place = static_cast<int>(found - known.begin());
+    const int lags = local_.model().maxLag(SignalKind::kUnmeasured, place);
+    hidden_.push_back({local_.unmeasuredState(place), std::max(lags, 0) + 1, d.std, d.walk_std});
   }
 }
 
-void ModelObserver::rest(VectorRef outputs, VectorRef input, VectorRef disturbances) {
+void ModelObserver::rest(VectorRef outputs, VectorRef input, VectorRef disturbances, bool in_run) {
+  const bool known = in_run && begun_;
   local_.restState(outputs, input, disturbances, delayed_);
+  for (const Hidden& d : hidden_)
+    if (known) delayed_.segment(d.row, d.rows).setConstant(state_[d.row]);
   local_.blend(delayed_, input, disturbances);
   const AffineModel& m = local_.affine();
   next_ = delayed_ - m.g;
@@ -57,7 +64,9 @@ void ModelObserver::rest(VectorRef outputs, VectorRef input, VectorRef disturban
   state_ = before_ = delayed_;
   inputs_.colwise() = Vector::Map(input.data(), input.size());
   disturbances_.colwise() = Vector::Map(disturbances.data(), disturbances.size());
-  before_start_ = inputs_.cols() - 1;
+  before_start_ = known ? -1 : inputs_.cols() - 1;
+  begun_ = true;
+  if (known) loosen(&Hidden::walk_std, kUnknown);
 }
 
 void ModelObserver::inherit(const ModelObserver& other) {
@@ -68,10 +77,11 @@ void ModelObserver::inherit(const ModelObserver& other) {
   disturbances_ = other.disturbances_;
   filter_ = other.filter_;
   before_start_ = other.before_start_;
+  begun_ = other.begun_;
 }
 
-void ModelObserver::loosen(double Hidden::*std) {
-  for (const Hidden& d : hidden_) filter_.loosen(d.row, d.*std);
+void ModelObserver::loosen(double Hidden::*std, double times) {
+  for (const Hidden& d : hidden_) filter_.loosen(d.row, times * d.*std);
 }
 
 /// One sample on, with the disturbance; the matrices of the blend stay in local_.

@@ -114,11 +114,19 @@ TsModel apart(const TsModel& model, const PlantInfo& plant,
   std::vector<bool> dropped;
   for (const SignalInfo& signal : model.disturbances) {
     dropped.push_back(isEstimated(signal));
-    (dropped.back() ? split.unmeasured : split.disturbances).push_back(signal);
+    if (!dropped.back()) split.disturbances.push_back(signal);
+  }
+  for (const std::string& name : estimated) {  // in this order, whatever that of the model
+    const int place = indexOf(model.disturbances, name);
+    if (place >= 0 && dropped[static_cast<std::size_t>(place)])
+      split.unmeasured.push_back(model.disturbances[static_cast<std::size_t>(place)]);
   }
   std::vector<int> to;
-  int seen = 0, hidden = static_cast<int>(split.disturbances.size() + model.unmeasured.size());
-  for (const bool gone : dropped) to.push_back(gone ? hidden++ : seen++);
+  int seen = 0;
+  const auto measured = static_cast<int>(split.disturbances.size());
+  for (std::size_t i = 0; i < dropped.size(); ++i)
+    to.push_back(dropped[i] ? measured + indexOf(split.unmeasured, model.disturbances[i].name)
+                            : seen++);
   renumber(split, to, split.disturbances.size());
   dropRows(split, dropped);
   return split;

@@ -107,6 +107,31 @@ TEST(ModelObserver, EstimatesWhatNobodyMeasures) {
   }
 }
 
+TEST(ModelObserver, ARestInTheRunKeepsWhatNobodyMeasuresAndANewRunDoesNot) {
+  ObserverParams known = params(0.001);
+  known.disturbance_std[0] = 1e-6;
+  known.estimated = {{"w", 1.0, 0.01}};
+  ModelObserver observer(LocalModel(modelOfUnmeasured()), known, 0);
+  observer.rest(one(0.5), one(0.0), Vector(), true);
+  EXPECT_EQ(observer.estimated(0), 0.0) << "its first rest: a start all the same";
+  const double rest = (0.1 + 0.5 * 0.3) / 0.2;
+  double y = 0.5, before = 0.0;
+  for (int k = 0; k < 80; ++k) {
+    y = 0.8 * y + 2.0 * 0.3 - 1.5 * before + 0.1;
+    before = 0.3;
+    observer.advance(one(y), one(0.0), Vector());
+  }
+  const double found = observer.estimated(0);
+  EXPECT_NEAR(found, 0.3, 1e-3);
+  observer.rest(one(rest), one(0.0), Vector(), true);
+  EXPECT_EQ(observer.estimated(0), found);
+  EXPECT_NEAR(observer.disturbance()[0], 0.0, 1e-3) << "the estimate explains why it rests there";
+  for (int k = 0; k < 20; ++k) observer.advance(one(rest), one(0.0), Vector());
+  EXPECT_NEAR(observer.estimated(0), 0.3, 1e-3);
+  observer.rest(one(rest), one(0.0), Vector());
+  EXPECT_EQ(observer.estimated(0), 0.0);
+}
+
 TEST(ModelObserver, FollowsAWalkOfWhatNobodyMeasures) {
   ObserverParams known = params(0.001);
   known.disturbance_std[0] = 1e-6;

@@ -21,7 +21,9 @@ class ModelObserver {
   /// naming an estimated disturbance that is not an unmeasured one of the model.
   ModelObserver(LocalModel local, const ObserverParams& params, int delay);
   /// Everything has rested at these values: d is what the model lacks to rest there, too.
-  void rest(VectorRef outputs, VectorRef input, VectorRef disturbances);
+  /// in_run: it has rested or run in this run before; what it takes unmeasured disturbances for
+  /// then stays, else they are 0 until they jump.
+  void rest(VectorRef outputs, VectorRef input, VectorRef disturbances, bool in_run = false);
   /// To sample k: y(k) as measured, u(k-1), d(k-1) as the model takes it.
   void advance(VectorRef outputs, VectorRef input, VectorRef disturbances);
   /// Goes on from another one with states of the same meaning and the same delay.
@@ -38,11 +40,11 @@ class ModelObserver {
 
  private:
   struct Hidden {
-    Eigen::Index row;  ///< in the state
+    Eigen::Index row, rows;  ///< in the state
     double std, walk_std;
   };
   void placeEstimated(const std::vector<EstimatedDisturbance>& estimated);
-  void loosen(double Hidden::*std);
+  void loosen(double Hidden::*std, double times = 1.0);
   void move(VectorRef input, VectorRef disturbances, Vector& state);
 
   LocalModel local_;
@@ -51,6 +53,7 @@ class ModelObserver {
   Matrix inputs_, disturbances_;  ///< of the last samples, oldest first
   std::vector<Hidden> hidden_;
   Eigen::Index before_start_{};  ///< samples that delayed() is before the start
+  bool begun_{false};
 };
 
 }  // namespace fpc

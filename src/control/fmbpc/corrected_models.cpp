@@ -41,7 +41,7 @@ ObservedModel::ObservedModel(const TsModel& model, const FmbpcParams& params)
 
 void ObservedModel::rest(const Measurement& now, VectorRef disturbances) {
   InternalModel::rest(now, disturbances);
-  observer_.rest(now.outputs, now.input_applied, disturbances);
+  observer_.rest(now.outputs, now.input_applied, disturbances, now.header.step > 0);
 }
 
 void ObservedModel::advance(const Measurement& now, VectorRef disturbances) {
