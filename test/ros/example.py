@@ -36,7 +36,7 @@ class Example(unittest.TestCase):
         enable.publish(False)
         level.publish(3.0)
         ring.NodeStatus("plant_gateway").wait(lambda s: all(int(ring.values(s).get(key, 0)) > 0 for key in counts))
-        folder = recorded.wait(patience=150).data
+        folder = recorded.wait().data
         summary = ring.summary(folder)
         self.assertEqual((240, True), (summary["steps"], summary["complete"]))
         self.assertEqual({"input": 0, "move": 0, "output": 0}, summary["violations"])

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "fmbpc/base/option.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/control/model_observer.hpp"
 #include "fmbpc/control/read_observer.hpp"
@@ -60,7 +61,7 @@ SignalUse usedByFmbpc(const FmbpcParams& params, const ControllerContext& loop) 
     use.followed = {loop.outputCount() - 1};
   else
     use.followed = weighted(params.weight_output);
-  for (const EstimatedDisturbance& d : params.observer.estimated) use.estimated.push_back(d.name);
+  use.estimated = namesOf(params.observer.estimated);
   return use;
 }
 

@@ -21,15 +21,11 @@ std::vector<std::string> outputSignals(const FmbpcParams& params) {
   return {"model", "correction", "undelayed"};
 }
 
-std::vector<std::string> estimatedNames(const FmbpcParams& params) {
-  return namesOf(params.observer.estimated);
-}
-
 }  // namespace
 
 FmbpcLaw::FmbpcLaw(const FmbpcParams& params, const InputLimits& limits, const PlantInfo& plant)
     : PredictiveLaw(valid(params, plant), limits, plant, outputSignals(params),
-                    estimatedNames(params)),
+                    namesOf(params.observer.estimated)),
       params_(params),
       forecast_(countOf(plant.disturbances), params.horizon_steps, params.forecast_period_steps,
                 params.forecast_pole, params.forecast_memory_steps) {}
@@ -44,8 +40,9 @@ void FmbpcLaw::note(const LawSample& sample) {
 }
 
 void FmbpcLaw::setModel(const TsModel& model) {
-  takeOver(std::make_unique<FmbpcCore>(matchToPlant(model, plant(), estimatedNames(params_)),
-                                       params_, limits(), forecast_));
+  takeOver(
+      std::make_unique<FmbpcCore>(matchToPlant(model, plant(), namesOf(params_.observer.estimated)),
+                                  params_, limits(), forecast_));
 }
 
 Settings FmbpcLaw::settings() const {
