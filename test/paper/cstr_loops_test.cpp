@@ -92,7 +92,7 @@ TEST(CstrReference, GainScheduledPiIsTheHonestBaseline) {
 /// The coolant flow under which the reactor rests at this concentration, by bisection.
 double restFlow(const Plant& plant, double concentration) {
   Vector x = Eigen::Vector2d(concentration, 0.0), u(1), dxdt(2);
-  const Vector d = Vector::Zero(1);
+  const Vector d = Vector::Zero(2);
   const auto root = [&](double& value, double lower, double upper, Eigen::Index row) {
     for (int i = 0; i < 100; ++i) {
       value = 0.5 * (lower + upper);
