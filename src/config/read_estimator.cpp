@@ -34,6 +34,10 @@ void readEstimator(YamlSection& root, LoopFile& loop) {
   if (!hidden.empty()) {
     if (!loop.controllerType().needs_model)
       section.fail("outputs", "nothing, or a controller.type that predicts with a fuzzy model");
+    if (!loop.controller->signalUse(controllerContext(loop)).estimated.empty())
+      section.fail("outputs",
+                   "nothing beside controller.observer.estimated: the estimator would take what "
+                   "nobody measures to be 0");
     checked(section, [&] { params.validate(n_y); });
   }
   section.finish();

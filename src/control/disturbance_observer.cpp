@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kUnknown = 10.0;     // std of d at a start, in units of the larger std
 constexpr double kLeastNoise = 1e-6;  // of the variance of d's change: keeps S regular
 
 }  // namespace
@@ -67,10 +66,10 @@ void DisturbanceObserver::reset() {
     R_[i] = std::max(noise * noise, noise > 0.0 ? kLeastNoise * change * change : 0.0);
     P_(row, row) = noise * noise;
     if (!params_.atInputs())
-      P_(n_x_ + i, n_x_ + i) = std::pow(kUnknown * std::max(noise, change), 2);
+      P_(n_x_ + i, n_x_ + i) = std::pow(kUnknownChanges * std::max(noise, change), 2);
   }
   for (Index j = 0; j < n_d_ && params_.atInputs(); ++j)
-    P_(n_x_ + j, n_x_ + j) = std::pow(kUnknown * params_.input_std[j], 2);
+    P_(n_x_ + j, n_x_ + j) = std::pow(kUnknownChanges * params_.input_std[j], 2);
 }
 
 void DisturbanceObserver::reset(MatrixRef root) {

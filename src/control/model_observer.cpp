@@ -10,8 +10,6 @@
 namespace fpc {
 namespace {
 
-constexpr double kUnknown = 10.0;  // changes: how uncertain an estimate is after a rest
-
 using Eigen::Index;
 
 std::vector<Index> rowsOf(const LocalModel& local) {
@@ -66,7 +64,7 @@ void ModelObserver::rest(VectorRef outputs, VectorRef input, VectorRef disturban
   disturbances_.colwise() = Vector::Map(disturbances.data(), disturbances.size());
   before_start_ = known ? -1 : inputs_.cols() - 1;
   begun_ = true;
-  if (known) loosen(&Hidden::walk_std, kUnknown);
+  if (known) loosen(&Hidden::walk_std, kUnknownChanges);
 }
 
 void ModelObserver::inherit(const ModelObserver& other) {

@@ -10,6 +10,7 @@ namespace fpc {
 
 IdentifierSession::IdentifierSession(const LoopFile& loop)
     : plant_(loop.plant_info),
+      estimated_(loop.controller->signalUse(controllerContext(loop)).estimated),
       params_(loop.identify),
       max_pole_(loop.max_pole),
       has_start_(loop.has_model),
@@ -32,12 +33,10 @@ bool IdentifierSession::startDue(double now_s) const {
   return kept_known_ || now_s - *announced_s_ > kKeptPatience;
 }
 
-const TsModel* IdentifierSession::start() {
-  return has_start_ ? &use(matchToPlant(start_, plant_)) : nullptr;
-}
+const TsModel* IdentifierSession::start() { return has_start_ ? &use(matched(start_)) : nullptr; }
 
 const TsModel& IdentifierSession::restore(const TsModel& model) {
-  use(matchToPlant(model, plant_));
+  use(matched(model));
   if (params_.online.enabled) learner_.emplace(model_, plant_, params_.online);
   done_by_itself_ = true;
   return model_;
@@ -98,12 +97,16 @@ IdentificationJob IdentifierSession::job(Structure structure, std::size_t newest
   return job;
 }
 
+TsModel IdentifierSession::matched(const TsModel& model) const {
+  return matchToPlant(model, plant_, estimated_);
+}
+
 TsModel IdentifierSession::checked(const TsModel& model) {
   try {
-    TsModel matched = matchToPlant(model, plant_);
+    TsModel fitting = matched(model);
     if (collector_.present().outputs.size() > 0)
-      requireStable(matched, collector_.present(), max_pole_);
-    return matched;
+      requireStable(fitting, collector_.present(), max_pole_);
+    return fitting;
   } catch (const InputError&) {
     ++refused_;
     throw;

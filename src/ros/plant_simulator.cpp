@@ -34,7 +34,6 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
                 namesOf(makePlant(loop.simulation)->description().disturbances)),
       simulation_(static_cast<SimulatedProcess&>(session().process()).simulation()),
       lines_(loop.tf.sample_lines),
-      delays_s_(loop.simulation.output_delay_s),
       commands_(loop.ring.commands_per_s, kBurst),
       forced_(simulation_.info()),
       cut_(simulation_.description().disturbances),
@@ -55,7 +54,6 @@ std::vector<std::string> PlantSimulator::plantMissing() {
                      [&name = output](const SignalInfo& o) { return o.name == name; });
     const auto place = static_cast<std::size_t>(found - outputs.begin());
     simulation_.setOutputDelay(place, delay_s);
-    delays_s_.at(place) = delay_s;
   }
   return lines_.missing();
 }
@@ -64,7 +62,9 @@ void PlantSimulator::afterSample() {
   const std::string before = clamped();
   forced_.look(simulation_.measurement().header.step, simulation_.effects());
   cut_.look(simulation_);
-  if (!late().empty()) ROS_WARN("plant_simulator: %s", inOneLine(late()).c_str());
+  const bool first = simulation_.measurement().header.step == 0;
+  late_ = first ? lateLines(loop(), simulation_.outputDelays()) : "";
+  if (!late_.empty()) ROS_WARN("plant_simulator: %s", inOneLine(late_).c_str());
   const std::string now = clamped();
   if (!now.empty() && now != before) ROS_WARN("plant_simulator: %s", inOneLine(now).c_str());
   publishState();
@@ -73,12 +73,8 @@ void PlantSimulator::afterSample() {
 
 std::string PlantSimulator::clamped() const { return joinedLines(forced_.lines(), cut_.lines()); }
 
-std::string PlantSimulator::late() const {
-  return simulation_.measurement().header.step == 0 ? lateLines(loop(), delays_s_) : "";
-}
-
 void PlantSimulator::publishState() {
-  std::string remark = joinedLines(joinedLines(late(), clamped()), takeRefusedCommands());
+  std::string remark = joinedLines(joinedLines(late_, clamped()), takeRefusedCommands());
   if (state_.getNumSubscribers() == 0) return;
   fmbpc::PlantState state = toMsg(simulation_.state());
   state.remark = std::move(remark);

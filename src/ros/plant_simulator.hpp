@@ -30,7 +30,6 @@ class PlantSimulator : public PlantNode {
   void publishState();
   std::string clamped() const;  ///< what people put where it cannot go, one a line
   std::vector<std::string> plantMissing() override;
-  std::string late() const;  ///< measurements later than the model knows, told at sample 0
   VectorRef shownDisturbances() const override { return simulation_.state().disturbances; }
   void afterSample() override;
   std::vector<ros::Publisher> alsoRecorded() const override { return {state_, effect_}; }
@@ -39,10 +38,10 @@ class PlantSimulator : public PlantNode {
 
   Simulation& simulation_;  // the session's
   SampleLines lines_;
-  std::vector<double> delays_s_;  ///< of each output
   RateLimit commands_;
   ForcedInputs forced_;
   CutOffsets cut_;
+  std::string late_;  // measurements later than the model knows, told at sample 0
   ros::Publisher state_, effect_;
   ros::Subscriber disturbance_subscriber_;
 };

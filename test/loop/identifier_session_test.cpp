@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fmbpc/base/signals.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/loop_fixture.hpp"
 
@@ -105,6 +107,18 @@ TEST(IdentifierSession, TheModelOfTheFileWaitsForWhatThePlantHasKept) {
   IdentifierSession without(readLoop("asp_identify"));
   without.announce(7, 100.0);
   EXPECT_FALSE(without.startDue(200.0));
+}
+
+TEST(IdentifierSession, AKeptModelComesBackWithWhatTheControllerEstimates) {
+  const LoopFile loop = readLoop("cstr_tracking_rate");
+  const TsModel kept = asIdentified(loop.model);  // as topics carry it: all of them disturbances
+  ASSERT_EQ(namesOf(kept.disturbances), (std::vector<std::string>{"d_q_c", "rate"}));
+  IdentifierSession session(loop);
+  session.announce(7, 100.0);
+  ASSERT_TRUE(session.hearKept({0, 7, 3}));
+  const TsModel& back = session.restore(kept);
+  EXPECT_TRUE(back.disturbances.empty());
+  EXPECT_EQ(namesOf(back.unmeasured), namesOf(loop.model.unmeasured));
 }
 
 TEST(IdentifierSession, WhatWasLearnedAndIsNotHandedOverSaysWhy) {

@@ -10,6 +10,9 @@
 
 namespace fpc {
 
+/// Changes per sample that an estimate is uncertain by where it starts.
+constexpr double kUnknownChanges = 10.0;
+
 /// A disturbance that the model knows and nobody measures.
 struct EstimatedDisturbance {
   std::string name;

@@ -72,10 +72,12 @@ class IdentifierSession {
  private:
   void identify(Due& due);
   void learn(Due& due);
+  TsModel matched(const TsModel& model) const;
   TsModel checked(const TsModel& model);
   const TsModel& use(TsModel matched);
 
   PlantInfo plant_;
+  std::vector<std::string> estimated_;  // disturbances that nobody measures, by the controller
   IdentifyParams params_;
   double max_pole_;
   bool has_start_, has_identify_;

@@ -99,6 +99,7 @@ class Simulation {
   /// Replaces the transport delay of one output (from the tf tree), before the first advance().
   /// @throws InputError later, and for an unusable delay.
   void setOutputDelay(std::size_t output, double seconds);
+  const std::vector<double>& outputDelays() const { return params_.output_delay_s; }  ///< n_y [s]
 
  private:
   void schedule();

@@ -13,7 +13,6 @@ namespace {
 using Eigen::Index;
 
 constexpr double kDifference = 1e-5;  // relative, of finite differences
-constexpr double kUnknown = 10.0;     // changes of an input's disturbance, at a start
 constexpr double kTrial = 1e-3;       // of an input's range: a move whose effect is looked for
 constexpr const char* kShortSighted =
     "controller.horizon_steps is too short: an input hardly acts within it";
@@ -164,7 +163,7 @@ void HorizonMpc::restAnew(const Measurement& now) {
     measured_[i] = now.outputs[i];
   }
   for (Index a = 0; a < n_u_ && shifted_; ++a) {
-    input_[a] = now.input_applied[a] + kUnknown * stated.input_std[a];
+    input_[a] = now.input_applied[a] + kUnknownChanges * stated.input_std[a];
     model_->rest(measured_, input_, disturbances_, moved_);
     root_.col(n_y_ + a) = moved_ - state_;
     input_[a] = now.input_applied[a];
