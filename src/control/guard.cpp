@@ -122,11 +122,13 @@ void GuardedController::lookAhead(const Measurement& now, const ControllerOutput
   view_.ahead = ahead_.least();
 }
 
-/// The law goes on from the applied input once the data are back for long enough.
+/// The law goes on from the applied input once the data are back for long enough. What it learned
+/// of the process where its model knows nothing is forgotten.
 void GuardedController::comeBack(const Measurement& now, double trust) {
   above_ = trust >= params_.trust_high ? above_ + 1 : 0;
   if (!fallback_ || above_ < params_.return_samples) return;
   fallback_ = false;
+  inside_->forget();
   inside_->reset(now);
 }
 

@@ -15,6 +15,9 @@ PredictiveLaw::PredictiveLaw(const PredictiveLawParams& params, const InputLimit
       plant_(plant),
       feedforward_(params.disturbance_feedforward),
       preview_(params.preview),
+      holdback_(params.reference_holdback.size() > 0
+                    ? params.reference_holdback
+                    : Vector(Vector::Constant(countOf(plant_.outputs), kInfinity))),
       output_signals_(output_signals.size()),
       reference_(params.reference_pole, params.preview),
       transfer_(countOf(plant_.inputs), params.transfer_decay),
@@ -40,6 +43,11 @@ void PredictiveLaw::reset(const Measurement& start) {
   running_ = false;
 }
 
+void PredictiveLaw::forget() {
+  for (LawCore* core : {core_.get(), successor_.get()})
+    if (core) core->forget();
+}
+
 /// What waits counts. The core before is freed later, not in a step.
 void PredictiveLaw::adopt() {
   if (successor_) {
@@ -49,7 +57,7 @@ void PredictiveLaw::adopt() {
     core_->adoptTuning();
   }
   tuning_waits_ = false;
-  next_reference_->reset(reference_.present());
+  next_reference_->goOnFrom(reference_);
   std::swap(reference_, *next_reference_);
 }
 
@@ -172,14 +180,21 @@ void PredictiveLaw::act(const LawSample& sample, ControllerOutput& output) {
   transfer_.fade();
 }
 
+bool PredictiveLaw::holdBack(const Measurement& now) {
+  return now.outputs.allFinite() && reference_.holdBack(now.outputs, holdback_);
+}
+
 void PredictiveLaw::step(const Measurement& now, const SetpointSource& setpoint,
                          ControllerOutput& output) {
-  output.reference = reference_.present();
+  const bool held_back = holdBack(now);
+  output.reference = reference_.asked();
   output.predictive = false;
   output.ok = true;
   output.remark = "";
   running_ = true;
   act({now, setpoint, reference_, disturbances_, past_disturbances_}, output);
+  if (held_back && *output.remark == '\0')
+    output.remark = "reference held back: an output is farther from it than reference_holdback";
   reference_.advance(setpoint, now.header.step);
 }
 

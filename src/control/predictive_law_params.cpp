@@ -11,6 +11,9 @@ void PredictiveLawParams::validate(Eigen::Index n_y) const {
   for (Eigen::Index i = 0; i < n_y; ++i)
     require(reference_pole[i] >= 0.0 && reference_pole[i] < 1.0, "controller.reference_pole",
             "numbers >= 0 and < 1");
+  require(reference_holdback.size() == 0 ||
+              (reference_holdback.size() == n_y && reference_holdback.minCoeff() > 0.0),
+          "controller.reference_holdback", std::to_string(n_y) + " numbers > 0");
   require(disturbance_nominal.allFinite(), "controller.disturbance_nominal", "finite numbers");
   require(transfer_decay >= 0.0 && transfer_decay < 1.0, "controller.transfer_decay",
           "a number >= 0 and < 1");
@@ -21,8 +24,11 @@ void PredictiveLawParams::validate(Eigen::Index n_y) const {
 void readPredictiveLaw(YamlSection& section, const ControllerContext& loop,
                        PredictiveLawParams& params) {
   params.reference_pole = Vector::Constant(loop.outputCount(), 0.9);
+  params.reference_holdback = Vector::Constant(loop.outputCount(), kInfinity);
   params.disturbance_nominal = loop.disturbance_nominal;
   section.byName("reference_pole", params.reference_pole, loop.outputs(), {0.0, 1.0});
+  section.byName("reference_holdback", params.reference_holdback, loop.outputs(),
+                 {0.0, kInfinity, true});
   section.boolean("preview", params.preview);
   section.boolean("disturbance_feedforward", params.disturbance_feedforward);
   section.byName("disturbance_nominal", params.disturbance_nominal, loop.disturbances(), kFinite);

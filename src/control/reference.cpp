@@ -1,6 +1,7 @@
 // First-order reference trajectories. Source: vallejo2019, eqs. 29, 30, 37.
 #include "fmbpc/control/reference.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -16,6 +17,7 @@ constexpr Eigen::Index kFar = 32;  // steps that are gone one by one
 ReferenceTrajectory::ReferenceTrajectory(Vector pole, bool preview)
     : pole_(std::move(pole)),
       present_(Vector::Zero(pole_.size())),
+      asked_(present_),
       preview_(preview),
       scheduled_(Vector::Zero(pole_.size())),
       last_(scheduled_) {
@@ -23,7 +25,22 @@ ReferenceTrajectory::ReferenceTrajectory(Vector pole, bool preview)
     require(pole_[i] >= 0.0 && pole_[i] < 1.0, "reference_pole", "numbers >= 0 and < 1");
 }
 
-void ReferenceTrajectory::reset(VectorRef outputs) { present_ = outputs; }
+void ReferenceTrajectory::reset(VectorRef outputs) { present_ = asked_ = outputs; }
+
+void ReferenceTrajectory::goOnFrom(const ReferenceTrajectory& other) {
+  present_ = other.present_;
+  asked_ = other.asked_;
+}
+
+bool ReferenceTrajectory::holdBack(VectorRef outputs, const Vector& reach) {
+  bool farther = false;
+  for (Eigen::Index i = 0; i < present_.size(); ++i) {
+    const double near = std::clamp(present_[i], outputs[i] - reach[i], outputs[i] + reach[i]);
+    farther = farther || near != present_[i];
+    present_[i] = near;
+  }
+  return farther;
+}
 
 const Vector& ReferenceTrajectory::target(const SetpointSource& setpoint,
                                           std::uint32_t step) const {
@@ -67,9 +84,14 @@ void ReferenceTrajectory::predict(const SetpointSource& setpoint, std::uint32_t 
   }
 }
 
+void ReferenceTrajectory::follow(Vector& path, const Vector& aim) const {
+  path = (pole_.array() * path.array() + (1.0 - pole_.array()) * aim.array()).matrix();
+}
+
 void ReferenceTrajectory::advance(const SetpointSource& setpoint, std::uint32_t step) {
   const Vector& aim = target(setpoint, step);
-  present_ = (pole_.array() * present_.array() + (1.0 - pole_.array()) * aim.array()).matrix();
+  follow(present_, aim);
+  follow(asked_, aim);
 }
 
 }  // namespace fpc

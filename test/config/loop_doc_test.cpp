@@ -53,6 +53,7 @@ std::string general(std::string path) {
       R"(controller\.inputs\[\]|controller\.levels|controller\.observer\.estimated|controller\.forbidden\[\]|report\.consumption|gateway\.tags|plausibility\.signals|standstill\.signals)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
+  path = std::regex_replace(path, std::regex(R"(^guard\.pi\.)"), "controller.");
   const std::regex outputs(R"(^setpoint\.(schedule|recipe)\[\]\.(?!\w+_(?:s|min|h)$)\w+$)");
   return std::regex_replace(path, outputs, "setpoint.$1[].NAME");
 }
@@ -155,6 +156,7 @@ std::set<std::string> readerKeys() {
       keys.erase(section.substr(0, section.size() - 2));
   }
   keys.insert("plant.outputs");  // names, or mappings for an external plant
+  keys.insert("guard.pi");       // none, or a mapping with the keys of a controller
   for (const char* other : {"clp", "disturbance.pattern.channels", "disturbance.csv.channels"})
     keys.erase(other);
   return keys;

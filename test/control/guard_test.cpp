@@ -12,6 +12,7 @@ namespace control_guard_test {
 /// Asks for the same input always.
 struct Wish final : Controller {
   void reset(const Measurement& start) override { resets.push_back(start.header.step); }
+  void forget() override { forgotten_before_reset = resets.size(); }
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override {
     output.input = of({wish});
@@ -37,6 +38,7 @@ struct Wish final : Controller {
   bool needsModel() const override { return true; }
   void setModel(const TsModel&) override {}
   std::vector<std::uint32_t> resets;
+  std::size_t forgotten_before_reset{99};
   double wish{700.0}, seen{};
 };
 
@@ -132,8 +134,10 @@ TEST_F(Guard, ThePiTakesOverWithoutABumpAndTheLawComesBackWithoutOne) {
   EXPECT_NE(step(3, 2000.0, 690.0), 700.0);
   EXPECT_NE(step(4, 2000.0, 690.0), 700.0);
   EXPECT_TRUE(law->resets.empty());
+  EXPECT_EQ(law->forgotten_before_reset, 99U);
   EXPECT_EQ(step(5, 2000.0, 690.0), 700.0);  // the third sample inside
   EXPECT_EQ(law->resets, Steps{5});          // reset: its own bumpless start
+  EXPECT_EQ(law->forgotten_before_reset, 0U) << "what it learned out there, before that reset";
   EXPECT_EQ(out.source, ActionSource::kBase);
 }
 

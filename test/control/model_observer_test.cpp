@@ -128,6 +128,10 @@ TEST(ModelObserver, ARestInTheRunKeepsWhatNobodyMeasuresAndANewRunDoesNot) {
   EXPECT_NEAR(observer.disturbance()[0], 0.0, 1e-3) << "the estimate explains why it rests there";
   for (int k = 0; k < 20; ++k) observer.advance(one(rest), one(0.0), Vector());
   EXPECT_NEAR(observer.estimated(0), 0.3, 1e-3);
+  ModelObserver forgetful = observer;
+  forgetful.forget();
+  forgetful.rest(one(rest), one(0.0), Vector(), true);
+  EXPECT_EQ(forgetful.estimated(0), 0.0) << "as its first rest";
   observer.rest(one(rest), one(0.0), Vector());
   EXPECT_EQ(observer.estimated(0), 0.0);
 }

@@ -26,6 +26,27 @@ TEST(ReferenceTrajectory, StartsAtTheOutputAndApproachesAHeldSetpointGeometrical
   }
 }
 
+TEST(ReferenceTrajectory, IsHeldBackWithinReachOfTheOutputs) {
+  ReferenceTrajectory reference(pair(0.5, 0.9), false);
+  reference.reset(pair(1.0, 2.0));
+  EXPECT_FALSE(reference.holdBack(pair(1.25, -90.0), pair(0.25, kInfinity)));
+  EXPECT_EQ(reference.present(), pair(1.0, 2.0));
+  EXPECT_TRUE(reference.holdBack(pair(1.5, -90.0), pair(0.25, kInfinity)));
+  EXPECT_EQ(reference.present(), pair(1.25, 2.0));
+  EXPECT_TRUE(reference.holdBack(pair(1.5, 1.0), pair(0.5, 0.125)));
+  EXPECT_EQ(reference.present(), pair(1.25, 1.125));
+  EXPECT_EQ(reference.asked(), pair(1.0, 2.0));
+  SetpointSource setpoint = test::setpointOf(test::activatedSludgeInfo(), pair(2.0, 4.0));
+  setpoint.advance(0);
+  reference.advance(setpoint, 0);
+  EXPECT_EQ(reference.asked(), pair(1.5, 0.9 * 2.0 + (1.0 - 0.9) * 4.0));
+  EXPECT_EQ(reference.present(), pair(1.625, 0.9 * 1.125 + (1.0 - 0.9) * 4.0));
+  ReferenceTrajectory other(pair(0.0, 0.0), false);
+  other.goOnFrom(reference);
+  EXPECT_EQ(other.asked(), reference.asked());
+  EXPECT_EQ(other.present(), reference.present());
+}
+
 TEST(ReferenceTrajectory, ColumnsThatAreAskedForAloneAreThoseOfTheWholePath) {
   SetpointSource setpoint = test::setpointOf(test::activatedSludgeInfo(), pair(55.0, 2200.0),
                                              {{10.0, pair(60.0, 2100.0)}});

@@ -145,6 +145,28 @@ TEST(CstrRateLoop, DoesNotHangOnOneExperiment) {
   }
 }
 
+/// Held back, and with a fallback where the reactor is out: neither a slow valve nor a reactor that
+/// has gone out keeps it from coming back.
+TEST(CstrRateLoop, ComesBackAfterAStuckValve) {
+  for (const auto& [stuck_at, moves] : {std::pair("100", "20"), std::pair("130", "200")}) {
+    const LoopFile loop = readLoop(
+        "cstr_tracking_rate", {{"setpoint.schedule", "[]"},
+                               {"sampling.duration_h", "1.25"},
+                               {"actuator.move_upper.q_c", moves},
+                               {"disturbance.commands",
+                                "[{time_h: 0.4, name: input/q_c, value: " + std::string(stuck_at) +
+                                    "}, {time_h: 0.475, name: input/q_c, mode: release}]"}});
+    const RunRecord record = runLoop(loop);
+    ASSERT_EQ(record.samples.size(), 751U);
+    for (std::size_t k = 700; k <= 750; ++k)
+      ASSERT_NEAR(record.samples[k].measurement.outputs[0], 0.15, 0.005) << stuck_at << ", " << k;
+    const auto held_back = [](const RunRemark& remark) {
+      return remark.words.find("reference held back") != std::string::npos;
+    };
+    EXPECT_TRUE(std::any_of(record.remarks.begin(), record.remarks.end(), held_back)) << stuck_at;
+  }
+}
+
 /// The law says what it takes load and rate for.
 TEST(CstrRateLoop, SaysWhatLoadAndRateItFinds) {
   const LoopFile loop = readLoop("cstr_tracking_rate", {{"disturbance.nominal.d_q_c", "6"}});

@@ -39,6 +39,9 @@ class Controller {
   virtual ~Controller() = default;
   /// Starts from a finite measurement, bumplessly: the next step() moves on from input_applied.
   virtual void reset(const Measurement& start) = 0;
+  /// What it has learned of the process in this run is of no use: the next reset() starts as the
+  /// first one. Without allocation. Default: nothing.
+  virtual void forget() {}
   /// u(k). `now` is finite and of the right sizes, `setpoint` already advanced to this step. What
   /// was really sent instead of the last proposal (manual, optimizer) is in now.input_applied.
   /// Works in fixed time without allocation; limits hold whatever happens inside.

@@ -13,6 +13,7 @@ namespace fpc {
 /// Base of guards: reset() and step() are theirs, everything else is handed on.
 class ControllerAround : public Controller {
  public:
+  void forget() override { inside_->forget(); }
   void lookOn(const Measurement& now) override { inside_->lookOn(now); }
   bool needsModel() const override { return inside_->needsModel(); }
   bool followsSetpoint() const override { return inside_->followsSetpoint(); }

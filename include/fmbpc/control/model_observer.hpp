@@ -24,6 +24,7 @@ class ModelObserver {
   /// in_run: it has rested or run in this run before; what it takes unmeasured disturbances for
   /// then stays, else they are 0 until they jump.
   void rest(VectorRef outputs, VectorRef input, VectorRef disturbances, bool in_run = false);
+  void forget() { begun_ = false; }  ///< the next rest() is as the first one, in a run, too
   /// To sample k: y(k) as measured, u(k-1), d(k-1) as the model takes it.
   void advance(VectorRef outputs, VectorRef input, VectorRef disturbances);
   /// Goes on from another one with states of the same meaning and the same delay.

@@ -42,6 +42,7 @@ class LawCore {
   LawCore();
   virtual ~LawCore() = default;
   virtual void rest(const LawSample& sample) = 0;  ///< the process has rested at this sample
+  virtual void forget() {}                         ///< see Controller
   virtual void advance(const LawSample& sample) = 0;
   /// Goes on with the memory of an older core; false (rest() then) if that means nothing here.
   virtual bool inherit(const LawCore& older) = 0;
@@ -66,6 +67,7 @@ class LawCore {
 /// What every predictive law is told.
 struct PredictiveLawParams {
   Vector reference_pole;               ///< n_y, a_r
+  Vector reference_holdback;           ///< n_y, > 0: y_r stays so near to y; empty: wherever
   bool preview{false};                 ///< references follow the setpoint schedule over the horizon
   bool disturbance_feedforward{true};  ///< d(k) in the model; false: the nominal d
   Vector disturbance_nominal;          ///< n_d, used without feedforward
@@ -79,15 +81,19 @@ struct PredictiveLawParams {
 void readPredictiveLaw(YamlSection& section, const ControllerContext& loop,
                        PredictiveLawParams& params);
 
-/// A start in the middle of a run adds a bias to u that makes it the applied input and dies out
-/// (BumplessTransfer). A new core or tuning takes over in the next step: the old one still says
-/// what u(k) would have been, and the new one starts with a bias that makes its u(k) the very same.
-/// If anything is not finite, or the core is in trouble, the last applied input is held (clipped),
-/// ok is false, and there is no prediction. signals(): those of the core for each output,
-/// NAME_unclipped of each input, and NAME_estimate of each disturbance that it estimates.
+/// After an upset the reference goes on from within reference_holdback of the outputs: a law that
+/// was made for errors of that size is not asked for more, and the remark says so. What is
+/// published is the reference that nothing holds back. A start in the middle of a run adds a bias
+/// to u that makes it the applied input and dies out (BumplessTransfer). A new core or tuning takes
+/// over in the next step: the old one still says what u(k) would have been, and the new one starts
+/// with a bias that makes its u(k) the very same. If anything is not finite, or the core is in
+/// trouble, the last applied input is held (clipped), ok is false, and there is no prediction.
+/// signals(): those of the core for each output, NAME_unclipped of each input, and NAME_estimate of
+/// each disturbance that it estimates.
 class PredictiveLaw : public Controller, public PlanView {
  public:
   void reset(const Measurement& start) override;
+  void forget() override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
   bool needsModel() const override { return true; }
@@ -123,12 +129,14 @@ class PredictiveLaw : public Controller, public PlanView {
   void adopt();
   void act(const LawSample& sample, ControllerOutput& output);
   void hold(const Measurement& now, const char* reason, ControllerOutput& output);
+  bool holdBack(const Measurement& now);
   void refreshSignals();
   void predict(const LawSample& sample, PredictiveAction& prediction) const;
 
   InputLimits limits_;
   PlantInfo plant_;
   bool feedforward_, preview_;
+  Vector holdback_;             ///< n_y
   std::size_t output_signals_;  ///< of each output
   ReferenceTrajectory reference_;
   std::optional<ReferenceTrajectory> next_reference_;  ///< with the poles of what waits

@@ -15,8 +15,13 @@ class ReferenceTrajectory {
   /// the commands now in force (a command yet to come is not known), otherwise the present one is
   /// held over the horizon.
   ReferenceTrajectory(Vector pole, bool preview);
-  void reset(VectorRef outputs);                      ///< y_r = y
+  void reset(VectorRef outputs);                    ///< y_r = y
+  void goOnFrom(const ReferenceTrajectory& other);  ///< of as many outputs
+  /// Draws y_r(k) to within reach (n_y, > 0, infinity: any distance) of the outputs. Whether it was
+  /// farther from one.
+  bool holdBack(VectorRef outputs, const Vector& reach);
   const Vector& present() const { return present_; }  ///< y_r(k)
+  const Vector& asked() const { return asked_; }      ///< y_r(k), had nothing been held back
   /// future.col(i) = y_r(k+1+i) for the columns from `first` on; the others are left as they are.
   /// Without preview those far off cost nothing. No memory touched, no allocation.
   void predict(const SetpointSource& setpoint, std::uint32_t step, Eigen::Ref<Matrix> future,
@@ -28,7 +33,9 @@ class ReferenceTrajectory {
   void predictAhead(const SetpointSource& setpoint, std::uint32_t step, Eigen::Ref<Matrix> future,
                     Eigen::Index first) const;
 
-  Vector pole_, present_;
+  void follow(Vector& path, const Vector& aim) const;
+
+  Vector pole_, present_, asked_;
   bool preview_;
   mutable Vector scheduled_, last_;
 };

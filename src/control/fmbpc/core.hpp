@@ -15,6 +15,7 @@ class FmbpcCore final : public LawCore {
             DisturbanceForecast& forecast);
 
   void rest(const LawSample& sample) override;
+  void forget() override { model_->forget(); }
   void advance(const LawSample& sample) override;
   bool inherit(const LawCore& older) override;
   bool look(const LawSample& sample) override;

@@ -15,6 +15,7 @@ class InternalModel {
  public:
   virtual ~InternalModel() = default;
   virtual void rest(const Measurement& now, VectorRef disturbances);  ///< starts from here
+  virtual void forget() {}                                            ///< see Controller
   /// From k-1, with its u and d, to k.
   virtual void advance(const Measurement& now, VectorRef disturbances) = 0;
   virtual bool blend(VectorRef disturbances);  ///< false if no rule fired: the nearest one is used

@@ -66,6 +66,7 @@ class ObservedModel final : public InternalModel {
     return observer_.disturbance()[output];
   }
   double estimated(std::size_t i) const override { return observer_.estimated(i); }
+  void forget() override { observer_.forget(); }
 
  private:
   ModelObserver observer_;
