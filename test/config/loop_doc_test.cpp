@@ -149,14 +149,12 @@ std::set<std::string> readerKeys() {
       for (auto cut = path.find('.'); cut != std::string::npos; cut = path.find('.', cut + 1))
         sections.insert(general(path.substr(0, cut)));
     }
-  for (const auto& section :
-       sections) {  // a key with keys below it is not a row, but for lists of mappings or names
+  for (const auto& section : sections) {  // a row only if a list, of mappings or names
     keys.erase(section);
     if (section.size() > 2 && section.substr(section.size() - 2) == "[]")
       keys.erase(section.substr(0, section.size() - 2));
   }
-  keys.insert("plant.outputs");  // names, or mappings for an external plant
-  keys.insert("guard.pi");       // none, or a mapping with the keys of a controller
+  for (const char* either : {"plant.outputs", "guard.pi"}) keys.insert(either);  // or a mapping
   for (const char* other : {"clp", "disturbance.pattern.channels", "disturbance.csv.channels"})
     keys.erase(other);
   return keys;
