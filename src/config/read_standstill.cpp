@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Index;
 
-struct Names {
+struct SignalNames {
   std::vector<std::string> outputs, inputs, disturbances;
 };
 
@@ -49,7 +49,7 @@ Vector declaredNoise(const LoopFile& loop, const std::vector<std::string>& measu
   return std;
 }
 
-void readNoiseOf(YamlSection& section, const LoopFile& loop, const Names& names,
+void readNoiseOf(YamlSection& section, const LoopFile& loop, const SignalNames& names,
                  std::vector<WatchedSignal>& signals) {
   std::vector<std::string> measured = names.outputs;
   measured.insert(measured.end(), names.disturbances.begin(), names.disturbances.end());
@@ -61,7 +61,7 @@ void readNoiseOf(YamlSection& section, const LoopFile& loop, const Names& names,
 }
 
 /// A term of the fallback: what is measured adds to an input.
-AffineTerm readTerm(YamlSection& item, const Names& names) {
+AffineTerm readTerm(YamlSection& item, const SignalNames& names) {
   AffineTerm term;
   term.target = indexByName(item, "input", names.inputs);
   std::vector<std::string> of, known = names.outputs;
@@ -90,7 +90,7 @@ AffineTerm readTerm(YamlSection& item, const Names& names) {
 void readStandstill(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("standstill");
   const PlantInfo& plant = loop.plant_info;
-  const Names names{namesOf(plant.outputs), namesOf(plant.inputs), namesOf(plant.disturbances)};
+  const SignalNames names{namesOf(plant.outputs), namesOf(plant.inputs), namesOf(plant.disturbances)};
   StandstillParams& params = loop.standstill;
   bool enabled = true;
   double window_h = 6.0;

@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr Index kFewestRows = 10;
+constexpr Index kFewestReadable = 10;
 
 std::vector<StructureSignal> allSignals(const Structure& structure) {
   std::vector<StructureSignal> all = structure.outputs;
@@ -92,8 +92,8 @@ DataSet emptySet(const Structure& structure) {
 }
 
 void checkAndRepair(DataSet& data, const Structure& structure, const CellName& where) {
-  require(data.values.rows() >= kFewestRows, data.source,
-          "at least " + std::to_string(kFewestRows) + " rows, got " +
+  require(data.values.rows() >= kFewestReadable, data.source,
+          "at least " + std::to_string(kFewestReadable) + " rows, got " +
               std::to_string(data.values.rows()));
   holdLastInputs(data);
   repairCells(data, structure, allSignals(structure), where);

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr Index kMostRows = 5000;
+constexpr Index kMostDomainRows = 5000;
 constexpr double kStrays = 0.01;  // of the rows may lie where hardly any others do
 
 double fade(double t) {
@@ -24,12 +24,12 @@ double fade(double t) {
   return t >= 1.0 ? 0.0 : 0.5 * (1.0 + std::cos(kPi * t));
 }
 
-/// Rows without gaps, evenly spaced, at most kMostRows; column: one row, scaled.
+/// Rows without gaps, evenly spaced, at most kMostDomainRows; column: one row, scaled.
 Matrix scaledRows(const DataSet& data, const Vector& scale) {
   std::vector<Index> whole;
   for (Index k = 0; k < data.rows(); ++k)
     if (data.values.row(k).allFinite()) whole.push_back(k);
-  const Index n = std::min(kMostRows, static_cast<Index>(whole.size()));
+  const Index n = std::min(kMostDomainRows, static_cast<Index>(whole.size()));
   Matrix rows(data.values.cols(), n);
   for (Index i = 0; i < n; ++i) {
     const auto from = static_cast<std::size_t>(i) * whole.size() / static_cast<std::size_t>(n);

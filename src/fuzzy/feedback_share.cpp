@@ -16,7 +16,7 @@ constexpr Index kMostLags = 40;  // of the input's own past
 constexpr Index kRowsPerLag = 8;
 constexpr Index kOutputLags = 4;
 constexpr Index kFewestRows = 50;
-constexpr Index kMostRows = 4000;
+constexpr Index kMostCompared = 4000;
 constexpr double kFromPast = 1e-8;  // an input whose past tells it to this share is periodic
 constexpr double kSure = 7.0;       // of F
 constexpr double kLeast = 0.02;     // of what is new in u
@@ -93,7 +93,7 @@ std::vector<Index> usual(const Vector& errors) {
 }  // namespace
 
 double feedbackShare(VectorRef u_all, VectorRef y_all) {
-  const Index n_all = std::min(u_all.size(), kMostRows);
+  const Index n_all = std::min(u_all.size(), kMostCompared);
   const Vector u = scaled(u_all.head(n_all)), y = scaled(y_all.head(n_all));
   const Index lags = std::min(kMostLags, n_all / kRowsPerLag);
   const Rows rows = rowsOf(u, y, lags);

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kFarthest = 30.0;
+constexpr double kFarthestState = 30.0;
 constexpr int kStartSteps = 8;
 
 /// A start and how badly it explains the first samples.
@@ -79,8 +79,8 @@ Vector runRecurrent(const RecurrentShape& shape, const RecurrentData& data, Stre
   RecurrentStep step(shape);
   Vector x = Vector::Zero(n), next(n);
   const bool held = prior.lower.size() == n;
-  const Vector lower = held ? prior.lower : Vector::Constant(n, -kFarthest).eval();
-  const Vector upper = held ? prior.upper : Vector::Constant(n, kFarthest).eval();
+  const Vector lower = held ? prior.lower : Vector::Constant(n, -kFarthestState).eval();
+  const Vector upper = held ? prior.upper : Vector::Constant(n, kFarthestState).eval();
   bool started = !shape.companion;
   if (started) {
     x = estimateStart(shape, data, stretch, p, prior, window);
@@ -113,7 +113,7 @@ Matrix statesOf(const RecurrentShape& shape, const RecurrentData& data, Stretch 
     states.col(k - stretch.first) = x;
     if (!data.v.col(k).allFinite()) continue;
     step.predict(p, x, data.v.col(k), next);
-    x = next.cwiseMax(-kFarthest).cwiseMin(kFarthest);
+    x = next.cwiseMax(-kFarthestState).cwiseMin(kFarthestState);
   }
   return states;
 }

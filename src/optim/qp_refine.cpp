@@ -9,7 +9,7 @@
 namespace fpc::qp {
 namespace {
 
-constexpr int kMaxCorrections = 3;
+constexpr int kMostRefinements = 3;
 constexpr double kRounding = 4.0 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
@@ -73,7 +73,7 @@ bool DualActiveSet::refine(const QpProblem& p, KktSystem& kkt, QpResult& result,
     kkt.evaluate(p, result);
     if (p.a_lower.size() > 0) product(p.A, result.x, Ax);
     if (refineErrors(p, kkt, result, Ax)) return true;
-    if (correction == kMaxCorrections) return false;
+    if (correction == kMostRefinements) return false;
     refineStep(result);
   }
 }

@@ -16,7 +16,7 @@
 namespace fpc {
 namespace {
 
-PlantDescription describe() {
+PlantDescription describeBatchReactor() {
   PlantDescription p;
   p.name = "batch_reactor";
   p.title = "Batch reactor with a water jacket and discrete valves (karer2007, section 5)";
@@ -44,7 +44,7 @@ PlantDescription describe() {
 
 class BatchReactor final : public Plant {
  public:
-  explicit BatchReactor(const PlantParameters& parameters) : description_(describe()) {
+  explicit BatchReactor(const PlantParameters& parameters) : description_(describeBatchReactor()) {
     const Vector p = parameterValues(description_, parameters);
     const double jacket = p[1] * p[2];  // [J/K]
     core_rate_ = p[3] / p[0];
@@ -67,7 +67,7 @@ class BatchReactor final : public Plant {
   double core_rate_, jacket_rate_, ambient_rate_, flow_rate_;  // [1/s]
 };
 
-const bool kRegistered = registerPlant("batch_reactor", [](const PlantParameters& parameters) {
+const bool kBatchReactorRegistered = registerPlant("batch_reactor", [](const PlantParameters& parameters) {
   return std::make_unique<BatchReactor>(parameters);
 });
 

@@ -20,7 +20,7 @@
 namespace fpc {
 namespace {
 
-PlantDescription describe() {
+PlantDescription describeCstr() {
   PlantDescription p;
   p.name = "cstr";
   p.title = "Stirred-tank reactor with coolant jacket, 2 states (blazic2007)";
@@ -72,7 +72,7 @@ class Cstr final : public Plant {
   double q_, CA0_, T0_, Tc0_, V_, hA_, k0_, E_R_, dH_, rho_, rho_c_, Cp_, Cpc_, K_;
 };
 
-Cstr::Cstr(const PlantParameters& parameters) : description_(describe()) {
+Cstr::Cstr(const PlantParameters& parameters) : description_(describeCstr()) {
   const Vector p = parameterValues(description_, parameters);
   Eigen::Index i = 0;
   for (double* value :
@@ -91,7 +91,7 @@ void Cstr::derivatives(VectorRef state, VectorRef u, VectorRef d, Eigen::Ref<Vec
             cooling / (rho_ * Cp_ * V_) * (Tc0_ - T);
 }
 
-const bool kRegistered = registerPlant(
+const bool kCstrRegistered = registerPlant(
     "cstr", [](const PlantParameters& parameters) { return std::make_unique<Cstr>(parameters); });
 
 }  // namespace

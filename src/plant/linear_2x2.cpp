@@ -34,7 +34,7 @@ TransferMatrix linearExample() {
   return m;
 }
 
-const bool kRegistered = registerPlant("linear_2x2", [](const PlantParameters& given) {
+const bool kLinear2x2Registered = registerPlant("linear_2x2", [](const PlantParameters& given) {
   auto plant = std::make_unique<TransferMatrixPlant>(linearExample());
   parameterValues(plant->description(), given);  // has none: refuses every name
   return plant;

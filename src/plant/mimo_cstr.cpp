@@ -15,7 +15,7 @@
 namespace fpc {
 namespace {
 
-PlantDescription describe() {
+PlantDescription describeMimoCstr() {
   PlantDescription p;
   p.name = "mimo_cstr";
   p.title = "Stirred-tank reactor, feed and coolant flow both moved (taieb2017)";
@@ -48,7 +48,7 @@ PlantDescription describe() {
 
 class MimoCstr final : public Plant {
  public:
-  explicit MimoCstr(const PlantParameters& parameters) : description_(describe()) {
+  explicit MimoCstr(const PlantParameters& parameters) : description_(describeMimoCstr()) {
     const Vector p = parameterValues(description_, parameters);
     const double contents = p[5] * p[7], coolant = p[6] * p[8];  // rho Cp [cal/(l K)]
     V_ = p[0];
@@ -72,7 +72,7 @@ class MimoCstr final : public Plant {
   double V_, k0_, E_R_, k1_, k2_, k3_;
 };
 
-const bool kRegistered = registerPlant("mimo_cstr", [](const PlantParameters& parameters) {
+const bool kMimoCstrRegistered = registerPlant("mimo_cstr", [](const PlantParameters& parameters) {
   return std::make_unique<MimoCstr>(parameters);
 });
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kGravity = 9.81;  // [m/s2]
 
-PlantDescription describe() {
+PlantDescription describeSurgeTank() {
   PlantDescription p;
   p.name = "surge_tank";
   p.title = "Surge tank filled by a pump, level and pump flow (taieb2017)";
@@ -60,7 +60,7 @@ class SurgeTank final : public Plant {
   double A_, a_, Hs_, discharge_, k0_, k1_, step_;
 };
 
-SurgeTank::SurgeTank(const PlantParameters& parameters) : description_(describe()) {
+SurgeTank::SurgeTank(const PlantParameters& parameters) : description_(describeSurgeTank()) {
   const Vector p = parameterValues(description_, parameters);
   Eigen::Index i = 0;
   for (double* value : {&A_, &a_, &Hs_, &discharge_, &k0_, &k1_, &step_}) *value = p[i++];
@@ -104,7 +104,7 @@ std::unique_ptr<PlantStepper> SurgeTank::makeStepper(double sample_time_s) const
   return std::make_unique<EulerStepper>(*this, step_, static_cast<int>(steps));
 }
 
-const bool kRegistered = registerPlant("surge_tank", [](const PlantParameters& parameters) {
+const bool kSurgeTankRegistered = registerPlant("surge_tank", [](const PlantParameters& parameters) {
   return std::make_unique<SurgeTank>(parameters);
 });
 

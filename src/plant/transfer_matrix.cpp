@@ -191,7 +191,7 @@ std::unique_ptr<PlantStepper> TransferMatrixPlant::makeStepper(double sample_tim
 
 namespace {
 
-const bool kRegistered = registerPlant("distillation_column", [](const PlantParameters& given) {
+const bool kTransferMatrixRegistered = registerPlant("distillation_column", [](const PlantParameters& given) {
   auto plant = std::make_unique<TransferMatrixPlant>(woodBerry());
   parameterValues(plant->description(), given);  // has none: refuses every name
   return plant;

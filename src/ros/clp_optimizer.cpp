@@ -9,7 +9,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kSilence = 1.0;  // [s] without a base action that is due
+constexpr double kActionSilence = 1.0;  // [s] without a base action that is due
 constexpr char kController[] = "fmbpc_controller";
 
 const char* words(SolveStatus status) {
@@ -117,7 +117,7 @@ Health ClpOptimizer::health(double now_s) const {
     return {LoopMode::kStarting, "waiting for the first base action", {controller_}};
   const double period_s = pace_ == Pace::kLockstep ? 0.0 : period_s_;
   if (const auto rest = summary_.rest()) return *rest;
-  if (now_s - heard_s_ > period_s + kSilence)
+  if (now_s - heard_s_ > period_s + kActionSilence)
     return {LoopMode::kStalled,
             "no base action since sample " + std::to_string(session_.report().header.step),
             {controller_}};

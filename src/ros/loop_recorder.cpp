@@ -14,7 +14,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kPollPeriod = 0.05;   // [s] of wall time
+constexpr double kRecorderPoll = 0.05;   // [s] of wall time
 constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
 constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
 constexpr double kLookForRing = 0.01;  // [s] of wall time, at who is there
@@ -36,7 +36,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       plant_(loop.plant_info),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
       end_(node),
-      poll_timer_(guardedTimer(node, kPollPeriod, "poll", [this] { poll(); })),
+      poll_timer_(guardedTimer(node, kRecorderPoll, "poll", [this] { poll(); })),
       ready_timer_(guardedTimer(node, kLookForRing, "ready", [this] { announceIfConnected(); })),
       health_(node, private_node, "recorder", loop.name, false,
               {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },

@@ -16,7 +16,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kPatience = 1.0;  // [s] for a connection
+constexpr double kConnectPatience = 1.0;  // [s] for a connection
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 
@@ -103,7 +103,7 @@ std::string unreachable(const std::vector<std::string>& nodes, std::set<std::str
     if (node == ros::this_node::getName()) continue;
     const std::string uri = uriOf(node);
     if (uri.empty()) continue;
-    if (answersAt(uri, kPatience)) {
+    if (answersAt(uri, kConnectPatience)) {
       reached.insert(uri);
       continue;
     }

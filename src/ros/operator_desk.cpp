@@ -11,7 +11,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kPatience = 1.0;  // [s] of wall time
+constexpr double kDeskPatience = 1.0;  // [s] of wall time
 
 }  // namespace
 
@@ -56,7 +56,7 @@ bool OperatorDesk::mayStart(const Measurement& sample) {
     return true;
   }
   const double now_s = steadyNow();
-  if (deadline_s_ < 0) deadline_s_ = now_s + kPatience;
+  if (deadline_s_ < 0) deadline_s_ = now_s + kDeskPatience;
   if (now_s < deadline_s_) return false;
   deadline_s_ = -1;
   if (first && sample.header.step > 0 && keeper_expected_) session_.holdUntilReleased();

@@ -8,7 +8,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kPatience = 2.0;  // [s] for the word of a controller that may be there
+constexpr double kKeptPatience = 2.0;  // [s] for the word of a controller that may be there
 
 }  // namespace
 
@@ -58,7 +58,7 @@ void OperatorKeeper::hear(const fmbpc::LoopState& state) {
 bool OperatorKeeper::knowsWhatStands(double now_s) {
   if (!goes_on_ || begun_ || standing_ || (heard_ && !was_in_run_)) return true;
   if (since_s_ < 0) since_s_ = now_s;
-  return now_s - since_s_ > kPatience;
+  return now_s - since_s_ > kKeptPatience;
 }
 
 void OperatorKeeper::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {

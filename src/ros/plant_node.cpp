@@ -16,7 +16,7 @@ namespace {
 constexpr double kPoll = 0.05;          // [s] of wall time
 constexpr double kLookForStart = 0.01;  // [s] of wall time, at who is there
 constexpr double kIntroduceAgain = 1;   // [s], while nobody answers (in realtime samples go on)
-constexpr double kPatience = 1.0;       // [s] without an action before that is said
+constexpr double kActionPatience = 1.0;       // [s] without an action before that is said
 constexpr double kLastWords = 0.3;      // [s] between run_end and the end of this process
 constexpr char kRecorder[] = "loop_recorder";
 
@@ -263,7 +263,7 @@ Health PlantNode::runningHealth(double now_s) const {
   }
   const Health plant = plantHealth();
   const bool its_own_hand = plant.mode == LoopMode::kManual;
-  const bool late = session_.unansweredFor(now_s) > kPatience && loop_.ring.pace != Pace::kRealtime;
+  const bool late = session_.unansweredFor(now_s) > kActionPatience && loop_.ring.pace != Pace::kRealtime;
   const LoopMode worst = late ? std::max(others.mode, LoopMode::kStalled) : others.mode;
   if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= worst)) return plant;
   if (late) return {LoopMode::kStalled, "no action for sample " + step + who, silent};

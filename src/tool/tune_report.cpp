@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = OrderedJson;
-using Rows = std::vector<std::vector<std::string>>;
+using TuneRows = std::vector<std::vector<std::string>>;
 
 std::vector<double> valuesAfter(const TunedLoop& tuned) {
   return tuned.result.history[static_cast<std::size_t>(tuned.result.best)].values;
@@ -57,7 +57,7 @@ Json parametersJson(const TuningObjective& objective, const TunedLoop& tuned) {
   return list;
 }
 
-void addScores(Rows& rows, const std::string& title, const std::vector<TuningScenario>& scenarios,
+void addScores(TuneRows& rows, const std::string& title, const std::vector<TuningScenario>& scenarios,
                const TuningScore& before, const TuningScore& after) {
   const auto ratio = [](double b, double a) { return shortText(a / b); };
   for (std::size_t i = 0; i < scenarios.size(); ++i)
@@ -125,7 +125,7 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   if (result.failures > 0)
     text << result.failures << " runs failed; the first: " << result.trouble << "\n\n";
   if (result.best < 0) return text.str() + "no run succeeded\n";
-  Rows rows{{"parameter", "before", "after", "lower", "upper"}};
+  TuneRows rows{{"parameter", "before", "after", "lower", "upper"}};
   const auto after = valuesAfter(tuned);
   for (std::size_t i = 0; i < after.size(); ++i) {
     const TuningParameter& p = tuning.parameters[i];
@@ -136,7 +136,7 @@ std::string toTable(const TuningObjective& objective, const TunedLoop& tuned) {
   TuningScore tuned_score;
   tuned_score.cost = costAfter(tuned);
   tuned_score.scenarios = result.history[static_cast<std::size_t>(result.best)].scenarios;
-  Rows scores{{"cost", "before", "after", "after/before"}};
+  TuneRows scores{{"cost", "before", "after", "after/before"}};
   addScores(scores, "tuned on: " + wordOf(tuning.fitness.across), tuning.scenarios,
             objective.untouched(), tuned_score);
   if (tuned.held_out)

@@ -138,14 +138,14 @@ SignalUse usedByExcitation(const ExcitationParams& params, const ControllerConte
   return use;
 }
 
-ControllerType describe() {
+ControllerType describeExcitation() {
   ControllerType type{"excitation", "an experiment for identification: every input its own signal"};
   type.open_loop = true;
   return type;
 }
 
-const bool kRegistered = registerController<ExcitationParams>(
-    {describe(), &readExcitation, &makeExcitation, nullptr, &usedByExcitation});
+const bool kExcitationRegistered = registerController<ExcitationParams>(
+    {describeExcitation(), &readExcitation, &makeExcitation, nullptr, &usedByExcitation});
 
 }  // namespace
 }  // namespace fpc

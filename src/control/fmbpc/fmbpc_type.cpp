@@ -70,7 +70,7 @@ void checkFmbpc(const FmbpcParams& params, const TsModel& model, const Controlle
     ModelObserver(LocalModel(model), params.observer, 0);
 }
 
-ControllerType describe() {
+ControllerType describeFmbpc() {
   ControllerType type{"fmbpc", "fuzzy model-based predictive control: an explicit law"};
   type.needs_model = true;
   type.predicts = true;
@@ -78,8 +78,8 @@ ControllerType describe() {
   return type;
 }
 
-const bool kRegistered = registerController<FmbpcParams>(
-    {describe(), &readFmbpc, &makeFmbpc, &checkFmbpc, &usedByFmbpc});
+const bool kFmbpcRegistered = registerController<FmbpcParams>(
+    {describeFmbpc(), &readFmbpc, &makeFmbpc, &checkFmbpc, &usedByFmbpc});
 
 }  // namespace
 }  // namespace fpc

@@ -24,7 +24,7 @@ std::unique_ptr<Controller> makeNmpc(const NmpcParams& params, const ControllerC
                                 loop.plant_model(params.integration_steps));
 }
 
-const bool kRegistered = registerController<NmpcParams>(
+const bool kNmpcRegistered = registerController<NmpcParams>(
     {{"nmpc",
       "nonlinear predictive control on the plant's own equations: a baseline told the truth"},
      &readNmpc,

@@ -33,14 +33,14 @@ std::unique_ptr<Controller> makeSwarmMpc(const SwarmMpcParams& params,
   return std::make_unique<SwarmMpc>(params, loop.limits, loop.plant);
 }
 
-ControllerType describe() {
+ControllerType describeSwarmMpc() {
   ControllerType type{"swarm_mpc", "predictive control by a particle swarm on a fuzzy model"};
   type.needs_model = true;
   return type;
 }
 
-const bool kRegistered =
-    registerController<SwarmMpcParams>({describe(), &readSwarmMpc, &makeSwarmMpc});
+const bool kSwarmMpcRegistered =
+    registerController<SwarmMpcParams>({describeSwarmMpc(), &readSwarmMpc, &makeSwarmMpc});
 
 }  // namespace
 }  // namespace fpc

@@ -142,14 +142,14 @@ std::unique_ptr<Controller> makeHybridMpc(const HybridMpcParams& params,
   return std::make_unique<HybridMpc>(params, loop.limits, loop.plant);
 }
 
-ControllerType describe() {
+ControllerType describeHybridMpc() {
   ControllerType type{"hybrid_mpc", "the best sequence out of a set of input vectors, by search"};
   type.needs_model = true;
   return type;
 }
 
-const bool kRegistered =
-    registerController<HybridMpcParams>({describe(), &readHybridMpc, &makeHybridMpc});
+const bool kHybridMpcRegistered =
+    registerController<HybridMpcParams>({describeHybridMpc(), &readHybridMpc, &makeHybridMpc});
 
 }  // namespace
 }  // namespace fpc

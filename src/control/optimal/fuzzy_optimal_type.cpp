@@ -58,7 +58,7 @@ SignalUse usedByFuzzyOptimal(const FuzzyOptimalParams& params, const ControllerC
   return use;
 }
 
-ControllerType describe() {
+ControllerType describeFuzzyOptimal() {
   ControllerType type{"fuzzy_optimal", "a quadratic predictive law for every rule, blended"};
   type.needs_model = true;
   type.predicts = true;
@@ -66,8 +66,8 @@ ControllerType describe() {
   return type;
 }
 
-const bool kRegistered = registerController<FuzzyOptimalParams>(
-    {describe(), &readFuzzyOptimal, &makeFuzzyOptimal, &checkModel, &usedByFuzzyOptimal});
+const bool kFuzzyOptimalRegistered = registerController<FuzzyOptimalParams>(
+    {describeFuzzyOptimal(), &readFuzzyOptimal, &makeFuzzyOptimal, &checkModel, &usedByFuzzyOptimal});
 
 }  // namespace
 }  // namespace fpc

@@ -112,7 +112,7 @@ std::unique_ptr<Controller> makeAdaptivePi(const AdaptivePiParams& params,
   return std::make_unique<AdaptivePi>(params, context.limits, context.plant);
 }
 
-const bool kRegistered = registerController<AdaptivePiParams>(
+const bool kAdaptivePiRegistered = registerController<AdaptivePiParams>(
     {{"adaptive_pi", "two PI loops behind a decoupling, retuned from gains learned on line"},
      &readAdaptivePi,
      &makeAdaptivePi,

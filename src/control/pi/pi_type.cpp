@@ -81,14 +81,14 @@ SignalUse usedByPi(const PiParams& params, const ControllerContext& loop) {
   return use;
 }
 
-ControllerType describe() {
+ControllerType describePi() {
   ControllerType type{"pi", "PI control, one loop per input, gains scheduled if asked"};
   type.settings = piSettings().infos();
   return type;
 }
 
-const bool kRegistered =
-    registerController<PiParams>({describe(), &readPi, &makePi, nullptr, &usedByPi});
+const bool kPiRegistered =
+    registerController<PiParams>({describePi(), &readPi, &makePi, nullptr, &usedByPi});
 
 }  // namespace
 }  // namespace fpc

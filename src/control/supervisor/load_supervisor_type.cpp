@@ -42,15 +42,15 @@ SignalUse usedBySupervisor(const LoadSupervisorParams& params, const ControllerC
   return use;
 }
 
-ControllerType describe() {
+ControllerType describeLoadSupervisor() {
   ControllerType type{"load_supervisor",
                       "PI control of one output with the measured load ahead of it"};
   type.settings = loadSupervisorSettings().infos();
   return type;
 }
 
-const bool kRegistered = registerController<LoadSupervisorParams>(
-    {describe(), &readSupervisor, &makeSupervisor, nullptr, &usedBySupervisor});
+const bool kLoadSupervisorRegistered = registerController<LoadSupervisorParams>(
+    {describeLoadSupervisor(), &readSupervisor, &makeSupervisor, nullptr, &usedBySupervisor});
 
 }  // namespace
 }  // namespace fpc

@@ -8,7 +8,7 @@
 namespace fpc::bsm1 {
 namespace {
 
-constexpr double kMinute = 1.0 / 1440.0;
+constexpr double kDayMinute = 1.0 / 1440.0;
 constexpr double kFastStep = 1e-4;  // [d]; oxygen of the anoxic tanks has rates of 2e4 1/d
 constexpr int kFastPerSettler = 4;
 constexpr double kLayersPerStep =
@@ -99,7 +99,7 @@ void WorksStepper::block(WorksState& x, const Drive& drive, double days) {
 
 void WorksStepper::advance(WorksState& x, const Drive& drive, double days) {
   const bool noisy = loops_ && loops_->noise > 0.0;
-  const double chunk = noisy ? std::min(days, kMinute) : days;
+  const double chunk = noisy ? std::min(days, kDayMinute) : days;
   const int chunks = std::max(1, static_cast<int>(std::lround(days / chunk)));
   const double length = days / chunks;
   const int blocks =
