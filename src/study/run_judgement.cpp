@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/study/fitness.hpp"
@@ -93,6 +94,21 @@ double leastOutput(const RunRecord& record, std::size_t output) {
   return least;
 }
 
+/// FNV-1a over the words of the numbers.
+std::uint64_t trajectoryHash(const RunRecord& record) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const auto& sample : record.samples)
+    for (const Vector* values :
+         {&sample.measurement.outputs, &sample.measurement.disturbances,
+          &sample.measurement.input_applied, &sample.state.outputs, &sample.state.disturbances})
+      for (const double value : *values) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, &value, sizeof word);
+        hash = (hash ^ word) * 1099511628211ULL;
+      }
+  return record.samples.empty() ? 0 : hash;
+}
+
 /// Why a run has no cost.
 std::string reasonOf(const RunRecord& record) {
   if (!record.trouble.empty()) return record.trouble;
@@ -151,9 +167,10 @@ std::uint64_t lockedSamples(const LoopFile& loop, const RunRecord& record, int l
 
 RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord record) {
   const std::uint64_t outside_model = samplesOutsideModel(loop, record);  // as the law saw it
+  RunJudgement judged;
+  judged.trajectory = trajectoryHash(record);
   if (study.noise_free) record = withoutNoise(std::move(record));
   const Summary summary = summarize(loop, record, 0.0);
-  RunJudgement judged;
   const auto note = [&](RunFailure kind) -> std::uint64_t& {
     return judged.failures[static_cast<std::size_t>(kind)];
   };

@@ -15,7 +15,8 @@ using Json = OrderedJson;
 Json toJson(const RunJudgement& run) {
   return {{"cost", numberOrNull(run.cost)},   {"move", numberOrNull(run.move)},
           {"least", numberOrNull(run.least)}, {"largest_move", numberOrNull(run.largest_move)},
-          {"failures", run.failures},         {"trouble", run.trouble}};
+          {"failures", run.failures},         {"trajectory", run.trajectory},
+          {"trouble", run.trouble}};
 }
 
 RunJudgement runOf(const Json& json) {
@@ -26,6 +27,7 @@ RunJudgement runOf(const Json& json) {
   run.largest_move = numberOrInfinity(json.at("largest_move"));
   run.failures = json.at("failures").get<std::vector<std::uint64_t>>();
   run.failures.resize(kRunFailures, 0);
+  run.trajectory = json.at("trajectory").get<std::uint64_t>();
   run.trouble = json.at("trouble");
   return run;
 }
