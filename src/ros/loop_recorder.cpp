@@ -32,8 +32,8 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       started_s_(steadyNow()),
       store_(openStore(private_node.param<std::string>("out", ""))),
       session_(recordLayout(loop), [this](const SampleRecord& sample) { store_->append(sample); }),
-      ready_(node, name()),
-      plant_(loop.plant_info),
+      ready_(node, loop, name()),
+      plant_(loop),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
       end_(node),
       poll_timer_(guardedTimer(node, kPollPeriod, "poll", [this] { poll(); })),
@@ -108,7 +108,7 @@ void LoopRecorder::announceIfConnected() {
 void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
     const std::uint64_t before = plant_.runId();
-    if (plant_.introduce(fromMsg(*msg)) && plant_.runId() != before) beginRun(plant_.runId());
+    if (plant_.introduce(*msg) && plant_.runId() != before) beginRun(plant_.runId());
   });
 }
 

@@ -41,7 +41,7 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(std::move(process), ringPolicy(loop)),
-      publishers_(node, session_.process().info(), disturbances, loop.ring.publish_clock),
+      publishers_(node, loop, session_.process().info(), disturbances),
       keeper_(node, loop, name()),
       ready_(node, loop, name(), namesToWaitFor(loop, private_node)),
       watch_(namesToWatch(loop, node)),
@@ -117,7 +117,7 @@ void PlantNode::waitForOthers() {
   if (missing_.empty()) return;
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
   failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
-             " s: " + join(missing_);
+             " s: " + join(missing_) + ready_.strangers();
   failed_s_ = steadyNow();
   end_.say(failure_);
   health_.look();
@@ -223,7 +223,8 @@ Health PlantNode::health(double now_s) const {
   if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
     return {LoopMode::kStarting,
-            "waiting for " + (missing_.empty() ? "controller and listeners" : join(missing_)),
+            "waiting for " + (missing_.empty() ? "controller and listeners" : join(missing_)) +
+                ready_.strangers(),
             missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};

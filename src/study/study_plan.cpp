@@ -11,7 +11,7 @@
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "study/loop_contents.hpp"
-#include "study/text_hash.hpp"
+#include "base/text_hash.hpp"
 
 namespace fpc {
 namespace {
@@ -39,9 +39,9 @@ double ownNumber(const LoopFile& loop, const std::string& key) {
 /// What factors are laid over.
 double numberAt(const LoopFile& loop, const std::string& key) {
   const double number = ownNumber(loop, key);
-  require(number != 0.0, "vary." + key,
-          "values (value:LOWER:UPPER) in place of factors: the number of loop " + loop.name +
-              " is 0");
+  require(
+      number != 0.0, "vary." + key,
+      "values (value:LOWER:UPPER) in place of factors: the number of loop " + loop.name + " is 0");
   return number;
 }
 

@@ -13,9 +13,12 @@ namespace {
 using Json = OrderedJson;
 
 Json toJson(const RunJudgement& run) {
-  return {{"cost", numberOrNull(run.cost)},   {"move", numberOrNull(run.move)},
-          {"least", numberOrNull(run.least)}, {"largest_move", numberOrNull(run.largest_move)},
-          {"failures", run.failures},         {"trajectory", run.trajectory},
+  return {{"cost", numberOrNull(run.cost)},
+          {"move", numberOrNull(run.move)},
+          {"least", numberOrNull(run.least)},
+          {"largest_move", numberOrNull(run.largest_move)},
+          {"failures", run.failures},
+          {"trajectory", run.trajectory},
           {"trouble", run.trouble}};
 }
 

@@ -13,7 +13,7 @@
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "study/loop_contents.hpp"
-#include "study/text_hash.hpp"
+#include "base/text_hash.hpp"
 
 namespace fpc {
 namespace {

@@ -107,7 +107,8 @@ Rows pairRows(const StudyPlan& plan, const StudyStatistics& statistics) {
   for (const auto& pair : statistics.pairs)
     rows.push_back({pair.name, pair.against, std::to_string(pair.pairs), shortText(pair.wins),
                     percent(pair.share), percent(pair.lower) + ".." + percent(pair.upper),
-                    shortText(pair.median_ratio), medianText(pair, 0.01 * plan.study().confidence_percent)});
+                    shortText(pair.median_ratio),
+                    medianText(pair, 0.01 * plan.study().confidence_percent)});
   return rows;
 }
 

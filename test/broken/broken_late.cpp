@@ -1,4 +1,5 @@
-// What crashes when the result is written: test/counting_test.py runs it to see that the count notices.
+// What crashes when the result is written: test/counting_test.py runs it to see that the count
+// notices.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """fmbpc_controller against a plant that does everything wrong. The first sample of each test opens a new run."""
+import copy
 import math
 import sys
 import unittest
@@ -39,9 +40,18 @@ class FakePlant(unittest.TestCase):
         cls.info_pub.publish(wrong)
         words = cls.status.wait(lambda s: s.level == DiagnosticStatus.ERROR).message
         assert words == ("plant_info: outputs are x[mg/l], s[mg/l], the loop file expects s[mg/l], x[mg/l]"), words
+        cls.info_pub.publish(cls.of_another_loop())
+        cls.status.wait(lambda s: s.message == "plant_info: the plant reads another loop_text than this node")
         assert "/fmbpc_controller" not in [m.node for m in cls.ready.messages]
         cls.info_pub.publish(cls.info)
-        cls.ready.wait(lambda m: m.node == "/fmbpc_controller")
+        ready = cls.ready.wait(lambda m: m.node == "/fmbpc_controller")
+        assert ready.loop_digest == cls.info.loop_digest != "", ready
+
+    @classmethod
+    def of_another_loop(cls):
+        info = copy.deepcopy(cls.info)
+        info.loop_digest = info.loop_digest[::-1]
+        return info
 
     def setUp(self):
         self.new_run()
@@ -99,6 +109,16 @@ class FakePlant(unittest.TestCase):
         again = self.answer(1, outputs=(300.0, 1000.0))
         self.assertEqual((first.input, first.source, first.header.stamp), (again.input, again.source, again.header.stamp))
         self.assertEqual(BASE, self.answer(2).source)
+
+    def test_a_plant_that_comes_back_with_another_loop_is_refused(self):
+        """Its run is not answered, and the one that was is still."""
+        other = self.of_another_loop()
+        other.run_id += 500
+        before = self.status.counts().get("refused: plant_info", 0)
+        self.info_pub.publish(other)
+        self.status.wait(lambda s: int(ring.values(s).get("refused: plant_info", 0)) > before)
+        self.answer(1)
+        self.info_pub.publish(self.info)
 
     def test_old_steps_are_dropped_and_counted(self):
         for step in (1, 2):

@@ -57,6 +57,18 @@ class Startup(unittest.TestCase):
                       "/impatient/fuzzy_identifier, /impatient/loop_recorder\n", text.replace("\x1b[0m", ""))
         self.assertIn(f"ready of {rospy.get_name()} dropped: it speaks for /impatient/fuzzy_identifier", text)
 
+    def test_members_that_read_another_loop_do_not_join(self):
+        text = rospy.get_param("divided/loop_text")
+        rospy.set_param("divided/fuzzy_identifier/loop_text", text.replace("duration_h: 2", "duration_h: 3"))
+        ready = rospy.Publisher("divided/ready", NodeReady, queue_size=1, latch=True)
+        ready.publish(node=rospy.get_name(), loop_digest="of another text")
+        for name in ("plant_simulator", "fuzzy_identifier"):
+            self.start(name, "__ns:=divided")
+        self.wait_for_status("divided/plant_simulator", DiagnosticStatus.WARN,
+                             "waiting for /divided/fuzzy_identifier, /startup; another loop_text is read by /startup")
+        self.wait_for_status("divided/fuzzy_identifier", DiagnosticStatus.ERROR,
+                             "plant_info: the plant reads another loop_text than this node")
+
     def test_a_controller_without_a_model_is_not_ready_and_one_that_joins_late_finds_sample_0(self):
         measurements, recorded = (ring.Listener(topic, kind, connected=False)
                                   for topic, kind in (("measurement", Measurement), ("recorded", String)))

@@ -218,8 +218,9 @@ TEST_F(Study, WhatWouldVaryNothingIsRefusedBeforeTheRuns) {
   const std::string resting = "set: {setpoint.initial.y: 0, setpoint.schedule: []}\n";
   expectWords(errorOf([&] { plan("seeds: 1:2\nnoise: {percent_of_span: 2}\n" + resting); }),
               {"noise.percent_of_span", "the setpoint of y", "rests at 0"});
-  expectWords(errorOf([&] { plan("seeds: 1:2\nvary: {setpoint.initial.y: [0.5, 2]}\n" + resting); }),
-              {"vary.setpoint.initial.y", "value:LOWER:UPPER", "is 0"});
+  expectWords(
+      errorOf([&] { plan("seeds: 1:2\nvary: {setpoint.initial.y: [0.5, 2]}\n" + resting); }),
+      {"vary.setpoint.initial.y", "value:LOWER:UPPER", "is 0"});
   plan("seeds: 1:2\nvary: {setpoint.initial.y: {values: [0.5, 2]}}\n" + resting);
 }
 

@@ -75,7 +75,8 @@ TEST_F(StabilityTool, TheCertificateCanBeCheckedByOthers) {
   const auto& region = some["certificate"]["region"];
   nlohmann::json members = nlohmann::json::array();
   for (const auto& map : some["certificate"]["maps"])
-    if (std::count(region["rules"].begin(), region["rules"].end(), map["rules"])) members.push_back(map);
+    if (std::count(region["rules"].begin(), region["rules"].end(), map["rules"]))
+      members.push_back(map);
   ASSERT_GT(members.size(), 1U);
   EXPECT_EQ(members.size(), region["rules"].size());
   expectCertified(region, members);

@@ -1,5 +1,6 @@
 // Checks of the parameters of the fuzzy model-based predictive law.
 #include <algorithm>
+#include <utility>
 
 #include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -38,6 +39,9 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
           "an integer from 1 to 100000");
   require(offset_gain >= 0.0 && offset_gain <= 1.0, "controller.offset_gain",
           "a number from 0 to 1");
+  for (const auto& [key, weight] :
+       {std::pair{"weight_output", &weight_output}, std::pair{"weight_move", &weight_move}})
+    requireNonNegative(*weight, weight->size(), std::string("controller.") + key);
   if (law == FmbpcForm::kPublished) {
     require(n_u == 1, "controller.law",
             "general for a plant with " + std::to_string(n_u) + " inputs; published has one");
