@@ -117,7 +117,7 @@ void PlantNode::waitForOthers() {
   if (missing_.empty()) return;
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
   failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
-             " s: " + join(missing_) + ready_.strangers();
+             " s: " + ready_.named(missing_);
   failed_s_ = steadyNow();
   end_.say(failure_);
   health_.look();
@@ -222,10 +222,10 @@ bool PlantNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response
 Health PlantNode::health(double now_s) const {
   if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
-    return {LoopMode::kStarting,
-            "waiting for " + (missing_.empty() ? "controller and listeners" : join(missing_)) +
-                ready_.strangers(),
-            missing_};
+    return {
+        LoopMode::kStarting,
+        "waiting for " + (missing_.empty() ? "controller and listeners" : ready_.named(missing_)),
+        missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};
   if (session_.phase() == PlantPhase::kFinished) return finishedHealth(now_s);

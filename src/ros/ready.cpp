@@ -47,9 +47,10 @@ void ReadyListener::onReady(const fmbpc::NodeReady::ConstPtr& msg, const std::st
   }
 }
 
-std::string ReadyListener::strangers() const {
-  if (strangers_.empty()) return "";
-  return "; another loop_text is read by " + join({strangers_.begin(), strangers_.end()});
+std::string ReadyListener::named(const std::vector<std::string>& missing) const {
+  if (strangers_.empty()) return join(missing);
+  const std::vector<std::string> strangers(strangers_.begin(), strangers_.end());
+  return join(missing) + "; another loop_text is read by " + join(strangers);
 }
 
 }  // namespace fpc

@@ -34,8 +34,8 @@ class ReadyListener : public Node {
   ReadyListener(ros::NodeHandle node, const LoopFile& loop, std::string name,
                 const std::vector<std::string>& names);
   std::vector<std::string> missing() const;
-  /// Who reads another loop_text, in words that may follow others; empty: nobody.
-  std::string strangers() const;
+  /// In one line, with who of them reads another loop_text.
+  std::string named(const std::vector<std::string>& missing) const;
   using Node::authority;
 
  private:
