@@ -222,10 +222,7 @@ bool PlantNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response
 Health PlantNode::health(double now_s) const {
   if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
-    return {
-        LoopMode::kStarting,
-        "waiting for " + (missing_.empty() ? "controller and listeners" : ready_.named(missing_)),
-        missing_};
+    return {LoopMode::kStarting, "waiting for " + ready_.named(missing_), missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};
   if (session_.phase() == PlantPhase::kFinished) return finishedHealth(now_s);

@@ -48,6 +48,7 @@ void ReadyListener::onReady(const fmbpc::NodeReady::ConstPtr& msg, const std::st
 }
 
 std::string ReadyListener::named(const std::vector<std::string>& missing) const {
+  if (missing.empty()) return "controller and listeners";
   if (strangers_.empty()) return join(missing);
   const std::vector<std::string> strangers(strangers_.begin(), strangers_.end());
   return join(missing) + "; another loop_text is read by " + join(strangers);

@@ -34,7 +34,8 @@ class ReadyListener : public Node {
   ReadyListener(ros::NodeHandle node, const LoopFile& loop, std::string name,
                 const std::vector<std::string>& names);
   std::vector<std::string> missing() const;
-  /// In one line, with who of them reads another loop_text.
+  /// In one line, with who of them reads another loop_text; if nobody is missing, what is left to
+  /// wait for.
   std::string named(const std::vector<std::string>& missing) const;
   using Node::authority;
 
