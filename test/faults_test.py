@@ -43,6 +43,7 @@ class Judge(unittest.TestCase):
             loop = types.SimpleNamespace(words=lambda start, w=words: w, logs={"plant_state": types.SimpleNamespace(
                 since=lambda start: [(2.0, None), (7.0, None)])})
             for still, problems_of in ((0.0, expected), (2.9, expected), (3.1, 0)):
+                loop.far = None
                 loop.pulse = types.SimpleNamespace(within=lambda a, b, s=still: s if b - a > 2.0 else 0.0)
                 outcome = Outcome("x")
                 judge.judge_stalls(loop, 1.0, 7.5, outcome)

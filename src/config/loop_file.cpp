@@ -123,10 +123,10 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readController(root, loop);
   readGuard(root, loop, names);
   readEstimator(root, loop);
+  readGateway(root, loop);
   readPlausibility(root, loop);
   readStandstill(root, loop);
   readModelSection(root, loop);
-  readGateway(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);
   root.finish();

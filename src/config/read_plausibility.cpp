@@ -68,6 +68,8 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   readOption(section, "plant_bounds", params.plant_bounds);
   section.integer("stuck_samples", loop.stuck.samples, 0);
   section.number("stuck_tolerance", loop.stuck.tolerance, {0.0, 1.0});
+  loop.stuck.hold = loop.gateway.enabled();
+  readOption(section, "stuck", loop.stuck.hold, {{"say", false}, {"hold", true}});
   YamlSection signals = section.section("signals");
   readSignals(signals, plant.outputs, margin, false, params.outputs);
   readSignals(signals, plant.disturbances, margin, true, params.disturbances);

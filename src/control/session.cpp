@@ -145,7 +145,9 @@ void ControllerSession::process(const Measurement& m) {
     sendManual(accepted);
     interruption_ = "back from manual";
   } else if (!takes_actions_) {
-    hold(m, "the plant takes no actions: its own hand has the input, or its link is lost");
+    hold(m,
+         "the plant takes no actions: its own hand has the input, its link is lost, or no input "
+         "follows its command");
     interruption_ = "the plant takes actions again";
   } else if (!m.input_applied.allFinite()) {
     hold(m, "the applied input is not finite: input held");

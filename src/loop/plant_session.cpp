@@ -66,6 +66,9 @@ bool PlantSession::receive(const ControlAction& action) {
   }
   ++counts_.accepted;
   action_ = action.input;
+  const bool of_law =
+      action.source != ActionSource::kManual && action.source != ActionSource::kFallback;
+  if (policy_.stuck.hold && of_law) stuck_.hold(action_, process_->actuator().applied());
   process_->take(action_);
   have_action_ = true;
   starving_ = false;
@@ -97,7 +100,9 @@ bool PlantSession::advance(double now_s) {
     before_ = process_->measurement().input_applied;
     process_->advance(action_);
     if (process_->takesActions())
-      stuck_.look(action_, before_, process_->measurement().input_applied);
+      stuck_.look(action_, before_, process_->positions());
+    else if (!process_->underWay())
+      stuck_.reset();  // somebody else has the inputs
   } else if (mayGoWithout(now_s)) {
     process_->advanceWithoutAction();
     ++missing_inputs_;

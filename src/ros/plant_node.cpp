@@ -12,7 +12,6 @@
 
 namespace fpc {
 namespace {
-
 constexpr double kPoll = 0.05;          // [s] of wall time
 constexpr double kLookForStart = 0.01;  // [s] of wall time, at who is there
 constexpr double kIntroduceAgain = 1;   // [s], while nobody answers (in realtime samples go on)
@@ -268,7 +267,8 @@ Health PlantNode::runningHealth(double now_s) const {
   if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= worst)) return plant;
   if (late) return {LoopMode::kStalled, "no action for sample " + step + who, silent};
   if (!silent.empty()) return {LoopMode::kDegraded, "no word from " + join(silent), silent};
-  if (!session_.stuck().empty()) return {LoopMode::kDegraded, session_.stuck(), {}};
+  const LoopMode stuck = session_.holdsAll() ? LoopMode::kHeld : LoopMode::kDegraded;
+  if (!session_.stuck().empty()) return {stuck, session_.stuck(), {}};
   if (others.mode == LoopMode::kAutomatic)
     return {LoopMode::kAutomatic, withRefusal("running", now_s), {}};
   if (others.mode == LoopMode::kManual) return {LoopMode::kManual, others.words, {}};

@@ -66,6 +66,9 @@ TEST(LoopSections, WatchesAreHandedOn) {
   EXPECT_TRUE(plain.standstill.signals.empty());
   EXPECT_TRUE(plain.plausibility.enabled);
   EXPECT_EQ(plain.stuck.samples, 5);
+  EXPECT_FALSE(plain.stuck.hold);
+  EXPECT_TRUE(readLoop("example_external").stuck.hold);
+  EXPECT_FALSE(readLoop("example_external", {{"plausibility.stuck", "say"}}).stuck.hold);
   EXPECT_FALSE(plain.gateway.enabled());
   const LoopFile watched = readLoop(
       "asp_case1_pi_x", {{"standstill.signals.x", "3"}, {"plausibility.stuck_samples", "7"}});

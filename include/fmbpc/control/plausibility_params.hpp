@@ -56,6 +56,7 @@ struct PlausibilityParams {
 struct StuckParams {
   int samples{5};          ///< in a row; 0: never
   double tolerance{0.02};  ///< of the input's range
+  bool hold{false};        ///< it is held then; otherwise it goes on by its own command
 };
 
 }  // namespace fpc

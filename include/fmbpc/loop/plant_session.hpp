@@ -38,6 +38,9 @@ struct ActionCounts {
 /// - lockstep moves on when it has come and waits for ever; paced also waits for the period, and
 ///   for action_timeout_s at most: then it goes on at the period, as realtime does, until an action
 ///   comes again; what the input is meanwhile is the actuator's rule (hold, then fallback);
+/// - an input that does not follow its command is held, if the loop file says so (StuckParams):
+/// what
+///   a law asks of it is not passed on; a person's input and a fallback are;
 /// - paused: only step() moves on;
 /// - the final sample is sent again until finish() says that it has arrived.
 class PlantSession {
@@ -74,6 +77,10 @@ class PlantSession {
   double unansweredFor(double now_s) const;
   const Pacer& pacer() const { return pacer_; }
   const std::string& stuck() const { return stuck_.words(); }  ///< see StuckWatch
+  /// No input is left that follows, and so all are held.
+  bool holdsAll() const { return policy_.stuck.hold && stuck_.all(); }
+  /// False: a controller's actions come to nothing for now.
+  bool takesActions() const { return process_->takesActions() && !holdsAll(); }
   const ActionCounts& counts() const { return counts_; }
   std::uint64_t missingInputs() const { return missing_inputs_; }
   std::uint64_t runId() const { return process_->measurement().header.run_id; }
