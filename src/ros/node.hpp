@@ -13,6 +13,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/authority.hpp"
+#include "ros/counted_vectors.hpp"
 #include "ros/guard.hpp"
 #include "ros/master_watch.hpp"
 #include "ros/newest.hpp"

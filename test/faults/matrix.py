@@ -38,11 +38,11 @@ LOOPS = {
 MOVE = 0.025  # largest move a sample, share of the input's range
 COMMON = "actuator.hold_samples=5 loop.action_timeout_s=1.5"
 PERIOD = {"paced": 0.1, "realtime": 0.2}  # s of wall time a sample
-GROUPS = {"closed": ("processes", "strangers", "by_hand", "instruments", "world"), "open": ("rubbish", "models"),
+GROUPS = {"closed": ("processes", "strangers", "by_hand", "instruments", "links", "world"), "open": ("rubbish", "models"),
           "gateway": ("gateway",)}
 QUICK = ("fmbpc_controller killed (-9)", "clp_optimizer frozen for 6 s", "fmbpc_controller frozen for 3 s",
          "stranger: control_action, valves open, in time", "manual, controller killed", "person: plant paused and resumed",
-         "valve stuck open")
+         "valve stuck open", "loop_recorder: publisherUpdate with empty lists", "rosnode cleanup while fmbpc_controller hangs for 3 s")
 
 
 class Launch:
