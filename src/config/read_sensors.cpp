@@ -44,6 +44,7 @@ SensorParams readSensor(YamlSection& section) {
   section.number("delay_s", params.delay_s, kFiniteNotNegative);
   section.number("interval_s", params.interval_s, kFiniteNotNegative);
   section.number("noise_std", params.noise_std, kFiniteNotNegative);
+  section.number("resolution", params.resolution, kFiniteNotNegative);
   section.boolean("average", params.average);
   section.number("stuck_from_h", params.stuck_from_h, Range{0.0, kInfinity});
   section.number("stuck_to_h", params.stuck_to_h, Range{0.0, kInfinity});

@@ -136,10 +136,10 @@ WorstError GuardedController::worstError(const Measurement& now,
                                          const SetpointSource& setpoint) const {
   WorstError worst;
   for (const Index i : params_.lock_outputs) {
-    const double asked = setpoint.present()[i];
-    const double tolerated = params_.lock_error * std::abs(asked);
-    if (!(tolerated > 0.0)) continue;
-    const double error = (asked - now.outputs[i]) / tolerated;
+    const SignalInfo& output = plant_.outputs[static_cast<std::size_t>(i)];
+    const double tolerated = params_.lock_error * (output.upper - output.lower);
+    if (!std::isfinite(tolerated) || tolerated <= 0.0) continue;
+    const double error = (setpoint.present()[i] - now.outputs[i]) / tolerated;
     if (!(std::abs(error) > worst.size)) continue;  // NaN is none
     worst.size = std::abs(error);
     worst.whose = static_cast<int>(error > 0.0 ? i + 1 : -(i + 1));

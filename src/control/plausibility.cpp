@@ -26,7 +26,7 @@ void check(const SignalPlausibility& signal) {
   require(signal.rate_per_h > 0.0, "plausibility.signals: rate_per_h", "a number > 0");
   require(signal.jump > 0.0, "plausibility.signals: jump", "a number > 0");
   require(signal.jump_samples >= 1, "plausibility.signals: jump_samples", "an integer >= 1");
-  require(signal.frozen_samples >= 0, "plausibility.signals: frozen_samples", "an integer >= 0");
+  require(signal.frozen_samples >= -1, "plausibility.signals: frozen_samples", "an integer >= -1");
 }
 
 std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
@@ -44,7 +44,9 @@ std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
     case Doubt::kJump:
       return "jumped by more than " + shortText(asked.jump);
     case Doubt::kFrozen:
-      return "is frozen while an input moves";
+      return "is frozen";
+    case Doubt::kRepeated:
+      return "was not read anew";
     case Doubt::kNone:
       break;
   }
@@ -89,6 +91,7 @@ Plausibility::Plausibility(PlausibilityParams params, const PlantInfo& plant)
       n_y_(plant.outputs.size()),
       sample_time_h_(plant.sample_time_s / 3600.0),
       input_range_(static_cast<Eigen::Index>(plant.inputs.size())),
+      output_range_(static_cast<Eigen::Index>(n_y_)),
       asked_(joined(params_, plant)),
       signals_(asked_.size()),
       needed_(asked_.size(), true) {
@@ -99,8 +102,11 @@ Plausibility::Plausibility(PlausibilityParams params, const PlantInfo& plant)
   }
   for (Memory& signal : signals_)
     signal.input_low = signal.input_high = Vector::Zero(input_range_.size());
-  for (std::size_t i = 0; i < n_y_; ++i)
-    uses_model_ = uses_model_ || asked_[i].substitute == Substitute::kModel;
+  for (std::size_t i = 0; i < n_y_; ++i) {
+    output_range_[static_cast<Eigen::Index>(i)] = plant.outputs[i].upper - plant.outputs[i].lower;
+    uses_model_ = uses_model_ || asked_[i].substitute == Substitute::kModel ||
+                  (params_.enabled && asked_[i].frozen_samples < 0);
+  }
   writeWords(plant);
 }
 
@@ -110,39 +116,21 @@ void Plausibility::writeWords(const PlantInfo& plant) {
     const std::string& name = i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name;
     for (std::size_t doubt = 0; doubt < kDoubts; ++doubt)
       for (std::size_t verdict = 0; verdict < kVerdicts; ++verdict)
-        texts_[i].push_back(name + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) + ": " +
-                            actionOf(static_cast<Verdict>(verdict), asked_[i].substitute));
+        texts_[i].push_back(
+            name + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) + ": " +
+            actionOf(static_cast<Verdict>(verdict), substituteOf(i, static_cast<Doubt>(doubt))));
   }
 }
 
 void Plausibility::reset() {
   for (Memory& signal : signals_) {
-    signal.has_good = signal.has_raw = false;
-    signal.same = signal.at_level = 0;
+    signal.has_good = false;
+    signal.at_level = signal.against = 0;
     signal.since_good = 0;
+    signal.flat.reset();
   }
-  has_expected_ = false;
+  has_forecast_ = has_expected_ = false;
   doubted_ = 0;
-}
-
-bool Plausibility::isFrozen(Memory& signal, const SignalPlausibility& asked, double value,
-                            VectorRef input) {
-  const bool same = signal.has_raw && value == signal.raw;
-  signal.raw = value;
-  signal.has_raw = true;
-  if (!same) {
-    signal.same = 0;
-    signal.input_low = signal.input_high = input;
-    return false;
-  }
-  ++signal.same;
-  signal.input_low = signal.input_low.cwiseMin(input);
-  signal.input_high = signal.input_high.cwiseMax(input);
-  if (asked.frozen_samples == 0 || signal.same < asked.frozen_samples) return false;
-  for (Eigen::Index i = 0; i < input_range_.size(); ++i)
-    if (signal.input_high[i] - signal.input_low[i] > params_.frozen_input * input_range_[i])
-      return true;
-  return false;
 }
 
 bool Plausibility::jumped(Memory& signal, const SignalPlausibility& asked, double value) const {
@@ -156,11 +144,12 @@ bool Plausibility::jumped(Memory& signal, const SignalPlausibility& asked, doubl
   return signal.at_level < asked.jump_samples;
 }
 
-Doubt Plausibility::judge(Memory& signal, const SignalPlausibility& asked, double value,
-                          VectorRef input) {
+Doubt Plausibility::judge(std::size_t i, double value, const Measurement& now) {
+  Memory& signal = signals_[i];
+  const SignalPlausibility& asked = asked_[i];
   if (!std::isfinite(value)) return doubtOf(whyNoValue(value));
   if (!params_.enabled) return Doubt::kNone;
-  const bool frozen = isFrozen(signal, asked, value, input);
+  const bool frozen = isFrozen(i, value, now);
   const bool jump = jumped(signal, asked, value);
   if (value < asked.lower || value > asked.upper) return Doubt::kRange;
   const double hours = static_cast<double>(signal.since_good + 1) * sample_time_h_;
@@ -168,30 +157,43 @@ Doubt Plausibility::judge(Memory& signal, const SignalPlausibility& asked, doubl
       std::abs(value - signal.good) > asked.rate_per_h * hours * (1.0 + kRounding))
     return Doubt::kRate;
   if (jump) return Doubt::kJump;
-  return frozen ? Doubt::kFrozen : Doubt::kNone;
+  if (frozen) return Doubt::kFrozen;
+  return isRepeated(i) ? Doubt::kRepeated : Doubt::kNone;
+}
+
+/// Where nothing else is asked for, what is frozen is replaced: an output by the model's value, and
+/// a disturbance stays what it was.
+Substitute Plausibility::substituteOf(std::size_t signal, Doubt doubt) const {
+  const SignalPlausibility& asked = asked_[signal];
+  const bool stands = doubt == Doubt::kFrozen || doubt == Doubt::kRepeated;
+  if (!stands || asked.frozen_samples >= 0 || asked.substitute != Substitute::kHold)
+    return asked.substitute;
+  return signal < n_y_ ? Substitute::kModel : Substitute::kLastGood;
 }
 
 /// False if there is nothing to put in its place.
 bool Plausibility::replace(std::size_t signal) {
   Memory& memory = signals_[signal];
   const auto row = static_cast<Eigen::Index>(signal);
-  const bool model = asked_[signal].substitute == Substitute::kModel && has_expected_ &&
+  const bool model = substituteOf(signal, memory.doubt) == Substitute::kModel && has_expected_ &&
                      signal < n_y_ && std::isfinite(expected_[row]);
   const double value = model ? expected_[row] : memory.has_good ? memory.good : 0.0;
   const auto first = static_cast<Eigen::Index>(n_y_);
   (signal < n_y_ ? accepted_.outputs[row] : accepted_.disturbances[row - first]) = value;
-  return model || memory.has_good;
+  const bool stands = memory.doubt == Doubt::kFrozen && signal < n_y_;  // so does its last value
+  return model || (memory.has_good && !(stands && asked_[signal].frozen_samples < 0));
 }
 
 Verdict Plausibility::look(const Measurement& now) {
-  bool any = false, doubted = false, repaired = true;
+  bool any = false, doubted = false, repaired = true, may_end = false;
   accepted_ = now;
+  forecast(now.input_applied);
   const auto first = static_cast<Eigen::Index>(n_y_);
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     Memory& signal = signals_[i];
     const auto row = static_cast<Eigen::Index>(i);
     const double value = i < n_y_ ? now.outputs[row] : now.disturbances[row - first];
-    signal.doubt = judge(signal, asked_[i], value, now.input_applied);
+    signal.doubt = judge(i, value, now);
     if (signal.doubt == Doubt::kNone) {
       signal.good = value;
       signal.has_good = true;
@@ -201,15 +203,18 @@ Verdict Plausibility::look(const Measurement& now) {
     ++signal.since_good;
     any = true;
     const bool replaced = replace(i);
-    if (!needed_[i]) continue;
+    const Substitute substitute = substituteOf(i, signal.doubt);
+    const bool goes_on = i >= n_y_ && substitute != asked_[i].substitute;  // a frozen disturbance
+    if (!needed_[i] || goes_on) continue;
     doubted = true;
-    repaired = repaired && replaced && asked_[i].substitute != Substitute::kHold;
+    may_end = may_end || signal.doubt != Doubt::kRange || params_.range_falls;
+    repaired = repaired && replaced && substitute != Substitute::kHold;
   }
   doubted_ = doubted ? std::min(doubted_ + 1, std::numeric_limits<int>::max() - 1) : 0;
   Verdict verdict = any ? Verdict::kRepaired : Verdict::kClean;
-  const bool may_end = params_.hold_samples >= 0 && params_.fallback.size() > 0;
+  may_end = may_end && params_.hold_samples >= 0 && params_.fallback.size() > 0;
   if (doubted && !repaired) verdict = Verdict::kHold;
-  if (doubted && may_end && doubted_ > params_.hold_samples) verdict = Verdict::kFallback;
+  if (may_end && doubted_ > params_.hold_samples) verdict = Verdict::kFallback;
   say(verdict);
   return verdict;
 }
@@ -226,13 +231,22 @@ void Plausibility::say(Verdict verdict) {
 }
 
 // y(k+1) = C (A x(k) + B u(k) + g) + h
-void Plausibility::expect(const PredictiveAction& prediction, VectorRef input) {
+void Plausibility::expect(const PredictiveAction& prediction) {
   state_ = prediction.offset_state;
   state_.noalias() += prediction.A * prediction.state;
-  state_.noalias() += prediction.B * input;
-  expected_ = prediction.offset_output;
-  expected_.noalias() += prediction.C * state_;
-  has_expected_ = true;
+  rest_ = prediction.offset_output;
+  rest_.noalias() += prediction.C * state_;
+  effect_.noalias() = prediction.C * prediction.B;
+  has_forecast_ = true;
+}
+
+/// Of this sample, with the input that was applied.
+void Plausibility::forecast(VectorRef input) {
+  has_expected_ = has_forecast_ && input.allFinite();
+  has_forecast_ = false;
+  if (!has_expected_) return;
+  expected_ = rest_;
+  expected_.noalias() += effect_ * input;
 }
 
 }  // namespace fpc

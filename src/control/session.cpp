@@ -200,7 +200,7 @@ void ControllerSession::interrupt() {
 void ControllerSession::expectNext() {
   if (!plausibility_.usesModel()) return;
   if (answer_.has_prediction)
-    plausibility_.expect(answer_.prediction, answer_.base.input);
+    plausibility_.expect(answer_.prediction);
   else
     plausibility_.expectNothing();
 }
@@ -264,6 +264,7 @@ void ControllerSession::setModel(const TsModel& model) {
   }
   controller_->setModel(model);
   model_ = std::move(matched);
+  if (matters) plausibility_.setModel(model_);
   const int window = plausibility_.params().reaction_samples;
   if (matters && window > 0) reaction_ = std::make_unique<ReactionWatch>(model_, window);
   ++models_;

@@ -22,6 +22,7 @@ void SensorParams::validate() const {
   require(isTime(delay_s), "delay_s", "a time >= 0");
   require(isTime(interval_s), "interval_s", "a time >= 0");
   require(std::isfinite(noise_std) && noise_std >= 0.0, "noise_std", "a finite number >= 0");
+  require(std::isfinite(resolution) && resolution >= 0.0, "resolution", "a finite number >= 0");
   require(lower < upper, "upper", "a number > lower");
   require(stuck_from_h >= 0.0 && stuck_from_h <= stuck_to_h, "stuck_to_h",
           "a time >= stuck_from_h");
@@ -98,7 +99,9 @@ void Sensor::show() {
   if (params_.interval_s > 0.0)
     due_s_ = (std::floor((time_s_ + kEarly) / params_.interval_s) + 1.0) * params_.interval_s;
   const double noise = params_.noise_std > 0.0 ? params_.noise_std * standardNormal(engine_) : 0.0;
-  reading_ = std::clamp(shown_ + noise, params_.lower, params_.upper);
+  double value = shown_ + noise;
+  if (params_.resolution > 0.0) value = params_.resolution * std::round(value / params_.resolution);
+  reading_ = std::clamp(value, params_.lower, params_.upper);
 }
 
 double Sensor::take() {

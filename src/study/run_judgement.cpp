@@ -12,9 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kAtBound = 1e-6;  // of an input's range
-constexpr double kLockedError =
-    0.02;  // of the setpoint, below which an output is where it should be
+constexpr double kAtBound = 1e-6;      // of an input's range
+constexpr double kLockedError = 0.01;  // of the range, below which an output is where it should be
 
 /// -1: at the lower bound, 1: at the upper one, 0: between them.
 int boundOf(const InputLimits& limits, const Vector& input, Index i) {
@@ -45,13 +44,15 @@ bool everMoved(const RunRecord& record, Index i) {
   return false;
 }
 
-bool lockedOver(const RunRecord& record, std::size_t first, std::size_t last) {
+bool lockedOver(const std::vector<SignalInfo>& outputs, const RunRecord& record, std::size_t first,
+                std::size_t last) {
   const std::size_t quarter = std::max<std::size_t>(1, (last - first) / 4);
   const auto& setpoint = record.samples[last - 1].tracking.setpoint;
   for (Index i = 0; i < setpoint.size(); ++i) {
     const double begin = meanError(record, i, first, first + quarter);
     const double end = meanError(record, i, last - quarter, last);
-    if (end >= begin && end > kLockedError * std::abs(setpoint[i])) return true;
+    const SignalInfo& output = outputs[static_cast<std::size_t>(i)];
+    if (end >= begin && end > kLockedError * (output.upper - output.lower)) return true;
   }
   return false;
 }
@@ -156,7 +157,8 @@ std::uint64_t lockedSamples(const LoopFile& loop, const RunRecord& record, int l
       const int now = there ? boundOf(limits, record.samples[k].measurement.input_applied, i) : 0;
       if (k < n && now == bound) continue;
       const std::size_t length = k - first;
-      if (bound != 0 && length >= enough && length > longest && lockedOver(record, first, k))
+      if (bound != 0 && length >= enough && length > longest &&
+          lockedOver(loop.plant_info.outputs, record, first, k))
         longest = length;
       bound = now;
       first = k;

@@ -166,6 +166,7 @@ TEST_F(Guard, AnInputThatTheModelDoesNotKnowIsNeverLockedUp) {
 
 TEST_F(Guard, WhatSwingsFromEndToEndMovesLess) {
   GuardParams p = params();
+  p.swing_move = 0.25;
   make(p);
   double applied = 700.0, largest = 0.0;
   for (std::uint32_t k = 1; k < 60; ++k) {

@@ -26,8 +26,13 @@ struct SignalPlausibility {
   double rate_per_h{std::numeric_limits<double>::infinity()};  ///< largest change, from the last
                                                                ///< value that was accepted
   double jump{std::numeric_limits<double>::infinity()};        ///< largest change at once ...
-  int jump_samples{3};    ///< ... unless the new level stays for so many samples
-  int frozen_samples{0};  ///< the same bits so often while an input moved; 0: never
+  int jump_samples{3};  ///< ... unless the new level stays for so many samples
+  /// The same bits so often while an input moved; 0: never frozen; -1: judged by its own noise, and
+  /// an output by what the law's model says of the inputs.
+  int frozen_samples{0};
+  double scale_lower{-std::numeric_limits<double>::infinity()};  ///< ends of the instrument: what
+  double scale_upper{std::numeric_limits<double>::infinity()};   ///< stands there may be cut off
+  int late_samples{0};                                           ///< how late the instrument is
   Substitute substitute{Substitute::kHold};
 };
 
@@ -45,6 +50,7 @@ struct PlausibilityParams {
   DoubtAction reaction{DoubtAction::kSay};      ///< of an input that the outputs do not react to
   DoubtAction plant_bounds{DoubtAction::kSay};  ///< of a plant that announces other bounds
   Vector fallback;                              ///< n_u; empty: none, the input is held for ever
+  bool range_falls{true};   ///< the fallback follows a value outside its range as well
   std::vector<bool> needs;  ///< outputs, then disturbances: what the law needs; empty: all
   std::vector<SignalPlausibility> outputs,
       disturbances;  ///< in the plant's order; empty: no limits

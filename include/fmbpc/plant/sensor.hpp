@@ -22,6 +22,7 @@ struct SensorParams {
   double delay_s{0.0};     ///< dead time behind the lags
   double interval_s{0.0};  ///< takes a sample so often and shows it until the next; 0: always
   double noise_std{0.0};   ///< of what it shows
+  double resolution{0.0};  ///< shows multiples of it only; 0: every number
   double lower{-std::numeric_limits<double>::infinity()};
   double upper{std::numeric_limits<double>::infinity()};
   bool average{false};  ///< the ring sees the mean of what it showed since the last sample

@@ -39,6 +39,7 @@ FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
   section.integer("horizon_steps", params.horizon_steps, 1, 10000);
   section.integer("iterations", params.iterations, 1, 1000);
   readForecast(section, loop, params);
+  if (loop.quantised) params.realisation = FmbpcRealisation::kObserver;
   readOption(section, "realisation", params.realisation);
   section.integer("delay_steps", params.delay_steps, 0, 1000);
   section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);

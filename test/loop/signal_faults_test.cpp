@@ -1,0 +1,65 @@
+// Sensors that repeat, freeze or round, beside a PI under the same fault: what the plant makes of
+// it.
+#include <cmath>
+#include <functional>
+
+#include "fmbpc/loop/factory.hpp"
+#include "loop/loop_fixture.hpp"
+
+namespace fpc {
+namespace loop_signal_faults_test {
+
+using Fault = std::function<void(std::uint32_t, Measurement&)>;
+
+/// Integral of the squared error of the first output, as the plant has it.
+double ise(const std::string& name, const Overrides& overrides, const Fault& fault,
+           std::uint32_t* frozen = nullptr) {
+  const LoopFile loop = readLoop(name, overrides);
+  Simulation plant = makeSimulation(loop);
+  ControllerSession controller = makeControllerSession(loop);
+  if (loop.has_model) controller.setModel(loop.model);
+  plant.reset(1);
+  controller.announce(1);
+  double sum = 0.0;
+  while (true) {
+    Measurement m = plant.measurement();
+    fault(m.header.step, m);
+    controller.receive(m);
+    if (frozen && controller.plausibility().doubt(0) == Doubt::kFrozen) ++*frozen;
+    const double error = controller.answer().tracking.setpoint[0] - plant.state().outputs[0];
+    sum += error * error;
+    if (m.final) return sum;
+    plant.advance(controller.answer().base.input);
+  }
+}
+
+void none(std::uint32_t, Measurement&) {}
+
+Fault everyTenthRepeated() {
+  return [last = Vector()](std::uint32_t k, Measurement& m) mutable {
+    if (k > 0 && k % 10 == 0) m.outputs = last;
+    last = m.outputs;
+  };
+}
+
+const Overrides kHeld{{"setpoint.schedule", "[]"}};
+
+TEST(SignalFaults, ALevelInStepsBringsAnObserver) {
+  const Overrides coarse{{"sensors.step_s", "0.1"}, {"sensors.H.resolution", "0.00075"}};
+  const double ours = ise("surge_tank_steps", coarse, none);
+  const double pi = ise("surge_tank_steps_pi", coarse, none);
+  EXPECT_LT(ours, 0.9 * pi) << ours << " " << pi;
+}
+
+TEST(SignalFaults, AReadingThatComesTwiceCostsLittle) {
+  const double ours = ise("surge_tank_steps", {}, everyTenthRepeated());
+  const double pi = ise("surge_tank_steps_pi", {}, everyTenthRepeated());
+  EXPECT_LT(ours, 1.1 * pi) << ours << " " << pi;
+  EXPECT_LT(ours, 1.1 * ise("surge_tank_steps", {}, none));
+  const double held = ise("surge_tank_steps", kHeld, everyTenthRepeated());
+  const double pi_held = ise("surge_tank_steps_pi", kHeld, everyTenthRepeated());
+  EXPECT_LT(held, 1.1 * pi_held) << held << " " << pi_held;
+}
+
+}  // namespace loop_signal_faults_test
+}  // namespace fpc
