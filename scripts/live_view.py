@@ -73,7 +73,7 @@ def panels_of(info, values):
 class LiveView:
     """Listens to a loop and keeps the newest value of each signal, and `points` of them over time."""
 
-    def __init__(self, points=2000):
+    def __init__(self, points=20000):
         from fmbpc.msg import ControlAction, LoopState, Measurement, PlantInfo, Tracking  # not there before a build
         self.lock = threading.Lock()
         self.info = self.axis = self.run_id = None

@@ -29,7 +29,8 @@ from live_view import LiveView, master_answers  # noqa: E402
 
 BARS = " ▁▂▃▄▅▆▇█"
 WIDTH = 50      # letters of a course
-COLOURS = {"automatic": "32", "finished": "32", "manual": "36", "failed": "31", "fallback": "31", "stalled": "31"}
+POINT = 0.05    # s of wall time between two points of a curve
+COLOURS = {"automatic": "32", "finished": "32", "manual": "36", "failed": "31", "fallback": "31", "stalled": "31", "ended": "31"}
 
 
 def course(points):
@@ -98,7 +99,8 @@ class Window:
         panels = self.view.panels()
         if self.figure is not None:
             self.pyplot.close(self.figure)
-        self.figure, axes = self.pyplot.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(8, 1 + 2 * len(panels)))
+        self.figure, axes = self.pyplot.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(9, 1 + 2 * len(panels)))
+        self.figure.subplots_adjust(left=0.1, right=0.82)
         self.run, self.curves = self.view.run_id, []
         for panel, axis in zip(panels, axes[:, 0]):
             for name in panel.names:
@@ -106,7 +108,7 @@ class Window:
                 self.curves.append((axis, name, axis.plot([], [], label=name, **style)[0]))
             axis.set_ylabel(panel.unit)
             axis.grid(alpha=0.3)
-            axis.legend(loc="upper left", fontsize="small")
+            axis.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0.0, fontsize="small", frameon=False)
         axes[-1, 0].set_xlabel(f"time of the run [{self.view.axis.unit}]")
         self.axes = axes[:, 0]
 
@@ -125,6 +127,14 @@ class Window:
             axis.set_xlim(left, left + length)
         if outcome or state:
             self.axes[0].set_title(outcome[1] if outcome else f"{state.word}: {state.reason}", fontsize="medium")
+
+
+def collect(view, seconds, pause):
+    """Between two pictures, so that what is drawn does not depend on how often it is."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        pause(POINT)
+        view.sample()
 
 
 def window(view, arguments):
@@ -146,12 +156,12 @@ def window(view, arguments):
             os.replace(arguments.picture + ".part", arguments.picture)
             if outcome:
                 return outcome
-            pause.wait(1.0 / arguments.rate)
+            collect(view, 1.0 / arguments.rate, pause.wait)
         elif outcome:
             shown.pyplot.show()  # until it is closed
             return outcome
         else:
-            shown.pyplot.pause(1.0 / arguments.rate)
+            collect(view, 1.0 / arguments.rate, shown.pyplot.pause)
             if not shown.pyplot.fignum_exists(shown.figure.number):
                 break
     return None

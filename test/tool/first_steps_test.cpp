@@ -32,6 +32,14 @@ TEST_F(FirstSteps, AComparisonEndsWithAVerdictAndIsOnePicture) {
   EXPECT_EQ(tool("run asp_case1_pi_x" + out + kShort).printed.find("Verdict"), std::string::npos);
 }
 
+TEST_F(FirstSteps, TheDemonstrationShowsALawThatWins) {
+  const std::string printed =
+      tool("run reactor_load reactor_load_pi reactor_load_published").printed;
+  EXPECT_NE(printed.find("Verdict: FMBPC that estimates both (reactor_load) wins: ISE of CA "),
+            std::string::npos)
+      << printed;
+}
+
 TEST_F(FirstSteps, ARecordThatDoesNotShipIsNamedWithItsSource) {
   for (const char* command : {"env -u FMBPC_DATA " FMBPC_TOOL " run asp_bsm1_dry 2>&1",
                               "env FMBPC_DATA=/nowhere " FMBPC_TOOL " run asp_bsm1_dry 2>&1",
