@@ -61,7 +61,8 @@ def main():
     space = rospy.get_namespace()
     what = ["--all"] if space == "/" else ["--regex", space + ".*"]  # of several loops ours
     rosbag = subprocess.Popen(["rosbag", "record", *what, "--buffsize=0", "--tcpnodelay", "--output-name", bag,
-                               "__name:=" + RECORDER, *remaps(sys.argv[1:])], start_new_session=True)
+                               "__name:=" + RECORDER, *remaps(sys.argv[1:])],
+                              start_new_session=True, stdout=subprocess.DEVNULL)  # a line a topic; warnings go to stderr
     master, said, quiet = rosgraph.Master(rospy.get_name()), False, 0
     while rosbag.poll() is None and not stop.wait(0.1):
         quiet = quiet + 1 if not said and listens_to_all(master) else 0

@@ -24,6 +24,7 @@ void readOutputs(const Json& json, Summary& summary) {
     summary.outputs.push_back({numberOf(y, "ise"), numberOf(y, "iae"), numberOf(y, "itae"),
                                numberOf(y, "itse"), numberOf(y, "rmse"),
                                numberOf(y, "ise_reference")});
+    if (y.contains("controlled")) summary.controlled.push_back(y.at("controlled"));
     if (!y.contains("windows")) continue;
     for (const Json& w : y.at("windows"))
       summary.windows.push_back({{w.at("name"), name, w.at("from_h"), w.at("to_h")},
@@ -55,6 +56,7 @@ void readClp(const Json& json, Summary& summary) {
 Summary summaryOf(const Json& json) {
   Summary summary;
   summary.loop = json.at("loop");
+  summary.title = json.value("title", "");
   summary.complete = json.at("complete");
   summary.failed_samples = json.value("failed_samples", 0U);
   summary.trouble = json.value("trouble", "");

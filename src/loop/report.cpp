@@ -30,6 +30,7 @@ Json outputsOf(const Summary& summary) {
     const OutputIndices& y = summary.outputs[i];
     Json& output = outputs[summary.output_names[i]];
     output = {{"unit", i < summary.output_units.size() ? summary.output_units[i] : ""},
+              {"controlled", i < summary.controlled.size() && summary.controlled[i]},
               {"ise", y.ise},
               {"iae", y.iae},
               {"itae", y.itae},

@@ -46,6 +46,10 @@ Summary blank(const LoopFile& loop) {
   summary.output_lower = loop.report.output_lower;
   summary.output_upper = loop.report.output_upper;
   summary.has_clp = loop.has_clp;
+  summary.controlled.assign(loop.plant_info.outputs.size(), false);
+  if (loop.controller)
+    for (const Index i : loop.controller->signalUse(controllerContext(loop)).followed)
+      summary.controlled[static_cast<std::size_t>(i)] = true;
   for (const auto& output : loop.plant_info.outputs) {
     summary.output_names.push_back(output.name);
     summary.output_units.push_back(output.unit);

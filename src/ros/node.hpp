@@ -47,6 +47,18 @@ class Node {
         handler, [&](const char* why) { refuse(topic, why); },
         [&](const char* what) { mishap(topic, what); });
   }
+  /// The same for a person's command, who is told: `tell(why)`.
+  template <typename Handler, typename Tell>
+  void guardedCommand(const char* topic, Handler handler, Tell tell) {
+    guarded(topic, [&] {
+      try {
+        handler();
+      } catch (const InputError& error) {
+        tell(error.what());
+        throw;
+      }
+    });
+  }
   /// A timer on the steady clock, every so often or once after its start() (`once`), whose handler
   /// is guarded. `what`: names it in counters and the log.
   template <typename Handler>

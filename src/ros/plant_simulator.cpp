@@ -89,12 +89,16 @@ Health PlantSimulator::plantHealth() const {
 
 void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
   if (!commands_.pass(steadyNow())) return;
-  guarded(topics::kDisturbance, [&] {
+  const auto take = [&] {
     const Command command = fromMsg(*msg);
     const std::uint32_t step = simulation_.command(command);
     ROS_INFO("plant_simulator: disturbance of %s from sample %u on", join(command.name).c_str(),
              step);
-  });
+  };
+  const auto refused = [&](const std::string& why) {
+    effect_.publish(refusalOf(msg->header.stamp, simulation_.measurement().header, why));
+  };
+  guardedCommand(topics::kDisturbance, take, refused);
 }
 
 void PlantSimulator::addValues(Diagnostics::Status& status) const {

@@ -26,7 +26,8 @@ SetpointParams params() {
 }
 
 SetpointSource source(const SetpointParams& p, double sample_time_s = 720.0) {
-  return SetpointSource(p, {"s", "x"}, SampleClock(sample_time_s, kStart));
+  return SetpointSource(p, {{"s", "mg/l", 0.0, 2000.0}, {"x", "mg/l", 0.0, 10000.0}},
+                        SampleClock(sample_time_s, kStart));
 }
 
 Command command(const std::string& name, double value, CommandMode mode = CommandMode::kOverride,

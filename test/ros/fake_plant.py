@@ -254,11 +254,26 @@ class FakePlant(unittest.TestCase):
         now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 3))
         self.assertEqual((55.0, 1800.0), now.setpoint)
 
+    def test_a_setpoint_that_is_refused_is_answered_and_changes_nothing(self):
+        effects = ring.Listener("setpoint_effect", CommandEffect)
+        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        self.answer(1)
+        for number, (name, value) in enumerate((("x", 20000.0), ("x", -1.0), ("nobody", 1.0)), 1):
+            message = Setpoint(name=[name], value=[value], mode=Setpoint.OVERRIDE)
+            message.header.stamp = rospy.Time(0, number)
+            setpoint.publish(message)
+            answer = effects.wait(lambda m, asked=message.header.stamp: m.asked == asked)
+            self.assertEqual((1, self.info.run_id), (answer.step, answer.run_id))
+            self.assertIn(name, answer.refused)
+        self.answer(2)
+        now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))
+        self.assertEqual((55.0, 1800.0), now.setpoint)
+
     def test_a_setpoint_beyond_its_limits_is_clamped_and_said(self):
         words = "a setpoint of x was asked beyond its limits"
         before = self.status.counts()["samples with a setpoint clamped"]
         setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
-        setpoint.publish(name=["x"], value=[1e9], mode=Setpoint.OVERRIDE)
+        setpoint.publish(name=["x"], value=[3000.0], mode=Setpoint.OVERRIDE)
         self.log.wait(lambda m: "setpoint of x from sample 1 on" in m.msg)
         self.answer(1)
         now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 1))
