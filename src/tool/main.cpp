@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "tool/commands.hpp"
+#include "tool/printed.hpp"
 #include "tool/ranks.hpp"
 #include "tool/study_options.hpp"
 #include "tool/topic_options.hpp"
@@ -242,9 +243,9 @@ int main(int argc, char** argv) {
   try {
     if (const auto words = fpc::tool::wordsForWatch(argc, argv)) return fpc::tool::watch(*words);
     app.parse(argc, argv);
-    return chosen();
+    return fpc::tool::printed(chosen());
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
+    if (e.get_exit_code() == 0) return fpc::tool::printed(app.exit(e));
     std::fprintf(stderr, "fmbpc: %s\n", fpc::tool::wrongWith(app, e, argc, argv).c_str());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "fmbpc: %s\n", e.what());
