@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -31,6 +32,8 @@ class Node {
   /// node, or of the nodelet, whose process has another.
   Node(const ros::NodeHandle& node, const LoopFile& loop, std::string name);
   virtual ~Node() = default;
+  /// Called when the process is told to end, while it still can publish.
+  virtual void sayLast() {}
   /// Called after spinning; the exit code of the process.
   virtual int finish() { return exit_code_; }
 
@@ -170,6 +173,12 @@ class Node {
 /// same text: it stays, failed in words, until `loop_text` has changed.
 int failToStart(ros::NodeHandle node, const ros::NodeHandle& private_node, const std::string& why);
 
+/// From now on SIGINT and `rosnode kill` are kept for spinUntilShutdown(). To be called
+/// right after ros::init().
+void hearShutdown();
+/// As ros::spin(); one that is told to end says `last` first, while its topics still are.
+void spinUntilShutdown(const std::function<void()>& last);
+
 /// The loop that the launch file gave as text: parameter `loop_text`, searched upwards.
 /// @throws InputError if there is none or it is no loop.
 LoopFile loopParameter(const ros::NodeHandle& private_node);
@@ -193,6 +202,9 @@ class Running {
     instance_ = std::make_unique<Class>(node, private_node, loop);
   }
   bool needed() const { return instance_ != nullptr; }
+  void sayLast() {
+    if (instance_) instance_->sayLast();
+  }
   /// The exit code of its process.
   int finish() { return instance_ ? instance_->finish() : 0; }
 
@@ -205,13 +217,15 @@ class Running {
 /// that respawns) waits for the shutdown.
 template <typename Class>
 int runNode(int argc, char** argv, const std::string& name) {
-  ros::init(argc, argv, name);
+  ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+  hearShutdown();
   negotiateQuickly();
   const ros::NodeHandle node,
       private_node("~");  // outlives the catch: without a node nothing is logged
   try {
     Running<Class> running(node, private_node, ros::this_node::getName());
-    if (running.needed() || private_node.param("stay", false)) ros::spin();
+    if (running.needed() || private_node.param("stay", false))
+      spinUntilShutdown([&running] { running.sayLast(); });
     return running.finish();
   } catch (const std::exception& error) {
     ROS_FATAL("%s: %s", name.c_str(), error.what());

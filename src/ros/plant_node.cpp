@@ -51,6 +51,8 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
                                    &PlantNode::onAction, this)),
       state_subscriber_(subscribe(node, topics::kLoopState, queueOf(ListenerKind::kPeer),
                                   &PlantNode::onLoopState, this)),
+      recorded_subscriber_(subscribe(node, topics::kSampleRecorded, queueOf(ListenerKind::kPeer),
+                                     &PlantNode::onRecorded, this)),
       pause_(serve(private_node, topics::kPause, &PlantNode::onPause, this)),
       step_(serve(private_node, topics::kStep, &PlantNode::onStep, this)),
       reset_(serve(private_node, topics::kReset, &PlantNode::onReset, this)),
@@ -94,10 +96,12 @@ void PlantNode::start() {
 
 void PlantNode::onPoll() {
   exchange();
+  if (session_.awaitsRecorder()) tryAdvance();  // for so long only
   const double now_s = steadyNow();
   if (!session_.mustResend(now_s)) return;
   session_.resent(now_s);
   publishers_.resend();
+  afterResend();
   if (now_s - answered_s_ < kIntroduceAgain || now_s - introduced_s_ < kIntroduceAgain) return;
   introduced_s_ = now_s;  // somebody may have been told of another run
   publishers_.introduce(session_.process());
@@ -137,6 +141,13 @@ void PlantNode::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
   if (session_.phase() == PlantPhase::kFinished && msg->run_id == now.run_id &&
       msg->step == now.step)
     session_.finish();
+}
+
+void PlantNode::onRecorded(const fmbpc::Recorded::ConstPtr& msg) {
+  const StepHeader sample{fromStamp(msg->header.stamp), msg->run_id, msg->step};
+  guarded(topics::kSampleRecorded, [&] {
+    if (session_.recorded(sample)) tryAdvance();
+  });
 }
 
 void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher) {
@@ -250,6 +261,10 @@ Health PlantNode::runningHealth(double now_s) const {
   std::string who = silent.empty() ? "" : "; no word from " + join(silent);
   if (who.empty() && !others.words.empty()) who = "; " + others.words;
   const std::string step = std::to_string(session_.process().measurement().header.step);
+  if (session_.unrecordedFor(now_s) > kPatience)
+    return {LoopMode::kStalled,
+            "sample " + step + " is not recorded" + who,
+            {node_.resolveName(kRecorder)}};
   const Actuator& actuator = session_.process().actuator();
   if (actuator.missing()) {
     const bool fallback = actuator.fellBack();
@@ -272,27 +287,6 @@ Health PlantNode::runningHealth(double now_s) const {
   if (others.mode == LoopMode::kManual) return {LoopMode::kManual, others.words, {}};
   const bool as_it_is = others.mode == LoopMode::kHeld || others.mode == LoopMode::kFallback;
   return {as_it_is ? others.mode : LoopMode::kDegraded, others.words, others.missing};
-}
-
-void PlantNode::report(Diagnostics::Status& status) const {
-  const ActionCounts& counts = session_.counts();
-  status.add("run_id", run_id_);
-  status.add("step", session_.process().measurement().header.step);
-  status.add("actions accepted", counts.accepted);
-  status.add("actions dropped: repeated", counts.repeated);
-  status.add("actions dropped: old step", counts.old);
-  status.add("actions dropped: later step", counts.later);
-  status.add("actions dropped: other run", counts.other_run);
-  status.add("actions dropped: wrong size", counts.wrong_size);
-  status.add("actions dropped: not finite", counts.not_finite);
-  status.add("measurements sent again", publishers_.resent());
-  status.add("inputs missing", session_.missingInputs());
-  status.add("realtime slips", session_.pacer().slips());
-  addValues(status);
-  addRefused(status, refused());
-  addRefused(status, authority().refused());
-  addRefused(status, ready_.authority().refused());
-  addRefused(status, keeper_.authority().refused());
 }
 
 }  // namespace fpc

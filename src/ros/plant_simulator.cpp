@@ -75,10 +75,10 @@ std::string PlantSimulator::clamped() const { return joinedLines(forced_.lines()
 
 void PlantSimulator::publishState() {
   std::string remark = joinedLines(joinedLines(late_, clamped()), takeRefusedCommands());
-  if (state_.getNumSubscribers() == 0) return;
   fmbpc::PlantState state = toMsg(simulation_.state());
   state.remark = std::move(remark);
-  state_.publish(shared(std::move(state)));
+  last_ = shared(std::move(state));
+  state_.publish(last_);
 }
 
 Health PlantSimulator::plantHealth() const {

@@ -20,6 +20,7 @@ inline constexpr char kSetpointEffect[] = "setpoint_effect";
 inline constexpr char kDisturbance[] = "disturbance";
 inline constexpr char kDisturbanceEffect[] = "disturbance_effect";
 inline constexpr char kRecorded[] = "recorded";
+inline constexpr char kSampleRecorded[] = "sample_recorded";
 inline constexpr char kReady[] = "ready";
 inline constexpr char kRunEnd[] = "run_end";
 inline constexpr char kLoopState[] = "loop_state";

@@ -2,10 +2,10 @@
 
 #include <fstream>
 
+#include "base/files.hpp"
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "study/replace_file.hpp"
 
 namespace fpc {
 namespace {
@@ -47,7 +47,7 @@ void writeStudyState(const std::string& file, const std::string& fingerprint,
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (runs[i]) done[std::to_string(i)] = toJson(*runs[i]);
   const Json json{{"study", fingerprint}, {"runs", done}};
-  replaceFile(file, json.dump() + "\n");
+  writeText(json.dump() + "\n", file);
 }
 
 std::vector<std::optional<RunJudgement>> readStudyState(const std::string& file,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tool/commands.hpp"
+#include "tool/printed.hpp"
 #include "tool/ranks.hpp"
 #include "tool/study_options.hpp"
 #include "tool/topic_options.hpp"
@@ -247,9 +248,9 @@ int main(int argc, char** argv) {
     const std::string unknown = fpc::tool::unknownCommand(app, argc, argv);
     if (!unknown.empty()) throw std::invalid_argument(unknown);  // before its --help is answered
     app.parse(argc, argv);
-    return chosen();
+    return fpc::tool::printed(chosen());
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
+    if (e.get_exit_code() == 0) return fpc::tool::printed(app.exit(e));
     std::fprintf(stderr, "fmbpc: %s\n", fpc::tool::wrongWith(app, e, argc, argv).c_str());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "fmbpc: %s\n", e.what());

@@ -2,16 +2,18 @@
 """fmbpc_controller against a plant that does everything wrong. The first sample of each test opens a new run."""
 import copy
 import math
+import subprocess
 import sys
 import unittest
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
-from fmbpc.msg import (CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, NodeReady, PlantInfo, Setpoint,
-                       Tracking)
+from fmbpc.msg import (CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, NodeReady, PlantInfo, PlantState,
+                       Recorded, Setpoint, Tracking)
 from fmbpc.srv import ManualInput
 from rosgraph_msgs.msg import Log
+from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 import ring
@@ -181,6 +183,33 @@ class FakePlant(unittest.TestCase):
         self.send(2, final=True)
         self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))
         self.assertNotIn(2, self.steps_answered())
+
+    def test_a_final_sample_of_another_node_than_the_plant_ends_no_record(self):
+        status, recorded = ring.NodeStatus("loop_recorder"), ring.Listener("recorded", String, "/loop_recorder")
+        states, got = ring.publisher("plant_state", PlantState, "/loop_recorder"), ring.Listener("sample_recorded", Recorded)
+
+        def record(step):
+            def held():
+                states.publish(PlantState(run_id=self.info.run_id, step=step, state=[0.0] * 6, outputs=[200.0, 2000.0]))
+                return any((m.run_id, m.step) == (self.info.run_id, step) for m in list(got.messages))
+            ring.wait_until(held, f"sample {step} on record")
+        ring.publisher("measurement", Measurement, "/loop_recorder")
+        self.answer(1)
+        record(1)
+        before = status.counts().get("refused: measurement", 0)
+        forged = f"{{run_id: {self.info.run_id}, step: 2, final: true, outputs: [1, 2], disturbances: [1, 2], input_applied: [0]}}"
+        stranger = subprocess.Popen(ring.tied(["rostopic", "pub", "-r", "20", "/measurement", "fmbpc/Measurement", forged]))
+        self.addCleanup(ring.killed, stranger)
+        states.publish(PlantState(run_id=self.info.run_id, step=2, state=[0.0] * 6, outputs=[200.0, 2000.0]))
+        status.wait(lambda s: int(ring.values(s).get("refused: measurement", 0)) > before + 2)
+        self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))  # the controller listens to anyone
+        self.assertEqual([], recorded.messages)
+        ring.killed(stranger)
+        self.send(3)
+        record(3)
+        self.send(4, final=True)
+        record(4)
+        self.assertEqual([], recorded.messages)  # nobody else's sample 2 is in it
 
     def test_manual_and_back_without_a_bump(self):
         self.applied = list(self.answer(1).input)

@@ -171,6 +171,7 @@ def summary(folder):
     with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
         data = json.load(file)
     assert 0.0 < data.pop("wall_s") < time.monotonic() - LOADED
+    data.pop("run_id", None)
     for key in ("median_us", "p99_us"):
         data.get("clp", {}).pop(key, None)
     return data

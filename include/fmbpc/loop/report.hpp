@@ -31,6 +31,8 @@ struct LockUp {
 struct Summary {
   std::string loop;
   std::string title;
+  std::uint64_t run_id{};      ///< 0: of no plant that was recorded
+  std::uint32_t first_step{};  ///< not 0: a part of an endless run
   bool complete{};        ///< the final sample came, nothing is missing, the plant moved as asked
   std::uint32_t steps{};  ///< number of actions
   double wall_s{};
