@@ -155,6 +155,8 @@ void PredictiveLaw::predict(const LawSample& sample, PredictiveAction& predictio
   prediction.setpoint = sample.setpoint.present();
   prediction.input_base_unclipped = proposal_;
   prediction.input_previous = sample.now.input_applied;
+  prediction.input_lower = limits_.lower;
+  prediction.input_upper = limits_.upper;
 }
 
 void PredictiveLaw::act(const LawSample& sample, ControllerOutput& output) {

@@ -44,6 +44,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
       limits_(std::move(limits)),
       plant_(std::move(plant)),
       last_input_(std::move(initial_input)),
+      transfer_(countOf(plant_.inputs)),
       moves_(limits_),
       plausibility_(std::move(plausibility), plant_),
       recent_(plant_),
@@ -231,9 +232,12 @@ void ControllerSession::runLaw(const Measurement& m) {
       reset_reason_ += interruption_;
     }
     controller_->reset(m);
+    transfer_.reset(other_hand_ || transfer_.active());
+    other_hand_ = false;
     interruption_ = nullptr;
     arrival_reason_.clear();
   }
+  if (std::exchange(gains_due_, false)) lookAtGains(m);
   output_.begin();
   controller_->step(m, setpoint_, output_);
   if (output_.reference.size() == m.outputs.size()) answer_.tracking.reference = output_.reference;
@@ -241,12 +245,21 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
     return hold(m, "the law gave no finite input: input held");
   answer_.base.input = output_.input;
+  handOver(m);
   limit(m);
   answer_.base.source = output_.source;
   answer_.has_prediction = output_.predictive && !m.final;
   if (!answer_.has_prediction) return;
   answer_.prediction = output_.prediction;
   answer_.prediction.header = m.header;
+}
+
+/// Of the first model, at the first sample.
+void ControllerSession::lookAtGains(const Measurement& m) {
+  const std::string weak = weakDirection(model_, m);
+  if (weak.empty()) return;
+  model_remark_ = weak;
+  remark_due_ = true;
 }
 
 void ControllerSession::setModel(const TsModel& model) {
@@ -265,6 +278,7 @@ void ControllerSession::setModel(const TsModel& model) {
   controller_->setModel(model);
   model_ = std::move(matched);
   if (matters) plausibility_.setModel(model_);
+  gains_due_ = matters && models_ == 0;
   const int window = plausibility_.params().reaction_samples;
   if (matters && window > 0) reaction_ = std::make_unique<ReactionWatch>(model_, window);
   ++models_;

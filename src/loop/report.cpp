@@ -24,7 +24,7 @@ RecordLayout layoutOf(const RunRecord& record) {
 }
 
 constexpr const char* kSourceNames[] = {"",     "base",   "constrained", "clipped",
-                                        "held", "manual", "fallback"};
+                                        "held", "manual", "fallback",    "guarded"};
 
 /// JSON has no infinity: an absent limit is null.
 Json outputsOf(const Summary& summary) {

@@ -30,7 +30,7 @@ double toleranceOf(const InputLimits& limits, Index i) {
 
 bool isOfLaw(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kConstrained ||
-         source == ActionSource::kClipped;
+         source == ActionSource::kClipped || source == ActionSource::kGuarded;
 }
 
 void addUnplayed(const LoopFile& loop, Summary& summary) {
@@ -64,7 +64,7 @@ Summary blank(const LoopFile& loop) {
   }
   for (const Consumption& item : loop.report.consumption)
     summary.consumption.emplace_back(item.name, 0.0);
-  summary.sources.assign(static_cast<std::size_t>(ActionSource::kFallback) + 1, 0);
+  summary.sources.assign(static_cast<std::size_t>(ActionSource::kGuarded) + 1, 0);
   return summary;
 }
 

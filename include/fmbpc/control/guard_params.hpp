@@ -17,7 +17,7 @@ struct GuardParams {
   double trust_high{0.75};             ///< above: the law acts freely (again)
   double least_move{0.25};             ///< largest move at no trust, in parts of an input's range
   int look_ahead{10};                  ///< samples of a plan that shrink moves; 0: the present one
-  int horizon_least{12};               ///< errors of a plan that always count; 0: all do
+  int horizon_least{12};               ///< errors after the dead time that count; 0: all do
   int return_samples{10};              ///< so long above trust_high before the law is back
   std::shared_ptr<const PiParams> pi;  ///< the fallback; without: moves shrink with trust
   int lock_samples{0};                 ///< an input so long at its bound is suspected; 0: never

@@ -16,6 +16,11 @@ void readWeights(YamlSection& section, const ControllerContext& loop, FmbpcParam
   params.weight_move = Vector::Zero(loop.inputCount());
   section.byName("weight_output", params.weight_output, loop.outputs(), kFiniteNotNegative);
   section.byName("weight_move", params.weight_move, loop.inputs(), kFiniteNotNegative);
+  params.weight_input = Vector::Zero(loop.inputCount());
+  params.input_target = loop.initial_input;
+  if (params.law != FmbpcForm::kIterated) return;
+  section.byName("weight_input", params.weight_input, loop.inputs(), kFiniteNotNegative);
+  section.byName("input_target", params.input_target, loop.inputs(), kFinite);
 }
 
 void readForecast(YamlSection& section, const ControllerContext& loop, FmbpcParams& params) {

@@ -110,7 +110,7 @@ class IteratedLaw final : public InputLaw {
 
   InputLimitedIlqr solver_;
   DisturbanceForecast& forecast_;
-  Eigen::Index lead_;
+  Eigen::Index lead_, dead_time_;
   Matrix aimed_;  ///< n_y N, the references of x(k+1)...x(k+N)
   double trust_heeded_{0.0};
   Eigen::Index trust_least_{};

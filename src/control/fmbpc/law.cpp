@@ -11,8 +11,11 @@
 namespace fpc {
 namespace {
 
-const FmbpcParams& valid(const FmbpcParams& params, const PlantInfo& plant) {
-  params.validate(countOf(plant.outputs), countOf(plant.inputs));
+FmbpcParams valid(FmbpcParams params, const PlantInfo& plant) {
+  const Eigen::Index n_u = countOf(plant.inputs);
+  params.validate(countOf(plant.outputs), n_u);
+  if (params.weight_input.size() == 0)
+    params.weight_input = params.input_target = Vector::Zero(n_u);
   return params;
 }
 
@@ -24,9 +27,9 @@ std::vector<std::string> outputSignals(const FmbpcParams& params) {
 }  // namespace
 
 FmbpcLaw::FmbpcLaw(const FmbpcParams& params, const InputLimits& limits, const PlantInfo& plant)
-    : PredictiveLaw(valid(params, plant), limits, plant, outputSignals(params),
-                    namesOf(params.observer.estimated)),
-      params_(params),
+    : PredictiveLaw((params.validate(countOf(plant.outputs), countOf(plant.inputs)), params),
+                    limits, plant, outputSignals(params), namesOf(params.observer.estimated)),
+      params_(valid(params, plant)),
       forecast_(countOf(plant.disturbances), params.horizon_steps, params.forecast_period_steps,
                 params.forecast_pole, params.forecast_memory_steps) {}
 
@@ -52,7 +55,7 @@ Settings FmbpcLaw::settings() const {
 bool FmbpcLaw::retune(const Settings& settings) {
   FmbpcParams next = params_;
   fmbpcSettings().take(settings, {plant().outputs, plant().inputs}, next);
-  params_ = valid(next, plant());
+  params_ = valid(std::move(next), plant());
   if (LawCore* core = newest()) static_cast<FmbpcCore*>(core)->prepareTuning(params_);
   tuningPrepared(params_.reference_pole);
   return true;

@@ -53,6 +53,13 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
           "an integer from 1 to 1000");
   requireNonNegative(weight_output, n_y, "controller.weight_output");
   requireNonNegative(weight_move, n_u, "controller.weight_move");
+  if (weight_input.size() > 0 || input_target.size() > 0) {
+    requireNonNegative(weight_input, n_u, "controller.weight_input");
+    require(input_target.size() == n_u && input_target.allFinite(), "controller.input_target",
+            std::to_string(n_u) + " finite numbers");
+    require(law == FmbpcForm::kIterated || weight_input.isZero(0.0), "controller.weight_input",
+            "0 for a law other than iterated");
+  }
   require((weight_output.array() > 0.0).any(), "controller.weight_output",
           "at least one number > 0");
 }
