@@ -5,6 +5,7 @@
 
 #include "fmbpc/fuzzy/domain.hpp"
 #include "fmbpc/fuzzy/model_inputs.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/fuzzy/process_trust.hpp"
 #include "fmbpc/loop/report.hpp"
 
@@ -13,6 +14,11 @@ namespace fpc {
 bool hasDomain(const LoopFile& loop) {
   const bool predicts = loop.has_model && loop.controller && loop.controllerType().needs_model;
   return predicts && knowsDomain(loop.model);
+}
+
+Rejections::Rejections(const LoopFile& loop) : judge_(loop.plausibility, loop.plant_info) {
+  if (loop.has_model && loop.controller && loop.controllerType().needs_model)
+    judge_.setModel(matchToPlant(loop.model, loop.plant_info));
 }
 
 // Where a sample is missing, rates and jumps are counted anew, as the controller does.

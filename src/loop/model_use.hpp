@@ -9,10 +9,11 @@ namespace fpc {
 
 /// Whether the loop's law predicts with a model that knows its data.
 bool hasDomain(const LoopFile& loop);
-/// Which measurements of a record its controller rejected: the same judgement once more.
+/// Which measurements of a record its controller rejected: the same judgement once more, without
+/// the forecasts of the law, that is, of readings that were not taken anew.
 class Rejections {
  public:
-  explicit Rejections(const LoopFile& loop) : judge_(loop.plausibility, loop.plant_info) {}
+  explicit Rejections(const LoopFile& loop);
   void look(const SampleRecord& sample);
   /// In the sample looked at last; signals are outputs, then disturbances.
   bool of(std::size_t signal) const { return seen_ && judge_.doubt(signal) != Doubt::kNone; }
