@@ -10,6 +10,7 @@ namespace fpc {
 namespace {
 
 constexpr double kJumpOfRange = 0.5;
+constexpr int kBridged = 3;
 
 /// The plant's range, wider by a part of itself; an endless one asks nothing.
 SignalPlausibility defaultsOf(const SignalInfo& signal, double margin, bool may_step) {
@@ -52,6 +53,7 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   const PlantInfo& plant = loop.plant_info;
   const ActuatorParams& actuator = loop.simulation.actuator;
   params.enabled = params.gain_sign = true;
+  params.bridge_samples = kBridged;
   params.fallback = actuator.fallback;
   params.hold_samples = actuator.hold_samples;
   params.needs = loop.controller->signalUse(controllerContext(loop)).needed;
@@ -60,6 +62,7 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   double margin = 0.1;
   section.boolean("enabled", params.enabled);
   section.integer("hold_samples", params.hold_samples, -1);
+  section.integer("bridge_samples", params.bridge_samples, 0);
   section.number("margin", margin, kFiniteNotNegative);
   section.number("frozen_input", params.frozen_input, kFiniteNotNegative);
   section.boolean("gain_sign", params.gain_sign);

@@ -11,7 +11,7 @@ namespace fpc {
 namespace {
 
 constexpr double kRounding = 1e-9;
-constexpr std::size_t kVerdicts = 4;
+constexpr std::size_t kActions = 4;
 
 std::vector<SignalPlausibility> joined(const PlausibilityParams& params, const PlantInfo& plant) {
   std::vector<SignalPlausibility> all = params.outputs;
@@ -56,17 +56,15 @@ Doubt doubtOf(NoValue why) {
   return why == NoValue::kMissing ? Doubt::kMissing : Doubt::kNoNumber;
 }
 
-std::string actionOf(Verdict verdict, Substitute substitute) {
-  if (verdict == Verdict::kHold) return "input held";
-  if (verdict == Verdict::kFallback) return "the configured fallback";
-  return substitute == Substitute::kModel ? "the model's value is used"
-                                          : "its last good value is used";
-}
+constexpr const char* kActionWords[kActions] = {"its last good value is used",
+                                                "the model's value is used", "input held",
+                                                "the configured fallback"};
 
 }  // namespace
 
 void PlausibilityParams::validate(std::size_t n_y, std::size_t n_d, Eigen::Index n_u) const {
   require(hold_samples >= -1, "plausibility.hold_samples", "an integer >= -1");
+  require(bridge_samples >= 0, "plausibility.bridge_samples", "an integer >= 0");
   require(frozen_input >= 0.0 && std::isfinite(frozen_input), "plausibility.frozen_input",
           "a number >= 0");
   require(fallback.size() == 0 || (fallback.size() == n_u && fallback.allFinite()),
@@ -99,8 +97,7 @@ Plausibility::Plausibility(PlausibilityParams params, const PlantInfo& plant)
   }
   for (Memory& signal : signals_)
     signal.input_low = signal.input_high = Vector::Zero(input_range_.size());
-  for (std::size_t i = 0; i < n_y_; ++i)
-    uses_model_ = uses_model_ || asked_[i].substitute == Substitute::kModel;
+  expected_ = Vector::Zero(static_cast<Eigen::Index>(n_y_));
   writeWords(plant);
 }
 
@@ -109,9 +106,9 @@ void Plausibility::writeWords(const PlantInfo& plant) {
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     const std::string& name = i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name;
     for (std::size_t doubt = 0; doubt < kDoubts; ++doubt)
-      for (std::size_t verdict = 0; verdict < kVerdicts; ++verdict)
+      for (const char* action : kActionWords)
         texts_[i].push_back(name + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) + ": " +
-                            actionOf(static_cast<Verdict>(verdict), asked_[i].substitute));
+                            action);
   }
 }
 
@@ -121,7 +118,6 @@ void Plausibility::reset() {
     signal.same = signal.at_level = 0;
     signal.since_good = 0;
   }
-  has_expected_ = false;
   doubted_ = 0;
 }
 
@@ -171,21 +167,34 @@ Doubt Plausibility::judge(Memory& signal, const SignalPlausibility& asked, doubl
   return frozen ? Doubt::kFrozen : Doubt::kNone;
 }
 
-/// False if there is nothing to put in its place.
-bool Plausibility::replace(std::size_t signal) {
-  Memory& memory = signals_[signal];
-  const auto row = static_cast<Eigen::Index>(signal);
-  const bool model = asked_[signal].substitute == Substitute::kModel && has_expected_ &&
-                     signal < n_y_ && std::isfinite(expected_[row]);
-  const double value = model ? expected_[row] : memory.has_good ? memory.good : 0.0;
-  const auto first = static_cast<Eigen::Index>(n_y_);
-  (signal < n_y_ ? accepted_.outputs[row] : accepted_.disturbances[row - first]) = value;
-  return model || memory.has_good;
+/// A gap that is short is bridged, whatever is asked for a long one.
+Substitute Plausibility::substituteOf(std::size_t signal) const {
+  const auto bridged = static_cast<std::uint64_t>(params_.bridge_samples);
+  return signals_[signal].since_good <= bridged ? Substitute::kModel : asked_[signal].substitute;
 }
 
-Verdict Plausibility::look(const Measurement& now) {
+bool Plausibility::expectsFrom(const Foresee& foresee) {
+  if (!asked_law_) has_expected_ = foresee && foresee(expected_);
+  asked_law_ = true;
+  return has_expected_;
+}
+
+/// False if there is nothing to put in its place.
+bool Plausibility::replace(std::size_t signal, const Foresee& foresee) {
+  Memory& memory = signals_[signal];
+  const auto row = static_cast<Eigen::Index>(signal);
+  memory.foreseen = signal < n_y_ && substituteOf(signal) == Substitute::kModel &&
+                    expectsFrom(foresee) && std::isfinite(expected_[row]);
+  const double value = memory.foreseen ? expected_[row] : memory.has_good ? memory.good : 0.0;
+  const auto first = static_cast<Eigen::Index>(n_y_);
+  (signal < n_y_ ? accepted_.outputs[row] : accepted_.disturbances[row - first]) = value;
+  return memory.foreseen || memory.has_good;
+}
+
+Verdict Plausibility::look(const Measurement& now, const Foresee& foresee) {
   bool any = false, doubted = false, repaired = true;
   accepted_ = now;
+  asked_law_ = false;
   const auto first = static_cast<Eigen::Index>(n_y_);
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     Memory& signal = signals_[i];
@@ -200,10 +209,10 @@ Verdict Plausibility::look(const Measurement& now) {
     }
     ++signal.since_good;
     any = true;
-    const bool replaced = replace(i);
+    const bool replaced = replace(i, foresee);
     if (!needed_[i]) continue;
     doubted = true;
-    repaired = repaired && replaced && asked_[i].substitute != Substitute::kHold;
+    repaired = repaired && replaced && substituteOf(i) != Substitute::kHold;
   }
   doubted_ = doubted ? std::min(doubted_ + 1, std::numeric_limits<int>::max() - 1) : 0;
   Verdict verdict = any ? Verdict::kRepaired : Verdict::kClean;
@@ -219,20 +228,13 @@ void Plausibility::say(Verdict verdict) {
   const bool needed_only = verdict == Verdict::kHold || verdict == Verdict::kFallback;
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     if (signals_[i].doubt == Doubt::kNone || (needed_only && !needed_[i])) continue;
-    const std::size_t text = static_cast<std::size_t>(signals_[i].doubt) * kVerdicts;
-    words_ = texts_[i][text + static_cast<std::size_t>(verdict)].c_str();
+    const std::size_t action = verdict == Verdict::kFallback ? 3
+                               : verdict == Verdict::kHold   ? 2
+                               : signals_[i].foreseen        ? 1
+                                                             : 0;
+    words_ = texts_[i][static_cast<std::size_t>(signals_[i].doubt) * kActions + action].c_str();
     return;
   }
-}
-
-// y(k+1) = C (A x(k) + B u(k) + g) + h
-void Plausibility::expect(const PredictiveAction& prediction, VectorRef input) {
-  state_ = prediction.offset_state;
-  state_.noalias() += prediction.A * prediction.state;
-  state_.noalias() += prediction.B * input;
-  expected_ = prediction.offset_output;
-  expected_.noalias() += prediction.C * state_;
-  has_expected_ = true;
 }
 
 }  // namespace fpc

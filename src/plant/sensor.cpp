@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kEarly = 1e-6;  // [s], rounding of times that are sums of steps
 constexpr double kClassNoise = 0.025;
+constexpr std::uint64_t kLossStream = 1;
 
 bool isTime(double value) { return std::isfinite(value) && value >= 0.0; }
 
@@ -22,6 +23,7 @@ void SensorParams::validate() const {
   require(isTime(delay_s), "delay_s", "a time >= 0");
   require(isTime(interval_s), "interval_s", "a time >= 0");
   require(std::isfinite(noise_std) && noise_std >= 0.0, "noise_std", "a finite number >= 0");
+  require(lost >= 0.0 && lost <= 1.0, "lost", "a number from 0 to 1");
   require(lower < upper, "upper", "a number > lower");
   require(stuck_from_h >= 0.0 && stuck_from_h <= stuck_to_h, "stuck_to_h",
           "a time >= stuck_from_h");
@@ -55,6 +57,7 @@ Sensor::Sensor(const SensorParams& params, double step_s, std::uint64_t seed, st
 
 void Sensor::reset(double value) {
   engine_ = seededEngine(seed_, {stream_});
+  lost_ = seededEngine(seed_, {stream_, kLossStream});
   if (chain_) chain_->reset(value);
   std::fill(line_.begin(), line_.end(), value);
   next_ = 0;
@@ -100,6 +103,8 @@ void Sensor::show() {
   const double noise = params_.noise_std > 0.0 ? params_.noise_std * standardNormal(engine_) : 0.0;
   reading_ = std::clamp(shown_ + noise, params_.lower, params_.upper);
 }
+
+bool Sensor::loses() { return params_.lost > 0.0 && uniform(lost_) < params_.lost; }
 
 double Sensor::take() {
   const double value =

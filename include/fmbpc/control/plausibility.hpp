@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ enum class Verdict : std::uint8_t {
   kFallback,
 };
 
+/// The outputs that the law expects at a sample; false if it expects nothing.
+using Foresee = std::function<bool(Eigen::Ref<Vector>)>;
+
 /// Signals are numbered: outputs, then disturbances. A signal that the law does not need is
 /// replaced by its last good value and never holds an input. No allocation after the first sample.
 class Plausibility {
@@ -41,13 +45,10 @@ class Plausibility {
   /// A new run, or samples were lost: rates and jumps are measured from the next sample on.
   void reset();
   void need(std::size_t signal, bool needed) { needed_[signal] = needed; }
-  Verdict look(const Measurement& now);
+  /// `foresee` is asked only for an output in whose place it is needed.
+  Verdict look(const Measurement& now, const Foresee& foresee = {});
   /// The sample with every doubted value replaced.
   const Measurement& accepted() const { return accepted_; }
-  /// The law's forecast y(k+1) out of sample k, for Substitute::kModel.
-  void expect(const PredictiveAction& prediction, VectorRef input);
-  bool usesModel() const { return uses_model_; }  ///< some signal asks for a forecast
-  void expectNothing() { has_expected_ = false; }
   Doubt doubt(std::size_t signal) const { return signals_[signal].doubt; }
   /// Of the first doubted signal, with what is done about it; lives as long as this object.
   const char* words() const { return words_; }
@@ -59,13 +60,15 @@ class Plausibility {
     double good{}, raw{}, level{};
     std::uint64_t since_good{};  // samples
     int same{}, at_level{};
-    bool has_good{false}, has_raw{false};
+    bool has_good{false}, has_raw{false}, foreseen{false};
     Vector input_low, input_high;  // while the raw value was the same
   };
   Doubt judge(Memory& signal, const SignalPlausibility& asked, double value, VectorRef input);
   bool isFrozen(Memory& signal, const SignalPlausibility& asked, double value, VectorRef input);
   bool jumped(Memory& signal, const SignalPlausibility& asked, double value) const;
-  bool replace(std::size_t signal);
+  Substitute substituteOf(std::size_t signal) const;
+  bool expectsFrom(const Foresee& foresee);
+  bool replace(std::size_t signal, const Foresee& foresee);
   void say(Verdict verdict);
   void writeWords(const PlantInfo& plant);
 
@@ -76,11 +79,11 @@ class Plausibility {
   std::vector<SignalPlausibility> asked_;  // outputs, then disturbances
   std::vector<Memory> signals_;
   std::vector<bool> needed_;
-  std::vector<std::vector<std::string>> texts_;  // by signal; by doubt and verdict
+  std::vector<std::vector<std::string>> texts_;  // by signal; by doubt and action
   const char* words_{""};
   Measurement accepted_;
-  Vector state_, expected_;
-  bool has_expected_{false}, uses_model_{false};
+  Vector expected_;
+  bool asked_law_{false}, has_expected_{false};  // at this sample
   int doubted_{};  // samples in a row with a doubt about a needed signal
 };
 
