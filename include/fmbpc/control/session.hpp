@@ -159,7 +159,7 @@ class ControllerSession {
   void forgetSamples();
   void keep(const Measurement& accepted);
   void interrupt();
-  void expectNext();
+  bool foresee(const Measurement& m, Eigen::Ref<Vector> outputs);
   void noteNeeds();
   void sendManual(const Measurement& m);
   void restoreManual(const OperatorWishes& wishes);
