@@ -5,13 +5,13 @@
 #include <cstdlib>
 
 #include "base/random.hpp"
+#include "base/text_hash.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "study/loop_contents.hpp"
-#include "base/text_hash.hpp"
 
 namespace fpc {
 namespace {
