@@ -1,5 +1,6 @@
 #include "ros/neighbours.hpp"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <ifaddrs.h>
 #include <netdb.h>
@@ -73,6 +74,16 @@ std::string uriOf(const std::string& node) {
 }
 
 }  // namespace
+
+std::string addressOf(const std::string& host) {
+  const Addresses found = resolve(host, "");
+  char text[INET_ADDRSTRLEN] = "";
+  if (found) {
+    const in_addr number{htonl(numberOf(found->ai_addr))};
+    inet_ntop(AF_INET, &number, text, sizeof text);
+  }
+  return text;
+}
 
 std::string ownAddressProblem(const std::string& own_host, const std::string& master_host) {
   const Addresses own = resolve(own_host, ""), master = resolve(master_host, "");

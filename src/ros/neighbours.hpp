@@ -8,6 +8,9 @@
 
 namespace fpc {
 
+/// IPv4 address of a host by its name, in digits; empty: nobody knows one.
+std::string addressOf(const std::string& host);
+
 /// What is wrong with the name or address that this node gives to others, in words; empty: nothing.
 /// `master_host` as in ROS_MASTER_URI.
 std::string ownAddressProblem(const std::string& own_host, const std::string& master_host);

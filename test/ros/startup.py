@@ -2,6 +2,7 @@
 """Sample 0 waits for everybody. Nodes are started one by one here, the loop text is on the parameter server."""
 import subprocess
 import sys
+import time
 import unittest
 
 import rospy
@@ -56,6 +57,22 @@ class Startup(unittest.TestCase):
         self.assertIn("not ready within loop.ready_timeout_s = 3 s: /impatient/fmbpc_controller, "
                       "/impatient/fuzzy_identifier, /impatient/loop_recorder\n", text.replace("\x1b[0m", ""))
         self.assertIn(f"ready of {rospy.get_name()} dropped: it speaks for /impatient/fuzzy_identifier", text)
+
+    def test_a_plc_where_nobody_answers_is_named_at_once_and_the_plant_ends(self):
+        for host, port, why in (("127.0.0.1", ring.free_port(), "Connection refused"),
+                                ("no-such-plc.invalid", 502, "no such host is known")):
+            sets = [f"gateway.modbus.host={host}", f"gateway.modbus.port={port}", "loop.ready_timeout_s=4"]
+            text = subprocess.run([ring.program("fmbpc"), "resolve", "cstr_modbus", "--sets", " ".join(sets)], capture_output=True,
+                                  text=True, check=True).stdout
+            rospy.set_param("lonely/loop_text", text)
+            begun = time.monotonic()
+            gateway = self.start("plant_gateway", "__ns:=lonely", stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            words = f"no connection to {host}:{port}: {why}"
+            self.assertIn(words, gateway.stderr.readline())
+            self.assertLess(time.monotonic() - begun, 5.0)
+            rest = gateway.stderr.read()
+            self.assertEqual(1, gateway.wait(ring.PATIENCE))
+            self.assertIn(f"the plant ({words}), ", rest)
 
     def test_a_controller_without_a_model_is_not_ready_and_one_that_joins_late_finds_sample_0(self):
         measurements, recorded = (ring.Listener(topic, kind, connected=False)
