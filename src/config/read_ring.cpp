@@ -48,6 +48,7 @@ std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& l
           {"operator_kept", plant},
           {"model_kept", plant},
           {"enable", {}},
+          {"tags", {}},
           {"services", {}}};
 }
 

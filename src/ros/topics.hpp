@@ -31,6 +31,7 @@ inline constexpr char kClock[] = "/clock";
 
 // Keys of loop.publishers that are no topics: gateway.enable_topic, private services.
 inline constexpr char kEnable[] = "enable";
+inline constexpr char kTags[] = "tags";
 inline constexpr char kServices[] = "services";
 
 // Private action.
