@@ -38,9 +38,8 @@ struct ActionCounts {
 /// - lockstep moves on when it has come and waits for ever; paced also waits for the period, and
 ///   for action_timeout_s at most: then it goes on at the period, as realtime does, until an action
 ///   comes again; what the input is meanwhile is the actuator's rule (hold, then fallback);
-/// - an input that does not follow its command is held, if the loop file says so (StuckParams):
-/// what
-///   a law asks of it is not passed on; a person's input and a fallback are;
+/// - an input that does not follow its command is held, if the loop file says so (StuckParams): a
+///   person's input and a fallback are passed on, what a law asks of it is not;
 /// - paused: only step() moves on;
 /// - the final sample is sent again until finish() says that it has arrived.
 class PlantSession {
