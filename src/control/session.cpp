@@ -40,7 +40,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
                                      Vector initial_input, PlantInfo plant, double max_pole,
                                      PlausibilityParams plausibility)
     : controller_(std::move(controller)),
-      setpoint_(std::move(setpoint), plant.outputs, clockOf(plant)),
+      setpoint_(std::move(setpoint), plant, clockOf(plant)),
       limits_(std::move(limits)),
       plant_(std::move(plant)),
       last_input_(std::move(initial_input)),
