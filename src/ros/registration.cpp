@@ -21,6 +21,8 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
+constexpr int kEachLook = 8;  // so often; then every so many, for one whom nothing helps
+
 XmlRpcValue request(const std::vector<std::string>& arguments) {
   XmlRpcValue all;
   all[0] = ros::this_node::getName();
@@ -121,7 +123,7 @@ bool Links::lacks(const std::string& what, const std::string& node) {
   const auto known = before_.find(what);
   const int looks = known == before_.end() ? 1 : known->second.looks + 1;
   lacking_[what] = {looks, node};
-  return looks > 1;
+  return looks > 1 && (looks <= kEachLook || looks % kEachLook == 0);
 }
 
 Links::Master Links::look(const std::vector<std::string>& spaces, NodeAddresses& addresses) try {
@@ -130,6 +132,9 @@ Links::Master Links::look(const std::vector<std::string>& spaces, NodeAddresses&
     return Master::kSilent;
   before_ = std::exchange(lacking_, {});
   registered_ = 0;
+  const std::string& known = addresses.of(ros::this_node::getName());
+  if (!known.empty() && known != ros::XMLRPCManager::instance()->getServerURI())
+    return Master::kAnswers;  // another process has its name now, and this one is told to end
   const ByTopic publishers = byTopic(state[0]);
   lookAtTopics(publishers, byTopic(state[1]));
   lookAtServices(byTopic(state[2]), spaces);
@@ -181,20 +186,20 @@ void Links::lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses
   for (const std::string& topic : names) {
     const auto found = publishers.find(topic);
     if (found == publishers.end()) continue;
-    XmlRpcValue all = request({topic}), whole = all, done;
-    all[2].setSize(0);
-    whole[2].setSize(0);
+    XmlRpcValue kept = request({topic}), done;
+    kept[2].setSize(0);
+    for (const std::string& uri : to[topic]) kept[2][kept[2].size()] = uri;
+    XmlRpcValue all = kept;
     bool lacking = false;
     for (const std::string& node : found->second) {
-      const std::string uri = addresses.of(node);
-      if (uri.empty()) continue;
+      const std::string& uri = addresses.of(node);
+      if (node == ros::this_node::getName() || uri.empty() || to[topic].count(uri) > 0) continue;
+      if (!answersAt(uri, 0.5)) continue;  // whoever cannot be reached is told of elsewhere
       all[2][all[2].size()] = uri;
-      if (node == ros::this_node::getName() || to[topic].count(uri) > 0)
-        whole[2][whole[2].size()] = uri;
-      else if (answersAt(uri, 0.5))  // whoever cannot be reached is told of elsewhere
-        lacking = lacks(topic + " of " + node, node) || lacking;
+      lacking = lacks(topic + " of " + node, node) || lacking;
     }
-    if (lacking && askSelf("publisherUpdate", whole, done)) askSelf("publisherUpdate", all, done);
+    // The first drops a connection that roscpp has given up for now.
+    if (lacking && askSelf("publisherUpdate", kept, done)) askSelf("publisherUpdate", all, done);
   }
 }
 

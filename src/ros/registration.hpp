@@ -33,7 +33,7 @@ class Links {
   enum class Master { kAnswers, kSilent, kForgot };
   /// Compares what the master has of this process (services: in `spaces`, the names of its nodes)
   /// with what there is, and who publishes what it subscribes to with whom it is connected to. What
-  /// lacks in two looks running is made again, each time. `addresses`: of this look.
+  /// lacks in two looks running is made again. `addresses`: of this look.
   /// @return kForgot: something was registered again.
   Master look(const std::vector<std::string>& spaces, NodeAddresses& addresses);
   /// Something lacked in the last look.
