@@ -122,7 +122,7 @@ bool KeptParameters::putBack() const {
 bool Links::lacks(const std::string& what, const std::string& node) {
   const auto known = before_.find(what);
   const int looks = known == before_.end() ? 1 : known->second.looks + 1;
-  lacking_[what] = {looks, node};
+  missing_[what] = {looks, node};
   return looks > 1 && (looks <= kEachLook || looks % kEachLook == 0);
 }
 
@@ -130,7 +130,7 @@ Links::Master Links::look(const std::vector<std::string>& spaces, NodeAddresses&
   XmlRpcValue response, state;
   if (!ros::master::execute("getSystemState", request({}), response, state, false))
     return Master::kSilent;
-  before_ = std::exchange(lacking_, {});
+  before_ = std::exchange(missing_, {});
   registered_ = 0;
   const std::string& known = addresses.of(ros::this_node::getName());
   if (!known.empty() && known != ros::XMLRPCManager::instance()->getServerURI())
@@ -190,24 +190,23 @@ void Links::lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses
     kept[2].setSize(0);
     for (const std::string& uri : to[topic]) kept[2][kept[2].size()] = uri;
     XmlRpcValue all = kept;
-    bool lacking = false;
+    bool incomplete = false;
     for (const std::string& node : found->second) {
       const std::string& uri = addresses.of(node);
       if (node == ros::this_node::getName() || uri.empty() || to[topic].count(uri) > 0) continue;
       if (!answersAt(uri, 0.5)) continue;  // whoever cannot be reached is told of elsewhere
       all[2][all[2].size()] = uri;
-      lacking = lacks(topic + " of " + node, node) || lacking;
+      incomplete = lacks(topic + " of " + node, node) || incomplete;
     }
     // The first drops a connection that roscpp has given up for now.
-    if (lacking && askSelf("publisherUpdate", kept, done)) askSelf("publisherUpdate", all, done);
+    if (incomplete && askSelf("publisherUpdate", kept, done)) askSelf("publisherUpdate", all, done);
   }
 }
 
 std::string Links::missing(const std::set<std::string>& members) const {
   std::string words;
-  for (const auto& [what, lacking] : lacking_)
-    if (lacking.looks > 2 && members.count(lacking.node) > 0)
-      words += (words.empty() ? "" : ", ") + what;
+  for (const auto& [what, item] : missing_)
+    if (item.looks > 2 && members.count(item.node) > 0) words += (words.empty() ? "" : ", ") + what;
   return words;
 }
 
