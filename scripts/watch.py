@@ -126,7 +126,7 @@ class Window:
             axis.autoscale_view(scalex=False)
             axis.set_xlim(left, left + length)
         if outcome or state:
-            self.axes[0].set_title(outcome[1] if outcome else f"{state.word}: {state.reason}", fontsize="medium")
+            self.axes[0].set_title(outcome[1].partition(": recorded in")[0] if outcome else f"{state.word}: {state.reason}", fontsize="medium")
 
 
 def collect(view, seconds, pause):

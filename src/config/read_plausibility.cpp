@@ -11,6 +11,7 @@ namespace fpc {
 namespace {
 
 constexpr double kJumpOfRange = 0.5;
+constexpr int kBridged = 3;
 
 /// What is known of the instrument: where its scale ends, and how late it is.
 void describeInstrument(const LoopFile& loop, const SignalInfo& signal, SignalPlausibility& asked) {
@@ -70,6 +71,7 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   const PlantInfo& plant = loop.plant_info;
   const ActuatorParams& actuator = loop.simulation.actuator;
   params.enabled = params.gain_sign = true;
+  params.bridge_samples = kBridged;
   params.fallback = actuator.fallback;
   params.range_falls = root.section("actuator").has("fallback");  // an initial input is none
   params.hold_samples = actuator.hold_samples;
@@ -79,6 +81,7 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   double margin = 0.1;
   section.boolean("enabled", params.enabled);
   section.integer("hold_samples", params.hold_samples, -1);
+  section.integer("bridge_samples", params.bridge_samples, 0);
   section.number("margin", margin, kFiniteNotNegative);
   section.number("frozen_input", params.frozen_input, kFiniteNotNegative);
   section.boolean("gain_sign", params.gain_sign);

@@ -11,7 +11,7 @@ namespace fpc {
 namespace {
 
 constexpr double kRounding = 1e-9;
-constexpr std::size_t kVerdicts = 4;
+constexpr std::size_t kActions = 4;
 
 std::vector<SignalPlausibility> joined(const PlausibilityParams& params, const PlantInfo& plant) {
   std::vector<SignalPlausibility> all = params.outputs;
@@ -58,17 +58,15 @@ Doubt doubtOf(NoValue why) {
   return why == NoValue::kMissing ? Doubt::kMissing : Doubt::kNoNumber;
 }
 
-std::string actionOf(Verdict verdict, Substitute substitute) {
-  if (verdict == Verdict::kHold) return "input held";
-  if (verdict == Verdict::kFallback) return "the configured fallback";
-  return substitute == Substitute::kModel ? "the model's value is used"
-                                          : "its last good value is used";
-}
+constexpr const char* kActionWords[kActions] = {"its last good value is used",
+                                                "the model's value is used", "input held",
+                                                "the configured fallback"};
 
 }  // namespace
 
 void PlausibilityParams::validate(std::size_t n_y, std::size_t n_d, Eigen::Index n_u) const {
   require(hold_samples >= -1, "plausibility.hold_samples", "an integer >= -1");
+  require(bridge_samples >= 0, "plausibility.bridge_samples", "an integer >= 0");
   require(frozen_input >= 0.0 && std::isfinite(frozen_input), "plausibility.frozen_input",
           "a number >= 0");
   require(fallback.size() == 0 || (fallback.size() == n_u && fallback.allFinite()),
@@ -102,11 +100,9 @@ Plausibility::Plausibility(PlausibilityParams params, const PlantInfo& plant)
   }
   for (Memory& signal : signals_)
     signal.input_low = signal.input_high = Vector::Zero(input_range_.size());
-  for (std::size_t i = 0; i < n_y_; ++i) {
+  for (std::size_t i = 0; i < n_y_; ++i)
     output_range_[static_cast<Eigen::Index>(i)] = plant.outputs[i].upper - plant.outputs[i].lower;
-    uses_model_ = uses_model_ || asked_[i].substitute == Substitute::kModel ||
-                  (params_.enabled && asked_[i].frozen_samples < 0);
-  }
+  expected_ = Vector::Zero(static_cast<Eigen::Index>(n_y_));
   writeWords(plant);
 }
 
@@ -115,10 +111,9 @@ void Plausibility::writeWords(const PlantInfo& plant) {
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     const std::string& name = i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name;
     for (std::size_t doubt = 0; doubt < kDoubts; ++doubt)
-      for (std::size_t verdict = 0; verdict < kVerdicts; ++verdict)
-        texts_[i].push_back(
-            name + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) + ": " +
-            actionOf(static_cast<Verdict>(verdict), substituteOf(i, static_cast<Doubt>(doubt))));
+      for (const char* action : kActionWords)
+        texts_[i].push_back(name + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) + ": " +
+                            action);
   }
 }
 
@@ -129,7 +124,6 @@ void Plausibility::reset() {
     signal.since_good = 0;
     signal.flat.reset();
   }
-  has_forecast_ = has_expected_ = false;
   doubted_ = 0;
 }
 
@@ -158,36 +152,47 @@ Doubt Plausibility::judge(std::size_t i, double value, const Measurement& now) {
     return Doubt::kRate;
   if (jump) return Doubt::kJump;
   if (frozen) return Doubt::kFrozen;
-  return isRepeated(i) ? Doubt::kRepeated : Doubt::kNone;
+  const bool bridged = signal.since_good < static_cast<std::uint64_t>(params_.bridge_samples);
+  const bool repeated = i < n_y_ && asked.frozen_samples < 0 && bridged && signal.flat.isRepeated();
+  return repeated ? Doubt::kRepeated : Doubt::kNone;
 }
 
-/// Where nothing else is asked for, what is frozen is replaced: an output by the model's value, and
-/// a disturbance stays what it was.
-Substitute Plausibility::substituteOf(std::size_t signal, Doubt doubt) const {
-  const SignalPlausibility& asked = asked_[signal];
-  const bool stands = doubt == Doubt::kFrozen || doubt == Doubt::kRepeated;
-  if (!stands || asked.frozen_samples >= 0 || asked.substitute != Substitute::kHold)
-    return asked.substitute;
-  return signal < n_y_ ? Substitute::kModel : Substitute::kLastGood;
+bool Plausibility::byDefault(std::size_t i) const {
+  return signals_[i].doubt == Doubt::kFrozen && asked_[i].frozen_samples < 0 &&
+         asked_[i].substitute == Substitute::kHold;
+}
+
+/// A gap that is short is bridged, whatever is asked for a long one. What is frozen is replaced: an
+/// output by the model's value, and a disturbance stays what it was.
+Substitute Plausibility::substituteOf(std::size_t signal) const {
+  if (byDefault(signal)) return signal < n_y_ ? Substitute::kModel : Substitute::kLastGood;
+  const auto bridged = static_cast<std::uint64_t>(params_.bridge_samples);
+  return signals_[signal].since_good <= bridged ? Substitute::kModel : asked_[signal].substitute;
+}
+
+bool Plausibility::expectsFrom(const Foresee& foresee) {
+  if (!asked_law_) has_expected_ = foresee && foresee(expected_);
+  asked_law_ = true;
+  return has_expected_;
 }
 
 /// False if there is nothing to put in its place.
-bool Plausibility::replace(std::size_t signal) {
+bool Plausibility::replace(std::size_t signal, const Foresee& foresee) {
   Memory& memory = signals_[signal];
   const auto row = static_cast<Eigen::Index>(signal);
-  const bool model = substituteOf(signal, memory.doubt) == Substitute::kModel && has_expected_ &&
-                     signal < n_y_ && std::isfinite(expected_[row]);
-  const double value = model ? expected_[row] : memory.has_good ? memory.good : 0.0;
+  memory.foreseen = signal < n_y_ && substituteOf(signal) == Substitute::kModel &&
+                    expectsFrom(foresee) && std::isfinite(expected_[row]);
+  const double value = memory.foreseen ? expected_[row] : memory.has_good ? memory.good : 0.0;
   const auto first = static_cast<Eigen::Index>(n_y_);
   (signal < n_y_ ? accepted_.outputs[row] : accepted_.disturbances[row - first]) = value;
-  const bool stands = memory.doubt == Doubt::kFrozen && signal < n_y_;  // so does its last value
-  return model || (memory.has_good && !(stands && asked_[signal].frozen_samples < 0));
+  const bool stands = signal < n_y_ && byDefault(signal);  // so does its last value
+  return memory.foreseen || (memory.has_good && !stands);
 }
 
-Verdict Plausibility::look(const Measurement& now) {
+Verdict Plausibility::look(const Measurement& now, const Foresee& foresee) {
   bool any = false, doubted = false, repaired = true, may_end = false;
   accepted_ = now;
-  forecast(now.input_applied);
+  asked_law_ = false;
   const auto first = static_cast<Eigen::Index>(n_y_);
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     Memory& signal = signals_[i];
@@ -202,13 +207,11 @@ Verdict Plausibility::look(const Measurement& now) {
     }
     ++signal.since_good;
     any = true;
-    const bool replaced = replace(i);
-    const Substitute substitute = substituteOf(i, signal.doubt);
-    const bool goes_on = i >= n_y_ && substitute != asked_[i].substitute;  // a frozen disturbance
-    if (!needed_[i] || goes_on) continue;
+    const bool replaced = replace(i, foresee);
+    if (!needed_[i] || (i >= n_y_ && byDefault(i))) continue;
     doubted = true;
     may_end = may_end || signal.doubt != Doubt::kRange || params_.range_falls;
-    repaired = repaired && replaced && substitute != Substitute::kHold;
+    repaired = repaired && replaced && substituteOf(i) != Substitute::kHold;
   }
   doubted_ = doubted ? std::min(doubted_ + 1, std::numeric_limits<int>::max() - 1) : 0;
   Verdict verdict = any ? Verdict::kRepaired : Verdict::kClean;
@@ -224,29 +227,13 @@ void Plausibility::say(Verdict verdict) {
   const bool needed_only = verdict == Verdict::kHold || verdict == Verdict::kFallback;
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     if (signals_[i].doubt == Doubt::kNone || (needed_only && !needed_[i])) continue;
-    const std::size_t text = static_cast<std::size_t>(signals_[i].doubt) * kVerdicts;
-    words_ = texts_[i][text + static_cast<std::size_t>(verdict)].c_str();
+    const std::size_t action = verdict == Verdict::kFallback ? 3
+                               : verdict == Verdict::kHold   ? 2
+                               : signals_[i].foreseen        ? 1
+                                                             : 0;
+    words_ = texts_[i][static_cast<std::size_t>(signals_[i].doubt) * kActions + action].c_str();
     return;
   }
-}
-
-// y(k+1) = C (A x(k) + B u(k) + g) + h
-void Plausibility::expect(const PredictiveAction& prediction) {
-  state_ = prediction.offset_state;
-  state_.noalias() += prediction.A * prediction.state;
-  rest_ = prediction.offset_output;
-  rest_.noalias() += prediction.C * state_;
-  effect_.noalias() = prediction.C * prediction.B;
-  has_forecast_ = true;
-}
-
-/// Of this sample, with the input that was applied.
-void Plausibility::forecast(VectorRef input) {
-  has_expected_ = has_forecast_ && input.allFinite();
-  has_forecast_ = false;
-  if (!has_expected_) return;
-  expected_ = rest_;
-  expected_.noalias() += effect_ * input;
 }
 
 }  // namespace fpc

@@ -58,10 +58,4 @@ bool Plausibility::isFrozen(std::size_t i, double value, const Measurement& now)
   return asked > 0 && signal.flat.repeats() >= asked && inputMoved(signal);
 }
 
-/// Only where there is something better to hand over.
-bool Plausibility::isRepeated(std::size_t i) const {
-  return asked_[i].frozen_samples < 0 && i < n_y_ && has_expected_ &&
-         std::isfinite(expected_[static_cast<Eigen::Index>(i)]) && signals_[i].flat.isRepeated();
-}
-
 }  // namespace fpc

@@ -40,7 +40,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
                                      Vector initial_input, PlantInfo plant, double max_pole,
                                      PlausibilityParams plausibility)
     : controller_(std::move(controller)),
-      setpoint_(std::move(setpoint), plant.outputs, clockOf(plant)),
+      setpoint_(std::move(setpoint), plant, clockOf(plant)),
       limits_(std::move(limits)),
       plant_(std::move(plant)),
       last_input_(std::move(initial_input)),
@@ -130,7 +130,8 @@ void ControllerSession::process(const Measurement& m) {
   fell_back_ = false;
   if (needsReset(arrival_)) forgetSamples();
   lookAtMoves(m);
-  const Verdict verdict = plausibility_.look(m);
+  const Verdict verdict =
+      plausibility_.look(m, [&](Eigen::Ref<Vector> outputs) { return foresee(m, outputs); });
   const Measurement& accepted = verdict == Verdict::kClean ? m : plausibility_.accepted();
   const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
   const bool finite = allFinite(m);
@@ -175,7 +176,6 @@ void ControllerSession::process(const Measurement& m) {
     remark_due_ = false;
   }
   if (*output_.remark == '\0') output_.remark = reaction().c_str();
-  expectNext();
   answered();
 }
 
@@ -197,13 +197,10 @@ void ControllerSession::interrupt() {
   if (reaction_) reaction_->interrupt();
 }
 
-// What the law foresees for the next sample, in case that one is not accepted.
-void ControllerSession::expectNext() {
-  if (!plausibility_.usesModel()) return;
-  if (answer_.has_prediction)
-    plausibility_.expect(answer_.prediction);
-  else
-    plausibility_.expectNothing();
+/// What a law expects that has run up to now, in case the sample is not accepted.
+bool ControllerSession::foresee(const Measurement& m, Eigen::Ref<Vector> outputs) {
+  return interruption_ == nullptr && arrival_reason_.empty() && m.input_applied.allFinite() &&
+         controller_->foresee(seen(m), outputs);
 }
 
 void ControllerSession::doubtPlant(const std::string& difference) { plant_doubt_ = difference; }

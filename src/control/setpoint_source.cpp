@@ -59,9 +59,17 @@ void SetpointParams::validate(Eigen::Index n_y) const {
   require((rate_per_h.array() > 0.0).all(), "setpoint.rate_per_h", "numbers > 0");
 }
 
-SetpointSource::SetpointSource(SetpointParams params, std::vector<SignalInfo> outputs,
+SetpointSource::SetpointSource(SetpointParams params, const std::vector<std::string>& output_names,
                                const SampleClock& clock)
-    : params_(std::move(params)), clock_(clock), commands_(std::move(outputs)) {
+    : SetpointSource(std::move(params), CommandTable(output_names), clock) {}
+
+SetpointSource::SetpointSource(SetpointParams params, const PlantInfo& plant,
+                               const SampleClock& clock)
+    : SetpointSource(std::move(params), CommandTable(plant.outputs), clock) {}
+
+SetpointSource::SetpointSource(SetpointParams params, CommandTable commands,
+                               const SampleClock& clock)
+    : params_(std::move(params)), clock_(clock), commands_(std::move(commands)) {
   const auto n_y = static_cast<Eigen::Index>(commands_.names().size());
   params_.validate(n_y);
   params_.lower = filled(params_.lower, n_y, -kHuge).cwiseMax(-kHuge);

@@ -17,7 +17,7 @@ SetpointParams scheduleOnly(SetpointParams params) {
 }
 
 SetpointSource scheduleOf(const LoopFile& loop) {
-  return {scheduleOnly(loop.setpoint), loop.plant_info.outputs,
+  return {scheduleOnly(loop.setpoint), namesOf(loop.plant_info.outputs),
           SampleClock(loop.simulation.sample_time_s, loop.simulation.start_time_s)};
 }
 

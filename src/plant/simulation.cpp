@@ -245,6 +245,7 @@ void Simulation::measure() {
     const double noise = params_.noise_std[row] * standardNormal(noise_);
     measurement_.outputs[row] = commands_.apply(first_output + i, shown + noise);
   }
+  instruments_.lose(measurement_.outputs, measurement_.disturbances);
   measurement_.input_applied = actuator_.applied();
   measurement_.final = params_.samples > 0 && measurement_.header.step == params_.samples;
   state_.header = measurement_.header;

@@ -31,6 +31,7 @@ namespace {
 
 constexpr double kPatience = 5.0;           // [s] of wall time, for answers of nodes that live
 constexpr std::uint32_t kAnswerIsLost = 3;  // samples after which a command is said again
+constexpr double kOnItsWay = 0.02;          // [s], for what was sent before a service answered
 constexpr char kController[] = "fmbpc_controller";
 
 /// The latest message of a topic, of those that count.
@@ -152,7 +153,8 @@ class Line {
       if (wait(answered, 0.2)) break;
       require(!measurement_.get()->final, topic, "a run that is not over (" + state() + ")");
       require(steadyNow() < end_s, topic,
-              "an answer within " + shortText(patience()) + " s (" + state() + ")");
+              "a sample within " + shortText(patience()) + " s (" + state() +
+                  "); it acts at the next one");
     }
     if (!effect.get()->refused.empty())
       throw InputError(std::string(topic) + " refused: " + effect.get()->refused);
@@ -224,20 +226,23 @@ class Line {
     Latest<fmbpc::ControlAction> action(node_, topics::kControlAction);
     require(wait([&] { return action.connected() && measurement_.get(); }, kPatience), "manual",
             "a loop that runs: nobody publishes control_action");
+    fmbpc::ManualInput put = byHand(c);
     std_srvs::SetBool on;
     on.request.data = manual;
     call(topics::kManual, on);
-    std::string words;
-    if (manual && !c.values.empty()) words = byHand(c);
-    const std::uint32_t before = measurement_.get()->step;
+    if (!c.values.empty()) call(topics::kManualInput, put);
+    wait([] { return false; }, kOnItsWay);
+    const std::uint32_t before =
+        std::max(measurement_.get()->step, action.get() ? action.get()->step : 0);
     const bool done = wait(
         [&] {
           const fmbpc::ControlAction* a = action.get();
-          return a && a->step >= before && (a->source == fmbpc::ControlAction::MANUAL) == manual;
+          return a && a->step > before && (a->source == fmbpc::ControlAction::MANUAL) == manual;
         },
         patience());
     require(done, manual ? "manual" : "auto",
-            "an action of it within " + shortText(patience()) + " s (" + state() + ")");
+            "an action within " + shortText(patience()) + " s (" + state() + ")");
+    std::string words = put.response.message.empty() ? "" : put.response.message + "\n";
     words += (manual ? "manual" : "auto") + since(action.get()->step) + "\n";
     if (manual)
       for (std::size_t i = 0; i < loop_.plant_info.inputs.size(); ++i)
@@ -247,7 +252,7 @@ class Line {
   }
 
   /// Inputs that are not named stay where they are.
-  std::string byHand(const OperatorCommand& c) {
+  fmbpc::ManualInput byHand(const OperatorCommand& c) const {
     fmbpc::ManualInput put;
     put.request.input = measurement_.get()->input_applied;
     const std::vector<std::string> inputs = namesOf(loop_.plant_info.inputs);
@@ -256,8 +261,7 @@ class Line {
       require(at != inputs.end(), "input '" + name + "'", "one of " + join(inputs));
       put.request.input.at(static_cast<std::size_t>(at - inputs.begin())) = value;
     }
-    call(topics::kManualInput, put);
-    return put.response.message.empty() ? "" : put.response.message + "\n";
+    return put;
   }
 
   template <typename Service>

@@ -21,6 +21,8 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
+constexpr int kEachLook = 8;  // so often; then every so many, for one whom nothing helps
+
 XmlRpcValue request(const std::vector<std::string>& arguments) {
   XmlRpcValue all;
   all[0] = ros::this_node::getName();
@@ -120,16 +122,19 @@ bool KeptParameters::putBack() const {
 bool Links::lacks(const std::string& what, const std::string& node) {
   const auto known = before_.find(what);
   const int looks = known == before_.end() ? 1 : known->second.looks + 1;
-  lacking_[what] = {looks, node};
-  return looks > 1;
+  missing_[what] = {looks, node};
+  return looks > 1 && (looks <= kEachLook || looks % kEachLook == 0);
 }
 
 Links::Master Links::look(const std::vector<std::string>& spaces, NodeAddresses& addresses) try {
   XmlRpcValue response, state;
   if (!ros::master::execute("getSystemState", request({}), response, state, false))
     return Master::kSilent;
-  before_ = std::exchange(lacking_, {});
+  before_ = std::exchange(missing_, {});
   registered_ = 0;
+  const std::string& known = addresses.of(ros::this_node::getName());
+  if (!known.empty() && known != ros::XMLRPCManager::instance()->getServerURI())
+    return Master::kAnswers;  // another process has its name now, and this one is told to end
   const ByTopic publishers = byTopic(state[0]);
   lookAtTopics(publishers, byTopic(state[1]));
   lookAtServices(byTopic(state[2]), spaces);
@@ -181,28 +186,27 @@ void Links::lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses
   for (const std::string& topic : names) {
     const auto found = publishers.find(topic);
     if (found == publishers.end()) continue;
-    XmlRpcValue all = request({topic}), whole = all, done;
-    all[2].setSize(0);
-    whole[2].setSize(0);
-    bool lacking = false;
+    XmlRpcValue kept = request({topic}), done;
+    kept[2].setSize(0);
+    for (const std::string& uri : to[topic]) kept[2][kept[2].size()] = uri;
+    XmlRpcValue all = kept;
+    bool incomplete = false;
     for (const std::string& node : found->second) {
-      const std::string uri = addresses.of(node);
-      if (uri.empty()) continue;
+      const std::string& uri = addresses.of(node);
+      if (node == ros::this_node::getName() || uri.empty() || to[topic].count(uri) > 0) continue;
+      if (!answersAt(uri, 0.5)) continue;  // whoever cannot be reached is told of elsewhere
       all[2][all[2].size()] = uri;
-      if (node == ros::this_node::getName() || to[topic].count(uri) > 0)
-        whole[2][whole[2].size()] = uri;
-      else if (answersAt(uri, 0.5))  // whoever cannot be reached is told of elsewhere
-        lacking = lacks(topic + " of " + node, node) || lacking;
+      incomplete = lacks(topic + " of " + node, node) || incomplete;
     }
-    if (lacking && askSelf("publisherUpdate", whole, done)) askSelf("publisherUpdate", all, done);
+    // The first drops a connection that roscpp has given up for now.
+    if (incomplete && askSelf("publisherUpdate", kept, done)) askSelf("publisherUpdate", all, done);
   }
 }
 
 std::string Links::missing(const std::set<std::string>& members) const {
   std::string words;
-  for (const auto& [what, lacking] : lacking_)
-    if (lacking.looks > 2 && members.count(lacking.node) > 0)
-      words += (words.empty() ? "" : ", ") + what;
+  for (const auto& [what, item] : missing_)
+    if (item.looks > 2 && members.count(item.node) > 0) words += (words.empty() ? "" : ", ") + what;
   return words;
 }
 

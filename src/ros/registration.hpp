@@ -33,11 +33,11 @@ class Links {
   enum class Master { kAnswers, kSilent, kForgot };
   /// Compares what the master has of this process (services: in `spaces`, the names of its nodes)
   /// with what there is, and who publishes what it subscribes to with whom it is connected to. What
-  /// lacks in two looks running is made again, each time. `addresses`: of this look.
+  /// lacks in two looks running is made again. `addresses`: of this look.
   /// @return kForgot: something was registered again.
   Master look(const std::vector<std::string>& spaces, NodeAddresses& addresses);
   /// Something lacked in the last look.
-  bool suspicious() const { return !lacking_.empty(); }
+  bool suspicious() const { return !missing_.empty(); }
   /// "measurement of /plant_simulator" for connections to `members` that could not be made for two
   /// looks; empty: all are there.
   std::string missing(const std::set<std::string>& members) const;
@@ -45,7 +45,7 @@ class Links {
  private:
   using Names = std::set<std::string>;
   using ByTopic = std::map<std::string, Names>;
-  struct Lacking {
+  struct Missing {
     int looks;
     std::string node;  // the publisher that is not connected; empty: a registration
   };
@@ -54,7 +54,7 @@ class Links {
   void lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces);
   void lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses);
 
-  std::map<std::string, Lacking> lacking_, before_;
+  std::map<std::string, Missing> missing_, before_;
   int registered_{};  // in this look
 };
 

@@ -107,7 +107,7 @@ std::uint64_t trajectoryHash(const RunRecord& record) {
         std::memcpy(&word, &value, sizeof word);
         hash = (hash ^ word) * 1099511628211ULL;
       }
-  return record.samples.empty() ? 0 : hash;
+  return hash;
 }
 
 /// Why a run has no cost.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -31,7 +32,8 @@ RunJudgement failed(const std::string& words) {
 void requireDifferentCases(const StudyPlan& plan, const StudyResult& result) {
   std::map<std::tuple<std::size_t, std::string, std::uint64_t>, std::size_t> first;
   for (std::size_t run = 0; run < plan.runs(); ++run) {
-    if (!result.runs[run] || result.runs[run]->trajectory == 0) continue;
+    if (!result.runs[run] || !std::isfinite(result.runs[run]->cost))
+      continue;  // it may have no samples
     const StudyCase& now = plan.cases()[plan.caseOf(run)];
     const auto [at, is_new] = first.insert(
         {{plan.loopOf(run), now.scenario, result.runs[run]->trajectory}, plan.caseOf(run)});

@@ -5,13 +5,13 @@
 #include <cstdlib>
 
 #include "base/random.hpp"
+#include "base/text_hash.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "study/loop_contents.hpp"
-#include "base/text_hash.hpp"
 
 namespace fpc {
 namespace {
@@ -98,8 +98,9 @@ std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy) {
     keys.emplace_back("disturbance.pattern.seed");
   if (noisy) keys.emplace_back("noise.seed");
   const auto& sensors = loop.simulation.instruments.sensors;
-  if (std::any_of(sensors.begin(), sensors.end(),
-                  [](const auto& sensor) { return sensor.second.noise_std > 0.0; }))
+  if (std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
+        return sensor.second.noise_std > 0.0 || sensor.second.lost > 0.0;
+      }))
     keys.emplace_back("sensors.seed");
   const auto& parameters = loop.simulation.parameters;
   const auto local = parameters.find("local_noise");

@@ -1,5 +1,6 @@
 // fmbpc set, disturb, manual, auto, release: what an operator asks of a loop that runs over topics.
 #include <iostream>
+#include <memory>
 #include <optional>
 
 #include "fmbpc/base/input_error.hpp"
@@ -77,10 +78,12 @@ void addOperate(CLI::App& app, std::function<int()>& chosen) {
     const auto words = std::make_shared<Words>();
     const bool values = v.verb == OperatorVerb::kSet || v.verb == OperatorVerb::kDisturb;
     if (values)
-      command->add_option("NAME VALUE", words->given, "in the unit of the signal, may be repeated")
+      command
+          ->add_option("NAME", words->given,
+                       "NAME VALUE or NAME=VALUE, in the unit of the signal; may be repeated")
           ->required();
     if (v.verb == OperatorVerb::kManual)
-      command->add_option("NAME VALUE", words->given, "of inputs, may be repeated");
+      command->add_option("NAME", words->given, "NAME VALUE of inputs (default: they stay)");
     if (v.verb == OperatorVerb::kRelease)
       command->add_option("NAME", words->given, "of outputs and disturbances (default: all)");
     if (values) command->add_flag("--offset", words->offset, "VALUE is added to what is scheduled");

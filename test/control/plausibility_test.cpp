@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <random>
 #include <string>
@@ -34,12 +35,12 @@ PlausibilityParams params(const std::function<void(SignalPlausibility&)>& change
 
 struct Watch {
   explicit Watch(const PlausibilityParams& p) : judge(p, plant()) {}
-  Verdict look(double x, double u = 1.0, double q = 2.0) {
+  Verdict look(double x, double u = 1.0, double q = 2.0, const Foresee& foresee = {}) {
     Measurement m;
     m.outputs = Vector::Constant(1, x);
     m.disturbances = Vector::Constant(1, q);
     m.input_applied = Vector::Constant(1, u);
-    return judge.look(m);
+    return judge.look(m, foresee);
   }
   Plausibility judge;
 };
@@ -110,6 +111,31 @@ TEST(Plausibility, FrozenIsWhatDoesNotChangeWhileAnInputMoves) {
   EXPECT_EQ(watch.look(50.000001, 5.0), Verdict::kClean);  // the count starts anew
 }
 
+Foresee expecting(double x) {
+  return [x](Eigen::Ref<Vector> outputs) {
+    outputs[0] = x;
+    return true;
+  };
+}
+
+TEST(Plausibility, AShortGapIsBridgedByWhatTheLawExpects) {
+  PlausibilityParams asked = params();
+  asked.hold_samples = 10;
+  asked.bridge_samples = 2;
+  Watch watch(asked);
+  EXPECT_EQ(watch.look(kNaN, 1.0, 2.0, expecting(7.0)), Verdict::kRepaired);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 7.0);
+  EXPECT_EQ(watch.look(50.0, 1.0, 2.0, expecting(7.0)), Verdict::kClean);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 50.0);
+  EXPECT_EQ(watch.look(kNaN), Verdict::kRepaired);  // nothing is expected
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 50.0);
+  EXPECT_STREQ(watch.judge.words(), "x is no number: its last good value is used");
+  EXPECT_EQ(watch.look(kNaN, 1.0, kNaN, expecting(8.0)), Verdict::kRepaired);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 8.0);
+  EXPECT_EQ(watch.judge.accepted().disturbances[0], 2.0);
+  EXPECT_EQ(watch.look(kNaN, 1.0, 2.0, expecting(9.0)), Verdict::kHold);  // a long one
+}
+
 TEST(Plausibility, TheLastGoodValueOrTheModelsTakesItsPlace) {
   Watch good(params([](SignalPlausibility& s) {
     s.upper = 100.0;
@@ -126,16 +152,9 @@ TEST(Plausibility, TheLastGoodValueOrTheModelsTakesItsPlace) {
     s.substitute = Substitute::kModel;
   }));
   model.look(50.0);
-  PredictiveAction p;  // x(k+1) = 0.5 x + 2 u + 1, y = 3 x + 4
-  p.state = Vector::Constant(1, 10.0);
-  p.A = Matrix::Constant(1, 1, 0.5);
-  p.B = Matrix::Constant(1, 1, 2.0);
-  p.C = Matrix::Constant(1, 1, 3.0);
-  p.offset_state = Vector::Constant(1, 1.0);
-  p.offset_output = Vector::Constant(1, 4.0);
-  model.judge.expect(p);
-  EXPECT_EQ(model.look(1000.0, 6.0), Verdict::kRepaired);
-  EXPECT_EQ(model.judge.accepted().outputs[0], 3.0 * 18.0 + 4.0);
+  EXPECT_EQ(model.look(1000.0, 1.0, 2.0, expecting(58.0)), Verdict::kRepaired);
+  EXPECT_EQ(model.judge.accepted().outputs[0], 58.0);
+  EXPECT_STREQ(model.judge.words(), "x is outside [-inf, 100]: the model's value is used");
   for (int k = 0; k < 2; ++k) EXPECT_EQ(model.look(1000.0), Verdict::kRepaired);
   EXPECT_EQ(model.look(1000.0), Verdict::kFallback);  // nor for ever
 }
@@ -169,15 +188,6 @@ TsModel lag() {
   return model;
 }
 
-/// What a law foresees: y(k+1) = 7.
-PredictiveAction seven() {
-  PredictiveAction p;
-  p.state = p.offset_state = Vector::Zero(1);
-  p.A = p.B = p.C = Matrix::Zero(1, 1);
-  p.offset_output = Vector::Constant(1, 7.0);
-  return p;
-}
-
 TEST(Plausibility, AnOutputWithoutItsNoiseIsFrozenAndTheModelsValueIsUsed) {
   std::mt19937_64 engine(1);
   std::normal_distribution<double> noise;
@@ -186,8 +196,7 @@ TEST(Plausibility, AnOutputWithoutItsNoiseIsFrozenAndTheModelsValueIsUsed) {
     EXPECT_EQ(watch.look(50.0 + noise(engine), 1.0, 5.0 + 0.1 * noise(engine)), Verdict::kClean);
   int after = 0;
   for (; after < 20 && watch.judge.doubt(0) != Doubt::kFrozen; ++after) {
-    watch.judge.expect(seven());
-    watch.look(50.5, 1.0, 5.0 + 0.1 * noise(engine));
+    watch.look(50.5, 1.0, 5.0 + 0.1 * noise(engine), expecting(7.0));
   }
   EXPECT_LE(after, 8);
   EXPECT_EQ(watch.judge.doubt(0), Doubt::kFrozen);
@@ -206,6 +215,18 @@ TEST(Plausibility, ADisturbanceWithoutItsNoiseIsSaidAndTheLawGoesOn) {
   EXPECT_EQ(watch.judge.doubt(1), Doubt::kFrozen);
   EXPECT_EQ(watch.look(50.0 + noise(engine), 1.0, 5.0), Verdict::kRepaired) << "for ever";
   EXPECT_STREQ(watch.judge.words(), "q is frozen: its last good value is used");
+}
+
+TEST(Plausibility, AReadingThatComesTwiceInMotionIsBridged) {
+  PlausibilityParams p = byNoise();
+  p.bridge_samples = 3;
+  Watch watch(p);
+  const auto motion = [](int k) { return 50.0 + 5.0 * std::sin(0.05 * k); };
+  for (int k = 0; k < 130; ++k) EXPECT_EQ(watch.look(motion(k)), Verdict::kClean) << k;
+  EXPECT_EQ(watch.look(motion(129), 1.0, 2.0, expecting(51.0)), Verdict::kRepaired);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 51.0);
+  EXPECT_STREQ(watch.judge.words(), "x was not read anew: the model's value is used");
+  EXPECT_EQ(watch.look(motion(131)), Verdict::kClean);
 }
 
 TEST(Plausibility, AtTheEndOfItsScaleNothingIsFrozen) {

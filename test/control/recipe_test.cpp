@@ -22,8 +22,7 @@ SetpointParams params() {
 }
 
 SetpointSource source(const SetpointParams& p) {
-  return SetpointSource(p, {{"s", "mg/l", 0.0, 2000.0}, {"x", "mg/l", 0.0, 10000.0}},
-                        SampleClock(720.0, 1.0));
+  return SetpointSource(p, {"s", "x"}, SampleClock(720.0, 1.0));
 }
 
 // 0.2 h a sample: from 2000 at 0.4 h to 2400 at 1.2 h, 100 a sample.

@@ -26,8 +26,7 @@ SetpointParams params() {
 }
 
 SetpointSource source(const SetpointParams& p, double sample_time_s = 720.0) {
-  return SetpointSource(p, {{"s", "mg/l", 0.0, 2000.0}, {"x", "mg/l", 0.0, 10000.0}},
-                        SampleClock(sample_time_s, kStart));
+  return SetpointSource(p, {"s", "x"}, SampleClock(sample_time_s, kStart));
 }
 
 Command command(const std::string& name, double value, CommandMode mode = CommandMode::kOverride,
@@ -138,6 +137,21 @@ TEST(SetpointSource, OffsetsReplaceEachOtherAndFollowTheSchedule) {
   EXPECT_EQ(s.advance(3)[1], 7.0);
   s.command(command("x", 0.0, CommandMode::kRelease));
   EXPECT_EQ(s.advance(4)[1], 1900.0);
+}
+
+TEST(SetpointSource, BeyondTheRangeOfThePlantIsRefusedAndBetweenThatAndTheLimitsClamped) {
+  PlantInfo plant;
+  plant.outputs = {{"s", "mg/l", 0.0, 5000.0}, {"x", "mg/l", 0.0, 10000.0}};
+  SetpointParams p = params();
+  p.upper = two(100.0, 2500.0);
+  SetpointSource s(p, plant, SampleClock(720.0, kStart));
+  for (int started = 0; started < 2; ++started) {
+    EXPECT_THROW(s.command(command("x", 20000.0)), InputError);
+    EXPECT_THROW(s.command(command("x", -10001.0, CommandMode::kOffset)), InputError);
+    EXPECT_EQ(s.advance(static_cast<std::uint32_t>(started)), p.initial);
+  }
+  s.command(command("x", 3000.0));
+  EXPECT_EQ(s.advance(2)[1], 2500.0);
 }
 
 TEST(SetpointSource, BadCommandThrowsAndChangesNothing) {

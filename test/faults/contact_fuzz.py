@@ -52,21 +52,13 @@ class Nodes:
                 self.processes[name] = self.start(ring.program(node), "__ns:=" + (space or "/"), environment=environment)
         for name in self.processes:
             ring.wait_until(lambda n=name: self.known(n), f"{name} (see {self.folder})")
-        self.xmlrpc = {name: contacts.address(master.lookupNode(name)) for name in self.processes}
-        self.tcpros = {name: self.topic_port(name) for name in self.processes}
+        self.ports = {name: contacts.ports(master.lookupNode(name)) for name in self.processes}
 
     def known(self, name):
         try:
             return rosgraph.Master(ME).lookupNode(name)
         except rosgraph.MasterException:
             return None
-
-    def topic_port(self, name):
-        _, _, (_, host, port) = self.proxy(name).requestTopic(ME, "/rosout", [["TCPROS"]])
-        return host, port
-
-    def proxy(self, name):
-        return xmlrpc.client.ServerProxy("http://%s:%d" % self.xmlrpc[name])
 
     def start(self, *command, environment=None):
         with open(os.path.join(self.folder, os.path.basename(command[0]) + ".log"), "w", encoding="utf-8") as log:
@@ -80,7 +72,7 @@ class Nodes:
         silent = []
         for name in self.processes:
             try:
-                if self.proxy(name).getPid(ME)[0] != 1:
+                if xmlrpc.client.ServerProxy("http://%s:%d" % self.ports[name]["xmlrpc"]).getPid(ME)[0] != 1:
                     silent.append(name)
             except OSError:
                 silent.append(name)
@@ -126,7 +118,7 @@ def main():
             for words, port, data in contacts.killers(node):
                 if nodes.processes[node].poll() is not None:
                     break
-                contacts.send(getattr(nodes, port)[node], data, answer=True)
+                contacts.send(nodes.ports[node][port], data, answer=True)
                 time.sleep(0.1)  # datagrams kill with the next message
                 count += 1
                 if nodes.processes[node].poll() is not None:
@@ -137,7 +129,7 @@ def main():
                 break
             for _ in range(20):
                 port, data = contacts.random_contact(chance, node, liar.uri)
-                contacts.send(getattr(nodes, port)[node], data, answer=chance.randrange(20) == 0)
+                contacts.send(nodes.ports[node][port], data, answer=chance.randrange(20) == 0)
                 count += 1
         time.sleep(0.5)
         killed += [f"{node} ended ({nodes.processes[node].returncode})" for node in nodes.dead()]

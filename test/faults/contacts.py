@@ -13,6 +13,12 @@ def address(uri):
     return host, int(port)
 
 
+def ports(uri):
+    """(host, port) of the node at this URI, by protocol."""
+    _, _, (_, host, port) = xmlrpc.client.ServerProxy(uri).requestTopic("/x", "/rosout", [["TCPROS"]])
+    return {"xmlrpc": address(uri), "tcpros": (host, port)}
+
+
 def send(to, data, answer=False):
     """What somebody sends who then hangs up, at once or when no more answers come."""
     try:

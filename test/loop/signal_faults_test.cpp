@@ -42,6 +42,23 @@ Fault everyTenthRepeated() {
   };
 }
 
+Fault frozen(std::uint32_t from, std::uint32_t to) {
+  return [=, last = Vector()](std::uint32_t k, Measurement& m) mutable {
+    if (k > from && k < to) m.outputs = last;
+    last = m.outputs;
+  };
+}
+
+/// The reactor of the PLC demo in one process.
+Overrides reactor(const Overrides& more) {
+  Overrides all{
+      {"setpoint.initial.CA", "0.12"}, {"setpoint.schedule", "[{time_h: 0.3333333333, CA: 0.08}]"},
+      {"sampling.duration_h", "1.2"},  {"actuator.move_upper.q_c", "4"},
+      {"actuator.hold_samples", "5"},  {"actuator.fallback.q_c", "100"}};
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
 const Overrides kHeld{{"setpoint.schedule", "[]"}};
 
 TEST(SignalFaults, ALevelInStepsBringsAnObserver) {
@@ -59,6 +76,23 @@ TEST(SignalFaults, AReadingThatComesTwiceCostsLittle) {
   const double held = ise("surge_tank_steps", kHeld, everyTenthRepeated());
   const double pi_held = ise("surge_tank_steps_pi", kHeld, everyTenthRepeated());
   EXPECT_LT(held, 1.1 * pi_held) << held << " " << pi_held;
+}
+
+// An analyser that freezes for half an hour of the reactor's time while the setpoint steps.
+TEST(SignalFaults, AFrozenAnalyserIsFoundAndReplaced) {
+  for (const std::uint32_t from : {190U, 203U, 210U, 225U}) {
+    std::uint32_t found = 0;
+    const double healthy = ise("cstr_tracking", reactor({}), none);
+    const double ours = ise("cstr_tracking", reactor({}), frozen(from, from + 300), &found);
+    const double blind =
+        ise("cstr_tracking", reactor({{"plausibility.signals.CA.frozen_samples", "0"}}),
+            frozen(from, from + 300));
+    EXPECT_GT(found, 200U) << from;
+    EXPECT_LT(ours, 0.5 * blind) << from << " " << healthy << " " << ours << " " << blind;
+  }
+  std::uint32_t found = 0;
+  ise("cstr_tracking", reactor({}), none, &found);
+  EXPECT_EQ(found, 0U);
 }
 
 }  // namespace loop_signal_faults_test

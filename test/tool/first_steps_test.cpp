@@ -56,7 +56,8 @@ TEST_F(FirstSteps, ARecordThatDoesNotShipIsNamedWithItsSource) {
 
 TEST_F(FirstSteps, TheShippedRecordIsIdentified) {
   const Outcome outcome = tool("identify " + sourceDir() +
-                               "/examples/reactor_record.csv cstr --validate-rows 601:800 --json");
+                               "/examples/reactor_record.csv --auto --kind linear --inputs q_c "
+                               "--outputs CA --budget 2 --json");
   EXPECT_EQ(outcome.code, 0) << outcome.printed;
 }
 

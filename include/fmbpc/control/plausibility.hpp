@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,9 @@ enum class Verdict : std::uint8_t {
   kFallback,
 };
 
+/// The outputs that the law expects at a sample; false if it expects nothing.
+using Foresee = std::function<bool(Eigen::Ref<Vector>)>;
+
 /// Signals are numbered: outputs, then disturbances. A signal that the law does not need is
 /// replaced by its last good value and never holds an input, nor does a disturbance that is frozen
 /// (frozen_samples -1). No allocation after the first sample.
@@ -49,13 +53,10 @@ class Plausibility {
   /// The law's, matched to the plant: it says what the inputs do to the outputs.
   void setModel(const TsModel& model);
   void need(std::size_t signal, bool needed) { needed_[signal] = needed; }
-  Verdict look(const Measurement& now);
+  /// `foresee` is asked only for an output in whose place it is needed.
+  Verdict look(const Measurement& now, const Foresee& foresee = {});
   /// The sample with every doubted value replaced.
   const Measurement& accepted() const { return accepted_; }
-  /// The law's forecast of y(k+1) out of sample k, for Substitute::kModel and frozen outputs.
-  void expect(const PredictiveAction& prediction);
-  bool usesModel() const { return uses_model_; }  ///< some signal asks for a forecast
-  void expectNothing() { has_forecast_ = false; }
   Doubt doubt(std::size_t signal) const { return signals_[signal].doubt; }
   /// Of the first doubted signal, with what is done about it; lives as long as this object.
   const char* words() const { return words_; }
@@ -67,20 +68,21 @@ class Plausibility {
     double good{}, level{};
     std::uint64_t since_good{};  // samples
     int at_level{}, against{};   // against: samples in which the model says that it has moved
-    bool has_good{false};
+    bool has_good{false}, foreseen{false};
     FlatLine flat;
     std::optional<ForcedResponse> response;  // since the raw value changed
     Vector input_low, input_high;            // since then
   };
   Doubt judge(std::size_t i, double value, const Measurement& now);
   bool isFrozen(std::size_t i, double value, const Measurement& now);
-  bool isRepeated(std::size_t i) const;
   bool standsByItself(std::size_t i, double value, const Measurement& now);
   bool inputMoved(const Memory& signal) const;
-  void forecast(VectorRef input);
+  /// It is frozen, and nothing in the loop file says how that is judged and what is done.
+  bool byDefault(std::size_t i) const;
   bool jumped(Memory& signal, const SignalPlausibility& asked, double value) const;
-  Substitute substituteOf(std::size_t signal, Doubt doubt) const;
-  bool replace(std::size_t signal);
+  Substitute substituteOf(std::size_t signal) const;
+  bool expectsFrom(const Foresee& foresee);
+  bool replace(std::size_t signal, const Foresee& foresee);
   void say(Verdict verdict);
   void writeWords(const PlantInfo& plant);
 
@@ -91,12 +93,11 @@ class Plausibility {
   std::vector<SignalPlausibility> asked_;  // outputs, then disturbances
   std::vector<Memory> signals_;
   std::vector<bool> needed_;
-  std::vector<std::vector<std::string>> texts_;  // by signal; by doubt and verdict
+  std::vector<std::vector<std::string>> texts_;  // by signal; by doubt and action
   const char* words_{""};
   Measurement accepted_;
-  Vector state_, rest_, expected_;  // y(k+1) = rest + effect u(k)
-  Matrix effect_;
-  bool has_forecast_{false}, has_expected_{false}, uses_model_{false};
+  Vector expected_;
+  bool asked_law_{false}, has_expected_{false};  // at this sample
   int doubted_{};  // samples in a row with a doubt about a needed signal
 };
 

@@ -15,7 +15,7 @@ namespace fpc {
 enum class Substitute : std::uint8_t {
   kHold,      ///< nothing: the input is held
   kLastGood,  ///< the last value that was accepted
-  kModel,     ///< what the law predicted for this sample; the last good value where it does not
+  kModel,     ///< what the law expects at this sample; the last good value where it does not
 };
 inline std::vector<std::string> wordsOf(Substitute) { return {"hold", "last_good", "model"}; }
 
@@ -42,8 +42,9 @@ inline std::vector<std::string> wordsOf(DoubtAction) { return {"say", "hold", "f
 
 /// What is asked of all measured signals.
 struct PlausibilityParams {
-  bool enabled{false};   ///< without: only what is no number is doubted
-  int hold_samples{-1};  ///< so long a needed signal may be doubted, then `fallback`; -1: for ever
+  bool enabled{false};    ///< without: only what is no number is doubted
+  int hold_samples{-1};   ///< so long a needed signal may be doubted, then `fallback`; -1: for ever
+  int bridge_samples{0};  ///< so long a doubted signal is replaced as with Substitute::kModel
   double frozen_input{0.1};  ///< an input has moved by more than this part of its range
   bool gain_sign{false};     ///< a new model must have the gains' signs of the running one
   int reaction_samples{0};   ///< window in which the outputs must react to the inputs; 0: not asked

@@ -44,6 +44,9 @@ class LawCore {
   virtual void rest(const LawSample& sample) = 0;  ///< the process has rested at this sample
   virtual void forget() {}                         ///< see Controller
   virtual void advance(const LawSample& sample) = 0;
+  /// y(k) as it expects it after u(k-1) and d(k-1).
+  virtual void foresee(VectorRef input, VectorRef past_disturbances,
+                       Eigen::Ref<Vector> outputs) = 0;
   /// Goes on with the memory of an older core; false (rest() then) if that means nothing here.
   virtual bool inherit(const LawCore& older) = 0;
   /// The rules at this sample. False if none fired: then the nearest one is used.
@@ -96,6 +99,7 @@ class PredictiveLaw : public Controller, public PlanView {
   void forget() override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
+  bool foresee(const Measurement& now, Eigen::Ref<Vector> outputs) override;
   bool needsModel() const override { return true; }
   Eigen::Index plannedSteps() const override { return inRun() ? core_->plannedSteps() : 0; }
   void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {

@@ -166,7 +166,7 @@ class ControllerSession {
   void keep(const Measurement& accepted);
   void interrupt();
   void lookAtGains(const Measurement& m);
-  void expectNext();
+  bool foresee(const Measurement& m, Eigen::Ref<Vector> outputs);
   void noteNeeds();
   void sendManual(const Measurement& m);
   void restoreManual(const OperatorWishes& wishes);

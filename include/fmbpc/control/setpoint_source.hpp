@@ -35,9 +35,11 @@ struct SetpointParams {
 /// No allocation in advance() but when a command takes effect.
 class SetpointSource {
  public:
-  /// What a person asks beyond the range of an output is refused.
   /// @throws InputError naming the field, also of a command in the params.
-  SetpointSource(SetpointParams params, std::vector<SignalInfo> outputs, const SampleClock& clock);
+  SetpointSource(SetpointParams params, const std::vector<std::string>& output_names,
+                 const SampleClock& clock);
+  /// The same; what a person asks beyond the range of an output is refused.
+  SetpointSource(SetpointParams params, const PlantInfo& plant, const SampleClock& clock);
 
   /// Forgets memory of the rate limiter; commands in force stay.
   void reset();
@@ -88,6 +90,7 @@ class SetpointSource {
   const CommandTable& table() const { return commands_; }
 
  private:
+  SetpointSource(SetpointParams params, CommandTable commands, const SampleClock& clock);
   void settleHold(std::uint32_t step);
   std::uint32_t recipeStep(std::uint32_t step) const;
   void scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const;

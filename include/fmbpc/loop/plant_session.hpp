@@ -40,8 +40,8 @@ struct ActionCounts {
 /// - lockstep moves on when it has come and waits for ever; paced also waits for the period, and
 ///   for action_timeout_s at most: then it goes on at the period, as realtime does, until an action
 ///   comes again; what the input is meanwhile is the actuator's rule (hold, then fallback);
-/// - an input that does not follow its command is held, if the loop file says so (StuckParams): what
-///   a law asks of it is not passed on; a person's input and a fallback are;
+/// - an input that does not follow its command is held, if the loop file says so (StuckParams): a
+///   person's input and a fallback are passed on, what a law asks of it is not;
 /// - with a recorder: an answered sample also waits until recorded() says that all of it is there,
 ///   and is sent again meanwhile, so that a recorder which was away misses nothing; after
 ///   record_timeout_s the plant goes on without, until the recorder is heard of again;

@@ -26,7 +26,7 @@ struct RunJudgement {
   double least{};         ///< least of the output that is judged first
   double largest_move{};  ///< of any input, in its unit
   std::vector<std::uint64_t> failures = std::vector<std::uint64_t>(kRunFailures, 0);  ///< samples
-  std::uint64_t trajectory{};  ///< hash of what was measured, applied and true; 0: no samples
+  std::uint64_t trajectory{};  ///< hash of what was measured, applied and true
   std::string trouble;         ///< of a run without a finite cost, in words
 };
 

@@ -35,10 +35,18 @@ void readForecast(YamlSection& section, const ControllerContext& loop, FmbpcPara
       static_cast<int>(std::lround(memory_h * 3600.0 / loop.plant.sample_time_s));
 }
 
+/// A horizon that an extended loop brings along for another law is no mistake.
+void requireHeeded(const YamlSection& section, FmbpcForm law) {
+  for (const std::string& key : section.keys())
+    if (const char* instead = lawsInsteadOf(law, key))
+      if (key != "coincidence_steps") section.fail(key, instead);
+}
+
 FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
   FmbpcParams params;
   readPredictiveLaw(section, loop, params);
   readOption(section, "law", params.law);
+  requireHeeded(section, params.law);
   section.integer("coincidence_steps", params.coincidence_steps, 1, 100000);
   readWeights(section, loop, params);
   section.integer("horizon_steps", params.horizon_steps, 1, 10000);

@@ -26,8 +26,8 @@ IteratedLaw::IteratedLaw(const InternalModel& model, const FmbpcParams& params,
       point_(Vector::Zero(model.outputs().size() + limits.lower.size() +
                           countOf(model.local().model().disturbances))) {}
 
-void IteratedLaw::follow(InternalModel& model, const LawSample& sample) {
-  model.blendAt(sample.now.input_applied, sample.past_disturbances);
+void IteratedLaw::follow(InternalModel& model, VectorRef input, VectorRef past_disturbances) {
+  model.blendAt(input, past_disturbances);
 }
 
 /// Samples ahead whose errors count: where the last plan leads under what is expected now.

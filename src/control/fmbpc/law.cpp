@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "control/fmbpc/core.hpp"
+#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 
@@ -52,9 +53,27 @@ Settings FmbpcLaw::settings() const {
   return fmbpcSettings().show(params_, {plant().outputs, plant().inputs});
 }
 
+/// A key that the law does not heed may come along as it is.
+void FmbpcLaw::requireHeeded(const Settings& asked, const FmbpcParams& next) const {
+  for (const auto& setting : asked) {
+    const char* instead = lawsInsteadOf(params_.law, setting.first);
+    if (instead == nullptr) continue;
+    const SettingSignals signals{plant().outputs, plant().inputs};
+    const Settings before = fmbpcSettings().show(params_, signals),
+                   after = fmbpcSettings().show(next, signals);
+    const auto same = [&](std::size_t i) {
+      return after[i].first != setting.first || after[i].second == before[i].second;
+    };
+    for (std::size_t i = 0; i < after.size(); ++i)
+      require(same(i), "controller." + setting.first, instead);
+  }
+}
+
 bool FmbpcLaw::retune(const Settings& settings) {
   FmbpcParams next = params_;
-  fmbpcSettings().take(settings, {plant().outputs, plant().inputs}, next);
+  const SettingSignals signals{plant().outputs, plant().inputs};
+  fmbpcSettings().take(settings, signals, next);
+  requireHeeded(settings, next);
   params_ = valid(std::move(next), plant());
   if (LawCore* core = newest()) static_cast<FmbpcCore*>(core)->prepareTuning(params_);
   tuningPrepared(params_.reference_pole);

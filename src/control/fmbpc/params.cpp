@@ -1,5 +1,6 @@
 // Checks of the parameters of the fuzzy model-based predictive law.
 #include <algorithm>
+#include <initializer_list>
 #include <utility>
 
 #include "control/require_numbers.hpp"
@@ -30,6 +31,20 @@ void requireCombination(const FmbpcParams& p) {
 }
 
 }  // namespace
+
+const char* lawsInsteadOf(FmbpcForm law, const std::string& key) {
+  const auto among = [&](std::initializer_list<const char*> keys) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  if (law != FmbpcForm::kIterated && among({"horizon_steps", "iterations", "forecast_period_h",
+                                            "forecast_pole", "forecast_memory_h"}))
+    return "law iterated with it";
+  if (law == FmbpcForm::kPublished && among({"weight_output", "weight_move"}))
+    return "law general or iterated with it";
+  if (law == FmbpcForm::kIterated && key == "coincidence_steps")
+    return "law published or general with it";
+  return nullptr;
+}
 
 void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   PredictiveLawParams::validate(n_y);

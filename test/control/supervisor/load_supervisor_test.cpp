@@ -49,7 +49,7 @@ class Supervisor : public ::testing::Test {
     p.initial = Vector::Constant(1, 1.0);
     p.lower = Vector::Constant(1, -kInfinity);
     p.upper = p.rate_per_h = Vector::Constant(1, kInfinity);
-    return SetpointSource(p, {{"S", "", -kInfinity, kInfinity}}, SampleClock(1800.0, 1.0));
+    return SetpointSource(p, {"S"}, SampleClock(1800.0, 1.0));
   }();
   ControllerOutput output;
   double send(const Measurement& m) {

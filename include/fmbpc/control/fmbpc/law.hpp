@@ -50,6 +50,8 @@ struct FmbpcParams : PredictiveLawParams {
   Eigen::Index referenceSteps() const;  ///< how far ahead the law reads its references
 };
 
+/// The laws that heed this key of the section, in words, if `law` does not; else null.
+const char* lawsInsteadOf(FmbpcForm law, const std::string& key);
 const SettingsTable<FmbpcParams>& fmbpcSettings();  ///< what may change in a run
 
 /// The law of vallejo2019, eqs. 19-37, with past inputs in the state:
@@ -82,6 +84,7 @@ class FmbpcLaw final : public PredictiveLaw {
 
  private:
   void note(const LawSample& sample) override;
+  void requireHeeded(const Settings& asked, const FmbpcParams& next) const;
 
   FmbpcParams params_;  ///< with the latest tuning
   DisturbanceForecast forecast_;
