@@ -149,16 +149,16 @@ class Counting(unittest.TestCase):
 class Stages(unittest.TestCase):
     """.ci/run over scripts that stand for the real ones."""
 
-    def run_stages(self, script, seconds):
+    def run_stages(self, script, seconds, stages=("format", "tests")):
         with tempfile.TemporaryDirectory() as folder:
             folder = pathlib.Path(folder)
             (folder / ".ci").mkdir()
             (folder / "scripts").mkdir()
             shutil.copy(TOP / ".ci/run", folder / ".ci/run")
-            for name, text in (("install", "exit 0"), ("check_core", script), ("test", script)):
+            for name, text in (("install", "exit 0"), ("check_format", script), ("check_core", script), ("test", script)):
                 (folder / "scripts" / name).write_text(f"#!/bin/sh\n{text}\n")
                 (folder / "scripts" / name).chmod(0o755)
-            for stage in ("core", "tests"):
+            for stage in stages:
                 done = subprocess.run(["bash", folder / ".ci/run", stage], env=dict(os.environ, FMBPC_CI_SECONDS=str(seconds)),
                                       capture_output=True, text=True, timeout=60)
                 yield done.returncode, done.stdout.splitlines()[-1]
@@ -168,6 +168,10 @@ class Stages(unittest.TestCase):
 
     def test_what_hangs_has_failed(self):
         self.assertEqual([(1, "0 passed, 1 failed"), (1, "0 passed, 1 failed")], list(self.run_stages("exec sleep 50", 1)))
+
+    def test_a_long_stage_that_does_not_fit_is_skipped_and_counted(self):
+        self.assertEqual([(1, "0 passed, 0 failed, 1 skipped")], list(self.run_stages("exit 0", 100, ["core"])))
+        self.assertEqual([(0, "1 passed, 0 failed")], list(self.run_stages("exit 0", 5000, ["core"])))
 
     def test_what_fails(self):
         self.assertEqual([(1, "0 passed, 1 failed"), (1, "7 passed, 1 failed")], list(self.run_stages("echo '7 passed, 0 failed'; exit 3", 100)))
