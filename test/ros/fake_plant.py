@@ -67,8 +67,7 @@ class FakePlant(unittest.TestCase):
         """plant_info and measurement travel apart: send again, as a plant does."""
         self.send(step)
         try:
-            self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step), patience=0.05)
-            return True
+            return bool(self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step), patience=0.05))
         except AssertionError:
             return False
 
