@@ -65,20 +65,28 @@ def exit_of(folder, name, since):
     return "" if code == "0" else f"its program ended with code {code}"
 
 
+def runs_of(registered):
+    """Results by the program that wrote them: a rostest's wrapper and what it runs, which follow it."""
+    runs = []
+    for name in registered:
+        if name.startswith("rosunit-") and runs:
+            runs[-1].append(name)
+        else:
+            runs.append([name])
+    return runs
+
+
 def results(build, since):
     """(file, name, kind, message) over all registered tests."""
     with open(os.path.join(build, "registered_tests.txt"), encoding="utf-8") as file:
         registered = file.read().split()
     folder = os.path.join(build, "test_results", "fmbpc")
-    for name in registered:
-        cases = cases_in(folder, name, since)
-        if not name.startswith("rosunit-") and "failed" not in (kind for _, kind, _ in cases):  # a rosunit's program is run by rostest
-            wrong = exit_of(folder, name, since)
-            if wrong:
-                cases.append((name, "failed", wrong))
-        for case in cases:
-            if not (name.startswith("rostest-") and case[1] == "passed"):
-                yield (name, *case)
+    for run in runs_of(registered):
+        cases = [(name, *case) for name in run for case in cases_in(folder, name, since)]
+        wrong = exit_of(folder, run[0], since)
+        if wrong and "failed" not in (kind for _, _, kind, _ in cases):
+            cases.append((run[0], run[0], "failed", wrong))
+        yield from (case for case in cases if not (case[0].startswith("rostest-") and case[2] == "passed"))
     for name in sorted(os.listdir(folder) if os.path.isdir(folder) else []):
         if name.endswith(".xml") and name not in registered:
             yield name, name, "failed", "a result that no registered test should write"

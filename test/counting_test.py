@@ -56,6 +56,11 @@ class Counting(unittest.TestCase):
         for past in ("catkin_run_tests_target", "catkin_add_gtest", "add_rostest("):
             self.assertNotIn(past, runs.replace("fpc_" + past, ""))
 
+    def test_a_rostest_that_ends_badly_though_its_assertions_hold_is_a_failure(self):
+        for name in ("rostest-a.xml", "rosunit-a.xml", "gtest-b.xml"):
+            (self.results / name).write_text(PASSED.format("a"))
+        self.assertEqual((1, "2 passed, 2 failed"), self.count("rostest-a.xml", "rosunit-a.xml", "gtest-b.xml", ended=2))
+
     def test_totals_without_cases_are_failures(self):
         for totals in ('tests="1" errors="1"', 'tests="3"', 'failures="2"'):
             suite = PASSED.format("a").replace("<testsuite", "<testsuite " + totals)
@@ -82,9 +87,10 @@ class Counting(unittest.TestCase):
         with tempfile.TemporaryDirectory() as home:
             environment = dict(os.environ, ROS_TEST_RESULTS_DIR=str(self.build / "test_results"), ROS_HOME=home,
                                ROS_HOSTNAME="localhost")
-            subprocess.run(["rostest", TOP / "test/broken/broken.test"], env=environment, capture_output=True)
-        wrapper = next(path.name for path in self.results.glob("rostest-*.xml"))
-        self.assertEqual((1, "0 passed, 1 failed"), self.count(wrapper, "rosunit-broken.xml"))
+            run = subprocess.run([TOP / "test/keep_exit.sh", self.results / "rostest-a.xml", "rostest", "--results-filename", "a.xml",
+                                  TOP / "test/broken/broken.test"], env=environment, capture_output=True)
+        self.assertNotEqual(0, run.returncode)
+        self.assertEqual((1, "0 passed, 1 failed"), self.count("rostest-a.xml", "rosunit-broken.xml", ended=None))
 
     @unittest.skipUnless(WITH_ROS, "built without ROS")
     def test_a_rostest_with_a_case(self):
@@ -94,9 +100,8 @@ class Counting(unittest.TestCase):
             for case in ("one", "two"):
                 subprocess.run(["rostest", "--results-filename", f"broken_case__case_{case}.xml", TOP / "test/broken/broken_case.test",
                                 f"case:={case}"], env=environment, capture_output=True)
-        written = sorted(path.name for path in self.results.glob("*.xml"))
-        self.assertEqual(["rostest-broken_case__case_one.xml", "rostest-broken_case__case_two.xml", "rosunit-broken_one.xml",
-                          "rosunit-broken_two.xml"], written)
+        written = [f"{kind}_{case}.xml" for case in ("one", "two") for kind in ("rostest-broken_case__case", "rosunit-broken")]
+        self.assertEqual(sorted(written), sorted(path.name for path in self.results.glob("*.xml")))
         self.assertEqual((1, "0 passed, 2 failed"), self.count(*written))
         self.assertEqual((1, "0 passed, 3 failed"), self.count(*written, "rosunit-broken_three.xml"))
 
