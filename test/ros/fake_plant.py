@@ -108,7 +108,8 @@ class FakePlant(unittest.TestCase):
 
     def test_a_plant_that_comes_back_with_another_loop_is_refused(self):
         """Its run is not answered, and the one that was is still."""
-        other = self.of_another_loop()
+        other = copy.deepcopy(self.info)
+        other.loop_digest = self.info.loop_digest[::-1]
         other.run_id += 500
         before = self.status.counts().get("refused: plant_info", 0)
         self.info_pub.publish(other)
