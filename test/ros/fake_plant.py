@@ -107,7 +107,6 @@ class FakePlant(unittest.TestCase):
         self.assertEqual(BASE, self.answer(2).source)
 
     def test_a_plant_that_comes_back_with_another_loop_is_refused(self):
-        """Its run is not answered, and the one that was is still."""
         other = copy.deepcopy(self.info)
         other.loop_digest = self.info.loop_digest[::-1]
         other.run_id += 500
