@@ -72,7 +72,7 @@ TEST(WeakDirection, IsSaidWithItsInputs) {
   at.disturbances = Vector(0);
   const std::string words = weakDirection(coupled(gains(0.05)), at);
   EXPECT_NE(words.find("u1, u2, u3"), std::string::npos) << words;
-  EXPECT_NE(words.find("0.0169"), std::string::npos) << words;
+  EXPECT_NE(words.find("0.01689"), std::string::npos) << words;
   EXPECT_EQ(weakDirection(coupled(gains(0.2)), at), "");
 }
 
