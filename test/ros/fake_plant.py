@@ -2,37 +2,26 @@
 """fmbpc_controller against a plant that does everything wrong. The first sample of each test opens a new run."""
 import copy
 import math
-import subprocess
 import sys
-import unittest
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
-from fmbpc.msg import (CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, NodeReady, PlantInfo, PlantState,
-                       Recorded, Setpoint, Tracking)
+from fmbpc.msg import CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, PlantInfo, Setpoint
 from fmbpc.srv import ManualInput
 from rosgraph_msgs.msg import Log
-from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 import ring
+from acting_plant import ActingPlant
 
 BASE, HELD, MANUAL = ControlAction.BASE, ControlAction.HELD, ControlAction.MANUAL
 
 
-class FakePlant(unittest.TestCase):
+class FakePlant(ActingPlant):
     @classmethod
     def setUpClass(cls):
-        # The plant in the other namespace never starts: it is there to introduce itself.
-        cls.info = ring.Listener("reference/plant_info", PlantInfo).wait()
-        cls.info_pub = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
-        cls.pub = ring.publisher("measurement", Measurement, "/fmbpc_controller")
-        cls.actions = ring.Listener("control_action", ControlAction)
-        cls.tracking = ring.Listener("tracking", Tracking)
-        cls.log = ring.Listener("/rosout", Log, "/fmbpc_controller")
-        cls.status = ring.NodeStatus("fmbpc_controller")
-        cls.ready = ring.Listener("ready", NodeReady, "/fmbpc_controller")
+        super().setUpClass()
         cls.refuse_a_plant_with_other_units()
 
     @classmethod
@@ -54,53 +43,6 @@ class FakePlant(unittest.TestCase):
         info = copy.deepcopy(cls.info)
         info.loop_digest = info.loop_digest[::-1]
         return info
-
-    def setUp(self):
-        self.new_run()
-
-    def new_run(self):
-        self.info.run_id += 1000
-        self.info_pub.publish(self.info)
-        for listener in (self.actions, self.tracking, self.log):
-            listener.clear()
-        self.applied = [570.0]
-        self.sent = -1
-        ring.wait_until(lambda: self.answered(0), "an answer to sample 0")
-
-    def answered(self, step):
-        """plant_info and measurement travel apart: send again, as a plant does."""
-        self.send(step)
-        try:
-            self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step), patience=0.05)
-            return True
-        except AssertionError:
-            return False
-
-    def wait_for_state(self, step, fits):
-        """Meanwhile the sample is sent again: who gets no measurement is stalled."""
-        state = ring.Listener("loop_state", LoopState, "/fmbpc_controller")
-
-        def said():
-            self.send(step)
-            return any(fits(m) for m in list(state.messages))
-        ring.wait_until(said, "the controller to say it")
-
-    def message(self, step, run_id=None, outputs=(200.0, 2000.0), final=False, quality=()):
-        msg = Measurement(run_id=self.info.run_id if run_id is None else run_id, step=step, outputs=outputs,
-                          disturbances=[1300.0, 430.0], input_applied=self.applied, final=final,
-                          quality=quality)
-        msg.header.stamp = self.info.header.stamp + rospy.Duration(720 * step)
-        return msg
-
-    def send(self, step, **fields):
-        self.pub.publish(self.message(step, **fields))
-
-    def answer(self, step, **fields):
-        """Sends a sample and returns its action; whatever was answered before it is in self.actions."""
-        self.send(step, **fields)
-        action = self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step))
-        self.applied = list(action.input)
-        return action
 
     def steps_answered(self):
         return [a.step for a in self.actions.messages if a.run_id == self.info.run_id]
@@ -183,33 +125,6 @@ class FakePlant(unittest.TestCase):
         self.send(2, final=True)
         self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))
         self.assertNotIn(2, self.steps_answered())
-
-    def test_a_final_sample_of_another_node_than_the_plant_ends_no_record(self):
-        status, recorded = ring.NodeStatus("loop_recorder"), ring.Listener("recorded", String, "/loop_recorder")
-        states, got = ring.publisher("plant_state", PlantState, "/loop_recorder"), ring.Listener("sample_recorded", Recorded)
-
-        def record(step):
-            def held():
-                states.publish(PlantState(run_id=self.info.run_id, step=step, state=[0.0] * 6, outputs=[200.0, 2000.0]))
-                return any((m.run_id, m.step) == (self.info.run_id, step) for m in list(got.messages))
-            ring.wait_until(held, f"sample {step} on record")
-        ring.publisher("measurement", Measurement, "/loop_recorder")
-        self.answer(1)
-        record(1)
-        before = status.counts().get("refused: measurement", 0)
-        forged = f"{{run_id: {self.info.run_id}, step: 2, final: true, outputs: [1, 2], disturbances: [1, 2], input_applied: [0]}}"
-        stranger = subprocess.Popen(ring.tied(["rostopic", "pub", "-r", "20", "/measurement", "fmbpc/Measurement", forged]))
-        self.addCleanup(ring.killed, stranger)
-        states.publish(PlantState(run_id=self.info.run_id, step=2, state=[0.0] * 6, outputs=[200.0, 2000.0]))
-        status.wait(lambda s: int(ring.values(s).get("refused: measurement", 0)) > before + 2)
-        self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))  # the controller listens to anyone
-        self.assertEqual([], recorded.messages)
-        ring.killed(stranger)
-        self.send(3)
-        record(3)
-        self.send(4, final=True)
-        record(4)
-        self.assertEqual([], recorded.messages)  # nobody else's sample 2 is in it
 
     def test_manual_and_back_without_a_bump(self):
         self.applied = list(self.answer(1).input)
