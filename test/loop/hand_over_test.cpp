@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
 #include "fmbpc/loop/factory.hpp"
@@ -71,25 +70,26 @@ double bumpOf(const LoopFile& file, double share) {
   }
 }
 
+/// An experiment plays its own inputs, and between two positions of a valve there is nothing.
+bool startsAsItIs(const LoopFile& file) {
+  const InputLimits& limits = file.simulation.actuator.limits;
+  const Loop loop(file);
+  const Controller& law = loop.controller.controller();
+  return law.followsSetpoint() && law.mayBeSent(0.3 * limits.lower + 0.7 * limits.upper);
+}
+
 TEST(HandOver, WhatThePlantGetsIsWhatThePersonLeft) {
-  int looked = 0;
+  int looked = 0, with_clp = 0;
   for (const std::string& name : loopNames()) {
-    LoopFile file;
-    try {
-      file = readLoop(name, withoutRecords(name));
-    } catch (const InputError& error) {
-      std::printf("%s: %s\n", name.c_str(), error.what());
-      continue;
-    }
-    if (file.external_plant) continue;
-    for (const double share : {0.2, 0.7}) {
-      const double bump = bumpOf(file, share);
-      if (bump > 1e-9) std::printf("%-30s %.1f %.3g\n", name.c_str(), share, bump);
-      EXPECT_LE(bump, 1e-9) << name;
-    }
+    const LoopFile file = readLoop(name, withoutRecords(name));
+    if (file.external_plant || !startsAsItIs(file)) continue;
+    for (const double share : {0.2, 0.7})
+      EXPECT_LE(bumpOf(file, share), 1e-9) << name << " " << share;
     ++looked;
+    with_clp += file.has_clp;
   }
   EXPECT_GT(looked, 150);
+  EXPECT_GT(with_clp, 15);
 }
 
 }  // namespace loop_hand_over_test
