@@ -2,37 +2,26 @@
 """fmbpc_controller against a plant that does everything wrong. The first sample of each test opens a new run."""
 import copy
 import math
-import subprocess
 import sys
-import unittest
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
-from fmbpc.msg import (CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, NodeReady, PlantInfo, PlantState,
-                       Recorded, Setpoint, Tracking)
+from fmbpc.msg import CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, PlantInfo, Setpoint
 from fmbpc.srv import ManualInput
 from rosgraph_msgs.msg import Log
-from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
 import ring
+from acting_plant import ActingPlant
 
 BASE, HELD, MANUAL = ControlAction.BASE, ControlAction.HELD, ControlAction.MANUAL
 
 
-class FakePlant(unittest.TestCase):
+class FakePlant(ActingPlant):
     @classmethod
     def setUpClass(cls):
-        # The plant in the other namespace never starts: it is there to introduce itself.
-        cls.info = ring.Listener("reference/plant_info", PlantInfo).wait()
-        cls.info_pub = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
-        cls.pub = ring.publisher("measurement", Measurement, "/fmbpc_controller")
-        cls.actions = ring.Listener("control_action", ControlAction)
-        cls.tracking = ring.Listener("tracking", Tracking)
-        cls.log = ring.Listener("/rosout", Log, "/fmbpc_controller")
-        cls.status = ring.NodeStatus("fmbpc_controller")
-        cls.ready = ring.Listener("ready", NodeReady, "/fmbpc_controller")
+        super().setUpClass()
         cls.refuse_a_plant_with_other_units()
 
     @classmethod
@@ -42,59 +31,18 @@ class FakePlant(unittest.TestCase):
         cls.info_pub.publish(wrong)
         words = cls.status.wait(lambda s: s.level == DiagnosticStatus.ERROR).message
         assert words == ("plant_info: outputs are x[mg/l], s[mg/l], the loop file expects s[mg/l], x[mg/l]"), words
-        other = copy.deepcopy(cls.info)
-        other.loop_digest = cls.info.loop_digest[::-1]
-        cls.info_pub.publish(other)
+        cls.info_pub.publish(cls.of_another_loop())
         cls.status.wait(lambda s: s.message == "plant_info: the plant reads another loop_text than this node")
         assert "/fmbpc_controller" not in [m.node for m in cls.ready.messages]
         cls.info_pub.publish(cls.info)
         ready = cls.ready.wait(lambda m: m.node == "/fmbpc_controller")
         assert ready.loop_digest == cls.info.loop_digest != "", ready
 
-    def setUp(self):
-        self.new_run()
-
-    def new_run(self):
-        self.info.run_id += 1000
-        self.info_pub.publish(self.info)
-        for listener in (self.actions, self.tracking, self.log):
-            listener.clear()
-        self.applied = [570.0]
-        self.sent = -1
-        ring.wait_until(lambda: self.answered(0), "an answer to sample 0")
-
-    def answered(self, step):
-        """plant_info and measurement travel apart: send again, as a plant does."""
-        self.send(step)
-        try:
-            return bool(self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step), patience=0.05))
-        except AssertionError:
-            return False
-
-    def wait_for_state(self, step, fits):
-        """Meanwhile the sample is sent again: who gets no measurement is stalled."""
-        state = ring.Listener("loop_state", LoopState, "/fmbpc_controller")
-
-        def said():
-            self.send(step)
-            return any(fits(m) for m in list(state.messages))
-        ring.wait_until(said, "the controller to say it")
-
-    def message(self, step, run_id=None, outputs=(200.0, 2000.0), final=False, quality=()):
-        msg = Measurement(run_id=self.info.run_id if run_id is None else run_id, step=step, outputs=outputs,
-                          disturbances=[1300.0, 430.0], input_applied=self.applied, final=final, quality=quality)
-        msg.header.stamp = self.info.header.stamp + rospy.Duration(720 * step)
-        return msg
-
-    def send(self, step, **fields):
-        self.pub.publish(self.message(step, **fields))
-
-    def answer(self, step, **fields):
-        """Sends a sample and returns its action; whatever was answered before it is in self.actions."""
-        self.send(step, **fields)
-        action = self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step))
-        self.applied = list(action.input)
-        return action
+    @classmethod
+    def of_another_loop(cls):
+        info = copy.deepcopy(cls.info)
+        info.loop_digest = info.loop_digest[::-1]
+        return info
 
     def steps_answered(self):
         return [a.step for a in self.actions.messages if a.run_id == self.info.run_id]
@@ -178,33 +126,6 @@ class FakePlant(unittest.TestCase):
         self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))
         self.assertNotIn(2, self.steps_answered())
 
-    def test_a_final_sample_of_another_node_than_the_plant_ends_no_record(self):
-        status, recorded = ring.NodeStatus("loop_recorder"), ring.Listener("recorded", String, "/loop_recorder")
-        states, got = ring.publisher("plant_state", PlantState, "/loop_recorder"), ring.Listener("sample_recorded", Recorded)
-
-        def record(step):
-            def held():
-                states.publish(PlantState(run_id=self.info.run_id, step=step, state=[0.0] * 6, outputs=[200.0, 2000.0]))
-                return any((m.run_id, m.step) == (self.info.run_id, step) for m in list(got.messages))
-            ring.wait_until(held, f"sample {step} on record")
-        ring.publisher("measurement", Measurement, "/loop_recorder")
-        self.answer(1)
-        record(1)
-        before = status.counts().get("refused: measurement", 0)
-        forged = f"{{run_id: {self.info.run_id}, step: 2, final: true, outputs: [1, 2], disturbances: [1, 2], input_applied: [0]}}"
-        stranger = subprocess.Popen(ring.tied(["rostopic", "pub", "-r", "20", "/measurement", "fmbpc/Measurement", forged]))
-        self.addCleanup(ring.killed, stranger)
-        states.publish(PlantState(run_id=self.info.run_id, step=2, state=[0.0] * 6, outputs=[200.0, 2000.0]))
-        status.wait(lambda s: int(ring.values(s).get("refused: measurement", 0)) > before + 2)
-        self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))  # the controller listens to anyone
-        self.assertEqual([], recorded.messages)
-        ring.killed(stranger)
-        self.send(3)
-        record(3)
-        self.send(4, final=True)
-        record(4)
-        self.assertEqual([], recorded.messages)  # nobody else's sample 2 is in it
-
     def test_manual_and_back_without_a_bump(self):
         self.applied = list(self.answer(1).input)
         manual = rospy.ServiceProxy("fmbpc_controller/manual", SetBool)
@@ -275,6 +196,21 @@ class FakePlant(unittest.TestCase):
         self.log.wait(lambda m: "setpoint of x from sample 3 on" in m.msg)
         self.answer(3)
         now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 3))
+        self.assertEqual((55.0, 1800.0), now.setpoint)
+
+    def test_a_setpoint_that_is_refused_is_answered_and_changes_nothing(self):
+        effects = ring.Listener("setpoint_effect", CommandEffect)
+        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        self.answer(1)
+        for number, (name, value) in enumerate((("x", 20000.0), ("x", -1.0), ("nobody", 1.0)), 1):
+            message = Setpoint(name=[name], value=[value], mode=Setpoint.OVERRIDE)
+            message.header.stamp = rospy.Time(0, number)
+            setpoint.publish(message)
+            answer = effects.wait(lambda m, asked=message.header.stamp: m.asked == asked)
+            self.assertEqual((1, self.info.run_id), (answer.step, answer.run_id))
+            self.assertIn(name, answer.refused)
+        self.answer(2)
+        now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))
         self.assertEqual((55.0, 1800.0), now.setpoint)
 
     def test_a_setpoint_beyond_its_limits_is_clamped_and_said(self):
