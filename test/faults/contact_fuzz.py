@@ -25,7 +25,7 @@ ME = "/contact_fuzz"
 MOST = 400  # MB of a node, at any time
 LOOPS = {"": ("asp_case1_clp", "sampling.duration_h=0 disturbance.source=constant loop.pace=realtime loop.speedup=3600 loop.publish_clock=false",
               ("plant_simulator", "fmbpc_controller", "clp_optimizer", "fuzzy_identifier", "loop_recorder")),
-         "/behind": ("example_external", "setpoint.schedule=[] sampling.duration_h=0", ("plant_gateway",))}
+         "/behind": ("example_external", "setpoint.schedule=[] sampling.duration_h=0 loop.ready_timeout_s=100000", ("plant_gateway",))}
 
 
 class Nodes:
