@@ -118,8 +118,8 @@ def main():
             for words, port, data in contacts.killers(node):
                 if nodes.processes[node].poll() is not None:
                     break
-                contacts.send(nodes.ports[node][port], data, answer=True)
-                time.sleep(0.1)  # datagrams kill with the next message
+                contacts.send(nodes.ports[node][port], data, answer=port == "tcpros")
+                time.sleep(0.03)
                 count += 1
                 if nodes.processes[node].poll() is not None:
                     killed.append(f"{node} was killed ({nodes.processes[node].returncode}) by: {words}")
