@@ -25,7 +25,7 @@ ME = "/contact_fuzz"
 MOST = 400  # MB of a node, at any time
 LOOPS = {"": ("asp_case1_clp", "sampling.duration_h=0 disturbance.source=constant loop.pace=realtime loop.speedup=3600 loop.publish_clock=false",
               ("plant_simulator", "fmbpc_controller", "clp_optimizer", "fuzzy_identifier", "loop_recorder")),
-         "/behind": ("example_external", "setpoint.schedule=[] sampling.duration_h=0", ("plant_gateway",))}
+         "/behind": ("example_external", "setpoint.schedule=[] sampling.duration_h=0 loop.ready_timeout_s=100000", ("plant_gateway",))}
 
 
 class Nodes:
@@ -118,8 +118,8 @@ def main():
             for words, port, data in contacts.killers(node):
                 if nodes.processes[node].poll() is not None:
                     break
-                contacts.send(nodes.ports[node][port], data, answer=True)
-                time.sleep(0.1)  # datagrams kill with the next message
+                contacts.send(nodes.ports[node][port], data, answer=port == "tcpros")
+                time.sleep(0.03)
                 count += 1
                 if nodes.processes[node].poll() is not None:
                     killed.append(f"{node} was killed ({nodes.processes[node].returncode}) by: {words}")

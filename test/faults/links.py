@@ -102,8 +102,9 @@ def use_up(loop, node):
     remember(loop)
     loop.starved = loop.pid("/" + node)
     loop.descriptors = resource.prlimit(loop.starved, resource.RLIMIT_NOFILE)
-    open_now = 1 + max(int(name) for name in os.listdir(f"/proc/{loop.starved}/fd"))
-    resource.prlimit(loop.starved, resource.RLIMIT_NOFILE, (open_now, loop.descriptors[1]))
+    open_now = {int(name) for name in os.listdir(f"/proc/{loop.starved}/fd")}
+    free = next(number for number in range(len(open_now) + 1) if number not in open_now)
+    resource.prlimit(loop.starved, resource.RLIMIT_NOFILE, (free, loop.descriptors[1]))
     loop.kill(CONTROLLER)
 
 
