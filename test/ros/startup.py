@@ -74,8 +74,7 @@ class Startup(unittest.TestCase):
         for host, port, why in (("127.0.0.1", ring.free_port(), "Connection refused"),
                                 ("no-such-plc.invalid", 502, "no such host is known")):
             sets = [f"gateway.modbus.host={host}", f"gateway.modbus.port={port}", "loop.ready_timeout_s=4"]
-            text = subprocess.run([ring.program("fmbpc"), "resolve", "cstr_modbus", "--sets", " ".join(sets)], capture_output=True,
-                                  text=True, check=True).stdout
+            text = ring.tool("resolve", "cstr_modbus", "--sets", " ".join(sets)).stdout
             rospy.set_param("lonely/loop_text", text)
             begun = time.monotonic()
             gateway = self.start("plant_gateway", "__ns:=lonely", stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
