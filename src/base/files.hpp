@@ -28,7 +28,10 @@ inline void writeText(const std::string& text, const std::string& file) {
   std::error_code error;
   const bool replaces = fs::is_regular_file(file, error) || !fs::exists(file, error);
   const bool link = replaces && fs::is_symlink(file, error);
-  const fs::path target = link ? fs::weakly_canonical(file, error) : fs::path(file);
+  const fs::path place = fs::path(file).parent_path();
+  const fs::path target = !link                     ? fs::path(file)
+                          : fs::exists(file, error) ? fs::canonical(file, error)
+                                                    : place / fs::read_symlink(file, error);
   const fs::path written = replaces ? fs::path(target.string() + ".partial") : target;
   if (replaces) fs::remove(written, error);  // of a process that was killed
   std::ofstream stream(written);
