@@ -153,6 +153,7 @@ void Links::lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers) 
     if (!has(publishers, topic, me) && lacks("publishes " + topic))
       if (const auto publication = ros::TopicManager::instance()->lookupPublication(topic))
         registered_ += tell("registerPublisher", {topic, publication->getDataType(), uri}) ? 1 : 0;
+  names.clear();  // the next call appends
   ros::TopicManager::instance()->getSubscribedTopics(names);
   for (const std::string& topic : names)
     if (!has(subscribers, topic, me) && lacks("subscribes " + topic))

@@ -2,7 +2,8 @@
 """The example of a plant of one's own behind the gateway: every sample is recorded, the level reaches its setpoints, and
 what the tank was told kept all limits. A second publisher of its level is refused and named, so is whoever commands the tank
 beside the gateway; values of who may not speak for the tank do not count; and a stranger neither takes the
-plant into its own hand nor sets its level where the loop names who may."""
+plant into its own hand nor sets its level where the loop names who may. The master lists each node of ours for the topics
+that it hears, and no others."""
 import csv
 import math
 import os
@@ -10,6 +11,7 @@ import subprocess
 import sys
 import unittest
 
+import rosgraph
 import rospy
 import rostest
 from fmbpc.msg import LoopState, Measurement
@@ -53,6 +55,11 @@ class Example(unittest.TestCase):
         ring.wait_until(seen, "the stranger that commands the tank to be named")
         folder = recorded.wait().data
         summary = ring.summary(folder)
+        nodes = ("/fmbpc_controller", "/loop_recorder", "/plant_gateway")
+        listeners = rosgraph.Master(rospy.get_name()).getSystemState()[1]
+        for node in nodes:
+            own = {topic for topic, _ in ring.slave(node).getSubscriptions(rospy.get_name())[2]}
+            self.assertEqual(own, {topic for topic, names in listeners if node in names}, node)
         self.assertEqual((240, True), (summary["steps"], summary["complete"]))
         self.assertEqual({"input": 0, "move": 0, "output": 0}, summary["violations"])
         with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:

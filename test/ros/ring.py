@@ -79,9 +79,13 @@ def begin():
     ready.publish(node=rospy.get_name())
 
 
+def slave(node, master=None):
+    """A node's own interface."""
+    return xmlrpc.client.ServerProxy((master or rosgraph.Master(rospy.get_name())).lookupNode(node))
+
+
 def pid(node, master=None):
-    uri = (master or rosgraph.Master(rospy.get_name())).lookupNode(node)
-    return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2]
+    return slave(node, master).getPid(rospy.get_name())[2]
 
 
 def threads(process):
