@@ -24,6 +24,7 @@ std::vector<SignalInfo> withoutRanges(const std::vector<std::string>& names) {
 }
 
 void requireInRange(const SignalInfo& signal, CommandMode mode, double value) {
+  require(std::isfinite(value), "value of " + signal.name, "a finite number");
   const std::string unit = signal.unit.empty() ? "" : " [" + signal.unit + "]";
   const double span = signal.upper - signal.lower;
   if (mode == CommandMode::kOffset)
@@ -62,7 +63,6 @@ void CommandTable::accept(const Command& asked, std::uint32_t step) {
               std::to_string(command.name.size()));
   require((release && command.value.empty()) || command.value.size() == command.name.size(),
           "value", "as many values as names");
-  for (const double value : command.value) require(std::isfinite(value), "value", "finite numbers");
   std::vector<bool> named(names_.size());
   for (std::size_t i = 0; i < command.name.size(); ++i) {
     const std::size_t index = indexOf(command.name[i]);
