@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kPollPeriod = 0.05;   // [s] of wall time
 constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr double kLastMessages = 0.1;  // [s] after the last sample, for the bag
 constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
 constexpr double kLookForRing = 0.01;  // [s] of wall time, at who is there
 constexpr double kSettled = 0.1;       // [s]: a connection is complete at both ends a moment later
@@ -81,10 +82,12 @@ std::unique_ptr<RecordStore> LoopRecorder::openStore(const std::string& folder) 
 }
 
 void LoopRecorder::poll() {
-  if (!stay_ && ending_s_ >= 0 && steadyNow() - ending_s_ > kLastWords)
+  if (ending_s_ >= 0 && !said_end_ && steadyNow() - ending_s_ > kLastMessages) sayEnd();
+  if (!stay_ && said_end_ && steadyNow() - ending_s_ > kLastWords)
     return problem_.empty() ? done() : fail(problem_);
   if (!unusable_.empty()) return giveUp();
-  if (bag_ && steadyNow() - looked_s_ >= (bag_ready_ ? kLookForMore : kLookForTopics)) {
+  if (bag_ && !said_end_ &&
+      steadyNow() - looked_s_ >= (bag_ready_ ? kLookForMore : kLookForTopics)) {
     bag_ready_ = bag_->look() || bag_ready_;
     looked_s_ = steadyNow();
   }
@@ -223,9 +226,18 @@ void LoopRecorder::conclude() {
   end();
 }
 
-// Everybody else who ends with the run hears it before this process goes.
+// The bag is whole first: what came with the last sample is still to be written to it.
 void LoopRecorder::end() {
   if (keep_ || ending_s_ >= 0) return;
+  ending_s_ = steadyNow();
+  if (!bag_) sayEnd();
+}
+
+// Everybody else who ends with the run hears it before this process goes.
+void LoopRecorder::sayEnd() {
+  if (bag_) bag_->close(goes_on_);
+  if (bag_ && problem_.empty()) problem_ = bag_->problem();
+  said_end_ = true;
   ending_s_ = steadyNow();
   end_.say(problem_.empty() ? "recorded" : problem_);
 }

@@ -63,6 +63,7 @@ class LoopRecorder : public Node {
   bool tryWrite();
   int writeRest();
   void end();
+  void sayEnd();
   Health health(double now_s) const;
   void report(Diagnostics::Status& status) const;
 
@@ -82,7 +83,7 @@ class LoopRecorder : public Node {
 
   RecorderClock clock_;
   double ending_s_{-1};
-  bool written_{false};
+  bool written_{false}, said_end_{false};
   std::string problem_, trouble_;  // of the recorder; of the plant
   double connected_s_{-1};         // since when every publisher is there
 
