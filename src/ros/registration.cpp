@@ -119,6 +119,10 @@ bool KeptParameters::putBack() const {
   return any;
 }
 
+Links::Links()
+    : services_at_("rosrpc://" + ros::network::getHost() + ":" +
+                   std::to_string(ros::ConnectionManager::instance()->getTCPPort())) {}
+
 bool Links::lacks(const std::string& what, const std::string& node) {
   const auto known = before_.find(what);
   const int looks = known == before_.end() ? 1 : known->second.looks + 1;
@@ -127,6 +131,7 @@ bool Links::lacks(const std::string& what, const std::string& node) {
 }
 
 Links::Master Links::look(const std::vector<std::string>& spaces, NodeAddresses& addresses) try {
+  if (!ros::ok()) return Master::kAnswers;
   XmlRpcValue response, state;
   if (!ros::master::execute("getSystemState", request({}), response, state, false))
     return Master::kSilent;
@@ -162,8 +167,6 @@ void Links::lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers) 
 
 /// roscpp tells nobody which services a node has: all names that a node of ours may have are tried.
 void Links::lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces) {
-  const std::string address = "rosrpc://" + ros::network::getHost() + ":" +
-                              std::to_string(ros::ConnectionManager::instance()->getTCPPort());
   for (const std::string& space : spaces)
     for (const char* name : {topics::kPause, topics::kStep, topics::kReset, topics::kManual,
                              topics::kAdapt, topics::kManualInput, topics::kHold, "set_parameters",
@@ -173,7 +176,7 @@ void Links::lookAtServices(const ByTopic& services, const std::vector<std::strin
           ros::ServiceManager::instance()->lookupServicePublication(service) &&
           lacks("serves " + service))
         registered_ += tell("registerService",
-                            {service, address, ros::XMLRPCManager::instance()->getServerURI()})
+                            {service, services_at_, ros::XMLRPCManager::instance()->getServerURI()})
                            ? 1
                            : 0;
     }

@@ -31,6 +31,7 @@ class KeptParameters {
 class Links {
  public:
   enum class Master { kAnswers, kSilent, kForgot };
+  Links();  ///< of a node that has been started
   /// Compares what the master has of this process (services: in `spaces`, the names of its nodes)
   /// with what there is, and who publishes what it subscribes to with whom it is connected to. What
   /// lacks in two looks running is made again. `addresses`: of this look.
@@ -54,6 +55,7 @@ class Links {
   void lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces);
   void lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses);
 
+  const std::string services_at_;  // asked at the start: roscpp has no port any more when it ends
   std::map<std::string, Missing> missing_, before_;
   int registered_{};  // in this look
 };

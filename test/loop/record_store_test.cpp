@@ -210,7 +210,8 @@ TEST_F(InterruptedTest, WhatARecorderLeftForAnotherOneIsFiledOnce) {
 
 TEST_F(InterruptedTest, AnEndlessRunIsFiledInPartsThatFollowEachOther) {
   const RunRecord run = runLoop(clp_);
-  const LoopFile endless = readLoop("asp_case1_clp", {{"sampling.duration_h", "0"}});
+  const LoopFile endless =
+      readLoop("asp_case1_clp", {{"sampling.duration_h", "0"}, {"disturbance.source", "constant"}});
   const auto record = [&](std::size_t from, std::size_t to) {
     RecordStore store(endless, path("out"), 0.0, 0.8);
     EXPECT_EQ(store.begin(11), from);

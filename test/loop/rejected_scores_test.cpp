@@ -1,6 +1,7 @@
 // What the controller rejected is not in the scores, nor outside the data of its model.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fmbpc/loop/recorder_session.hpp"
@@ -20,8 +21,10 @@ RunRecord recordOf(const LoopFile& loop) {
   return record;
 }
 
-void fail(RunRecord& record, double value) {
-  for (const std::size_t k : {10, 11, 30}) record.samples[k].measurement.outputs[kX] = value;
+/// No two readings are the same.
+void fail(RunRecord& record, double value, Eigen::Index output = kX) {
+  for (const std::size_t k : {10, 11, 30})
+    record.samples[k].measurement.outputs[output] = value - static_cast<double>(k);
 }
 
 TEST(RejectedScores, OfASimulatedPlantAreThoseOfWhatWasTrue) {
@@ -77,9 +80,13 @@ TEST(RejectedScores, ARejectedMeasurementIsNotOutsideTheModel) {
       "asp_best", {{"sampling.duration_h", "10"}, {"plausibility.signals.x.upper", "9000"}});
   RunRecord record = recordOf(loop);
   const std::uint64_t before = summarize(loop, record, 0.0).outside_model;
-  fail(record, 8999.0);
+  const std::vector<SignalInfo>& outputs = loop.plant_info.outputs;
+  const auto x = std::find_if(outputs.begin(), outputs.end(),
+                              [](const SignalInfo& output) { return output.name == "x"; }) -
+                 outputs.begin();
+  fail(record, 8999.0, x);
   EXPECT_EQ(summarize(loop, record, 0.0).outside_model, before + 3);  // accepted, and outside
-  fail(record, 9001.0);
+  fail(record, 9100.0, x);
   EXPECT_EQ(summarize(loop, record, 0.0).outside_model, before);
   EXPECT_EQ(samplesOutsideModel(loop, record), before);
 }

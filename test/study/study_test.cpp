@@ -226,7 +226,7 @@ TEST_F(Study, WhatWouldVaryNothingIsRefusedBeforeTheRuns) {
 
 TEST_F(Study, CasesWithTheSameTrajectoryAreRefusedWhateverTheReason) {
   const std::string quiet = "seeds: 1:3\nset: {noise.std.y: 0}\n";
-  const StudyPlan same = plan(quiet + "vary: {loop.speedup: [0.5, 2]}\n");
+  const StudyPlan same = plan(quiet + "vary: {plant.matrix.inputs.0.upper: [0.8, 1.2]}\n");
   StudyOptions options;
   options.state = path("same.json");
   for (options.resume = false;; options.resume = true) {
