@@ -8,6 +8,7 @@
 namespace fpc {
 namespace {
 
+constexpr double kRenew = 0.1;  // [s] between two renewals of what is held already
 constexpr double kShown = 2.0;  // [s] that a coil which somebody else has written is told
 
 std::chrono::duration<double> seconds(double value) { return std::chrono::duration<double>(value); }
@@ -133,8 +134,8 @@ void ModbusField::dropped(const std::string& why) {
 
 void ModbusField::round(ModbusLink& link, const Wish& wish) {
   const std::uint64_t refused = seen_.exceptions;
-  readAll(link);
   tell(link, wish);
+  readAll(link);
   readPositions(link);
   ++seen_.rounds;
   if (!seen_.up) seen_.at_s = steadyNow();
@@ -165,11 +166,6 @@ void ModbusField::readAll(ModbusLink& link) {
     seen_.remote_seen = seen_.remote_seen || remote.has_value();
     if (!remote) ++seen_.exceptions;
   }
-  if (modbus.owner >= 0) {
-    const auto word = link.readRegister(modbus.owner);
-    if (word) lease_.held(*word, steadyNow());
-    if (!word) ++seen_.exceptions;
-  }
   if (modbus.heartbeat_in < 0) return;
   const double at_s = steadyNow();
   const auto beat = link.readRegister(modbus.heartbeat_in);
@@ -190,10 +186,15 @@ void ModbusField::readPositions(ModbusLink& link) {
   }
 }
 
-/// Renewed in every round, which also shows who has written there meanwhile.
+/// Renewing shows as well who has written there meanwhile.
 bool ModbusField::leads(ModbusLink& link, bool claims) {
   const int address = params_.modbus.owner;
   if (address < 0) return true;
+  const auto found = link.readRegister(address);
+  if (found)
+    lease_.held(*found, steadyNow());
+  else
+    ++seen_.exceptions;
   const bool led = lease_.leads();
   const auto word = lease_.toWrite(claims);
   if (word && !link.writeRegister(address, *word)) ++seen_.exceptions;
@@ -213,15 +214,33 @@ void ModbusField::renewAutomatic(ModbusLink& link, bool claims) {
   automatic_told_ = !done ? -1 : claims ? 1 : 0;
 }
 
+/// What is held is renewed after kRenew, what is not is asked for in each round.
+void ModbusField::renew(ModbusLink& link, bool claims) {
+  const double now_s = steadyNow();
+  if (hasInputs() && claims && now_s - renewed_s_ < kRenew) return;
+  renewed_s_ = now_s;
+  if (leads(link, claims)) renewAutomatic(link, claims);
+}
+
+bool ModbusField::hasInputs() const {
+  const ModbusParams& modbus = params_.modbus;
+  return (modbus.owner < 0 || lease_.leads()) &&
+         (modbus.automatic.address < 0 || automatic_told_ == 1);
+}
+
+/// The command goes first: the plant is to have it before its sample ends.
+void ModbusField::tell(ModbusLink& link, const Wish& wish) {
+  if (hasInputs()) command(link, wish);
+  renew(link, wish.automatic);
+  const int heartbeat = params_.modbus.heartbeat_out;
+  if (heartbeat < 0 || (params_.modbus.owner >= 0 && !lease_.leads())) return;
+  if (steadyNow() - wish.asked_s < kPatience && !link.writeRegister(heartbeat, ++heartbeat_))
+    ++seen_.exceptions;
+}
+
 /// A command is written once; one that failed, or was made before the connection was lost, waits
 /// for what is read back.
-void ModbusField::tell(ModbusLink& link, const Wish& wish) {
-  const ModbusParams& modbus = params_.modbus;
-  if (!leads(link, wish.automatic)) return;
-  renewAutomatic(link, wish.automatic);
-  if (modbus.heartbeat_out >= 0 && steadyNow() - wish.asked_s < kPatience &&
-      !link.writeRegister(modbus.heartbeat_out, ++heartbeat_))
-    ++seen_.exceptions;
+void ModbusField::command(ModbusLink& link, const Wish& wish) {
   if (!wish.commands || wish.number == seen_.confirmed || wish.number == seen_.failed) return;
   seen_.failed = wish.number;  // unless all of it arrives
   seen_.failed_s = steadyNow();

@@ -199,7 +199,7 @@ FAULTS = (
      lie("is rounded to 1 %", lambda: lambda p: round(100 * p) / 100, None),
      lie("is rounded to the half", lambda: lambda p: round(2 * p) / 2),
      lie("is 0", lambda: lambda p: 0.0), lie("is at its end", lambda: lambda p: 1.0),
-     lie("stays where it was", lambda: frozen, None),
+     lie("stays where it was", frozen, None),
      Fault("position is not read any more", unread, truth, said=UNREAD + "|Illegal data address", lasts=3.0, said_within=3.0),
      Fault("position is no number", lambda loop: loop.far.position(nan()), truth, said=UNREAD, needs=("float64",), lasts=3.0,
            said_within=3.0),
