@@ -121,20 +121,27 @@ class LaunchFile(unittest.TestCase):
         environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
         core = subprocess.Popen(ring.tied(["roscore", "-p", port]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.addCleanup(ring.killed, core)
-        launch = subprocess.Popen(
-            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=asp_case1", "out:=" + self.out, "set:=sampling.duration_h=20",
-                       "pace:=paced", "speedup:=7200", "draw:=false"]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        quiet = {"env": environment, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        launch = subprocess.Popen(ring.tied(
+            ["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=asp_case1", "out:=" + self.out, "pace:=lockstep", "draw:=false",
+             "set:=sampling.duration_h=20 loop.ready_timeout_s=600 loop.wait_for=[loop_recorder,fmbpc_controller,launch_file]"]), **quiet)
+        self.addCleanup(ring.killed, launch)
         master = rosgraph.Master("/launch_file", environment["ROS_MASTER_URI"])
         nodes = ("/plant_simulator", "/fmbpc_controller", "/loop_recorder", "/end_launch")
         ring.wait_until(lambda: known(master, *nodes), "the nodes")
         processes = {node: ring.pid(node, master) for node in nodes}
         launch.kill()
         launch.wait()
-        said = subprocess.run(["timeout", "8", "rostopic", "echo", "-n", "20", "/loop_state/reason"], env=environment, text=True,
-                              stdout=subprocess.PIPE, check=False).stdout
-        self.assertIn("roslaunch that started this node was killed", said)
+        with tempfile.TemporaryFile("w+") as said:
+            listener = subprocess.Popen(ring.tied(["rostopic", "echo", "/loop_state/reason"]), **{**quiet, "stdout": said})
+            self.addCleanup(ring.killed, listener)
+            ring.wait_until(lambda: "roslaunch that started this node was killed" in os.pread(said.fileno(), 1 << 20, 0).decode(),
+                            "the nodes to say it")
+        begins = subprocess.Popen(ring.tied(["rostopic", "pub", "/ready", "fmbpc/NodeReady", "{node: /launch_file}",
+                                             "__name:=launch_file"]), **quiet)  # the run itself, after all that
+        self.addCleanup(ring.killed, begins)
         for node, process in processes.items():
-            ring.wait_until(lambda p=process: not ring.runs(p), node + " to end", 30.0)
+            ring.wait_until(lambda p=process: not ring.runs(p), node + " to end")
         with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
             self.assertTrue(json.load(file)["complete"])
 
