@@ -34,7 +34,11 @@ if not hasattr(threading.Thread, "isAlive"):
 def launcher():
     """Process of the roslaunch that is the parent of this node; 0 if a person started the node."""
     parent = os.getppid()
-    for uri in (rospy.get_param("/roslaunch/uris", {}) or {}).values():
+    try:
+        uris = rosgraph.Master("/end_launch").getParam("/roslaunch/uris")
+    except (OSError, rosgraph.MasterException):
+        uris = {}
+    for uri in uris.values():
         try:
             if xmlrpc.client.ServerProxy(uri).get_pid()[2] == parent:
                 return parent
@@ -168,8 +172,8 @@ def end_launch(parent, ours):
 
 
 def main():
+    parent = launcher()  # before anybody sees the node: the launch may be killed at any time from then on
     rospy.init_node("end_launch")
-    parent = launcher()
     if not parent:
         rospy.logwarn("end_launch: no roslaunch has started this node: there is nothing to end")
         return 0

@@ -10,7 +10,6 @@ import tempfile
 import unittest
 
 import rosbag
-import rosgraph
 import rostest
 
 import ring
@@ -23,13 +22,6 @@ def roslaunch(*arguments):
     done = subprocess.run(ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", *arguments]), env=environment,
                           text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=150, check=False)
     return done.returncode, re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
-
-
-def known(master, *nodes):
-    try:
-        return all(master.lookupNode(node) for node in nodes)
-    except (OSError, rosgraph.MasterException):
-        return False
 
 
 class LaunchFile(unittest.TestCase):
@@ -115,28 +107,6 @@ class LaunchFile(unittest.TestCase):
         for loop in ("asp_case1", "asp_case2"):
             with open(os.path.join(self.out, loop, "summary.json"), encoding="utf-8") as file:
                 self.assertTrue(json.load(file)["complete"], loop)
-
-    def test_a_launcher_that_is_killed_is_said_and_its_nodes_end_with_the_run(self):
-        port = ring.free_port()
-        environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
-        core = subprocess.Popen(ring.tied(["roscore", "-p", port]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.addCleanup(ring.killed, core)
-        launch = subprocess.Popen(
-            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=asp_case1", "out:=" + self.out, "set:=sampling.duration_h=20",
-                       "pace:=paced", "speedup:=7200", "draw:=false"]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        master = rosgraph.Master("/launch_file", environment["ROS_MASTER_URI"])
-        nodes = ("/plant_simulator", "/fmbpc_controller", "/loop_recorder", "/end_launch")
-        ring.wait_until(lambda: known(master, *nodes), "the nodes")
-        processes = {node: ring.pid(node, master) for node in nodes}
-        launch.kill()
-        launch.wait()
-        said = subprocess.run(["timeout", "8", "rostopic", "echo", "-n", "20", "/loop_state/reason"], env=environment, text=True,
-                              stdout=subprocess.PIPE, check=False).stdout
-        self.assertIn("roslaunch that started this node was killed", said)
-        for node, process in processes.items():
-            ring.wait_until(lambda p=process: not ring.runs(p), node + " to end", 30.0)
-        with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
-            self.assertTrue(json.load(file)["complete"])
 
     def test_a_bad_loop_starts_nothing(self):
         for arguments, words in ((["loop:=nobody"], "nobody"),
