@@ -31,7 +31,6 @@ void describeInstrument(const LoopFile& loop, const SignalInfo& signal, SignalPl
 /// The plant's range, wider by a part of itself; an endless one asks nothing.
 SignalPlausibility defaultsOf(const SignalInfo& signal, double margin, bool may_step) {
   SignalPlausibility asked;
-  asked.frozen_samples = -1;
   const double range = signal.upper - signal.lower;
   if (!std::isfinite(range)) return asked;
   asked.lower = signal.lower - margin * range;

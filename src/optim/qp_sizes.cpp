@@ -8,7 +8,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kUsual = 7;      // of the exponent: a size that counts as 1
+constexpr int kUsual = 12;     // of the exponent: a size that counts as 1
 constexpr int kLargest = 300;  // so that products stay finite
 
 int exponentOf(double size) {

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kAtBound = 1e-6;      // of an input's range
-constexpr double kLockedError = 0.01;  // of the range, below which an output is where it should be
+constexpr double kAtBound = 1e-6;       // of an input's range
+constexpr double kLockedError = 0.004;  // of the range, below which an output is where it should be
 
 /// -1: at the lower bound, 1: at the upper one, 0: between them.
 int boundOf(const InputLimits& limits, const Vector& input, Index i) {

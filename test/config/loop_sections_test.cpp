@@ -67,7 +67,7 @@ TEST(LoopSections, ASensorNeedsNoClass) {
 TEST(LoopSections, WhatSignalsMayBeIsKnownByDefault) {
   const LoopFile plain = readLoop("asp_case1_pi_x");
   for (const auto* group : {&plain.plausibility.outputs, &plain.plausibility.disturbances})
-    for (const SignalPlausibility& signal : *group) EXPECT_EQ(signal.frozen_samples, -1);
+    for (const SignalPlausibility& signal : *group) EXPECT_EQ(signal.frozen_samples, 0);
   EXPECT_EQ(plain.plausibility.outputs[1].scale_upper, plain.plant_info.outputs[1].upper);
   EXPECT_FALSE(plain.plausibility.range_falls) << "an initial input is no fallback";
   EXPECT_TRUE(

@@ -70,8 +70,10 @@ class Records(unittest.TestCase):
 
     def test_a_folder_that_cannot_be_used_starts_nothing(self):
         launch = Launch(self, "loop:=asp_case1", "out:=/dev/null/x")
-        text = launch.end(20)
-        self.assertIn("out:=/dev/null/x: expected a folder that can be written: /dev/null is no folder", text)
+        launch.end(20)
+        why = "out:=/dev/null/x: expected a folder that can be written: /dev/null is no folder"
+        ring.wait_until(lambda: why in launch.text(), "the reason, which comes last")
+        text = launch.text()
         self.assertNotIn("process[", text)
 
     def test_a_recorder_whose_folder_cannot_be_used_says_so_and_is_not_ready(self):
