@@ -208,7 +208,7 @@ TEST(PlainConversions, AnEmptyMatrixOfBillionsOfColumnsIsRefusedAtOnce) {
 }
 
 TEST(PlainConversions, UnknownEnumerationsAreRefused) {
-  for (const std::uint8_t value : {0, 7, 255}) {
+  for (const std::uint8_t value : {0, 8, 255}) {
     fmbpc::ControlAction action;
     action.source = value;
     EXPECT_THROW(fromMsg(action), InputError) << int{value};
