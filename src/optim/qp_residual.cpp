@@ -7,7 +7,6 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "optim/qp_kernels.hpp"
-#include "optim/qp_sizes.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc {
@@ -119,18 +118,14 @@ double kktResidual(const QpProblem& problem, VectorRef x, VectorRef y_x, VectorR
   const Eigen::Index n = problem.g.size(), m = problem.a_lower.size();
   require(x.size() == n && y_x.size() == n && y_a.size() == m, "kktResidual",
           "x, y_x of size n and y_a of size m");
-  qp::ScaledProblem scaled;
-  scaled.resize(n, m);
-  const QpProblem& p = scaled.scale(problem) ? scaled.problem() : problem;
-  const Vector v = x.cwiseQuotient(scaled.size()), y_v = y_x.cwiseProduct(scaled.size());
-  const Vector Hv = p.H * v;
-  Vector Aty = Vector::Zero(n), Av(m);
+  const Vector Hx = problem.H * x;
+  Vector Aty = Vector::Zero(n), Ax(m);
   if (m > 0) {
-    Aty.noalias() = p.A.transpose() * y_a;
-    Av.noalias() = p.A * v;
+    Aty.noalias() = problem.A.transpose() * y_a;
+    Ax.noalias() = problem.A * x;
   }
   qp::RowNoise noise;
-  return qp::scaledResidual(p, noise, v, y_v, y_a, Hv, Aty, Av);
+  return qp::scaledResidual(problem, noise, x, y_x, y_a, Hx, Aty, Ax);
 }
 
 }  // namespace fpc

@@ -156,6 +156,29 @@ TEST(QpProperty, RedundantConsistentEqualitiesAreSolvedAtLargeValues) {
   }
 }
 
+TEST(QpProperty, UnitsOfTheUnknownsDoNotMatter) {
+  for (unsigned seed = 1; seed <= 500; ++seed) {
+    SCOPED_TRACE(seed);
+    Draw draw(seed);
+    const Eigen::Index n = draw.index(1, 50), m = draw.index(0, 60);
+    const KnownQp known = knownQp(draw, n, m);
+    Vector unit(n);  // H gets entries of 1e-6 to 1e6, x of 1e-3 to 1e3
+    for (double& value : unit) value = std::pow(10.0, draw.uniform(-3.0, 3.0));
+    QpProblem p = known.problem;
+    const Vector inverse = unit.cwiseInverse();
+    p.H = inverse.asDiagonal() * known.problem.H * inverse.asDiagonal();
+    p.A = known.problem.A * inverse.asDiagonal();
+    p.g = known.problem.g.cwiseProduct(inverse);
+    p.x_lower = known.problem.x_lower.cwiseProduct(unit);
+    p.x_upper = known.problem.x_upper.cwiseProduct(unit);
+    QpSolver solver(n, m);
+    const QpResult& r = solver.solve(p);
+    ASSERT_EQ(r.status, SolveStatus::kSolved);
+    ASSERT_LE(r.kkt_residual, 1e-12);
+    ASSERT_LE(distance(r.x.cwiseQuotient(unit), known.x), 1e-9);
+  }
+}
+
 TEST(QpProperty, IllConditionedHessiansAreSolvedToASmallResidual) {
   for (unsigned seed = 1; seed <= 300; ++seed) {
     SCOPED_TRACE(seed);
