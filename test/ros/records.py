@@ -115,7 +115,7 @@ class Records(unittest.TestCase):
         self.assertEqual(1, again.returncode)
         self.assertIn("expected a journal.bin", again.stderr)
 
-    def test_a_recorder_that_is_told_to_end_in_mid_run_and_comes_back_has_all_samples_in_record_and_bag(self):
+    def test_a_recorder_that_is_told_to_end_in_mid_run_and_comes_back_has_all_samples_in_the_record(self):
         launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=40", "speedup:=14400", "out:=" + self.out,
                         "record:=true", "respawn:=true")
         journal = os.path.join(self.out, "journal.bin")
@@ -134,8 +134,6 @@ class Records(unittest.TestCase):
         with open(os.path.join(self.out, "trajectory.csv"), encoding="utf-8") as file:
             self.assertEqual(202, len(file.readlines()))
         self.assertEqual([], [name for name in ("journal.bin", "history") if os.path.exists(os.path.join(self.out, name))])
-        replayed = json.loads(ring.tool("replay", os.path.join(self.out, "loop.bag"), "--json").stdout)
-        self.assertEqual((True, 0, 201), (replayed["equal"], replayed["missing_samples"], replayed["measurements"]), replayed)
 
     def test_a_plant_that_is_told_to_end_says_so_last(self):
         states = ring.Listener("useless/loop_state", LoopState, connected=False)
