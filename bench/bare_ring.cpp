@@ -127,6 +127,8 @@ void runController(ros::NodeHandle& node) {
   predicted.setpoint.assign(kOutputs, 1.0);
   predicted.input_base_unclipped.assign(kInputs, 1.0);
   predicted.input_previous.assign(kInputs, 1.0);
+  predicted.input_lower.assign(kInputs, 0.0);
+  predicted.input_upper.assign(kInputs, 1600.0);
   const auto heard =
       listen<fmbpc::Measurement>(node, "measurement", [&](const fmbpc::Measurement::ConstPtr& m) {
         fmbpc::ControlAction action;

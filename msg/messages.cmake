@@ -17,6 +17,7 @@ add_message_files(DIRECTORY msg FILES
   PlantInfo.msg
   PlantState.msg
   PredictiveAction.msg
+  Recorded.msg
   Setpoint.msg
   Signal.msg
   SignalInfo.msg

@@ -2,7 +2,8 @@
 """Node end_launch: ends the launch that started it, as Ctrl-C does, when the run is over (topic run_end). roslaunch with
 a master of its own never ends by itself, and a node that is `required` is announced in red as having died. Where the
 recorder is gone, it makes the run's files of the journal (`fmbpc recover`) in the folder ~out, and ends the launch when
-the plant has finished and the recorder has been gone for ~patience seconds (5). One that has not answered for ~hanging
+the plant has finished and the recorder has been gone for ~patience seconds (5). Where roslaunch itself was killed, it says so and asks
+the nodes of the loop one by one to end when the run is over (not tested: `rosnode kill` otherwise). One that has not answered for ~hanging
 seconds (20) when the plant has finished hangs for ever: it is killed first."""
 import os
 import queue
@@ -33,7 +34,11 @@ if not hasattr(threading.Thread, "isAlive"):
 def launcher():
     """Process of the roslaunch that is the parent of this node; 0 if a person started the node."""
     parent = os.getppid()
-    for uri in (rospy.get_param("/roslaunch/uris", {}) or {}).values():
+    try:
+        uris = rosgraph.Master("/end_launch").getParam("/roslaunch/uris")
+    except (OSError, rosgraph.MasterException):
+        uris = {}
+    for uri in uris.values():
         try:
             if xmlrpc.client.ServerProxy(uri).get_pid()[2] == parent:
                 return parent
@@ -88,6 +93,7 @@ class Impatient(xmlrpc.client.Transport):
 
 
 GONE, HANGS = "gone", "hangs"
+STARTED = ("plant_simulator", "plant_gateway", "fmbpc_controller", "clp_optimizer", "fuzzy_identifier", "loop_recorder", "plot_live")
 
 
 def ask(node):
@@ -108,7 +114,10 @@ def ask(node):
 
 
 def child(parent, node):
-    """The process of a node among those that the launch has started on this machine; 0 if it is not there."""
+    """The process of a node among those that the launch has started on this machine; 0 if it is not there, or if the number
+    is no longer the launch's."""
+    if os.getppid() != parent:
+        return 0
     name = b"__name:=" + node.rsplit("/", 1)[-1].encode()
     for process in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -147,15 +156,24 @@ def recover(folder):
     rospy.logerr("end_launch: the recorder was gone; its journal: %s", done.stdout.strip())
 
 
-def end_launch(parent):
-    """As Ctrl-C does. This node ends by itself: rospy cannot be interrupted while it says its last."""
+def end_launch(parent, ours):
+    """As Ctrl-C does. This node ends by itself: rospy cannot be interrupted while it says its last. A parent that has ended is
+    no parent any more, whoever has its number now: then the nodes are asked to end, as `rosnode kill` does."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    os.kill(parent, signal.SIGINT)
+    if os.getppid() == parent:
+        os.kill(parent, signal.SIGINT)
+        return
+    for node in sorted(ours):
+        try:
+            uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
+            xmlrpc.client.ServerProxy(uri, transport=Impatient()).shutdown(rospy.get_name(), "the run is over")
+        except (OSError, xmlrpc.client.Error, rosgraph.MasterException):
+            continue  # it has ended, or never was
 
 
 def main():
+    parent = launcher()  # before anybody sees the node: the launch may be killed at any time from then on
     rospy.init_node("end_launch")
-    parent = launcher()
     if not parent:
         rospy.logwarn("end_launch: no roslaunch has started this node: there is nothing to end")
         return 0
@@ -164,29 +182,35 @@ def main():
     rospy.Subscriber("run_end", String, words.put)
     names = ["loop_recorder", "plant_simulator", rospy.get_param("~manager", "")]  # nodelets speak with their manager's name
     ours = {rospy.resolve_name(name) for name in names if name}
+    started = {rospy.resolve_name(name) for name in (*STARTED, rospy.get_param("~manager", "")) if name}
     patience, folder = rospy.get_param("~patience", 5.0), rospy.get_param("~out", "")
     if rospy.get_param("~manager", ""):
         recorder.name = rospy.resolve_name(rospy.get_param("~manager"))
+    orphaned = False
     while not rospy.is_shutdown():
         try:
             message = words.get(timeout=0.5)
         except queue.Empty:
+            if os.getppid() != parent and not orphaned:
+                orphaned = True
+                rospy.logerr("end_launch: the roslaunch of this loop was killed: nobody starts its nodes again; they are ended "
+                             "when the run is over")
             recorder.look()
             if not recorder.plant_finished:
                 continue
             if recorder.hangs_for() > rospy.get_param("~hanging", 20.0):
                 if killed(recorder, parent):
                     continue
-                end_launch(parent)
+                end_launch(parent, started)
                 return 0
             if recorder.gone_for() < patience:
                 continue
             rospy.logerr("end_launch: the run is over, but %s is gone: the launch ends", recorder.name)
             recover(folder)
-            end_launch(parent)
+            end_launch(parent, started)
             return 0
         if end(message._connection_header["callerid"], message.data, ours):
-            end_launch(parent)
+            end_launch(parent, started)
             break
     # Not one that ends with the launch, as this node does.
     if recorder.gone_for() > 1.0 or (recorder.hangs_for() > 1.0 and killed(recorder, parent)):

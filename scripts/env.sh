@@ -19,7 +19,7 @@ _fmbpc_env() {
   fi
   export PATH=$top/build/bin:/usr/bin:$PATH
   . "$top/devel/setup.bash"
-  # Alone on this machine unless the caller says by which name or address others reach it (ROS_HOSTNAME wins over ROS_IP).
+  # For nodes of this machine (no fence: the ports listen on all addresses) unless the caller says by which name or address others reach it (ROS_HOSTNAME wins over ROS_IP).
   if [ -z "${ROS_HOSTNAME:-}${ROS_IP:-}" ]; then export ROS_HOSTNAME=localhost; fi
   case $- in *i*) . "$top/scripts/fmbpc_completion.bash" ;; esac
   if [ -n "$strict" ]; then set -u; fi

@@ -86,8 +86,9 @@ def loop_row(name, told):
     pair = told["pairs"][0]
     cost = {loop["name"]: loop["median"] for loop in told["loops"]}
     low, high = pair["ratio_interval"]
+    interval = " (%.3f to %.3f)" % (low, high) if low is not None else ""  # too few cases
     return ["`%s`" % name, told["title"].split(", model")[0], "%.4g" % cost["auto"], "%.4g" % cost[told["loops"][1]["name"]],
-            "%.3f (%.3f to %.3f)" % (pair["median_ratio"], low, high), "yes" if pair["median_ratio"] <= CLOSE else "**no**"]
+            "%.3f" % pair["median_ratio"] + interval, "yes" if pair["median_ratio"] <= CLOSE else "**no**"]
 
 
 def loops(records, budget, write):

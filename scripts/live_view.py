@@ -2,11 +2,13 @@
 can follow, whatever the pace of the loop. Shared by watch.py and plot_live.py."""
 import collections
 import math
+import socket
 import threading
 
+import rosgraph
 import rospy
 import yaml
-from fmbpc.msg import ControlAction, LoopState, Measurement, PlantInfo, Tracking
+from std_msgs.msg import String
 
 # Debian 11's rospy asks threads by a name that its Python knows no more, and would end with a traceback.
 if not hasattr(threading.Thread, "isAlive"):
@@ -21,6 +23,16 @@ def loop_text():
     """The loop file as the nodes read it, {} where there is none."""
     name = rospy.search_param("loop_text")
     return yaml.safe_load(rospy.get_param(name)) if name else {}
+
+
+def master_answers():
+    """Quickly; a master that is busy for three seconds is taken to be gone."""
+    before = socket.getdefaulttimeout()
+    socket.setdefaulttimeout(3.0)
+    try:
+        return rosgraph.is_master_online()
+    finally:
+        socket.setdefaulttimeout(before)
 
 
 class Axis:
@@ -61,16 +73,40 @@ def panels_of(info, values):
 class LiveView:
     """Listens to a loop and keeps the newest value of each signal, and `points` of them over time."""
 
-    def __init__(self, points=2000):
+    def __init__(self, points=20000):
+        from fmbpc.msg import ControlAction, LoopState, Measurement, PlantInfo, Tracking  # not there before a build
         self.lock = threading.Lock()
         self.info = self.axis = self.run_id = None
         self.values, self.step, self.seconds = {}, None, 0.0
         self.history = collections.defaultdict(lambda: collections.deque(maxlen=points))
         self.states, self.summary = {}, None
+        self.run_end = self.recorded = None
         for topic, kind, take in (("plant_info", PlantInfo, self.on_info), ("measurement", Measurement, self.on_measurement),
                                   ("tracking", Tracking, self.on_tracking),
                                   ("control_action", ControlAction, self.on_action), ("loop_state", LoopState, self.on_state)):
             rospy.Subscriber(topic, kind, take, queue_size=20, tcp_nodelay=True)
+        rospy.Subscriber("run_end", String, self.on_run_end)
+        rospy.Subscriber("recorded", String, self.on_recorded)
+
+    def on_run_end(self, msg):
+        with self.lock:
+            self.run_end = msg.data
+
+    def on_recorded(self, msg):
+        with self.lock:
+            self.recorded = msg.data
+
+    def outcome(self):
+        """(went well, words) when the loop is over, None before: a recorder or the plant said so, or the master is gone."""
+        with self.lock:
+            finished = self.summary is not None and "finished" in self.summary.reason
+            if self.run_end not in (None, "recorded"):
+                return False, "ended: " + self.run_end
+            if self.run_end or (self.recorded and finished):
+                return True, "finished" + (": recorded in " + self.recorded if self.recorded else " and recorded")
+        if master_answers():
+            return None
+        return (True, "finished") if finished else (False, "ended before its last sample: the launch is gone")
 
     def on_info(self, msg):
         with self.lock:

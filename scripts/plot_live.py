@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Node plot_live: shows the run in rqt_plot, one plot per unit, the whole run on the time axis, moving by itself. Without
-rqt_plot it becomes `fmbpc watch --window`, and without a screen it says so and ends.
+rqt_plot it shows `fmbpc watch --window`, and without a screen it says so and ends. The window of a run that went well
+stays until it is closed.
 
 rqt_plot draws every sample of a fast loop and counts time in simulated seconds from its own start; so it gets signals of
 its own (view/NAME) ten times a second of wall time, whose stamps count the hours (or minutes, seconds) of the run."""
@@ -100,15 +101,22 @@ def show(command, view):
         file = os.path.join(folder, "fmbpc.perspective")
         with open(file, "w", encoding="utf-8") as stream:
             json.dump(perspective(panels, topics, view.axis, values), stream)
-        window = subprocess.Popen(command + ["--perspective-file", file, f"/use_sim_time:={still}",
-                                             f"/clock:={still}"])
-        pause = threading.Event()
-        while not rospy.is_shutdown() and window.poll() is None:
-            relay.publish()
-            pause.wait(PERIOD)
-        if window.poll() is None:
-            window.terminate()
-        window.wait()
+        follow(command + ["--perspective-file", file, f"/use_sim_time:={still}", f"/clock:={still}"], view, relay.publish)
+
+
+def follow(command, view, feed=lambda: None):
+    """Runs a window until one of the two ends: one that shows a run that went well stays, whatever becomes of the launch."""
+    window, pause, outcome = subprocess.Popen(command, start_new_session=True), threading.Event(), None
+    while not rospy.is_shutdown() and window.poll() is None:
+        feed()
+        pause.wait(PERIOD)
+        outcome = outcome or view.outcome()
+    outcome = outcome or view.outcome()
+    if outcome and outcome[0]:
+        return
+    if window.poll() is None:
+        window.terminate()
+    window.wait()
 
 
 def main():
@@ -121,10 +129,12 @@ def main():
     if command is None:
         print("plot:=true: rqt_plot is not installed (Debian 12 has no package of it): fmbpc watch --window instead",
               flush=True)
-        script = os.path.join(os.path.dirname(os.path.realpath(__file__)), "watch.py")
-        os.execv(sys.executable, [sys.executable, script, "--window"])
     rospy.init_node("plot_live")
     view, pause = LiveView(), threading.Event()
+    if command is None:
+        script = os.path.join(os.path.dirname(os.path.realpath(__file__)), "watch.py")
+        follow([sys.executable, script, "--window"], view)
+        return 0
     while not rospy.is_shutdown() and (view.sample() is None or not view.complete()):
         pause.wait(PERIOD)
     if not rospy.is_shutdown():

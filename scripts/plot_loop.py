@@ -4,8 +4,9 @@
     plot_loop.py DIR [DIR ...] [--out FILE]
 
 Outputs with setpoint and reference, inputs with their limits and the optimizer's perturbation, disturbances that change (gains
-of the plant in a panel of their own); time in hours, of long runs in days, of short ones in seconds. One folder: DIR/plot.png. Several folders are compared, one colour each, in comparison.png
-of the current folder.
+of the plant in a panel of their own); time in hours, of long runs in days, of short ones in minutes or seconds. One folder: DIR/plot.png.
+Several folders are compared in comparison.png of the current folder: the first three in colour, the others in grey behind them; of each
+output that they control its course, its error and the squared error summed up, which ends at the ISE of the table.
 """
 import argparse
 import csv
@@ -15,9 +16,10 @@ import sys
 import textwrap
 
 LONG_H = 240.0  # days beyond
-LEGEND_COLUMNS = 4
+FRONT = 3  # curves in colour
+BEHIND = "#b5b5b5"
+WIDE = 3.0  # an error panel shows so many times what the two best hold for 98 % of the time
 COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a"]
-DASHES = [(7, 3), (3, 2), (9, 3, 2, 3), (1.5, 1.5), (5, 2, 1.5, 2, 1.5, 2)]
 SUFFIXES = ("_setpoint", "_reference", "_true", "_commanded", "_base", "_perturbation")
 
 
@@ -37,9 +39,18 @@ class Run:
             self.columns[name] = [float(row[i]) if row[i] else float("nan") for row in rows[1:]]
         self.time = self.columns["time"]
         self.name = self.summary["loop"]
+        self.title = self.summary.get("title") or self.name
 
     def outputs(self):
         return list(self.summary["outputs"])
+
+    def controlled(self):
+        """All of them where nobody says which."""
+        named = [n for n, y in self.summary["outputs"].items() if y.get("controlled", True)]
+        return named or self.outputs()
+
+    def error(self, name):
+        return [y - r for y, r in zip(self.columns[name], self.columns[name + "_setpoint"])]
 
     def inputs(self):
         return list(self.summary["inputs"])
@@ -78,40 +89,76 @@ def draw_limits(axis, limits, values, always):
                          label=None if "limit" in known else "limit")
 
 
-def draw_run(axis, run, values, colour, text, drawn, step):
-    """One line; all but the lowest have gaps, through which those below are seen."""
+def draw_run(axis, runs, number, values, step=False, text=None):
+    """The first ones in colour and in front, the best first; those behind thin and grey."""
+    front = number < FRONT
     style = {"drawstyle": "steps-post"} if step else {}
-    if drawn:
-        style["dashes"] = DASHES[(len(drawn) - 1) % len(DASHES)]
-    drawn.append(values)
-    axis.plot(run.time, values, color=colour, linewidth=1.2, label=text, zorder=3 + 0.1 * len(drawn), **style)
+    axis.plot(runs[number].time, values, color=COLOURS[number] if front else BEHIND, linewidth=1.3 if front else 0.9,
+              label=text, zorder=4.0 - 0.1 * number if front else 2.0, **style)
+
+
+def followed(run, name):
+    return any(v == v for v in run.columns[name + "_setpoint"])  # not in an open-loop experiment
 
 
 def draw_output(axis, runs, name):
-    single = len(runs) == 1
     first = runs[0]
-    followed = any(v == v for v in first.columns[name + "_setpoint"])  # not in an open-loop experiment
-    if followed:
+    if followed(first, name):
         axis.step(first.time, first.columns[name + "_setpoint"], where="post", color="black", linewidth=1.1,
-                  linestyle="--", label="setpoint")
-    if single and followed:
-        axis.plot(first.time, first.columns[name + "_reference"], color=COLOURS[2], linewidth=2.4, alpha=0.6,
-                  label="reference")
-    drawn = []
-    for run, colour in zip(runs, COLOURS):
-        draw_run(axis, run, run.columns[name], colour, name if single else run.name, drawn, False)
+                  linestyle="--", label="setpoint", zorder=5)
+        reference = first.columns[name + "_reference"]
+        if reference != first.columns[name + "_setpoint"]:
+            axis.plot(first.time, reference, color=COLOURS[2] if len(runs) == 1 else COLOURS[0], linewidth=2.4 if len(runs) == 1 else 1.0,
+                      linestyle="-" if len(runs) == 1 else ":", alpha=0.6,
+                      label="reference" if len(runs) == 1 else "reference\nof the first")
+    for number, run in enumerate(runs):
+        draw_run(axis, runs, number, run.columns[name], text=name if len(runs) == 1 else None)
     draw_limits(axis, first.limits("outputs", name), [], True)
     axis.set_ylabel(label(first, name))
 
 
+def draw_error(axis, runs, name):
+    """As wide as the best two need, so that they can be told apart."""
+    held = []
+    for number, run in enumerate(runs):
+        error = run.error(name)
+        draw_run(axis, runs, number, error)
+        sizes = sorted(abs(e) for e in error if e == e)
+        if sizes:
+            held.append((sizes[int(0.98 * (len(sizes) - 1))], sizes[-1]))
+    if held:
+        held.sort()
+        limit = min(WIDE * held[min(1, len(held) - 1)][0], max(largest for _, largest in held))
+        if limit > 0.0:
+            axis.set_ylim(-1.05 * limit, 1.05 * limit)
+    axis.axhline(0.0, color="black", linewidth=0.8, linestyle="--", zorder=5)
+    axis.set_ylabel(label(runs[0], name).replace(name, name + " - setpoint", 1).replace(" [", "\n["))
+
+
+def draw_squares(axis, runs, name):
+    """Summed up: the last point is the ISE of the table; as high as the best two need, and twice that."""
+    ends = []
+    for number, run in enumerate(runs):
+        total, sums = 0.0, []
+        for e in run.error(name):
+            total += e * e if e == e else 0.0
+            sums.append(total)
+        draw_run(axis, runs, number, sums)
+        ends.append(total)
+    ends.sort()
+    top = max(e for e in ends if e <= 2.0 * ends[min(1, len(ends) - 1)])
+    if top > 0.0:
+        axis.set_ylim(0.0, 1.1 * top)
+    axis.ticklabel_format(axis="y", scilimits=(-2, 4))
+    axis.set_ylabel("sum of squared\nerrors of %s" % name)
+
+
 def draw_input(axis, runs, name):
-    single = len(runs) == 1
-    values, drawn = [], []
-    for run, colour in zip(runs, COLOURS):
-        draw_run(axis, run, run.columns[name], colour, name if single else run.name, drawn, True)
-        values += run.columns[name]
+    values = [v for run in runs for v in run.columns[name]]
+    for number, run in enumerate(runs):
+        draw_run(axis, runs, number, run.columns[name], step=True, text=name if len(runs) == 1 else None)
     run = runs[0]
-    if single and name + "_perturbation" in run.columns:
+    if len(runs) == 1 and name + "_perturbation" in run.columns:
         axis.step(run.time, run.columns[name + "_perturbation"], where="post", color=COLOURS[1], linewidth=0.9,
                   label="perturbation")
     draw_limits(axis, run.limits("inputs", name), values, False)
@@ -147,16 +194,51 @@ def held(run, names):
     return ", ".join(("%s %.4g %s" % (name, run.columns[name][0], run.units[name])).strip() for name in names)
 
 
-def title_of(runs):
-    return runs[0].summary.get("title") or runs[0].name if len(runs) == 1 else "Comparison"
+def titles_of(runs):
+    """What all titles begin with, and what each of them adds: "Activated sludge, case 1" and "PI on biomass (asp_case1_pi_x)"."""
+    if len(runs) == 1:
+        return runs[0].title, []
+    parts = [run.title.split(", ") for run in runs]
+    same = 0
+    while all(len(p) > same + 1 for p in parts) and len({p[same] for p in parts}) == 1:
+        same += 1
+    names = ["%s (%s)" % (", ".join(p[same:]), run.name) if run.title != run.name else run.name for p, run in zip(parts, runs)]
+    return ", ".join(parts[0][:same]) or "Comparison", names
 
 
 def time_unit(runs):
-    """Hours, but seconds where the whole run is a few minutes and days where it is more than ten: (per hour, name)."""
+    """Hours, but seconds or minutes where the whole run is short and days where it is more than ten: (per hour, name)."""
     length = max(run.time[-1] for run in runs)
     if length > LONG_H:
         return (1.0 / 24.0, "d")
-    return (3600.0, "s") if length < 0.1 else (1.0, "h")
+    return (3600.0, "s") if length < 0.1 else (60.0, "min") if length < 3.0 else (1.0, "h")
+
+
+def panels_of(runs):
+    """(draws, name, height) from above."""
+    first = runs[0]
+    if len(runs) == 1:
+        panels = [(draw_output, n, 2.0) for n in first.outputs()]
+    else:
+        shared = [n for n in first.controlled() if all(n in run.controlled() for run in runs)] or first.controlled()
+        panels = []
+        for name in shared:
+            panels.append((draw_output, name, 2.0))
+            if all(followed(run, name) for run in runs):
+                steps = len(set(first.columns[name + "_setpoint"])) > 1  # else it looks like the course itself
+                panels += [(draw_error, name, 1.7)] * steps + [(draw_squares, name, 1.3)]
+    panels += [(draw_input, n, 1.7) for n in first.inputs()]
+    panels += [(draw_disturbance, n, 1.0) for n in first.disturbances() if changes(runs, n)]
+    gains = [n for n in first.gains() if changes(runs, n)]
+    return panels + ([(draw_gains, gains, 1.6)] if gains else [])
+
+
+def legend_of_runs(figure, runs, names):
+    """Below the title, a line each, the best known name first."""
+    from matplotlib.lines import Line2D
+    handles = [Line2D([], [], color=COLOURS[i] if i < FRONT else BEHIND, linewidth=2.0) for i in range(len(runs))]
+    figure.legend(handles, names, loc="upper left", bbox_to_anchor=(0.01, 1.0 - 0.32 / figure.get_figheight()), ncol=1, fontsize=8.5,
+                  frameon=False, borderaxespad=0.0)
 
 
 def draw(runs, file):
@@ -167,28 +249,26 @@ def draw(runs, file):
     per_hour, unit = time_unit(runs)
     for run in runs:
         run.time = [per_hour * hours for hours in run.time]
-    panels = [(draw_output, n, 2.0) for n in first.outputs()] + [(draw_input, n, 1.7) for n in first.inputs()]
-    panels += [(draw_disturbance, n, 1.0) for n in first.disturbances() if changes(runs, n)]
-    gains = [n for n in first.gains() if changes(runs, n)]
-    panels += [(draw_gains, gains, 1.6)] if gains else []
+    panels = panels_of(runs)
     heights = [height for _, _, height in panels]
-    figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(9.0, 1.15 * sum(heights) + 1.0),
+    title, names = titles_of(runs)
+    head = 0.35 + 0.19 * len(names)  # inches
+    tall = 1.15 * sum(heights) + 0.7 + head
+    figure, axes = plt.subplots(len(panels), 1, sharex=True, squeeze=False, figsize=(9.6, tall),
                                 gridspec_kw={"height_ratios": heights})
     for axis, (draw_panel, name, _) in zip(axes[:, 0], panels):
         draw_panel(axis, runs, name)
         axis.grid(True, color="#dddddd", linewidth=0.6)
         axis.margins(x=0.0)
-        handles, _ = axis.get_legend_handles_labels()
-        if handles:
-            low, high = axis.get_ylim()
-            rows = -(-len(handles) // LEGEND_COLUMNS)
-            axis.set_ylim(low, high + 0.16 * rows * (high - low))  # room for the legend
-            axis.legend(loc="upper right", ncol=min(len(handles), LEGEND_COLUMNS), fontsize=8, framealpha=0.85, borderpad=0.3)
+        if axis.get_legend_handles_labels()[0]:  # beside the curves, not over them
+            axis.legend(loc="upper left", bbox_to_anchor=(1.005, 1.0), borderaxespad=0.0, fontsize=8, frameon=False, handlelength=1.6)
     figure.align_ylabels(axes[:, 0])
     constant = held(first, [n for n in first.disturbances() if not changes(runs, n)])
     axes[-1, 0].set_xlabel("time [%s]" % unit + ("\nheld: " + textwrap.fill(constant, 110) if constant else ""))
-    axes[0, 0].set_title(title_of(runs), fontsize=11)
-    figure.tight_layout()
+    figure.text(0.5, 1.0 - 0.08 / tall, title, fontsize=11, ha="center", va="top")
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 1.0 - head / tall), h_pad=0.5)
+    if names:
+        legend_of_runs(figure, runs, names)
     figure.savefig(file, dpi=110)
     plt.close(figure)
 

@@ -4,11 +4,14 @@
     soft_plc.py [--port 1502] [--speedup 60] [--log FILE]
 
 Input registers 0-1: CA [mol/l], float32. Holding registers: 10 coolant flow asked [0.01 l/min], 12 coolant flow in force,
-20 heartbeat of the PLC, 21 heartbeat of the gateway. Coils: 0 the gateway wants the valve, 1 the PLC lets it.
+20 heartbeat of the PLC, 21 heartbeat of the gateway, 22 the word of the master that leads. Coils: 0 the gateway wants the
+valve, 1 the PLC lets it.
 
-It trusts nobody: when the gateway's heartbeat stands still for a second, or coil 0 is off, it takes the valve itself,
-moves it to its safe flow and puts what is in force into register 10, so that whoever comes back starts there. It counts
-every write to register 10 that is out of bounds or moves too far at once, and does not follow it."""
+It trusts nobody: when the gateway's heartbeat stands still for a second, coil 0 is off, or nobody leads, it takes the valve
+itself, moves it to its safe flow and puts what is in force into register 10, so that whoever comes back starts there. It
+counts every write to register 10 that is out of bounds or moves too far at once, and does not follow it. Whoever writes a
+word into register 22 while it is 0 leads until it writes 0 there or its heartbeat stands still; the words of others are
+undone and counted meanwhile."""
 import argparse
 import inspect
 import json
@@ -24,7 +27,7 @@ import time
 LOWER, UPPER, MOVE, SAFE = 0.0, 200.0, 4.0, 103.41  # l/min
 SCAN_S, PATIENCE_S, SETTLE_S = 0.02, 1.0, 0.3  # of wall time
 SAMPLE_S, DELAY_S = 6.0, 30.0  # of process time: the compensator's sample, the analyser's line
-ASKED, IN_FORCE, BEAT_OUT, BEAT_IN, SIZE = 10, 12, 20, 21, 64
+ASKED, IN_FORCE, BEAT_OUT, BEAT_IN, OWNER, SIZE = 10, 12, 20, 21, 22, 64
 COILS, INPUTS, HOLDING = 1, 4, 3  # function codes that stand for a table
 SCALE = 100.0  # registers per l/min
 
@@ -70,7 +73,7 @@ class Plc:
     def __init__(self, table, speedup, log):
         self.table, self.speedup, self.log, self.reactor = table, speedup, log, Reactor()
         self.flow, self.remote, self.beat, self.scans = SAFE, False, None, 0
-        self.writes, self.refused, self.takeovers = 0, 0, 0
+        self.writes, self.refused, self.takeovers, self.owner, self.strangers = 0, 0, 0, 0, 0
         self.heard = self.calm = time.monotonic()
         self.left, self.lock = 0.0, threading.RLock()
         self.publish()
@@ -87,12 +90,26 @@ class Plc:
             if self.remote and allowed:
                 self.flow = asked
 
+    def claimed(self, word):
+        """Somebody has written register 22. Called by the server, at every write."""
+        with self.lock:
+            if word in (0, self.owner) or not self.owner:
+                self.heard = self.heard if self.owner else time.monotonic()
+                self.owner = word
+                return
+            self.strangers += 1
+            self.note("another master is refused")
+            self.table.put(HOLDING, OWNER, [self.owner])
+
     def scan(self, seconds):
         with self.lock:
             now, beat = time.monotonic(), self.table.get(HOLDING, BEAT_IN)
             if beat != self.beat:
                 self.beat, self.heard = beat, now
-            asked = self.table.get(COILS, 0) and now - self.heard < PATIENCE_S
+            if self.owner and now - self.heard >= PATIENCE_S:
+                self.owner = 0
+                self.table.put(HOLDING, OWNER, [0])
+            asked = self.table.get(COILS, 0) and self.owner
             if not asked:
                 self.calm = now
             if self.remote and not asked:
@@ -126,7 +143,8 @@ class Plc:
 
     def summary(self):
         return (f"soft_plc: {self.writes} writes, {self.refused} of them out of bounds or too far at once; the PLC took the "
-                f"valve {self.takeovers} times; CA is {self.reactor.concentration:.4f} mol/l")
+                f"valve {self.takeovers} times and refused other masters {self.strangers} times; CA is "
+                f"{self.reactor.concentration:.4f} mol/l")
 
 
 def server_parts():
@@ -160,13 +178,14 @@ def made_table():
             self.shift = 0 if getattr(self.unit, "zero_mode", False) else 1
             many = "slaves" if "slaves" in inspect.signature(server_context.__init__).parameters else "devices"
             self.context = server_context(**{many: self.unit, "single": True})
-            self.written = lambda raw: None
+            self.heard = {}  # what to call, by register
             self.holding.heard = self.listen
 
         def listen(self, address, values):
             values = values if isinstance(values, (list, tuple)) else [values]
-            if address - self.shift <= ASKED < address - self.shift + len(values):
-                self.written(values[ASKED - (address - self.shift)])
+            for register, call in self.heard.items():
+                if address - self.shift <= register < address - self.shift + len(values):
+                    call(values[register - (address - self.shift)])
 
         def get(self, table, address):
             return self.unit.getValues(table, address, 1)[0]
@@ -197,7 +216,7 @@ def main():
     with open(options.log or os.devnull, "a", encoding="utf-8") as log:  # of a PLC before this one, too
         table = made_table()
         plc = Plc(table, options.speedup, log if options.log else None)
-        table.written = plc.written
+        table.heard = {ASKED: plc.written, OWNER: plc.claimed}
         threading.Thread(target=serve, args=(table, options.port), daemon=True).start()
         ended = threading.Event()
         for number in (signal.SIGINT, signal.SIGTERM):

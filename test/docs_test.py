@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 """What people read holds together: links lead somewhere, sources that are cited by key are in docs/references.bib, the README
 stays a page."""
+import hashlib
+import os
 import pathlib
 import re
 import unittest
@@ -85,6 +87,34 @@ class Docs(unittest.TestCase):
                 before = []
             elif not line.startswith("|"):
                 before.append(line)
+
+    def test_the_page_of_records_is_the_list_that_errors_quote(self):
+        listed = re.findall(r"^(\w+\.csv):\n  from: (.*)\n  sha256: (\w{64})$", (TOP / "config/records.yaml").read_text(), re.MULTILINE)
+        page = re.findall(r"^\| `(\w+\.csv)` .*\| (.*) \| `(\w{64})` \|$", (TOP / "docs/records.md").read_text(), re.MULTILINE)
+        self.assertGreater(len(listed), 10)
+        self.assertEqual(listed, page)
+        folder = os.environ.get("FMBPC_DATA")
+        for name, _, checksum in listed if folder else ():
+            self.assertEqual(checksum, hashlib.sha256((pathlib.Path(folder) / name).read_bytes()).hexdigest(), name)
+
+    def test_what_the_readme_runs_is_there(self):
+        """Commands in its code blocks: the tool's, scripts, launch files, loops, tunings and files."""
+        tool = (TOP / "src/tool/main.cpp").read_text() + "".join(p.read_text() for p in sorted((TOP / "src/tool").glob("*.cpp")))
+        loops = {p.stem for p in (TOP / "config/loop").rglob("*.yaml")} | {p.stem for p in (TOP / "config/tuning").glob("*.yaml")}
+        lines = [line.split("#")[0].strip() for line in re.findall(r"^    (\S.*)$", (TOP / "README.md").read_text(), re.MULTILINE)]
+        commands = [line.split() for line in lines if re.match(r"(fmbpc|roslaunch|scripts/)", line)]
+        self.assertGreater(len(commands), 8)
+        for words in commands:
+            if words[0] == "fmbpc":
+                self.assertRegex(tool, rf'"{words[1]}"', words)
+            for word in words[1:]:
+                name = word[len("loop:="):] if word.startswith("loop:=") else word
+                if "_" in name and re.fullmatch(r"[a-z0-9_]+", name):
+                    self.assertTrue(name in loops or name in {"q_c", "d_q_c"}, words)
+                if re.fullmatch(r"examples/\S+", word):
+                    self.assertTrue((TOP / word).exists(), words)
+            if words[0].startswith("scripts/"):
+                self.assertTrue((TOP / words[0]).exists(), words)
 
     def test_the_readme_is_a_page(self):
         self.assertLessEqual(len((TOP / "README.md").read_text().splitlines()), 120)

@@ -43,6 +43,7 @@ class Judge(unittest.TestCase):
             loop = types.SimpleNamespace(words=lambda start, w=words: w, logs={"plant_state": types.SimpleNamespace(
                 since=lambda start: [(2.0, None), (7.0, None)])})
             for still, problems_of in ((0.0, expected), (2.9, expected), (3.1, 0)):
+                loop.far = None
                 loop.pulse = types.SimpleNamespace(within=lambda a, b, s=still: s if b - a > 2.0 else 0.0)
                 outcome = Outcome("x")
                 judge.judge_stalls(loop, 1.0, 7.5, outcome)
@@ -54,12 +55,19 @@ class Judge(unittest.TestCase):
         self.assertEqual([2.0, 0.5, 0.0, 3.0], [within(pulse, *span) for span in ((1.0, 6.0), (4.5, 7.0), (5.0, 8.0), (0.0, 9.5))])
 
 
+class Contacts(unittest.TestCase):
+    def test_six_nodes_survive_what_strangers_send_to_their_ports(self):
+        done = subprocess.run([sys.executable, str(TOP / "faults" / "contact_fuzz.py"), "4"], capture_output=True, text=True,
+                              timeout=100, check=False)
+        self.assertEqual(0, done.returncode, done.stdout + done.stderr[-3000:])
+
+
 class Quick(unittest.TestCase):
     def test_the_loop_survives_the_commonest_faults(self):
         done = subprocess.run([sys.executable, str(TOP / "faults" / "matrix.py"), "--quick"], capture_output=True, text=True,
                               timeout=200, check=False)
         self.assertEqual(0, done.returncode, done.stdout + done.stderr[-3000:])
-        self.assertIn("7 faults met, 0 with problems", done.stdout)
+        self.assertIn("9 faults met, 0 with problems", done.stdout)
 
 
 if __name__ == "__main__":

@@ -69,7 +69,7 @@ class KeyHints(unittest.TestCase):
         self.assertGreater(len(known), 200)
         found = list(named())
         self.assertGreater(len(found), 50)
-        wrong = sorted({f"{file}: {key}" for key, file in found if not is_known(key, known)})
+        wrong = sorted({f"{file}: {key}" for key, file in found if not key.endswith(".bag") and not is_known(key, known)})
         self.assertEqual(wrong, [])
 
     def test_a_key_that_does_not_exist_is_noticed(self):

@@ -29,7 +29,12 @@ void RunningOutput::add(double y, double setpoint, double reference) {
 
 OutputIndices RunningOutput::indices() const {
   OutputIndices result = sums_;
-  if (samples_ > 0) result.rmse = std::sqrt(sums_.ise / static_cast<double>(samples_));
+  const std::uint64_t counted = samples_ - sums_.rejected;
+  if (counted > 0) result.rmse = std::sqrt(sums_.ise / static_cast<double>(counted));
+  if (counted > 0 || samples_ == 0) return result;
+  for (double* sum :
+       {&result.ise, &result.iae, &result.itae, &result.itse, &result.rmse, &result.ise_reference})
+    *sum = std::nan("");
   return result;
 }
 

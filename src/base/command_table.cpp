@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -15,10 +17,33 @@ std::string shown(const std::string& name) {
   return name.size() <= kMostLetters ? name : name.substr(0, kMostLetters) + "...";
 }
 
+std::vector<SignalInfo> withoutRanges(const std::vector<std::string>& names) {
+  std::vector<SignalInfo> signals;
+  for (const auto& name : names) signals.push_back({name, "", -kInfinity, kInfinity});
+  return signals;
+}
+
+void requireInRange(const SignalInfo& signal, CommandMode mode, double value) {
+  require(std::isfinite(value), "value of " + signal.name, "a finite number");
+  const std::string unit = signal.unit.empty() ? "" : " [" + signal.unit + "]";
+  const double span = signal.upper - signal.lower;
+  if (mode == CommandMode::kOffset)
+    require(!(std::abs(value) > span), "value of " + signal.name,
+            "an offset of at most " + exactText(span) + unit + ", the width of its range, got " +
+                exactText(value));
+  else
+    require(value >= signal.lower && value <= signal.upper, "value of " + signal.name,
+            "a number >= " + exactText(signal.lower) + " and <= " + exactText(signal.upper) + unit +
+                ", got " + exactText(value));
+}
+
 }  // namespace
 
-CommandTable::CommandTable(std::vector<std::string> names)
-    : names_(std::move(names)), active_(names_.size()) {}
+CommandTable::CommandTable(const std::vector<std::string>& names)
+    : CommandTable(withoutRanges(names)) {}
+
+CommandTable::CommandTable(std::vector<SignalInfo> signals)
+    : signals_(std::move(signals)), names_(namesOf(signals_)), active_(names_.size()) {}
 
 std::size_t CommandTable::indexOf(const std::string& name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
@@ -26,10 +51,12 @@ std::size_t CommandTable::indexOf(const std::string& name) const {
   return static_cast<std::size_t>(found - names_.begin());
 }
 
-void CommandTable::accept(const Command& command, std::uint32_t step) {
+void CommandTable::accept(const Command& asked, std::uint32_t step) {
+  Command command = asked;
   const bool release = command.mode == CommandMode::kRelease;
   require(release || command.mode == CommandMode::kOverride || command.mode == CommandMode::kOffset,
           "mode", "1 (override), 2 (offset) or 3 (release)");
+  if (release && command.name.empty()) command.name = names_;
   require(!command.name.empty(), "name", "at least one name");
   require(command.name.size() <= names_.size(), "name",
           "at most " + std::to_string(names_.size()) + " names, not " +
@@ -37,13 +64,13 @@ void CommandTable::accept(const Command& command, std::uint32_t step) {
   require((release && command.value.empty()) || command.value.size() == command.name.size(),
           "value", "as many values as names");
   std::vector<bool> named(names_.size());
-  for (const auto& name : command.name) {
-    const std::size_t index = indexOf(name);
-    require(!named[index], "name '" + name + "'", "each name once");
+  for (std::size_t i = 0; i < command.name.size(); ++i) {
+    const std::size_t index = indexOf(command.name[i]);
+    require(!named[index], "name '" + command.name[i] + "'", "each name once");
     named[index] = true;
+    if (!release) requireInRange(signals_[index], command.mode, command.value[i]);
   }
-  for (const double value : command.value) require(std::isfinite(value), "value", "finite numbers");
-  pending_.push_back({step, command});
+  pending_.push_back({step, std::move(command)});
   std::stable_sort(pending_.begin(), pending_.end(),
                    [](const Pending& a, const Pending& b) { return a.step < b.step; });
 }

@@ -18,10 +18,14 @@ std::string lineOf(const std::string& name, const YAML::Mark& mark) {
   return name + (mark.line >= 0 ? ":" + std::to_string(mark.line + 1) : "");
 }
 
+void count(int& nodes, const std::string& name, const YAML::Mark& mark) {
+  require(++nodes <= kMostNodes, lineOf(name, mark), "at most 1000000 values");
+}
+
 /// An alias of a node that holds it has no end: the depth says so.
 void checkSize(const YAML::Node& node, const std::string& name, int depth, int& nodes) {
   require(depth <= kDeepest, lineOf(name, node.Mark()), "at most 100 levels, and no endless alias");
-  require(++nodes <= kMostNodes, lineOf(name, node.Mark()), "at most 1000000 values");
+  count(nodes, name, node.Mark());
   if (node.IsSequence())
     for (const auto& item : node) checkSize(item, name, depth + 1, nodes);
   if (!node.IsMap()) return;
@@ -31,14 +35,16 @@ void checkSize(const YAML::Node& node, const std::string& name, int depth, int& 
   }
 }
 
-/// Where the first thing is said after the first document.
+/// Where the first thing is said after the first document. Counts values while they cost nothing:
+/// a node of the tree takes 170 bytes.
 class LaterDocuments : public YAML::EventHandler {
  public:
+  explicit LaterDocuments(const std::string& name) : name_(name) {}
   std::optional<YAML::Mark> said;
 
   void OnDocumentStart(const YAML::Mark&) override { ++documents_; }
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { count(nodes_, name_, mark); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { note(mark); }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
                 const std::string&) override {
@@ -57,16 +63,18 @@ class LaterDocuments : public YAML::EventHandler {
 
  private:
   void note(const YAML::Mark& mark) {
+    count(nodes_, name_, mark);
     if (documents_ > 1 && !said) said = mark;
   }
-  int documents_{};
+  const std::string& name_;
+  int documents_{}, nodes_{};
 };
 
 /// The parser makes documents of nothing without end from some stray commas: few are enough.
 void requireOneDocument(const std::string& text, const std::string& name) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
-  LaterDocuments later;
+  LaterDocuments later(name);
   int documents = 0;
   while (documents <= kMostDocuments && parser.HandleNextDocument(later)) ++documents;
   require(!later.said && documents <= kMostDocuments, later.said ? lineOf(name, *later.said) : name,

@@ -1,11 +1,13 @@
 #include "fmbpc/config/loop_file.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "config/plant_sample_model.hpp"
 #include "config/read.hpp"
 #include "config/read_safety.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/plugins.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
@@ -72,6 +74,17 @@ Vector nominalDisturbances(const LoopFile& loop, const LoopNames& names) {
   return nominal;
 }
 
+/// Rounding to steps of q adds noise of q / sqrt(12).
+void addResolution(const LoopFile& loop, ControllerContext& context) {
+  for (const auto& [name, sensor] : loop.simulation.instruments.sensors) {
+    const auto names = namesOf(loop.plant_info.outputs);
+    const auto at = std::find(names.begin(), names.end(), name) - names.begin();
+    if (sensor.resolution == 0.0 || at >= context.noise_std.size()) continue;
+    context.quantised = true;
+    context.noise_std[at] = std::hypot(context.noise_std[at], sensor.resolution / std::sqrt(12.0));
+  }
+}
+
 }  // namespace
 
 const ControllerType& LoopFile::controllerType() const {
@@ -89,6 +102,7 @@ ControllerContext controllerContext(const LoopFile& loop) {
                             loop.simulation.noise_std,
                             loop.has_clp ? loop.clp.perturbation_steps : 0,
                             nullptr};
+  addResolution(loop, context);
   if (!loop.external_plant)
     context.plant_model = [simulation = loop.simulation](int integration_steps) {
       return makePlantSampleModel(simulation, integration_steps);
@@ -123,10 +137,10 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readController(root, loop);
   readGuard(root, loop, names);
   readEstimator(root, loop);
+  readGateway(root, loop);
   readPlausibility(root, loop);
   readStandstill(root, loop);
   readModelSection(root, loop);
-  readGateway(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);
   root.finish();

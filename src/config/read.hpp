@@ -46,6 +46,9 @@ void readCsvFormat(YamlSection& section, CsvFormat& format);
 void readCsvSection(YamlSection& section, CsvDisturbanceParams& params,
                     const std::vector<std::string>& names);
 void readModelSection(YamlSection& root, LoopFile& loop);
+/// The model of a process alone, matched to the plant, with the drives and the sensors' lags and
+/// dead times of the loop file. @throws InputError for one that lasts too many samples.
+TsModel withInstruments(TsModel model, const SimulationParams& plant);
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);

@@ -44,6 +44,7 @@ void readCsvChannels(YamlSection& section, CsvDisturbanceParams& params,
     if (value.scale == 0.0) channel.fail("scale", "a number other than 0");
     channel.number("offset", value.offset, kFinite);
     channel.number("mean", value.mean, kFinite);
+    if (channel.has("mean") && value.mean == 0.0) channel.fail("mean", "a number other than 0");
     readPlausible(channel, value);
     if (channel.has("mean") && (channel.has("scale") || channel.has("offset")))
       channel.fail("mean", "either mean, or scale and offset");

@@ -1,11 +1,13 @@
 // Section `gateway`: the way to a plant that is not ours.
 #include <algorithm>
+#include <cmath>
 
 #include "config/read.hpp"
 #include "config/read_safety.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
+#include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
@@ -84,6 +86,8 @@ void readBit(YamlSection& section, const std::string& key, ModbusBit& bit) {
 void readModbus(YamlSection& gateway, ModbusParams& modbus, WordOrder& order) {
   YamlSection section = gateway.section("modbus");
   section.text("host", modbus.host);
+  if (modbus.host.empty() || modbus.host.find_first_of(" :/") != std::string::npos)
+    section.fail("host", "an IPv4 address or the name of a host, alone");
   section.integer("port", modbus.port, 1, 65535);
   section.integer("unit", modbus.unit, 0, 255);
   section.number("poll_s", modbus.poll_s, {1e-3, 3600.0});
@@ -94,21 +98,92 @@ void readModbus(YamlSection& gateway, ModbusParams& modbus, WordOrder& order) {
   readBit(section, "remote_coil", modbus.remote);
   readOption(section, "remote_table", modbus.remote.discrete_table,
              {{"coil", false}, {"discrete", true}});
+  section.integer("owner_register", modbus.owner, 0, kLastRegister);
   section.integer("heartbeat_in", modbus.heartbeat_in, 0, kLastRegister);
   section.integer("heartbeat_out", modbus.heartbeat_out, 0, kLastRegister);
   section.finish();
 }
 
-/// Two registers written for two inputs must not overlap.
-void checkOverlaps(YamlSection& tags, const std::vector<std::string>& names,
-                   const std::vector<GatewayTag>& inputs) {
-  for (std::size_t i = 0; i < inputs.size(); ++i)
+/// What stands at some addresses of one of the plant's four tables.
+struct Place {
+  enum Table { kHolding, kInput, kCoil, kDiscrete } table;
+  int first, count;
+  std::string key;  // of section gateway
+};
+
+Place placeOf(const ModbusTag& tag, const std::string& key) {
+  return {tag.input_table ? Place::kInput : Place::kHolding, tag.address,
+          registerCount(tag.format.type), key};
+}
+
+void addTags(const std::vector<GatewayTag>& tags, const std::vector<std::string>& names,
+             std::vector<Place>& places) {
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    const ModbusTag &own = tags[i].modbus, &back = tags[i].readback;
+    const std::string key = "tags." + names[i];
+    places.push_back(placeOf(own, key + ".register"));
+    const bool another = back.input_table != own.input_table || back.address != own.address;
+    if (back.address >= 0 && another) places.push_back(placeOf(back, key + ".readback"));
+  }
+}
+
+std::vector<Place> placesOf(const GatewayParams& gateway, const PlantInfo& plant) {
+  const ModbusParams& modbus = gateway.modbus;
+  std::vector<Place> places;
+  addTags(gateway.outputs, namesOf(plant.outputs), places);
+  addTags(gateway.disturbances, namesOf(plant.disturbances), places);
+  addTags(gateway.inputs, namesOf(plant.inputs), places);
+  const Place::Table remote = modbus.remote.discrete_table ? Place::kDiscrete : Place::kCoil;
+  for (const Place& bit : {Place{Place::kCoil, modbus.automatic.address, 1, "automatic_coil"},
+                           Place{remote, modbus.remote.address, 1, "remote_coil"},
+                           Place{Place::kHolding, modbus.owner, 1, "owner_register"},
+                           Place{Place::kHolding, modbus.heartbeat_in, 1, "heartbeat_in"},
+                           Place{Place::kHolding, modbus.heartbeat_out, 1, "heartbeat_out"}})
+    if (bit.first >= 0) places.push_back({bit.table, bit.first, 1, "modbus." + bit.key});
+  return places;
+}
+
+/// No address may mean two things.
+void checkPlaces(const YamlSection& gateway, const std::vector<Place>& places) {
+  for (std::size_t i = 0; i < places.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const ModbusTag &a = inputs[i].modbus, &b = inputs[j].modbus;
-      const bool apart = a.address + registerCount(a.format.type) <= b.address ||
-                         b.address + registerCount(b.format.type) <= a.address;
-      if (!apart) tags.fail(names[i], "registers apart from those of " + names[j]);
+      const Place &a = places[i], &b = places[j];
+      const bool apart = a.first + a.count <= b.first || b.first + b.count <= a.first;
+      if (a.table == b.table && !apart)
+        gateway.fail(a.key, "an address of its own, got " + std::to_string(a.first) +
+                                ", which is of gateway." + b.key);
     }
+}
+
+/// Registers that can hold every value of the signal, and a move of an input.
+void checkHolds(const YamlSection& gateway, const ModbusTag& tag, const SignalInfo& signal,
+                double move) {
+  const std::string key = "tags." + signal.name + ".scale";
+  for (const double bound : {signal.lower, signal.upper})
+    if (std::isfinite(bound) && !encode(tag.format, bound))
+      gateway.fail(key, "a scale and an offset by which " + wordOf(tag.format.type) + " holds " +
+                            exactText(bound) + " [" + signal.unit + "]");
+  if (tag.format.type != RegisterType::kFloat32 && std::abs(tag.format.scale) > move)
+    gateway.fail(key, "a step of at most the move limit, " + exactText(move) + " [" + signal.unit +
+                          "], got " + exactText(std::abs(tag.format.scale)));
+}
+
+void checkMap(const YamlSection& gateway, const LoopFile& loop) {
+  const GatewayParams& params = loop.gateway;
+  const PlantInfo& plant = loop.plant_info;
+  checkPlaces(gateway, placesOf(params, plant));
+  for (std::size_t i = 0; i < plant.outputs.size(); ++i)
+    checkHolds(gateway, params.outputs[i].modbus, plant.outputs[i], kInfinity);
+  for (std::size_t i = 0; i < plant.disturbances.size(); ++i)
+    checkHolds(gateway, params.disturbances[i].modbus, plant.disturbances[i], kInfinity);
+  const InputLimits& limits = loop.simulation.actuator.limits;
+  for (std::size_t i = 0; i < plant.inputs.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    SignalInfo input = plant.inputs[i];
+    input.lower = limits.lower[row];
+    input.upper = limits.upper[row];
+    checkHolds(gateway, params.inputs[i].modbus, input, limits.move[row]);
+  }
 }
 
 }  // namespace
@@ -133,7 +208,6 @@ void readGateway(YamlSection& root, LoopFile& loop) {
   section.number("heartbeat_s", gateway.heartbeat_s, kFiniteNotNegative);
   if (gateway.heartbeat_s > 0.0 && !(modbus && gateway.modbus.heartbeat_in >= 0))
     section.fail("heartbeat_s", "0 without gateway.modbus.heartbeat_in");
-  section.number("readback_tolerance", gateway.readback_tolerance, {0.0, 1.0});
   section.text("enable_topic", gateway.enable_topic);
   YamlSection tags = section.section("tags");
   if (gateway.enabled()) {
@@ -141,7 +215,7 @@ void readGateway(YamlSection& root, LoopFile& loop) {
     gateway.disturbances = readTags(tags, disturbances, gateway, order, Group::kDisturbances);
     gateway.inputs = readTags(tags, inputs, gateway, order, Group::kInputs);
   }
-  if (modbus) checkOverlaps(tags, inputs, gateway.inputs);
+  if (modbus) checkMap(section, loop);
   gateway.reads_back =
       std::all_of(gateway.inputs.begin(), gateway.inputs.end(),
                   [&](const GatewayTag& tag) { return modbus || !tag.readback_topic.empty(); }) &&

@@ -8,10 +8,6 @@ namespace fpc {
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("guard");
   GuardParams& guard = loop.guard;
-  if (!root.has("guard") || root.raw("guard").IsNull()) {  // lines that are commented out
-    guard.lock_samples = 0;
-    guard.swing_move = 0.0;
-  }
   section.boolean("enabled", guard.enabled);
   section.number("trust_low", guard.trust_low, {0.0, 1.0});
   section.number("trust_high", guard.trust_high, {0.0, 1.0});

@@ -1,6 +1,9 @@
 // Section `model`: what the controller predicts with at the start, and how that may change on the
 // way.
+#include <utility>
+
 #include "config/read.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/config/model_file.hpp"
 #include "fmbpc/config/structure_file.hpp"
 
@@ -53,6 +56,8 @@ bool suits(const TsModel& model, const LoopFile& loop) {
 void readModelSection(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("model");
   section.text("file", loop.model_file);
+  bool instruments_missing = false;
+  readOption(section, "instruments", instruments_missing, {{"included", false}, {"added", true}});
   section.number("max_pole", loop.max_pole, {0.0, kInfinity, true});
   readIdentify(section, loop);
   section.finish();
@@ -73,6 +78,7 @@ void readModelSection(YamlSection& root, LoopFile& loop) {
       return;
     }
     loop.model = matchToLoop(loop.model, loop);
+    if (instruments_missing) loop.model = withInstruments(std::move(loop.model), loop.simulation);
     loop.controller->checkModel(loop.model, controllerContext(loop));
   } catch (const InputError& e) {
     throw InputError(section.where("file") + ": " + e.what());

@@ -1,4 +1,5 @@
 // Section `plausibility`: what a measurement may be, signal by signal.
+#include <algorithm>
 #include <cmath>
 
 #include "config/read.hpp"
@@ -10,6 +11,22 @@ namespace fpc {
 namespace {
 
 constexpr double kJumpOfRange = 0.5;
+constexpr int kBridged = 3;
+
+/// What is known of the instrument: where its scale ends, and how late it is.
+void describeInstrument(const LoopFile& loop, const SignalInfo& signal, SignalPlausibility& asked) {
+  asked.scale_lower = signal.lower;
+  asked.scale_upper = signal.upper;
+  const auto& sensors = loop.simulation.instruments.sensors;
+  const auto found = sensors.find(signal.name);
+  if (found == sensors.end()) return;
+  const SensorParams& sensor = found->second;
+  asked.scale_lower = std::max(asked.scale_lower, sensor.lower);
+  asked.scale_upper = std::min(asked.scale_upper, sensor.upper);
+  const double late_s = sensor.lags * sensor.lag_s + sensor.delay_s + sensor.interval_s;
+  asked.late_samples =
+      static_cast<int>(std::min(1e6, std::ceil(late_s / loop.plant_info.sample_time_s)));
+}
 
 /// The plant's range, wider by a part of itself; an endless one asks nothing.
 SignalPlausibility defaultsOf(const SignalInfo& signal, double margin, bool may_step) {
@@ -29,15 +46,16 @@ void readSignal(YamlSection& section, SignalPlausibility& asked) {
   section.number("rate_per_h", asked.rate_per_h, {0.0, kInfinity, true});
   section.number("jump", asked.jump, {0.0, kInfinity, true});
   section.integer("jump_samples", asked.jump_samples, 1);
-  section.integer("frozen_samples", asked.frozen_samples, 0);
+  section.integer("frozen_samples", asked.frozen_samples, -1);
   readOption(section, "substitute", asked.substitute);
   section.finish();
 }
 
-void readSignals(YamlSection& signals, const std::vector<SignalInfo>& infos, double margin,
-                 bool may_step, std::vector<SignalPlausibility>& list) {
+void readSignals(YamlSection& signals, const LoopFile& loop, const std::vector<SignalInfo>& infos,
+                 double margin, bool may_step, std::vector<SignalPlausibility>& list) {
   for (const SignalInfo& info : infos) {
     SignalPlausibility asked = defaultsOf(info, margin, may_step);
+    describeInstrument(loop, info, asked);
     YamlSection section = signals.section(info.name);
     readSignal(section, asked);
     list.push_back(asked);
@@ -52,7 +70,9 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   const PlantInfo& plant = loop.plant_info;
   const ActuatorParams& actuator = loop.simulation.actuator;
   params.enabled = params.gain_sign = true;
+  params.bridge_samples = kBridged;
   params.fallback = actuator.fallback;
+  params.range_falls = root.section("actuator").has("fallback");  // an initial input is none
   params.hold_samples = actuator.hold_samples;
   params.needs = loop.controller->signalUse(controllerContext(loop)).needed;
   for (const Eigen::Index hidden : loop.estimator.outputs)
@@ -60,6 +80,7 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   double margin = 0.1;
   section.boolean("enabled", params.enabled);
   section.integer("hold_samples", params.hold_samples, -1);
+  section.integer("bridge_samples", params.bridge_samples, 0);
   section.number("margin", margin, kFiniteNotNegative);
   section.number("frozen_input", params.frozen_input, kFiniteNotNegative);
   section.boolean("gain_sign", params.gain_sign);
@@ -68,9 +89,11 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   readOption(section, "plant_bounds", params.plant_bounds);
   section.integer("stuck_samples", loop.stuck.samples, 0);
   section.number("stuck_tolerance", loop.stuck.tolerance, {0.0, 1.0});
+  loop.stuck.hold = loop.gateway.enabled();
+  readOption(section, "stuck", loop.stuck.hold, {{"say", false}, {"hold", true}});
   YamlSection signals = section.section("signals");
-  readSignals(signals, plant.outputs, margin, false, params.outputs);
-  readSignals(signals, plant.disturbances, margin, true, params.disturbances);
+  readSignals(signals, loop, plant.outputs, margin, false, params.outputs);
+  readSignals(signals, loop, plant.disturbances, margin, true, params.disturbances);
   signals.finish();
   checked(section, [&] {
     params.validate(plant.outputs.size(), plant.disturbances.size(),

@@ -45,9 +45,11 @@ std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& l
           {"identified", model},
           {"setpoint", {}},
           {"disturbance", {}},
+          {"sample_recorded", {"loop_recorder"}},
           {"operator_kept", plant},
           {"model_kept", plant},
           {"enable", {}},
+          {"tags", {}},
           {"services", {}}};
 }
 
@@ -126,8 +128,9 @@ void readLine(YamlSection& item, const YamlSection& tf, LoopFile& loop, const Lo
 
 /// Keys of summary.json; what is consumed stands beside them.
 const std::set<std::string> kSummaryKeys{
-    "loop",       "title",          "complete", "steps",   "wall_s",         "outputs", "inputs",
-    "violations", "actuator_clips", "clp",      "sources", "repaired_cells", "limits"};
+    "loop",   "title",   "run_id",         "first_step", "complete",   "steps",
+    "wall_s", "outputs", "inputs",         "limits",     "violations", "actuator_clips",
+    "clp",    "sources", "repaired_cells", "remarks",    "locked"};
 
 ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outputs) {
   ReportWindow window;

@@ -44,7 +44,9 @@ SensorParams readSensor(YamlSection& section) {
   section.number("delay_s", params.delay_s, kFiniteNotNegative);
   section.number("interval_s", params.interval_s, kFiniteNotNegative);
   section.number("noise_std", params.noise_std, kFiniteNotNegative);
+  section.number("resolution", params.resolution, kFiniteNotNegative);
   section.boolean("average", params.average);
+  section.number("lost", params.lost, {0.0, 1.0});
   section.number("stuck_from_h", params.stuck_from_h, Range{0.0, kInfinity});
   section.number("stuck_to_h", params.stuck_to_h, Range{0.0, kInfinity});
   checked(section, [&] { params.validate(); });
@@ -77,8 +79,9 @@ void readLag(YamlSection& actuator, ActuatorParams& params,
     if (!section.has(inputs[i])) continue;
     params.drives.resize(inputs.size());
     YamlSection lag = section.section(inputs[i]);
-    need(lag, "t90_s", "a time >= 0");
+    if (!lag.has("backlash")) need(lag, "t90_s", "a time >= 0");
     lag.number("t90_s", params.drives[i].t90_s, kFiniteNotNegative);
+    lag.number("backlash", params.drives[i].backlash, kFiniteNotNegative);
     lag.integer("order", params.drives[i].order, 1, 20);
     lag.finish();
   }

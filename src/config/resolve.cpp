@@ -5,6 +5,7 @@
 
 #include "base/yaml_load.hpp"
 #include "config/merge.hpp"
+#include "config/public_record.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
@@ -42,8 +43,18 @@ std::string findFile(const std::string& name, const std::string& beside, const s
   std::vector<std::string> looked;
   for (const auto& candidate : candidates)
     looked.push_back(candidate.parent_path().lexically_normal().string());
-  throw InputError(where + ": expected an existing file, got '" + name + "' (looked in " +
-                   join(looked) + ")");
+  const std::string record = whereToGet(name);
+  throw InputError(where + ": expected an existing file, got '" + name + "'" +
+                   (record.empty() ? " (looked in " + join(looked) + ")" : ": " + record));
+}
+
+/// A public record is named with what it is also where the folder of records is not set.
+std::string expanded(const std::string& text, const std::string& where) {
+  const std::string start = std::string("${") + kRecordFolder + "}/";
+  const bool ours = text.rfind(start, 0) == 0 && std::getenv(kRecordFolder) == nullptr;
+  const std::string record = ours ? whereToGet(text) : "";
+  require(record.empty(), where, "an existing file: " + record);
+  return expandEnvironment(text, where);
 }
 
 /// Replaces a `file` key by an absolute name; `folder` is its usual place below a config folder.
@@ -57,7 +68,7 @@ void makeAbsolute(MergedLoop& loop, const std::vector<std::string>& keys,
   const bool from_file = origin != loop.origins.end() && !origin->second.file.empty();
   const fs::path beside =
       from_file ? fs::path(origin->second.file).parent_path() : fs::current_path();
-  file = findFile(expandEnvironment(file.Scalar(), where), beside.string(), folder, where);
+  file = findFile(expanded(file.Scalar(), where), beside.string(), folder, where);
 }
 
 /// Plugins that are paths; those that are names are looked up where they are loaded.

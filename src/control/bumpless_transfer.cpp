@@ -7,7 +7,13 @@ BumplessTransfer::BumplessTransfer(Eigen::Index n_u, double decay)
 
 void BumplessTransfer::reset(bool pending) {
   bias_.setZero();
+  left_ = 0.0;
   pending_ = pending;
+}
+
+bool BumplessTransfer::active() const {
+  static constexpr double kNegligible = 1e-3;
+  return pending_ || left_ > kNegligible;
 }
 
 void BumplessTransfer::apply(VectorRef input_applied, Eigen::Ref<Vector> proposal) {
@@ -17,7 +23,15 @@ void BumplessTransfer::apply(VectorRef input_applied, Eigen::Ref<Vector> proposa
   }
   bias_ = input_applied - proposal;
   proposal = input_applied;
+  left_ = 1.0;
   pending_ = false;
+}
+
+bool BumplessTransfer::bridge(VectorRef input_applied, Eigen::Ref<Vector> proposal) {
+  if (!active()) return false;
+  apply(input_applied, proposal);
+  fade();
+  return true;
 }
 
 void BumplessTransfer::begin(VectorRef input) {
@@ -27,6 +41,7 @@ void BumplessTransfer::begin(VectorRef input) {
 
 void BumplessTransfer::finish(Eigen::Ref<Vector> proposal) {
   bias_ = kept_ - proposal;
+  left_ = 1.0;
   proposal = kept_;
 }
 
@@ -35,6 +50,9 @@ void BumplessTransfer::addTo(Eigen::Ref<Matrix> inputs) const {
   for (Eigen::Index i = 0; i < inputs.cols(); ++i, left *= decay_) inputs.col(i) += left * bias_;
 }
 
-void BumplessTransfer::fade() { bias_ *= decay_; }
+void BumplessTransfer::fade() {
+  bias_ *= decay_;
+  left_ *= decay_;
+}
 
 }  // namespace fpc

@@ -10,6 +10,10 @@ bool Controller::adapt(bool /*on*/) { return false; }
 
 void Controller::lookOn(const Measurement& /*now*/) {}
 
+bool Controller::foresee(const Measurement& /*now*/, Eigen::Ref<Vector> /*outputs*/) {
+  return false;
+}
+
 void Controller::setModel(const TsModel& /*model*/) {}
 
 bool Controller::mayBeSent(VectorRef /*input*/) const { return true; }

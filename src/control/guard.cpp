@@ -66,6 +66,8 @@ GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardPa
       params_(std::move(params)),
       limits_(std::move(limits)),
       shrunk_(limits_),
+      lower_(limits_.lower),
+      upper_(limits_.upper),
       plant_(std::move(plant)) {
   const Index n_y = countOf(plant_.outputs), n_u = countOf(plant_.inputs);
   params_.validate(n_y, n_u, countOf(plant_.disturbances));
@@ -136,10 +138,10 @@ WorstError GuardedController::worstError(const Measurement& now,
                                          const SetpointSource& setpoint) const {
   WorstError worst;
   for (const Index i : params_.lock_outputs) {
-    const double asked = setpoint.present()[i];
-    const double tolerated = params_.lock_error * std::abs(asked);
-    if (!(tolerated > 0.0)) continue;
-    const double error = (asked - now.outputs[i]) / tolerated;
+    const SignalInfo& output = plant_.outputs[static_cast<std::size_t>(i)];
+    const double tolerated = params_.lock_error * (output.upper - output.lower);
+    if (!std::isfinite(tolerated) || tolerated <= 0.0) continue;
+    const double error = (setpoint.present()[i] - now.outputs[i]) / tolerated;
     if (!(std::abs(error) > worst.size)) continue;  // NaN is none
     worst.size = std::abs(error);
     worst.whose = static_cast<int>(error > 0.0 ? i + 1 : -(i + 1));
@@ -187,13 +189,24 @@ void GuardedController::calm(const Measurement& now) {
   }
 }
 
+/// Limits that are drawn in are reached by allowed moves only.
+void GuardedController::narrow(const Vector& before) {
+  for (Index i = 0; i < before.size(); ++i) {
+    const auto allowed = [&](double end) {
+      const double move = std::clamp(end, before[i] - shrunk_.move[i], before[i] + shrunk_.move[i]);
+      return std::clamp(move, limits_.lower[i], limits_.upper[i]);
+    };
+    lower_[i] = allowed(shrunk_.lower[i]);
+    upper_[i] = allowed(shrunk_.upper[i]);
+  }
+}
+
 double GuardedController::trustForMoves(const Measurement& now) {
   if (fallback_ || !known_) return 1.0;
   place(now, now.input_applied, point_);
   return processTrustOf(model_, point_);
 }
 
-/// Limits that are drawn in are reached by allowed moves only.
 void GuardedController::act(const Measurement& now, const SetpointSource& setpoint,
                             ControllerOutput& output) {
   if (fallback_) {
@@ -205,12 +218,10 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   bool drawn = false;
   proposed_ = output.input;
   calm(now);
+  narrow(now.input_applied);
   for (Index i = 0; i < output.input.size(); ++i) {
-    const double before = now.input_applied[i];
     const double proposed = proposed_[i];
-    double allowed = std::clamp(proposed, shrunk_.lower[i], shrunk_.upper[i]);
-    allowed = std::clamp(allowed, before - shrunk_.move[i], before + shrunk_.move[i]);
-    allowed = std::clamp(allowed, limits_.lower[i], limits_.upper[i]);
+    const double allowed = std::clamp(proposed, lower_[i], upper_[i]);
     drawn = drawn || (allowed != proposed && locks_[static_cast<std::size_t>(i)].drawnIn());
     view_.acting = view_.acting || allowed != proposed;
     if (allowed != proposed) output.input[i] = allowed;
@@ -219,17 +230,23 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     output.input = proposed_;
     view_.acting = drawn = false;
   }
-  view_.acting = view_.acting || fallback_;
+  if (output.predictive) {
+    output.prediction.input_lower = lower_;
+    output.prediction.input_upper = upper_;
+  }
   if (view_.outside)
     output.remark = kOutsideOnly;
   else if (view_.ahead < params_.trust_low && output.remark[0] == 0)
     output.remark = kOutsideAhead;
-  if (!view_.acting) return;
-  output.source = ActionSource::kFallback;
-  output.predictive = false;
-  if (fallback_)
+  if (fallback_) {
+    output.source = ActionSource::kFallback;
+    output.predictive = false;
     output.remark = kFallback;
-  else if (drawn)
+    view_.acting = true;
+  }
+  if (!view_.acting || fallback_) return;
+  output.source = ActionSource::kGuarded;
+  if (drawn)
     output.remark = kLocked;
   else if (view_.swinging)
     output.remark = kSwings;

@@ -89,6 +89,15 @@ void ModelObserver::move(VectorRef input, VectorRef disturbances, Vector& state)
   state.swap(next_);
 }
 
+void ModelObserver::foresee(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> outputs) {
+  if (inputs_.cols() > 1)
+    local_.advance(delayed_, inputs_.col(1), disturbances_.col(1), next_);
+  else
+    local_.advance(delayed_, input, disturbances, next_);
+  filter_.addDisturbance(next_);
+  for (Index i = 0; i < outputs.size(); ++i) outputs[i] = next_[local_.outputState(i)];
+}
+
 void ModelObserver::advance(VectorRef outputs, VectorRef input, VectorRef disturbances) {
   const Index last = inputs_.cols() - 1;
   for (Index j = 0; j < last; ++j) {

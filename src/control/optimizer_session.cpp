@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/control/session.hpp"
 
 namespace fpc {
@@ -13,11 +14,13 @@ bool allFinite(const PredictiveAction& p) {
   return p.state.allFinite() && p.A.allFinite() && p.B.allFinite() && p.C.allFinite() &&
          p.offset_state.allFinite() && p.offset_output.allFinite() && p.K.allFinite() &&
          p.feedforward.allFinite() && p.reference.allFinite() && p.setpoint.allFinite() &&
-         p.input_base_unclipped.allFinite() && p.input_previous.allFinite();
+         p.input_base_unclipped.allFinite() && p.input_previous.allFinite() &&
+         p.input_lower.allFinite() && (p.input_lower.array() <= p.input_upper.array()).all();
 }
 
 bool needsPrediction(ActionSource source) {
-  return source == ActionSource::kBase || source == ActionSource::kClipped;
+  return source == ActionSource::kBase || source == ActionSource::kClipped ||
+         source == ActionSource::kGuarded;
 }
 
 }  // namespace
@@ -26,6 +29,7 @@ OptimizerSession::OptimizerSession(ClpParams params, InputLimits limits, PlantIn
     : params_(std::move(params)),
       limits_(std::move(limits)),
       moves_(limits_),
+      transfer_(countOf(plant.inputs)),
       plant_(std::move(plant)) {
   const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
   params_.validate(static_cast<Eigen::Index>(plant_.outputs.size()), n_u);
@@ -43,7 +47,8 @@ bool OptimizerSession::sizesFit(const PredictiveAction& p) const {
          p.offset_output.size() == n_y && hasSize(p.K, n_u, n_x) &&
          hasSize(p.feedforward, n_u, n_c) && hasSize(p.reference, n_y, n_c) &&
          p.setpoint.size() == n_y && p.input_base_unclipped.size() == n_u &&
-         p.input_previous.size() == n_u;
+         p.input_previous.size() == n_u && p.input_lower.size() == p.input_upper.size() &&
+         (p.input_lower.size() == 0 || p.input_lower.size() == n_u);
 }
 
 // A sample is opened by whichever of its two messages comes first; its partner is not a repeat.
@@ -52,6 +57,7 @@ bool OptimizerSession::admit(const StepHeader& header, bool already_here) {
   const Arrival arrival = gate_.pass(header);
   if (!isNew(arrival)) return false;
   if (needsReset(arrival)) moves_.restart();
+  if (needsReset(arrival)) transfer_.reset(arrival != Arrival::kNewRun && transfer_.active());
   if (needsReset(arrival) && optimizer_) optimizer_->reset();
   have_base_ = have_prediction_ = answered_ = false;
   return true;
@@ -130,16 +136,26 @@ void OptimizerSession::optimize() {
   moves_.look(prediction_.input_previous);
   prediction_.input_previous = moves_.origin();
   optimizer_->step(prediction_, action_, report_);
-  if (moves_.keepNear(action_.input)) {
+  if (base_.source == ActionSource::kGuarded) action_.source = ActionSource::kGuarded;
+  const bool bridged = transfer_.bridge(prediction_.input_previous, action_.input);
+  if (bridged) limits_.clip(action_.input, prediction_.input_previous);
+  if (moves_.keepNear(action_.input) || bridged) {
     action_.source = ActionSource::kClipped;
     report_.perturbation = action_.input - prediction_.input_base_unclipped;
   }
   moves_.sent(action_.input);
 }
 
+/// The input is not the one that went out before: a person's, a fallback, the plant's own.
+bool OptimizerSession::isOtherHand() const {
+  if (base_.source != ActionSource::kHeld) return !needsPrediction(base_.source);
+  return action_.input.size() != base_.input.size() || action_.input != base_.input;
+}
+
 // The base action is inside its limits already; the bounds are for controllers that broke the rule.
 void OptimizerSession::passThrough(SolveStatus status) {
   moves_.restart();
+  if (isOtherHand() || transfer_.active()) transfer_.reset(true);
   action_.input = base_.input;
   limits_.clip(action_.input, base_.input);
   action_.source = status == SolveStatus::kNotRun ? base_.source : ActionSource::kClipped;

@@ -11,7 +11,7 @@ namespace fpc {
 namespace {
 
 constexpr double kRounding = 1e-9;
-constexpr std::size_t kVerdicts = 4;
+constexpr std::size_t kActions = 4;
 
 std::vector<SignalPlausibility> joined(const PlausibilityParams& params, const PlantInfo& plant) {
   std::vector<SignalPlausibility> all = params.outputs;
@@ -26,7 +26,7 @@ void check(const SignalPlausibility& signal) {
   require(signal.rate_per_h > 0.0, "plausibility.signals: rate_per_h", "a number > 0");
   require(signal.jump > 0.0, "plausibility.signals: jump", "a number > 0");
   require(signal.jump_samples >= 1, "plausibility.signals: jump_samples", "an integer >= 1");
-  require(signal.frozen_samples >= 0, "plausibility.signals: frozen_samples", "an integer >= 0");
+  require(signal.frozen_samples >= -1, "plausibility.signals: frozen_samples", "an integer >= -1");
 }
 
 std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
@@ -44,7 +44,9 @@ std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
     case Doubt::kJump:
       return "jumped by more than " + shortText(asked.jump);
     case Doubt::kFrozen:
-      return "is frozen while an input moves";
+      return "is frozen";
+    case Doubt::kRepeated:
+      return "was not read anew";
     case Doubt::kNone:
       break;
   }
@@ -56,17 +58,15 @@ Doubt doubtOf(NoValue why) {
   return why == NoValue::kMissing ? Doubt::kMissing : Doubt::kNoNumber;
 }
 
-std::string actionOf(Verdict verdict, Substitute substitute) {
-  if (verdict == Verdict::kHold) return "input held";
-  if (verdict == Verdict::kFallback) return "the configured fallback";
-  return substitute == Substitute::kModel ? "the model's value is used"
-                                          : "its last good value is used";
-}
+constexpr const char* kActionWords[kActions] = {"its last good value is used",
+                                                "the model's value is used", "input held",
+                                                "the configured fallback"};
 
 }  // namespace
 
 void PlausibilityParams::validate(std::size_t n_y, std::size_t n_d, Eigen::Index n_u) const {
   require(hold_samples >= -1, "plausibility.hold_samples", "an integer >= -1");
+  require(bridge_samples >= 0, "plausibility.bridge_samples", "an integer >= 0");
   require(frozen_input >= 0.0 && std::isfinite(frozen_input), "plausibility.frozen_input",
           "a number >= 0");
   require(fallback.size() == 0 || (fallback.size() == n_u && fallback.allFinite()),
@@ -89,6 +89,7 @@ Plausibility::Plausibility(PlausibilityParams params, const PlantInfo& plant)
       n_y_(plant.outputs.size()),
       sample_time_h_(plant.sample_time_s / 3600.0),
       input_range_(static_cast<Eigen::Index>(plant.inputs.size())),
+      output_range_(static_cast<Eigen::Index>(n_y_)),
       asked_(joined(params_, plant)),
       signals_(asked_.size()),
       needed_(asked_.size(), true) {
@@ -100,7 +101,8 @@ Plausibility::Plausibility(PlausibilityParams params, const PlantInfo& plant)
   for (Memory& signal : signals_)
     signal.input_low = signal.input_high = Vector::Zero(input_range_.size());
   for (std::size_t i = 0; i < n_y_; ++i)
-    uses_model_ = uses_model_ || asked_[i].substitute == Substitute::kModel;
+    output_range_[static_cast<Eigen::Index>(i)] = plant.outputs[i].upper - plant.outputs[i].lower;
+  expected_ = Vector::Zero(static_cast<Eigen::Index>(n_y_));
   writeWords(plant);
 }
 
@@ -109,40 +111,20 @@ void Plausibility::writeWords(const PlantInfo& plant) {
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     const std::string& name = i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name;
     for (std::size_t doubt = 0; doubt < kDoubts; ++doubt)
-      for (std::size_t verdict = 0; verdict < kVerdicts; ++verdict)
+      for (const char* action : kActionWords)
         texts_[i].push_back(name + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) + ": " +
-                            actionOf(static_cast<Verdict>(verdict), asked_[i].substitute));
+                            action);
   }
 }
 
 void Plausibility::reset() {
   for (Memory& signal : signals_) {
-    signal.has_good = signal.has_raw = false;
-    signal.same = signal.at_level = 0;
+    signal.has_good = false;
+    signal.at_level = signal.against = 0;
     signal.since_good = 0;
+    signal.flat.reset();
   }
-  has_expected_ = false;
   doubted_ = 0;
-}
-
-bool Plausibility::isFrozen(Memory& signal, const SignalPlausibility& asked, double value,
-                            VectorRef input) {
-  const bool same = signal.has_raw && value == signal.raw;
-  signal.raw = value;
-  signal.has_raw = true;
-  if (!same) {
-    signal.same = 0;
-    signal.input_low = signal.input_high = input;
-    return false;
-  }
-  ++signal.same;
-  signal.input_low = signal.input_low.cwiseMin(input);
-  signal.input_high = signal.input_high.cwiseMax(input);
-  if (asked.frozen_samples == 0 || signal.same < asked.frozen_samples) return false;
-  for (Eigen::Index i = 0; i < input_range_.size(); ++i)
-    if (signal.input_high[i] - signal.input_low[i] > params_.frozen_input * input_range_[i])
-      return true;
-  return false;
 }
 
 bool Plausibility::jumped(Memory& signal, const SignalPlausibility& asked, double value) const {
@@ -156,11 +138,12 @@ bool Plausibility::jumped(Memory& signal, const SignalPlausibility& asked, doubl
   return signal.at_level < asked.jump_samples;
 }
 
-Doubt Plausibility::judge(Memory& signal, const SignalPlausibility& asked, double value,
-                          VectorRef input) {
+Doubt Plausibility::judge(std::size_t i, double value, const Measurement& now) {
+  Memory& signal = signals_[i];
+  const SignalPlausibility& asked = asked_[i];
   if (!std::isfinite(value)) return doubtOf(whyNoValue(value));
   if (!params_.enabled) return Doubt::kNone;
-  const bool frozen = isFrozen(signal, asked, value, input);
+  const bool frozen = isFrozen(i, value, now);
   const bool jump = jumped(signal, asked, value);
   if (value < asked.lower || value > asked.upper) return Doubt::kRange;
   const double hours = static_cast<double>(signal.since_good + 1) * sample_time_h_;
@@ -168,30 +151,54 @@ Doubt Plausibility::judge(Memory& signal, const SignalPlausibility& asked, doubl
       std::abs(value - signal.good) > asked.rate_per_h * hours * (1.0 + kRounding))
     return Doubt::kRate;
   if (jump) return Doubt::kJump;
-  return frozen ? Doubt::kFrozen : Doubt::kNone;
+  if (frozen) return Doubt::kFrozen;
+  const bool bridged = signal.since_good < static_cast<std::uint64_t>(params_.bridge_samples);
+  const bool repeated = i < n_y_ && asked.frozen_samples < 0 && bridged && signal.flat.isRepeated();
+  return repeated ? Doubt::kRepeated : Doubt::kNone;
+}
+
+bool Plausibility::byDefault(std::size_t i) const {
+  return signals_[i].doubt == Doubt::kFrozen && asked_[i].frozen_samples < 0 &&
+         asked_[i].substitute == Substitute::kHold;
+}
+
+/// A gap that is short is bridged, whatever is asked for a long one. What is frozen is replaced: an
+/// output by the model's value, and a disturbance stays what it was.
+Substitute Plausibility::substituteOf(std::size_t signal) const {
+  if (byDefault(signal)) return signal < n_y_ ? Substitute::kModel : Substitute::kLastGood;
+  const auto bridged = static_cast<std::uint64_t>(params_.bridge_samples);
+  return signals_[signal].since_good <= bridged ? Substitute::kModel : asked_[signal].substitute;
+}
+
+bool Plausibility::expectsFrom(const Foresee& foresee) {
+  if (!asked_law_) has_expected_ = foresee && foresee(expected_);
+  asked_law_ = true;
+  return has_expected_;
 }
 
 /// False if there is nothing to put in its place.
-bool Plausibility::replace(std::size_t signal) {
+bool Plausibility::replace(std::size_t signal, const Foresee& foresee) {
   Memory& memory = signals_[signal];
   const auto row = static_cast<Eigen::Index>(signal);
-  const bool model = asked_[signal].substitute == Substitute::kModel && has_expected_ &&
-                     signal < n_y_ && std::isfinite(expected_[row]);
-  const double value = model ? expected_[row] : memory.has_good ? memory.good : 0.0;
+  memory.foreseen = signal < n_y_ && substituteOf(signal) == Substitute::kModel &&
+                    expectsFrom(foresee) && std::isfinite(expected_[row]);
+  const double value = memory.foreseen ? expected_[row] : memory.has_good ? memory.good : 0.0;
   const auto first = static_cast<Eigen::Index>(n_y_);
   (signal < n_y_ ? accepted_.outputs[row] : accepted_.disturbances[row - first]) = value;
-  return model || memory.has_good;
+  const bool stands = signal < n_y_ && byDefault(signal);  // so does its last value
+  return memory.foreseen || (memory.has_good && !stands);
 }
 
-Verdict Plausibility::look(const Measurement& now) {
-  bool any = false, doubted = false, repaired = true;
+Verdict Plausibility::look(const Measurement& now, const Foresee& foresee) {
+  bool any = false, doubted = false, repaired = true, may_end = false;
   accepted_ = now;
+  asked_law_ = false;
   const auto first = static_cast<Eigen::Index>(n_y_);
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     Memory& signal = signals_[i];
     const auto row = static_cast<Eigen::Index>(i);
     const double value = i < n_y_ ? now.outputs[row] : now.disturbances[row - first];
-    signal.doubt = judge(signal, asked_[i], value, now.input_applied);
+    signal.doubt = judge(i, value, now);
     if (signal.doubt == Doubt::kNone) {
       signal.good = value;
       signal.has_good = true;
@@ -200,16 +207,17 @@ Verdict Plausibility::look(const Measurement& now) {
     }
     ++signal.since_good;
     any = true;
-    const bool replaced = replace(i);
-    if (!needed_[i]) continue;
+    const bool replaced = replace(i, foresee);
+    if (!needed_[i] || (i >= n_y_ && byDefault(i))) continue;
     doubted = true;
-    repaired = repaired && replaced && asked_[i].substitute != Substitute::kHold;
+    may_end = may_end || signal.doubt != Doubt::kRange || params_.range_falls;
+    repaired = repaired && replaced && substituteOf(i) != Substitute::kHold;
   }
   doubted_ = doubted ? std::min(doubted_ + 1, std::numeric_limits<int>::max() - 1) : 0;
   Verdict verdict = any ? Verdict::kRepaired : Verdict::kClean;
-  const bool may_end = params_.hold_samples >= 0 && params_.fallback.size() > 0;
+  may_end = may_end && params_.hold_samples >= 0 && params_.fallback.size() > 0;
   if (doubted && !repaired) verdict = Verdict::kHold;
-  if (doubted && may_end && doubted_ > params_.hold_samples) verdict = Verdict::kFallback;
+  if (may_end && doubted_ > params_.hold_samples) verdict = Verdict::kFallback;
   say(verdict);
   return verdict;
 }
@@ -219,20 +227,13 @@ void Plausibility::say(Verdict verdict) {
   const bool needed_only = verdict == Verdict::kHold || verdict == Verdict::kFallback;
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     if (signals_[i].doubt == Doubt::kNone || (needed_only && !needed_[i])) continue;
-    const std::size_t text = static_cast<std::size_t>(signals_[i].doubt) * kVerdicts;
-    words_ = texts_[i][text + static_cast<std::size_t>(verdict)].c_str();
+    const std::size_t action = verdict == Verdict::kFallback ? 3
+                               : verdict == Verdict::kHold   ? 2
+                               : signals_[i].foreseen        ? 1
+                                                             : 0;
+    words_ = texts_[i][static_cast<std::size_t>(signals_[i].doubt) * kActions + action].c_str();
     return;
   }
-}
-
-// y(k+1) = C (A x(k) + B u(k) + g) + h
-void Plausibility::expect(const PredictiveAction& prediction, VectorRef input) {
-  state_ = prediction.offset_state;
-  state_.noalias() += prediction.A * prediction.state;
-  state_.noalias() += prediction.B * input;
-  expected_ = prediction.offset_output;
-  expected_.noalias() += prediction.C * state_;
-  has_expected_ = true;
 }
 
 }  // namespace fpc

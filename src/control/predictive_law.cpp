@@ -106,6 +106,13 @@ void PredictiveLaw::estimate(const LawSample& sample) {
   note(sample);
 }
 
+/// disturbances_ are still those of the sample before.
+bool PredictiveLaw::foresee(const Measurement& now, Eigen::Ref<Vector> outputs) {
+  if (!inRun() || !core_->finite()) return false;
+  core_->foresee(now.input_applied, disturbances_, outputs);
+  return true;
+}
+
 Proposal PredictiveLaw::propose(const LawSample& sample) {
   const Proposal proposal = core_->propose(sample, proposal_);
   transfer_.apply(sample.now.input_applied, proposal_);
@@ -155,6 +162,8 @@ void PredictiveLaw::predict(const LawSample& sample, PredictiveAction& predictio
   prediction.setpoint = sample.setpoint.present();
   prediction.input_base_unclipped = proposal_;
   prediction.input_previous = sample.now.input_applied;
+  prediction.input_lower = limits_.lower;
+  prediction.input_upper = limits_.upper;
 }
 
 void PredictiveLaw::act(const LawSample& sample, ControllerOutput& output) {

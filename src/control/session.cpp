@@ -40,10 +40,11 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
                                      Vector initial_input, PlantInfo plant, double max_pole,
                                      PlausibilityParams plausibility)
     : controller_(std::move(controller)),
-      setpoint_(std::move(setpoint), namesOf(plant.outputs), clockOf(plant)),
+      setpoint_(std::move(setpoint), plant, clockOf(plant)),
       limits_(std::move(limits)),
       plant_(std::move(plant)),
       last_input_(std::move(initial_input)),
+      transfer_(countOf(plant_.inputs)),
       moves_(limits_),
       plausibility_(std::move(plausibility), plant_),
       recent_(plant_),
@@ -129,7 +130,8 @@ void ControllerSession::process(const Measurement& m) {
   fell_back_ = false;
   if (needsReset(arrival_)) forgetSamples();
   lookAtMoves(m);
-  const Verdict verdict = plausibility_.look(m);
+  const Verdict verdict =
+      plausibility_.look(m, [&](Eigen::Ref<Vector> outputs) { return foresee(m, outputs); });
   const Measurement& accepted = verdict == Verdict::kClean ? m : plausibility_.accepted();
   const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
   const bool finite = allFinite(m);
@@ -145,7 +147,9 @@ void ControllerSession::process(const Measurement& m) {
     sendManual(accepted);
     interruption_ = "back from manual";
   } else if (!takes_actions_) {
-    hold(m, "the plant takes no actions: its own hand has the input, or its link is lost");
+    hold(m,
+         "the plant takes no actions: its own hand has the input, its link is lost, or no input "
+         "follows its command");
     interruption_ = "the plant takes actions again";
   } else if (!m.input_applied.allFinite()) {
     hold(m, "the applied input is not finite: input held");
@@ -172,7 +176,6 @@ void ControllerSession::process(const Measurement& m) {
     remark_due_ = false;
   }
   if (*output_.remark == '\0') output_.remark = reaction().c_str();
-  expectNext();
   answered();
 }
 
@@ -194,13 +197,10 @@ void ControllerSession::interrupt() {
   if (reaction_) reaction_->interrupt();
 }
 
-// What the law foresees for the next sample, in case that one is not accepted.
-void ControllerSession::expectNext() {
-  if (!plausibility_.usesModel()) return;
-  if (answer_.has_prediction)
-    plausibility_.expect(answer_.prediction, answer_.base.input);
-  else
-    plausibility_.expectNothing();
+/// What a law expects that has run up to now, in case the sample is not accepted.
+bool ControllerSession::foresee(const Measurement& m, Eigen::Ref<Vector> outputs) {
+  return interruption_ == nullptr && arrival_reason_.empty() && m.input_applied.allFinite() &&
+         controller_->foresee(seen(m), outputs);
 }
 
 void ControllerSession::doubtPlant(const std::string& difference) { plant_doubt_ = difference; }
@@ -229,9 +229,12 @@ void ControllerSession::runLaw(const Measurement& m) {
       reset_reason_ += interruption_;
     }
     controller_->reset(m);
+    transfer_.reset(other_hand_ || transfer_.active());
+    other_hand_ = false;
     interruption_ = nullptr;
     arrival_reason_.clear();
   }
+  if (std::exchange(gains_due_, false)) lookAtGains(m);
   output_.begin();
   controller_->step(m, setpoint_, output_);
   if (output_.reference.size() == m.outputs.size()) answer_.tracking.reference = output_.reference;
@@ -239,12 +242,21 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
     return hold(m, "the law gave no finite input: input held");
   answer_.base.input = output_.input;
+  handOver(m);
   limit(m);
   answer_.base.source = output_.source;
   answer_.has_prediction = output_.predictive && !m.final;
   if (!answer_.has_prediction) return;
   answer_.prediction = output_.prediction;
   answer_.prediction.header = m.header;
+}
+
+/// Of the first model, at the first sample.
+void ControllerSession::lookAtGains(const Measurement& m) {
+  const std::string weak = weakDirection(model_, m);
+  if (weak.empty()) return;
+  model_remark_ = weak;
+  remark_due_ = true;
 }
 
 void ControllerSession::setModel(const TsModel& model) {
@@ -262,6 +274,8 @@ void ControllerSession::setModel(const TsModel& model) {
   }
   controller_->setModel(model);
   model_ = std::move(matched);
+  if (matters) plausibility_.setModel(model_);
+  gains_due_ = matters && models_ == 0;
   const int window = plausibility_.params().reaction_samples;
   if (matters && window > 0) reaction_ = std::make_unique<ReactionWatch>(model_, window);
   ++models_;

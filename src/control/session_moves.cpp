@@ -17,6 +17,18 @@ const Measurement& ControllerSession::seen(const Measurement& m) {
   return seen_;
 }
 
+/// What a law asks for that may send some inputs only has nothing in between.
+void ControllerSession::handOver(const Measurement& m) {
+  if (leads_an_optimizer_ || !controller_->followsSetpoint()) return;
+  Vector& input = answer_.base.input;
+  proposal_ = input;
+  if (!transfer_.bridge(m.input_applied, input)) return;
+  proposal_ = 0.5 * (proposal_ + input);
+  if (controller_->mayBeSent(proposal_)) return;
+  input = output_.input;
+  transfer_.reset(false);
+}
+
 /// Puts the answer inside bounds and move limit, and where it may be sent.
 void ControllerSession::limit(const Measurement& m) {
   Vector& input = answer_.base.input;
@@ -28,7 +40,10 @@ void ControllerSession::limit(const Measurement& m) {
 void ControllerSession::answered() {
   last_input_ = answer_.base.input;
   const ActionSource source = answer_.base.source;
-  const bool of_law = source == ActionSource::kBase || source == ActionSource::kClipped;
+  const bool of_law = source == ActionSource::kBase || source == ActionSource::kClipped ||
+                      source == ActionSource::kGuarded;
+  other_hand_ = other_hand_ || source == ActionSource::kManual || fell_back_ || unreleased_ ||
+                !takes_actions_;
   if ((leads_an_optimizer_ && of_law) || unreleased_ || !takes_actions_)
     moves_.restart();  // the plant is told something else
   else

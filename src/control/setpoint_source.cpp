@@ -59,9 +59,17 @@ void SetpointParams::validate(Eigen::Index n_y) const {
   require((rate_per_h.array() > 0.0).all(), "setpoint.rate_per_h", "numbers > 0");
 }
 
-SetpointSource::SetpointSource(SetpointParams params, std::vector<std::string> output_names,
+SetpointSource::SetpointSource(SetpointParams params, const std::vector<std::string>& output_names,
                                const SampleClock& clock)
-    : params_(std::move(params)), clock_(clock), commands_(std::move(output_names)) {
+    : SetpointSource(std::move(params), CommandTable(output_names), clock) {}
+
+SetpointSource::SetpointSource(SetpointParams params, const PlantInfo& plant,
+                               const SampleClock& clock)
+    : SetpointSource(std::move(params), CommandTable(plant.outputs), clock) {}
+
+SetpointSource::SetpointSource(SetpointParams params, CommandTable commands,
+                               const SampleClock& clock)
+    : params_(std::move(params)), clock_(clock), commands_(std::move(commands)) {
   const auto n_y = static_cast<Eigen::Index>(commands_.names().size());
   params_.validate(n_y);
   params_.lower = filled(params_.lower, n_y, -kHuge).cwiseMax(-kHuge);
@@ -121,14 +129,14 @@ std::uint32_t SetpointSource::command(const Command& command) {
     commands_.accept(command, step);
     return step;
   }
-  CommandTable(commands_.names()).accept(command, 0);  // throws what is to be thrown
+  CommandTable(commands_.signals()).accept(command, 0);  // throws what is to be thrown
   waiting_.push_back(command);
   return stampStep(command.time_ns);
 }
 
 bool SetpointSource::restore(const Command& command) {
   if (started_) return false;
-  CommandTable(commands_.names()).accept(command, 0);  // throws what is to be thrown
+  CommandTable(commands_.signals()).accept(command, 0);  // throws what is to be thrown
   waiting_.insert(waiting_.begin() + restored_++, command);
   return true;
 }

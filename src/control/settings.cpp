@@ -37,7 +37,7 @@ void readNamed(const std::vector<std::string>& words, const std::vector<SignalIn
 
 double settingNumber(const std::string& text, const std::string& where) {
   const auto value = parseNumber(text);
-  require(value.has_value(), where, "numbers, got '" + text + "'");
+  require(value && std::isfinite(*value), where, "finite numbers, got '" + text + "'");
   return *value;
 }
 

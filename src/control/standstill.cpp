@@ -45,7 +45,10 @@ StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillP
       n_y_(static_cast<Index>(plant.outputs.size())),
       still_(params_.signals.size(), false),
       stood_at_(params_.signals.size(), 0.0),
-      allowed_(params_.signals.size(), 0.0) {
+      allowed_(params_.signals.size(), 0.0),
+      least_(params_.signals.size(), kInfinity),
+      largest_(params_.signals.size(), -kInfinity),
+      under_noise_(params_.signals.size(), false) {
   const auto n_u = static_cast<Index>(plant.inputs.size());
   const auto n_d = static_cast<Index>(plant.disturbances.size());
   params_.validate(n_y_, n_u, n_d);
@@ -63,6 +66,8 @@ void StandstillWatch::reset(const Measurement& start) {
   plan_.reset();
   window_.clear();
   std::fill(still_.begin(), still_.end(), false);
+  std::fill(least_.begin(), least_.end(), kInfinity);
+  std::fill(largest_.begin(), largest_.end(), -kInfinity);
   away_ = false;
 }
 
@@ -76,9 +81,9 @@ double StandstillWatch::valueOf(const Measurement& now, const WatchedSignal& sig
 
 /// Whether something else that drives the plant, and is not known to stand still, has moved.
 template <class Moves>
-bool StandstillWatch::othersMove(const WatchedSignal& signal, Moves moves) const {
+bool StandstillWatch::othersMove(const WatchedSignal& signal, bool inputs, Moves moves) const {
   const Index last = n_y_ + seen_.disturbances.size();
-  const Index end = signal.is_output ? last + seen_.input_applied.size() : last;
+  const Index end = inputs ? last + seen_.input_applied.size() : last;
   for (Index other = n_y_; other < end; ++other) {
     bool trusted = other != rowOf(signal);
     for (std::size_t i = 0; i < still_.size(); ++i)
@@ -88,42 +93,61 @@ bool StandstillWatch::othersMove(const WatchedSignal& signal, Moves moves) const
   return false;
 }
 
-bool StandstillWatch::showsTheSame(const WatchedSignal& signal) const {
+/// A flow that has come up to its largest value so far may be limited there, as by a weir.
+bool StandstillWatch::isAtLimit(std::size_t i, double value) const {
+  const WatchedSignal& signal = params_.signals[i];
+  const double near = std::max(signal.least_change, kFarFromNoise * signal.noise_std);
+  return !signal.is_output && value > largest_[i] - near && largest_[i] - least_[i] > near;
+}
+
+bool StandstillWatch::showsTheSame(std::size_t i) const {
+  const WatchedSignal& signal = params_.signals[i];
   const Index n = params_.window_samples;
   return window_.holds(n) && window_.span(rowOf(signal), n) < signal.least_change &&
-         othersMove(signal, [&](Index other) {
+         !isAtLimit(i, window_.mean(rowOf(signal), n)) &&
+         othersMove(signal, signal.is_output, [&](Index other) {
            return window_.span(other, n) > params_.others_change * std::abs(window_.mean(other, n));
          });
 }
 
-/// What a change is compared with: an input's range, since its mean may be near zero; otherwise, or
-/// without one, the mean.
-double StandstillWatch::scaleOf(Index row, Index samples) const {
-  const Index input = row - n_y_ - seen_.disturbances.size();
-  const double range = input < 0 ? kInfinity : limits_.upper[input] - limits_.lower[input];
-  return std::isfinite(range) ? range : std::abs(window_.mean(row, samples));
-}
-
-bool StandstillWatch::showsOnlyNoise(const WatchedSignal& signal) const {
+/// Inputs are no evidence here: a law that holds an output where it is moves them, and follows the
+/// output's own noise.
+bool StandstillWatch::showsOnlyNoise(std::size_t i) const {
+  const WatchedSignal& signal = params_.signals[i];
   const Index n = params_.noise_window_samples;
   const double noise = signal.noise_std * signal.noise_std;
   return noise > 0.0 && window_.holds(n) &&
          window_.variance(rowOf(signal), n) < mostVariance(n) * noise &&
-         othersMove(signal, [&](Index other) {
-           return window_.meansMove(other, n, params_.others_change * scaleOf(other, n));
+         !isAtLimit(i, window_.mean(rowOf(signal), n)) &&
+         othersMove(signal, false, [&](Index other) {
+           return window_.meansMove(other, n,
+                                    params_.others_change * std::abs(window_.mean(other, n)));
          });
+}
+
+/// The mean of the newest half of the window has left the mean at which it stood: noise alone does
+/// not do that.
+bool StandstillWatch::meanHasMoved(std::size_t i) const {
+  const WatchedSignal& signal = params_.signals[i];
+  const Index n = params_.noise_window_samples;
+  const double std = signal.noise_std * std::sqrt(3.0 / static_cast<double>(n));
+  return under_noise_[i] &&
+         std::abs(window_.mean(rowOf(signal), n / 2) - stood_at_[i]) > kFarFromNoise * std;
 }
 
 void StandstillWatch::judge(std::size_t i, double value) {
   const WatchedSignal& signal = params_.signals[i];
+  least_[i] = std::min(least_[i], value);
+  largest_[i] = std::max(largest_[i], value);
   if (still_[i]) {
-    still_[i] = std::abs(value - stood_at_[i]) < allowed_[i];
-  } else if (showsOnlyNoise(signal)) {
-    still_[i] = true;
+    still_[i] = std::abs(value - stood_at_[i]) < allowed_[i] && !meanHasMoved(i);
+  } else if (showsOnlyNoise(i)) {
+    still_[i] = under_noise_[i] = true;
     stood_at_[i] = window_.mean(rowOf(signal), params_.noise_window_samples);
     allowed_[i] = std::max(signal.least_change, kFarFromNoise * signal.noise_std);
-  } else if (showsTheSame(signal)) {
+  } else if (showsTheSame(i)) {
     still_[i] = true;
+    under_noise_[i] = false;
     stood_at_[i] = value;
     allowed_[i] = signal.least_change;
   }

@@ -1,5 +1,6 @@
 #include "fmbpc/fuzzy/gain_sign.hpp"
 
+#include <Eigen/SVD>
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
@@ -11,6 +12,8 @@ namespace {
 
 constexpr double kCounts = 1.0 / 3.0;  // of the largest gain of an output
 constexpr double kWorse = 5.0;         // an error one sample ahead, in parts of another
+constexpr double kWeak = 0.05;         // of the largest gain of all directions
+constexpr double kTakesPart = 0.1;     // of an input in a direction
 
 /// Columns in parts of the inputs' ranges, where those are finite.
 Matrix scaled(Matrix gains, const TsModel& model) {
@@ -45,6 +48,26 @@ Matrix stepGains(const TsModel& model, const Measurement& at) {
   PowerSum powers(local.stateSize());
   powers.compute(affine.A, kGainSamples);
   return affine.C * powers.sum() * affine.B;
+}
+
+std::string weakDirection(const TsModel& model, const Measurement& at) {
+  Matrix gains = scaled(stepGains(model, at), model);
+  if (gains.cols() < 2 || gains.cols() > gains.rows() || !gains.allFinite()) return "";
+  for (Eigen::Index i = 0; i < gains.rows(); ++i) {
+    const SignalInfo& output = model.outputs[static_cast<std::size_t>(i)];
+    const double range = output.upper - output.lower;
+    if (std::isfinite(range) && range > 0.0) gains.row(i) /= range;
+  }
+  const Eigen::JacobiSVD<Matrix> svd(gains, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Vector& sizes = svd.singularValues();
+  const Eigen::Index last = sizes.size() - 1;
+  if (!(sizes[0] > 0.0) || sizes[last] >= kWeak * sizes[0]) return "";
+  std::string inputs;
+  for (Eigen::Index j = 0; j < gains.cols(); ++j)
+    if (std::abs(svd.matrixV()(j, last)) > kTakesPart)
+      inputs += (inputs.empty() ? "" : ", ") + model.inputs[static_cast<std::size_t>(j)].name;
+  return "moved together in one way, " + inputs + " have " + shortText(sizes[last] / sizes[0]) +
+         " of the effect that they have in another: a model error of that size turns its sign";
 }
 
 std::vector<TurnedGain> turnedGains(const TsModel& running, const TsModel& fresh,

@@ -17,6 +17,20 @@ int transportDelay(const TsModel& model) {
   return delay == std::numeric_limits<int>::max() ? 0 : delay;
 }
 
+int longestDeadTime(const TsModel& model) {
+  int longest = 0;
+  for (const auto& submodel : model.submodels)
+    for (const auto& first : submodel.regressors) {
+      if (first.kind != SignalKind::kInput) continue;
+      int shortest = first.lag;
+      for (const auto& other : submodel.regressors)
+        if (other.kind == first.kind && other.index == first.index)
+          shortest = std::min(shortest, other.lag);
+      longest = std::max(longest, shortest);
+    }
+  return longest;
+}
+
 TsModel withoutDelay(TsModel model, int samples) {
   const int delay = transportDelay(model);
   require(samples >= 0 && samples <= delay, "delay_steps",

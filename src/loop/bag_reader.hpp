@@ -18,7 +18,7 @@ namespace fpc {
 /// messages, more than one plant or run, a run without plant_info, sizes that disagree.
 CsvTable readBag(const std::string& file);
 
-/// The loop as the nodes read it (topic `loop_text`, written by scripts/record_bag.py).
+/// The loop as the nodes read it (topic `loop_text`, which only a bag has).
 /// @throws InputError if the bag cannot be read, or holds none or several.
 std::string loopTextOf(const std::string& bag);
 

@@ -91,8 +91,9 @@ std::size_t JournalSizes::entry() const {
 
 JournalHeader headerOf(const RecordLayout& layout, std::uint64_t run_id) {
   const JournalSizes s(layout);
-  JournalHeader header{{}, run_id, {s.n_y, s.n_d, s.n_u, s.n_x, s.n_true}, aboutOf(layout).size(),
-                       0,  0};
+  JournalHeader header{
+      {}, run_id,           {s.n_y, s.n_d, s.n_u, s.n_x, s.n_true}, aboutOf(layout).size(),
+      0,  layout.first_step};
   std::memcpy(header.magic, kMagic, sizeof kMagic);
   return header;
 }

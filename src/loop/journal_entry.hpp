@@ -18,8 +18,8 @@ struct JournalHeader {
   std::uint64_t run_id;
   std::uint64_t sizes[5];  // outputs, disturbances, inputs, states, true disturbances
   std::uint64_t about_bytes;
-  std::int64_t began_ns;  // on the steady clock of the machine: when its first sample came
-  std::uint64_t spare;
+  std::int64_t began_ns;     // on the steady clock of the machine: when its first sample came
+  std::uint64_t first_step;  // of its first entry
 };
 static_assert(sizeof(JournalHeader) == 80, "the header has no holes");
 

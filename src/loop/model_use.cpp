@@ -5,6 +5,7 @@
 
 #include "fmbpc/fuzzy/domain.hpp"
 #include "fmbpc/fuzzy/model_inputs.hpp"
+#include "fmbpc/fuzzy/model_match.hpp"
 #include "fmbpc/fuzzy/process_trust.hpp"
 #include "fmbpc/loop/report.hpp"
 
@@ -15,8 +16,22 @@ bool hasDomain(const LoopFile& loop) {
   return predicts && knowsDomain(loop.model);
 }
 
-bool isOutsideModel(const LoopFile& loop, const SampleRecord& sample) {
-  if (!sample.has_measurement || !sample.has_action) return false;
+Rejections::Rejections(const LoopFile& loop) : judge_(loop.plausibility, loop.plant_info) {
+  if (loop.has_model && loop.controller && loop.controllerType().needs_model)
+    judge_.setModel(matchToPlant(loop.model, loop.plant_info));
+}
+
+// Where a sample is missing, rates and jumps are counted anew, as the controller does.
+void Rejections::look(const SampleRecord& sample) {
+  seen_ = sample.has_measurement;
+  if (seen_)
+    verdict_ = judge_.look(sample.measurement);
+  else
+    judge_.reset();
+}
+
+bool isOutsideModel(const LoopFile& loop, const SampleRecord& sample, const Rejections& rejected) {
+  if (!sample.has_measurement || !sample.has_action || rejected.any()) return false;
   const Measurement& m = sample.measurement;
   Vector now(m.outputs.size() + m.input_applied.size() + m.disturbances.size());
   now << m.outputs, m.input_applied, m.disturbances;
@@ -25,9 +40,12 @@ bool isOutsideModel(const LoopFile& loop, const SampleRecord& sample) {
 
 std::uint64_t samplesOutsideModel(const LoopFile& loop, const RunRecord& record) {
   if (!hasDomain(loop)) return 0;
+  Rejections rejected(loop);
   return static_cast<std::uint64_t>(
-      std::count_if(record.samples.begin(), record.samples.end(),
-                    [&](const SampleRecord& sample) { return isOutsideModel(loop, sample); }));
+      std::count_if(record.samples.begin(), record.samples.end(), [&](const SampleRecord& sample) {
+        rejected.look(sample);
+        return isOutsideModel(loop, sample, rejected);
+      }));
 }
 
 std::vector<bool> movedInputs(const LoopFile& loop) {

@@ -6,14 +6,17 @@ namespace fpc {
 
 OptimizerWatch::OptimizerWatch(Pace pace, double period_s, double timeout_s)
     : patient_(pace == Pace::kLockstep),
-      limit_s_(pace == Pace::kRealtime ? std::min(timeout_s, 0.5 * period_s) : timeout_s),
+      most_looks_(pace == Pace::kRealtime ? 1 : 10),
+      between_looks_s_(pace == Pace::kRealtime ? std::min(timeout_s, 0.5 * period_s)
+                                               : timeout_s / most_looks_),
       timeout_s_(std::min(timeout_s, 1.0)) {}
 
 bool OptimizerWatch::asked(const StepHeader& sample, double now_s) {
   if (degraded_ && heard_) degraded_ = false;
   heard_ = false;
   sample_ = sample;
-  asked_s_ = now_s;
+  asked_s_ = looked_s_ = now_s;
+  looks_ = 0;
   open_ = !degraded_;
   if (degraded_) ++taken_over_;
   return degraded_;
@@ -26,11 +29,14 @@ void OptimizerWatch::answered(const StepHeader& sample) {
 }
 
 double OptimizerWatch::deadline() const {
-  return open_ && !patient_ ? asked_s_ + limit_s_ : std::numeric_limits<double>::infinity();
+  return open_ && !patient_ ? looked_s_ + between_looks_s_
+                            : std::numeric_limits<double>::infinity();
 }
 
 bool OptimizerWatch::mustTakeOver(double now_s) {
   if (now_s < deadline()) return false;
+  looked_s_ = now_s;
+  if (++looks_ < most_looks_) return false;
   open_ = false;
   degraded_ = true;
   ++taken_over_;

@@ -12,8 +12,6 @@ namespace {
 
 using Index = Eigen::Index;
 
-constexpr double kRounding = 1e-9;
-
 const SignalInfo& signalOf(const PlantInfo& info, std::size_t signal) {
   const std::size_t n_y = info.outputs.size();
   return signal < n_y ? info.outputs[signal] : info.disturbances[signal - n_y];
@@ -29,7 +27,8 @@ PlantGateway::PlantGateway(const LoopFile& loop, Rounding rounding)
       rounding_(std::move(rounding)),
       samples_(loop.simulation.samples),
       signals_(info_.outputs.size() + info_.disturbances.size()),
-      positions_(info_.inputs.size()) {
+      positions_(info_.inputs.size()),
+      tolerance_(loop.stuck.tolerance) {
   require(params_.enabled(), loop.name + ": gateway.type", "a gateway");
   measurement_.outputs.resize(static_cast<Index>(info_.outputs.size()));
   measurement_.disturbances.resize(static_cast<Index>(info_.disturbances.size()));
@@ -37,7 +36,8 @@ PlantGateway::PlantGateway(const LoopFile& loop, Rounding rounding)
   age_s_.resize(static_cast<Index>(signals_.size()));
   position_known_ = !params_.reads_back;
   exact_ = params_.reads_back;
-  command_ = actuator_.applied();
+  command_ = seen_ = actuator_.applied();
+  astray_ = lying_ = Vector::Constant(command_.size(), std::nan(""));
   reset(1);
 }
 
@@ -58,15 +58,20 @@ void PlantGateway::readBack(Index input, double value, double now_s) {
 void PlantGateway::beat(std::uint64_t value, double now_s) {
   if (beaten_ && value == beat_) return;
   const bool stood = beaten_ && params_.heartbeat_s > 0.0 && now_s - beat_s_ > params_.heartbeat_s;
-  if (stood) doubtPosition(now_s);
+  if (stood) doubtPosition(now_s, true);
   beat_ = value;
   beat_s_ = now_s;
   beaten_ = true;
 }
 
 void PlantGateway::remote(bool on, double now_s) {
-  if (on != remote_) doubtPosition(now_s);
+  if (on != remote_) doubtPosition(now_s, true);
   remote_ = on;
+}
+
+void PlantGateway::lead(bool on, double now_s) {
+  if (on != lead_) doubtPosition(now_s, true);
+  lead_ = on;
 }
 
 void PlantGateway::link(bool up, double now_s) {
@@ -75,11 +80,15 @@ void PlantGateway::link(bool up, double now_s) {
 }
 
 /// Only what is read back from now on says where the inputs are, to the last digit. A command on
-/// its way was made for another place.
-void PlantGateway::doubtPosition(double now_s) {
+/// its way was made for another place. `moved`: somebody else has had the inputs.
+void PlantGateway::doubtPosition(double now_s, bool moved) {
   told_s_ = now_s;
   if (!params_.reads_back) return;
   if (unconfirmed()) voided_ = number_;
+  if (moved)
+    lying_.setConstant(std::nan(""));
+  else if (!exact_)
+    lying_ = astray_;
   position_known_ = false;
   exact_ = true;
 }
@@ -101,70 +110,52 @@ FieldState PlantGateway::field() const {
   if (!link_) return FieldState::kLost;
   if (params_.heartbeat_s > 0.0 && (!beaten_ || now_s_ - beat_s_ > params_.heartbeat_s))
     return FieldState::kFrozen;
+  if (!lead_) return FieldState::kLed;
   if (!remote_) return FieldState::kLocal;
   return position_known_ ? FieldState::kRunning : FieldState::kUnknown;
 }
 
-/// Where the inputs are: what is read back, unless it is what was commanded. After a doubt the
-/// plant is taken to hold its command register where its input is.
+bool PlantGateway::agrees(Index i, double reading, double with) const {
+  const InputLimits& limits = actuator_.params().limits;
+  return std::abs(reading - with) <= tolerance_ * (limits.upper[i] - limits.lower[i]);
+}
+
+/// After a doubt commands begin where the inputs are; until the field runs they go with them. The
+/// plant is taken to hold its command register there.
 void PlantGateway::followReadings() {
-  if (!params_.reads_back || unconfirmed()) return;
-  const InputLimits& limits = actuator_.params().limits;
-  const bool exact = exact_ && position_known_;
-  for (std::size_t i = 0; i < positions_.size(); ++i) {
-    const Reading& position = positions_[i];
-    const auto row = static_cast<Index>(i);
+  if (!exact_ || unconfirmed()) return;
+  for (Index i = 0; i < command_.size(); ++i) {
+    const Reading& position = positions_[static_cast<std::size_t>(i)];
     if (!position.come || position.at_s <= told_s_) continue;
-    const double range = limits.upper[row] - limits.lower[row];
-    const double tolerated = std::isfinite(range) ? params_.readback_tolerance * range : 0.0;
-    if (exact) command_[row] = position.value;
-    const bool away = exact || std::abs(position.value - command_[row]) > tolerated;
-    actuator_.disturb(row, away ? position.value : command_[row]);
+    if (agrees(i, position.value, lying_[i])) continue;
+    lying_[i] = std::nan("");
+    actuator_.disturb(i, position.value);
+    command_[i] = actuator_.applied()[i];
   }
-  if (exact) actuator_.apply(Vector(actuator_.applied()));  // held from here on
-  if (exact) exact_ = false;
+  if (field() != FieldState::kRunning) return;
+  actuator_.apply(Vector(command_));  // held from here on
+  exact_ = false;
 }
 
-/// What element i may be told: inside the bounds, one move from the last command and one move from
-/// where it is; where both cannot be it is told nothing new.
-PlantGateway::Span PlantGateway::spanOf(Index i) const {
-  const InputLimits& limits = actuator_.params().limits;
-  const double move = limits.move[i];
-  Span span{std::max(limits.lower[i], command_[i] - move),
-            std::min(limits.upper[i], command_[i] + move)};
-  if (span.lower > span.upper) return {limits.lower[i], limits.upper[i]};  // the bound wins
+/// Where input i is, if it has been read since it was told; where it was told, if it is too early;
+/// NaN if nothing comes any more.
+double PlantGateway::positionOf(Index i) const {
   const Reading& position = positions_[static_cast<std::size_t>(i)];
-  if (!params_.reads_back || !position.come || position.at_s <= told_s_) return span;
-  const double from = position.value - move, to = position.value + move;
-  if (from > span.upper || to < span.lower) return {command_[i], command_[i]};
-  return {std::max(span.lower, from), std::min(span.upper, to)};
-}
-
-/// Further from its command than a move ahead and a move behind explain: it lies, is stuck, or
-/// somebody else moves it. A command that runs after it would drive the plant by whatever is read.
-bool PlantGateway::strays(Index i) const {
-  const Reading& position = positions_[static_cast<std::size_t>(i)];
-  if (!params_.reads_back || exact_ || !position.come || position.at_s <= told_s_) return false;
-  const double tolerated = 2.0 * actuator_.params().limits.move[i];
-  return std::abs(position.value - command_[i]) > tolerated * (1.0 + kRounding);
-}
-
-/// Whether no input is left that follows.
-bool PlantGateway::allStray() const {
-  Index stray = 0;
-  for (Index i = 0; i < command_.size(); ++i) stray += strays(i) ? 1 : 0;
-  return stray == command_.size();
+  if (!params_.reads_back || !position.come) return command_[i];
+  if (now_s_ - position.at_s > params_.stale_s) return std::nan("");
+  return unconfirmed() || position.at_s <= told_s_ ? command_[i] : position.value;
 }
 
 /// The command as the field can carry it.
 void PlantGateway::tell() {
-  for (Index i = 0; i < command_.size(); ++i) {
-    const Span span = spanOf(i);
-    double value = std::clamp(actuator_.applied()[i], span.lower, span.upper);
-    if (rounding_) value = rounding_(i, value, span.lower, span.upper).value_or(command_[i]);
-    command_[i] = value;
-    actuator_.disturb(i, value);
+  const InputLimits& limits = actuator_.params().limits;
+  for (Index i = 0; rounding_ && i < command_.size(); ++i) {
+    const double lower = std::max(limits.lower[i], command_[i] - limits.move[i]);
+    const double upper = std::min(limits.upper[i], command_[i] + limits.move[i]);
+    const auto rounded = rounding_(i, actuator_.applied()[i], lower, upper);
+    actuator_.disturb(i, rounded.value_or(command_[i]));
   }
+  command_ = actuator_.applied();
   if (!unconfirmed()) asked_s_ = now_s_;
   ++number_;
   commanded_ = true;
@@ -236,12 +227,17 @@ void PlantGateway::measure() {
     age_s_[row] = reading.come ? now_s_ - reading.at_s : std::numeric_limits<double>::infinity();
   }
   measurement_.input_applied = actuator_.applied();
-  takes_ = field() == FieldState::kRunning && !allStray() && (!unconfirmed() || just_told_);
+  for (Index i = 0; i < seen_.size(); ++i) {
+    seen_[i] = positionOf(i);
+    if (!unconfirmed()) astray_[i] = agrees(i, seen_[i], command_[i]) ? std::nan("") : seen_[i];
+  }
+  takes_ = field() == FieldState::kRunning && (!unconfirmed() || just_told_);
   measurement_.final = samples_ > 0 && measurement_.header.step == samples_;
 }
 
 std::vector<std::string> PlantGateway::missing() const {
   std::vector<std::string> names;
+  if (!lead_) names.push_back("the plant's leadership");
   for (std::size_t i = 0; i < signals_.size(); ++i)
     if (!signals_[i].come) names.push_back(signalOf(info_, i).name);
   for (std::size_t i = 0; i < positions_.size(); ++i)
@@ -258,6 +254,8 @@ std::string PlantGateway::problem() const {
       return "the plant's heartbeat stands still";
     case FieldState::kLocal:
       return "the plant's own hand has the inputs";
+    case FieldState::kLed:
+      return "another master leads the plant";
     case FieldState::kUnknown:
       return "where the inputs are is not known yet";
     case FieldState::kRunning:
@@ -265,9 +263,6 @@ std::string PlantGateway::problem() const {
   }
   if (unconfirmed() && now_s_ - asked_s_ > params_.stale_s)  // before that it is on its way
     return "the plant has not confirmed the last command";
-  for (Index i = 0; i < command_.size(); ++i)
-    if (strays(i))
-      return info_.inputs[static_cast<std::size_t>(i)].name + " is not where it was told";
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     const Quality quality = qualityOf(signals_[i]);
     if (quality == Quality::kGood) continue;

@@ -6,7 +6,8 @@
 namespace fpc {
 namespace {
 constexpr double kNever = kInfinity;
-}
+constexpr double kRecordTimeout = 5.0;  // [s]: as long as one that is started again needs
+}  // namespace
 
 PlantPolicy lockstepPolicy(const LoopFile& loop) {
   PlantPolicy policy;
@@ -19,6 +20,9 @@ PlantPolicy ringPolicy(const LoopFile& loop) {
   policy.pace = loop.ring.pace;
   policy.period_s = loop.simulation.sample_time_s / loop.ring.speedup;
   policy.action_timeout_s = loop.ring.action_timeout_s;
+  const auto& names = loop.ring.wait_for;
+  const bool waits = std::count(names.begin(), names.end(), "loop_recorder") > 0;
+  if (waits && !loop.external_plant) policy.record_timeout_s = kRecordTimeout;
   return policy;
 }
 
@@ -35,6 +39,7 @@ void PlantSession::begin(std::uint64_t run_id) {
   process_->reset(run_id);
   phase_ = PlantPhase::kWaiting;
   have_action_ = starving_ = acknowledged_ = false;
+  recorder_keeps_up_ = true;
   steps_allowed_ = 0;
   stuck_.reset();
 }
@@ -42,7 +47,32 @@ void PlantSession::begin(std::uint64_t run_id) {
 void PlantSession::start(double now_s) {
   phase_ = process_->measurement().final ? PlantPhase::kFinished : PlantPhase::kRunning;
   pacer_.restart(now_s);
+  putOnTable(now_s);
+}
+
+void PlantSession::putOnTable(double now_s) {
   table_since_s_ = sent_s_ = now_s;
+  have_action_ = recorded_ = false;
+  unrecorded_since_s_ = -1.0;
+}
+
+bool PlantSession::recorded(const StepHeader& sample) {
+  const StepHeader& now = process_->measurement().header;
+  if (sample.run_id != now.run_id || sample.step != now.step) return false;
+  recorded_ = recorder_keeps_up_ = true;
+  const bool awaited = awaitsRecorder();
+  unrecorded_since_s_ = -1.0;
+  return awaited;
+}
+
+/// True as well if that is not waited for (any more).
+bool PlantSession::isRecorded(double now_s) {
+  if (policy_.record_timeout_s <= 0.0 || recorded_ || !recorder_keeps_up_) return true;
+  if (!awaitsRecorder()) unrecorded_since_s_ = now_s;
+  if (now_s - unrecorded_since_s_ < policy_.record_timeout_s) return false;
+  recorder_keeps_up_ = false;
+  unrecorded_since_s_ = -1.0;
+  return true;
 }
 
 // What an action is wrong in does not depend on when it comes.
@@ -66,6 +96,9 @@ bool PlantSession::receive(const ControlAction& action) {
   }
   ++counts_.accepted;
   action_ = action.input;
+  const bool of_law =
+      action.source != ActionSource::kManual && action.source != ActionSource::kFallback;
+  if (policy_.stuck.hold && of_law) stuck_.hold(action_, process_->actuator().applied());
   process_->take(action_);
   have_action_ = true;
   starving_ = false;
@@ -94,10 +127,13 @@ bool PlantSession::advance(double now_s) {
   if (phase_ != PlantPhase::kRunning || (paused_ && steps_allowed_ == 0)) return false;
   if (!paused_ && !pacer_.due(now_s)) return false;
   if (have_action_) {
+    if (!isRecorded(now_s)) return false;
     before_ = process_->measurement().input_applied;
     process_->advance(action_);
     if (process_->takesActions())
-      stuck_.look(action_, before_, process_->measurement().input_applied);
+      stuck_.look(action_, before_, process_->positions());
+    else if (!process_->underWay())
+      stuck_.reset();  // somebody else has the inputs
   } else if (mayGoWithout(now_s)) {
     process_->advanceWithoutAction();
     ++missing_inputs_;
@@ -106,23 +142,23 @@ bool PlantSession::advance(double now_s) {
     return false;
   }
   if (paused_) --steps_allowed_;
-  have_action_ = false;
   pacer_.sent(now_s);
-  table_since_s_ = sent_s_ = now_s;
+  putOnTable(now_s);
   if (process_->measurement().final) phase_ = PlantPhase::kFinished;
   return true;
 }
 
 double PlantSession::nextDue() const {
   if (phase_ != PlantPhase::kRunning || paused_ || !pacer_.timed()) return kNever;
+  if (awaitsRecorder()) return unrecorded_since_s_ + policy_.record_timeout_s;
   if (have_action_ || starving_ || policy_.pace == Pace::kRealtime) return pacer_.deadline();
   return std::max(pacer_.deadline(), table_since_s_ + policy_.action_timeout_s);
 }
 
-bool PlantSession::mustResend(double now_s) const {
+bool PlantSession::mustResend(double now_s) {
   const bool unanswered = phase_ == PlantPhase::kRunning && !have_action_;
-  const bool unheard = phase_ == PlantPhase::kFinished && !acknowledged_;
-  return (unanswered || unheard) && now_s - sent_s_ >= policy_.resend_s;
+  const bool unheard = phase_ == PlantPhase::kFinished && (!acknowledged_ || !isRecorded(now_s));
+  return (unanswered || unheard || awaitsRecorder()) && now_s - sent_s_ >= policy_.resend_s;
 }
 
 void PlantSession::resent(double now_s) { sent_s_ = now_s; }

@@ -21,9 +21,10 @@ void readOutputs(const Json& json, Summary& summary) {
   for (const auto& [name, y] : json.items()) {
     summary.output_names.push_back(name);
     summary.output_units.push_back(y.value("unit", ""));
-    summary.outputs.push_back({numberOf(y, "ise"), numberOf(y, "iae"), numberOf(y, "itae"),
-                               numberOf(y, "itse"), numberOf(y, "rmse"),
-                               numberOf(y, "ise_reference")});
+    summary.outputs.push_back(
+        {numberOf(y, "ise"), numberOf(y, "iae"), numberOf(y, "itae"), numberOf(y, "itse"),
+         numberOf(y, "rmse"), numberOf(y, "ise_reference"), y.value("rejected", std::uint64_t{0})});
+    if (y.contains("controlled")) summary.controlled.push_back(y.at("controlled"));
     if (!y.contains("windows")) continue;
     for (const Json& w : y.at("windows"))
       summary.windows.push_back({{w.at("name"), name, w.at("from_h"), w.at("to_h")},
@@ -55,6 +56,9 @@ void readClp(const Json& json, Summary& summary) {
 Summary summaryOf(const Json& json) {
   Summary summary;
   summary.loop = json.at("loop");
+  summary.title = json.value("title", "");
+  summary.run_id = json.value("run_id", std::uint64_t{0});
+  summary.first_step = json.value("first_step", 0U);
   summary.complete = json.at("complete");
   summary.failed_samples = json.value("failed_samples", 0U);
   summary.trouble = json.value("trouble", "");

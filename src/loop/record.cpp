@@ -63,6 +63,7 @@ RecordLayout recordLayout(const LoopFile& loop) {
   layout.has_optimizer = loop.has_clp;
   layout.has_state = !loop.external_plant;
   layout.without_setpoint = loop.report.without_setpoint;
+  layout.samples = loop.simulation.samples;
   if (loop.external_plant) return layout;
   const auto plant = makePlant(loop.simulation);
   layout.true_disturbances = plant->description().disturbances.size();

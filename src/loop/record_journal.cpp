@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstring>
 #include <fstream>
+#include <thread>
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
@@ -34,15 +35,22 @@ RecordJournal::~RecordJournal() { close(); }
 void RecordJournal::close() {
   if (file_ < 0) return;
   flush();
+  ::fdatasync(file_);
   ::close(file_);
   file_ = -1;
 }
 
-void RecordJournal::lock(const std::string& file) {
+// One that has the same name and is just told to end still writes its files.
+void RecordJournal::lock(const std::string& file, double patience_s) {
   close();
   const int opened = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   require(opened >= 0, file, std::string("a file that can be written (") + strerror(errno) + ")");
-  const bool mine = flock(opened, LOCK_EX | LOCK_NB) == 0;
+  const std::int64_t deadline_ns = steadyNs() + static_cast<std::int64_t>(1e9 * patience_s);
+  bool mine = flock(opened, LOCK_EX | LOCK_NB) == 0;
+  while (!mine && steadyNs() < deadline_ns) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    mine = flock(opened, LOCK_EX | LOCK_NB) == 0;
+  }
   if (!mine) ::close(opened);
   require(mine, file,
           "that no other recorder writes here: another loop is running with this folder");
@@ -95,6 +103,7 @@ bool RecordJournal::goesOn(std::uint64_t size) {
   if (!same) return false;
   if (next_ > 0) return true;  // what waits has its place
   began_ns_ = found.began_ns;
+  layout_.first_step = static_cast<std::uint32_t>(found.first_step);
   next_ = (size - head) / (entry_size_ * sizeof(double));
   return true;
 }
@@ -102,6 +111,7 @@ bool RecordJournal::goesOn(std::uint64_t size) {
 void RecordJournal::writeHead() {
   JournalHeader mine = headerOf(layout_, run_id_);
   mine.began_ns = began_ns_;
+  unsynced_ = true;
   const bool done = ftruncate(file_, 0) == 0 && writeAt(file_, &mine, sizeof mine, 0) &&
                     writeAt(file_, about_.data(), about_.size(), sizeof mine);
   require(done, name_, std::string("room on the disk (") + strerror(errno) + ")");
@@ -113,6 +123,7 @@ bool RecordJournal::write(const Entry& entry) {
   errno = ENOSPC;  // a write that ends early says nothing
   if (writeAt(file_, entry.second.data(), bytes, offset)) {
     problem_.clear();
+    unsynced_ = true;
     return true;
   }
   problem_ = name_ + " cannot be written: " + strerror(errno);
@@ -135,6 +146,26 @@ void RecordJournal::append(const SampleRecord& sample) {
 
 void RecordJournal::flush() {
   while (file_ >= 0 && !unwritten_.empty() && write(unwritten_.front())) unwritten_.pop_front();
+}
+
+bool RecordJournal::sync(double now_s) {
+  if (file_ < 0 || !unsynced_ || now_s - synced_s_ < 1.0) return false;
+  unsynced_ = ::fdatasync(file_) != 0;
+  synced_s_ = now_s;
+  return true;
+}
+
+void RecordJournal::cut(std::uint64_t samples) {
+  if (file_ < 0 || samples >= next_) return;
+  const std::uint64_t head = sizeof(JournalHeader) + about_.size();
+  const std::uint64_t size = head + samples * entry_size_ * sizeof(double);
+  if (ftruncate(file_, static_cast<off_t>(size)) == 0) next_ = samples;
+}
+
+void RecordJournal::beginNextPart() {
+  layout_.first_step += static_cast<std::uint32_t>(next_);
+  next_ = 0;
+  writeHead();
 }
 
 std::uint64_t journalRun(const std::string& file, const RecordLayout& layout) {
@@ -164,13 +195,16 @@ JournalReader::JournalReader(const std::string& file, const RecordLayout& layout
               about == aboutOf(layout),
           file, "a journal of the loop " + layout.loop);
   entry_.resize(JournalSizes(layout).entry());
+  run_id_ = header.run_id;
+  layout_.first_step = static_cast<std::uint32_t>(header.first_step);
 }
 
 bool JournalReader::next(SampleRecord& sample) {
   const auto bytes = static_cast<std::streamsize>(entry_.size() * sizeof(double));
   if (!stream_.read(reinterpret_cast<char*>(entry_.data()), bytes)) return false;
   sample = unpackEntry(entry_.data(), JournalSizes(layout_));
-  whole_ = whole_ && layout_.isComplete(sample);
+  whole_ = whole_ && last_whole_;
+  last_whole_ = layout_.isComplete(sample);
   final_ = sample.measurement.final;
   return true;
 }

@@ -46,6 +46,13 @@ void RecorderSession::resume(std::uint64_t run_id, std::uint32_t next_step) {
   for (const auto& deliver : early) deliver();
 }
 
+bool RecorderSession::holds(const StepHeader& sample) const {
+  if (run_id_ != sample.run_id) return false;
+  if (sample.step < next_) return true;
+  const std::size_t place = sample.step - next_;
+  return place < window_.size() && layout_.isComplete(window_[place]);
+}
+
 SampleRecord* RecorderSession::at(std::uint32_t step) {
   if (step < next_) return nullptr;
   const std::size_t place = step - next_;
@@ -111,7 +118,9 @@ void RecorderSession::receive(const Measurement& m) {
       emitFront();  // what has been waiting longest is given up
   }
   collect(m, &SampleRecord::has_measurement, [this](SampleRecord& sample, const Measurement& item) {
-    sample.measurement = item;
+    sample.measurement = item;  // only the loop's last sample has no action
+    sample.measurement.final =
+        item.final && (layout_.samples == 0 || item.header.step == layout_.samples);
     if (item.header.step >= latest_.step) latest_ = item.header;
     if (item.final) final_ = item.header.step;
   });

@@ -1,8 +1,12 @@
 #include "fmbpc/loop/recover.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <exception>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "base/files.hpp"
@@ -18,41 +22,76 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Files that were written beside take the place of those of the run before.
+constexpr char kHistory[] = "history";
+constexpr const char* kRecord[] = {"trajectory.csv", "summary.json"};
+
+/// Nothing where there is none, or none that can be read.
+std::optional<Summary> summaryIn(const fs::path& folder) {
+  try {
+    return readSummary((folder / "summary.json").string());
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+bool samePart(const Summary& a, const Summary& b) {
+  return a.run_id == b.run_id && a.first_step == b.first_step;
+}
+
+void move(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  require(!error, to.string(), "a writable file: " + error.message());
+}
+
+/// On the disk itself.
+void sync(const fs::path& file) {
+  const int opened = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (opened < 0) return;
+  ::fsync(opened);
+  ::close(opened);
+}
+
+/// What stands in the folder and is not of this part of this run.
+void fileAway(const fs::path& folder, const Summary& now) {
+  std::error_code error;
+  const bool any = fs::exists(folder / kRecord[0], error) || fs::exists(folder / kRecord[1], error);
+  const auto before = summaryIn(folder);
+  if (!any || (before && samePart(*before, now))) return;
+  const fs::path aside = freshAside(folder.string(), before ? before->run_id : 0);
+  for (const char* name : {"plot.png", "loop.bag", kRecord[0], kRecord[1]})
+    if (fs::exists(folder / name, error)) move(folder / name, aside / name);
+}
+
+/// Files that were written beside take their place.
 void moveIn(const fs::path& beside, const fs::path& folder) {
   std::error_code error;
-  fs::remove(folder / "plot.png", error);  // of the run before
-  for (const char* name : {"trajectory.csv", "summary.json"}) {
-    fs::rename(beside / name, folder / name, error);
-    require(!error, (folder / name).string(), "a writable file: " + error.message());
+  fs::remove(folder / "plot.png", error);  // of less of this run
+  for (const char* name : kRecord) {
+    sync(beside / name);
+    move(beside / name, folder / name);
   }
   fs::remove_all(beside, error);
+  sync(folder);
 }
-
-bool hasRecord(const fs::path& folder) {
-  std::error_code error;
-  return fs::exists(folder / "trajectory.csv", error) || fs::exists(folder / "summary.json", error);
-}
-
-struct Filled {
-  Summary summary;
-  bool to_the_end;  ///< its last sample is final
-};
 
 /// trajectory.csv and summary.json in the folder.
-Filled fill(const LoopFile& loop, const RecordLayout& layout, const std::string& journal,
-            double wall_s, const fs::path& folder) {
+Summary fill(const LoopFile& loop, const RecordLayout& layout, const std::string& journal,
+             double wall_s, const fs::path& folder) {
   JournalReader reader(journal, layout);
-  RunSummary sums(loop);
-  TrajectoryFile file(loop, layout, (folder / "trajectory.csv").string());
+  RecordLayout part = layout;
+  part.first_step = reader.firstStep();
+  RunSummary sums(loop, part.first_step);
+  TrajectoryFile file(loop, part, (folder / "trajectory.csv").string());
   for (SampleRecord sample; reader.next(sample);) {
     sums.add(sample);
     file.add(sample);
   }
   file.close();
-  Filled filled{sums.finish(wall_s, reader.complete()), reader.ended()};
-  writeSummary(filled.summary, (folder / "summary.json").string());
-  return filled;
+  Summary summary = sums.finish(wall_s, reader.complete());
+  summary.run_id = reader.runId();
+  writeSummary(summary, (folder / "summary.json").string());
+  return summary;
 }
 
 /// @throws InputError if it cannot become files.
@@ -67,7 +106,7 @@ WrittenRecord convert(const std::string& journal, const std::string& folder) {
 }  // namespace
 
 std::string freshAside(const std::string& folder, std::uint64_t run_id) {
-  const fs::path aside = fs::path(folder) / "interrupted";
+  const fs::path aside = fs::path(folder) / kHistory;
   const std::string name = run_id == 0 ? "unknown" : std::to_string(run_id);
   makeFolder(aside);
   std::error_code error;
@@ -83,17 +122,20 @@ WrittenRecord writeRecord(const LoopFile& loop, const RecordLayout& layout,
   const fs::path beside = fs::path(folder) / "unfinished";
   makeFolder(beside);
   try {
-    Filled filled = fill(loop, layout, journal, wall_s, beside);
-    WrittenRecord record{std::move(filled.summary), folder};
-    if (!filled.to_the_end && hasRecord(folder))
-      record.folder = freshAside(folder, journalLabel(journal)->run_id);
-    moveIn(beside, record.folder);
+    WrittenRecord record{fill(loop, layout, journal, wall_s, beside), folder};
+    fileAway(folder, record.summary);
+    moveIn(beside, folder);
     return record;
   } catch (const InputError&) {
     std::error_code error;
     fs::remove_all(beside, error);  // it would take the room that is missing
     throw;
   }
+}
+
+bool holdTheSame(const std::string& a, const std::string& b) {
+  const auto first = summaryIn(a), second = summaryIn(b);
+  return first && second && samePart(*first, *second) && first->steps == second->steps;
 }
 
 Recovered recoverJournal(const std::string& journal, const std::string& folder) {
@@ -114,7 +156,7 @@ Recovered recoverJournal(const std::string& journal, const std::string& folder) 
 std::vector<Recovered> recoverFolder(const std::string& folder) {
   std::vector<fs::path> homes{folder};
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(fs::path(folder) / "interrupted", error))
+  for (const auto& entry : fs::directory_iterator(fs::path(folder) / kHistory, error))
     homes.push_back(entry.path());
   std::sort(homes.begin() + 1, homes.end());
   std::vector<Recovered> all;

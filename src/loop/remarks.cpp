@@ -40,7 +40,9 @@ std::vector<std::string> remarksOf(const Summary& summary) {
   if (summary.failed_samples > 0) remarks.push_back(troubleOf(summary));
   if (!summary.complete && summary.failed_samples == 0) add("not complete");
   count(ActionSource::kHeld, "held: the controller had no usable answer");
-  count(ActionSource::kFallback, "on the fallback: no answer came in time, or the guard acted");
+  count(ActionSource::kFallback,
+        "on the fallback: no answer came in time, or the model has no data");
+  count(ActionSource::kGuarded, "guarded: the guard left less than the limits");
   count(ActionSource::kClipped, "clipped: the law or the optimizer asked for more than the limits");
   if (neverControlled(summary)) add("the controller never acted");
   for (const RunRemark& remark : summary.remarks)

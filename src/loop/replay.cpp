@@ -37,15 +37,54 @@ void compare(const ControlAction& here, const ControlAction& recorded, ReplayedA
   }
 }
 
+constexpr std::size_t kMostMissing = 20;  // lines
+
+/// What belongs to a sample of the loop and is not recorded. Of a record that ends early the last
+/// sample may lack its actions.
+std::string missingOf(const LoopFile& loop, const RecordedRun& run, std::uint32_t step) {
+  const auto measured = run.measurements.find(step);
+  std::vector<std::string> missing;
+  if (measured == run.measurements.end()) missing.emplace_back("measurement");
+  const bool last = step == run.measurements.rbegin()->first;
+  if (!last && loop.has_clp && run.base.count(step) == 0) missing.emplace_back("base_action");
+  if (!last && run.control.count(step) == 0) missing.emplace_back("control_action");
+  return join(missing);
+}
+
+std::string wordsOf(std::uint32_t first, std::uint32_t last, const std::string& what) {
+  return (first == last ? "sample " + std::to_string(first)
+                        : "samples " + std::to_string(first) + " to " + std::to_string(last)) +
+         ": no " + what;
+}
+
+/// Samples in a row that lack the same make one line.
+void findMissing(const LoopFile& loop, const RecordedRun& run, ReplayResult& result) {
+  const std::uint32_t last = run.measurements.rbegin()->first;
+  std::string before;
+  std::uint32_t first = 0;
+  for (std::uint32_t step = 0; step <= last + 1; ++step) {
+    const std::string what = step <= last ? missingOf(loop, run, step) : "";
+    result.missing_samples += what.empty() ? 0 : 1;
+    if (what == before) continue;
+    if (!before.empty() && result.missing.size() < kMostMissing)
+      result.missing.push_back(wordsOf(first, step - 1, before));
+    before = what;
+    first = step;
+  }
+  result.ended = run.measurements.rbegin()->second.final;
+}
+
 class Replay {
  public:
   Replay(const LoopFile& loop, const RecordedRun& run)
       : run_(run), controller_(makeControllerSession(loop)) {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
+    findMissing(loop, run, result_);
   }
 
   ReplayResult all() {
     for (const auto& [step, measurement] : run_.measurements) {
+      if (step != result_.measurements) break;
       prepare(step);
       require(controller_.ready(), "the record",
               "the model that the controller worked with (fuzzy_model)" +
@@ -53,8 +92,8 @@ class Replay {
       const Receipt receipt = controller_.receive(measurement);
       require(receipt != Receipt::kDropped, "measurement " + std::to_string(step),
               "the sizes of the loop");
-      if (receipt != Receipt::kAnswered) continue;
       ++result_.measurements;
+      if (receipt != Receipt::kAnswered) continue;
       if (controller_.answer().has_action) check(step);
     }
     return std::move(result_);
@@ -135,7 +174,8 @@ class Replay {
 }  // namespace
 
 bool ReplayResult::equal() const {
-  return base.equal == base.compared && control.equal == control.compared && control.compared > 0;
+  return missing_samples == 0 && base.equal == base.compared && control.equal == control.compared &&
+         control.compared > 0;
 }
 
 ReplayResult replay(const LoopFile& loop, const RecordedRun& run) {

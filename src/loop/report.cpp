@@ -1,5 +1,8 @@
 #include "fmbpc/loop/report.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "base/files.hpp"
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
@@ -21,7 +24,7 @@ RecordLayout layoutOf(const RunRecord& record) {
 }
 
 constexpr const char* kSourceNames[] = {"",     "base",   "constrained", "clipped",
-                                        "held", "manual", "fallback"};
+                                        "held", "manual", "fallback",    "guarded"};
 
 /// JSON has no infinity: an absent limit is null.
 Json outputsOf(const Summary& summary) {
@@ -30,12 +33,14 @@ Json outputsOf(const Summary& summary) {
     const OutputIndices& y = summary.outputs[i];
     Json& output = outputs[summary.output_names[i]];
     output = {{"unit", i < summary.output_units.size() ? summary.output_units[i] : ""},
+              {"controlled", i < summary.controlled.size() && summary.controlled[i]},
               {"ise", y.ise},
               {"iae", y.iae},
               {"itae", y.itae},
               {"itse", y.itse},
               {"rmse", y.rmse},
               {"ise_reference", y.ise_reference}};
+    if (y.rejected > 0) output["rejected"] = y.rejected;
     for (const WindowIndices& w : summary.windows)
       if (w.output == summary.output_names[i])
         output["windows"].push_back({{"name", w.window.name},
@@ -77,12 +82,24 @@ Json limitsOf(const Summary& summary) {
   return {{"inputs", inputs}, {"outputs", outputs}};
 }
 
+/// The remarks of a record come first; what they say already is not said again.
+void mergeRemarks(const std::vector<RunRemark>& first, std::vector<RunRemark>& remarks) {
+  std::vector<RunRemark> merged = first;
+  for (RunRemark& remark : remarks)
+    if (std::none_of(first.begin(), first.end(),
+                     [&](const RunRemark& r) { return r.words == remark.words; }))
+      merged.push_back(std::move(remark));
+  remarks = std::move(merged);
+}
+
 }  // namespace
 
 std::string toJson(const Summary& summary) {
   Json json;
   json["loop"] = summary.loop;
   json["title"] = summary.title;
+  if (summary.run_id != 0) json["run_id"] = summary.run_id;
+  if (summary.first_step != 0) json["first_step"] = summary.first_step;
   json["complete"] = summary.complete;
   json["failed_samples"] = summary.failed_samples;
   if (!summary.trouble.empty()) json["trouble"] = summary.trouble;
@@ -148,6 +165,17 @@ void writeRun(const LoopFile& loop, const RunRecord& record, const Summary& summ
   for (const SampleRecord& sample : record.samples) file.add(sample);
   file.close();
   writeSummary(summary, inFolder(folder, "summary.json"));
+}
+
+Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) {
+  RunSummary sums(loop);
+  for (const SampleRecord& sample : record.samples) sums.add(sample);
+  Summary summary = sums.finish(wall_s, record.complete);
+  summary.complete = record.complete;
+  summary.failed_samples = record.failed_samples;
+  summary.trouble = record.trouble;
+  mergeRemarks(record.remarks, summary.remarks);
+  return summary;
 }
 
 }  // namespace fpc

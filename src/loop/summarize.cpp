@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "fmbpc/analysis/running_indices.hpp"
@@ -29,7 +30,7 @@ double toleranceOf(const InputLimits& limits, Index i) {
 
 bool isOfLaw(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kConstrained ||
-         source == ActionSource::kClipped;
+         source == ActionSource::kClipped || source == ActionSource::kGuarded;
 }
 
 void addUnplayed(const LoopFile& loop, Summary& summary) {
@@ -46,6 +47,10 @@ Summary blank(const LoopFile& loop) {
   summary.output_lower = loop.report.output_lower;
   summary.output_upper = loop.report.output_upper;
   summary.has_clp = loop.has_clp;
+  summary.controlled.assign(loop.plant_info.outputs.size(), false);
+  if (loop.controller)
+    for (const Index i : loop.controller->signalUse(controllerContext(loop)).followed)
+      summary.controlled[static_cast<std::size_t>(i)] = true;
   for (const auto& output : loop.plant_info.outputs) {
     summary.output_names.push_back(output.name);
     summary.output_units.push_back(output.unit);
@@ -59,24 +64,14 @@ Summary blank(const LoopFile& loop) {
   }
   for (const Consumption& item : loop.report.consumption)
     summary.consumption.emplace_back(item.name, 0.0);
-  summary.sources.assign(static_cast<std::size_t>(ActionSource::kFallback) + 1, 0);
+  summary.sources.assign(static_cast<std::size_t>(ActionSource::kGuarded) + 1, 0);
   return summary;
-}
-
-/// The remarks of a record come first; what they say already is not said again.
-void mergeRemarks(const std::vector<RunRemark>& first, std::vector<RunRemark>& remarks) {
-  std::vector<RunRemark> merged = first;
-  for (RunRemark& remark : remarks)
-    if (std::none_of(first.begin(), first.end(),
-                     [&](const RunRemark& r) { return r.words == remark.words; }))
-      merged.push_back(std::move(remark));
-  remarks = std::move(merged);
 }
 
 }  // namespace
 
 struct RunSummary::Sums {
-  explicit Sums(const LoopFile& of)
+  explicit Sums(const LoopFile& of, std::uint32_t first_step)
       : loop(of),
         sample_time_h(of.plant_info.sample_time_s / 3600.0),
         has_domain(hasDomain(of)),
@@ -85,8 +80,14 @@ struct RunSummary::Sums {
         at_lower(of.plant_info.inputs.size()),
         at_upper(at_lower),
         moved(movedInputs(of)),
-        of_record(of) {}
+        rejected(of),
+        rejections(outputs.size()),
+        of_record(of),
+        step(first_step) {
+    summary.first_step = first_step;
+  }
 
+  std::optional<double> scored(const SampleRecord& sample, std::size_t i) const;
   void followOutputs(const SampleRecord& sample);
   void followWindows(const SampleRecord& sample);
   void followInputs(const SampleRecord& sample);
@@ -95,6 +96,7 @@ struct RunSummary::Sums {
   void countState(const SampleRecord& sample);
   void countSolve(const SampleRecord& sample);
   void findLockUps(Summary& result) const;
+  void sayRejected(Summary& result) const;
 
   LoopFile loop;
   double sample_time_h;
@@ -104,6 +106,8 @@ struct RunSummary::Sums {
   std::vector<RunningInput> inputs;               // from sample 0 on
   std::vector<std::uint32_t> at_lower, at_upper;  // last actions in a row at a limit
   std::vector<bool> moved;                        // the others stand where they stand
+  Rejections rejected;                            // by the controller
+  std::vector<RunRemark> rejections;              // by output
   LogHistogram solve_us;
   RunTally tally;
   RecordRemarks of_record;
@@ -111,12 +115,23 @@ struct RunSummary::Sums {
   std::uint32_t step{};
 };
 
+/// Output i of a sample as it counts: what was measured, in place of what was rejected the plant's
+/// own value, where it is known.
+std::optional<double> RunSummary::Sums::scored(const SampleRecord& sample, std::size_t i) const {
+  const auto k = static_cast<Index>(i);
+  if (!rejected.of(i)) return sample.measurement.outputs[k];
+  return sample.has_state ? std::optional<double>(sample.state.outputs[k]) : std::nullopt;
+}
+
 void RunSummary::Sums::followOutputs(const SampleRecord& sample) {
   if (!sample.has_measurement || !sample.has_tracking) return;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const auto k = static_cast<Index>(i);
-    outputs[i].add(sample.measurement.outputs[k], sample.tracking.setpoint[k],
-                   sample.tracking.reference[k]);
+    if (rejected.of(i) && rejections[i].samples++ == 0) rejections[i].first = step;
+    if (const auto y = scored(sample, i))
+      outputs[i].add(*y, sample.tracking.setpoint[k], sample.tracking.reference[k]);
+    else
+      outputs[i].reject();
   }
   followWindows(sample);
 }
@@ -129,7 +144,9 @@ void RunSummary::Sums::followWindows(const SampleRecord& sample) {
     if (time_h < window.from_h - rounding || time_h > window.to_h + rounding) continue;
     const auto& names = summary.output_names;
     const Index i = std::find(names.begin(), names.end(), sums.output) - names.begin();
-    const double error = sample.measurement.outputs[i] - sample.tracking.setpoint[i];
+    const auto y = scored(sample, static_cast<std::size_t>(i));
+    if (!y) continue;
+    const double error = *y - sample.tracking.setpoint[i];
     sums.mean_error += error;
     sums.rmse += error * error;
     ++sums.samples;
@@ -142,12 +159,12 @@ void RunSummary::Sums::followInputs(const SampleRecord& sample) {
   for (std::size_t i = 0; i < summary.input_names.size(); ++i) {
     const double value = known ? sample.measurement.input_applied[static_cast<Index>(i)]
                                : std::numeric_limits<double>::quiet_NaN();
-    if (step == 0)
+    if (inputs.size() <= i)
       inputs.emplace_back(value);
     else if (known)
       inputs[i].add(value);
   }
-  if (step == 0 || !known) return;
+  if (step == summary.first_step || !known) return;
   for (std::size_t i = 0; i < summary.consumption.size(); ++i)
     summary.consumption[i].second +=
         loop.report.consumption[i].rate.dot(sample.measurement.input_applied) *
@@ -212,17 +229,31 @@ void RunSummary::Sums::findLockUps(Summary& result) const {
     }
 }
 
-RunSummary::RunSummary(const LoopFile& loop) : sums_(std::make_unique<Sums>(loop)) {}
+RunSummary::RunSummary(const LoopFile& loop, std::uint32_t first_step)
+    : sums_(std::make_unique<Sums>(loop, first_step)) {}
 RunSummary::RunSummary(RunSummary&&) noexcept = default;
 RunSummary::~RunSummary() = default;
 
+/// Scores without them would be silent of them.
+void RunSummary::Sums::sayRejected(Summary& result) const {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    result.outputs[i].rejected = rejections[i].samples;
+    if (rejections[i].samples == 0) continue;
+    result.remarks.push_back(rejections[i]);
+    result.remarks.back().words =
+        result.output_names[i] + ": a measurement was rejected: it is not in the scores";
+  }
+}
+
 void RunSummary::add(const SampleRecord& sample) {
+  sums_->rejected.look(sample);
   sums_->followOutputs(sample);
   sums_->followInputs(sample);
   sums_->countState(sample);
   sums_->countAction(sample);
   sums_->countSolve(sample);
-  if (sums_->has_domain) sums_->summary.outside_model += isOutsideModel(sums_->loop, sample);
+  if (sums_->has_domain)
+    sums_->summary.outside_model += isOutsideModel(sums_->loop, sample, sums_->rejected);
   sums_->tally.add(sample);
   sums_->of_record.add(sample);
   sums_->last = sample.has_action ? sample.action : ControlAction();
@@ -236,10 +267,12 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
   result.trouble = sums_->tally.trouble;
   result.remarks = sums_->tally.remarks;
   for (RunRemark& remark : sums_->of_record.remarks()) result.remarks.push_back(std::move(remark));
+  for (RunRemark& remark : result.remarks) remark.first += result.first_step;
   addUnplayed(sums_->loop, result);
   addDisturbances(sums_->loop, result);
   result.complete = nothing_missing && result.failed_samples == 0;
   for (const RunningOutput& output : sums_->outputs) result.outputs.push_back(output.indices());
+  sums_->sayRejected(result);
   for (const RunningInput& input : sums_->inputs) result.inputs.push_back(input.indices());
   result.inputs.resize(result.input_names.size());  // of a run without samples
   for (WindowIndices& window : result.windows) {
@@ -252,17 +285,6 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
   result.clp_median_us = sums_->solve_us.quantile(0.5);
   result.clp_p99_us = sums_->solve_us.quantile(0.99);
   return result;
-}
-
-Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) {
-  RunSummary sums(loop);
-  for (const SampleRecord& sample : record.samples) sums.add(sample);
-  Summary summary = sums.finish(wall_s, record.complete);
-  summary.complete = record.complete;
-  summary.failed_samples = record.failed_samples;
-  summary.trouble = record.trouble;
-  mergeRemarks(record.remarks, summary.remarks);
-  return summary;
 }
 
 }  // namespace fpc

@@ -1,20 +1,16 @@
 // The table that a person reads after a run: one line per loop and output, one per loop and input.
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/loop/report.hpp"
+#include "loop/with_unit.hpp"
 
 namespace fpc {
 namespace {
 
 using Row = std::vector<std::string>;
-
-/// "s [mg/l]"; the name alone where no unit is known or none is needed.
-std::string withUnit(const std::vector<std::string>& names, const std::vector<std::string>& units,
-                     std::size_t i) {
-  const bool known = i < units.size() && !units[i].empty() && units[i] != "-";
-  return known ? names[i] + " [" + units[i] + "]" : names[i];
-}
 
 /// As a person reads it: no "-0", and nothing for rounding errors beside the other figures.
 std::string cell(double value) {
@@ -30,11 +26,31 @@ std::string switches(const InputIndices& u, std::uint32_t steps) {
   return rests && jumps ? std::to_string(u.switches) : "-";
 }
 
+bool isControlled(const Summary& s, std::size_t i) {
+  return s.controlled.size() != s.outputs.size() || s.controlled[i];
+}
+
+/// What is controlled first.
+std::vector<std::size_t> orderOfOutputs(const Summary& s) {
+  std::vector<std::size_t> order(s.outputs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_partition(order.begin(), order.end(),
+                        [&](std::size_t i) { return isControlled(s, i); });
+  return order;
+}
+
 void addOutputRows(const Summary& s, std::vector<Row>& rows) {
-  for (std::size_t i = 0; i < s.outputs.size(); ++i) {
+  const bool all = std::all_of(s.controlled.begin(), s.controlled.end(), [](bool c) { return c; });
+  const bool none =
+      std::none_of(s.controlled.begin(), s.controlled.end(), [](bool c) { return c; });
+  const char* const mark = all || none ? "" : " (not controlled)";
+  bool first = true;
+  for (const std::size_t i : orderOfOutputs(s)) {
     const OutputIndices& y = s.outputs[i];
-    rows.push_back({i == 0 ? s.loop : "", withUnit(s.output_names, s.output_units, i), cell(y.ise),
-                    cell(y.iae), cell(y.itae), cell(y.itse), cell(y.rmse), cell(y.ise_reference),
+    const std::string name =
+        withUnit(s.output_names, s.output_units, i) + (isControlled(s, i) ? "" : mark);
+    rows.push_back({std::exchange(first, false) ? s.loop : "", name, cell(y.ise), cell(y.iae),
+                    cell(y.itae), cell(y.itse), cell(y.rmse), cell(y.ise_reference),
                     s.outputs.size() == 1 ? std::to_string(s.output_violations) : ""});
   }
   if (s.outputs.size() > 1)
@@ -101,7 +117,12 @@ std::string toTable(const std::vector<Summary>& summaries) {
                         std::to_string(summary.clp_infeasible), std::to_string(summary.clp_failed),
                         shortText(summary.clp_median_us), shortText(summary.clp_p99_us)});
   }
-  std::string text = alignedTable(outputs) + "\n" + alignedTable(inputs);
+  std::string text;
+  if (summaries.size() > 1)
+    for (const auto& summary : summaries)
+      if (!summary.title.empty()) text += summary.loop + ": " + summary.title + "\n";
+  if (!text.empty()) text += "\n";
+  text += alignedTable(outputs) + "\n" + alignedTable(inputs);
   if (solves.size() > 1) text += "\n" + alignedTable(solves);
   if (windows.size() > 1)
     text += "\n" + alignedTable(windows) + "mean error: of measured - setpoint in the window.\n";

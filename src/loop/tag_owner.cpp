@@ -3,7 +3,7 @@
 namespace fpc {
 
 bool TagOwner::admits(const std::string& publisher, double now_s, bool claims) {
-  const bool free = owner_.empty() || now_s - owner_s_ > timeout_s_;
+  const bool free = ours_.empty() && (owner_.empty() || now_s - owner_s_ > timeout_s_);
   if (free && publisher != owner_ && !claims) return true;
   if (free || publisher == owner_) {
     if (publisher == second_) second_.clear();
@@ -18,6 +18,7 @@ bool TagOwner::admits(const std::string& publisher, double now_s, bool claims) {
 
 std::string TagOwner::problem(double now_s) const {
   if (second_.empty() || now_s - second_s_ > kShown) return "";
+  if (!ours_.empty()) return tag_ + " is published by " + second_ + " as well: the plant hears it";
   return tag_ + " has two publishers: " + owner_ + " counts, " + second_ + " is refused";
 }
 

@@ -14,7 +14,8 @@ Trajectory::Trajectory(const LoopFile& loop, const RecordLayout& layout, Row row
       from_(std::max(
           0.0,
           std::ceil(loop.report.record_from_h * 3600.0 / loop.plant_info.sample_time_s - 1e-6))),
-      row_(std::move(row)) {
+      row_(std::move(row)),
+      step_(layout.first_step) {
   column("time", "h", [this](const View& view) { return clock_.hoursAt(view.step); });
   addOutputs();
   addInputs();

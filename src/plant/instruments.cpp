@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/no_value.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {
@@ -35,6 +36,12 @@ Sensors sensorsOf(const InstrumentParams& params, const std::vector<std::string>
   return sensors;
 }
 
+void takeAway(Sensors& sensors, Eigen::Ref<Vector> readings) {
+  for (std::size_t i = 0; i < sensors.size(); ++i)
+    if (sensors[i] && sensors[i]->loses())
+      readings[static_cast<Eigen::Index>(i)] = noValue(NoValue::kMissing);
+}
+
 void rest(Sensors& sensors, VectorRef values) {
   for (std::size_t i = 0; i < sensors.size(); ++i)
     if (sensors[i]) sensors[i]->reset(values[static_cast<Eigen::Index>(i)]);
@@ -50,6 +57,9 @@ Instruments::Instruments(const InstrumentParams& params, const std::vector<Drive
   requireKnown(params, outputs, disturbances);
   for (const DriveParams& drive : drives) {
     require(std::isfinite(drive.t90_s) && drive.t90_s >= 0.0, "actuator.lag: t90_s", "a time >= 0");
+    require(std::isfinite(drive.backlash) && drive.backlash >= 0.0, "actuator.lag: backlash",
+            "a number >= 0");
+    play_.push_back(0.5 * drive.backlash);
     drives_.emplace_back();
     if (drive.t90_s > 0.0)
       drives_.back().emplace(drive.order, drive.t90_s / lagsToNinety(drive.order));
@@ -71,13 +81,15 @@ void Instruments::reset(VectorRef y, VectorRef d, VectorRef u) {
   for (std::size_t i = 0; i < drives_.size(); ++i)
     if (drives_[i]) drives_[i]->reset(u[static_cast<Eigen::Index>(i)]);
   y_ = y;
-  position_ = u;
+  gear_ = position_ = u;
 }
 
 const Vector& Instruments::drive(VectorRef command) {
   position_ = command;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     double& u = position_[static_cast<Eigen::Index>(i)];
+    double& gear = gear_[static_cast<Eigen::Index>(i)];
+    u = gear = std::clamp(gear, u - play_[i], u + play_[i]);
     if (drives_[i]) u = drives_[i]->advance(u, u, step_s_);
   }
   return position_;
@@ -100,6 +112,11 @@ void Instruments::read(Eigen::Ref<Vector> y, Eigen::Ref<Vector> d) {
     if (outputs_[i]) y[static_cast<Eigen::Index>(i)] = outputs_[i]->take();
   for (std::size_t i = 0; i < disturbances_.size(); ++i)
     if (disturbances_[i]) d[static_cast<Eigen::Index>(i)] = disturbances_[i]->take();
+}
+
+void Instruments::lose(Eigen::Ref<Vector> y, Eigen::Ref<Vector> d) {
+  takeAway(outputs_, y);
+  takeAway(disturbances_, d);
 }
 
 }  // namespace fpc

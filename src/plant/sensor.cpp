@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kEarly = 1e-6;  // [s], rounding of times that are sums of steps
 constexpr double kClassNoise = 0.025;
+constexpr std::uint64_t kLossStream = 1;
 
 bool isTime(double value) { return std::isfinite(value) && value >= 0.0; }
 
@@ -22,6 +23,8 @@ void SensorParams::validate() const {
   require(isTime(delay_s), "delay_s", "a time >= 0");
   require(isTime(interval_s), "interval_s", "a time >= 0");
   require(std::isfinite(noise_std) && noise_std >= 0.0, "noise_std", "a finite number >= 0");
+  require(std::isfinite(resolution) && resolution >= 0.0, "resolution", "a finite number >= 0");
+  require(lost >= 0.0 && lost <= 1.0, "lost", "a number from 0 to 1");
   require(lower < upper, "upper", "a number > lower");
   require(stuck_from_h >= 0.0 && stuck_from_h <= stuck_to_h, "stuck_to_h",
           "a time >= stuck_from_h");
@@ -55,6 +58,7 @@ Sensor::Sensor(const SensorParams& params, double step_s, std::uint64_t seed, st
 
 void Sensor::reset(double value) {
   engine_ = seededEngine(seed_, {stream_});
+  lost_ = seededEngine(seed_, {stream_, kLossStream});
   if (chain_) chain_->reset(value);
   std::fill(line_.begin(), line_.end(), value);
   next_ = 0;
@@ -98,8 +102,12 @@ void Sensor::show() {
   if (params_.interval_s > 0.0)
     due_s_ = (std::floor((time_s_ + kEarly) / params_.interval_s) + 1.0) * params_.interval_s;
   const double noise = params_.noise_std > 0.0 ? params_.noise_std * standardNormal(engine_) : 0.0;
-  reading_ = std::clamp(shown_ + noise, params_.lower, params_.upper);
+  double value = shown_ + noise;
+  if (params_.resolution > 0.0) value = params_.resolution * std::round(value / params_.resolution);
+  reading_ = std::clamp(value, params_.lower, params_.upper);
 }
+
+bool Sensor::loses() { return params_.lost > 0.0 && uniform(lost_) < params_.lost; }
 
 double Sensor::take() {
   const double value =

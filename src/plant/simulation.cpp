@@ -14,13 +14,17 @@
 namespace fpc {
 namespace {
 
-std::vector<std::string> namesForCommands(const SimulationParams& params,
-                                          const PlantDescription& description) {
-  std::vector<std::string> names;
-  for (const auto& q : description.disturbances) names.push_back(q.name);
-  for (const auto& q : description.inputs) names.push_back("input/" + q.name);
-  for (const auto& name : params.outputs) names.push_back("output/" + name);
-  return names;
+/// Disturbances inside their ranges; inputs (clamped, and said) and outputs of any size.
+std::vector<SignalInfo> signalsForCommands(const SimulationParams& params,
+                                           const PlantDescription& description) {
+  std::vector<SignalInfo> signals;
+  for (const auto& q : description.disturbances)
+    signals.push_back({q.name, q.unit, q.lower, q.upper});
+  for (const auto& q : description.inputs)
+    signals.push_back({"input/" + q.name, "", -kInfinity, kInfinity});
+  for (const auto& name : params.outputs)
+    signals.push_back({"output/" + name, "", -kInfinity, kInfinity});
+  return signals;
 }
 
 /// Why the state after a stepper's step is not to be used; empty if it is.
@@ -72,7 +76,7 @@ Simulation::Simulation(SimulationParams params)
       instruments_(params_.instruments, params_.actuator.drives, params_.outputs,
                    params_.measured_disturbances, params_.sample_time_s),
       stepper_(plant_->makeStepper(instruments_.stepSeconds())),
-      commands_(namesForCommands(params_, plant_->description())),
+      commands_(signalsForCommands(params_, plant_->description())),
       info_(makePlantInfo(params_, plant_->description())) {
   const PlantDescription& plant = plant_->description();
   require(instruments_.steps() == 1 || !stepper_ || stepper_->divisible(), "sensors.step_s",
@@ -116,13 +120,13 @@ void Simulation::schedule() {
   for (std::size_t i = 0; i < params_.disturbance_commands.size(); ++i) {
     const auto& [time_h, command] = params_.disturbance_commands[i];
     try {
-      checkRanges(command);
+      commands_.accept(command, clock_.firstStepAtHours(time_h));
     } catch (const InputError& e) {
       const std::string words = e.what();
+      if (words.rfind("value of ", 0) != 0) throw;
       throw InputError("disturbance.commands[" + std::to_string(i) + "].value" +
                        words.substr(words.find(':')));
     }
-    commands_.accept(command, clock_.firstStepAtHours(time_h));
   }
 }
 
@@ -241,35 +245,13 @@ void Simulation::measure() {
     const double noise = params_.noise_std[row] * standardNormal(noise_);
     measurement_.outputs[row] = commands_.apply(first_output + i, shown + noise);
   }
+  instruments_.lose(measurement_.outputs, measurement_.disturbances);
   measurement_.input_applied = actuator_.applied();
   measurement_.final = params_.samples > 0 && measurement_.header.step == params_.samples;
   state_.header = measurement_.header;
 }
 
-void Simulation::checkRanges(const Command& command) const {
-  if (command.mode == CommandMode::kRelease) return;
-  const auto& ranges = plant_->description().disturbances;
-  for (std::size_t i = 0; i < std::min(command.name.size(), command.value.size()); ++i) {
-    const auto row = static_cast<std::size_t>(indexOf(ranges, command.name[i]));
-    if (row == ranges.size()) continue;  // an input or output, or unknown, which the table says
-    if (command.mode == CommandMode::kOffset) {
-      const double span = ranges[row].upper - ranges[row].lower;
-      require(std::abs(command.value[i]) <= span, "value of " + command.name[i],
-              "an offset of at most " + exactText(span) + " [" + ranges[row].unit +
-                  "], the width of its range, got " + exactText(command.value[i]));
-      continue;
-    }
-    const bool inside =
-        command.value[i] >= ranges[row].lower && command.value[i] <= ranges[row].upper;
-    require(inside, "value of " + command.name[i],
-            "a number >= " + exactText(ranges[row].lower) +
-                " and <= " + exactText(ranges[row].upper) + " [" + ranges[row].unit + "], got " +
-                exactText(command.value[i]));
-  }
-}
-
 std::uint32_t Simulation::command(const Command& command) {
-  checkRanges(command);
   const std::uint32_t next = measurement_.header.step + 1;
   const std::uint32_t step =
       command.time_ns == 0 ? next : std::max(next, clock_.firstStepAt(command.time_ns));

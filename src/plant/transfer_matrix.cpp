@@ -1,6 +1,7 @@
 // Names and equations of the transfer matrix. Its motion with dead times: transfer_stepper.cpp.
 #include "fmbpc/plant/transfer_matrix.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -12,6 +13,12 @@ namespace fpc {
 namespace {
 
 constexpr double kWide = 1e6;  // range of what has no physical one
+
+/// Symmetric about zero, and beyond `reach`.
+Quantity unlimited(const std::string& name, const std::string& unit, double nominal, double reach) {
+  const double wide = std::max(kWide, 10.0 * std::abs(reach));
+  return {name, unit, nominal, -wide, wide};
+}
 
 Eigen::Index find(const std::vector<Quantity>& quantities, const std::string& name) {
   for (std::size_t i = 0; i < quantities.size(); ++i)
@@ -63,7 +70,7 @@ void requireElement(const TransferMatrix& matrix, const TransferElement& e,
   require(find(matrix.outputs, e.output) >= 0, key + "output", "one of the matrix's outputs");
   require(find(matrix.inputs, e.from) >= 0 || find(matrix.disturbances, e.from) >= 0, key + "from",
           "one of the matrix's inputs or disturbances");
-  require(std::isfinite(e.gain) && std::abs(e.gain) <= kWide, key + "gain", "a finite number");
+  require(std::isfinite(e.gain), key + "gain", "a finite number");
   require(std::isfinite(e.time_constant) && e.time_constant > 0.0, key + "time_constant_min",
           "a time > 0");
   require(std::isfinite(e.dead_time) && e.dead_time >= 0.0, key + "dead_time_min", "a time >= 0");
@@ -150,12 +157,13 @@ void TransferMatrixPlant::describe() {
     const TransferElement& e = matrix_.elements[i];
     const std::string name = e.output + "_" + e.from;
     const std::string& unit = matrix_.outputs[static_cast<std::size_t>(places_[i].output)].unit;
-    if (places_[i].share >= 0) p.states.push_back({name, unit, 0.0, -kWide, kWide});
-    if (places_[i].inner >= 0) p.states.push_back({name + "_inner", unit, 0.0, -kWide, kWide});
     const auto& group = places_[i].from_disturbance ? matrix_.disturbances : matrix_.inputs;
-    const std::string& per = group[static_cast<std::size_t>(places_[i].source)].unit;
+    const Quantity& source = group[static_cast<std::size_t>(places_[i].source)];
+    const double reach = e.gain * (source.upper - source.lower);
+    if (places_[i].share >= 0) p.states.push_back(unlimited(name, unit, 0.0, reach));
+    if (places_[i].inner >= 0) p.states.push_back(unlimited(name + "_inner", unit, 0.0, reach));
     const std::string gain = "gain/" + e.output + "/" + e.from;
-    p.disturbances.push_back({gain, unit + "/(" + per + ")", e.gain, -kWide, kWide});
+    p.disturbances.push_back(unlimited(gain, unit + "/(" + source.unit + ")", e.gain, e.gain));
     p.hidden_disturbances.push_back(gain);
   }
 }

@@ -117,7 +117,7 @@ class Reader {
   }
 
   void take(const fmbpc::CommandEffect& msg) {
-    if (msg.run_id != chosen_) return;
+    if (msg.run_id != chosen_ || !msg.refused.empty()) return;
     CommandEffect effect = fromMsg(msg);
     effect.command.time_ns = 0;
     run_.setpoints.emplace(msg.step, std::move(effect.command));

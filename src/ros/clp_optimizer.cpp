@@ -48,9 +48,9 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
                            const LoopFile& loop)
     : Node(node, loop, private_node.getNamespace()),
       session_(makeOptimizerSession(loop)),
-      ready_(node, name()),
+      ready_(node, loop, name()),
       signals_(node),
-      plant_(loop.plant_info),
+      plant_(loop),
       action_(node, topics::kControlAction, comeback_, audienceOf(node, authority())),
       report_(node, topics::kSolverReport, comeback_, audienceOf(node, authority())),
       listeners_({action_.publisher(), report_.publisher()}),
@@ -72,7 +72,7 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
 
 void ClpOptimizer::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    if (!plant_.introduce(fromMsg(*msg))) return;
+    if (!plant_.introduce(*msg)) return;
     session_.announce(plant_.runId());
     ready_.announce();
   });

@@ -47,6 +47,15 @@ fmbpc::CommandEffect toMsg(const CommandEffect& effect) {
   return msg;
 }
 
+fmbpc::CommandEffect refusalOf(const ros::Time& asked, const StepHeader& latest,
+                               const std::string& why) {
+  fmbpc::CommandEffect msg;
+  conversion::fillHeader(msg, latest);
+  msg.asked = asked;
+  msg.refused = why;
+  return msg;
+}
+
 CommandEffect fromMsg(const fmbpc::CommandEffect& msg) {
   return {conversion::stepHeader(msg), readCommand(msg, msg.asked)};
 }

@@ -30,9 +30,9 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       remarks_(loop),
       inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
       desk_(node, loop, name(), session_, [this] { answerParked(); }),
-      ready_(node, name()),
+      ready_(node, loop, name()),
       signals_(node),
-      plant_(loop.plant_info),
+      plant_(loop),
       base_(node, actionTopic(loop, private_node), comeback_, audienceOf(node, authority())),
       prediction_(node, topics::kPredictiveAction, comeback_, audienceOf(node, authority())),
       tracking_(node, topics::kTracking, comeback_, audienceOf(node, authority())),
@@ -88,7 +88,7 @@ void ControllerNode::advertiseSignals() {
 
 void ControllerNode::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    if (!plant_.introduce(fromMsg(*msg))) return;
+    if (!plant_.introduce(*msg)) return;
     session_.doubtPlant(plant_.remark());
     session_.announce(plant_.runId());
     inbox_.announce(plant_.runId());

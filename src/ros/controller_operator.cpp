@@ -25,13 +25,17 @@ std::string clampedWords(const std::vector<double>& asked, const Vector& taken,
 
 void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
   if (!commands_.pass(steadyNow())) return;
-  guarded(topics::kSetpoint, [&] {
+  const auto take = [&] {
     const Command command = fromMsg(*msg);
     const std::uint32_t step = session_.command(command);
     ROS_INFO("%s: setpoint of %s from sample %u on", name().c_str(), join(command.name).c_str(),
              step);
     tell();
-  });
+  };
+  const auto refused = [&](const std::string& why) {
+    effect_.publish(refusalOf(msg->header.stamp, session_.answer().tracking.header, why), true);
+  };
+  guardedCommand(topics::kSetpoint, take, refused);
 }
 
 bool ControllerNode::onManual(std_srvs::SetBool::Request& request,

@@ -25,6 +25,7 @@ static_assert(fmbpc::ControlAction::CLIPPED == number(ActionSource::kClipped));
 static_assert(fmbpc::ControlAction::HELD == number(ActionSource::kHeld));
 static_assert(fmbpc::ControlAction::MANUAL == number(ActionSource::kManual));
 static_assert(fmbpc::ControlAction::FALLBACK == number(ActionSource::kFallback));
+static_assert(fmbpc::ControlAction::GUARDED == number(ActionSource::kGuarded));
 
 static_assert(fmbpc::SolverReport::SOLVED == number(SolveStatus::kSolved));
 static_assert(fmbpc::SolverReport::INFEASIBLE == number(SolveStatus::kInfeasible));
@@ -156,7 +157,7 @@ fmbpc::ControlAction toMsg(const ControlAction& action) {
 
 ControlAction fromMsg(const fmbpc::ControlAction& msg) {
   return {stepHeader(msg), vector(msg.input),
-          enumeration(msg.source, ActionSource::kBase, ActionSource::kFallback, "source")};
+          enumeration(msg.source, ActionSource::kBase, ActionSource::kGuarded, "source")};
 }
 
 fmbpc::PredictiveAction toMsg(const PredictiveAction& action) {
@@ -174,6 +175,8 @@ fmbpc::PredictiveAction toMsg(const PredictiveAction& action) {
   msg.setpoint = numbers(action.setpoint);
   msg.input_base_unclipped = numbers(action.input_base_unclipped);
   msg.input_previous = numbers(action.input_previous);
+  msg.input_lower = numbers(action.input_lower);
+  msg.input_upper = numbers(action.input_upper);
   return msg;
 }
 
@@ -190,7 +193,9 @@ PredictiveAction fromMsg(const fmbpc::PredictiveAction& msg) {
           fromMsg(msg.reference),
           vector(msg.setpoint),
           vector(msg.input_base_unclipped),
-          vector(msg.input_previous)};
+          vector(msg.input_previous),
+          vector(msg.input_lower),
+          vector(msg.input_upper)};
 }
 
 fmbpc::SolverReport toMsg(const SolverReport& report) {

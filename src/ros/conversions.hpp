@@ -19,6 +19,7 @@
 #include <ros/time.h>
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "fmbpc/base/command_table.hpp"
@@ -42,6 +43,9 @@ fmbpc::SolverReport toMsg(const SolverReport& report);
 fmbpc::Tracking toMsg(const Tracking& tracking);
 fmbpc::PlantState toMsg(const PlantState& state);
 fmbpc::CommandEffect toMsg(const CommandEffect& effect);
+/// The answer to a command (stamp `asked`) that was refused.
+fmbpc::CommandEffect refusalOf(const ros::Time& asked, const StepHeader& latest,
+                               const std::string& why);
 fmbpc::FuzzyModel toMsg(const TsModel& model);
 /// The sample that a model was made from; run 0: none.
 StepHeader headerOf(const fmbpc::FuzzyModel& msg);

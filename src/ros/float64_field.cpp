@@ -27,6 +27,7 @@ Float64Field::Float64Field(ros::NodeHandle node, const LoopFile& loop, std::stri
     listen(node, gateway.inputs[i].readback_topic, positions_, i);
     efforts_.push_back(node.advertise<std_msgs::Float64>(gateway.inputs[i].topic,
                                                          queueOf(ListenerKind::kPeer), true));
+    listenToStrangers(node, gateway.inputs[i].topic);
   }
   listenToEnable(node, gateway.enable_topic);
 }
@@ -49,6 +50,7 @@ void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::
   const boost::function<void(const ros::MessageEvent<const std_msgs::Float64>&)> keep =
       [this, &to, &owner, index](const ros::MessageEvent<const std_msgs::Float64>& event) {
         const double value = event.getConstMessage()->data;
+        if (!mayPass(topics::kTags, event.getPublisherName())) return;
         if (!admits(owner, event.getPublisherName(), value)) return;
         const Reading reading{index, value, steadyNow()};
         for (Reading& known : to)
@@ -61,6 +63,18 @@ void Float64Field::listen(ros::NodeHandle& node, const std::string& topic, std::
   subscribers_.push_back(node.subscribe<std_msgs::Float64>(topic, queueOf(ListenerKind::kPeer),
                                                            keep, ros::VoidConstPtr(),
                                                            ros::TransportHints().tcpNoDelay()));
+}
+
+/// Whoever else commands the plant; what is published here itself comes back as well.
+void Float64Field::listenToStrangers(ros::NodeHandle& node, const std::string& topic) {
+  const std::string& own = ros::this_node::getName();
+  TagOwner& owner = owners_.emplace_back(node.resolveName(topic), timeout_s_, own);
+  const boost::function<void(const ros::MessageEvent<const std_msgs::Float64>&)> look =
+      [this, &owner, own](const ros::MessageEvent<const std_msgs::Float64>& event) {
+        if (event.getPublisherName() != own) admits(owner, event.getPublisherName(), 0.0);
+      };
+  subscribers_.push_back(
+      node.subscribe<std_msgs::Float64>(topic, queueOf(ListenerKind::kPeer), look));
 }
 
 bool Float64Field::admits(TagOwner& owner, const std::string& publisher, double value) {
@@ -128,7 +142,8 @@ void Float64Field::exchange(PlantGateway& gateway, bool automatic, double now_s)
 std::vector<std::pair<std::string, std::uint64_t>> Float64Field::counts() const {
   std::vector<std::pair<std::string, std::uint64_t>> counts = {
       {"values received", heard_},
-      {"values refused: a second publisher's, setpoints that are not finite", strange_},
+      {"values of strangers: a second publisher's, commands, setpoints that are not finite",
+       strange_},
       {"commands sent", told_}};
   for (const auto& [what, count] : authority().refused())
     counts.emplace_back("refused: " + what, count);

@@ -19,14 +19,14 @@
 namespace fpc {
 
 /// A command counts as received once it is published: where inputs are not read back, nobody knows
-/// better. Who may say that the plant's own hand has the inputs, and set setpoints:
-/// loop.publishers.enable, .setpoint.
+/// better. Who may say that the plant's own hand has the inputs, set setpoints, and speak for the
+/// plant: loop.publishers.enable, .setpoint, .tags.
 class Float64Field : public Field, private Node {
  public:
   /// `name`: of the gateway.
   Float64Field(ros::NodeHandle node, const LoopFile& loop, std::string name);
   void exchange(PlantGateway& gateway, bool automatic, double now_s) override;
-  /// A tag that two nodes publish.
+  /// A tag that two nodes publish, a command of a stranger.
   std::string problem() const override;
   std::vector<std::pair<std::string, std::uint64_t>> counts() const override;
 
@@ -37,6 +37,7 @@ class Float64Field : public Field, private Node {
   };
   void listen(ros::NodeHandle& node, const std::string& topic, std::vector<Reading>& to,
               std::size_t index);
+  void listenToStrangers(ros::NodeHandle& node, const std::string& topic);
   bool admits(TagOwner& owner, const std::string& publisher, double value);
   void listenToEnable(ros::NodeHandle& node, const std::string& topic);
   void forwardSetpoint(ros::NodeHandle& node, const std::string& topic, const std::string& output);

@@ -52,8 +52,8 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       out_(private_node.param<std::string>("out", "")),
-      ready_(node, name()),
-      plant_(loop.plant_info),
+      ready_(node, loop, name()),
+      plant_(loop),
       session_(loop),
       duty_(loop.ring.pace == Pace::kLockstep),
       model_publisher_(node.advertise<fmbpc::FuzzyModel>(topics::kFuzzyModel, 1, true)),
@@ -79,7 +79,7 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
 
 void FuzzyIdentifier::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
   guarded(topics::kPlantInfo, [&] {
-    if (!plant_.introduce(fromMsg(*msg))) return;
+    if (!plant_.introduce(*msg)) return;
     session_.announce(plant_.runId(), steadyNow());
     publishStartModel();
     announceIfReady();

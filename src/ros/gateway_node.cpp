@@ -36,11 +36,24 @@ GatewayNode::GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, con
   begin();
 }
 
+/// Who is missing, and why nothing can come from it.
+std::vector<std::string> GatewayNode::plantMissing() {
+  std::vector<std::string> missing = gateway_.missing();
+  const std::string link = field_->problem();
+  if (!missing.empty() && !link.empty())
+    missing.insert(missing.begin(), "the plant (" + link + ")");
+  return missing;
+}
+
 void GatewayNode::exchange() {
   const double now_s = steadyNow();
   gateway_.tick(now_s);
   field_->exchange(gateway_, session().phase() == PlantPhase::kRunning, now_s);
   if (session().phase() == PlantPhase::kWaiting) gateway_.renew();
+  const std::string problem = field_->problem();
+  if (problem == problem_ || (!problem.empty() && !problem_log_.pass())) return;
+  problem_ = problem;
+  if (!problem.empty()) ROS_ERROR("%s: %s", name().c_str(), problem.c_str());
 }
 
 static_assert(fmbpc::Measurement::STALE == static_cast<std::uint8_t>(Quality::kStale));
@@ -52,7 +65,7 @@ void GatewayNode::mark(fmbpc::Measurement& measurement) const {
     measurement.quality.push_back(static_cast<std::uint8_t>(quality));
   const Vector& age = gateway_.age();
   measurement.age_s.assign(age.data(), age.data() + age.size());
-  measurement.local = !gateway_.takesActions();
+  measurement.local = !session().takesActions();
 }
 
 int GatewayNode::finish() {

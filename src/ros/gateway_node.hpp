@@ -21,7 +21,7 @@ class GatewayNode : public PlantNode {
  private:
   GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, const LoopFile& loop,
               std::unique_ptr<Field> field);
-  std::vector<std::string> plantMissing() override { return gateway_.missing(); }
+  std::vector<std::string> plantMissing() override;
   VectorRef shownDisturbances() const override { return gateway_.measurement().disturbances; }
   void exchange() override;
   void mark(fmbpc::Measurement& measurement) const override;
@@ -30,6 +30,8 @@ class GatewayNode : public PlantNode {
 
   std::unique_ptr<Field> field_;
   PlantGateway& gateway_;  // the session's
+  std::string problem_;    // of the field, as it was logged
+  WallThrottle problem_log_{1.0};
   ros::SteadyTimer field_timer_;
 };
 

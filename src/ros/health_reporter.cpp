@@ -62,6 +62,12 @@ void HealthReporter::look() {
   if (changed) diagnostics_.update();
 }
 
+void HealthReporter::sayLast(const std::string& words) {
+  if (shown_.mode == LoopMode::kFinished || shown_.mode == LoopMode::kFailed) return;
+  shown_ = {LoopMode::kStalled, words, {}};
+  publish();
+}
+
 void HealthReporter::publish() {
   const StepHeader sample = source_.sample();
   fmbpc::LoopState msg;

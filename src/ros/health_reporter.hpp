@@ -27,6 +27,8 @@ class HealthReporter {
                  Source source);
   /// Looks now instead of within a quarter of a second.
   void look();
+  /// At once, before the process ends: nothing moves any more.
+  void sayLast(const std::string& words);
 
  private:
   void publish();

@@ -16,9 +16,17 @@ namespace {
 
 constexpr double kRecorderPoll = 0.05;   // [s] of wall time
 constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
+constexpr double kLastMessages = 0.1;  // [s] after the last sample, for the bag
 constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
 constexpr double kLookForRing = 0.01;  // [s] of wall time, at who is there
 constexpr double kSettled = 0.1;       // [s]: a connection is complete at both ends a moment later
+constexpr double kLookForTopics = 0.1, kLookForMore = 0.5;  // [s], until ready and then
+constexpr double kPredecessor = 5.0;  // [s] in which one of the same name may end in order
+
+template <typename Msg>
+StepHeader sampleOf(const Msg& msg) {
+  return {fromStamp(msg.header.stamp), msg.run_id, msg.step};
+}
 
 }  // namespace
 
@@ -32,9 +40,11 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       started_s_(steadyNow()),
       store_(openStore(private_node.param<std::string>("out", ""))),
       session_(recordLayout(loop), [this](const SampleRecord& sample) { store_->append(sample); }),
-      ready_(node, name()),
-      plant_(loop.plant_info),
+      ready_(node, loop, name()),
+      plant_(loop),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
+      sample_recorded_(
+          node.advertise<fmbpc::Recorded>(topics::kSampleRecorded, queueOf(ListenerKind::kPeer))),
       end_(node),
       poll_timer_(guardedTimer(node, kRecorderPoll, "poll", [this] { poll(); })),
       ready_timer_(guardedTimer(node, kLookForRing, "ready", [this] { announceIfConnected(); })),
@@ -53,6 +63,9 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
     listen(topics::kBaseAction, &LoopRecorder::onBase);
     listen(topics::kSolverReport, &LoopRecorder::onReport);
   }
+  const std::string bag = private_node.param<std::string>("bag", "");
+  if (unusable_.empty() && !bag.empty())
+    bag_ = std::make_unique<BagWriter>(node, bag, loop.resolved);
   if (unusable_.empty()) return;
   ROS_FATAL("%s: %s", name().c_str(), unusable_.c_str());
   problem_ = unusable_;
@@ -61,7 +74,7 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
 
 std::unique_ptr<RecordStore> LoopRecorder::openStore(const std::string& folder) {
   try {
-    return std::make_unique<RecordStore>(loop_, folder);
+    return std::make_unique<RecordStore>(loop_, folder, kPredecessor);
   } catch (const InputError& error) {
     unusable_ = std::string("cannot record: ") + error.what();
     return std::make_unique<RecordStore>(loop_, "");
@@ -69,14 +82,25 @@ std::unique_ptr<RecordStore> LoopRecorder::openStore(const std::string& folder) 
 }
 
 void LoopRecorder::poll() {
-  if (!stay_ && ending_s_ >= 0 && steadyNow() - ending_s_ > kLastWords)
+  if (ending_s_ >= 0 && !said_end_ && steadyNow() - ending_s_ > kLastMessages) sayEnd();
+  if (!stay_ && said_end_ && steadyNow() - ending_s_ > kLastWords)
     return problem_.empty() ? done() : fail(problem_);
   if (!unusable_.empty()) return giveUp();
+  if (bag_ && !said_end_ &&
+      steadyNow() - looked_s_ >= (bag_ready_ ? kLookForMore : kLookForTopics)) {
+    bag_ready_ = bag_->look() || bag_ready_;
+    looked_s_ = steadyNow();
+  }
   store_->flush();
+  store_->sync(steadyNow());
   if (written_) return;
   if (clock_.closed()) return conclude();  // the disk had no room
   if (!clock_.stragglersLost(steadyNow())) return;
-  problem_ = "the final sample came, but the record has gaps: " + join(session_.gaps());
+  const std::uint32_t last = session_.latest().step, expected = session_.layout().samples;
+  problem_ = expected != 0 && expected != last
+                 ? "the plant called sample " + std::to_string(last) + " the last; the loop's is " +
+                       std::to_string(expected)
+                 : "the final sample came, but the record has gaps: " + join(session_.gaps());
   session_.close();
   conclude();
 }
@@ -94,7 +118,7 @@ void LoopRecorder::giveUp() {
 void LoopRecorder::announceIfConnected() {
   const bool connected = std::all_of(ring_.begin(), ring_.end(),
                                      [](const auto& s) { return s.getNumPublishers() > 0; });
-  if (!connected || !plant_.open() || !unusable_.empty()) {
+  if (!connected || !plant_.open() || !unusable_.empty() || (bag_ && !bag_ready_)) {
     connected_s_ = -1;
     return;
   }
@@ -105,10 +129,13 @@ void LoopRecorder::announceIfConnected() {
   ready_timer_.stop();
 }
 
-void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg) {
+void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg,
+                               const std::string& publisher) {
   guarded(topics::kPlantInfo, [&] {
     const std::uint64_t before = plant_.runId();
-    if (plant_.introduce(fromMsg(*msg)) && plant_.runId() != before) beginRun(plant_.runId());
+    if (!plant_.introduce(*msg) || plant_.runId() == before) return;
+    announcer_ = publisher;
+    beginRun(plant_.runId());
   });
 }
 
@@ -122,6 +149,7 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
   if (!store_->problem().empty())
     ROS_ERROR("loop_recorder: %s (tried again)", store_->problem().c_str());
   if (!store_->remark().empty()) ROS_WARN("loop_recorder: %s", store_->remark().c_str());
+  goes_on_ = goes_on_ || here > 0;
   if (here > 0) {
     clock_.restart(std::min(store_->beganAt(), steadyNow()));
     session_.resume(run_id, here);
@@ -132,8 +160,8 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
 }
 
 // Any message of the first sample may come first, and any of the last one may be the last.
-template <typename Take>
-void LoopRecorder::record(const char* topic, Take take) {
+template <typename Msg, typename Take>
+void LoopRecorder::record(const char* topic, const Msg& msg, Take take) {
   if (!unusable_.empty()) {
     run_under_way_ = true;
     return;
@@ -141,35 +169,50 @@ void LoopRecorder::record(const char* topic, Take take) {
   guarded(topic, [&] {
     clock_.hear(steadyNow());
     take();
+    acknowledge(sampleOf(msg));
     if (!written_ && !clock_.closed() && session_.complete()) conclude();
   });
 }
 
-void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
-  record(topics::kMeasurement, [&] {
+// Also again, for a plant that has not heard it.
+void LoopRecorder::acknowledge(const StepHeader& sample) {
+  if (!session_.holds(sample)) return;
+  fmbpc::Recorded msg;
+  msg.header.stamp = toStamp(sample.time_ns);
+  msg.run_id = sample.run_id;
+  msg.step = sample.step;
+  sample_recorded_.publish(msg);
+}
+
+// Where anyone may be the plant, only who announced the run says what it measured and when it ends.
+void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg,
+                                 const std::string& publisher) {
+  record(topics::kMeasurement, *msg, [&] {
+    require(msg->run_id != plant_.runId() || publisher == announcer_, "measurement of " + publisher,
+            "one of " + announcer_ + ", which announced the run");
     session_.receive(fromMsg(*msg));
     clock_.seeFinal(session_.finalSeen(), steadyNow());
   });
 }
 
 void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
-  record(topics::kPlantState, [&] { session_.receive(fromMsg(*msg), msg->remark); });
+  record(topics::kPlantState, *msg, [&] { session_.receive(fromMsg(*msg), msg->remark); });
 }
 
 void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
-  record(topics::kTracking, [&] { session_.receive(fromMsg(*msg), msg->remark); });
+  record(topics::kTracking, *msg, [&] { session_.receive(fromMsg(*msg), msg->remark); });
 }
 
 void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
-  record(topics::kBaseAction, [&] { session_.receiveBase(fromMsg(*msg)); });
+  record(topics::kBaseAction, *msg, [&] { session_.receiveBase(fromMsg(*msg)); });
 }
 
 void LoopRecorder::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
-  record(topics::kControlAction, [&] { session_.receiveAction(fromMsg(*msg)); });
+  record(topics::kControlAction, *msg, [&] { session_.receiveAction(fromMsg(*msg)); });
 }
 
 void LoopRecorder::onReport(const fmbpc::SolverReport::ConstPtr& msg) {
-  record(topics::kSolverReport, [&] { session_.receive(fromMsg(*msg)); });
+  record(topics::kSolverReport, *msg, [&] { session_.receive(fromMsg(*msg)); });
 }
 
 // Writes the files; a disk without room gets some time, the journal stays whatever happens.
@@ -183,16 +226,30 @@ void LoopRecorder::conclude() {
   end();
 }
 
-// Everybody else who ends with the run hears it before this process goes.
+// The bag is whole first: what came with the last sample is still to be written to it.
 void LoopRecorder::end() {
   if (keep_ || ending_s_ >= 0) return;
+  ending_s_ = steadyNow();
+  if (!bag_) sayEnd();
+}
+
+// Everybody else who ends with the run hears it before this process goes.
+void LoopRecorder::sayEnd() {
+  if (bag_) bag_->close(goes_on_);
+  if (bag_ && problem_.empty()) problem_ = bag_->problem();
+  said_end_ = true;
   ending_s_ = steadyNow();
   end_.say(problem_.empty() ? "recorded" : problem_);
 }
 
 bool LoopRecorder::tryWrite() {
   try {
-    const Summary summary = store_->finish(clock_.elapsed(steadyNow()));
+    const double wall_s = clock_.elapsed(steadyNow());
+    const std::uint32_t whole = session_.passedOn();
+    session_.close();  // a simulated plant sends again what is not whole
+    const std::uint32_t kept = loop_.external_plant ? session_.passedOn() : whole;
+    const Summary summary =
+        clock_.closed() ? store_->finish(wall_s) : store_->interrupt(wall_s, kept);
     written_ = true;
     trouble_ = troubleOf(summary);
     ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, summary.wall_s);
@@ -201,24 +258,30 @@ bool LoopRecorder::tryWrite() {
     return false;
   }
   if (session_.complete()) problem_ = trouble_;
+  if (bag_ && problem_.empty()) problem_ = bag_->problem();
   if (!store_->folder().empty()) {
-    const PlotResult plot = plot_ ? drawPlot(store_->written()) : PlotResult{};
+    const PlotResult plot = plot_ ? drawPlot(store_->folder()) : PlotResult{};
     if (!plot.warning.empty()) ROS_WARN("loop_recorder: %s", plot.warning.c_str());
-    ROS_INFO("loop_recorder: written: %s", store_->written().c_str());
+    ROS_INFO("loop_recorder: written: %s", store_->folder().c_str());
   }
   std_msgs::String folder;
-  folder.data = store_->written();
+  folder.data = store_->folder();
   if (ros::ok() && session_.complete()) recorded_.publish(folder);
   return true;
 }
 
 int LoopRecorder::finish() {
+  const int code = writeRest();
+  if (bag_) bag_->close(goes_on_);
+  return bag_ && !bag_->problem().empty() ? 1 : code;
+}
+
+int LoopRecorder::writeRest() {
   const int code = written_ && !problem_.empty() ? 1 : Node::finish();
   if (code != 0 || written_ || !session_.running()) {
     if (code == 0 && !written_) ROS_WARN("loop_recorder: stopped before the first sample");
     return code == 0 && !written_ ? 1 : code;
   }
-  session_.close();
   if (!tryWrite()) {
     ROS_ERROR("loop_recorder: %s", problem_.c_str());
     return 1;
@@ -226,31 +289,6 @@ int LoopRecorder::finish() {
   if (loop_.simulation.samples == 0) return 0;
   ROS_ERROR("loop_recorder: stopped before the final sample: what came until then is written");
   return 1;
-}
-
-Health LoopRecorder::health(double) const {
-  if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
-  if (!store_->problem().empty()) return {LoopMode::kFailed, store_->problem(), {}};
-  if (!problem_.empty()) return {LoopMode::kFailed, problem_, {}};
-  if (!ready_.announced()) return {LoopMode::kStarting, "waiting for publishers of the ring", {}};
-  if (written_) return {LoopMode::kFinished, "written", {}};
-  if (session_.gapCount() > 0)
-    return {LoopMode::kDegraded, "recording, with gaps: " + session_.gaps(1).front(), {}};
-  return {LoopMode::kAutomatic, session_.running() ? "recording" : "waiting", {}};
-}
-
-void LoopRecorder::report(Diagnostics::Status& status) const {
-  status.add("step", session_.latest().step);
-  status.add("samples on disk", store_->samples() - store_->unwritten() - store_->lost());
-  status.add("samples that wait for the disk", store_->unwritten());
-  status.add("samples lost", store_->lost());
-  if (!store_->remark().empty()) status.add("run before", store_->remark());
-  status.add("samples with gaps", session_.gapCount());
-  status.add("waiting for what belongs to them", session_.waiting());
-  status.add("dropped: other run", session_.strays());
-  status.add("dropped: wrong size or not finite", session_.wrongSize());
-  addRefused(status, refused());
-  addRefused(status, authority().refused());
 }
 
 }  // namespace fpc

@@ -5,6 +5,7 @@
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
 #include <fmbpc/PlantState.h>
+#include <fmbpc/Recorded.h>
 #include <fmbpc/SolverReport.h>
 #include <fmbpc/Tracking.h>
 #include <ros/ros.h>
@@ -17,6 +18,7 @@
 #include "fmbpc/loop/record_store.hpp"
 #include "fmbpc/loop/recorder_clock.hpp"
 #include "fmbpc/loop/recorder_session.hpp"
+#include "ros/bag_writer.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
@@ -25,14 +27,15 @@
 
 namespace fpc {
 
-/// Ready when every publisher of the ring is connected. What it records is on disk at once (see
-/// RecordStore) and becomes the run's files at its end, at Ctrl-C, and in the next run if the
-/// process was killed. With a folder that it cannot use it is failed, says why on run_end, and is
-/// never ready. Ends with the run: exit code 0 when it is complete and written (then
-/// `recorded`, latched, names the folder); otherwise 1, naming the gaps. Parameters: ~out, folder
-/// of the files (nothing is written without it); ~keep, the launch goes on after the run (run_end
-/// is not said); ~stay, this node goes on until it is stopped, as in a launch, which ends by
-/// run_end; ~plot, draw plot.png (default true).
+/// Ready when every publisher of the ring is connected. Says of each sample that it has all of it:
+/// a simulated plant goes on only then. What it records is on disk at once (see RecordStore) and
+/// becomes the run's files at its end, at Ctrl-C, and in the next run if the process was killed;
+/// one that comes back goes on with the same record. With a folder that it cannot use it is failed,
+/// says why on run_end, and is never ready. Ends with the run: exit code 0 when it is complete and
+/// written (then `recorded`, latched, names the folder); otherwise 1, naming the gaps. Parameters:
+/// ~out, folder of the files (nothing is written without it); ~bag, file for all topics; ~keep, the
+/// launch goes on after the run (run_end is not said); ~stay, this node goes on until it is
+/// stopped, as in a launch, which ends by run_end; ~plot, draw plot.png (default true).
 class LoopRecorder : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }
@@ -40,8 +43,8 @@ class LoopRecorder : public Node {
   int finish() override;
 
  private:
-  void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg);
-  void onMeasurement(const fmbpc::Measurement::ConstPtr& msg);
+  void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg, const std::string& publisher);
+  void onMeasurement(const fmbpc::Measurement::ConstPtr& msg, const std::string& publisher);
   void onState(const fmbpc::PlantState::ConstPtr& msg);
   void onTracking(const fmbpc::Tracking::ConstPtr& msg);
   void onBase(const fmbpc::ControlAction::ConstPtr& msg);
@@ -53,11 +56,14 @@ class LoopRecorder : public Node {
   void giveUp();
   void announceIfConnected();
   void beginRun(std::uint64_t run_id);
-  template <typename Take>
-  void record(const char* topic, Take take);
+  template <typename Msg, typename Take>
+  void record(const char* topic, const Msg& msg, Take take);
+  void acknowledge(const StepHeader& sample);
   void conclude();
   bool tryWrite();
+  int writeRest();
   void end();
+  void sayEnd();
   Health health(double now_s) const;
   void report(Diagnostics::Status& status) const;
 
@@ -70,14 +76,18 @@ class LoopRecorder : public Node {
   RecorderSession session_;
   ReadyPublisher ready_;
   PlantGate plant_;
+  std::string announcer_;  // of the run: its measurements count
+  std::unique_ptr<BagWriter> bag_;
+  double looked_s_{-1};                     // at the topics
+  bool bag_ready_{false}, goes_on_{false};  // with a run of an earlier process
 
   RecorderClock clock_;
   double ending_s_{-1};
-  bool written_{false};
+  bool written_{false}, said_end_{false};
   std::string problem_, trouble_;  // of the recorder; of the plant
   double connected_s_{-1};         // since when every publisher is there
 
-  ros::Publisher recorded_;
+  ros::Publisher recorded_, sample_recorded_;
   RunEndPublisher end_;
   std::vector<ros::Subscriber> ring_;  // every publisher that must be connected
   ros::SteadyTimer poll_timer_, ready_timer_;

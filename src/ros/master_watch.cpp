@@ -13,6 +13,7 @@
 
 #include "ros/neighbours.hpp"
 #include "ros/registration.hpp"
+#include "ros/topics.hpp"
 
 namespace fpc {
 
@@ -20,7 +21,7 @@ namespace fpc {
 struct WatchedNode {
   KeptParameters parameters;
   std::string space;
-  std::vector<std::string> members;
+  std::set<std::string> members, speakers;  // the latter with the plant
 };
 
 /// The thread of a process, for all its nodes.
@@ -38,10 +39,12 @@ class MasterEye {
   using Nodes = std::vector<std::shared_ptr<const WatchedNode>>;
   void run();
   void look(const Nodes& nodes);
-  void lookAtMaster(const Nodes& nodes);
+  void lookAtLinks(const Nodes& nodes, NodeAddresses& addresses);
 
   bool master_gone_{false};
   bool stop_{false};
+  Links links_;
+  const Starter starter_;
   Nodes nodes_;
   std::set<std::string> reached_;  // addresses of members that have answered
   std::mutex mutex_;               // of nodes_ and stop_
@@ -66,13 +69,6 @@ void say(const NetworkProblem& now) {
   log(now.here, problem.here);
   log(now.there, problem.there);
   problem = now;
-}
-
-bool ask(const char* method, const std::string& argument) {
-  XmlRpc::XmlRpcValue request, response, payload;
-  request[0] = ros::this_node::getName();
-  if (!argument.empty()) request[1] = argument;
-  return ros::master::execute(method, request, response, payload, false);
 }
 
 }  // namespace
@@ -112,8 +108,10 @@ void MasterEye::remove(const std::shared_ptr<const WatchedNode>& node) {
 
 void MasterEye::run() {
   std::unique_lock<std::mutex> lock(mutex_);
-  while (!wake_.wait_for(lock, networkProblem().there.empty() ? kPeriod : kQuick,
-                         [this] { return stop_; })) {
+  const auto period = [this] {
+    return networkProblem().there.empty() && !links_.suspicious() ? kPeriod : kQuick;
+  };
+  while (!wake_.wait_for(lock, period(), [this] { return stop_; })) {
     const Nodes nodes = nodes_;
     lock.unlock();
     if (ros::ok() && !nodes.empty()) look(nodes);
@@ -122,51 +120,54 @@ void MasterEye::run() {
 }
 
 void MasterEye::look(const Nodes& nodes) {
-  lookAtMaster(nodes);
+  NodeAddresses addresses;
   NetworkProblem now;
-  now.here = ownAddressProblem(ros::network::getHost(), ros::master::getHost());
-  if (now.here.empty() && !master_gone_) {
-    std::set<std::string> members;
-    for (const auto& node : nodes) members.insert(node->members.begin(), node->members.end());
-    now.there = unreachable({members.begin(), members.end()}, reached_);
+  now.here = descriptorProblem();
+  if (now.here.empty())
+    now.here = ownAddressProblem(ros::network::getHost(), ros::master::getHost());
+  if (now.here.empty()) {
+    lookAtLinks(nodes, addresses);
+    std::set<std::string> members, speakers;
+    for (const auto& node : nodes) {
+      members.insert(node->members.begin(), node->members.end());
+      speakers.insert(node->speakers.begin(), node->speakers.end());
+    }
+    if (!master_gone_) now.there = unreachable(members, addresses, reached_);
+    const std::string missing = links_.missing(speakers);
+    if (now.there.empty() && !missing.empty()) now.there = "not connected: " + missing;
+    now.here = starter_.problem();
   }
   say(now);
 }
 
-void MasterEye::lookAtMaster(const Nodes& nodes) {
+void MasterEye::lookAtLinks(const Nodes& nodes, NodeAddresses& addresses) {
   const std::string& name = ros::this_node::getName();
-  if (ask("lookupNode", name)) {
-    master_gone_ = false;
-    return;
-  }
-  const bool answers = ask("getPid", "");
-  if (!ros::ok() || ros::isShuttingDown()) return;
-  if (!answers) {
-    if (!master_gone_)
-      ROS_ERROR("%s: the master does not answer: the loop goes on, but nobody can join it",
-                name.c_str());
-    master_gone_ = true;
-    return;
-  }
-  master_gone_ = false;
-  bool lost = false;
   std::vector<std::string> spaces;
-  for (const auto& node : nodes) {
-    lost = node->parameters.putBack() || lost;
-    spaces.push_back(node->space);
-  }
-  const int count = registerAgain(spaces);
-  ROS_WARN("%s: the master was started anew: %d topics and services registered again%s",
-           name.c_str(), count, lost ? ", parameters put back" : "");
+  for (const auto& node : nodes) spaces.push_back(node->space);
+  const Links::Master master = links_.look(spaces, addresses);
+  if (!ros::ok() || ros::isShuttingDown()) return;
+  if (master == Links::Master::kSilent && !master_gone_)
+    ROS_ERROR("%s: the master does not answer: the loop goes on, but nobody can join it",
+              name.c_str());
+  master_gone_ = master == Links::Master::kSilent;
+  if (master != Links::Master::kForgot) return;
+  bool lost = false;
+  for (const auto& node : nodes) lost = node->parameters.putBack() || lost;
+  ROS_WARN("%s: the master did not have its topics and services any more: registered again%s",
+           name.c_str(), lost ? ", parameters put back" : "");
 }
 
 MasterWatch::MasterWatch(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                          const LoopFile& loop)
     : eye_(MasterEye::ofProcess()) {
-  std::vector<std::string> members = loop.ring.members;
-  for (std::string& name : members) name = node.resolveName(name);
-  node_ = std::make_shared<const WatchedNode>(
-      WatchedNode{KeptParameters(private_node), private_node.getNamespace(), std::move(members)});
+  std::set<std::string> members;
+  for (const std::string& name : loop.ring.members) members.insert(node.resolveName(name));
+  std::set<std::string> speakers = members;
+  for (const std::string& name : loop.ring.publishers.at(topics::kPlantInfo))
+    speakers.insert(node.resolveName(name));
+  node_ = std::make_shared<const WatchedNode>(WatchedNode{KeptParameters(private_node),
+                                                          private_node.getNamespace(),
+                                                          std::move(members), std::move(speakers)});
   eye_->add(node_);
 }
 

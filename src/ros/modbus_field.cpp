@@ -1,17 +1,30 @@
 #include "ros/modbus_field.hpp"
 
 #include <chrono>
+#include <random>
 
 #include "ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {
 
+constexpr double kRenew = 0.1;  // [s] between two renewals of what is held already
+constexpr double kShown = 2.0;  // [s] that a coil which somebody else has written is told
+
 std::chrono::duration<double> seconds(double value) { return std::chrono::duration<double>(value); }
+
+/// Two gateways of one loop file are two masters.
+std::uint16_t ownWord() {
+  std::random_device device;
+  return static_cast<std::uint16_t>(1U + device() % 0xFFFFU);
+}
 
 }  // namespace
 
-ModbusField::ModbusField(const LoopFile& loop) : params_(loop.gateway) {
+ModbusField::ModbusField(const LoopFile& loop)
+    : params_(loop.gateway),
+      switched_off_s_(-kShown),
+      lease_(ownWord(), "register " + std::to_string(params_.modbus.owner)) {
   seen_.signals.resize(params_.outputs.size() + params_.disturbances.size());
   seen_.positions.resize(params_.inputs.size());
   seen_.problem = "not connected yet";
@@ -44,6 +57,7 @@ void ModbusField::exchange(PlantGateway& gateway, bool automatic, double now_s) 
   if (seen.drops != handed_drops_) gateway.link(false, seen.at_s);
   handed_drops_ = seen.drops;
   gateway.link(seen.up, seen.at_s);
+  gateway.lead(!seen.another_leads, seen.at_s);
   if (seen.remote_seen) gateway.remote(seen.remote, seen.at_s);
   if (seen.beaten) gateway.beat(seen.beat, seen.beat_s);
   if (seen.failed == gateway.commandNumber() && seen.failed > seen.confirmed)
@@ -76,7 +90,8 @@ std::vector<std::pair<std::string, std::uint64_t>> ModbusField::counts() const {
   return {{"rounds of polling", shown_.rounds},
           {"connections lost", shown_.drops},
           {"requests failed", shown_.errors},
-          {"requests refused by the plant", shown_.exceptions}};
+          {"requests refused by the plant", shown_.exceptions},
+          {"times that leadership was lost", shown_.lost}};
 }
 
 void ModbusField::work() {
@@ -92,6 +107,7 @@ void ModbusField::work() {
         fresh->connect();
         link = std::move(fresh);
         automatic_told_ = -1;
+        lease_.forget();
       }
       if (link) round(*link, wish);
     } catch (const std::exception& error) {
@@ -118,13 +134,19 @@ void ModbusField::dropped(const std::string& why) {
 
 void ModbusField::round(ModbusLink& link, const Wish& wish) {
   const std::uint64_t refused = seen_.exceptions;
-  readAll(link);
   tell(link, wish);
+  readAll(link);
   readPositions(link);
   ++seen_.rounds;
   if (!seen_.up) seen_.at_s = steadyNow();
   seen_.up = true;
-  seen_.problem = seen_.exceptions > refused ? link.refusal() : "";
+  seen_.another_leads = lease_.another();
+  seen_.lost = lease_.losses() + switched_off_;
+  const double now_s = steadyNow();
+  seen_.problem = seen_.exceptions > refused ? link.refusal() : lease_.problem(now_s);
+  if (seen_.problem.empty() && now_s - switched_off_s_ <= kShown)
+    seen_.problem =
+        "somebody has switched coil " + std::to_string(params_.modbus.automatic.address) + " off";
 }
 
 void ModbusField::readAll(ModbusLink& link) {
@@ -164,19 +186,61 @@ void ModbusField::readPositions(ModbusLink& link) {
   }
 }
 
+/// Renewing shows as well who has written there meanwhile.
+bool ModbusField::leads(ModbusLink& link, bool claims) {
+  const int address = params_.modbus.owner;
+  if (address < 0) return true;
+  const auto found = link.readRegister(address);
+  if (found)
+    lease_.held(*found, steadyNow());
+  else
+    ++seen_.exceptions;
+  const bool led = lease_.leads();
+  const auto word = lease_.toWrite(claims);
+  if (word && !link.writeRegister(address, *word)) ++seen_.exceptions;
+  return led;
+}
+
+void ModbusField::renewAutomatic(ModbusLink& link, bool claims) {
+  const ModbusBit& coil = params_.modbus.automatic;
+  if (coil.address < 0 || (!claims && automatic_told_ == 0)) return;
+  const auto found = link.readBit(coil);
+  const bool done = found && link.writeCoil(coil.address, claims);
+  if (!done) ++seen_.exceptions;
+  if (automatic_told_ == 1 && found && !*found) {
+    ++switched_off_;
+    switched_off_s_ = steadyNow();
+  }
+  automatic_told_ = !done ? -1 : claims ? 1 : 0;
+}
+
+/// What is held is renewed after kRenew, what is not is asked for in each round.
+void ModbusField::renew(ModbusLink& link, bool claims) {
+  const double now_s = steadyNow();
+  if (hasInputs() && claims && now_s - renewed_s_ < kRenew) return;
+  renewed_s_ = now_s;
+  if (leads(link, claims)) renewAutomatic(link, claims);
+}
+
+bool ModbusField::hasInputs() const {
+  const ModbusParams& modbus = params_.modbus;
+  return (modbus.owner < 0 || lease_.leads()) &&
+         (modbus.automatic.address < 0 || automatic_told_ == 1);
+}
+
+/// The command goes first: the plant is to have it before its sample ends.
+void ModbusField::tell(ModbusLink& link, const Wish& wish) {
+  if (hasInputs()) command(link, wish);
+  renew(link, wish.automatic);
+  const int heartbeat = params_.modbus.heartbeat_out;
+  if (heartbeat < 0 || (params_.modbus.owner >= 0 && !lease_.leads())) return;
+  if (steadyNow() - wish.asked_s < kPatience && !link.writeRegister(heartbeat, ++heartbeat_))
+    ++seen_.exceptions;
+}
+
 /// A command is written once; one that failed, or was made before the connection was lost, waits
 /// for what is read back.
-void ModbusField::tell(ModbusLink& link, const Wish& wish) {
-  const ModbusParams& modbus = params_.modbus;
-  if (modbus.automatic.address >= 0 && automatic_told_ != (wish.automatic ? 1 : 0)) {
-    if (link.writeCoil(modbus.automatic.address, wish.automatic))
-      automatic_told_ = wish.automatic ? 1 : 0;
-    else
-      ++seen_.exceptions;
-  }
-  if (modbus.heartbeat_out >= 0 && steadyNow() - wish.asked_s < kPatience &&
-      !link.writeRegister(modbus.heartbeat_out, ++heartbeat_))
-    ++seen_.exceptions;
+void ModbusField::command(ModbusLink& link, const Wish& wish) {
   if (!wish.commands || wish.number == seen_.confirmed || wish.number == seen_.failed) return;
   seen_.failed = wish.number;  // unless all of it arrives
   seen_.failed_s = steadyNow();

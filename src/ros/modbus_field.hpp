@@ -11,15 +11,17 @@
 #include <utility>
 #include <vector>
 
+#include "fmbpc/loop/lease.hpp"
 #include "ros/field.hpp"
 #include "ros/modbus_link.hpp"
 
 namespace fpc {
 
-/// Each round of poll_s, and at once when there is a command: everything is read, then the command
-/// is written, then the inputs are read back. The heartbeat towards the plant counts rounds and
-/// stops when exchange() has not been called for kPatience: a plant that watches it notices a node
-/// that hangs.
+/// Each round of poll_s, and at once when there is a command: the command is written, leadership
+/// (the owner's word, the coil) is claimed, or renewed every tenth of a second, then everything is
+/// read, the inputs last. Who does not lead writes nothing. The heartbeat towards the plant counts
+/// rounds and stops when exchange() has not been called for kPatience: a plant that watches it
+/// notices a node that hangs.
 class ModbusField : public Field {
  public:
   static constexpr double kPatience = 1.0;  ///< [s]
@@ -39,9 +41,9 @@ class ModbusField : public Field {
   /// What the thread has seen; copied whole.
   struct Seen {
     bool up{false};
-    std::uint64_t drops{}, rounds{}, errors{}, exceptions{};
+    std::uint64_t drops{}, rounds{}, errors{}, exceptions{}, lost{};
     std::vector<Reading> signals, positions;
-    bool remote{true}, remote_seen{false};
+    bool remote{true}, remote_seen{false}, another_leads{false};
     std::uint64_t beat{}, confirmed{}, failed{};
     bool beaten{false};
     double at_s{}, beat_s{}, confirmed_s{}, failed_s{};
@@ -58,7 +60,12 @@ class ModbusField : public Field {
   void round(ModbusLink& link, const Wish& wish);
   void readAll(ModbusLink& link);
   void readPositions(ModbusLink& link);
+  bool hasInputs() const;
+  void renew(ModbusLink& link, bool claims);
+  bool leads(ModbusLink& link, bool claims);
+  void renewAutomatic(ModbusLink& link, bool claims);
   void tell(ModbusLink& link, const Wish& wish);
+  void command(ModbusLink& link, const Wish& wish);
   void dropped(const std::string& why);
 
   GatewayParams params_;
@@ -70,7 +77,11 @@ class ModbusField : public Field {
   bool stop_{false};
   std::uint64_t handed_drops_{};  // of exchange()
   std::uint16_t heartbeat_{};
-  int automatic_told_{-1};
+  int automatic_told_{-1};        // on this connection; -1: nothing yet
+  std::uint64_t switched_off_{};  // so often somebody else has
+  double switched_off_s_{};       // and when last
+  double renewed_s_{};            // leadership
+  Lease lease_;
   std::thread thread_;
 };
 

@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <cmath>
 
-#include "fmbpc/base/input_error.hpp"
+#include "ros/neighbours.hpp"
 
 namespace fpc {
 namespace {
@@ -18,9 +18,11 @@ bool isException(int code) { return code > MODBUS_ENOBASE && code <= EMBXGTAR; }
 }  // namespace
 
 ModbusLink::ModbusLink(const ModbusParams& params)
-    : context_(modbus_new_tcp(params.host.c_str(), params.port)),
-      place_(params.host + ":" + std::to_string(params.port)) {
-  require(context_ != nullptr, "gateway.modbus.host " + params.host, "an IP address");
+    : place_(params.host + ":" + std::to_string(params.port)) {
+  const std::string address = addressOf(params.host);
+  if (address.empty()) throw ModbusLost("no connection to " + place_ + ": no such host is known");
+  context_ = modbus_new_tcp(address.c_str(), params.port);
+  if (context_ == nullptr) throw ModbusLost("no connection to " + place_ + ": out of memory");
   const double whole = std::floor(params.timeout_s);
   const auto seconds = static_cast<std::uint32_t>(whole);
   const auto micros = static_cast<std::uint32_t>(1e6 * (params.timeout_s - whole));

@@ -19,7 +19,7 @@ class ModbusLost : public std::runtime_error {
 /// and refusal() says which.
 class ModbusLink {
  public:
-  explicit ModbusLink(const ModbusParams& params);
+  explicit ModbusLink(const ModbusParams& params);  ///< looks the host up
   ~ModbusLink();
   ModbusLink(const ModbusLink&) = delete;
   ModbusLink& operator=(const ModbusLink&) = delete;
@@ -37,7 +37,7 @@ class ModbusLink {
  private:
   bool answered(int result);
 
-  void* context_;
+  void* context_{};
   std::string place_, refusal_;
 };
 

@@ -1,5 +1,6 @@
 #include "ros/neighbours.hpp"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <ifaddrs.h>
 #include <netdb.h>
@@ -10,7 +11,10 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 #include <memory>
 
 namespace fpc {
@@ -64,15 +68,17 @@ bool connects(const addrinfo& to, double patience_s) {
   return done;
 }
 
-std::string uriOf(const std::string& node) {
-  XmlRpc::XmlRpcValue request, response, uri;
-  request[0] = ros::this_node::getName();
-  request[1] = node;
-  if (!ros::master::execute("lookupNode", request, response, uri, false)) return "";
-  return uri.getType() == XmlRpc::XmlRpcValue::TypeString ? std::string(uri) : "";
-}
-
 }  // namespace
+
+std::string addressOf(const std::string& host) {
+  const Addresses found = resolve(host, "");
+  char text[INET_ADDRSTRLEN] = "";
+  if (found) {
+    const in_addr number{htonl(numberOf(found->ai_addr))};
+    inet_ntop(AF_INET, &number, text, sizeof text);
+  }
+  return text;
+}
 
 std::string ownAddressProblem(const std::string& own_host, const std::string& master_host) {
   const Addresses own = resolve(own_host, ""), master = resolve(master_host, "");
@@ -90,6 +96,36 @@ std::string ownAddressProblem(const std::string& own_host, const std::string& ma
   return "";
 }
 
+Starter::Starter() : process_(getppid()) {
+  std::ifstream file("/proc/" + std::to_string(process_) + "/cmdline");
+  const std::string command{std::istreambuf_iterator<char>(file), {}};
+  if (command.find("roslaunch") == std::string::npos) process_ = 0;
+}
+
+std::string Starter::problem() const {
+  if (process_ == 0 || process_ == getppid()) return "";
+  return "the roslaunch that started this node was killed: nobody starts the node again or ends it";
+}
+
+std::string descriptorProblem() {
+  const int probe = open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (probe < 0) return std::string("no connection can be made here: ") + std::strerror(errno);
+  close(probe);
+  return "";
+}
+
+const std::string& NodeAddresses::of(const std::string& node) {
+  const auto [at, is_new] = known_.emplace(node, "");
+  if (!is_new) return at->second;
+  XmlRpc::XmlRpcValue request, response, uri;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  if (ros::master::execute("lookupNode", request, response, uri, false) &&
+      uri.getType() == XmlRpc::XmlRpcValue::TypeString)
+    at->second = std::string(uri);
+  return at->second;
+}
+
 bool answersAt(const std::string& uri, double patience_s) {
   std::string host;
   std::uint32_t port = 0;
@@ -98,10 +134,11 @@ bool answersAt(const std::string& uri, double patience_s) {
   return to && connects(*to, patience_s);
 }
 
-std::string unreachable(const std::vector<std::string>& nodes, std::set<std::string>& reached) {
+std::string unreachable(const std::set<std::string>& nodes, NodeAddresses& addresses,
+                        std::set<std::string>& reached) {
   for (const std::string& node : nodes) {
     if (node == ros::this_node::getName()) continue;
-    const std::string uri = uriOf(node);
+    const std::string& uri = addresses.of(node);
     if (uri.empty()) continue;
     if (answersAt(uri, kConnectPatience)) {
       reached.insert(uri);

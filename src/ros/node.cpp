@@ -2,8 +2,12 @@
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <fmbpc/LoopState.h>
+#include <ros/callback_queue.h>
+#include <ros/xmlrpc_manager.h>
 
 #include <algorithm>
+#include <atomic>
+#include <csignal>
 #include <filesystem>
 #include <utility>
 
@@ -130,9 +134,12 @@ class Failure {
   ros::Publisher states_, array_;
 };
 
+std::atomic<bool> told_to_end{false};
+
 void pause(double seconds) {
   ros::spinOnce();
   ros::WallDuration(seconds).sleep();
+  if (told_to_end) ros::shutdown();
 }
 
 void untilHeard(const Failure& failure) {
@@ -166,6 +173,34 @@ int failToStart(ros::NodeHandle node, const ros::NodeHandle& private_node, const
     pause(RingWatch::kBeat);
   }
   return 1;
+}
+
+namespace {
+
+void onShutdownCall(XmlRpc::XmlRpcValue& parameters, XmlRpc::XmlRpcValue& result) {
+  if (parameters.getType() == XmlRpc::XmlRpcValue::TypeArray && parameters.size() > 1)
+    ROS_WARN("told to end: %s", shortened(std::string(parameters[1])).c_str());
+  told_to_end = true;
+  result = ros::xmlrpc::responseInt(1, "", 0);
+}
+
+}  // namespace
+
+// The first binding of a method counts: roscpp's own, made when the node starts, does not.
+void hearShutdown() {
+  const auto hear = [](int) { told_to_end = true; };
+  std::signal(SIGINT, hear);
+  ros::XMLRPCManager::instance()->bind("shutdown", onShutdownCall);
+}
+
+void spinUntilShutdown(const std::function<void()>& last) {
+  constexpr double kTurn = 0.1, kSent = 0.05;  // [s] as ros::spin(); until the words have left
+  while (ros::ok() && !told_to_end)
+    ros::getGlobalCallbackQueue()->callAvailable(ros::WallDuration(kTurn));
+  if (!ros::ok()) return;
+  last();
+  ros::WallDuration(kSent).sleep();
+  ros::shutdown();
 }
 
 LoopFile loopParameter(const ros::NodeHandle& private_node) {

@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,6 +14,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/loop/authority.hpp"
+#include "ros/counted_vectors.hpp"
 #include "ros/guard.hpp"
 #include "ros/master_watch.hpp"
 #include "ros/newest.hpp"
@@ -30,6 +32,8 @@ class Node {
   /// node, or of the nodelet, whose process has another.
   Node(const ros::NodeHandle& node, const LoopFile& loop, std::string name);
   virtual ~Node() = default;
+  /// Called when the process is told to end, while it still can publish.
+  virtual void sayLast() {}
   /// Called after spinning; the exit code of the process.
   virtual int finish() { return exit_code_; }
 
@@ -45,6 +49,18 @@ class Node {
     callGuarded(
         handler, [&](const char* why) { refuse(topic, why); },
         [&](const char* what) { mishap(topic, what); });
+  }
+  /// The same for a person's command, who is told: `tell(why)`.
+  template <typename Handler, typename Tell>
+  void guardedCommand(const char* topic, Handler handler, Tell tell) {
+    guarded(topic, [&] {
+      try {
+        handler();
+      } catch (const InputError& error) {
+        tell(error.what());
+        throw;
+      }
+    });
   }
   /// A timer on the steady clock, every so often or once after its start() (`once`), whose handler
   /// is guarded. `what`: names it in counters and the log.
@@ -157,6 +173,12 @@ class Node {
 /// same text: it stays, failed in words, until `loop_text` has changed.
 int failToStart(ros::NodeHandle node, const ros::NodeHandle& private_node, const std::string& why);
 
+/// From now on SIGINT and `rosnode kill` are kept for spinUntilShutdown(). To be called
+/// right after ros::init().
+void hearShutdown();
+/// As ros::spin(); one that is told to end says `last` first, while its topics still are.
+void spinUntilShutdown(const std::function<void()>& last);
+
 /// The loop that the launch file gave as text: parameter `loop_text`, searched upwards.
 /// @throws InputError if there is none or it is no loop.
 LoopFile loopParameter(const ros::NodeHandle& private_node);
@@ -180,6 +202,9 @@ class Running {
     instance_ = std::make_unique<Class>(node, private_node, loop);
   }
   bool needed() const { return instance_ != nullptr; }
+  void sayLast() {
+    if (instance_) instance_->sayLast();
+  }
   /// The exit code of its process.
   int finish() { return instance_ ? instance_->finish() : 0; }
 
@@ -192,13 +217,15 @@ class Running {
 /// that respawns) waits for the shutdown.
 template <typename Class>
 int runNode(int argc, char** argv, const std::string& name) {
-  ros::init(argc, argv, name);
+  ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
+  hearShutdown();
   negotiateQuickly();
   const ros::NodeHandle node,
       private_node("~");  // outlives the catch: without a node nothing is logged
   try {
     Running<Class> running(node, private_node, ros::this_node::getName());
-    if (running.needed() || private_node.param("stay", false)) ros::spin();
+    if (running.needed() || private_node.param("stay", false))
+      spinUntilShutdown([&running] { running.sayLast(); });
     return running.finish();
   } catch (const std::exception& error) {
     ROS_FATAL("%s: %s", name.c_str(), error.what());

@@ -2,13 +2,25 @@
 
 #include <ros/ros.h>
 
+#include "base/text_hash.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "ros/conversions.hpp"
 #include "ros/plant_check.hpp"
 
 namespace fpc {
 
-bool PlantGate::introduce(const PlantInfo& info) {
+PlantGate::PlantGate(const LoopFile& loop)
+    : expected_(loop.plant_info), loop_digest_(textHash(loop.resolved)) {}
+
+std::string PlantGate::mismatchOf(const PlantInfo& info, const std::string& loop_digest) const {
   const std::string mismatch = plantMismatch(expected_, info);
+  if (!mismatch.empty() || loop_digest.empty() || loop_digest == loop_digest_) return mismatch;
+  return "plant_info: the plant reads another loop_text than this node";
+}
+
+bool PlantGate::introduce(const fmbpc::PlantInfo& msg) {
+  const PlantInfo info = fromMsg(msg);
+  const std::string mismatch = mismatchOf(info, msg.loop_digest);
   if (open_) require(mismatch.empty(), mismatch, "the plant of this run");
   problem_ = mismatch;
   remark_ = mismatch.empty() ? boundsDifference(expected_, info) : "";

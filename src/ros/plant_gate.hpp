@@ -2,22 +2,24 @@
 // that it has not announced.
 #pragma once
 
+#include <fmbpc/PlantInfo.h>
+
 #include <cstdint>
 #include <string>
 
-#include "fmbpc/base/ring.hpp"
+#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {
 
 class PlantGate {
  public:
-  explicit PlantGate(PlantInfo expected) : expected_(std::move(expected)) {}
+  explicit PlantGate(const LoopFile& loop);
 
   /// A plant introduces itself, at its start or before a new run: from now on its run counts,
   /// whichever number is larger. One that does not fit is logged and leaves problem().
   /// @return true if it fits. @throws InputError if the plant in service stops fitting: that
   /// message is to be refused.
-  bool introduce(const PlantInfo& info);
+  bool introduce(const fmbpc::PlantInfo& msg);
   /// False: to be dropped; it is counted.
   bool admits(std::uint64_t run_id);
   bool open() const { return open_; }  ///< a plant that fits has introduced itself
@@ -29,7 +31,10 @@ class PlantGate {
   std::uint64_t foreign() const { return foreign_; }  ///< messages of runs that were not announced
 
  private:
+  std::string mismatchOf(const PlantInfo& info, const std::string& loop_digest) const;
+
   PlantInfo expected_;
+  std::string loop_digest_;
   std::uint64_t run_id_{};
   std::string problem_, remark_;
   std::uint64_t foreign_{};

@@ -12,7 +12,6 @@
 
 namespace fpc {
 namespace {
-
 constexpr double kPoll = 0.05;          // [s] of wall time
 constexpr double kLookForStart = 0.01;  // [s] of wall time, at who is there
 constexpr double kIntroduceAgain = 1;   // [s], while nobody answers (in realtime samples go on)
@@ -41,7 +40,7 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(std::move(process), ringPolicy(loop)),
-      publishers_(node, session_.process().info(), disturbances, loop.ring.publish_clock),
+      publishers_(node, loop, session_.process().info(), disturbances),
       keeper_(node, loop, name()),
       ready_(node, loop, name(), namesToWaitFor(loop, private_node)),
       watch_(namesToWatch(loop, node)),
@@ -52,6 +51,8 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
                                    &PlantNode::onAction, this)),
       state_subscriber_(subscribe(node, topics::kLoopState, queueOf(ListenerKind::kPeer),
                                   &PlantNode::onLoopState, this)),
+      recorded_subscriber_(subscribe(node, topics::kSampleRecorded, queueOf(ListenerKind::kPeer),
+                                     &PlantNode::onRecorded, this)),
       pause_(serve(private_node, topics::kPause, &PlantNode::onPause, this)),
       step_(serve(private_node, topics::kStep, &PlantNode::onStep, this)),
       reset_(serve(private_node, topics::kReset, &PlantNode::onReset, this)),
@@ -95,10 +96,12 @@ void PlantNode::start() {
 
 void PlantNode::onPoll() {
   exchange();
+  if (session_.awaitsRecorder()) tryAdvance();  // for so long only
   const double now_s = steadyNow();
   if (!session_.mustResend(now_s)) return;
   session_.resent(now_s);
   publishers_.resend();
+  afterResend();
   if (now_s - answered_s_ < kIntroduceAgain || now_s - introduced_s_ < kIntroduceAgain) return;
   introduced_s_ = now_s;  // somebody may have been told of another run
   publishers_.introduce(session_.process());
@@ -117,7 +120,7 @@ void PlantNode::waitForOthers() {
   if (missing_.empty()) return;
   if (steadyNow() - begun_s_ < loop_.ring.ready_timeout_s) return;
   failure_ = "not ready within loop.ready_timeout_s = " + exactText(loop_.ring.ready_timeout_s) +
-             " s: " + join(missing_);
+             " s: " + ready_.named(missing_);
   failed_s_ = steadyNow();
   end_.say(failure_);
   health_.look();
@@ -138,6 +141,13 @@ void PlantNode::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
   if (session_.phase() == PlantPhase::kFinished && msg->run_id == now.run_id &&
       msg->step == now.step)
     session_.finish();
+}
+
+void PlantNode::onRecorded(const fmbpc::Recorded::ConstPtr& msg) {
+  const StepHeader sample{fromStamp(msg->header.stamp), msg->run_id, msg->step};
+  guarded(topics::kSampleRecorded, [&] {
+    if (session_.recorded(sample)) tryAdvance();
+  });
 }
 
 void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher) {
@@ -222,9 +232,7 @@ bool PlantNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response
 Health PlantNode::health(double now_s) const {
   if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
-    return {LoopMode::kStarting,
-            "waiting for " + (missing_.empty() ? "controller and listeners" : join(missing_)),
-            missing_};
+    return {LoopMode::kStarting, "waiting for " + ready_.named(missing_), missing_};
   if (!session_.process().trouble().empty())
     return {LoopMode::kFailed, session_.process().trouble(), {}};
   if (session_.phase() == PlantPhase::kFinished) return finishedHealth(now_s);
@@ -253,6 +261,10 @@ Health PlantNode::runningHealth(double now_s) const {
   std::string who = silent.empty() ? "" : "; no word from " + join(silent);
   if (who.empty() && !others.words.empty()) who = "; " + others.words;
   const std::string step = std::to_string(session_.process().measurement().header.step);
+  if (session_.unrecordedFor(now_s) > kPatience)
+    return {LoopMode::kStalled,
+            "sample " + step + " is not recorded" + who,
+            {node_.resolveName(kRecorder)}};
   const Actuator& actuator = session_.process().actuator();
   if (actuator.missing()) {
     const bool fallback = actuator.fellBack();
@@ -268,33 +280,13 @@ Health PlantNode::runningHealth(double now_s) const {
   if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= worst)) return plant;
   if (late) return {LoopMode::kStalled, "no action for sample " + step + who, silent};
   if (!silent.empty()) return {LoopMode::kDegraded, "no word from " + join(silent), silent};
-  if (!session_.stuck().empty()) return {LoopMode::kDegraded, session_.stuck(), {}};
+  const LoopMode stuck = session_.holdsAll() ? LoopMode::kHeld : LoopMode::kDegraded;
+  if (!session_.stuck().empty()) return {stuck, session_.stuck(), {}};
   if (others.mode == LoopMode::kAutomatic)
     return {LoopMode::kAutomatic, withRefusal("running", now_s), {}};
   if (others.mode == LoopMode::kManual) return {LoopMode::kManual, others.words, {}};
   const bool as_it_is = others.mode == LoopMode::kHeld || others.mode == LoopMode::kFallback;
   return {as_it_is ? others.mode : LoopMode::kDegraded, others.words, others.missing};
-}
-
-void PlantNode::report(Diagnostics::Status& status) const {
-  const ActionCounts& counts = session_.counts();
-  status.add("run_id", run_id_);
-  status.add("step", session_.process().measurement().header.step);
-  status.add("actions accepted", counts.accepted);
-  status.add("actions dropped: repeated", counts.repeated);
-  status.add("actions dropped: old step", counts.old);
-  status.add("actions dropped: later step", counts.later);
-  status.add("actions dropped: other run", counts.other_run);
-  status.add("actions dropped: wrong size", counts.wrong_size);
-  status.add("actions dropped: not finite", counts.not_finite);
-  status.add("measurements sent again", publishers_.resent());
-  status.add("inputs missing", session_.missingInputs());
-  status.add("realtime slips", session_.pacer().slips());
-  addValues(status);
-  addRefused(status, refused());
-  addRefused(status, authority().refused());
-  addRefused(status, ready_.authority().refused());
-  addRefused(status, keeper_.authority().refused());
 }
 
 }  // namespace fpc

@@ -4,6 +4,7 @@
 
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/LoopState.h>
+#include <fmbpc/Recorded.h>
 #include <fmbpc/Tracking.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
@@ -33,6 +34,9 @@ namespace fpc {
 /// spaces. Services: ~pause (SetBool), ~step (Trigger, while paused), ~reset (Trigger: sample 0 of
 /// a new run). Its loop_state is the summary of the loop.
 class PlantNode : public Node {
+ public:
+  void sayLast() override;
+
  protected:
   /// `disturbances`: names of those that have signals. The constructor of the plant's own class
   /// calls begin() at its end.
@@ -52,6 +56,8 @@ class PlantNode : public Node {
   virtual void mark(fmbpc::Measurement&) const {}
   /// The sample has been published.
   virtual void afterSample() {}
+  /// It is published again.
+  virtual void afterResend() {}
   /// The plant's own trouble; automatic: none.
   virtual Health plantHealth() const { return {LoopMode::kAutomatic, "", {}}; }
   virtual void addValues(Diagnostics::Status&) const {}
@@ -64,6 +70,7 @@ class PlantNode : public Node {
  private:
   void onAction(const fmbpc::ControlAction::ConstPtr& msg);
   void onTracking(const fmbpc::Tracking::ConstPtr& msg);
+  void onRecorded(const fmbpc::Recorded::ConstPtr& msg);
   void onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher);
   bool onPause(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onStep(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
@@ -98,7 +105,7 @@ class PlantNode : public Node {
   WallThrottle trouble_log_{1.0};
 
   ros::NodeHandle node_;
-  ros::Subscriber action_subscriber_, state_subscriber_, tracking_subscriber_;
+  ros::Subscriber action_subscriber_, state_subscriber_, recorded_subscriber_, tracking_subscriber_;
   ros::ServiceServer pause_, step_, reset_;
   ros::SteadyTimer poll_timer_, start_timer_, pace_timer_;
   HealthReporter health_;

@@ -1,5 +1,6 @@
 #include "ros/plant_publishers.hpp"
 
+#include "base/text_hash.hpp"
 #include "ros/conversions.hpp"
 #include "ros/queues.hpp"
 #include "ros/shared.hpp"
@@ -7,16 +8,17 @@
 
 namespace fpc {
 
-PlantPublishers::PlantPublishers(ros::NodeHandle node, const PlantInfo& info,
-                                 const std::vector<std::string>& disturbances, bool publish_clock)
+PlantPublishers::PlantPublishers(ros::NodeHandle node, const LoopFile& loop, const PlantInfo& info,
+                                 const std::vector<std::string>& disturbances)
     : steps_(info.sample_time_s, static_cast<double>(info.header.time_ns) / 1e9),
+      loop_digest_(textHash(loop.resolved)),
       info_(node.advertise<fmbpc::PlantInfo>(topics::kPlantInfo, 1, true)),
       measurement_(node.advertise<fmbpc::Measurement>(topics::kMeasurement,
                                                       queueOf(ListenerKind::kRecord), true)),
       signals_(node) {
   // Told to whoever connects, so that tools which start while sample 0 is held already have a time
   // that is not 0. Not latched: roscpp would wake its thread at every sample though nobody listens.
-  if (publish_clock)
+  if (loop.ring.publish_clock)
     clock_ = node.advertise<rosgraph_msgs::Clock>(
         topics::kClock, queueOf(ListenerKind::kViewer),
         [this](const ros::SingleSubscriberPublisher& listener) {
@@ -32,7 +34,11 @@ void PlantPublishers::begin(const Process& process) {
   clock(process.info().header.time_ns);
 }
 
-void PlantPublishers::introduce(const Process& process) { info_.publish(toMsg(process.info())); }
+void PlantPublishers::introduce(const Process& process) {
+  fmbpc::PlantInfo msg = toMsg(process.info());
+  msg.loop_digest = loop_digest_;
+  info_.publish(msg);
+}
 
 void PlantPublishers::sample(const Process& process, VectorRef disturbances,
                              const std::function<void(fmbpc::Measurement&)>& mark) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fmbpc/base/sample_clock.hpp"
+#include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/plant/process.hpp"
 #include "ros/signal_publishers.hpp"
 
@@ -19,8 +20,8 @@ namespace fpc {
 class PlantPublishers {
  public:
   /// `disturbances`: names of those that have signals.
-  PlantPublishers(ros::NodeHandle node, const PlantInfo& info,
-                  const std::vector<std::string>& disturbances, bool publish_clock);
+  PlantPublishers(ros::NodeHandle node, const LoopFile& loop, const PlantInfo& info,
+                  const std::vector<std::string>& disturbances);
 
   PlantPublishers(const PlantPublishers&) = delete;
   PlantPublishers& operator=(const PlantPublishers&) = delete;
@@ -43,6 +44,7 @@ class PlantPublishers {
   void signals(const Measurement& now, VectorRef disturbances);
 
   SampleClock steps_;
+  std::string loop_digest_;
   ros::Publisher info_, measurement_, clock_;
   SignalPublishers signals_;
   fmbpc::Measurement::ConstPtr last_;

@@ -75,10 +75,10 @@ std::string PlantSimulator::clamped() const { return joinedLines(forced_.lines()
 
 void PlantSimulator::publishState() {
   std::string remark = joinedLines(joinedLines(late_, clamped()), takeRefusedCommands());
-  if (state_.getNumSubscribers() == 0) return;
   fmbpc::PlantState state = toMsg(simulation_.state());
   state.remark = std::move(remark);
-  state_.publish(shared(std::move(state)));
+  last_ = shared(std::move(state));
+  state_.publish(last_);
 }
 
 Health PlantSimulator::plantHealth() const {
@@ -89,12 +89,16 @@ Health PlantSimulator::plantHealth() const {
 
 void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
   if (!commands_.pass(steadyNow())) return;
-  guarded(topics::kDisturbance, [&] {
+  const auto take = [&] {
     const Command command = fromMsg(*msg);
     const std::uint32_t step = simulation_.command(command);
     ROS_INFO("plant_simulator: disturbance of %s from sample %u on", join(command.name).c_str(),
              step);
-  });
+  };
+  const auto refused = [&](const std::string& why) {
+    effect_.publish(refusalOf(msg->header.stamp, simulation_.measurement().header, why));
+  };
+  guardedCommand(topics::kDisturbance, take, refused);
 }
 
 void PlantSimulator::addValues(Diagnostics::Status& status) const {

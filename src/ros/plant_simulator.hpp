@@ -32,6 +32,7 @@ class PlantSimulator : public PlantNode {
   std::vector<std::string> plantMissing() override;
   VectorRef shownDisturbances() const override { return simulation_.state().disturbances; }
   void afterSample() override;
+  void afterResend() override { state_.publish(last_); }
   std::vector<ros::Publisher> alsoRecorded() const override { return {state_, effect_}; }
   Health plantHealth() const override;
   void addValues(Diagnostics::Status& status) const override;
@@ -42,6 +43,7 @@ class PlantSimulator : public PlantNode {
   ForcedInputs forced_;
   CutOffsets cut_;
   std::string late_;  // measurements later than the model knows, told at sample 0
+  boost::shared_ptr<const fmbpc::PlantState> last_;
   ros::Publisher state_, effect_;
   ros::Subscriber disturbance_subscriber_;
 };

@@ -2,13 +2,16 @@
 
 #include <utility>
 
+#include "base/text_hash.hpp"
+#include "fmbpc/base/text.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
 
 namespace fpc {
 
-ReadyPublisher::ReadyPublisher(ros::NodeHandle node, std::string name)
+ReadyPublisher::ReadyPublisher(ros::NodeHandle node, const LoopFile& loop, std::string name)
     : name_(std::move(name)),
+      loop_digest_(textHash(loop.resolved)),
       publisher_(node.advertise<fmbpc::NodeReady>(topics::kReady, 1, true)) {}
 
 void ReadyPublisher::announce() {
@@ -16,13 +19,14 @@ void ReadyPublisher::announce() {
   announced_ = true;
   fmbpc::NodeReady msg;
   msg.node = name_;
+  msg.loop_digest = loop_digest_;
   publisher_.publish(msg);
   ROS_INFO("%s: ready", msg.node.c_str());
 }
 
 ReadyListener::ReadyListener(ros::NodeHandle node, const LoopFile& loop, std::string name,
                              const std::vector<std::string>& names)
-    : Node(node, loop, std::move(name)) {
+    : Node(node, loop, std::move(name)), loop_digest_(textHash(loop.resolved)) {
   for (const std::string& one : names) missing_.insert(node.resolveName(one));
   subscriber_ = subscribe(node, topics::kReady, queueOf(ListenerKind::kViewer),
                           &ReadyListener::onReady, this);
@@ -33,7 +37,21 @@ std::vector<std::string> ReadyListener::missing() const {
 }
 
 void ReadyListener::onReady(const fmbpc::NodeReady::ConstPtr& msg, const std::string& publisher) {
-  if (speaksFor(topics::kReady, publisher, msg->node)) missing_.erase(msg->node);
+  if (!speaksFor(topics::kReady, publisher, msg->node)) return;
+  if (msg->loop_digest.empty() || msg->loop_digest == loop_digest_) {
+    strangers_.erase(msg->node);
+    missing_.erase(msg->node);
+  } else if (missing_.count(msg->node) > 0 && strangers_.insert(msg->node).second) {
+    ROS_ERROR("%s: %s is ready for another loop: its loop_text is not this node's", name().c_str(),
+              msg->node.c_str());
+  }
+}
+
+std::string ReadyListener::named(const std::vector<std::string>& missing) const {
+  if (missing.empty()) return "controller and listeners";
+  if (strangers_.empty()) return join(missing);
+  const std::vector<std::string> strangers(strangers_.begin(), strangers_.end());
+  return join(missing) + "; another loop_text is read by " + join(strangers);
 }
 
 }  // namespace fpc

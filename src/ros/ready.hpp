@@ -16,29 +16,34 @@ namespace fpc {
 class ReadyPublisher {
  public:
   /// `name`: of the node that is ready.
-  ReadyPublisher(ros::NodeHandle node, std::string name);
+  ReadyPublisher(ros::NodeHandle node, const LoopFile& loop, std::string name);
   void announce();
   bool announced() const { return announced_; }
 
  private:
-  std::string name_;
+  std::string name_, loop_digest_;
   ros::Publisher publisher_;
   bool announced_{false};
 };
 
-/// Listens for the nodes named (relative to the namespace of `node`); each speaks for itself.
+/// Listens for the nodes named (relative to the namespace of `node`); each speaks for itself. Who
+/// reads another loop_text than this node is not ready.
 class ReadyListener : public Node {
  public:
   /// `name`: of the node that listens.
   ReadyListener(ros::NodeHandle node, const LoopFile& loop, std::string name,
                 const std::vector<std::string>& names);
   std::vector<std::string> missing() const;
+  /// In one line, with who of them reads another loop_text; if nobody is missing, what is left to
+  /// wait for.
+  std::string named(const std::vector<std::string>& missing) const;
   using Node::authority;
 
  private:
   void onReady(const fmbpc::NodeReady::ConstPtr& msg, const std::string& publisher);
 
-  std::set<std::string> missing_;
+  std::string loop_digest_;
+  std::set<std::string> missing_, strangers_;
   ros::Subscriber subscriber_;
 };
 

@@ -1,5 +1,7 @@
 #include "ros/registration.hpp"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <ros/connection_manager.h>
 #include <ros/network.h>
 #include <ros/publication.h>
@@ -7,53 +9,82 @@
 #include <ros/service_publication.h>
 #include <ros/topic_manager.h>
 #include <ros/xmlrpc_manager.h>
+#include <xmlrpcpp/XmlRpcException.h>
+
+#include <cstdlib>
+#include <utility>
 
 #include "ros/topics.hpp"
 
 namespace fpc {
 namespace {
 
+using XmlRpc::XmlRpcValue;
+
+constexpr int kEachLook = 8;  // so often; then every so many, for one whom nothing helps
+
+XmlRpcValue request(const std::vector<std::string>& arguments) {
+  XmlRpcValue all;
+  all[0] = ros::this_node::getName();
+  for (std::size_t i = 0; i < arguments.size(); ++i) all[static_cast<int>(i) + 1] = arguments[i];
+  return all;
+}
+
 /// One call of the master's interface, the caller's name first.
 bool tell(const std::string& method, const std::vector<std::string>& arguments) {
-  XmlRpc::XmlRpcValue request, response, payload;
-  request[0] = ros::this_node::getName();
-  for (std::size_t i = 0; i < arguments.size(); ++i)
-    request[static_cast<int>(i) + 1] = arguments[i];
-  return ros::master::execute(method, request, response, payload, false);
+  XmlRpcValue response, payload;
+  return ros::master::execute(method, request(arguments), response, payload, false);
 }
 
-int publishers(const std::string& uri) {
-  int count = 0;
-  std::vector<std::string> names;
-  ros::TopicManager::instance()->getAdvertisedTopics(names);
-  for (const std::string& topic : names)
-    if (const auto publication = ros::TopicManager::instance()->lookupPublication(topic))
-      count += tell("registerPublisher", {topic, publication->getDataType(), uri}) ? 1 : 0;
-  return count;
+/// One call of this node's own interface: what roscpp keeps to itself it tells and does for others.
+bool askSelf(const char* method, const XmlRpcValue& arguments, XmlRpcValue& payload) {
+  std::string host;
+  std::uint32_t port = 0;
+  ros::network::splitURI(ros::XMLRPCManager::instance()->getServerURI(), host, port);
+  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
+  XmlRpcValue response;
+  return client.execute(method, arguments, response) &&
+         ros::XMLRPCManager::instance()->validateXmlrpcResponse(method, response, payload);
 }
 
-int subscribers(const std::string& uri) {
-  int count = 0;
-  std::vector<std::string> names;
-  ros::TopicManager::instance()->getSubscribedTopics(names);
-  for (const std::string& topic : names)
-    count += tell("registerSubscriber", {topic, "*", uri}) ? 1 : 0;
-  return count;
+/// [[topic, [node, ...]], ...]
+std::map<std::string, std::set<std::string>> byTopic(XmlRpcValue& list) {
+  std::map<std::string, std::set<std::string>> nodes;
+  for (int i = 0; i < list.size(); ++i)
+    for (int j = 0; j < list[i][1].size(); ++j)
+      nodes[std::string(list[i][0])].insert(std::string(list[i][1][j]));
+  return nodes;
 }
 
-/// roscpp tells nobody which services a node has: all names that a node of ours may have are tried.
-int services(const std::string& uri, const std::string& space) {
-  const std::string address = "rosrpc://" + ros::network::getHost() + ":" +
-                              std::to_string(ros::ConnectionManager::instance()->getTCPPort());
-  int count = 0;
-  for (const char* name :
-       {topics::kPause, topics::kStep, topics::kReset, topics::kManual, topics::kAdapt,
-        topics::kManualInput, topics::kHold, "set_parameters", "get_loggers", "set_logger_level"}) {
-    const std::string service = space + "/" + name;
-    if (ros::ServiceManager::instance()->lookupServicePublication(service))
-      count += tell("registerService", {service, address, uri}) ? 1 : 0;
-  }
-  return count;
+bool has(const std::map<std::string, std::set<std::string>>& nodes, const std::string& topic,
+         const std::string& node) {
+  const auto found = nodes.find(topic);
+  return found != nodes.end() && found->second.count(node) > 0;
+}
+
+/// False: the TCP connection that roscpp describes so ("... on port N to [... on socket M]") has
+/// ended, and it waits, up to 20 s, before it tries again.
+bool isEstablished(const std::string& words) {
+  const auto port = words.find("on port "), socket = words.rfind("on socket ");
+  if (port == std::string::npos || socket == std::string::npos) return true;  // no TCP
+  const int descriptor = std::atoi(words.c_str() + socket + 10);
+  sockaddr_in here{};
+  tcp_info info{};
+  socklen_t size = sizeof here, info_size = sizeof info;
+  return getsockname(descriptor, reinterpret_cast<sockaddr*>(&here), &size) == 0 &&
+         ntohs(here.sin_port) == std::atoi(words.c_str() + port + 8) &&
+         getsockopt(descriptor, IPPROTO_TCP, TCP_INFO, &info, &info_size) == 0 &&
+         info.tcpi_state == TCP_ESTABLISHED;
+}
+
+/// Addresses of the publishers that this process is connected to, by topic; false: unknown.
+bool connected(std::map<std::string, std::set<std::string>>& to) {
+  XmlRpcValue info;
+  if (!askSelf("getBusInfo", request({}), info)) return false;
+  for (int i = 0; i < info.size(); ++i)
+    if (std::string(info[i][2]) == "i" && isEstablished(info[i][6]))
+      to[std::string(info[i][4])].insert(std::string(info[i][1]));
+  return true;
 }
 
 }  // namespace
@@ -88,11 +119,99 @@ bool KeptParameters::putBack() const {
   return any;
 }
 
-int registerAgain(const std::vector<std::string>& spaces) {
-  const std::string uri = ros::XMLRPCManager::instance()->getServerURI();
-  int count = publishers(uri) + subscribers(uri);
-  for (const std::string& space : spaces) count += services(uri, space);
-  return count;
+Links::Links()
+    : services_at_("rosrpc://" + ros::network::getHost() + ":" +
+                   std::to_string(ros::ConnectionManager::instance()->getTCPPort())) {}
+
+bool Links::lacks(const std::string& what, const std::string& node) {
+  const auto known = before_.find(what);
+  const int looks = known == before_.end() ? 1 : known->second.looks + 1;
+  missing_[what] = {looks, node};
+  return looks > 1 && (looks <= kEachLook || looks % kEachLook == 0);
+}
+
+Links::Master Links::look(const std::vector<std::string>& spaces, NodeAddresses& addresses) try {
+  if (!ros::ok()) return Master::kAnswers;
+  XmlRpcValue response, state;
+  if (!ros::master::execute("getSystemState", request({}), response, state, false))
+    return Master::kSilent;
+  before_ = std::exchange(missing_, {});
+  registered_ = 0;
+  const std::string& known = addresses.of(ros::this_node::getName());
+  if (!known.empty() && known != ros::XMLRPCManager::instance()->getServerURI())
+    return Master::kAnswers;  // another process has its name now, and this one is told to end
+  const ByTopic publishers = byTopic(state[0]);
+  lookAtTopics(publishers, byTopic(state[1]));
+  lookAtServices(byTopic(state[2]), spaces);
+  lookAtPublishers(publishers, addresses);
+  return registered_ > 0 ? Master::kForgot : Master::kAnswers;
+} catch (const XmlRpc::XmlRpcException&) {  // an answer that is none
+  return Master::kSilent;
+}
+
+void Links::lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers) {
+  const std::string &me = ros::this_node::getName(),
+                    &uri = ros::XMLRPCManager::instance()->getServerURI();
+  std::vector<std::string> names;
+  ros::TopicManager::instance()->getAdvertisedTopics(names);
+  for (const std::string& topic : names)
+    if (!has(publishers, topic, me) && lacks("publishes " + topic))
+      if (const auto publication = ros::TopicManager::instance()->lookupPublication(topic))
+        registered_ += tell("registerPublisher", {topic, publication->getDataType(), uri}) ? 1 : 0;
+  names.clear();  // the next call appends
+  ros::TopicManager::instance()->getSubscribedTopics(names);
+  for (const std::string& topic : names)
+    if (!has(subscribers, topic, me) && lacks("subscribes " + topic))
+      registered_ += tell("registerSubscriber", {topic, "*", uri}) ? 1 : 0;
+}
+
+/// roscpp tells nobody which services a node has: all names that a node of ours may have are tried.
+void Links::lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces) {
+  for (const std::string& space : spaces)
+    for (const char* name : {topics::kPause, topics::kStep, topics::kReset, topics::kManual,
+                             topics::kAdapt, topics::kManualInput, topics::kHold, "set_parameters",
+                             "get_loggers", "set_logger_level"}) {
+      const std::string service = space + "/" + name;
+      if (!has(services, service, ros::this_node::getName()) &&
+          ros::ServiceManager::instance()->lookupServicePublication(service) &&
+          lacks("serves " + service))
+        registered_ += tell("registerService",
+                            {service, services_at_, ros::XMLRPCManager::instance()->getServerURI()})
+                           ? 1
+                           : 0;
+    }
+}
+
+void Links::lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses) {
+  ByTopic to;
+  if (!connected(to)) return;
+  std::vector<std::string> names;
+  ros::TopicManager::instance()->getSubscribedTopics(names);
+  for (const std::string& topic : names) {
+    const auto found = publishers.find(topic);
+    if (found == publishers.end()) continue;
+    XmlRpcValue kept = request({topic}), done;
+    kept[2].setSize(0);
+    for (const std::string& uri : to[topic]) kept[2][kept[2].size()] = uri;
+    XmlRpcValue all = kept;
+    bool incomplete = false;
+    for (const std::string& node : found->second) {
+      const std::string& uri = addresses.of(node);
+      if (node == ros::this_node::getName() || uri.empty() || to[topic].count(uri) > 0) continue;
+      if (!answersAt(uri, 0.5)) continue;  // whoever cannot be reached is told of elsewhere
+      all[2][all[2].size()] = uri;
+      incomplete = lacks(topic + " of " + node, node) || incomplete;
+    }
+    // The first drops a connection that roscpp has given up for now.
+    if (incomplete && askSelf("publisherUpdate", kept, done)) askSelf("publisherUpdate", all, done);
+  }
+}
+
+std::string Links::missing(const std::set<std::string>& members) const {
+  std::string words;
+  for (const auto& [what, item] : missing_)
+    if (item.looks > 2 && members.count(item.node) > 0) words += (words.empty() ? "" : ", ") + what;
+  return words;
 }
 
 }  // namespace fpc

@@ -1,11 +1,15 @@
-// What a node has registered with the master, for a master that was started anew and knows nothing.
+// What a node has registered with the master and whom it is connected to, compared with what it
+// should have, and mended.
 #pragma once
 
 #include <ros/ros.h>
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
+
+#include "ros/neighbours.hpp"
 
 namespace fpc {
 
@@ -22,9 +26,38 @@ class KeptParameters {
   std::map<std::string, XmlRpc::XmlRpcValue> values_;  // by full name
 };
 
-/// Registers all topics of this process, and the services in the name spaces of its nodes, once
-/// more. Connections that live are not touched.
-/// @return how many.
-int registerAgain(const std::vector<std::string>& spaces);
+/// The topics and services of this process and its connections. The master tells a node once who
+/// publishes; what is lost then, or taken away by a stranger, nobody else makes again.
+class Links {
+ public:
+  enum class Master { kAnswers, kSilent, kForgot };
+  Links();  ///< of a node that has been started
+  /// Compares what the master has of this process (services: in `spaces`, the names of its nodes)
+  /// with what there is, and who publishes what it subscribes to with whom it is connected to. What
+  /// lacks in two looks running is made again. `addresses`: of this look.
+  /// @return kForgot: something was registered again.
+  Master look(const std::vector<std::string>& spaces, NodeAddresses& addresses);
+  /// Something lacked in the last look.
+  bool suspicious() const { return !missing_.empty(); }
+  /// "measurement of /plant_simulator" for connections to `members` that could not be made for two
+  /// looks; empty: all are there.
+  std::string missing(const std::set<std::string>& members) const;
+
+ private:
+  using Names = std::set<std::string>;
+  using ByTopic = std::map<std::string, Names>;
+  struct Missing {
+    int looks;
+    std::string node;  // the publisher that is not connected; empty: a registration
+  };
+  bool lacks(const std::string& what, const std::string& node = {});
+  void lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers);
+  void lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces);
+  void lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses);
+
+  const std::string services_at_;  // asked at the start: roscpp has no port any more when it ends
+  std::map<std::string, Missing> missing_, before_;
+  int registered_{};  // in this look
+};
 
 }  // namespace fpc

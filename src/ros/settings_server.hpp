@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fmbpc/control/settings.hpp"
+#include "ros/counted_vectors.hpp"
 
 namespace fpc {
 

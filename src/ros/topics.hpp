@@ -20,6 +20,7 @@ inline constexpr char kSetpointEffect[] = "setpoint_effect";
 inline constexpr char kDisturbance[] = "disturbance";
 inline constexpr char kDisturbanceEffect[] = "disturbance_effect";
 inline constexpr char kRecorded[] = "recorded";
+inline constexpr char kSampleRecorded[] = "sample_recorded";
 inline constexpr char kReady[] = "ready";
 inline constexpr char kRunEnd[] = "run_end";
 inline constexpr char kLoopState[] = "loop_state";
@@ -31,6 +32,7 @@ inline constexpr char kClock[] = "/clock";
 
 // Keys of loop.publishers that are no topics: gateway.enable_topic, private services.
 inline constexpr char kEnable[] = "enable";
+inline constexpr char kTags[] = "tags";
 inline constexpr char kServices[] = "services";
 
 // Private action.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/study/fitness.hpp"
@@ -11,9 +12,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kAtBound = 1e-6;  // of an input's range
-constexpr double kLockedError =
-    0.02;  // of the setpoint, below which an output is where it should be
+constexpr double kAtBound = 1e-6;       // of an input's range
+constexpr double kLockedError = 0.004;  // of the range, below which an output is where it should be
 
 /// -1: at the lower bound, 1: at the upper one, 0: between them.
 int boundOf(const InputLimits& limits, const Vector& input, Index i) {
@@ -44,13 +44,15 @@ bool everMoved(const RunRecord& record, Index i) {
   return false;
 }
 
-bool lockedOver(const RunRecord& record, std::size_t first, std::size_t last) {
+bool lockedOver(const std::vector<SignalInfo>& outputs, const RunRecord& record, std::size_t first,
+                std::size_t last) {
   const std::size_t quarter = std::max<std::size_t>(1, (last - first) / 4);
   const auto& setpoint = record.samples[last - 1].tracking.setpoint;
   for (Index i = 0; i < setpoint.size(); ++i) {
     const double begin = meanError(record, i, first, first + quarter);
     const double end = meanError(record, i, last - quarter, last);
-    if (end >= begin && end > kLockedError * std::abs(setpoint[i])) return true;
+    const SignalInfo& output = outputs[static_cast<std::size_t>(i)];
+    if (end >= begin && end > kLockedError * (output.upper - output.lower)) return true;
   }
   return false;
 }
@@ -91,6 +93,21 @@ double leastOutput(const RunRecord& record, std::size_t output) {
     if (sample.measurement.outputs.size() > static_cast<Index>(output))
       least = std::min(least, sample.measurement.outputs[static_cast<Index>(output)]);
   return least;
+}
+
+/// FNV-1a over the words of the numbers.
+std::uint64_t trajectoryHash(const RunRecord& record) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const auto& sample : record.samples)
+    for (const Vector* values :
+         {&sample.measurement.outputs, &sample.measurement.disturbances,
+          &sample.measurement.input_applied, &sample.state.outputs, &sample.state.disturbances})
+      for (const double value : *values) {
+        std::uint64_t word = 0;
+        std::memcpy(&word, &value, sizeof word);
+        hash = (hash ^ word) * 1099511628211ULL;
+      }
+  return hash;
 }
 
 /// Why a run has no cost.
@@ -140,7 +157,8 @@ std::uint64_t lockedSamples(const LoopFile& loop, const RunRecord& record, int l
       const int now = there ? boundOf(limits, record.samples[k].measurement.input_applied, i) : 0;
       if (k < n && now == bound) continue;
       const std::size_t length = k - first;
-      if (bound != 0 && length >= enough && length > longest && lockedOver(record, first, k))
+      if (bound != 0 && length >= enough && length > longest &&
+          lockedOver(loop.plant_info.outputs, record, first, k))
         longest = length;
       bound = now;
       first = k;
@@ -151,9 +169,10 @@ std::uint64_t lockedSamples(const LoopFile& loop, const RunRecord& record, int l
 
 RunJudgement judgeRun(const StudyFile& study, const LoopFile& loop, RunRecord record) {
   const std::uint64_t outside_model = samplesOutsideModel(loop, record);  // as the law saw it
+  RunJudgement judged;
+  judged.trajectory = trajectoryHash(record);
   if (study.noise_free) record = withoutNoise(std::move(record));
   const Summary summary = summarize(loop, record, 0.0);
-  RunJudgement judged;
   const auto note = [&](RunFailure kind) -> std::uint64_t& {
     return judged.failures[static_cast<std::size_t>(kind)];
   };

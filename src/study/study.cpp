@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <exception>
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <tuple>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/loop/run.hpp"
@@ -23,6 +26,22 @@ RunJudgement failed(const std::string& words) {
   run.failures[static_cast<std::size_t>(RunFailure::kDiverged)] = 1;
   run.trouble = words;
   return run;
+}
+
+/// A seed that changes nothing makes one case of many: whatever the reason, such a study is none.
+void requireDifferentCases(const StudyPlan& plan, const StudyResult& result) {
+  std::map<std::tuple<std::size_t, std::string, std::uint64_t>, std::size_t> first;
+  for (std::size_t run = 0; run < plan.runs(); ++run) {
+    if (!result.runs[run] || !std::isfinite(result.runs[run]->cost))
+      continue;  // it may have no samples
+    const StudyCase& now = plan.cases()[plan.caseOf(run)];
+    const auto [at, is_new] = first.insert(
+        {{plan.loopOf(run), now.scenario, result.runs[run]->trajectory}, plan.caseOf(run)});
+    if (!is_new)
+      throw InputError("loop " + plan.study().loops[plan.loopOf(run)].name + ": '" +
+                       plan.cases()[at->second].name + "' and '" + now.name +
+                       "' gave the same trajectory: expected seeds, noise or vary that change it");
+  }
 }
 
 class StudySession {
@@ -55,6 +74,7 @@ class StudySession {
     result_.complete = std::all_of(texts.begin(), texts.end(), [](const auto& t) { return t; });
     if (keeps_) keep();
     if (keeps_ && result_.complete) journal_.remove();
+    if (pool_.leads()) requireDifferentCases(plan_, result_);
     return std::move(result_);
   }
 

@@ -5,13 +5,13 @@
 #include <cstdlib>
 
 #include "base/random.hpp"
+#include "base/text_hash.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "study/loop_contents.hpp"
-#include "study/text_hash.hpp"
 
 namespace fpc {
 namespace {
@@ -19,7 +19,7 @@ namespace {
 using Eigen::Index;
 
 /// The number at a key of a resolved loop, or the plant's own where the loop does not say.
-double numberAt(const LoopFile& loop, const std::string& key) {
+double ownNumber(const LoopFile& loop, const std::string& key) {
   const std::string text = scalarOf(loop.resolved, key);
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
@@ -34,6 +34,15 @@ double numberAt(const LoopFile& loop, const std::string& key) {
     for (const Quantity& quantity : quantities)
       if (key == section + "." + quantity.name) return quantity.nominal;
   throw InputError("vary." + key + ": expected " + expected);
+}
+
+/// What factors are laid over.
+double numberAt(const LoopFile& loop, const std::string& key) {
+  const double number = ownNumber(loop, key);
+  require(
+      number != 0.0, "vary." + key,
+      "values (value:LOWER:UPPER) in place of factors: the number of loop " + loop.name + " is 0");
+  return number;
 }
 
 /// Distance from the least to the largest setpoint, or the setpoint where that never changes.
@@ -61,9 +70,13 @@ Overrides noiseOf(const StudyFile& study, const LoopFile& loop) {
     noise.emplace_back("noise.std." + output, exactText(std));
   if (study.noise_percent == 0.0) return noise;
   const Vector span = spanOf(loop);
-  for (Index i = 0; i < span.size(); ++i)
-    noise.emplace_back("noise.std." + loop.plant_info.outputs[static_cast<std::size_t>(i)].name,
-                       exactText(0.01 * study.noise_percent * span[i]));
+  for (Index i = 0; i < span.size(); ++i) {
+    const std::string& output = outputs[static_cast<std::size_t>(i)];
+    require(span[i] > 0.0, "noise.percent_of_span",
+            "a std for each output in place of it: the setpoint of " + output + " in loop " +
+                loop.name + " rests at 0");
+    noise.emplace_back("noise.std." + output, exactText(0.01 * study.noise_percent * span[i]));
+  }
   return noise;
 }
 
@@ -85,8 +98,9 @@ std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy) {
     keys.emplace_back("disturbance.pattern.seed");
   if (noisy) keys.emplace_back("noise.seed");
   const auto& sensors = loop.simulation.instruments.sensors;
-  if (std::any_of(sensors.begin(), sensors.end(),
-                  [](const auto& sensor) { return sensor.second.noise_std > 0.0; }))
+  if (std::any_of(sensors.begin(), sensors.end(), [](const auto& sensor) {
+        return sensor.second.noise_std > 0.0 || sensor.second.lost > 0.0;
+      }))
     keys.emplace_back("sensors.seed");
   const auto& parameters = loop.simulation.parameters;
   const auto local = parameters.find("local_noise");

@@ -2,10 +2,10 @@
 
 #include <fstream>
 
+#include "base/files.hpp"
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "study/replace_file.hpp"
 
 namespace fpc {
 namespace {
@@ -13,9 +13,13 @@ namespace {
 using Json = OrderedJson;
 
 Json toJson(const RunJudgement& run) {
-  return {{"cost", numberOrNull(run.cost)},   {"move", numberOrNull(run.move)},
-          {"least", numberOrNull(run.least)}, {"largest_move", numberOrNull(run.largest_move)},
-          {"failures", run.failures},         {"trouble", run.trouble}};
+  return {{"cost", numberOrNull(run.cost)},
+          {"move", numberOrNull(run.move)},
+          {"least", numberOrNull(run.least)},
+          {"largest_move", numberOrNull(run.largest_move)},
+          {"failures", run.failures},
+          {"trajectory", run.trajectory},
+          {"trouble", run.trouble}};
 }
 
 RunJudgement runOf(const Json& json) {
@@ -26,6 +30,7 @@ RunJudgement runOf(const Json& json) {
   run.largest_move = numberOrInfinity(json.at("largest_move"));
   run.failures = json.at("failures").get<std::vector<std::uint64_t>>();
   run.failures.resize(kRunFailures, 0);
+  run.trajectory = json.at("trajectory").get<std::uint64_t>();
   run.trouble = json.at("trouble");
   return run;
 }
@@ -42,7 +47,7 @@ void writeStudyState(const std::string& file, const std::string& fingerprint,
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (runs[i]) done[std::to_string(i)] = toJson(*runs[i]);
   const Json json{{"study", fingerprint}, {"runs", done}};
-  replaceFile(file, json.dump() + "\n");
+  writeText(json.dump() + "\n", file);
 }
 
 std::vector<std::optional<RunJudgement>> readStudyState(const std::string& file,

@@ -112,9 +112,13 @@ Interval wilsonInterval(double wins, std::size_t n, double confidence) {
   return {wins > 0.0 ? centre - half : 0.0, wins < count ? centre + half : 1.0};
 }
 
+std::size_t casesForMedianInterval(double confidence) {
+  return static_cast<std::size_t>(std::ceil(1.0 - std::log2(1.0 - confidence)));
+}
+
 Interval medianInterval(const std::vector<double>& sorted, double confidence) {
   const std::size_t n = sorted.size();
-  if (n == 0) return {kNaN, kNaN};
+  if (n < casesForMedianInterval(confidence)) return {kNaN, kNaN};
   // Largest j with P(B < j) <= (1 - confidence) / 2, B binomial(n, 1/2), in logarithms.
   const double count = static_cast<double>(n);
   double below = 0.0;

@@ -2,12 +2,12 @@
 
 #include <fstream>
 
+#include "base/files.hpp"
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "study/replace_file.hpp"
 
 namespace fpc {
 namespace {
@@ -54,7 +54,7 @@ void writeState(const std::string& file, const std::string& identity, const Tune
          {"scenarios", numbers(step.scenarios.data(), step.scenarios.size())},
          {"failures", step.failures}});
   const Json json{{"tuning", identity}, {"seconds", state.seconds}, {"evaluations", steps}};
-  replaceFile(file, json.dump() + "\n");
+  writeText(json.dump() + "\n", file);
 }
 
 TuneState parseState(const std::string& text, const std::string& file,

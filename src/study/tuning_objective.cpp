@@ -7,13 +7,13 @@
 
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
+#include "base/text_hash.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/config/extending_loop.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "fmbpc/study/fitness.hpp"
 #include "study/loop_contents.hpp"
-#include "study/text_hash.hpp"
 
 namespace fpc {
 namespace {

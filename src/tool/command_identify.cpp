@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "base/files.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/config/loop_file.hpp"
 #include "fmbpc/config/model_file.hpp"
@@ -96,7 +97,7 @@ int identifyStructure(const IdentifyArguments& a) {
     std::fprintf(stderr, "fmbpc: interrupted, nothing is written\n");
     return kInterrupted;
   }
-  if (!a.out.empty()) writeAtOnce(writeModel(report.found.model), a.out);
+  if (!a.out.empty()) writeText(writeModel(report.found.model), a.out);
   if (!a.plots.empty()) writeModelPlots(report, a.plots);
   std::cout << (a.json ? toJson(report) + "\n" : toTables(report));
   if (!a.json && !a.out.empty()) std::cout << "written: " << a.out << "\n";

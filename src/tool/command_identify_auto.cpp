@@ -5,6 +5,7 @@
 #include <iostream>
 #include <optional>
 
+#include "base/files.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
@@ -232,7 +233,7 @@ int identifyAuto(const IdentifyArguments& a) {
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   if (!a.out.empty()) found.model.name = fs::path(a.out).stem().string();
   const IdentifiedModel model = settle(a, records, found);
-  if (!a.out.empty()) writeAtOnce(writeIdentified(model), a.out);
+  if (!a.out.empty()) writeText(writeIdentified(model), a.out);
   const auto parts = judgeAll(records, model);
   if (records.validation) tellCoverage(parts.back(), found);
   const Row remarks = remarksOf(records, found, model, parts);

@@ -13,7 +13,7 @@ int recover(const RecoverArguments& arguments) {
   const std::string& folder = arguments.folder;
   require(std::filesystem::is_directory(folder), folder, "an existing folder of a loop's runs");
   const std::vector<Recovered> all = recoverFolder(folder);
-  require(!all.empty(), folder, "a journal.bin that a recorder left behind, in it or interrupted/");
+  require(!all.empty(), folder, "a journal.bin that a recorder left behind, in it or history/");
   bool every = true;
   for (const Recovered& one : all) {
     every = every && one.problem.empty();

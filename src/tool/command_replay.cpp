@@ -31,6 +31,9 @@ Json jsonOf(const ReplayedActions& actions) {
 Json jsonOf(const ReplayArguments& a, const ReplayResult& result) {
   return {{"bag", a.bag},
           {"measurements", result.measurements},
+          {"missing", result.missing},
+          {"missing_samples", result.missing_samples},
+          {"ended", result.ended},
           {"base_action", jsonOf(result.base)},
           {"control_action", jsonOf(result.control)},
           {"stood_in", result.stood_in},
@@ -47,6 +50,10 @@ void print(const char* topic, const ReplayedActions& actions) {
 }
 
 void print(const ReplayResult& result) {
+  for (const std::string& words : result.missing) std::printf("missing: %s\n", words.c_str());
+  if (result.missing_samples > 0)
+    std::printf("%-15s %7u samples are not whole in the bag\n", "", result.missing_samples);
+  if (!result.ended) std::printf("the bag ends before the final sample of its run\n");
   std::printf("%-15s %7u played\n", "measurement", result.measurements);
   print("base_action", result.base);
   print("control_action", result.control);

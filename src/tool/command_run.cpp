@@ -71,8 +71,11 @@ std::vector<LoopFile> readAll(const RunArguments& arguments) {
   return loops;
 }
 
-void draw(const std::string& folder) {
-  const PlotResult plot = drawPlot(folder);
+/// Of several runs one picture.
+void draw(const std::vector<std::string>& folders, const std::string& out) {
+  const PlotResult plot =
+      folders.size() == 1 ? drawPlot(out)
+                          : drawComparison(folders, (fs::path(out) / "comparison.png").string());
   if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
 }
 
@@ -110,12 +113,13 @@ int run(const RunArguments& arguments) {
     if (!folder.empty() && loops.size() > 1) folder = (fs::path(folder) / loop.name).string();
     summaries.push_back(runOne(loop, folder, arguments.commands, failed));
     if (!folder.empty()) written.push_back(folder);
-    if (!folder.empty() && !arguments.no_plot && !interruption()) draw(folder);
     if (interruption()) break;
   }
+  if (!written.empty() && !arguments.no_plot && !interruption()) draw(written, arguments.out);
   std::cout << (arguments.json ? jsonOf(summaries) + "\n" : toTable(summaries));
   if (!arguments.json)
     for (const auto& folder : written) std::cout << "written: " << folder << "\n";
+  if (!arguments.json && !interruption()) printVerdict(summaries);
   if (!interruption()) return reportTrouble(summaries) || failed ? 1 : 0;
   std::fprintf(stderr, "fmbpc: interrupted after %u steps\n", summaries.back().steps);
   return kInterrupted;

@@ -50,6 +50,16 @@ Json jsonOf(const Eigenvalues& values) {
   return list;
 }
 
+/// By rows.
+Json jsonOf(const Matrix& matrix) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    rows.push_back(Json::array());
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) rows.back().push_back(matrix(i, j));
+  }
+  return rows;
+}
+
 Json jsonOf(const std::vector<SignalInfo>& signals, const Vector& values) {
   Json object = Json::object();
   for (std::size_t i = 0; i < signals.size(); ++i)
@@ -134,6 +144,13 @@ const char* word(LyapunovStatus status) {
   }
 }
 
+/// What others need to check it.
+void addTo(Json& json, const CommonLyapunov& certificate) {
+  if (!certificate.ok()) return;
+  json["decay"] = certificate.decay;
+  json["P"] = jsonOf(certificate.P);
+}
+
 Json certificateOf(const StabilitySubject& s, const std::vector<RuleChoice>& choices) {
   std::vector<Matrix> maps;
   std::vector<RuleChoice> usable;
@@ -143,14 +160,16 @@ Json certificateOf(const StabilitySubject& s, const std::vector<RuleChoice>& cho
     maps.push_back(loop.A);
     usable.push_back(choices[c]);
   }
-  Json json = {{"of", choices.size()}, {"applicable", maps.size()}};
+  Json json = {{"of", choices.size()}, {"applicable", maps.size()}, {"maps", Json::array()}};
+  for (std::size_t i = 0; i < maps.size(); ++i)
+    json["maps"].push_back({{"rules", text(usable[i])}, {"A", jsonOf(maps[i])}});
   if (maps.empty()) {
     json["status"] = "none";
     return json;
   }
   const CommonLyapunov whole = commonLyapunov(maps);
   json["status"] = word(whole.status);
-  if (whole.ok()) json["decay"] = whole.decay;
+  addTo(json, whole);
   if (whole.ok() || whole.status == LyapunovStatus::kNoSolver) return json;
   std::vector<std::size_t> order(maps.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -160,7 +179,7 @@ Json certificateOf(const StabilitySubject& s, const std::vector<RuleChoice>& cho
   json["region"] = {{"rules", members},
                     {"chosen", "by firing weight at the point, kept while a common P remains"},
                     {"status", word(region.certificate.status)}};
-  if (region.certificate.ok()) json["region"]["decay"] = region.certificate.decay;
+  addTo(json["region"], region.certificate);
   return json;
 }
 

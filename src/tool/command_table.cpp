@@ -7,12 +7,18 @@
 
 namespace fpc::tool {
 
-int table(const std::vector<std::string>& folders) {
+int table(const std::vector<std::string>& folders, bool brief) {
   std::vector<Summary> summaries;
   for (const auto& folder : folders)
     summaries.push_back(readSummary((std::filesystem::path(folder) / "summary.json").string()));
-  std::cout << toTable(summaries);
+  std::cout << (brief ? shortTable(summaries) : toTable(summaries));
+  printVerdict(summaries);
   return 0;
+}
+
+void printVerdict(const std::vector<Summary>& summaries) {
+  const std::string verdict = verdictOf(summaries);
+  if (!verdict.empty()) std::cout << "\n" << verdict << "\n";
 }
 
 }  // namespace fpc::tool

@@ -9,7 +9,8 @@
 
 namespace fpc {
 class RunPool;
-}
+struct Summary;
+}  // namespace fpc
 
 namespace fpc::tool {
 
@@ -21,6 +22,7 @@ struct RunArguments {
   std::string commands;          ///< file of what an operator does, empty: nothing
   bool json{false};
   bool no_plot{false};
+  bool brief{false};  ///< table: a line per run
 };
 
 struct LoopsArguments {
@@ -166,7 +168,10 @@ int stability(const StabilityArguments& arguments);
 int reproduce(const ReproduceArguments& arguments);
 int tune(const TuneArguments& arguments);
 int study(const StudyArguments& arguments);
-int table(const std::vector<std::string>& folders);
+/// `brief`: only what all of them control, and the movement.
+int table(const std::vector<std::string>& folders, bool brief);
+/// Of a comparison, on a line of its own at the end.
+void printVerdict(const std::vector<Summary>& summaries);
 int replay(const ReplayArguments& arguments);
 int recover(const RecoverArguments& arguments);
 /// Becomes another program: returns only by throwing.

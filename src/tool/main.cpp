@@ -4,8 +4,11 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <stdexcept>
+#include <string>
 
 #include "tool/commands.hpp"
+#include "tool/printed.hpp"
 #include "tool/ranks.hpp"
 #include "tool/study_options.hpp"
 #include "tool/topic_options.hpp"
@@ -21,14 +24,13 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
   run->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
       ->allow_extra_args(false);
   run->add_option("--out", a.out,
-                  "folder for trajectory.csv, summary.json, plot.png (one below it per loop if "
-                  "several; default: "
-                  "nothing is written)");
+                  "folder for trajectory.csv, summary.json, plot.png; of several loops one below "
+                  "it each, with comparison.png (default: nothing is written)");
   run->add_option("--commands", a.commands,
                   "file of what an operator does at which time (docs/operation.md)");
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
   run->add_flag("--no-plot", a.no_plot, "no plot.png");
-  run->footer("Example: fmbpc run asp_case1 asp_case1_pi_s --out results\n");
+  run->footer("Example: fmbpc run asp_best asp_case1_pi_x_best --out results\n");
   run->callback([&a] { chosen = [&a] { return fpc::tool::run(a); }; });
 }
 
@@ -113,7 +115,7 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   addFormat(*identify, a.format);
   identify->add_option("--seed", a.seed, "of the starts of all fits")->capture_default_str();
   identify->footer(
-      "Example: fmbpc identify tanks.csv --auto --inputs u_V --outputs y_V --out tanks.yaml\n"
+      "Example: fmbpc identify examples/reactor_record.csv --auto --inputs q_c --outputs CA\n"
       "         fmbpc identify results/trajectory.csv asp_d --out my_model.yaml\n");
   identify->callback([&a] { chosen = [&a] { return fpc::tool::identify(a); }; });
 }
@@ -168,7 +170,8 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
       app.add_subcommand("table", "Prints one table of runs that were written before");
   table->add_option("DIR", a.loops, "folders with a summary.json")->required();
   table->footer("Example: fmbpc table results/asp_case1 results/asp_case1_pi_s\n");
-  table->callback([&a] { chosen = [&a] { return fpc::tool::table(a.loops); }; });
+  table->add_flag("--short", a.brief, "a line per run: errors of what all control, movement");
+  table->callback([&a] { chosen = [&a] { return fpc::tool::table(a.loops, a.brief); }; });
 }
 
 void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
@@ -237,14 +240,17 @@ int main(int argc, char** argv) {
   fpc::tool::addReplay(app, replay, chosen);
   fpc::tool::RecoverArguments recover;
   fpc::tool::addRecover(app, recover, chosen);
+  fpc::tool::addOperate(app, chosen);
   fpc::tool::addWatch(app);
   fpc::tool::refuseEmptyNames(app);
   try {
     if (const auto words = fpc::tool::wordsForWatch(argc, argv)) return fpc::tool::watch(*words);
+    const std::string unknown = fpc::tool::unknownCommand(app, argc, argv);
+    if (!unknown.empty()) throw std::invalid_argument(unknown);  // before its --help is answered
     app.parse(argc, argv);
-    return chosen();
+    return fpc::tool::printed(chosen());
   } catch (const CLI::ParseError& e) {
-    if (e.get_exit_code() == 0) return app.exit(e);
+    if (e.get_exit_code() == 0) return fpc::tool::printed(app.exit(e));
     std::fprintf(stderr, "fmbpc: %s\n", fpc::tool::wrongWith(app, e, argc, argv).c_str());
   } catch (const std::exception& e) {
     std::fprintf(stderr, "fmbpc: %s\n", e.what());

@@ -9,6 +9,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "tool/mpi_pool.hpp"
+#include "tool/printed.hpp"
 #include "tool/study_options.hpp"
 
 namespace {
@@ -64,7 +65,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "fmbpc: expected an MPI that lets a program have threads\n");
     MPI_Abort(MPI_COMM_WORLD, 1);
   }
-  const int code = guardedWork(argc, argv);
+  const int code = fpc::tool::printed(guardedWork(argc, argv));
   MPI_Finalize();
   return code;
 }

@@ -1,6 +1,7 @@
-// In place of bag_run.cpp and bag_table.cpp in a build without ROS.
+// In place of bag_run.cpp, bag_table.cpp and operator_line.cpp in a build without ROS.
 #include "fmbpc/base/input_error.hpp"
 #include "loop/bag_reader.hpp"
+#include "loop/operator_line.hpp"
 
 namespace fpc {
 namespace {
@@ -19,5 +20,9 @@ RecordedRun readBagRun(const std::string& bag, const LoopFile&, int) {
 }
 
 CsvTable readBag(const std::string& file) { refuse(file, "a CSV"); }
+
+std::string askLoop(const OperatorCommand&) {
+  throw InputError("a loop over topics: expected a program built with ROS");
+}
 
 }  // namespace fpc

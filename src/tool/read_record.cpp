@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "config/public_record.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "loop/bag_reader.hpp"
 
@@ -22,7 +23,11 @@ bool isBag(const std::string& file) {
 }  // namespace
 
 CsvTable readRecord(const std::string& file, const CsvFormat& format) {
-  require(std::filesystem::is_regular_file(file), file, "an existing CSV or bag");
+  if (!std::filesystem::is_regular_file(file)) {
+    const std::string record = whereToGet(file);
+    throw InputError(file + ": expected an existing CSV or bag" +
+                     (record.empty() ? "" : ": " + record));
+  }
   return isBag(file) ? readBag(file) : readCsv(file, format);
 }
 

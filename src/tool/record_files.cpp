@@ -1,7 +1,6 @@
 #include "tool/record_files.hpp"
 
 #include <filesystem>
-#include <fstream>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -32,18 +31,6 @@ void checkTarget(const std::string& file) {
   const fs::path folder = fs::absolute(file).parent_path();
   require(fs::is_directory(folder), file, "a file in an existing folder");
   require(!fs::is_directory(file), file, "a file, not a folder");
-}
-
-void writeAtOnce(const std::string& text, const std::string& file) {
-  const std::string partial = file + ".partial";
-  std::ofstream stream(partial);
-  stream << text;
-  stream.close();
-  std::error_code error;
-  if (!stream.fail()) fs::rename(partial, file, error);
-  if (!stream.fail() && !error) return;
-  fs::remove(partial, error);
-  throw InputError(file + ": expected a writable file");
 }
 
 bool rowsOverlap(const std::string& first, const std::string& second) {

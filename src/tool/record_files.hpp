@@ -15,8 +15,6 @@ CsvFormat csvFormat(const RecordFormat& format);
 DataSet makeData(const CsvTable& table, const Structure& structure, const std::string& rows);
 /// Refuses before hours of work what could not be written after it.
 void checkTarget(const std::string& file);
-/// The whole file or nothing. @throws InputError
-void writeAtOnce(const std::string& text, const std::string& file);
 /// True if both, "A:B" or empty, share a row.
 bool rowsOverlap(const std::string& a, const std::string& b);
 

@@ -62,17 +62,22 @@ void addStudy(CLI::App& app, StudyArguments& a, std::function<int()>& chosen) {
   study->callback([&] { chosen = [&a] { return fpc::tool::study(a); }; });
 }
 
-std::string wrongWith(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
   const std::string first = argc > 1 ? argv[1] : "";
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands(nullptr))
     commands.push_back(command->get_name());
   const bool known = std::find(commands.begin(), commands.end(), first) != commands.end();
   if (first.empty()) return "expected a command: " + join(commands);
-  if (known || first[0] == '-') return error.what();
+  if (known || first[0] == '-') return "";
   const auto near = nearest(first, commands, 1);
   return "unknown command '" + first + "'" +
          (near.empty() ? ": expected one of " + join(commands) : ", did you mean " + near[0] + "?");
+}
+
+std::string wrongWith(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  const std::string unknown = unknownCommand(app, argc, argv);
+  return unknown.empty() ? error.what() : unknown;
 }
 
 }  // namespace fpc::tool

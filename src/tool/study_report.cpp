@@ -1,5 +1,6 @@
 #include "tool/study_report.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -72,6 +73,12 @@ std::string interval(double lower, double upper) {
   return shortText(lower) + ".." + shortText(upper);
 }
 
+/// "none (n < 6)" where too few pairs are there.
+std::string medianText(const PairStatistics& pair, double confidence) {
+  if (!std::isnan(pair.ratio_lower)) return interval(pair.ratio_lower, pair.ratio_upper);
+  return "none (n < " + std::to_string(casesForMedianInterval(confidence)) + ")";
+}
+
 std::string percent(double share) { return shortText(100.0 * share) + " %"; }
 
 Rows loopRows(const StudyStatistics& statistics) {
@@ -100,7 +107,8 @@ Rows pairRows(const StudyPlan& plan, const StudyStatistics& statistics) {
   for (const auto& pair : statistics.pairs)
     rows.push_back({pair.name, pair.against, std::to_string(pair.pairs), shortText(pair.wins),
                     percent(pair.share), percent(pair.lower) + ".." + percent(pair.upper),
-                    shortText(pair.median_ratio), interval(pair.ratio_lower, pair.ratio_upper)});
+                    shortText(pair.median_ratio),
+                    medianText(pair, 0.01 * plan.study().confidence_percent)});
   return rows;
 }
 

@@ -15,6 +15,9 @@ namespace fpc::tool {
 void addReplay(CLI::App& app, ReplayArguments& a, std::function<int()>& chosen);
 void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen);
 
+/// set, disturb, manual, auto, release.
+void addOperate(CLI::App& app, std::function<int()>& chosen);
+
 /// `watch` for the list of commands only: its words are those of a script.
 void addWatch(CLI::App& app);
 /// What stands behind `fmbpc watch`, whatever it is, --help too; nothing of another command.

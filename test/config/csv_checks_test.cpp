@@ -43,6 +43,7 @@ TEST_F(CsvChecks, AnotherUnitOfTheSignalNeedsAConversion) {
                "disturbance.csv.channels.T_in.scale, offset or mean"});
   EXPECT_EQ(errorFor("t,v[K]\n0,288\n1,289\n", ", offset: -273.15"), kRecordTaken);
   EXPECT_EQ(errorFor(rows("t,v[K]"), ", mean: 15"), kRecordTaken);
+  expectWords(errorFor(rows("t,v"), ", mean: 0"), {"channels.T_in.mean", "a number other than 0"});
   EXPECT_EQ(errorFor(rows("t,v[Celsius]"), ", scale: 1"), kRecordTaken);
   EXPECT_NE(errorFor(rows("t,v[Celsius]")), kRecordTaken);
   for (const char* unit : {"degC", "\u00b0C", " deg C "})

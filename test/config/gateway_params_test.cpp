@@ -6,6 +6,8 @@
 namespace fpc {
 namespace config_gateway_params_test {
 
+constexpr char kNone[] = "nothing was thrown";
+
 std::string errorIn(const std::string& gateway) {
   return errorOf([&] { gatewayLoop(gateway); });
 }
@@ -51,7 +53,7 @@ TEST(GatewayParams, RunsInRealtimeWhateverTheLoopSays) {
 TEST(GatewayParams, WhoMaySetAndEnableIsNamedByTheLoop) {
   using Names = std::vector<std::string>;
   const auto publishers = gatewayLoop("  type: float64\n").ring.publishers;
-  for (const char* key : {"setpoint", "enable", "services"})
+  for (const char* key : {"setpoint", "enable", "tags", "services"})
     EXPECT_EQ(publishers.at(key), Names()) << key;  // anyone
   const auto named =
       gatewayLoop("  type: float64\nloop: {publishers: {setpoint: [hmi], enable: [panel]}}\n")
@@ -69,6 +71,52 @@ TEST(GatewayParams, ErrorsNameKeyAndWhatWasExpected) {
       "  type: modbus\n  tags:\n    level: {register: 0}\n    rain: {register: 2}\n";
   expectWords(errorIn(tags + "    inflow: {register: 70000}\n"), {"register", "65534"});
   expectWords(errorIn(tags + "    inflow: {register: 4, scale: 0}\n"), {"scale"});
+}
+
+TEST(GatewayParams, NoAddressOfTheMapMeansTwoThings) {
+  const auto error = [](const std::string& modbus, const std::string& inflow,
+                        const std::string& rain = "register: 2") {
+    return errorIn("  type: modbus\n  modbus: {" + modbus +
+                   "}\n  tags:\n    level: {register: 0}\n    rain: {" + rain + "}\n    inflow: {" +
+                   inflow + "}\n");
+  };
+  const std::string apart = "register: 4";
+  EXPECT_EQ(error("heartbeat_in: 20, heartbeat_out: 21, owner_register: 22, automatic_coil: 0, "
+                  "remote_coil: 1",
+                  "register: 4, readback: 6"),
+            kNone);
+  EXPECT_EQ(error("automatic_coil: 1, remote_coil: 1, remote_table: discrete", apart), kNone);
+  // A float at 0 also has register 1.
+  expectWords(error("", "register: 1"),
+              {"gateway.tags.inflow.register", "an address of its own", "tags.level.register"});
+  expectWords(error("", apart, "register: 1"), {"tags.rain.register", "tags.level.register"});
+  expectWords(error("", "register: 4, readback: 2"), {"inflow.readback", "tags.rain.register"});
+  expectWords(error("heartbeat_out: 5", apart), {"modbus.heartbeat_out", "tags.inflow.register"});
+  expectWords(error("heartbeat_in: 9, heartbeat_out: 9", apart),
+              {"heartbeat_out", "modbus.heartbeat_in"});
+  expectWords(error("owner_register: 4", apart), {"owner_register", "tags.inflow.register"});
+  expectWords(error("automatic_coil: 1, remote_coil: 1", apart),
+              {"remote_coil", "modbus.automatic_coil"});
+}
+
+TEST(GatewayParams, RegistersHoldTheRangeAndAMove) {
+  const auto error = [](const std::string& level, const std::string& inflow) {
+    return errorIn("  type: modbus\n  tags:\n    level: {register: 0, " + level +
+                   "}\n    rain: {register: 2}\n    inflow: {register: 4, " + inflow + "}\n");
+  };
+  EXPECT_EQ(error("type: uint16, scale: 0.001", "type: int16, scale: 1"), kNone);
+  expectWords(error("type: uint16, scale: 0.00001", "type: int16"),
+              {"gateway.tags.level.scale", "uint16 holds 4 [m]"});
+  expectWords(error("type: int16, offset: -40000", "type: int16"), {"tags.level.scale"});
+  expectWords(error("type: float32", "type: uint16, offset: 1"), {"tags.inflow.scale", "holds 0"});
+  expectWords(error("type: float32", "type: int16, scale: 1.5"),
+              {"tags.inflow.scale", "the move limit, 1 [m3/h]", "got 1.5"});
+}
+
+TEST(GatewayParams, AHostIsOneWord) {
+  for (const char* host : {"''", "tcp://plc", "10.0.0.7:502", "'my plc'"})
+    expectWords(errorIn("  type: float64\n  modbus: {host: " + std::string(host) + "}\n"),
+                {"gateway.modbus.host", "IPv4 address or the name of a host"});
 }
 
 TEST(GatewayParams, ASimulatedPlantHasNone) {

@@ -1,6 +1,9 @@
 // What sections of a loop file become: options by their words, instruments, watches.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "fmbpc/control/fmbpc/law.hpp"
 #include "loop/loop_fixture.hpp"
 
 namespace fpc {
@@ -61,11 +64,41 @@ TEST(LoopSections, ASensorNeedsNoClass) {
   EXPECT_THROW(sensorOf({{"sensors.x.class_noise", "true"}}), InputError);
 }
 
+TEST(LoopSections, WhatSignalsMayBeIsKnownByDefault) {
+  const LoopFile plain = readLoop("asp_case1_pi_x");
+  for (const auto* group : {&plain.plausibility.outputs, &plain.plausibility.disturbances})
+    for (const SignalPlausibility& signal : *group) EXPECT_EQ(signal.frozen_samples, 0);
+  EXPECT_EQ(plain.plausibility.outputs[1].scale_upper, plain.plant_info.outputs[1].upper);
+  EXPECT_FALSE(plain.plausibility.range_falls) << "an initial input is no fallback";
+  EXPECT_TRUE(
+      readLoop("asp_case1_pi_x", {{"actuator.fallback.q_r", "800"}}).plausibility.range_falls);
+  const LoopFile slow = readLoop("asp_case1_pi_x", {{"sensors.x", "{upper: 3000, delay_s: 1500}"}});
+  EXPECT_EQ(slow.plausibility.outputs[1].scale_upper, 3000.0);
+  EXPECT_EQ(slow.plausibility.outputs[1].late_samples, 3);
+}
+
+TEST(LoopSections, AResolutionIsNoiseAndBringsAnObserver) {
+  const LoopFile coarse = readLoop("surge_tank_steps", {{"sensors.H.resolution", "0.0006"}});
+  EXPECT_NEAR(controllerContext(coarse).noise_std[0], 0.0006 / std::sqrt(12.0), 1e-15);
+  EXPECT_TRUE(controllerContext(coarse).quantised);
+  const auto realisation = [](const Overrides& more) {
+    return readLoop("methanol_clip", more).controllerParams<FmbpcParams>().realisation;
+  };
+  EXPECT_EQ(realisation({}), FmbpcRealisation::kParallel);
+  EXPECT_EQ(realisation({{"sensors.T_4.resolution", "0.1"}}), FmbpcRealisation::kObserver);
+  EXPECT_EQ(
+      realisation({{"sensors.T_4.resolution", "0.1"}, {"controller.realisation", "realigned"}}),
+      FmbpcRealisation::kRealigned);
+}
+
 TEST(LoopSections, WatchesAreHandedOn) {
   const LoopFile plain = readLoop("asp_case1_pi_x");
   EXPECT_TRUE(plain.standstill.signals.empty());
   EXPECT_TRUE(plain.plausibility.enabled);
   EXPECT_EQ(plain.stuck.samples, 5);
+  EXPECT_FALSE(plain.stuck.hold);
+  EXPECT_TRUE(readLoop("example_external").stuck.hold);
+  EXPECT_FALSE(readLoop("example_external", {{"plausibility.stuck", "say"}}).stuck.hold);
   EXPECT_FALSE(plain.gateway.enabled());
   const LoopFile watched = readLoop(
       "asp_case1_pi_x", {{"standstill.signals.x", "3"}, {"plausibility.stuck_samples", "7"}});

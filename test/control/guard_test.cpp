@@ -87,6 +87,8 @@ TEST_F(Guard, InsideTheDataTheLawPassesUntouched) {
   EXPECT_EQ(step(0, 2000.0, 570.0), 700.0);
   EXPECT_EQ(out.source, ActionSource::kBase);
   EXPECT_TRUE(out.predictive);
+  EXPECT_EQ(out.prediction.input_lower[0], 0.0);
+  EXPECT_EQ(out.prediction.input_upper[0], 1600.0);
   EXPECT_STREQ(out.remark, "");
   EXPECT_EQ(guard->view().trust, 1.0);
   EXPECT_EQ(guard->signals().front().first, "model_trust");
@@ -97,8 +99,10 @@ TEST_F(Guard, OutsideMovesShrinkToTheLeast) {
   make(params());
   // x 2200 + half of its range: no trust at all.
   EXPECT_DOUBLE_EQ(step(0, 2400.0, 570.0), 570.0 + 0.02 * 1600.0);
-  EXPECT_EQ(out.source, ActionSource::kFallback);
-  EXPECT_FALSE(out.predictive);
+  EXPECT_EQ(out.source, ActionSource::kGuarded);
+  ASSERT_TRUE(out.predictive);  // an optimizer stays in charge of the limits of outputs
+  EXPECT_DOUBLE_EQ(out.prediction.input_lower[0], 570.0 - 0.02 * 1600.0);
+  EXPECT_DOUBLE_EQ(out.prediction.input_upper[0], 570.0 + 0.02 * 1600.0);
   EXPECT_NE(std::string(out.remark).find("outside the model"), std::string::npos);
   EXPECT_TRUE(guard->view().outside);
   EXPECT_EQ(guard->signals().front().second, 0.0);
@@ -166,6 +170,7 @@ TEST_F(Guard, AnInputThatTheModelDoesNotKnowIsNeverLockedUp) {
 
 TEST_F(Guard, WhatSwingsFromEndToEndMovesLess) {
   GuardParams p = params();
+  p.swing_move = 0.25;
   make(p);
   double applied = 700.0, largest = 0.0;
   for (std::uint32_t k = 1; k < 60; ++k) {

@@ -93,7 +93,7 @@ TEST_F(PlanAhead, MovesShrinkForWhatIsExpectedSoon) {
   EXPECT_EQ(out.input[0], 1500.0);
   step(2000.0, 90.0);
   EXPECT_DOUBLE_EQ(out.input[0], 590.0 + 0.25 * 1600.0);
-  EXPECT_EQ(out.source, ActionSource::kFallback);
+  EXPECT_EQ(out.source, ActionSource::kGuarded);
   EXPECT_STREQ(out.remark, "what the law expects leaves the model: moves shrink");
 }
 

@@ -139,6 +139,21 @@ TEST(SetpointSource, OffsetsReplaceEachOtherAndFollowTheSchedule) {
   EXPECT_EQ(s.advance(4)[1], 1900.0);
 }
 
+TEST(SetpointSource, BeyondTheRangeOfThePlantIsRefusedAndBetweenThatAndTheLimitsClamped) {
+  PlantInfo plant;
+  plant.outputs = {{"s", "mg/l", 0.0, 5000.0}, {"x", "mg/l", 0.0, 10000.0}};
+  SetpointParams p = params();
+  p.upper = two(100.0, 2500.0);
+  SetpointSource s(p, plant, SampleClock(720.0, kStart));
+  for (int started = 0; started < 2; ++started) {
+    EXPECT_THROW(s.command(command("x", 20000.0)), InputError);
+    EXPECT_THROW(s.command(command("x", -10001.0, CommandMode::kOffset)), InputError);
+    EXPECT_EQ(s.advance(static_cast<std::uint32_t>(started)), p.initial);
+  }
+  s.command(command("x", 3000.0));
+  EXPECT_EQ(s.advance(2)[1], 2500.0);
+}
+
 TEST(SetpointSource, BadCommandThrowsAndChangesNothing) {
   SetpointSource s = source(params());
   for (int started = 0; started < 2; ++started) {

@@ -165,6 +165,18 @@ TEST_F(Standstill, NoiseOnAPlantAtRestIsNoFault) {
   }
 }
 
+// A law that holds its output well moves its input, and follows the noise.
+TEST_F(Standstill, AnInputThatMovesIsNoEvidenceUnderNoise) {
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  make(noisy(params(), 0.3, 20.0));
+  law->spoil = [&](ControllerOutput& out) { out.input[0] = 800.0 + 500.0 * std::sin(0.1 * step); };
+  for (int k = 0; k < 300; ++k) {
+    see(56.0 + 0.3 * noise(engine), 1300.0 + 20.0 * noise(engine), 40.0);
+    ASSERT_EQ(remark(), "") << k;
+  }
+}
+
 TEST_F(Standstill, ANoisyDisturbanceThatStandsIsReplaced) {
   std::mt19937_64 engine(7);
   std::normal_distribution<double> noise(0.0, 1.0);
@@ -174,6 +186,39 @@ TEST_F(Standstill, ANoisyDisturbanceThatStandsIsReplaced) {
         40.0 + 20.0 * std::sin(0.2 * k));
   EXPECT_EQ(remark(), "q_i stands still: its usual value is used");
   EXPECT_EQ(output.source, ActionSource::kBase);
+}
+
+// A flow that a weir or a pump limits stands there for hours and is right.
+TEST_F(Standstill, AFlowAtItsLimitIsNoFault) {
+  const auto load = [](int k) { return 40.0 + 20.0 * std::sin(0.2 * k); };
+  for (int k = 0; k < 100; ++k)
+    see(56.0 + 3.0 * std::sin(k), std::min(1300.0 + 400.0 * std::sin(0.05 * k), 1600.0), load(k));
+  for (int k = 100; k < 200; ++k) {
+    see(56.0 + 3.0 * std::sin(k), 1600.0, load(k));
+    ASSERT_EQ(remark(), "") << k;
+  }
+  for (int k = 0; k < 2 * kWindow; ++k) see(56.0 + 3.0 * std::sin(k), 900.0, load(k));
+  EXPECT_EQ(remark(), "q_i stands still: its usual value is used");
+}
+
+// A healthy signal that was quiet for a window, and whose day is smaller than five standard
+// deviations of its noise.
+TEST_F(Standstill, ASmallMotionUnderNoiseIsSeenAgain) {
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 engine(seed);
+    std::normal_distribution<double> noise(0.0, 0.3);
+    make(noisy(params(), 0.3, 0.0));
+    const auto load = [](int k) { return 1300.0 + 400.0 * std::sin(0.2 * k); };
+    for (int k = 0; k < 60; ++k) see(57.0 + noise(engine), load(k));
+    ASSERT_EQ(remark(), "s stands still: the fallback acts") << seed;
+    int back = -1;
+    for (int k = 60; k < 160; ++k) {
+      see(57.6 + noise(engine), load(k));
+      if (back < 0 && output.source == ActionSource::kBase) back = k - 60;
+    }
+    EXPECT_GE(back, 0) << seed;
+    EXPECT_LE(back, 32) << seed;
+  }
 }
 
 TEST_F(Standstill, MistakesAreNamed) {

@@ -197,7 +197,7 @@ FAULTS = [
     wrong("setpoint", "of nobody", name=["nobody"], value=[1.0], mode=1),
     wrong("setpoint", "unknown mode", name="output", value=[1.0], mode=9),
     wrong("setpoint", "no value", name="output", value=[], mode=1),
-    wrong("setpoint", "1e300", counted=False, name="output", value=[1e300], mode=1),
+    wrong("setpoint", "1e300", name="output", value=[1e300], mode=1),
     wrong("disturbance", "infinite", name="input", value=[math.inf], mode=1),
     wrong("disturbance", "input 1e300", said="was asked to be 1e\\+300, beyond its limits", counted=(PLANT, "samples with an input clamped"),
           name="input", value=[1e300], mode=1),

@@ -30,6 +30,7 @@ class Fault:
     after: typing.Callable = None
     said_within: float = SAID_WITHIN  # s; longer where a process must start first
     new_run: bool = False       # the plant starts a new run
+    own_hand: bool = False      # of a gateway's plant: it takes the inputs itself meanwhile
     paces: tuple = ("paced", "realtime")
 
 

@@ -1,6 +1,7 @@
 """One fault on a running loop, and the verdict computed from what was recorded meanwhile."""
 import os
 import time
+import types
 
 from fault import PATIENCE, RECOVERY, SETTLE, SILENCE, Outcome
 
@@ -25,22 +26,44 @@ def forced_steps(loop, start):
             if name.startswith("input/")}
 
 
-def judge_inputs(loop, limits, start, outcome):
+def genuine_samples(loop, start):
+    """(time, sample with step, run_id, input_missing) that the plant itself has shown: its states, or behind a gateway its
+    measurements, which nobody forges there."""
+    if loop.far is None:
+        return [(t, s) for t, s in loop.logs["plant_state"].since(start)]
+    return [(t, types.SimpleNamespace(step=m.step, run_id=m.run_id, state=True, input_missing=m.local))
+            for t, m in loop.logs["measurement"].since(start)]
+
+
+def judge_law(loop, limits, start, outcome):
+    """Behind a gateway: no input is further than a move from what was asked of it."""
+    asked = {(a.run_id, a.step): a.input for _, a in loop.logs["control_action"].since(start)}
+    for _, m in loop.logs["measurement"].since(start):
+        before = (m.run_id, m.step - 1)
+        if before not in asked:
+            continue
+        for i, name in enumerate(limits.names):
+            if abs(m.input_applied[i] - asked[before][i]) > limits.move[i] + 1e-6 * limits.range[i]:
+                outcome.problems.append(f"sample {m.step}: {name} = {m.input_applied[i]:.6g}, asked was {asked[before][i]:.6g}")
+
+
+def judge_inputs(loop, limits, start, outcome, own_hand=False):
     """Bounds and move limits of what the plant applied, sample by sample, and that no sample is missing."""
     seen = {}
     for _, m in loop.logs["measurement"].since(start - 1.0):
         if len(m.input_applied) == len(limits.names):
             seen.setdefault(m.run_id, {})[m.step] = m
-    real = {s.run_id for _, s in loop.logs["plant_state"].since(start - 1.0) if s.state}
+    real = {s.run_id for _, s in genuine_samples(loop, start - 1.0) if s.state}
     forced = forced_steps(loop, start)
     for run_id in sorted(set(seen) & real):
-        genuine = {s.step for _, s in loop.logs["plant_state"].since(start - 1.0) if s.run_id == run_id}
+        genuine = {s.step for _, s in genuine_samples(loop, start - 1.0) if s.run_id == run_id}
         run = {step: m for step, m in seen[run_id].items() if step in genuine}
         steps = sorted(run)
         if steps and steps != list(range(steps[0], steps[-1] + 1)):
             outcome.problems.append("samples missing")
         for before, after in zip(steps, steps[1:]):
-            judge_move(run[before], run[after], limits, forced, outcome)
+            if not (own_hand and (run[before].local or run[after].local)):
+                judge_move(run[before], run[after], limits, forced, outcome)
 
 
 def judge_move(before, after, limits, forced, outcome):
@@ -58,7 +81,7 @@ def judge_move(before, after, limits, forced, outcome):
 def judge_stalls(loop, start, end, outcome):
     """A time without samples must be said while it lasts, by anybody of the loop; not one in which the whole machine stood
     still, this process with it."""
-    times = [start] + [t for t, _ in loop.logs["plant_state"].since(start)] + [end]
+    times = [start] + [t for t, _ in genuine_samples(loop, start)] + [end]
     words = loop.words(start - 2.0)
     for before, after in zip(times, times[1:]):
         stood_still = loop.pulse.within(before, after)
@@ -71,7 +94,7 @@ def judge_stalls(loop, start, end, outcome):
 
 def bump_of(loop, limits, start):
     """The largest first move after the input was held or on its fallback, in % of the range."""
-    state = {s.step: s for _, s in loop.logs["plant_state"].since(start)}
+    state = {s.step: s for _, s in genuine_samples(loop, start)}
     inputs = {m.step: m for _, m in loop.logs["measurement"].since(start) if len(m.input_applied) == len(limits.names)}
     largest = 0.0
     for step, s in state.items():
@@ -90,7 +113,7 @@ def samples_until_back(loop, fault, undone):
         return None
     end = time.monotonic() + RECOVERY
     while time.monotonic() < end:
-        states = [s for _, s in loop.logs["plant_state"].since(undone)]
+        states = [s for _, s in genuine_samples(loop, undone)]
         good = [i for i, s in enumerate(states) if not s.input_missing]
         if len(states) >= 5 and good and states[-1].input_missing is False and len(states) - good[0] >= 5:
             run = len(states) - 1
@@ -128,7 +151,9 @@ def meet(loop, limits, fault):
     judge_counter(loop, fault, count, outcome)
     end = time.monotonic()
     judge_stalls(loop, start, end, outcome)
-    judge_inputs(loop, limits, start, outcome)
+    judge_inputs(loop, limits, start, outcome, fault.own_hand)
+    if loop.far and not fault.own_hand:
+        judge_law(loop, limits, start, outcome)
     outcome.bump = bump_of(loop, limits, start)
     judge_processes(loop, fault, before, outcome)
     if fault.after:

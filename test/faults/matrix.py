@@ -22,7 +22,6 @@ sys.path[:0] = [str(HERE), str(HERE.parent / "ros")]
 RING = ("plant_info", "measurement", "plant_state", "base_action", "predictive_action", "control_action", "tracking",
         "solver_report", "fuzzy_model", "identified")
 OPEN = " ".join(f"loop.publishers.{topic}=[]" for topic in RING)
-MOVE = 0.025  # largest move a sample, share of the input's range
 LOOPS = {
     "asp_case1_clp": dict(
         sets="sampling.duration_h=0 disturbance.source=constant actuator.move_upper.q_r=40 "
@@ -31,13 +30,19 @@ LOOPS = {
         sets="sampling.duration_h=0 setpoint.schedule=[] disturbance={} noise.std.T=0.02 actuator.move_upper.q=2.5 "
              "actuator.move_upper.qc=3.75 actuator.fallback.q=90 actuator.fallback.qc=90",
         sample_time=0.6, has=("model",)),
+    "cstr_modbus": dict(sets="sampling.duration_h=0 setpoint.schedule=[]", sample_time=6.0, has=("modbus",), move=0.02),
+    "example_external": dict(
+        sets="sampling.duration_h=0 setpoint.schedule=[] gateway.stale_s=1 gateway.tags.inflow.readback=tank/inflow_read "
+             "loop.publishers.tags=[example_plant,fault_matrix]", sample_time=60.0, has=("float64",), move=0.1),
 }
+MOVE = 0.025  # largest move a sample, share of the input's range
 COMMON = "actuator.hold_samples=5 loop.action_timeout_s=1.5"
 PERIOD = {"paced": 0.1, "realtime": 0.2}  # s of wall time a sample
-GROUPS = {"closed": ("processes", "strangers", "by_hand", "instruments", "world"), "open": ("rubbish", "models")}
+GROUPS = {"closed": ("processes", "strangers", "by_hand", "instruments", "links", "world"), "open": ("rubbish", "models"),
+          "gateway": ("gateway",)}
 QUICK = ("fmbpc_controller killed (-9)", "clp_optimizer frozen for 6 s", "fmbpc_controller frozen for 3 s",
          "stranger: control_action, valves open, in time", "manual, controller killed", "person: plant paused and resumed",
-         "valve stuck open")
+         "valve stuck open", "loop_recorder: publisherUpdate with empty lists", "rosnode cleanup while fmbpc_controller hangs for 3 s")
 
 
 class Launch:
@@ -45,7 +50,7 @@ class Launch:
 
     def __init__(self, name, pace, group, folder):
         self.name, self.pace, self.folder = name, pace, folder
-        self.core = self.launch = None
+        self.core = self.launch = self.far = None
         self.open = OPEN if group == "open" else ""
         self.clock = os.path.join(folder, "clock")
         self.disk = os.path.join(folder, "disk")
@@ -68,6 +73,7 @@ class Launch:
 
     def start(self):
         about = LOOPS[self.name]
+        self.far = far_side(self.name, self.folder)
         environment = dict(os.environ)
         if self.library:
             pathlib.Path(self.clock).write_text("0", encoding="utf-8")
@@ -75,12 +81,15 @@ class Launch:
         out = open(os.path.join(self.folder, "launch.log"), "a", encoding="utf-8")
         self.launch = subprocess.Popen(
             ["roslaunch", "fmbpc", "loop.launch", "loop:=" + self.name, f"pace:={self.pace}", "respawn:=true", "keep:=true",
-             f"set:={about['sets']} {COMMON} {self.open}", f"speedup:={about['sample_time'] / PERIOD[self.pace]}",
+             f"set:={about['sets']} {self.far.sets if self.far else COMMON} {self.open}",
+             f"speedup:={about['sample_time'] / PERIOD[self.pace]}",
              "out:=" + self.disk, "draw:=false", "sim_time:=false"], env=environment, stdout=out, stderr=out,
             start_new_session=True)
         out.close()
 
     def end(self):
+        if self.far:
+            self.far.end()
         for process, seconds in ((self.launch, 20), (self.core, 5)):
             if process is None:
                 continue
@@ -105,6 +114,21 @@ def wait_for_master():
     raise RuntimeError("no master")
 
 
+def far_side(name, folder):
+    """What stands behind the loop's gateway; None: it has none."""
+    from gateway import PlcBehindWire, TankBehindRelay
+    makers = {"modbus": PlcBehindWire, "float64": TankBehindRelay}
+    return next((makers[what](folder) for what in LOOPS[name]["has"] if what in makers), None)
+
+
+def groups_of(name):
+    return [group for group in sorted(GROUPS) if (group == "gateway") == bool({"modbus", "float64"} & set(LOOPS[name]["has"]))]
+
+
+def paces_of(name):
+    return ["realtime"] if groups_of(name) == ["gateway"] else sorted(PERIOD)  # a gateway's loop knows no other
+
+
 def faults_of(group):
     faults = []
     for family in GROUPS[group]:
@@ -115,9 +139,9 @@ def faults_of(group):
 def ready(launch):
     """The loop under test, automatic."""
     from loop_under_test import Loop
-    nodes = ["plant_simulator", "fmbpc_controller", "loop_recorder", "fuzzy_identifier"]
+    nodes = ["plant_gateway" if launch.far else "plant_simulator", "fmbpc_controller", "loop_recorder", "fuzzy_identifier"]
     loop = Loop(nodes + (["clp_optimizer"] if "optimizer" in launch.has() else []))
-    loop.clock, loop.disk, loop.core, loop.start_core = launch.clock, launch.disk, launch.core, None
+    loop.clock, loop.disk, loop.core, loop.start_core, loop.far = launch.clock, launch.disk, launch.core, None, launch.far
 
     def start_core():
         launch.start_core()
@@ -146,7 +170,7 @@ def run_group(launch, faults, report):
     rospy.init_node("fault_matrix", disable_signals=True, disable_rosout=True)
     launch.start()
     loop = ready(launch)
-    limits = Limits(loop.info(), MOVE)
+    limits = Limits(loop.info(), LOOPS[launch.name].get("move", MOVE))
     for family, fault in faults:
         if not set(fault.needs) <= set(launch.has()) or launch.pace not in fault.paces:
             continue
@@ -253,8 +277,8 @@ def main():
     signal.signal(signal.SIGTERM, end_with_finally)
     results = []
     for name in arguments.loop or (["asp_case1_clp"] if arguments.quick else sorted(LOOPS)):
-        for pace in arguments.pace or (["paced"] if arguments.quick else sorted(PERIOD)):
-            for group in arguments.group or (["closed"] if arguments.quick else sorted(GROUPS)):
+        for pace in arguments.pace or (["paced"] if arguments.quick else paces_of(name)):
+            for group in set(arguments.group or groups_of(name)) & set(["closed"] if arguments.quick else groups_of(name)):
                 results += run_config(arguments, name, pace, group)
                 if arguments.out:
                     pathlib.Path(arguments.out).write_text(json.dumps(results, indent=1), encoding="utf-8")

@@ -13,7 +13,7 @@ sys.path[:0] = [str(HERE), str(HERE.parent / "ros")]
 import ring  # noqa: E402
 import rosgraph  # noqa: E402
 
-PLANT, CONTROL, MASTER = "10.77.0.1", "10.77.0.2", "http://10.77.0.1:11311"
+PLANT, CONTROL, STRANGER, MASTER = "10.77.0.1", "10.77.0.2", "10.77.0.3", "http://10.77.0.1:11311"
 OTHER = sys.argv.pop(1) if len(sys.argv) > 1 else ""
 MOVE = 0.025
 SETS = ("sampling.duration_h=0 disturbance.source=constant actuator.move_upper.q_r=40 actuator.fallback.q_r=300 "
@@ -22,11 +22,12 @@ SETS = ("sampling.duration_h=0 disturbance.source=constant actuator.move_upper.q
 
 class Hosts:
     """Master, plant and recorder here; identifier, controller and optimizer there, started with `ip` as ROS_IP (None: with
-    ROS_HOSTNAME=localhost, as on a machine of its own)."""
+    ROS_HOSTNAME=localhost, as on a machine of its own). Without `there` all are here, by the name localhost."""
 
-    def __init__(self, ip):
+    def __init__(self, ip, there=True):
         self.folder, self.processes = tempfile.mkdtemp(prefix="fmbpc_partition_"), []
-        os.environ.update(ROS_MASTER_URI=MASTER, ROS_IP=PLANT, ROS_HOME=self.folder)
+        os.environ.update({"ROS_MASTER_URI": MASTER, "ROS_IP": PLANT} if there else
+                          {"ROS_MASTER_URI": "http://localhost:11311", "ROS_HOSTNAME": "localhost"}, ROS_HOME=self.folder)
         self.start([], "rosmaster", "--core", "-p", "11311")
         ring.wait_until(lambda: rosgraph.is_master_online(), "the master")
         text = ring.tool("resolve", "asp_case1_clp", "--sets", SETS).stdout
@@ -34,9 +35,9 @@ class Hosts:
         for node in ("plant_simulator", "loop_recorder"):
             self.start([], ring.program(node))
         name = {"ROS_IP": ip} if ip else {"ROS_HOSTNAME": "localhost"}
-        words = ["env", "-u", "ROS_IP", *[f"{k}={v}" for k, v in name.items()]]
+        self.there = ["ip", "netns", "exec", OTHER, "env", "-u", "ROS_IP", *[f"{k}={v}" for k, v in name.items()]] if there else []
         for node in ("fuzzy_identifier", "fmbpc_controller", "clp_optimizer"):
-            self.start(["ip", "netns", "exec", OTHER, *words], ring.program(node))
+            self.start(self.there, ring.program(node))
 
     def start(self, before, *command):
         log = open(os.path.join(self.folder, os.path.basename(command[0]) + ".log"), "w", encoding="utf-8")
@@ -54,6 +55,32 @@ class Hosts:
 
 def link(state):
     subprocess.run(["ip", "link", "set", "fmbpc0", state], check=True)
+
+
+def cable(whole):
+    """A switch between the two that drops everything, which neither of them sees."""
+    subprocess.run(["nft", "table inet cut { chain input { type filter hook input priority 0; iif fmbpc0 drop; }; }"]
+                   if not whole else ["nft", "delete", "table", "inet", "cut"], check=True)
+
+
+def fence(*arguments):
+    subprocess.run([str(HERE.parent.parent / "scripts" / "fence"), *arguments], check=True)
+
+
+def listening():
+    """TCP ports of this network namespace at which somebody listens, on whatever address."""
+    with open("/proc/net/tcp", encoding="utf-8") as file:
+        return sorted({int(words[1].split(":")[1], 16) for words in map(str.split, file) if words[3] == "0A"})
+
+
+def reachable(ports, source):
+    """Those of them that accept a connection from this address of the other namespace."""
+    program = ("import socket, sys\nfor port in map(int, sys.argv[3:]):\n  try:\n"
+               "    socket.create_connection((sys.argv[1], port), 0.2, (sys.argv[2], 0)).close(); print(port)\n"
+               "  except OSError: pass")
+    done = subprocess.run(["ip", "netns", "exec", OTHER, sys.executable, "-c", program, PLANT, source, *map(str, ports)],
+                          check=True, capture_output=True, text=True)
+    return [int(word) for word in done.stdout.split()]
 
 
 class Partition(unittest.TestCase):
@@ -97,6 +124,56 @@ class Partition(unittest.TestCase):
         self.assertIsNotNone(fallback)
         self.assertEqual([], outcome.problems)
         self.assertTrue(all(process.poll() is None for process in self.hosts.processes))
+
+    def test_a_node_that_starts_again_while_the_link_is_cut_is_connected_soon_after(self):
+        import rospy
+        import links
+        from loop_under_test import Loop
+        self.begin(CONTROL)
+        rospy.init_node("partition", disable_signals=True, disable_rosout=True)
+        loop = Loop(["plant_simulator", "loop_recorder"])
+        self.assertIsNotNone(loop.wait_for_summary("automatic", time.monotonic(), 60.0))
+        links.remember(loop)
+        cable(False)
+        self.addCleanup(subprocess.run, ["nft", "delete", "table", "inet", "cut"], check=False, stderr=subprocess.DEVNULL)
+        start = time.monotonic()
+        recorder = next(p for p in self.hosts.processes if "loop_recorder" in p.args[-1])
+        recorder.kill()
+        recorder.wait()
+        self.hosts.processes.remove(recorder)
+        self.hosts.start([], ring.program("loop_recorder"))
+        controller = next(p for p in self.hosts.processes if "fmbpc_controller" in p.args[-1])
+        time.sleep(max(0.0, start + 15.0 - time.monotonic()))
+        cable(True)
+        healed = time.monotonic()
+        loop.nodes += ["/fmbpc_controller", "/clp_optimizer", "/fuzzy_identifier"]
+        self.assertIsNone(links.whole(loop))
+        print(f"cut for 15 s with a restart in it: connected {time.monotonic() - healed:.1f} s after it", end="; ")
+        back = loop.wait_for_summary("automatic", healed, 20.0)
+        self.assertLess(back[0] - healed, 5.0)
+        print(f"automatic {back[0] - healed:.1f} s after it")
+        self.assertIsNone(controller.poll())
+
+    def test_nobody_reaches_a_loop_of_the_name_localhost(self):
+        self.hosts = Hosts(None, there=False)
+        self.addCleanup(self.hosts.end)
+        self.said("plant_simulator", "run ", 30.0)
+        ports = listening()
+        self.assertGreaterEqual(len(ports), 11)  # the master's, and two of each node
+        self.assertEqual([], reachable(ports, CONTROL))
+
+    def test_only_members_pass_the_fence(self):
+        self.begin(CONTROL)
+        self.said("plant_simulator", "run ", 30.0)
+        subprocess.run(["ip", "-n", OTHER, "addr", "add", STRANGER + "/24", "dev", "fmbpc1"], check=True)
+        self.addCleanup(subprocess.run, ["ip", "-n", OTHER, "addr", "del", STRANGER + "/24", "dev", "fmbpc1"], check=False)
+        ports = listening()
+        self.assertEqual(ports, reachable(ports, STRANGER))
+        self.addCleanup(fence, "down")
+        fence("up", CONTROL)
+        self.assertEqual((ports, []), (reachable(ports, CONTROL), reachable(ports, STRANGER)))
+        fence("up")
+        self.assertEqual(([], []), (reachable(ports, CONTROL), reachable(ports, STRANGER)))
 
     def test_a_wrong_address_is_said_at_both_ends(self):
         self.begin("10.99.0.9")

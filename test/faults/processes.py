@@ -39,6 +39,7 @@ def twice(loop):
 FAULTS = (
     [quickly_back(node, signal.SIGKILL, "killed (-9)") for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER)] +
     [quickly_back(node, signal.SIGTERM, "ended (SIGTERM)") for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER)] +
+    [quickly_back(node, signal.SIGINT, "ended (SIGINT)") for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER)] +
     [quickly_back(CONTROLLER, signal.SIGSEGV, "crashed (SIGSEGV)")] +
     [frozen(node) for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER, PLANT)] +
     [blink(node) for node in (CONTROLLER, OPTIMIZER, RECORDER, PLANT)] +

@@ -20,6 +20,9 @@ What counts as a move: what the plant applied from one sample to the next. Where
 disturbance) the jump to the forced position, the way while it is forced, and the sample of its release are the fault's, not the
 loop's; from the next sample on all limits hold again, counted from where the valve was left.
 
+Loops behind a gateway (realtime, 0.1 s a sample, 2 % and 10 % of the range a sample) meet faults of their own. There an input is
+also never further than one move from what was asked of it, whatever is read back.
+
 {verdict}
 """
 

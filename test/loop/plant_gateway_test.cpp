@@ -119,6 +119,19 @@ TEST(PlantGateway, ThePlantsOwnHandIsFollowedAndLeftWithoutABump) {
   EXPECT_EQ(gateway.command()[0], 7.0);
 }
 
+TEST(PlantGateway, APlantThatAnotherMasterLeadsTakesNoCommands) {
+  PlantGateway gateway = ready(topicLoop());
+  gateway.lead(false, 0.5);
+  EXPECT_EQ(gateway.missing(), std::vector<std::string>{"the plant's leadership"});
+  EXPECT_EQ(gateway.field(), FieldState::kLed);
+  gateway.take(one(2.5));
+  EXPECT_FALSE(gateway.commands());
+  gateway.lead(true, 1.0);
+  gateway.readBack(0, 8.0, 1.1);
+  gateway.take(one(2.5));
+  EXPECT_EQ(gateway.command()[0], 7.0);
+}
+
 TEST(PlantGateway, ACommandThatMayHaveArrivedIsReadBackBeforeTheNext) {
   PlantGateway gateway = ready(topicLoop());
   gateway.take(one(3.0));
@@ -135,31 +148,41 @@ TEST(PlantGateway, ACommandThatMayHaveArrivedIsReadBackBeforeTheNext) {
 }
 
 /// Its own hand, without saying so; or an instrument that lies.
-TEST(PlantGateway, AnInputThatIsElsewhereIsNotRunAfter) {
+TEST(PlantGateway, AnInputThatIsElsewhereIsShownAndNotRunAfter) {
   PlantGateway gateway = ready(topicLoop());
   sample(gateway, 2.5, 0.0);
-  EXPECT_TRUE(gateway.takesActions());
-  const auto number = gateway.commandNumber();
   for (int k = 1; k <= 4; ++k) {
-    gateway.readBack(0, 9.0, k + 0.1);
     gateway.tick(k + 0.2);
-    gateway.take(one(3.5));
+    gateway.take(one(2.5 + 0.5 * k));
+    EXPECT_EQ(gateway.command()[0], 2.5 + 0.5 * k);
+    gateway.confirm(gateway.commandNumber(), k + 0.3);
+    gateway.readBack(0, 9.0, k + 0.9);
     gateway.tick(k + 1.0);
-    gateway.sense(0, 1.0, k + 1.0);
-    gateway.sense(1, 0.0, k + 1.0);
-    gateway.advance(one(3.5));
-    EXPECT_EQ(gateway.commandNumber(), number) << k;
-    EXPECT_FALSE(gateway.takesActions()) << k;
-    EXPECT_EQ(gateway.measurement().input_applied[0], 9.0) << k;
-    EXPECT_EQ(gateway.problem(), "inflow is not where it was told") << k;
+    gateway.advance(one(2.5 + 0.5 * k));
+    EXPECT_TRUE(gateway.takesActions()) << k;
+    EXPECT_EQ(gateway.measurement().input_applied[0], 2.5 + 0.5 * k) << k;
+    EXPECT_EQ(gateway.positions()[0], 9.0) << k;
   }
-  gateway.readBack(0, 2.5, 5.5);
-  gateway.tick(6.0);
-  gateway.advance(one(3.5));
-  EXPECT_TRUE(gateway.takesActions());
-  EXPECT_EQ(gateway.measurement().input_applied[0], 2.5);
-  gateway.take(one(3.5));
-  EXPECT_EQ(gateway.command()[0], 3.5);
+  gateway.tick(8.0);
+  gateway.advance(one(4.5));
+  EXPECT_TRUE(std::isnan(gateway.positions()[0]));  // nothing has come for longer than stale_s
+}
+
+TEST(PlantGateway, AReadingThatDidNotAgreeBeforeTheLinkWasLostDoesNotMoveTheCommand) {
+  for (const double later : {9.0, 9.1, 6.0}) {
+    PlantGateway gateway = ready(topicLoop());
+    sample(gateway, 2.5, 0.0);
+    gateway.readBack(0, 9.0, 1.5);
+    gateway.tick(2.0);
+    gateway.advance(one(2.5));
+    gateway.link(false, 2.1);
+    gateway.link(true, 2.2);
+    gateway.readBack(0, later, 2.3);
+    gateway.tick(3.0);
+    gateway.advance(one(2.5));
+    EXPECT_TRUE(gateway.takesActions());
+    EXPECT_EQ(gateway.command()[0], later > 8.0 ? 2.5 : later) << "6: somebody has moved it";
+  }
 }
 
 TEST(PlantGateway, AnActionWaitsForTheCommandAheadOfIt) {

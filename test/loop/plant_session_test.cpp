@@ -73,6 +73,56 @@ TEST(PlantSession, CountsEveryActionThatItDoesNotTakeApart) {
   EXPECT_EQ(c.old, 1U);
 }
 
+PlantSession recordedSession(Pace pace) {
+  PlantPolicy policy;
+  policy.pace = pace;
+  policy.record_timeout_s = 5.0;
+  PlantSession plant(makeSimulation(readLoop("asp_case1_pi_x", {{"sampling.duration_h", "1"}})),
+                     policy);
+  plant.begin(7);
+  plant.start(0.0);
+  return plant;
+}
+
+TEST(PlantSession, WaitsForItsRecorderAtAnyPaceAndSendsAgain) {
+  for (const Pace pace : {Pace::kLockstep, Pace::kPaced, Pace::kRealtime}) {
+    PlantSession plant = recordedSession(pace);
+    EXPECT_FALSE(plant.recorded({0, 7, 0}));  // not waited for yet
+    ASSERT_TRUE(plant.receive(action(0)));
+    EXPECT_TRUE(plant.advance(0.1));
+    ASSERT_TRUE(plant.receive(action(1)));
+    EXPECT_FALSE(plant.advance(0.2));
+    EXPECT_TRUE(plant.mustResend(0.3));
+    for (const StepHeader& other : {StepHeader{0, 7, 0}, {0, 7, 2}, {0, 8, 1}})
+      EXPECT_FALSE(plant.recorded(other));
+    EXPECT_FALSE(plant.advance(5.1));
+    EXPECT_TRUE(plant.recorded({0, 7, 1}));
+    EXPECT_TRUE(plant.advance(5.1));
+    EXPECT_EQ(stepOf(plant), 2U);
+  }
+}
+
+TEST(PlantSession, GoesOnWithoutARecorderThatStaysAwayUntilItIsBack) {
+  PlantSession plant = recordedSession(Pace::kLockstep);
+  ASSERT_TRUE(plant.receive(action(0)));
+  EXPECT_FALSE(plant.advance(1.0));
+  EXPECT_EQ(plant.unrecordedFor(3.0), 2.0);
+  EXPECT_TRUE(plant.advance(6.0));
+  ASSERT_TRUE(plant.receive(action(1)));
+  EXPECT_TRUE(plant.advance(6.1));
+  ASSERT_TRUE(plant.receive(action(2)));
+  EXPECT_FALSE(plant.recorded({0, 7, 2}));  // heard of again
+  EXPECT_TRUE(plant.advance(6.2));
+  ASSERT_TRUE(plant.receive(action(3)));
+  EXPECT_FALSE(plant.advance(6.3));
+}
+
+TEST(PlantSession, ASampleWithoutAnActionWaitsForNoRecorder) {
+  PlantSession plant = recordedSession(Pace::kPaced);
+  EXPECT_FALSE(plant.advance(4.9));
+  EXPECT_TRUE(plant.advance(5.0));
+}
+
 TEST(PlantSession, LockstepWaitsForEverAndSendsAgain) {
   PlantSession plant = session(Pace::kLockstep);
   plant.start(0.0);

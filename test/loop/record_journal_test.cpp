@@ -4,6 +4,7 @@
 
 #include <sstream>
 
+#include "fmbpc/loop/journal_reader.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
 #include "loop/full_disk.hpp"
@@ -116,6 +117,37 @@ TEST_F(RecordJournalTest, SamplesThatCouldNotBeKeptLeaveTheirPlacesEmpty) {
   ASSERT_EQ(back.samples.size(), RecordJournal::kMostUnwritten + 4);
   EXPECT_FALSE(back.samples[RecordJournal::kMostUnwritten + 2].has_measurement);
   EXPECT_EQ(back.samples.back().measurement.header.step, 4U);
+}
+
+TEST_F(RecordJournalTest, IsOnTheDiskItselfOnceASecond) {
+  RecordJournal journal;
+  journal.open(path("journal"), layout_, 1);
+  append(journal, 0, 1);
+  EXPECT_TRUE(journal.sync(10.0));
+  append(journal, 1, 2);
+  EXPECT_FALSE(journal.sync(10.9));
+  EXPECT_TRUE(journal.sync(11.0));
+  EXPECT_FALSE(journal.sync(13.0));  // nothing new
+}
+
+TEST_F(RecordJournalTest, APartOfAnEndlessRunBeginsWhereTheOneBeforeEnded) {
+  layout_.samples = 0;
+  {
+    RecordJournal journal;
+    journal.open(path("journal"), layout_, 1);
+    append(journal, 0, 9);
+    journal.beginNextPart();
+    EXPECT_TRUE(journalLabel(path("journal"))->empty);
+    append(journal, 9, 12);
+  }
+  RecordJournal journal;
+  EXPECT_EQ(journal.open(path("journal"), layout_, 1), 3U);
+  EXPECT_EQ(journal.firstStep(), 9U);
+  JournalReader reader(path("journal"), layout_);
+  EXPECT_EQ(reader.firstStep(), 9U);
+  SampleRecord sample;
+  ASSERT_TRUE(reader.next(sample));
+  EXPECT_EQ(sample.measurement.header.step, 9U);
 }
 
 TEST_F(RecordJournalTest, WhenItBeganOutlivesTheProcess) {

@@ -39,7 +39,9 @@ class RecordStoreTest : public LoopFolder {
     store.begin(7);
     for (const SampleRecord& sample : record.samples) store.append(sample);
     store.finish(1.5);
-    writeRun(loop, record, summarize(loop, record, 1.5), path("whole"));
+    Summary summary = summarize(loop, record, 1.5);
+    summary.run_id = 7;
+    writeRun(loop, record, summary, path("whole"));
     for (const char* name : {"/trajectory.csv", "/summary.json"})
       EXPECT_EQ(textOf(path("streamed") + name), textOf(path("whole") + name)) << name;
     EXPECT_GT(textOf(path("whole") + "/trajectory.csv").size(), 100U);
@@ -120,12 +122,12 @@ TEST_F(InterruptedTest, EveryRunThatWasCutShortHasAFolderOfItsOwnAndIsOfItsOwnLo
   record(clp_, 12, 6);
   record(plain_, 13, 7);
   record(plain_, 14, 1);
-  EXPECT_EQ(rows("out/interrupted/11"), 5U);
-  EXPECT_EQ(rows("out/interrupted/12"), 6U);
-  EXPECT_EQ(rows("out/interrupted/13"), 7U);
+  EXPECT_EQ(rows("out/history/11"), 5U);
+  EXPECT_EQ(rows("out/history/12"), 6U);
+  EXPECT_EQ(rows("out/history/13"), 7U);
   for (const auto& [run, loop] :
        {std::pair("11", "asp_case1_clp"), {"12", "asp_case1_clp"}, {"13", "asp_case1"}}) {
-    const std::string folder = std::string("out/interrupted/") + run;
+    const std::string folder = std::string("out/history/") + run;
     EXPECT_EQ(readSummary(path(folder) + "/summary.json").loop, loop);
     EXPECT_FALSE(exists(folder + "/journal.bin"));
   }
@@ -134,7 +136,7 @@ TEST_F(InterruptedTest, EveryRunThatWasCutShortHasAFolderOfItsOwnAndIsOfItsOwnLo
 TEST_F(InterruptedTest, AJournalOfOtherSizesIsNotTruncated) {
   record(clp_, 11, 5);
   record(readLoop("cstr_tracking"), 12, 3);
-  EXPECT_EQ(rows("out/interrupted/11"), 5U);
+  EXPECT_EQ(rows("out/history/11"), 5U);
   EXPECT_EQ(journalLabel(path("out/journal.bin"))->run_id, 12U);
 }
 
@@ -144,8 +146,8 @@ TEST_F(InterruptedTest, WhatIsNoJournalOfThisVersionIsPutAsideAsItIs) {
   write("out/journal.bin", letter);
   RecordStore store(clp_, path("out"));
   store.begin(12);
-  EXPECT_EQ(textOf(path("out/interrupted/unknown/journal.bin")), letter);
-  expectWords(store.remark(), {"interrupted/unknown/journal.bin", "stays as it is"});
+  EXPECT_EQ(textOf(path("out/history/unknown/journal.bin")), letter);
+  expectWords(store.remark(), {"history/unknown/journal.bin", "stays as it is"});
   EXPECT_EQ(store.problem(), "");
 }
 
@@ -153,18 +155,89 @@ TEST_F(InterruptedTest, OneRunThatIsPutAsideTwiceHasTwoFolders) {
   record(clp_, 11, 5);
   record(plain_, 11, 4);
   record(clp_, 11, 3);
-  EXPECT_EQ(rows("out/interrupted/11"), 5U);
-  EXPECT_EQ(rows("out/interrupted/11-2"), 4U);
+  EXPECT_EQ(rows("out/history/11"), 5U);
+  EXPECT_EQ(rows("out/history/11-2"), 4U);
 }
 
-TEST_F(InterruptedTest, AShortRunDoesNotTakeThePlaceOfACompleteOne) {
+TEST_F(InterruptedTest, TheFolderHoldsTheNewestRunAndItsHistoryThoseBefore) {
   record(clp_, 11, 11, true);
   const std::string complete = textOf(path("out/trajectory.csv"));
   record(clp_, 12, 4, true);
-  EXPECT_EQ(textOf(path("out/trajectory.csv")), complete);
-  EXPECT_EQ(rows("out/interrupted/12"), 4U);
+  EXPECT_EQ(textOf(path("out/history/11/trajectory.csv")), complete);
+  EXPECT_EQ(rows("out"), 4U);
   record(plain_, 13, 11, true);
   EXPECT_EQ(readSummary(path("out/summary.json")).loop, "asp_case1");
+  EXPECT_EQ(rows("out/history/12"), 4U);
+  EXPECT_EQ(textOf(path("out/history/11/trajectory.csv")), complete);
+}
+
+TEST_F(InterruptedTest, PartsOfARunWhoseRecorderEndedInOrderAreJoined) {
+  const RunRecord run = runLoop(clp_);
+  const auto part = [&](std::size_t from, std::size_t to, std::size_t whole) {
+    RecordStore store(clp_, path("out"));
+    const std::size_t here = store.begin(11);
+    for (std::size_t k = here; k < to; ++k) store.append(run.samples[k]);
+    if (to == run.samples.size())
+      store.finish(1.0);
+    else
+      store.interrupt(1.0, static_cast<std::uint32_t>(whole));
+    return here == from;
+  };
+  EXPECT_TRUE(part(0, 5, 4));  // the last one had come in part
+  EXPECT_EQ(rows("out"), 5U);
+  EXPECT_FALSE(readSummary(path("out/summary.json")).complete);
+  EXPECT_TRUE(part(4, 7, 7));
+  EXPECT_EQ(rows("out"), 7U);
+  EXPECT_TRUE(part(7, 11, 11));
+  EXPECT_EQ(rows("out"), 11U);
+  EXPECT_TRUE(readSummary(path("out/summary.json")).complete);
+  EXPECT_FALSE(exists("out/journal.bin") || exists("out/history"));
+}
+
+TEST_F(InterruptedTest, WhatARecorderLeftForAnotherOneIsFiledOnce) {
+  {
+    const RunRecord run = runLoop(clp_);
+    RecordStore store(clp_, path("out"));
+    store.begin(11);
+    for (std::size_t k = 0; k < 5; ++k) store.append(run.samples[k]);
+    store.interrupt(1.0, 5);
+  }
+  record(clp_, 12, 11, true);
+  EXPECT_EQ(rows("out"), 11U);
+  EXPECT_EQ(rows("out/history/11"), 5U);
+  EXPECT_FALSE(exists("out/history/11-2"));
+}
+
+TEST_F(InterruptedTest, AnEndlessRunIsFiledInPartsThatFollowEachOther) {
+  const RunRecord run = runLoop(clp_);
+  const LoopFile endless =
+      readLoop("asp_case1_clp", {{"sampling.duration_h", "0"}, {"disturbance.source", "constant"}});
+  const auto record = [&](std::size_t from, std::size_t to) {
+    RecordStore store(endless, path("out"), 0.0, 0.8);
+    EXPECT_EQ(store.begin(11), from);
+    for (std::size_t k = from; k < to; ++k) {
+      store.append(run.samples[k]);
+      store.flush();
+    }
+    store.interrupt(1.0, static_cast<std::uint32_t>(to));
+  };
+  record(0, 5);
+  record(5, 10);
+  EXPECT_EQ(rows("out"), 2U);
+  EXPECT_EQ(rows("out/history/11"), 4U);
+  EXPECT_EQ(rows("out/history/11-2"), 4U);
+  std::string joined = textOf(path("out/history/11/trajectory.csv"));
+  for (const char* folder : {"out/history/11-2", "out"}) {
+    const std::string text = textOf(path(folder) + "/trajectory.csv");
+    joined += text.substr(text.find('\n') + 1);
+  }
+  std::istringstream lines(joined);
+  std::string line;
+  std::getline(lines, line);
+  for (int k = 0; std::getline(lines, line); ++k)
+    EXPECT_NEAR(std::stod(line), 0.2 * k, 1e-9);  // time goes on
+  EXPECT_TRUE(readSummary(path("out/history/11/summary.json")).complete);
+  EXPECT_EQ(readSummary(path("out/history/11-2/summary.json")).first_step, 4U);
 }
 
 TEST_F(InterruptedTest, AJournalBecomesFilesOnRequest) {
@@ -178,7 +251,9 @@ TEST_F(InterruptedTest, AJournalBecomesFilesOnRequest) {
   EXPECT_FALSE(exists("out/journal.bin"));
   EXPECT_TRUE(recoverFolder(path("out")).empty());
   record(plain_, 12, 4);
-  EXPECT_EQ(recoverFolder(path("out")).at(0).record.folder, path("out/interrupted/12"));
+  EXPECT_EQ(recoverFolder(path("out")).at(0).record.folder, path("out"));
+  EXPECT_EQ(rows("out"), 4U);
+  EXPECT_EQ(rows("out/history/11"), 5U);
 }
 
 TEST_F(InterruptedTest, AJournalThatIsBeingWrittenIsLeftAlone) {
@@ -205,7 +280,7 @@ TEST_F(InterruptedTest, AFullDiskAtTheBeginningIsSaidAndTheWholeRunIsRecordedOnc
   EXPECT_EQ(store.finish(1.0).steps, 10U);
   EXPECT_EQ(rows("out"), 11U);
   EXPECT_EQ(recoverFolder(path("out")).size(), 1U);  // there was no room for its files
-  EXPECT_EQ(rows("out/interrupted/11"), 5U);
+  EXPECT_EQ(rows("out/history/11"), 5U);
 }
 
 }  // namespace loop_record_store_test

@@ -79,6 +79,36 @@ TEST_F(RecorderSessionTest, OrderOfArrivalDoesNotMatterAndSamplesGoOutInOrder) {
   for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(passed_[k].measurement.header.step, k);
 }
 
+TEST_F(RecorderSessionTest, HoldsASampleWhenAllOfItIsThere) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  r.receive(measurement(1));
+  r.receiveBase(action(1));
+  EXPECT_FALSE(r.holds(header(1)));
+  r.receive(tracking(1));
+  EXPECT_TRUE(r.holds(header(1)));  // though sample 0 has not come
+  EXPECT_FALSE(r.holds(header(0)) || r.holds(header(2)) || r.holds(header(1, 8)));
+  addSample(r, 0);
+  EXPECT_TRUE(r.holds(header(0)) && r.holds(header(1)));
+  r.resume(9, 5);
+  EXPECT_TRUE(r.holds(header(4, 9)));  // on disk since before
+}
+
+TEST_F(RecorderSessionTest, AFinalSampleBeforeTheLoopsLastIsNotTheEnd) {
+  RecordLayout layout = recorder().layout();
+  layout.samples = 3;
+  RecorderSession r(layout, [](const SampleRecord&) {});
+  r.announce(7);
+  addSample(r, 0);
+  addSample(r, 1, true);
+  EXPECT_TRUE(r.finalSeen());
+  EXPECT_FALSE(r.complete());
+  r.receiveBase(action(1));
+  addSample(r, 2);
+  addSample(r, 3, true);
+  EXPECT_TRUE(r.complete());
+}
+
 TEST_F(RecorderSessionTest, AnOptimizerOwesActionAndReport) {
   RecorderSession r = recorder(true);
   r.announce(7);

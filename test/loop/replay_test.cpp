@@ -90,6 +90,37 @@ TEST_F(ReplayOfRuns, ABaseActionInPlaceOfTheOptimizersIsCounted) {
   EXPECT_EQ(result.stood_in + (result.control.compared - 190U), 10U);
 }
 
+TEST_F(ReplayOfRuns, WhatIsMissingIsNamedBeforeAnythingIsCompared) {
+  RecordedRun run = record(loop("asp_case1_clp"));
+  run.base.erase(20);
+  for (const std::uint32_t step : {30U, 31U, 32U}) run.measurements.erase(step);
+  run.control.erase(31);
+  const ReplayResult result = replay(loop("asp_case1_clp"), run);
+  EXPECT_EQ(result.missing,
+            (std::vector<std::string>{"sample 20: no base_action", "sample 30: no measurement",
+                                      "sample 31: no measurement, control_action",
+                                      "sample 32: no measurement"}));
+  EXPECT_EQ(result.missing_samples, 4U);
+  EXPECT_EQ(result.measurements, 30U);  // what came after them is not blamed on the controller
+  EXPECT_EQ(result.control.compared, 30U);
+  EXPECT_EQ(result.control.equal, 30U) << result.control.first_difference;
+  EXPECT_EQ(result.base.compared, 29U);
+  EXPECT_FALSE(result.equal());
+}
+
+TEST_F(ReplayOfRuns, ARecordThatEndsEarlyIsWholeSoFar) {
+  RecordedRun run = record(loop("asp_case1"));
+  EXPECT_TRUE(replay(loop("asp_case1"), run).ended);
+  run.measurements.erase(run.measurements.find(90), run.measurements.end());
+  run.control.erase(run.control.find(89), run.control.end());
+  const ReplayResult result = replay(loop("asp_case1"), run);
+  EXPECT_FALSE(result.ended);
+  EXPECT_TRUE(result.equal()) << result.control.first_difference;
+  run.measurements.erase(0);  // one that began late knows nothing of the law's past
+  EXPECT_EQ(replay(loop("asp_case1"), run).missing.at(0), "sample 0: no measurement");
+  EXPECT_EQ(replay(loop("asp_case1"), run).control.compared, 0U);
+}
+
 TEST_F(ReplayOfRuns, ARecordWithoutItsModelIsRefused) {
   RecordedRun run = record(loop("asp_case1"));
   run.models.clear();

@@ -25,5 +25,30 @@ TEST(StuckWatch, WhatTheLimitsHoldBackIsNotStuck) {
   EXPECT_EQ(stuck.words(), "");
 }
 
+TEST(StuckWatch, AnInputThatNobodyReadsBackIsNotKnownToFollow) {
+  StuckWatch stuck = watch();
+  for (int k = 0; k < 3; ++k) stuck.look(one(5.0), one(5.0), one(std::nan("")));
+  EXPECT_EQ(stuck.words(), "input inflow is not read back");
+  EXPECT_TRUE(stuck.all());
+}
+
+TEST(StuckWatch, HoldsWhereItWasToldAndThenAtTheLastCommandThatWasFollowed) {
+  StuckWatch stuck = watch();
+  const auto held = [&](double asked) {
+    Vector action = one(asked);
+    stuck.hold(action, one(6.0));
+    return action[0];
+  };
+  stuck.look(one(5.0), one(5.0), one(5.1));
+  EXPECT_EQ(held(7.0), 7.0);
+  stuck.look(one(6.0), one(5.0), one(5.1));
+  EXPECT_EQ(held(6.5), 6.0);
+  for (int k = 0; k < 2; ++k) stuck.look(one(6.0), one(6.0), one(5.1));
+  EXPECT_EQ(held(6.0), 5.0);
+  EXPECT_EQ(held(6.5), 5.5);  // one move from what is asked
+  stuck.reset();
+  EXPECT_EQ(held(6.5), 6.5);
+}
+
 }  // namespace loop_stuck_watch_test
 }  // namespace fpc

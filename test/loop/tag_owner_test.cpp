@@ -40,5 +40,14 @@ TEST(TagOwner, AValueThatIsNoNumberIsHeardButOwnsNothing) {
   EXPECT_FALSE(tag.admits("/other", 1.2));
 }
 
+TEST(TagOwner, ATagOfOursStaysOursAndWhoElsePublishesItIsNamed) {
+  TagOwner tag("/tank/control_effort", 1.0, "/plant_gateway");
+  EXPECT_EQ(tag.problem(0.0), "");
+  EXPECT_FALSE(tag.admits("/stranger", 50.0));
+  EXPECT_EQ(tag.problem(50.0),
+            "/tank/control_effort is published by /stranger as well: the plant hears it");
+  EXPECT_EQ(tag.problem(53.0), "");
+}
+
 }  // namespace loop_tag_owner_test
 }  // namespace fpc

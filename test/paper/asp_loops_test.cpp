@@ -51,6 +51,29 @@ Weeks runWeeks(const std::string& name, int first_seed = 1, Overrides overrides 
   return weeks;
 }
 
+/// Moves of more than a tenth of the range that the next one, as large, takes back.
+int reversals(const std::string& loop, int seed) {
+  const RunRecord record =
+      runLoop(readLoop(loop, {{"disturbance.pattern.seed", std::to_string(seed)}}));
+  double before = 0.0;
+  int count = 0;
+  for (std::size_t k = 2; k < record.samples.size(); ++k) {
+    const double move = record.samples[k].measurement.input_applied[0] -
+                        record.samples[k - 1].measurement.input_applied[0];
+    count += move * before < 0.0 && std::min(std::abs(move), std::abs(before)) > 160.0;
+    before = move;
+  }
+  return count;
+}
+
+// Of FM_1 rule x 1 gives the input a tenth of the effect that its neighbours give it.
+TEST(AspCase1, AWeightOnTheMoveEndsTheSwingsBetweenTheRules) {
+  for (int seed = 1; seed <= kWeeks; ++seed) {
+    EXPECT_GE(reversals("asp_case1", seed), 3) << seed;
+    EXPECT_EQ(reversals("asp_case1_general", seed), 0) << seed;
+  }
+}
+
 TEST(AspCase1, TheLawBeatsThePapersPiByTheStatedMargins) {
   const Weeks law = runWeeks("asp_case1");
   const Weeks pi_s = runWeeks("asp_case1_pi_s"), pi_x = runWeeks("asp_case1_pi_x");

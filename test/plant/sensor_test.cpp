@@ -126,6 +126,25 @@ TEST(Sensor, AveragesHaveLessNoise) {
   EXPECT_NEAR(std::sqrt(squares / kSamples), 1.0 / std::sqrt(15.0), 0.04);
 }
 
+TEST(Sensor, ReadingsAreLostOneByOneAndTheNoiseStays) {
+  SensorParams p;
+  p.noise_std = 1.0;
+  Sensor whole(p, 60.0, 4, 0);
+  p.lost = 0.2;
+  Sensor sensor(p, 60.0, 4, 0);
+  whole.reset(0.0);
+  sensor.reset(0.0);
+  int lost = 0;
+  for (int k = 0; k < 2000; ++k) {
+    whole.advance(0.0, 0.0, 60.0);
+    sensor.advance(0.0, 0.0, 60.0);
+    ASSERT_EQ(sensor.take(), whole.take());
+    lost += sensor.loses() ? 1 : 0;
+    EXPECT_FALSE(whole.loses());
+  }
+  EXPECT_NEAR(lost, 400, 60);
+}
+
 TEST(Sensor, BadParamsAreErrorsThatNameTheField) {
   const auto throws = [](auto spoil) {
     SensorParams p;
@@ -134,6 +153,7 @@ TEST(Sensor, BadParamsAreErrorsThatNameTheField) {
   };
   SensorParams{}.validate();
   throws([](auto& p) { p.lags = -1; });
+  throws([](auto& p) { p.lost = 1.5; });
   throws([](auto& p) { p.lags = 2; });
   throws([](auto& p) { p.delay_s = -1.0; });
   throws([](auto& p) { p.interval_s = std::nan(""); });

@@ -166,6 +166,14 @@ TEST(TransferMatrix, TellsNobodyItsGains) {
   EXPECT_EQ(about.hidden_disturbances.size(), 6U);
 }
 
+// A unit may be small: Pa for a pressure, a gain of ten million.
+TEST(TransferMatrix, TakesGainsOfAnySize) {
+  const auto y = answer(single(2.5e7, 4.0, 0.0), std::vector<double>(400, 1.0), 1.0);
+  EXPECT_NEAR(y.back(), 2.5e7, 1.0);
+  const auto about = TransferMatrixPlant(single(2.5e7, 4.0, 0.0)).description();
+  EXPECT_GT(about.disturbances.back().upper, 2.5e7) << about.disturbances.back().name;
+}
+
 TEST(TransferMatrix, RefusesWhatIsNoMatrix) {
   const auto refused = [](const std::function<void(TransferMatrix&)>& spoil) {
     TransferMatrix m = woodBerry();

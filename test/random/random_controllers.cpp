@@ -1,6 +1,7 @@
 // Section `controller` of a random loop file, by type.
 #include <algorithm>
 #include <map>
+#include <regex>
 
 #include "random/random_parts.hpp"
 
@@ -118,9 +119,11 @@ std::string fmbpc(Dice& dice, RandomFrame& frame) {
   const auto law =
       dice.pick<std::string>(single ? std::vector<std::string>{"published", "general", "iterated"}
                                     : std::vector<std::string>{"general", "iterated"});
-  std::string text = "  law: " + law +
-                     "\n  coincidence_steps: " + std::to_string(dice.whole(1, 12)) + "\n" +
-                     costs(dice, frame, true);
+  std::string text =
+      "  law: " + law + "\n  coincidence_steps: " + std::to_string(dice.whole(1, 12)) + "\n";
+  const std::string costly = costs(dice, frame, true);
+  static const std::regex weight("  weight_[^\n]*\n");
+  text += law == "published" ? std::regex_replace(costly, weight, "") : costly;
   const std::string observer = randomObserver(dice, frame);
   text += observer.empty()
               ? std::string("  realisation: ") + (dice.chance(0.7) ? "parallel\n" : "realigned\n")

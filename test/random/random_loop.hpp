@@ -32,7 +32,8 @@ RandomLoop randomLoop(std::uint64_t seed,
 RandomLoop randomShippedLoop(const std::string& type, std::uint64_t seed);
 
 /// A random transfer matrix under PI or a law with a model, its first output and input counted in
-/// units `output_unit` and `input_unit` times as small.
-RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit = 1.0, double input_unit = 1.0);
+/// units `output_unit` and `input_unit` times as small, that output from `output_zero` on.
+RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit = 1.0, double input_unit = 1.0,
+                            double output_zero = 0.0);
 
 }  // namespace fpc

@@ -12,6 +12,7 @@
 #include "fmbpc/control/registry.hpp"
 #include "fmbpc/loop/report.hpp"
 #include "fmbpc/loop/run.hpp"
+#include "fmbpc/study/run_judgement.hpp"
 #include "loop/loop_fixture.hpp"
 #include "random/random_parts.hpp"
 #include "random/run_checks.hpp"
@@ -225,6 +226,32 @@ TEST_F(RandomLoops, DoNotDependOnTheUnitsOfAnOutputOrAnInput) {
             << other.told();
       }
     }
+  }
+}
+
+// As degrees Celsius and kelvin: a setpoint of 0 is like any other, for laws, guards and indices.
+TEST_F(RandomLoops, DoNotDependOnWhereAnOutputHasItsZero) {
+  for (const std::uint64_t seed : seeds(60)) {
+    const LoopFile loop = read(randomMatrixLoop(seed));
+    const double zero = loop.setpoint.initial[0];
+    const RandomLoop other = randomMatrixLoop(seed, 1.0, 1.0, zero);
+    const LoopFile moved = read(other);
+    ASSERT_EQ(moved.setpoint.initial[0], 0.0) << other.told();
+    const RunRecord plain = runLoop(loop), shifted = runLoop(moved);
+    for (std::size_t k = 0; k < plain.samples.size(); ++k) {
+      const Measurement &a = plain.samples[k].measurement, &b = shifted.samples[k].measurement;
+      ASSERT_NEAR(a.outputs[0], b.outputs[0] + zero, 1e-6 * (1.0 + std::abs(a.outputs[0])))
+          << k << "\n"
+          << other.told();
+      ASSERT_LE((a.input_applied - b.input_applied).norm(), 1e-6 * (1.0 + a.input_applied.norm()))
+          << k << "\n"
+          << other.told();
+    }
+    const Summary here = summarize(loop, plain, 0.0), there = summarize(moved, shifted, 0.0);
+    ASSERT_NEAR(here.outputs[0].ise, there.outputs[0].ise, 1e-4 * (1.0 + here.outputs[0].ise))
+        << other.told();
+    EXPECT_EQ(lockedSamples(loop, plain, 4), lockedSamples(moved, shifted, 4)) << other.told();
+    EXPECT_EQ(here.locked.size(), there.locked.size()) << other.told();
   }
 }
 

@@ -19,13 +19,13 @@ Quantity signal(Dice& dice, const std::string& name) {
 }
 
 std::string values(const std::vector<Quantity>& signals, Dice& dice, double share, double unit,
-                   bool from_nominal) {
+                   bool from_nominal, double zero = 0.0) {
   std::string text = "{";
   for (std::size_t i = 0; i < signals.size(); ++i) {
     const Quantity& q = signals[i];
     const double reach = share * (q.upper - q.nominal) * dice.between(0.1, 1.0);
     const double value = std::stod(Dice::rounded(from_nominal ? q.nominal + reach : reach));
-    text += (i > 0 ? ", " : "") + q.name + ": " + exactText(value / (i == 0 ? unit : 1.0));
+    text += (i > 0 ? ", " : "") + q.name + ": " + exactText(i == 0 ? (value - zero) / unit : value);
   }
   return text + "}";
 }
@@ -38,14 +38,17 @@ std::string controller(Dice& dice, const MatrixSignals& signals, const std::stri
   if (!controllerType(loop.controller).needs_model)
     return "controller:\n  type: pi\n  loops:\n" + pi_loops;
   loop.files["model.yaml"] = matrixModel(dice, signals, 60.0 * sample_min);
-  return "model: {file: model.yaml}\n" + matrixLaw(dice, loop.controller, signals);
+  const std::string guard =
+      loop.seed % 2 == 0 ? "guard: {lock_samples: 4, lock_step: 0.3, swing_move: 0.2}\n" : "";
+  return "model: {file: model.yaml}\n" + guard + matrixLaw(dice, loop.controller, signals);
 }
 
 }  // namespace
 
 // Only the first output and the first input change their units, so that a mix-up of the others
 // shows.
-RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input_unit) {
+RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input_unit,
+                            double output_zero) {
   Dice dice(seed + 1000000);
   RandomLoop loop;
   loop.seed = seed;
@@ -89,7 +92,10 @@ RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input
              ", kp: " + exactText(kp * unit) + ", ki_per_h: " + exactText(ki * unit) +
              ", anti_windup: " + dice.pick<std::string>({"none", "clamp", "tracking"}) + "}\n";
   }
-  const auto listOf = [](const std::vector<Quantity>& signals, double unit) {
+  const auto listOf = [](std::vector<Quantity> signals, double unit, double zero) {
+    if (!signals.empty())
+      for (double* value : {&signals[0].nominal, &signals[0].lower, &signals[0].upper})
+        *value -= zero;
     std::string text = "[";
     for (std::size_t i = 0; i < signals.size(); ++i)
       text += (i > 0 ? ",\n              " : "") + quantity(signals[i], i == 0 ? unit : 1.0);
@@ -98,24 +104,25 @@ RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input
   const double step = sample_min / 60.0;
   loop.text = "title: Random matrix " + std::to_string(seed) +
               "\nplant:\n  type: distillation_column\n  matrix:\n    outputs: " +
-              listOf(outputs, output_unit) + "    inputs: " + listOf(inputs, input_unit);
-  if (n_d > 0) loop.text += "    disturbances: " + listOf(loads, 1.0);
-  loop.text += "    elements:\n" + elements +
-               "sampling:\n  sample_time_s: " + exactText(60.0 * sample_min) +
-               "\n  duration_h: " + exactText(samples * step) +
-               "\nsetpoint:\n  initial: " + values(outputs, dice, 0.3, output_unit, true) +
-               "\nnoise:\n  std: " + values(outputs, dice, 0.01, output_unit, false) +
-               "\nactuator:\n  move_upper: " + values(inputs, dice, 0.5, input_unit, false) +
-               "\ndisturbance:\n  commands:\n";
+              listOf(outputs, output_unit, output_zero) +
+              "    inputs: " + listOf(inputs, input_unit, 0.0);
+  if (n_d > 0) loop.text += "    disturbances: " + listOf(loads, 1.0, 0.0);
+  loop.text +=
+      "    elements:\n" + elements + "sampling:\n  sample_time_s: " + exactText(60.0 * sample_min) +
+      "\n  duration_h: " + exactText(samples * step) +
+      "\nsetpoint:\n  initial: " + values(outputs, dice, 0.3, output_unit, true, output_zero) +
+      "\nnoise:\n  std: " + values(outputs, dice, 0.01, output_unit, false) +
+      "\nactuator:\n  move_upper: " + values(inputs, dice, 0.5, input_unit, false) +
+      "\ndisturbance:\n  commands:\n";
   if (n_d > 0)
     loop.text +=
         "    - {time_h: " + exactText(step * dice.whole(0, samples)) + ", name: d0, value: " +
         Dice::rounded(loads[0].nominal + 0.3 * (loads[0].upper - loads[0].nominal)) + "}\n";
-  loop.text +=
-      "    - {time_h: " + exactText(step * dice.whole(0, samples)) +
-      ", name: output/y0, mode: offset, value: " +
-      exactText(std::stod(dice.number(-1.0, 1.0)) / output_unit) + "}\n" +
-      controller(dice, {outputs, inputs, output_unit, input_unit}, loops, sample_min, loop);
+  loop.text += "    - {time_h: " + exactText(step * dice.whole(0, samples)) +
+               ", name: output/y0, mode: offset, value: " +
+               exactText(std::stod(dice.number(-1.0, 1.0)) / output_unit) + "}\n" +
+               controller(dice, {outputs, inputs, output_unit, input_unit, output_zero}, loops,
+                          sample_min, loop);
   return loop;
 }
 

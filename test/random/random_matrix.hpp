@@ -10,10 +10,10 @@
 namespace fpc {
 
 /// In plain units; the first output and the first input are written in units so many times as
-/// large.
+/// large, and the first output above a zero of its own.
 struct MatrixSignals {
   std::vector<Quantity> outputs, inputs;
-  double output_unit{1.0}, input_unit{1.0};
+  double output_unit{1.0}, input_unit{1.0}, output_zero{0.0};
 };
 
 /// The file of a model of one to three rules.

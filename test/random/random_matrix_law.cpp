@@ -37,7 +37,7 @@ std::string delayedBy(const Quantity& signal, int delay) {
 std::string consequent(Dice& dice, const MatrixSignals& s, std::size_t i,
                        const std::vector<int>& delays) {
   const double unit = unitAt(i, s.output_unit), pole = std::stod(dice.number(0.3, 0.98));
-  double offset = (1.0 - pole) * s.outputs[i].nominal;
+  double offset = (1.0 - pole) * (s.outputs[i].nominal - (i == 0 ? s.output_zero : 0.0));
   std::string text = "{" + s.outputs[i].name + "(k): " + exactText(pole);
   for (std::size_t j = 0; j < s.inputs.size(); ++j) {
     const double gain = (1.0 - pole) * std::stod(dice.number(-2.0, 2.0));
@@ -60,7 +60,8 @@ std::string submodel(Dice& dice, const MatrixSignals& s, std::size_t i, int rule
                      (rules > 1 ? first.name + "(k)" : std::string()) + "]\n    regressors: [" +
                      regressors + "]\n    rules:\n";
   for (int r = 0; r < rules; ++r) {
-    const double centre = first.lower + (first.upper - first.lower) * (r + 1) / (rules + 1);
+    const double centre =
+        first.lower + (first.upper - first.lower) * (r + 1) / (rules + 1) - s.output_zero;
     const double width = 0.3 * (first.upper - first.lower);
     text += "      - ";
     if (rules > 1)
@@ -71,8 +72,10 @@ std::string submodel(Dice& dice, const MatrixSignals& s, std::size_t i, int rule
   return text;
 }
 
-std::string rangesOf(const std::vector<Quantity>& signals, double unit) {
+std::string rangesOf(std::vector<Quantity> signals, double unit, double zero = 0.0) {
   std::string text;
+  signals[0].lower -= zero;
+  signals[0].upper -= zero;
   for (std::size_t i = 0; i < signals.size(); ++i)
     text += "  " + signals[i].name + ": [" + exactText(signals[i].lower / unitAt(i, unit)) + ", " +
             exactText(signals[i].upper / unitAt(i, unit)) + "]\n";
@@ -105,7 +108,8 @@ std::string matrixModel(Dice& dice, const MatrixSignals& s, double sample_time_s
   const int rules = dice.whole(1, 3);
   std::string text = "name: random\nsample_time_s: " + exactText(sample_time_s) +
                      "\noutputs: " + unitsOf(s.outputs) + "\ninputs: " + unitsOf(s.inputs) +
-                     "\ndisturbances: {}\nranges:\n" + rangesOf(s.outputs, s.output_unit) +
+                     "\ndisturbances: {}\nranges:\n" +
+                     rangesOf(s.outputs, s.output_unit, s.output_zero) +
                      rangesOf(s.inputs, s.input_unit) + "submodels:\n";
   for (std::size_t i = 0; i < s.outputs.size(); ++i) text += submodel(dice, s, i, rules);
   return text;

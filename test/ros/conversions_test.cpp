@@ -88,6 +88,8 @@ TEST_P(Conversions, PredictiveActionSurvives) {
   a.setpoint = numbers.vector(3);
   a.input_base_unclipped = numbers.vector(2);
   a.input_previous = numbers.vector(2);
+  a.input_lower = numbers.vector(2);
+  a.input_upper = numbers.vector(2);
   const PredictiveAction r = fromMsg(sent(toMsg(a)));
   EXPECT_TRUE(sameHeader(a.header, r.header));
   EXPECT_TRUE(sameNumbers(a.state, r.state));
@@ -102,6 +104,8 @@ TEST_P(Conversions, PredictiveActionSurvives) {
   EXPECT_TRUE(sameNumbers(a.setpoint, r.setpoint));
   EXPECT_TRUE(sameNumbers(a.input_base_unclipped, r.input_base_unclipped));
   EXPECT_TRUE(sameNumbers(a.input_previous, r.input_previous));
+  EXPECT_TRUE(sameNumbers(a.input_lower, r.input_lower));
+  EXPECT_TRUE(sameNumbers(a.input_upper, r.input_upper));
 }
 
 TEST_P(Conversions, SolverReportSurvivesWithEachStatus) {
@@ -204,7 +208,7 @@ TEST(PlainConversions, AnEmptyMatrixOfBillionsOfColumnsIsRefusedAtOnce) {
 }
 
 TEST(PlainConversions, UnknownEnumerationsAreRefused) {
-  for (const std::uint8_t value : {0, 7, 255}) {
+  for (const std::uint8_t value : {0, 8, 255}) {
     fmbpc::ControlAction action;
     action.source = value;
     EXPECT_THROW(fromMsg(action), InputError) << int{value};

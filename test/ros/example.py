@@ -1,13 +1,17 @@
 #!/usr/bin/python3
 """The example of a plant of one's own behind the gateway: every sample is recorded, the level reaches its setpoints, and
-what the tank was told kept all limits. A second publisher of its level is refused and named, and a stranger neither takes the
-plant into its own hand nor sets its level where the loop names who may."""
+what the tank was told kept all limits. A second publisher of its level is refused and named, so is whoever commands the tank
+beside the gateway; values of who may not speak for the tank do not count; and a stranger neither takes the
+plant into its own hand nor sets its level where the loop names who may. The master lists each node of ours for the topics
+that it hears, and no others."""
 import csv
 import math
 import os
+import subprocess
 import sys
 import unittest
 
+import rosgraph
 import rospy
 import rostest
 from fmbpc.msg import LoopState, Measurement
@@ -35,9 +39,27 @@ class Example(unittest.TestCase):
                          for name, kind in (("pid_enable", Bool), ("setpoint", Float64)))
         enable.publish(False)
         level.publish(3.0)
-        ring.NodeStatus("plant_gateway").wait(lambda s: all(int(ring.values(s).get(key, 0)) > 0 for key in counts))
+        stranger = subprocess.Popen(["rostopic", "pub", "-r", "10", "/tank/state", "std_msgs/Float64", "3.9"],
+                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(stranger.kill)
+        status = ring.NodeStatus("plant_gateway")
+        status.wait(lambda s: all(int(ring.values(s).get(key, 0)) > 0 for key in counts))
+        status.wait(lambda s: any(key.startswith("refused: tags from /rostopic") for key in ring.values(s)))
+        stranger.kill()
+        other = ring.publisher("tank/control_effort", Float64, "/plant_gateway")
+
+        def seen():
+            other.publish(efforts.messages[-1])
+            return any(s.summary and s.mode == LoopState.DEGRADED and
+                       "/tank/control_effort is published by /example as well" in s.reason for s in list(states.messages))
+        ring.wait_until(seen, "the stranger that commands the tank to be named")
         folder = recorded.wait().data
         summary = ring.summary(folder)
+        nodes = ("/fmbpc_controller", "/loop_recorder", "/plant_gateway")
+        listeners = rosgraph.Master(rospy.get_name()).getSystemState()[1]
+        for node in nodes:
+            own = {topic for topic, _ in ring.slave(node).getSubscriptions(rospy.get_name())[2]}
+            self.assertEqual(own, {topic for topic, names in listeners if node in names}, node)
         self.assertEqual((240, True), (summary["steps"], summary["complete"]))
         self.assertEqual({"input": 0, "move": 0, "output": 0}, summary["violations"])
         with open(os.path.join(folder, "trajectory.csv"), encoding="utf-8") as file:

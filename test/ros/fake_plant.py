@@ -1,35 +1,27 @@
 #!/usr/bin/python3
 """fmbpc_controller against a plant that does everything wrong. The first sample of each test opens a new run."""
+import copy
 import math
 import sys
-import unittest
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
-from fmbpc.msg import (CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, NodeReady, PlantInfo, Setpoint,
-                       Tracking)
+from fmbpc.msg import CommandEffect, ControlAction, FuzzyModel, LoopState, Measurement, PlantInfo, Setpoint
 from fmbpc.srv import ManualInput
 from rosgraph_msgs.msg import Log
 from std_srvs.srv import SetBool
 
 import ring
+from acting_plant import ActingPlant
 
 BASE, HELD, MANUAL = ControlAction.BASE, ControlAction.HELD, ControlAction.MANUAL
 
 
-class FakePlant(unittest.TestCase):
+class FakePlant(ActingPlant):
     @classmethod
     def setUpClass(cls):
-        # The plant in the other namespace never starts: it is there to introduce itself.
-        cls.info = ring.Listener("reference/plant_info", PlantInfo).wait()
-        cls.info_pub = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
-        cls.pub = ring.publisher("measurement", Measurement, "/fmbpc_controller")
-        cls.actions = ring.Listener("control_action", ControlAction)
-        cls.tracking = ring.Listener("tracking", Tracking)
-        cls.log = ring.Listener("/rosout", Log, "/fmbpc_controller")
-        cls.status = ring.NodeStatus("fmbpc_controller")
-        cls.ready = ring.Listener("ready", NodeReady, "/fmbpc_controller")
+        super().setUpClass()
         cls.refuse_a_plant_with_other_units()
 
     @classmethod
@@ -39,56 +31,18 @@ class FakePlant(unittest.TestCase):
         cls.info_pub.publish(wrong)
         words = cls.status.wait(lambda s: s.level == DiagnosticStatus.ERROR).message
         assert words == ("plant_info: outputs are x[mg/l], s[mg/l], the loop file expects s[mg/l], x[mg/l]"), words
+        cls.info_pub.publish(cls.of_another_loop())
+        cls.status.wait(lambda s: s.message == "plant_info: the plant reads another loop_text than this node")
         assert "/fmbpc_controller" not in [m.node for m in cls.ready.messages]
         cls.info_pub.publish(cls.info)
-        cls.ready.wait(lambda m: m.node == "/fmbpc_controller")
+        ready = cls.ready.wait(lambda m: m.node == "/fmbpc_controller")
+        assert ready.loop_digest == cls.info.loop_digest != "", ready
 
-    def setUp(self):
-        self.new_run()
-
-    def new_run(self):
-        self.info.run_id += 1000
-        self.info_pub.publish(self.info)
-        for listener in (self.actions, self.tracking, self.log):
-            listener.clear()
-        self.applied = [570.0]
-        self.sent = -1
-        ring.wait_until(lambda: self.answered(0), "an answer to sample 0")
-
-    def answered(self, step):
-        """plant_info and measurement travel apart: send again, as a plant does."""
-        self.send(step)
-        try:
-            self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step), patience=0.05)
-            return True
-        except AssertionError:
-            return False
-
-    def wait_for_state(self, step, fits):
-        """Meanwhile the sample is sent again: who gets no measurement is stalled."""
-        state = ring.Listener("loop_state", LoopState, "/fmbpc_controller")
-
-        def said():
-            self.send(step)
-            return any(fits(m) for m in list(state.messages))
-        ring.wait_until(said, "the controller to say it")
-
-    def message(self, step, run_id=None, outputs=(200.0, 2000.0), final=False, quality=()):
-        msg = Measurement(run_id=self.info.run_id if run_id is None else run_id, step=step, outputs=outputs,
-                          disturbances=[1300.0, 430.0], input_applied=self.applied, final=final,
-                          quality=quality)
-        msg.header.stamp = self.info.header.stamp + rospy.Duration(720 * step)
-        return msg
-
-    def send(self, step, **fields):
-        self.pub.publish(self.message(step, **fields))
-
-    def answer(self, step, **fields):
-        """Sends a sample and returns its action; whatever was answered before it is in self.actions."""
-        self.send(step, **fields)
-        action = self.actions.wait(lambda a: (a.run_id, a.step) == (self.info.run_id, step))
-        self.applied = list(action.input)
-        return action
+    @classmethod
+    def of_another_loop(cls):
+        info = copy.deepcopy(cls.info)
+        info.loop_digest = info.loop_digest[::-1]
+        return info
 
     def steps_answered(self):
         return [a.step for a in self.actions.messages if a.run_id == self.info.run_id]
@@ -99,6 +53,16 @@ class FakePlant(unittest.TestCase):
         again = self.answer(1, outputs=(300.0, 1000.0))
         self.assertEqual((first.input, first.source, first.header.stamp), (again.input, again.source, again.header.stamp))
         self.assertEqual(BASE, self.answer(2).source)
+
+    def test_a_plant_that_comes_back_with_another_loop_is_refused(self):
+        other = copy.deepcopy(self.info)
+        other.loop_digest = self.info.loop_digest[::-1]
+        other.run_id += 500
+        before = self.status.counts().get("refused: plant_info", 0)
+        self.info_pub.publish(other)
+        self.status.wait(lambda s: int(ring.values(s).get("refused: plant_info", 0)) > before)
+        self.answer(1)
+        self.info_pub.publish(self.info)
 
     def test_old_steps_are_dropped_and_counted(self):
         for step in (1, 2):
@@ -234,11 +198,26 @@ class FakePlant(unittest.TestCase):
         now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 3))
         self.assertEqual((55.0, 1800.0), now.setpoint)
 
+    def test_a_setpoint_that_is_refused_is_answered_and_changes_nothing(self):
+        effects = ring.Listener("setpoint_effect", CommandEffect)
+        setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
+        self.answer(1)
+        for number, (name, value) in enumerate((("x", 20000.0), ("x", -1.0), ("nobody", 1.0)), 1):
+            message = Setpoint(name=[name], value=[value], mode=Setpoint.OVERRIDE)
+            message.header.stamp = rospy.Time(0, number)
+            setpoint.publish(message)
+            answer = effects.wait(lambda m, asked=message.header.stamp: m.asked == asked)
+            self.assertEqual((1, self.info.run_id), (answer.step, answer.run_id))
+            self.assertIn(name, answer.refused)
+        self.answer(2)
+        now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 2))
+        self.assertEqual((55.0, 1800.0), now.setpoint)
+
     def test_a_setpoint_beyond_its_limits_is_clamped_and_said(self):
         words = "a setpoint of x was asked beyond its limits"
         before = self.status.counts()["samples with a setpoint clamped"]
         setpoint = ring.publisher("setpoint", Setpoint, "/fmbpc_controller")
-        setpoint.publish(name=["x"], value=[1e9], mode=Setpoint.OVERRIDE)
+        setpoint.publish(name=["x"], value=[3000.0], mode=Setpoint.OVERRIDE)
         self.log.wait(lambda m: "setpoint of x from sample 1 on" in m.msg)
         self.answer(1)
         now = self.tracking.wait(lambda t: (t.run_id, t.step) == (self.info.run_id, 1))

@@ -92,6 +92,22 @@ class LaunchFile(unittest.TestCase):
         self.assertEqual(("Mine, too", 10), (summary["title"], summary["steps"]), text)
         self.assertTrue(os.path.isfile(os.path.join(out, "loop.bag")), text)
 
+    def test_two_loops_started_at_the_same_moment_on_one_master_both_run(self):
+        port = ring.free_port()
+        environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
+        core = subprocess.Popen(ring.tied(["roscore", "-p", port]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(ring.killed, core)
+        launches = [subprocess.Popen(
+            ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=" + loop, "ns:=/" + loop, "out:=" + os.path.join(self.out, loop),
+                       "set:=sampling.duration_h=2", "pace:=lockstep", "draw:=false"]),
+            env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) for loop in ("asp_case1", "asp_case2")]
+        for launch in launches:
+            self.addCleanup(ring.killed, launch)
+            launch.wait(60)
+        for loop in ("asp_case1", "asp_case2"):
+            with open(os.path.join(self.out, loop, "summary.json"), encoding="utf-8") as file:
+                self.assertTrue(json.load(file)["complete"], loop)
+
     def test_a_bad_loop_starts_nothing(self):
         for arguments, words in ((["loop:=nobody"], "nobody"),
                                  (["loop:=asp_case1", "set:=controller.coincidence_stepz=3"], "coincidence_stepz"),

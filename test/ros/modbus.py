@@ -29,6 +29,11 @@ def swapped(data):
     return data[2:4] + data[0:2]
 
 
+def more(raw):
+    """A register that reads so many counts more."""
+    return lambda data: struct.pack(">H", min(max(struct.unpack(">H", data)[0] + raw, 0), 65535))
+
+
 def number(value):
     return lambda _: struct.pack(">f", value)
 
@@ -39,6 +44,7 @@ QUICK = {
     "writes are lost": (lambda: wire.LostWrites(False, False), 1.5, True),
     "garbage": (lambda: wire.Garbage(1), 1.5, True),
     "positions that lie": (lambda: wire.Registers(3, 12, lambda _: struct.pack(">H", 15000)), 1.5, True),
+    "another master": (lambda: wire.Registers(3, 22, lambda _: struct.pack(">H", 4711)), 1.5, True),
     "word order": (lambda: wire.Registers(4, 0, swapped), 2.0, True),
 }
 SLOW = {
@@ -161,6 +167,28 @@ class Modbus(unittest.TestCase):
         self.assertLess(events[0]["t"] - started, PLC_PATIENCE + 0.5)
         first = next(line for line in lines if "asked" in line and line["t"] > events[1]["t"])
         self.assertLess(abs(first["asked"] - events[1]["flow"]), MOVE)
+
+    def test_an_offset_of_the_position_does_not_move_the_valve(self):
+        for offset in (600, -600):  # l/min / 100: 3 % of the range
+            lines, _ = self.check(lambda o=offset: self.wire.breaks(wire.Registers(3, 12, more(o))), self.wire.heals, 3.0, True)
+            asked = [line["asked"] for line in lines if "asked" in line]
+            self.assertGreater(len(asked), 20)
+            self.assertLess(max(asked) - min(asked), 2 * MOVE)
+            self.assertEqual([], [line for line in lines if "event" in line])
+
+    def test_leadership_is_renewed_and_its_loss_is_said(self):
+        def lost():
+            return status.counts()["times that leadership was lost"]
+        status = ring.NodeStatus("plant_gateway")
+        for write in (lambda: wire.write_coil(self.plc.port, 0, False), lambda: wire.write_register(self.plc.port, 22, 0)):
+            before = lost()
+            lines, _ = self.check(write, lambda: None, 0.0, True)
+            self.assertNotIn("another master is refused", [line.get("event") for line in lines])
+            ring.wait_until(lambda b=before: lost() > b, "the loss to be counted")
+
+    def test_a_second_master_is_refused(self):
+        lines, _ = self.check(lambda: wire.write_register(self.plc.port, 22, 4711), lambda: None, 1.0, False)
+        self.assertEqual(["another master is refused"], [e["event"] for e in lines if "event" in e])
 
     def test_a_lost_analyser_ends_in_the_fallback_and_back(self):
         def lose():

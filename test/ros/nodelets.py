@@ -3,13 +3,17 @@
 import json
 import os
 import shutil
+import pathlib
 import subprocess
+import sys
 import tempfile
 import unittest
 
 import rosgraph
 import rostest
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "faults"))
+import contacts
 import ring
 from launch_file import roslaunch
 
@@ -36,7 +40,7 @@ class Nodelets(unittest.TestCase):
     def test_a_model_that_is_identified_on_the_way(self):
         self.equal("asp_identify")
 
-    def test_one_thread_watches_the_master_for_all(self):
+    def test_one_thread_watches_the_master_for_all_and_strangers_end_no_process(self):
         port = ring.free_port()
         address = f"http://localhost:{port}"
         launch = subprocess.Popen(
@@ -54,6 +58,11 @@ class Nodelets(unittest.TestCase):
         for service in ("/plant_simulator/pause", "/fmbpc_controller/manual"):
             ring.wait_until(lambda name=service: serves(name), service)
         self.assertEqual(1, ring.threads(ring.pid("/loop_manager", master)).count("master_watch"))
+        for node in ("/loop_manager", "/plant_simulator"):  # the second is the process that loads
+            process, ports = ring.pid(node, master), contacts.ports(master.lookupNode(node))
+            for words, port, data in contacts.killers(node):
+                contacts.send(ports[port], data, answer=True)
+                self.assertTrue(ring.runs(process), f"{node}: {words}")
 
     def test_a_loop_that_is_wrong_ends_the_launch_in_words(self):
         code, text = roslaunch("loop:=asp_case1", "set:=model.file=nowhere.yaml", "nodelets:=true", "draw:=false",

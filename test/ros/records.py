@@ -13,6 +13,7 @@ import tempfile
 import unittest
 
 import rosgraph
+import rosnode
 import rospy
 import rostest
 from fmbpc.msg import LoopState
@@ -69,8 +70,10 @@ class Records(unittest.TestCase):
 
     def test_a_folder_that_cannot_be_used_starts_nothing(self):
         launch = Launch(self, "loop:=asp_case1", "out:=/dev/null/x")
-        text = launch.end(20)
-        self.assertIn("out:=/dev/null/x: expected a folder that can be written: /dev/null is no folder", text)
+        launch.end(20)
+        why = "out:=/dev/null/x: expected a folder that can be written: /dev/null is no folder"
+        ring.wait_until(lambda: why in launch.text(), "the reason, which comes last")
+        text = launch.text()
         self.assertNotIn("process[", text)
 
     def test_a_recorder_whose_folder_cannot_be_used_says_so_and_is_not_ready(self):
@@ -112,6 +115,38 @@ class Records(unittest.TestCase):
         self.assertEqual(1, again.returncode)
         self.assertIn("expected a journal.bin", again.stderr)
 
+    def test_a_recorder_that_is_told_to_end_in_mid_run_and_comes_back_has_all_samples_in_the_record(self):
+        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=40", "speedup:=14400", "out:=" + self.out,
+                        "record:=true", "respawn:=true")
+        journal = os.path.join(self.out, "journal.bin")
+        for end in (lambda: subprocess.run(["rosnode", "kill", "/loop_recorder"], check=True, stdout=subprocess.DEVNULL,
+                                           env={**os.environ, "ROS_MASTER_URI": launch.uri}),
+                    lambda: os.kill(launch.pid("/loop_recorder"), signal.SIGINT)):
+            ring.wait_until(lambda: holds_samples(journal), "samples on disk")
+            before = launch.pid("/loop_recorder")
+            end()
+            ring.wait_until(lambda: not os.path.isdir(f"/proc/{before}"), "its end")
+            size = os.path.getsize(journal)
+            ring.wait_until(lambda: os.path.getsize(journal) > size, "samples of the one that came back")
+        text = launch.end()
+        summary = self.summary()
+        self.assertEqual((200, True), (summary["steps"], summary["complete"]), text)
+        with open(os.path.join(self.out, "trajectory.csv"), encoding="utf-8") as file:
+            self.assertEqual(202, len(file.readlines()))
+        self.assertEqual([], [name for name in ("journal.bin", "history") if os.path.exists(os.path.join(self.out, name))])
+
+    def test_a_plant_that_is_told_to_end_says_so_last(self):
+        states = ring.Listener("useless/loop_state", LoopState, connected=False)
+        for end in (lambda: os.kill(plant.pid, signal.SIGINT), lambda: rosnode.kill_nodes(["/useless/plant_simulator"])):
+            plant = subprocess.Popen(ring.tied([ring.program("plant_simulator"), "__ns:=useless"]), stderr=subprocess.DEVNULL)
+            self.addCleanup(ring.killed, plant)
+            states.clear()
+            states.wait(lambda s: s.node == "/useless/plant_simulator")
+            end()
+            self.assertEqual(0, plant.wait(ring.PATIENCE))
+            last = states.wait(lambda s: "is shut down at sample 0" in s.reason)
+            self.assertEqual((LoopState.STALLED, True), (last.mode, last.summary))
+
     def test_a_recorder_that_hangs_is_killed_when_the_run_is_over(self):
         launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=15", "speedup:=14400", "out:=" + self.out)
         ring.wait_until(lambda: holds_samples(os.path.join(self.out, "journal.bin")), "samples on disk")
@@ -145,7 +180,9 @@ class Records(unittest.TestCase):
         out = os.path.join(self.out, "it's mine")
         text = Launch(self, "loop:=asp_case1", "set:=sampling.duration_h=2", "pace:=lockstep", "ns:=/a", "record:=true",
                       "out:=" + out).end()
-        self.assertTrue(os.path.isfile(os.path.join(out, "loop.bag")), text)
+        replayed = json.loads(ring.tool("replay", os.path.join(out, "loop.bag"), "--json").stdout)
+        self.assertEqual((True, True, 0, 11), (replayed["equal"], replayed["ended"], replayed["missing_samples"],
+                                               replayed["measurements"]), text)
         self.assertEqual(10, self.summary("it's mine")["steps"], text)
         self.assertNotIn("No closing quotation", text)
         self.assertNotIn("Traceback", OLD_ROSLAUNCH.sub("", text))

@@ -79,9 +79,13 @@ def begin():
     ready.publish(node=rospy.get_name())
 
 
+def slave(node, master=None):
+    """A node's own interface."""
+    return xmlrpc.client.ServerProxy((master or rosgraph.Master(rospy.get_name())).lookupNode(node))
+
+
 def pid(node, master=None):
-    uri = (master or rosgraph.Master(rospy.get_name())).lookupNode(node)
-    return xmlrpc.client.ServerProxy(uri).getPid(rospy.get_name())[2]
+    return slave(node, master).getPid(rospy.get_name())[2]
 
 
 def threads(process):
@@ -171,6 +175,7 @@ def summary(folder):
     with open(os.path.join(folder, "summary.json"), encoding="utf-8") as file:
         data = json.load(file)
     assert 0.0 < data.pop("wall_s") < time.monotonic() - LOADED
+    data.pop("run_id", None)
     for key in ("median_us", "p99_us"):
         data.get("clp", {}).pop(key, None)
     return data

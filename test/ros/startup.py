@@ -2,6 +2,7 @@
 """Sample 0 waits for everybody. Nodes are started one by one here, the loop text is on the parameter server."""
 import subprocess
 import sys
+import time
 import unittest
 
 import rospy
@@ -56,6 +57,33 @@ class Startup(unittest.TestCase):
         self.assertIn("not ready within loop.ready_timeout_s = 3 s: /impatient/fmbpc_controller, "
                       "/impatient/fuzzy_identifier, /impatient/loop_recorder\n", text.replace("\x1b[0m", ""))
         self.assertIn(f"ready of {rospy.get_name()} dropped: it speaks for /impatient/fuzzy_identifier", text)
+
+    def test_members_that_read_another_loop_do_not_join(self):
+        text = rospy.get_param("divided/loop_text")
+        rospy.set_param("divided/fuzzy_identifier/loop_text", text.replace("duration_h: 2", "duration_h: 3"))
+        ready = rospy.Publisher("divided/ready", NodeReady, queue_size=1, latch=True)
+        ready.publish(node=rospy.get_name(), loop_digest="of another text")
+        for name in ("plant_simulator", "fuzzy_identifier"):
+            self.start(name, "__ns:=divided")
+        self.wait_for_status("divided/plant_simulator", DiagnosticStatus.WARN,
+                             "waiting for /divided/fuzzy_identifier, /startup; another loop_text is read by /startup")
+        self.wait_for_status("divided/fuzzy_identifier", DiagnosticStatus.ERROR,
+                             "plant_info: the plant reads another loop_text than this node")
+
+    def test_a_plc_where_nobody_answers_is_named_at_once_and_the_plant_ends(self):
+        for host, port, why in (("127.0.0.1", ring.free_port(), "Connection refused"),
+                                ("no-such-plc.invalid", 502, "no such host is known")):
+            sets = [f"gateway.modbus.host={host}", f"gateway.modbus.port={port}", "loop.ready_timeout_s=4"]
+            text = ring.tool("resolve", "cstr_modbus", "--sets", " ".join(sets)).stdout
+            rospy.set_param("lonely/loop_text", text)
+            begun = time.monotonic()
+            gateway = self.start("plant_gateway", "__ns:=lonely", stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+            words = f"no connection to {host}:{port}: {why}"
+            self.assertIn(words, gateway.stderr.readline())
+            self.assertLess(time.monotonic() - begun, 5.0)
+            rest = gateway.stderr.read()
+            self.assertEqual(1, gateway.wait(ring.PATIENCE))
+            self.assertIn(f"the plant ({words}), ", rest)
 
     def test_a_controller_without_a_model_is_not_ready_and_one_that_joins_late_finds_sample_0(self):
         measurements, recorded = (ring.Listener(topic, kind, connected=False)

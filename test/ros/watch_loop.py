@@ -7,6 +7,7 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock as mock
 
 import roslib.packages
 import rospy
@@ -60,6 +61,17 @@ class Watch(unittest.TestCase):
         self.assertEqual(("h", 40.0, True), (view.axis.unit, view.axis.length, view.axis.endless))  # 200 samples
         for sample_time, samples, unit in ((720.0, 100, "h"), (60.0, 10, "min"), (0.5, 100, "s")):
             self.assertEqual(unit, live_view.Axis(sample_time, samples).unit)
+
+    def test_the_window_of_a_run_that_went_well_outlives_the_launch(self):
+        over, start, windows = types.SimpleNamespace(is_shutdown=lambda: True), subprocess.Popen, []
+        for outcome, stays in (((True, "finished"), True), ((False, "ended: the disk is full"), False), (None, False)):
+            view = types.SimpleNamespace(outcome=lambda o=outcome: o)
+            with mock.patch.object(plot_live, "rospy", over), mock.patch.object(
+                    plot_live.subprocess, "Popen", lambda *a, **k: windows.append(start(*a, **k)) or windows[-1]):
+                plot_live.follow(["sleep", "60"], view)
+            self.assertEqual(stays, windows[-1].poll() is None)
+            windows[-1].kill()
+            windows[-1].wait()
 
     def test_the_settings_for_rqt_plot_name_every_signal_once(self):
         axis = types.SimpleNamespace(endless=False, length=60.0)

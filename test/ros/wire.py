@@ -37,6 +37,21 @@ def is_write(data):
     return data[0] in (5, 6, 15, 16)
 
 
+def ask(port, data, unit=1):
+    """The answer of the server itself to one question."""
+    with socket.create_connection(("127.0.0.1", port), 5) as server:
+        server.sendall(packed(1, unit, data))
+        return frame(server)[2]
+
+
+def write_register(port, address, value):
+    return ask(port, struct.pack(">BHH", 6, address, value))
+
+
+def write_coil(port, address, on):
+    return ask(port, struct.pack(">BHH", 5, address, 0xFF00 if on else 0))
+
+
 class Healthy:
     """What a wire does with a question and its answer: None is silence; OSError cuts."""
     accepts = True

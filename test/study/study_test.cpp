@@ -214,6 +214,29 @@ TEST_F(Study, NoiseInPercentIsThatOfTheSpanOfTheSetpoints) {
   EXPECT_NEAR(loop.simulation.noise_std[0], 0.02 * 0.5, 1e-12);  // setpoints 1 and 0.5
 }
 
+TEST_F(Study, WhatWouldVaryNothingIsRefusedBeforeTheRuns) {
+  const std::string resting = "set: {setpoint.initial.y: 0, setpoint.schedule: []}\n";
+  expectWords(errorOf([&] { plan("seeds: 1:2\nnoise: {percent_of_span: 2}\n" + resting); }),
+              {"noise.percent_of_span", "the setpoint of y", "rests at 0"});
+  expectWords(
+      errorOf([&] { plan("seeds: 1:2\nvary: {setpoint.initial.y: [0.5, 2]}\n" + resting); }),
+      {"vary.setpoint.initial.y", "value:LOWER:UPPER", "is 0"});
+  plan("seeds: 1:2\nvary: {setpoint.initial.y: {values: [0.5, 2]}}\n" + resting);
+}
+
+TEST_F(Study, CasesWithTheSameTrajectoryAreRefusedWhateverTheReason) {
+  const std::string quiet = "seeds: 1:3\nset: {noise.std.y: 0}\n";
+  const StudyPlan same = plan(quiet + "vary: {plant.matrix.inputs.0.upper: [0.8, 1.2]}\n");
+  StudyOptions options;
+  options.state = path("same.json");
+  for (options.resume = false;; options.resume = true) {
+    expectWords(errorOf([&] { runStudy(same, options); }),
+                {"loop good", "'seed 1' and 'seed 2'", "same trajectory"});
+    if (options.resume) break;
+  }
+  EXPECT_TRUE(runStudy(plan(quiet + "vary: {controller.loops.0.kp: [0.5, 2]}\n")).complete);
+}
+
 TEST_F(Study, KeysWithoutANumberAndSeedsWithoutUseAreRefused) {
   expectWords(errorOf([&] { plan("seeds: 1\nvary: {plant.parameters.k: [1, 2]}\n"); }),
               {"vary.plant.parameters.k", "number"});
@@ -238,7 +261,13 @@ TEST(StudyStatistics, QuantilesAndIntervalsAreThoseOfTheBooks) {
   EXPECT_EQ(medianInterval(ten, 0.95).lower, 2.0);
   EXPECT_EQ(medianInterval(ten, 0.95).upper, 9.0);
   EXPECT_EQ(medianInterval(ten, 0.85).lower, 3.0);
-  EXPECT_EQ(medianInterval({1, 2, 3}, 0.95).lower, 1.0);
+  // The whole range of 5 holds the median with 93.75 % only, of 6 with 96.9 %.
+  EXPECT_EQ(casesForMedianInterval(0.95), 6U);
+  EXPECT_EQ(casesForMedianInterval(0.9), 5U);
+  EXPECT_TRUE(std::isnan(medianInterval({1, 2, 3, 4, 5}, 0.95).lower));
+  EXPECT_TRUE(std::isnan(medianInterval({}, 0.95).upper));
+  EXPECT_EQ(medianInterval({1, 2, 3, 4, 5, 6}, 0.95).lower, 1.0);
+  EXPECT_EQ(medianInterval({1, 2, 3, 4, 5}, 0.9).upper, 5.0);
 }
 
 }  // namespace study_study_test

@@ -76,5 +76,22 @@ TEST_F(LoopsTool, ALoopThatIsWrongIsListedWithWhatItsTextSays) {
   expectWords(loops[0]["title"], {"Mine (cannot be read: ", "mine_wrong.yaml:4", "nonsense"});
 }
 
+// Nodes of a YAML tree take hundreds of bytes each: they are counted before there is one.
+#if defined(__SANITIZE_ADDRESS__)
+const std::string kLittleMemory;  // the sanitizer maps terabytes
+#else
+const std::string kLittleMemory = "ulimit -v 400000; ";
+#endif
+
+TEST_F(LoopsTool, ALoopFileOfTooManyValuesIsRefusedBeforeItTakesMemory) {
+  std::string values = "title: many\nsetpoint: {schedule: [1";
+  for (int i = 0; i < 1'500'000; ++i) values += ",1";
+  const Outcome outcome = shell(kLittleMemory + FMBPC_TOOL " resolve " +
+                                write("many.yaml", values + "]}\n") + " 2>&1 >/dev/null");
+  EXPECT_EQ(outcome.code, 1);
+  expectWords(outcome.printed.substr(0, outcome.printed.size() - 1),
+              {"many.yaml:2", "at most 1000000 values"});
+}
+
 }  // namespace tool_loops_tool_test
 }  // namespace fpc

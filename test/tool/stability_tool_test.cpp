@@ -1,6 +1,8 @@
 // fmbpc stability: which files are loops, how far it looks, and what it would ignore.
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "loop/loop_fixture.hpp"
@@ -38,6 +40,46 @@ TEST_F(StabilityTool, TheRangeIsThatOfTheLoopAndIsPrinted) {
   EXPECT_DOUBLE_EQ(states["input_upper"], 18.0);
   const std::string printed = tool("stability " + narrow).printed;
   EXPECT_NE(printed.find("over heat [kW] from 2 to 18"), std::string::npos) << printed;
+}
+
+Matrix matrixOf(const nlohmann::json& rows) {
+  const auto n = static_cast<Eigen::Index>(rows.size());
+  Matrix m(n, n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j)
+      m(i, j) = rows[static_cast<std::size_t>(i)].at(static_cast<std::size_t>(j));
+  return m;
+}
+
+/// P > 0 and decay^2 P - A' P A > 0 of every named map, from what is printed alone.
+void expectCertified(const nlohmann::json& certificate, const nlohmann::json& maps) {
+  const Matrix P = matrixOf(certificate["P"]);
+  const double decay = certificate["decay"];
+  EXPECT_LT(decay, 1.0);
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Matrix>(P).eigenvalues().minCoeff(), 0.0);
+  for (const auto& map : maps) {
+    const Matrix A = matrixOf(map["A"]);
+    const Matrix left = decay * decay * (1.0 + 1e-9) * P - A.transpose() * P * A;
+    EXPECT_GE(Eigen::SelfAdjointEigenSolver<Matrix>(left).eigenvalues().minCoeff(), -1e-12);
+  }
+}
+
+TEST_F(StabilityTool, TheCertificateCanBeCheckedByOthers) {
+  const auto report = nlohmann::json::parse(tool("stability --json cstr_tracking_literal").printed);
+  const auto& certificate = report["certificate"];
+  if (certificate["status"] == "csdp not installed") GTEST_SKIP() << "csdp is not installed";
+  ASSERT_EQ(certificate["status"], "found");
+  EXPECT_EQ(certificate["maps"].size(), certificate["applicable"].get<std::size_t>());
+  expectCertified(certificate, certificate["maps"]);
+  const auto some = nlohmann::json::parse(tool("stability --json fm_1 --horizon 1..3").printed);
+  const auto& region = some["certificate"]["region"];
+  nlohmann::json members = nlohmann::json::array();
+  for (const auto& map : some["certificate"]["maps"])
+    if (std::count(region["rules"].begin(), region["rules"].end(), map["rules"]))
+      members.push_back(map);
+  ASSERT_GT(members.size(), 1U);
+  EXPECT_EQ(members.size(), region["rules"].size());
+  expectCertified(region, members);
 }
 
 TEST_F(StabilityTool, TheTableHasUnitsAndALegend) {

@@ -42,6 +42,15 @@ TEST_F(StudyTool, ComparesLoopsInPairsFromOptions) {
     EXPECT_NE(table.find(word), std::string::npos) << word << " is not in\n" << table;
 }
 
+TEST_F(StudyTool, TooFewCasesHaveNoIntervalOfTheMedian) {
+  const auto study = json(loops() + " --seeds 1:5");
+  EXPECT_TRUE(study["pairs"][0]["ratio_interval"][0].is_null());
+  EXPECT_TRUE(study["pairs"][0]["share_interval"][0].is_number());
+  EXPECT_NE(tool("study " + loops() + " --seeds 1:5").printed.find("none (n < 6)"),
+            std::string::npos);
+  EXPECT_TRUE(json(loops() + " --seeds 1:6")["pairs"][0]["ratio_interval"][1].is_number());
+}
+
 TEST_F(StudyTool, WritesItsFilesAndResumesToTheSameNumbers) {
   const std::string options = loops() + " --seeds 1:5 --no-plot --out ";
   const auto whole = json(options + path("whole"));

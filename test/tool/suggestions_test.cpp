@@ -28,6 +28,11 @@ TEST(Suggestions, CapitalsPartsAndSlips) {
   expectAnswer("loops load_supervisr", "near: load_supervisor");
 }
 
+TEST(Suggestions, HelpOfACommandThatIsNone) {
+  expectAnswer("identfy --help", "unknown command 'identfy', did you mean identify?");
+  expectAnswer("nonsense -h", "unknown command 'nonsense'");
+}
+
 TEST(Suggestions, WhereNothingIsNearTheyAreListedOrTheirListIsNamed) {
   expectAnswer("run thermostat", "; `fmbpc loops` lists them");
   expectAnswer("loops two_inputs", "; `fmbpc loops` lists them");

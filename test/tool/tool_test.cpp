@@ -124,6 +124,14 @@ TEST_F(Tool, MistakesAreOneLineOnStandardError) {
   }
 }
 
+TEST_F(Tool, StdoutThatIsFullIsAnError) {
+  for (const char* arguments : {"loops", "run linear_2x2 --json", "resolve asp_case1", "--help"}) {
+    const Outcome outcome = shell(std::string(FMBPC_TOOL) + " " + arguments + " 2>&1 >/dev/full");
+    EXPECT_NE(outcome.code, 0) << arguments;
+    EXPECT_NE(outcome.printed.find("fmbpc: stdout: "), std::string::npos) << outcome.printed;
+  }
+}
+
 TEST_F(Tool, ARunWhosePlantCannotBeMovedFails) {
   const std::string stuck = "run asp_case1_pi_x --set plant.integrator.max_steps=1" + kShort;
   const Outcome outcome = tool(stuck, true);

@@ -11,12 +11,13 @@ namespace fpc {
 
 /// Of one output: e = setpoint - y (measured). Time weights in hours.
 struct OutputIndices {
-  double ise{};            ///< sum e^2
-  double iae{};            ///< sum |e|
-  double itae{};           ///< sum t |e|, t in h
-  double itse{};           ///< sum t e^2, t in h
-  double rmse{};           ///< sqrt(ise / (N + 1))
-  double ise_reference{};  ///< sum (y_r - y)^2
+  double ise{};              ///< sum e^2
+  double iae{};              ///< sum |e|
+  double itae{};             ///< sum t |e|, t in h
+  double itse{};             ///< sum t e^2, t in h
+  double rmse{};             ///< sqrt(ise / samples in the sum), N + 1 if none was rejected
+  double ise_reference{};    ///< sum (y_r - y)^2
+  std::uint64_t rejected{};  ///< measurements that are in none of the sums
 };
 
 /// Of one input, over the applied values u(0)..u(N-1); moves include u(0) - u(-1).

@@ -14,6 +14,8 @@ class RunningOutput {
   /// @throws InputError unless sample_time_h is a number > 0.
   explicit RunningOutput(double sample_time_h);
   void add(double y, double setpoint, double reference);
+  /// A sample whose y counts for nothing: time goes on. All rejected: the sums are NaN.
+  void reject() { ++samples_, ++sums_.rejected; }
   OutputIndices indices() const;
 
  private:

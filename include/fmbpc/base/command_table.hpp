@@ -27,12 +27,15 @@ struct CommandEffect {
 /// one.
 class CommandTable {
  public:
-  explicit CommandTable(std::vector<std::string> names);
+  /// Values of any size on these names.
+  explicit CommandTable(const std::vector<std::string>& names);
+  /// Overrides inside the range of each signal, offsets at most as wide as it.
+  explicit CommandTable(std::vector<SignalInfo> signals);
 
-  /// Takes a command that acts from `step` on.
+  /// Takes a command that acts from `step` on. A release without names is one of all names.
   /// @throws InputError (nothing is taken) on an unknown name, one that comes twice, unequal
-  /// lengths, a non-finite value or an unknown mode.
-  void accept(const Command& command, std::uint32_t step);
+  /// lengths, a value that is not finite or beyond its range, or an unknown mode.
+  void accept(const Command& asked, std::uint32_t step);
   /// Brings all commands due at or before `step` into force; returns those that just took effect.
   /// The reference stays valid until the next call.
   const std::vector<Command>& advance(std::uint32_t step);
@@ -41,6 +44,7 @@ class CommandTable {
   double apply(std::size_t index, double nominal) const;
   const std::vector<ActiveCommand>& active() const { return active_; }
   const std::vector<std::string>& names() const { return names_; }
+  const std::vector<SignalInfo>& signals() const { return signals_; }
   /// What has been accepted and is not in force yet, in the order in which it will be.
   std::vector<Command> waiting() const;
   /// Counts steps from 0 again after `passed` of them.
@@ -54,7 +58,8 @@ class CommandTable {
   };
   std::size_t indexOf(const std::string& name) const;
 
-  std::vector<std::string> names_;
+  std::vector<SignalInfo> signals_;
+  std::vector<std::string> names_;  // of them
   std::vector<ActiveCommand> active_;
   std::vector<Pending> pending_;
   std::vector<Command> effects_;

@@ -55,6 +55,7 @@ enum class ActionSource : std::uint8_t {
   kHeld = 4,         ///< data missing or not finite: the last applied input
   kManual = 5,       ///< a person
   kFallback = 6,     ///< the configured fallback
+  kGuarded = 7,      ///< law or optimizer inside what the guard leaves of the limits
 };
 
 /// u(k), acting on [t_k, t_k + Ts).
@@ -69,18 +70,20 @@ struct ControlAction {
 ///   u_base(k+i) = -K x(k+i) + feedforward.col(i), absolute units.
 struct PredictiveAction {
   StepHeader header;
-  Vector state;                 ///< n_x, x(k)
-  Matrix A;                     ///< n_x n_x
-  Matrix B;                     ///< n_x n_u
-  Matrix C;                     ///< n_y n_x
-  Vector offset_state;          ///< n_x
-  Vector offset_output;         ///< n_y
-  Matrix K;                     ///< n_u n_x
-  Matrix feedforward;           ///< n_u n_c
-  Matrix reference;             ///< n_y n_c, column i is y_r(k+1+i)
-  Vector setpoint;              ///< n_y, what the references aim at
-  Vector input_base_unclipped;  ///< n_u, -K x(k) + feedforward.col(0)
-  Vector input_previous;        ///< n_u, u(k-1)
+  Vector state;                     ///< n_x, x(k)
+  Matrix A;                         ///< n_x n_x
+  Matrix B;                         ///< n_x n_u
+  Matrix C;                         ///< n_y n_x
+  Vector offset_state;              ///< n_x
+  Vector offset_output;             ///< n_y
+  Matrix K;                         ///< n_u n_x
+  Matrix feedforward;               ///< n_u n_c
+  Matrix reference;                 ///< n_y n_c, column i is y_r(k+1+i)
+  Vector setpoint;                  ///< n_y, what the references aim at
+  Vector input_base_unclipped;      ///< n_u, -K x(k) + feedforward.col(0)
+  Vector input_previous;            ///< n_u, u(k-1)
+  Vector input_lower, input_upper;  ///< n_u, what the guard leaves of the limits for u(k); empty:
+                                    ///< all of them
 };
 
 /// Outcome of a constrained optimization.

@@ -45,18 +45,18 @@ struct ModbusParams {
   double reconnect_s{1.0};  ///< between two attempts
   ModbusBit automatic;      ///< coil, written: 1 while the loop has the inputs
   ModbusBit remote;         ///< coil or discrete input, read: 1 while the plant takes commands
+  int owner{-1};            ///< holding register: the word of the master that leads, 0: nobody
   int heartbeat_in{-1};     ///< holding register that the plant counts up
   int heartbeat_out{-1};    ///< holding register that the gateway counts up
 };
 
 struct GatewayParams {
   GatewayType type{GatewayType::kNone};
-  double stale_s{};                 ///< a value older than this is not accepted
-  double heartbeat_s{};             ///< the plant's heartbeat must change within; 0: it has none
-  double readback_tolerance{0.01};  ///< of an input's range: what is read back is what was told
-  bool reads_back{false};           ///< what is read back of the inputs is known
-  double speedup{1.0};              ///< of a plant that lives faster than the clock (a demo)
-  std::string enable_topic;         ///< std_msgs/Bool; false: the plant's own hand
+  double stale_s{};          ///< a value older than this is not accepted
+  double heartbeat_s{};      ///< the plant's heartbeat must change within; 0: it has none
+  bool reads_back{false};    ///< what is read back of the inputs is known
+  double speedup{1.0};       ///< of a plant that lives faster than the clock (a demo)
+  std::string enable_topic;  ///< std_msgs/Bool; false: the plant's own hand
   ModbusParams modbus;
   std::vector<GatewayTag> outputs, disturbances, inputs;  ///< in the plant's order
   bool enabled() const { return type != GatewayType::kNone; }

@@ -5,16 +5,23 @@
 
 namespace fpc {
 
+constexpr double kTransferDecay = 0.9;  ///< share of the bias that is left after a sample
+
 /// A bias on what a law proposes: it makes the first input after a start or a hand-over the one
-/// that the process already gets, and dies out from then on. No allocation after construction.
+/// that the process already gets, and dies out from then on. A predictive law has one for its own
+/// starts; a session has one on what the plant gets, for the samples after another hand (a person,
+/// the fallback, the plant's own) had the inputs. No allocation after construction.
 class BumplessTransfer {
  public:
   /// decay: share of the bias that is left after a sample, [0, 1).
-  BumplessTransfer(Eigen::Index n_u, double decay);
+  explicit BumplessTransfer(Eigen::Index n_u, double decay = kTransferDecay);
   /// No bias; if `pending`, the next finite proposal becomes the applied input.
   void reset(bool pending);
+  bool active() const;  ///< a bias is due, or more than a thousandth of the last one is left
   /// Turns a proposal into the input of the law.
   void apply(VectorRef input_applied, Eigen::Ref<Vector> proposal);
+  /// apply() and fade() in one; false, and nothing is done, where no bias is active().
+  bool bridge(VectorRef input_applied, Eigen::Ref<Vector> proposal);
   /// Between two laws of one sample: `input` is what the older one gives; the younger one's
   /// proposal then becomes this in finish(), whatever it was.
   void begin(VectorRef input);
@@ -24,7 +31,7 @@ class BumplessTransfer {
   void fade();  ///< to the next sample
 
  private:
-  double decay_;
+  double decay_, left_{0.0};  // left_: share of the last bias
   Vector bias_, kept_;
   bool pending_{false};
 };

@@ -51,6 +51,10 @@ class Controller {
   /// but may keep following the process, so that reset() at the very next sample finds its hidden
   /// states where they are. Finite; without allocation. Default: nothing.
   virtual void lookOn(const Measurement& now);
+  /// What it expects to be measured at this sample, whose outputs are not to be read; false if it
+  /// expects nothing. Only between two samples that it gets one after the other. Without
+  /// allocation.
+  virtual bool foresee(const Measurement& now, Eigen::Ref<Vector> outputs);
   virtual bool needsModel() const { return false; }
   /// False for an open-loop experiment: setpoints and references are then recorded as NaN.
   virtual bool followsSetpoint() const { return true; }

@@ -15,6 +15,9 @@ class ControllerAround : public Controller {
  public:
   void forget() override { inside_->forget(); }
   void lookOn(const Measurement& now) override { inside_->lookOn(now); }
+  bool foresee(const Measurement& now, Eigen::Ref<Vector> outputs) override {
+    return inside_->foresee(now, outputs);
+  }
   bool needsModel() const override { return inside_->needsModel(); }
   bool followsSetpoint() const override { return inside_->followsSetpoint(); }
   void setModel(const TsModel& model) override { inside_->setModel(model); }

@@ -82,12 +82,13 @@ class LockUpWatch {
 ///   moves shrink from half the range to `least_move`; below trust_low at present a PI, if there is
 ///   one, acts (bumplessly) until trust has been above trust_high for `return_samples`;
 /// - errors of a plan beyond the samples at which the model is trusted do not count, but the first
-///   `horizon_least` do;
+///   `horizon_least` after the longest dead time of an input do;
 /// - an input that is locked up at its bound (see LockUpWatch) has that bound drawn in, if the
 ///   model knows the input: others stand where the plant has them;
 /// - an input that the law throws from end to end of its range (see SwingWatch) moves less;
-/// - where the guard changes an input the source is `fallback`, there is no prediction, and remark
-///   says why.
+/// - so the guard narrows the limits of u(k): the law's input is put inside them (source `guarded`,
+///   and remark says why), and the prediction hands them to an optimizer; where the PI acts the
+///   source is `fallback` and there is no prediction.
 /// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
 /// then model_trust, model_trust_ahead (the least over the horizon), model_trust_steps (samples
 /// ahead before it falls below trust_low; see HorizonTrust), locked.
@@ -112,6 +113,7 @@ class GuardedController final : public ControllerAround {
   double trustForMoves(const Measurement& now);
   void shrink(double trust);
   void calm(const Measurement& now);
+  void narrow(const Vector& before);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
   void lookAhead(const Measurement& now, const ControllerOutput& output);
   void refreshSignals();
@@ -119,6 +121,7 @@ class GuardedController final : public ControllerAround {
   PlanView* plan_;  // of inside_, or null
   GuardParams params_;
   InputLimits limits_, shrunk_;
+  Vector lower_, upper_;  // of u(k)
   PlantInfo plant_;
   std::unique_ptr<PiController> pi_;
   ControllerOutput pi_output_;

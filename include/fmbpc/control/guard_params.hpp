@@ -17,14 +17,14 @@ struct GuardParams {
   double trust_high{0.75};             ///< above: the law acts freely (again)
   double least_move{0.25};             ///< largest move at no trust, in parts of an input's range
   int look_ahead{10};                  ///< samples of a plan that shrink moves; 0: the present one
-  int horizon_least{12};               ///< errors of a plan that always count; 0: all do
+  int horizon_least{12};               ///< errors after the dead time that count; 0: all do
   int return_samples{10};              ///< so long above trust_high before the law is back
   std::shared_ptr<const PiParams> pi;  ///< the fallback; without: moves shrink with trust
-  int lock_samples{25};                ///< an input so long at its bound is suspected; 0: never
-  double lock_error{0.02};  ///< ... while an error is larger than this part of its setpoint
+  int lock_samples{0};                 ///< an input so long at its bound is suspected; 0: never
+  double lock_error{0.01};  ///< ... while an error is larger than this part of its output's range
   double lock_step{0.1};    ///< by how much the bound is drawn in at once, in parts of the range
   int lock_release{250};    ///< samples over which a drawn-in bound opens again
-  double swing_move{0.25};  ///< of the range: moves beyond that turn and turn are swings; 0: never
+  double swing_move{0.0};   ///< of the range: moves beyond that turn and turn are swings; 0: never
   int swing_release{250};   ///< samples over which moves open by half once nothing swings
   std::vector<Eigen::Index> lock_outputs;  ///< whose errors count; empty: all
   /// @throws InputError naming guard.KEY.

@@ -27,6 +27,8 @@ class ModelObserver {
   void forget() { begun_ = false; }  ///< the next rest() is as the first one, in a run, too
   /// To sample k: y(k) as measured, u(k-1), d(k-1) as the model takes it.
   void advance(VectorRef outputs, VectorRef input, VectorRef disturbances);
+  /// What advance() will expect to be measured.
+  void foresee(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> outputs);
   /// Goes on from another one with states of the same meaning and the same delay.
   void inherit(const ModelObserver& other);
   const Vector& state() const { return state_; }  ///< x(k), run forward over the delay

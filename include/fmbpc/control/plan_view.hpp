@@ -16,7 +16,8 @@ class PlanView {
   virtual void planned(Eigen::Index i, Eigen::Ref<Vector> point) const = 0;
   /// From now on the plan's errors count only up to the first sample at which outputs and
   /// disturbances are where the model is trusted less than `threshold` (see processTrustOf()), the
-  /// first `least` of them always. A law that does not plan by errors has nothing to do.
+  /// first `least` after the longest dead time of an input always. A law that does not plan by
+  /// errors has nothing to do.
   virtual void heedTrust(double /*threshold*/, Eigen::Index /*least*/) {}
 };
 

@@ -15,7 +15,7 @@ namespace fpc {
 enum class Substitute : std::uint8_t {
   kHold,      ///< nothing: the input is held
   kLastGood,  ///< the last value that was accepted
-  kModel,     ///< what the law predicted for this sample; the last good value where it does not
+  kModel,     ///< what the law expects at this sample; the last good value where it does not
 };
 inline std::vector<std::string> wordsOf(Substitute) { return {"hold", "last_good", "model"}; }
 
@@ -26,8 +26,13 @@ struct SignalPlausibility {
   double rate_per_h{std::numeric_limits<double>::infinity()};  ///< largest change, from the last
                                                                ///< value that was accepted
   double jump{std::numeric_limits<double>::infinity()};        ///< largest change at once ...
-  int jump_samples{3};    ///< ... unless the new level stays for so many samples
-  int frozen_samples{0};  ///< the same bits so often while an input moved; 0: never
+  int jump_samples{3};  ///< ... unless the new level stays for so many samples
+  /// The same bits so often while an input moved; 0: never frozen; -1: judged by its own noise, and
+  /// an output by what the law's model says of the inputs.
+  int frozen_samples{0};
+  double scale_lower{-std::numeric_limits<double>::infinity()};  ///< ends of the instrument: what
+  double scale_upper{std::numeric_limits<double>::infinity()};   ///< stands there may be cut off
+  int late_samples{0};                                           ///< how late the instrument is
   Substitute substitute{Substitute::kHold};
 };
 
@@ -37,14 +42,16 @@ inline std::vector<std::string> wordsOf(DoubtAction) { return {"say", "hold", "f
 
 /// What is asked of all measured signals.
 struct PlausibilityParams {
-  bool enabled{false};   ///< without: only what is no number is doubted
-  int hold_samples{-1};  ///< so long a needed signal may be doubted, then `fallback`; -1: for ever
+  bool enabled{false};    ///< without: only what is no number is doubted
+  int hold_samples{-1};   ///< so long a needed signal may be doubted, then `fallback`; -1: for ever
+  int bridge_samples{0};  ///< so long a doubted signal is replaced as with Substitute::kModel
   double frozen_input{0.1};  ///< an input has moved by more than this part of its range
   bool gain_sign{false};     ///< a new model must have the gains' signs of the running one
   int reaction_samples{0};   ///< window in which the outputs must react to the inputs; 0: not asked
   DoubtAction reaction{DoubtAction::kSay};      ///< of an input that the outputs do not react to
   DoubtAction plant_bounds{DoubtAction::kSay};  ///< of a plant that announces other bounds
   Vector fallback;                              ///< n_u; empty: none, the input is held for ever
+  bool range_falls{true};   ///< the fallback follows a value outside its range as well
   std::vector<bool> needs;  ///< outputs, then disturbances: what the law needs; empty: all
   std::vector<SignalPlausibility> outputs,
       disturbances;  ///< in the plant's order; empty: no limits
@@ -56,6 +63,7 @@ struct PlausibilityParams {
 struct StuckParams {
   int samples{5};          ///< in a row; 0: never
   double tolerance{0.02};  ///< of the input's range
+  bool hold{false};        ///< it is held then; otherwise it goes on by its own command
 };
 
 }  // namespace fpc

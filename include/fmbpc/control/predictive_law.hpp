@@ -44,13 +44,16 @@ class LawCore {
   virtual void rest(const LawSample& sample) = 0;  ///< the process has rested at this sample
   virtual void forget() {}                         ///< see Controller
   virtual void advance(const LawSample& sample) = 0;
+  /// y(k) as it expects it after u(k-1) and d(k-1).
+  virtual void foresee(VectorRef input, VectorRef past_disturbances,
+                       Eigen::Ref<Vector> outputs) = 0;
   /// Goes on with the memory of an older core; false (rest() then) if that means nothing here.
   virtual bool inherit(const LawCore& older) = 0;
   /// The rules at this sample. False if none fired: then the nearest one is used.
   virtual bool look(const LawSample& sample) = 0;
   virtual Proposal propose(const LawSample& sample, Vector& input) = 0;
   virtual bool finite() const = 0;  ///< false: what it knows of the process is of no use
-  /// All of it but header, setpoint, input_base_unclipped and input_previous.
+  /// All of it but header, setpoint and what is said of u(k).
   virtual void predict(PredictiveAction& prediction) const = 0;
   /// Number `which` of the signals of an output.
   virtual double signal(Eigen::Index output, std::size_t which) const = 0;
@@ -71,8 +74,8 @@ struct PredictiveLawParams {
   bool preview{false};                 ///< references follow the setpoint schedule over the horizon
   bool disturbance_feedforward{true};  ///< d(k) in the model; false: the nominal d
   Vector disturbance_nominal;          ///< n_d, used without feedforward
-  double transfer_decay{0.9};  ///< how fast the bias of a bumpless start decays per sample, [0, 1)
-  int prediction_steps{1};     ///< n_c of the predictive_action
+  double transfer_decay{kTransferDecay};  ///< of the bias of a bumpless start, [0, 1)
+  int prediction_steps{1};                ///< n_c of the predictive_action
   /// @throws InputError naming the field ("controller.reference_pole").
   void validate(Eigen::Index n_y) const;
 };
@@ -96,6 +99,7 @@ class PredictiveLaw : public Controller, public PlanView {
   void forget() override;
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
+  bool foresee(const Measurement& now, Eigen::Ref<Vector> outputs) override;
   bool needsModel() const override { return true; }
   Eigen::Index plannedSteps() const override { return inRun() ? core_->plannedSteps() : 0; }
   void planned(Eigen::Index i, Eigen::Ref<Vector> point) const override {

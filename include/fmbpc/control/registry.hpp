@@ -26,11 +26,13 @@ struct ControllerContext {
   Vector initial_input;        ///< n_u, u(-1)
   Vector fallback_input;       ///< n_u, what the actuator falls back to
   Vector disturbance_nominal;  ///< n_d, of the measured disturbances
-  Vector noise_std;            ///< n_y, of the measurements, as the loop file states; 0: unknown
+  Vector noise_std;            ///< n_y, of the measurements, as the loop file states, with that of
+                               ///< their resolution; 0: unknown
   int perturbation_steps{0};   ///< n_c of the optimizer behind the controller; 0: there is none
   /// One sample of the simulated plant by this many integration steps; empty for an external plant.
   /// @throws InputError for a plant that has no such model.
   std::function<std::unique_ptr<SampleModel>(int integration_steps)> plant_model;
+  bool quantised{false};  ///< the resolution of an output is stated
 
   std::vector<std::string> outputs() const;       ///< names, in the order of PlantInfo
   std::vector<std::string> inputs() const;        ///< names

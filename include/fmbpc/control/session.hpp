@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fmbpc/base/step_gate.hpp"
+#include "fmbpc/control/bumpless_transfer.hpp"
 #include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 #include "fmbpc/control/controller.hpp"
 #include "fmbpc/control/move_origin.hpp"
@@ -65,6 +66,9 @@ enum class Receipt {
 /// - first sample, gap, new run: the controller is reset; otherwise it just steps.
 /// Move limits count from the applied input, but for one with an offset, which the law, a person
 /// and a fallback move on from the last command (MoveOrigin): they see that one as applied.
+/// After another hand had the inputs the plant gets in the first sample what it gets already, and
+/// what the law asks for otherwise comes in as the bias between them dies out (BumplessTransfer);
+/// not from an experiment, nor where the law may send some inputs only.
 /// Setpoints advance with every sample. No allocation in receive() after the first answer, but for
 /// the words of a reset and for setpoint commands that take effect.
 class ControllerSession {
@@ -94,7 +98,8 @@ class ControllerSession {
   /// no better one.
   void setModel(const TsModel& model);
   std::uint64_t models() const { return models_; }  ///< taken so far
-  /// What is to be known of the model in use, in words: gains whose sign it turned when it came.
+  /// What is to be known of the model in use, in words: gains whose sign it turned when it came, or
+  /// a direction of the inputs in which the first one is weak.
   /// Said once among the law's remarks as well. Empty if there is nothing.
   const std::string& modelRemark() const { return model_remark_; }
   /// See SetpointSource: a command of a person, and one that was in force before this object was
@@ -157,9 +162,11 @@ class ControllerSession {
   const std::string* imposing(DoubtAction action) const;
   void watchReaction(const Measurement& m);
   void forgetSamples();
+  void handOver(const Measurement& m);
   void keep(const Measurement& accepted);
   void interrupt();
-  void expectNext();
+  void lookAtGains(const Measurement& m);
+  bool foresee(const Measurement& m, Eigen::Ref<Vector> outputs);
   void noteNeeds();
   void sendManual(const Measurement& m);
   void restoreManual(const OperatorWishes& wishes);
@@ -176,7 +183,8 @@ class ControllerSession {
   Arrival arrival_{Arrival::kFirst};   // of the present sample
   const char* interruption_{nullptr};  // why the controller did not run at the last sample
   std::string arrival_reason_;         // first sample, gap, new run: in words
-  Vector last_input_, manual_input_;
+  Vector last_input_, manual_input_, proposal_;
+  BumplessTransfer transfer_;  // on what the plant gets; not where an optimizer follows
   MoveOrigin moves_;
   Measurement seen_;  // with the input from which the law moves on; sized once
   Plausibility plausibility_;
@@ -186,10 +194,11 @@ class ControllerSession {
   std::string model_remark_, plant_doubt_;
   std::unique_ptr<ReactionWatch> reaction_;  // of a law with a model, if it is asked for
   bool remark_due_{false};                   // it has not been said yet
+  bool gains_due_{false};                    // nor have the gains been looked at
   double max_pole_{1.0};
   std::uint64_t models_{};
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
-  bool takes_actions_{true}, leads_an_optimizer_{false};
+  bool takes_actions_{true}, leads_an_optimizer_{false}, other_hand_{false};
   bool manual_asked_{false}, recipe_asked_{false}, carries_{false};
   std::optional<bool> adapt_;
   Settings settings_;
@@ -199,7 +208,9 @@ class ControllerSession {
 /// of source base or clipped need a prediction; all others (held, manual, fallback) pass through
 /// with status not run. A prediction of wrong size, or not finite, is counted and the base action
 /// goes out inside the bounds with status invalid problem, so that the loop never stalls. A base
-/// action of wrong size, or not finite, is dropped and counted.
+/// action of wrong size, or not finite, is dropped and counted. After manual, a fallback and a held
+/// input that was not ours, what goes out starts where the plant is (BumplessTransfer), whatever
+/// the limits of outputs ask for: input and move limits hold.
 class OptimizerSession {
  public:
   /// @throws InputError naming the field.
@@ -224,11 +235,13 @@ class OptimizerSession {
   bool tryAnswer();
   bool sizesFit(const PredictiveAction& p) const;
   void optimize();
+  bool isOtherHand() const;
   void passThrough(SolveStatus status);
 
   ClpParams params_;
   InputLimits limits_;
   MoveOrigin moves_;
+  BumplessTransfer transfer_;
   PlantInfo plant_;
   std::unique_ptr<ClosedLoopParadigm> optimizer_;  // made at a prediction, when n_x is known
   StepGate gate_;

@@ -36,8 +36,10 @@ struct SetpointParams {
 class SetpointSource {
  public:
   /// @throws InputError naming the field, also of a command in the params.
-  SetpointSource(SetpointParams params, std::vector<std::string> output_names,
+  SetpointSource(SetpointParams params, const std::vector<std::string>& output_names,
                  const SampleClock& clock);
+  /// The same; what a person asks beyond the range of an output is refused.
+  SetpointSource(SetpointParams params, const PlantInfo& plant, const SampleClock& clock);
 
   /// Forgets memory of the rate limiter; commands in force stay.
   void reset();
@@ -62,7 +64,8 @@ class SetpointSource {
   void scheduled(std::uint32_t step, Eigen::Ref<Vector> value) const;
   /// A person's command; returns the step from which it acts (stamp 0: the next sample; before the
   /// first sample this is 0, whatever step comes first).
-  /// @throws InputError (nothing is taken) on an unknown name, wrong lengths, value or mode.
+  /// @throws InputError (nothing is taken) on an unknown name, wrong lengths, value or mode, or a
+  /// value beyond the range of its output (between that and the params' limits it is clamped).
   std::uint32_t command(const Command& command);
   /// Puts a command back in force that was in force when this source was lost; what a person has
   /// commanded since is newer and wins. Only before the first sample: later the source knows
@@ -87,6 +90,7 @@ class SetpointSource {
   const CommandTable& table() const { return commands_; }
 
  private:
+  SetpointSource(SetpointParams params, CommandTable commands, const SampleClock& clock);
   void settleHold(std::uint32_t step);
   std::uint32_t recipeStep(std::uint32_t step) const;
   void scheduleAt(std::uint32_t step, Eigen::Ref<Vector> value) const;

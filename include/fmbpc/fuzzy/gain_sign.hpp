@@ -15,6 +15,11 @@ namespace fpc {
 Matrix stepGains(const TsModel& model, const Measurement& at);
 inline constexpr int kGainSamples = 1024;
 
+/// What a model error turns round: with outputs and inputs in parts of their ranges, a direction of
+/// the inputs whose gain is less than 0.05 of the largest, in words; empty if there is none, with
+/// one input, or more inputs than outputs.
+std::string weakDirection(const TsModel& model, const Measurement& at);
+
 /// An output, and the first of its large gains that is turned round, by names.
 struct TurnedGain {
   std::string output, input;

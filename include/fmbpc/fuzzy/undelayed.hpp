@@ -9,6 +9,10 @@ namespace fpc {
 /// antecedent or consequent [samples]; 0 if there is none.
 int transportDelay(const TsModel& model);
 
+/// The longest dead time from an input to an output [samples]: the largest, over these pairs, of
+/// the smallest lag of the input in the consequents; 0 if no input acts.
+int longestDeadTime(const TsModel& model);
+
 /// The same model with all lags of inputs and disturbances shorter by `samples`: its output is what
 /// the delayed one shows `samples` later. @throws InputError naming delay_steps unless
 /// 0 <= samples <= transportDelay(model).

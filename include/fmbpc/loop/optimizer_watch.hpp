@@ -10,10 +10,13 @@
 
 namespace fpc {
 
-/// Lockstep waits for ever. Paced takes over after `timeout_s` of wall time, realtime after that or
-/// half a sample, whichever is less. Once degraded it takes over at once at every sample, until the
-/// optimizer answers again: from the next sample on it is trusted. Both answers start from the same
-/// measurement and keep the same limits, so that neither change is a bump.
+/// Lockstep waits for ever. Paced takes over after `timeout_s` of wall time in which this process
+/// runs: it looks ten times, and a look that comes late counts as one, since what held it up (a
+/// machine that stands still, or has much else to do) holds the optimizer up as well. Realtime
+/// takes over after `timeout_s` or half a sample, whichever is less, on the clock. Once degraded it
+/// takes over at once at every sample, until the optimizer answers again: from the next sample on
+/// it is trusted. Both answers start from the same measurement and keep the same limits, so that
+/// neither change is a bump.
 class OptimizerWatch {
  public:
   OptimizerWatch(Pace pace, double period_s, double timeout_s);
@@ -22,9 +25,10 @@ class OptimizerWatch {
   bool asked(const StepHeader& sample, double now_s);
   /// The optimizer's action for a sample was heard.
   void answered(const StepHeader& sample);
-  /// True once per sample: its time is up, send the base action to the plant.
+  /// A look at deadline() or later. True once per sample: its time is up, send the base action to
+  /// the plant.
   bool mustTakeOver(double now_s);
-  /// When mustTakeOver() may become true; infinite: not now.
+  /// When to look next; infinite: not now.
   double deadline() const;
   bool degraded() const { return degraded_; }
   /// Waits for an answer that has been due for longer than the time-out (lockstep as well).
@@ -33,9 +37,11 @@ class OptimizerWatch {
 
  private:
   bool patient_;
-  double limit_s_, timeout_s_;
+  int most_looks_;
+  double between_looks_s_, timeout_s_;
   StepHeader sample_;
-  double asked_s_{};
+  int looks_{};
+  double asked_s_{}, looked_s_{};
   bool open_{false};  // asked, and neither answered nor taken over
   bool degraded_{false}, heard_{false};
   std::uint64_t taken_over_{};

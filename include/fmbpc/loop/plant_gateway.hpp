@@ -28,6 +28,7 @@ enum class FieldState : std::uint8_t {
   kRunning,
   kUnknown,  ///< where the inputs are has not been read yet
   kLocal,    ///< its own hand has the inputs
+  kLed,      ///< another master leads it
   kFrozen,   ///< its heartbeat stands still
   kLost,     ///< its link is down
 };
@@ -37,15 +38,15 @@ enum class FieldState : std::uint8_t {
 ///   gateway.stale_s or when the plant's heartbeat stands still;
 /// - the actuator's rules (bounds, move limit, hold, fallback: class Actuator) make every command;
 ///   it is then rounded to what the field can carry, inside the same limits;
-/// - moves are limited from the last command and from where an input really is: what is read back
-///   of it counts if it differs by more than gateway.readback_tolerance of the range and was read
-///   after the last write;
-/// - an input that is read further than two moves from its command is told nothing new until it is
-///   back; when no input is left the plant takes no actions;
 /// - commands are made only while the field is running; a command that was not confirmed has to be
 ///   read back (or confirmed late) before the next one. Until then the plant takes no actions,
 ///   which is said with the sample, so that a controller goes on from the true input without a
 ///   bump;
+/// - what is read back says where commands begin: at the start, and after a doubt (own hand, link,
+///   heartbeat, a write without an answer). From then on every move is counted from the command
+///   before it, and no reading leads it: where an input does not follow is positions(), and what is
+///   done about it the session's (StuckWatch). A reading that did not agree with its command before
+///   the link was lost, and has not moved since, says nothing about where commands begin;
 /// - values that are not good are NaN in measurement().
 class PlantGateway : public Process {
  public:
@@ -62,6 +63,7 @@ class PlantGateway : public Process {
   void readBack(Eigen::Index input, double value, double now_s);
   void beat(std::uint64_t value, double now_s);  ///< the plant's heartbeat: any change counts
   void remote(bool on, double now_s);            ///< false: the plant's own hand
+  void lead(bool on, double now_s);              ///< false: another master leads the plant
   void link(bool up, double now_s);  ///< down: inputs are read back before the next write
   /// The time of everything that follows.
   void tick(double now_s) { now_s_ = now_s; }
@@ -85,7 +87,9 @@ class PlantGateway : public Process {
   const Measurement& advance(VectorRef input) override;
   const Measurement& advanceWithoutAction() override;
   const std::string& trouble() const override { return trouble_; }
-  bool takesActions() const override { return takes_; }             ///< as sample k was taken
+  bool takesActions() const override { return takes_; }  ///< as sample k was taken
+  bool underWay() const override { return unconfirmed(); }
+  const Vector& positions() const override { return seen_; }        ///< as sample k was taken
   const std::vector<Quality>& quality() const { return quality_; }  ///< outputs, disturbances
   const Vector& age() const { return age_s_; }                      ///< [s], the same order
 
@@ -103,18 +107,12 @@ class PlantGateway : public Process {
     bool come{false};
   };
   bool unconfirmed() const { return number_ != confirmed_; }
-  bool mayCommand() const {
-    return field() == FieldState::kRunning && !unconfirmed() && !allStray();
-  }
-  bool strays(Eigen::Index i) const;
-  bool allStray() const;
-  void doubtPosition(double now_s);
+  bool mayCommand() const { return field() == FieldState::kRunning && !unconfirmed(); }
+  void doubtPosition(double now_s, bool moved = false);
   void followReadings();
+  double positionOf(Eigen::Index i) const;
+  bool agrees(Eigen::Index i, double reading, double with) const;
   void command(VectorRef input);
-  struct Span {
-    double lower, upper;
-  };
-  Span spanOf(Eigen::Index i) const;
   void tell();
   void measure();
   Quality qualityOf(const Reading& reading) const;
@@ -130,11 +128,15 @@ class PlantGateway : public Process {
   Vector age_s_;
   std::vector<Reading> signals_, positions_;  // of outputs and disturbances; of inputs
   Vector command_;                            // as it was rounded
-  double asked_s_{};  // when the oldest command was made that is not confirmed
+  Vector seen_;                               // where the inputs were when the sample was taken
+  Vector astray_, lying_;  // the same of an input that did not agree, else NaN: at the last sample,
+                           // before the doubt
+  double tolerance_;       // of an input's range
+  double asked_s_{};       // when the oldest command was made that is not confirmed
   std::uint64_t number_{}, confirmed_{}, voided_{}, skipped_{}, beat_{};
   double now_s_{}, told_s_{-1.0}, beat_s_{};
   Vector waiting_;  // an action that came before the command ahead of it was confirmed
-  bool link_{true}, remote_{true}, beaten_{false}, commanded_{false};
+  bool link_{true}, remote_{true}, lead_{true}, beaten_{false}, commanded_{false};
   bool position_known_{false}, exact_{false}, waits_{false}, just_told_{false}, takes_{false};
   std::string trouble_;
 };

@@ -17,6 +17,8 @@ struct PlantPolicy {
   double period_s{};           ///< wall time per sample (paced, realtime)
   double action_timeout_s{5};  ///< paced: wall time after which the plant goes on without an action
   double resend_s{0.05};       ///< an unanswered sample is sent again that often
+  /// Wall time that a sample waits for its recorder; 0: it does not.
+  double record_timeout_s{};
   StuckParams stuck;
 };
 
@@ -38,8 +40,13 @@ struct ActionCounts {
 /// - lockstep moves on when it has come and waits for ever; paced also waits for the period, and
 ///   for action_timeout_s at most: then it goes on at the period, as realtime does, until an action
 ///   comes again; what the input is meanwhile is the actuator's rule (hold, then fallback);
+/// - an input that does not follow its command is held, if the loop file says so (StuckParams): a
+///   person's input and a fallback are passed on, what a law asks of it is not;
+/// - with a recorder: an answered sample also waits until recorded() says that all of it is there,
+///   and is sent again meanwhile, so that a recorder which was away misses nothing; after
+///   record_timeout_s the plant goes on without, until the recorder is heard of again;
 /// - paused: only step() moves on;
-/// - the final sample is sent again until finish() says that it has arrived.
+/// - the final sample is sent again until finish() says that it has arrived, and likewise.
 class PlantSession {
  public:
   PlantSession(std::unique_ptr<Process> process, const PlantPolicy& policy);
@@ -55,8 +62,15 @@ class PlantSession {
   /// When advance() is to be called again if no action comes; infinite: not before one comes.
   double nextDue() const;
   /// The sample on the table is to be sent again now; call resent() then.
-  bool mustResend(double now_s) const;
+  bool mustResend(double now_s);
   void resent(double now_s);
+  /// The recorder has all of this sample. True: it was waited for.
+  bool recorded(const StepHeader& sample);
+  bool awaitsRecorder() const { return unrecorded_since_s_ >= 0.0; }
+  /// How long nothing else has been waited for.
+  double unrecordedFor(double now_s) const {
+    return awaitsRecorder() ? now_s - unrecorded_since_s_ : 0.0;
+  }
   /// The final sample has arrived where it must.
   void finish() { acknowledged_ = true; }
   bool acknowledged() const { return acknowledged_; }
@@ -74,6 +88,10 @@ class PlantSession {
   double unansweredFor(double now_s) const;
   const Pacer& pacer() const { return pacer_; }
   const std::string& stuck() const { return stuck_.words(); }  ///< see StuckWatch
+  /// No input is left that follows, and so all are held.
+  bool holdsAll() const { return policy_.stuck.hold && stuck_.all(); }
+  /// False: a controller's actions come to nothing for now.
+  bool takesActions() const { return process_->takesActions() && !holdsAll(); }
   const ActionCounts& counts() const { return counts_; }
   std::uint64_t missingInputs() const { return missing_inputs_; }
   std::uint64_t runId() const { return process_->measurement().header.run_id; }
@@ -81,12 +99,16 @@ class PlantSession {
  private:
   void countStray(const StepHeader& header);
   bool mayGoWithout(double now_s) const;
+  bool isRecorded(double now_s);
+  void putOnTable(double now_s);
 
   std::unique_ptr<Process> process_;
   PlantPolicy policy_;
   Pacer pacer_;
   PlantPhase phase_{PlantPhase::kWaiting};
   bool paused_{false}, have_action_{false}, starving_{false}, acknowledged_{false};
+  bool recorded_{false}, recorder_keeps_up_{true};
+  double unrecorded_since_s_{-1};  // since when nothing else is waited for
   std::uint32_t steps_allowed_{};
   Vector action_;  // u(k), waiting for its time
   Vector before_;  // where the inputs were when it came

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace fpc {
 
@@ -18,6 +19,8 @@ std::string findScript(const std::string& name);
 /// Draws plot.png in a folder written by writeRun(). A missing script or matplotlib is a warning,
 /// never a failure.
 PlotResult drawPlot(const std::string& folder);
+/// Runs that were written to these folders, in one picture.
+PlotResult drawComparison(const std::vector<std::string>& folders, const std::string& file);
 /// bifurcation.png and root_locus.png in a folder with a stability.json.
 PlotResult drawStability(const std::string& folder);
 /// convergence.png in a folder with a tuning.json or compare.json.

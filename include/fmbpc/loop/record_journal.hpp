@@ -25,8 +25,8 @@ class RecordJournal {
   ~RecordJournal();
 
   /// Only keeps others away from the file. @throws InputError if it cannot be written, or another
-  /// process writes it.
-  void lock(const std::string& file);
+  /// process writes it, for longer than `patience_s`.
+  void lock(const std::string& file, double patience_s = 0.0);
   /// A run begins whose samples are kept until open() has worked.
   void start(const RecordLayout& layout, std::uint64_t run_id);
   /// Goes on with the file if it holds this run of this loop, else begins it. @return samples that
@@ -37,6 +37,16 @@ class RecordJournal {
   /// cannot be kept leaves a hole at its place.
   void append(const SampleRecord& sample);
   void flush();
+  /// What is written is on the disk itself, once a second at most (`now_s`: any steady clock).
+  /// @return whether there was something to do.
+  bool sync(double now_s);
+  /// Forgets what is behind the first `samples`.
+  void cut(std::uint64_t samples);
+  /// The file begins anew with the sample after those that are in it. @throws InputError
+  void beginNextPart();
+  std::uint32_t firstStep() const { return layout_.first_step; }
+  std::uint64_t samples() const { return next_; }  ///< in it, or waiting
+  std::uint64_t bytes() const { return next_ * entry_size_ * sizeof(double); }
   /// Why something is not on disk, in words; empty if all is.
   const std::string& problem() const { return problem_; }
   std::uint64_t lost() const { return lost_; }  ///< samples that could not be kept
@@ -59,6 +69,8 @@ class RecordJournal {
   int file_{-1};
   std::size_t entry_size_{};
   std::uint64_t next_{};  // place of the next entry
+  bool unsynced_{false};
+  double synced_s_{-1e9};
   std::deque<Entry> unwritten_;
   std::uint64_t lost_{};
   std::string problem_;

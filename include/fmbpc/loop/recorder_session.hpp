@@ -25,7 +25,9 @@ struct RecordLayout {
   std::vector<std::string> states, state_units;
   std::size_t true_disturbances{};             ///< of the simulated plant
   std::vector<Eigen::Index> without_setpoint;  ///< outputs: setpoint and reference become NaN
-  std::string text;  ///< of the loop, for parseLoop(): a record tells what it is of
+  std::string text;            ///< of the loop, for parseLoop(): a record tells what it is of
+  std::uint32_t samples{};     ///< step of the final sample; 0: endless
+  std::uint32_t first_step{};  ///< of this part of an endless run
 
   bool fits(const Measurement& m) const;
   bool fits(const PlantState& s) const;
@@ -64,6 +66,8 @@ class RecorderSession {
   bool announced() const { return run_id_.has_value(); }
   bool finalSeen() const { return final_.has_value(); }
   bool complete() const { return final_ && next_ == *final_ + 1 && gap_count_ == 0; }
+  /// It has all of this sample, now or since before.
+  bool holds(const StepHeader& sample) const;
   /// "sample 17: no control_action" for the first holes, those of waiting samples included.
   std::vector<std::string> gaps(std::size_t limit = 10) const;
   std::uint64_t gapCount() const { return gap_count_; }

@@ -35,10 +35,15 @@ struct ReplayedActions {
 
 struct ReplayResult {
   std::uint32_t measurements{};
+  /// What the record lacks of its samples, in words, the first of them; from the first missing
+  /// measurement on nothing is compared, since the controller then had what is not there.
+  std::vector<std::string> missing;
+  std::uint32_t missing_samples{};
+  bool ended{};              ///< the last sample is the final one
   std::uint32_t stood_in{};  ///< samples at which the base action went to the plant as well
   ReplayedActions base, control;
   std::vector<std::string> refused;  ///< what the controller did not take again
-  bool equal() const;                ///< and something was compared
+  bool equal() const;                ///< nothing is missing, and something was compared
 };
 
 /// @throws InputError if the measurements do not fit the loop, or a model is needed and none is

@@ -31,12 +31,15 @@ struct LockUp {
 struct Summary {
   std::string loop;
   std::string title;
+  std::uint64_t run_id{};      ///< 0: of no plant that was recorded
+  std::uint32_t first_step{};  ///< not 0: a part of an endless run
   bool complete{};        ///< the final sample came, nothing is missing, the plant moved as asked
   std::uint32_t steps{};  ///< number of actions
   double wall_s{};
   std::vector<std::string> output_names, input_names;
   std::vector<std::string> output_units, input_units;  ///< empty: not known
   std::vector<OutputIndices> outputs;
+  std::vector<bool> controlled;  ///< outputs that the controller follows; empty: not known
   std::vector<InputIndices> inputs;
   std::vector<WindowIndices> windows;  ///< per output, the windows of the loop file
   std::vector<std::pair<std::string, double>> consumption;
@@ -73,6 +76,12 @@ bool neverControlled(const Summary& summary);
 /// failed, held, on the fallback, clipped, locked, cells filled.
 std::vector<std::string> remarksOf(const Summary& summary);
 std::string toTable(const std::vector<Summary>& summaries);
+/// Of runs of one experiment: a line each with what its title adds to the others', the error of
+/// what all of them control, and the movement.
+std::string shortTable(const std::vector<Summary>& summaries);
+/// Who follows the outputs that all of them control best, by how much and at which movement: one
+/// sentence, computed from the ISE. Empty for one run, and where runs cannot be compared.
+std::string verdictOf(const std::vector<Summary>& summaries);
 /// What trajectory.csv holds: a row for each sample from `report.record_from_h` on.
 CsvTable trajectoryOf(const LoopFile& loop, const RunRecord& record);
 /// trajectory.csv and summary.json in `folder` (made if missing). @throws InputError if it cannot

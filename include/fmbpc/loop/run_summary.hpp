@@ -11,7 +11,7 @@ namespace fpc {
 
 class RunSummary {
  public:
-  explicit RunSummary(const LoopFile& loop);
+  explicit RunSummary(const LoopFile& loop, std::uint32_t first_step = 0);
   RunSummary(RunSummary&&) noexcept;
   ~RunSummary();
   /// Samples in order, those without values included.

@@ -19,10 +19,11 @@ struct InstrumentParams {
   std::uint64_t seed{1};
 };
 
-/// A drive of equal lags. T90 0: follows at once.
+/// A drive of equal lags behind a gear with play. T90 0: follows at once.
 struct DriveParams {
   int order{2};
   double t90_s{0.0};
+  double backlash{0.0};  ///< width of the play: so far a command turns before the drive follows
 };
 
 class Instruments {
@@ -45,6 +46,8 @@ class Instruments {
   /// What the sensors show in place of the true values, where there are sensors. Call once a
   /// sample.
   void read(Eigen::Ref<Vector> y, Eigen::Ref<Vector> d);
+  /// Takes away the readings that are lost at this sample. Call once a sample.
+  void lose(Eigen::Ref<Vector> y, Eigen::Ref<Vector> d);
   bool hasSensor(Eigen::Index output) const {
     return !outputs_.empty() && outputs_[static_cast<std::size_t>(output)].has_value();
   }
@@ -52,7 +55,8 @@ class Instruments {
  private:
   std::vector<std::optional<Sensor>> outputs_, disturbances_;
   std::vector<std::optional<LagChain>> drives_;
-  Vector y_, position_;
+  std::vector<double> play_;    // to either side, one per drive
+  Vector y_, gear_, position_;  // gear_: behind the play
   int steps_{1};
   double step_s_{};
 };

@@ -29,6 +29,11 @@ class Process {
   virtual const Measurement& advanceWithoutAction() = 0;
   /// False: its own hand has the inputs, or its link is lost.
   virtual bool takesActions() const { return true; }
+  /// The last command is still on its way.
+  virtual bool underWay() const { return false; }
+  /// Where the inputs are as far as anybody can see; NaN: nobody can. A plant that reads nothing
+  /// back is where it was told.
+  virtual const Vector& positions() const { return measurement().input_applied; }
   /// Why the plant did not move as asked, empty if it did.
   virtual const std::string& trouble() const = 0;
   /// True if the action answers the present sample; anything else must be dropped (and counted) by

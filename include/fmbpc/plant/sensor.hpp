@@ -22,8 +22,10 @@ struct SensorParams {
   double delay_s{0.0};     ///< dead time behind the lags
   double interval_s{0.0};  ///< takes a sample so often and shows it until the next; 0: always
   double noise_std{0.0};   ///< of what it shows
+  double resolution{0.0};  ///< shows multiples of it only; 0: every number
   double lower{-std::numeric_limits<double>::infinity()};
   double upper{std::numeric_limits<double>::infinity()};
+  double lost{0.0};     ///< probability that a sample of the ring has no reading
   bool average{false};  ///< the ring sees the mean of what it showed since the last sample
   double stuck_from_h{std::numeric_limits<double>::infinity()};  ///< shows its last value ...
   double stuck_to_h{std::numeric_limits<double>::infinity()};    ///< ... until then
@@ -45,6 +47,7 @@ class Sensor {
   void advance(double from, double to, double seconds);
   /// What the ring sees now: noise and range included. Ends the averaging interval.
   double take();
+  bool loses();  ///< whether the reading of this sample is lost; call once a sample
 
  private:
   void show();
@@ -53,7 +56,7 @@ class Sensor {
   SensorParams params_;
   std::uint64_t seed_, stream_;
   std::optional<LagChain> chain_;
-  std::mt19937_64 engine_;
+  std::mt19937_64 engine_, lost_;
   std::vector<double> line_;  // past values for the dead time, one per step
   std::size_t next_{};
   double step_s_, time_s_{}, due_s_{}, shown_{}, reading_{}, sum_{};

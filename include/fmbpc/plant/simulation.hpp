@@ -103,7 +103,6 @@ class Simulation {
 
  private:
   void schedule();
-  void checkRanges(const Command& command) const;
   void updateDisturbances();
   void passLocalLoop();
   void measure();

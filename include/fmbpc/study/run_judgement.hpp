@@ -26,7 +26,8 @@ struct RunJudgement {
   double least{};         ///< least of the output that is judged first
   double largest_move{};  ///< of any input, in its unit
   std::vector<std::uint64_t> failures = std::vector<std::uint64_t>(kRunFailures, 0);  ///< samples
-  std::string trouble;  ///< of a run without a finite cost, in words
+  std::uint64_t trajectory{};  ///< hash of what was measured, applied and true
+  std::string trouble;         ///< of a run without a finite cost, in words
 };
 
 /// The record as the plant had it: noise-free outputs in the place of the measured ones.

@@ -29,7 +29,8 @@ struct StudyResult {
 };
 
 /// A run that throws or ends early counts as diverged, with its words.
-/// @throws InputError: a state file that is not there, or of another study.
+/// @throws InputError: a state file that is not there, or of another study; two seeds of a scenario
+/// under which a loop gave the same trajectory.
 StudyResult runStudy(const StudyPlan& plan, const StudyOptions& options = {});
 
 }  // namespace fpc

@@ -29,7 +29,7 @@ struct PairStatistics {
   double share{};                       ///< wins / pairs
   double lower{}, upper{};              ///< confidence interval of the share (wilson1927)
   double median_ratio{};                ///< of cost / cost of the other
-  double ratio_lower{}, ratio_upper{};  ///< confidence interval of that median (order statistics)
+  double ratio_lower{}, ratio_upper{};  ///< its confidence interval (order statistics); or NaN
 };
 
 /// True if there are runs and none of them has a finite cost.
@@ -49,8 +49,10 @@ struct Interval {
 };
 /// Of the share wins / n, score method. confidence: 0.95. @pre n >= 1
 Interval wilsonInterval(double wins, std::size_t n, double confidence);
-/// Of the median of n sorted values, by the binomial distribution: at least the confidence asked,
-/// the whole range where n is too small.
+/// Least n for which the values of n cases can hold the median with that confidence: 6 at 0.95.
+std::size_t casesForMedianInterval(double confidence);
+/// Of the median of n sorted values, by the binomial distribution: at least the confidence asked;
+/// NaN where n is too small for that.
 Interval medianInterval(const std::vector<double>& sorted, double confidence);
 
 }  // namespace fpc

@@ -196,7 +196,7 @@ SolveStatus ClosedLoopParadigm::Workspace::decide(const PredictiveAction& now, V
   if (!isFinite(now, sizes.n_c)) return SolveStatus::kInvalidProblem;
   if (!consistent(now)) return SolveStatus::kInconsistent;
   if (!findAim(now)) return SolveStatus::kNumericalError;
-  rows.set(now.input_previous, target.input());
+  rows.set(now, target.input());
   assemble(now);
   if (!lq() && !cost.tracks() && baseLawIsAllowed(now)) {
     solution.status = SolveStatus::kSolved;
@@ -227,6 +227,8 @@ bool ClosedLoopParadigm::Workspace::protectActuator(const PredictiveAction& now,
                                                     ControlAction& action) {
   static constexpr double kNegligible = 1e-9;  // of the input range: rounding
   input = action.input;
+  for (Eigen::Index a = 0; a < now.input_lower.size(); ++a)
+    action.input[a] = std::clamp(action.input[a], now.input_lower[a], now.input_upper[a]);
   const bool move_gave_way = limits.clip(action.input, now.input_previous);
   const auto differs = [this](const Vector& left, const Vector& right) {
     return ((left - right).array().abs() > kNegligible * problem.input_scale.array()).any();

@@ -91,7 +91,7 @@ void ClpLimits::fillSlackColumns(ClpProblem& problem) const {
   }
 }
 
-void ClpLimits::set(VectorRef input_previous, VectorRef u_ss) {
+void ClpLimits::set(const PredictiveAction& now, VectorRef u_ss) {
   lower_ = limits_.lower;
   upper_ = limits_.upper;
   if (incremental_) {
@@ -102,11 +102,15 @@ void ClpLimits::set(VectorRef input_previous, VectorRef u_ss) {
   first_upper_ = upper_;
   bound_wins_ = false;
   for (const Eigen::Index a : limited_moves_) {
-    const double reach_lower = input_previous[a] - limits_.move[a];
-    const double reach_upper = input_previous[a] + limits_.move[a];
+    const double reach_lower = now.input_previous[a] - limits_.move[a];
+    const double reach_upper = now.input_previous[a] + limits_.move[a];
     bound_wins_ = bound_wins_ || reach_lower > upper_[a] || reach_upper < lower_[a];
     first_lower_[a] = std::clamp(reach_lower, lower_[a], upper_[a]);
     first_upper_[a] = std::clamp(reach_upper, lower_[a], upper_[a]);
+  }
+  for (Eigen::Index a = 0; a < now.input_lower.size(); ++a) {
+    first_lower_[a] = std::clamp(now.input_lower[a], first_lower_[a], first_upper_[a]);
+    first_upper_[a] = std::clamp(now.input_upper[a], first_lower_[a], first_upper_[a]);
   }
 }
 

@@ -27,8 +27,9 @@ class ClpLimits {
   /// Writes what never changes: move rows, slack columns, penalties, input_scale.
   void prepare(ClpProblem& problem) const;
 
-  /// Bounds of this sample: absolute, or around u_ss (incremental).
-  void set(VectorRef input_previous, VectorRef u_ss);
+  /// Bounds of this sample: absolute, or around u_ss (incremental); those of u(k) inside what the
+  /// guard leaves.
+  void set(const PredictiveAction& now, VectorRef u_ss);
   /// A move limit gives way to a bound at this sample.
   bool boundWins() const { return bound_wins_; }
   /// Whether a sequence is allowed, sample by sample (exact comparisons; NaN is not allowed).

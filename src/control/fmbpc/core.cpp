@@ -22,8 +22,13 @@ void FmbpcCore::rest(const LawSample& sample) {
 }
 
 void FmbpcCore::advance(const LawSample& sample) {
-  law_->follow(*model_, sample);
+  law_->follow(*model_, sample.now.input_applied, sample.past_disturbances);
   model_->advance(sample.now, sample.past_disturbances);  // matrices still of sample k-1
+}
+
+void FmbpcCore::foresee(VectorRef input, VectorRef past_disturbances, Eigen::Ref<Vector> outputs) {
+  law_->follow(*model_, input, past_disturbances);
+  model_->foresee(input, past_disturbances, outputs);
 }
 
 bool FmbpcCore::inherit(const LawCore& older) {

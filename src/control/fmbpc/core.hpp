@@ -17,6 +17,7 @@ class FmbpcCore final : public LawCore {
   void rest(const LawSample& sample) override;
   void forget() override { model_->forget(); }
   void advance(const LawSample& sample) override;
+  void foresee(VectorRef input, VectorRef past_disturbances, Eigen::Ref<Vector> outputs) override;
   bool inherit(const LawCore& older) override;
   bool look(const LawSample& sample) override;
   Proposal propose(const LawSample& sample, Vector& input) override;

@@ -19,6 +19,13 @@ void RealignedModel::advance(const Measurement& now, VectorRef disturbances) {
   state_ = measured_;
 }
 
+void RealignedModel::foresee(VectorRef input, VectorRef /*disturbances*/,
+                             Eigen::Ref<Vector> outputs) {
+  predict(input);
+  outputs.noalias() = affine().C.lazyProduct(next_);
+  outputs += error_filtered_;
+}
+
 void RealignedModel::compare(const Measurement& /*now*/) {
   outputs_ = undelayed_;
   offset_state_ = affine().g;
@@ -49,6 +56,10 @@ void ObservedModel::advance(const Measurement& now, VectorRef disturbances) {
   local_.shiftState(now.outputs, now.input_applied, disturbances, measured_);
   state_ = observer_.state();
   readUndelayed(state_);
+}
+
+void ObservedModel::foresee(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> outputs) {
+  observer_.foresee(input, disturbances, outputs);
 }
 
 void ObservedModel::compare(const Measurement& now) {

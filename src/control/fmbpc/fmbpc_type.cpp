@@ -16,6 +16,11 @@ void readWeights(YamlSection& section, const ControllerContext& loop, FmbpcParam
   params.weight_move = Vector::Zero(loop.inputCount());
   section.byName("weight_output", params.weight_output, loop.outputs(), kFiniteNotNegative);
   section.byName("weight_move", params.weight_move, loop.inputs(), kFiniteNotNegative);
+  params.weight_input = Vector::Zero(loop.inputCount());
+  params.input_target = loop.initial_input;
+  if (params.law != FmbpcForm::kIterated) return;
+  section.byName("weight_input", params.weight_input, loop.inputs(), kFiniteNotNegative);
+  section.byName("input_target", params.input_target, loop.inputs(), kFinite);
 }
 
 void readForecast(YamlSection& section, const ControllerContext& loop, FmbpcParams& params) {
@@ -30,15 +35,24 @@ void readForecast(YamlSection& section, const ControllerContext& loop, FmbpcPara
       static_cast<int>(std::lround(memory_h * 3600.0 / loop.plant.sample_time_s));
 }
 
+/// A horizon that an extended loop brings along for another law is no mistake.
+void requireHeeded(const YamlSection& section, FmbpcForm law) {
+  for (const std::string& key : section.keys())
+    if (const char* instead = lawsInsteadOf(law, key))
+      if (key != "coincidence_steps") section.fail(key, instead);
+}
+
 FmbpcParams readFmbpc(YamlSection& section, const ControllerContext& loop) {
   FmbpcParams params;
   readPredictiveLaw(section, loop, params);
   readOption(section, "law", params.law);
+  requireHeeded(section, params.law);
   section.integer("coincidence_steps", params.coincidence_steps, 1, 100000);
   readWeights(section, loop, params);
   section.integer("horizon_steps", params.horizon_steps, 1, 10000);
   section.integer("iterations", params.iterations, 1, 1000);
   readForecast(section, loop, params);
+  if (loop.quantised) params.realisation = FmbpcRealisation::kObserver;
   readOption(section, "realisation", params.realisation);
   section.integer("delay_steps", params.delay_steps, 0, 1000);
   section.integer("reference_lead_steps", params.reference_lead_steps, 0, 100000);

@@ -19,7 +19,8 @@ class InputLaw {
   virtual ~InputLaw() = default;
   virtual void rest() {}  ///< the process has rested: no plan goes on
   /// Before the model goes on from k-1: what is known by now of the input that it got.
-  virtual void follow(InternalModel& /*model*/, const LawSample& /*sample*/) {}
+  virtual void follow(InternalModel& /*model*/, VectorRef /*input*/,
+                      VectorRef /*past_disturbances*/) {}
   /// After the model's compare(). future.col(i) = y_r(k+1+i).
   virtual Proposal propose(InternalModel& model, const LawSample& sample, const Matrix& future,
                            Vector& input) = 0;
@@ -92,7 +93,7 @@ class IteratedLaw final : public InputLaw {
   IteratedLaw(const InternalModel& model, const FmbpcParams& params, const InputLimits& limits,
               DisturbanceForecast& forecast);
   void rest() override { solver_.forget(); }
-  void follow(InternalModel& model, const LawSample& sample) override;
+  void follow(InternalModel& model, VectorRef input, VectorRef past_disturbances) override;
   Proposal propose(InternalModel& model, const LawSample& sample, const Matrix& future,
                    Vector& input) override;
   void predict(const InternalModel& model, const Matrix& future,
@@ -110,7 +111,7 @@ class IteratedLaw final : public InputLaw {
 
   InputLimitedIlqr solver_;
   DisturbanceForecast& forecast_;
-  Eigen::Index lead_;
+  Eigen::Index lead_, dead_time_;
   Matrix aimed_;  ///< n_y N, the references of x(k+1)...x(k+N)
   double trust_heeded_{0.0};
   Eigen::Index trust_least_{};

@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kEnough = 1e-4;    // relative gain below which another round is not worth it
 constexpr double kSmallest = 0.05;  // share of a step below which it is given up
-constexpr double kFlat = 1e-12;     // slope that is none, relative
 
 }  // namespace
 
@@ -86,10 +85,13 @@ void InputLimitedIlqr::multiplyByA(const Matrix& A) {
 
 void InputLimitedIlqr::forget() { warm_ = false; }
 
-void InputLimitedIlqr::retune(int iterations, VectorRef weight_output, VectorRef weight_move) {
+void InputLimitedIlqr::retune(int iterations, VectorRef weight_output, VectorRef weight_move,
+                              VectorRef weight_input, VectorRef input_target) {
   params_.iterations = iterations;
   params_.weight_output = weight_output;
   params_.weight_move = weight_move;
+  params_.weight_input = weight_input;
+  params_.input_target = input_target;
 }
 
 /// What sample i+1 and the move of sample i cost.
@@ -103,6 +105,10 @@ double InputLimitedIlqr::weigh(Eigen::Index i, const Matrix& states, const Matri
   for (Eigen::Index a = 0; a < n_u_; ++a) {
     const double move = inputs(a, i) - states(model_.inputState(a, 1), i);
     cost += params_.weight_move[a] * move * move;
+  }
+  for (Eigen::Index a = 0; a < params_.weight_input.size(); ++a) {
+    const double distance = inputs(a, i) - params_.input_target[a];
+    cost += params_.weight_input[a] * distance * distance;
   }
   return cost;
 }
@@ -147,77 +153,6 @@ void InputLimitedIlqr::linearise() {
   }
 }
 
-/// Into wish_ the least of 1/2 x' Quu x + Qu' x with the fixed inputs where wish_ has them.
-bool InputLimitedIlqr::solveFree() {
-  free_Quu_ = Quu_;
-  input_ = -Qu_;
-  for (Eigen::Index a = 0; a < n_u_; ++a) {
-    if (!fixed_[static_cast<std::size_t>(a)]) continue;
-    input_ -= wish_[a] * Quu_.col(a);
-    free_Quu_.row(a).setZero();
-    free_Quu_.col(a).setZero();
-    free_Quu_(a, a) = 1.0;
-  }
-  for (Eigen::Index a = 0; a < n_u_; ++a)
-    if (fixed_[static_cast<std::size_t>(a)]) input_[a] = wish_[a];
-  factor_.compute(free_Quu_);
-  if (factor_.info() != Eigen::Success) return false;
-  factor_.solveInPlace(input_);
-  wish_ = input_;
-  return true;
-}
-
-/// Puts every free input that is out of its limits on them. False if there is none.
-bool InputLimitedIlqr::fixMore() {
-  bool more = false;
-  for (Eigen::Index a = 0; a < n_u_; ++a) {
-    wish_[a] = std::clamp(input_[a], lower_[a], upper_[a]);
-    if (wish_[a] == input_[a] || fixed_[static_cast<std::size_t>(a)]) continue;
-    fixed_[static_cast<std::size_t>(a)] = more = true;
-  }
-  return more;
-}
-
-/// Frees the fixed input that would gain most by moving inwards. False if none would.
-bool InputLimitedIlqr::release() {
-  Eigen::Index best = -1;
-  double gain = 0.0;
-  for (Eigen::Index a = 0; a < n_u_; ++a) {
-    if (!fixed_[static_cast<std::size_t>(a)] || lower_[a] == upper_[a]) continue;
-    const double slope = Quu_.row(a).dot(wish_) + Qu_[a];
-    const double inwards = wish_[a] == lower_[a] ? -slope : slope;
-    if (inwards <= kFlat * (1.0 + std::abs(Qu_[a])) || inwards <= gain) continue;
-    gain = inwards;
-    best = a;
-  }
-  if (best >= 0) fixed_[static_cast<std::size_t>(best)] = false;
-  return best >= 0;
-}
-
-/// The best input of sample i for the cost to go, those at a limit fixed there.
-bool InputLimitedIlqr::chooseInput(Eigen::Index i) {
-  for (Eigen::Index a = 0; a < n_u_; ++a) {
-    const double before = states_(model_.inputState(a, 1), i);
-    lower_[a] = std::max(limits_.lower[a], before - limits_.move[a]) - inputs_(a, i);
-    upper_[a] = std::min(limits_.upper[a], before + limits_.move[a]) - inputs_(a, i);
-    lower_[a] = std::min(lower_[a], upper_[a]);
-    fixed_[static_cast<std::size_t>(a)] = false;
-  }
-  for (Eigen::Index round = 0; round < 4 * n_u_ + 1; ++round) {
-    if (!solveFree()) return false;
-    if (!fixMore() && !release()) break;
-  }
-  Matrix& K = K_[static_cast<std::size_t>(i)];
-  K = -Qux_;
-  for (Eigen::Index a = 0; a < n_u_; ++a)
-    if (fixed_[static_cast<std::size_t>(a)]) K.row(a).setZero();
-  const double root = factor_.matrixLLT()(0, 0);
-  if (n_u_ == 1) (K /= root) /= root;  // what a solver's call does, at a tenth of the cost
-  for (Eigen::Index j = 0; j < n_x_ && n_u_ > 1; ++j) factor_.solveInPlace(K.col(j));
-  step_.col(i) = wish_;
-  return K.allFinite() && wish_.allFinite();
-}
-
 bool InputLimitedIlqr::sweep() {
   P_.setZero();
   p_.setZero();
@@ -244,6 +179,10 @@ bool InputLimitedIlqr::sweep() {
       Qxx_(before, before) += L;
       Qu_[a] += L * move;
       Qx_[before] -= L * move;
+    }
+    for (Eigen::Index a = 0; a < params_.weight_input.size(); ++a) {
+      Quu_(a, a) += params_.weight_input[a];
+      Qu_[a] += params_.weight_input[a] * (inputs_(a, i) - params_.input_target[a]);
     }
     if (!chooseInput(i)) return false;
     // Value of the rest: p = Qx + K' (Quu k + Qu) + Qux' k, P likewise.

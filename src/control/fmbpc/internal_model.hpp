@@ -18,6 +18,8 @@ class InternalModel {
   virtual void forget() {}                                            ///< see Controller
   /// From k-1, with its u and d, to k.
   virtual void advance(const Measurement& now, VectorRef disturbances) = 0;
+  /// What advance() will expect to be measured; of the model as it was blended last.
+  virtual void foresee(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> outputs) = 0;
   virtual bool blend(VectorRef disturbances);  ///< false if no rule fired: the nearest one is used
   virtual void compare(const Measurement& now) = 0;
   /// Takes over the memory of an older model of the same realisation: the measured past, and its

@@ -4,12 +4,14 @@
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/fuzzy/domain.hpp"
 #include "fmbpc/fuzzy/process_trust.hpp"
+#include "fmbpc/fuzzy/undelayed.hpp"
 
 namespace fpc {
 namespace {
 
 IlqrParams solverParams(const FmbpcParams& params) {
-  return {params.horizon_steps, params.iterations, params.weight_output, params.weight_move};
+  return {params.horizon_steps, params.iterations,   params.weight_output,
+          params.weight_move,   params.weight_input, params.input_target};
 }
 
 }  // namespace
@@ -19,12 +21,13 @@ IteratedLaw::IteratedLaw(const InternalModel& model, const FmbpcParams& params,
     : solver_(model.local(), solverParams(params), limits),
       forecast_(forecast),
       lead_(params.reference_lead_steps),
+      dead_time_(longestDeadTime(model.local().model())),
       aimed_(Matrix::Zero(model.outputs().size(), params.horizon_steps)),
       point_(Vector::Zero(model.outputs().size() + limits.lower.size() +
                           countOf(model.local().model().disturbances))) {}
 
-void IteratedLaw::follow(InternalModel& model, const LawSample& sample) {
-  model.blendAt(sample.now.input_applied, sample.past_disturbances);
+void IteratedLaw::follow(InternalModel& model, VectorRef input, VectorRef past_disturbances) {
+  model.blendAt(input, past_disturbances);
 }
 
 /// Samples ahead whose errors count: where the last plan leads under what is expected now.
@@ -38,7 +41,7 @@ Eigen::Index IteratedLaw::trustedSteps(const InternalModel& model, const Matrix&
                   model.offsetOutput()[o];
     point_.tail(n_d) = expected.col(std::min(i, N - 1));
     if (processTrustOf(known, point_) < trust_heeded_)
-      return std::clamp(i - 1, std::min(trust_least_, N), N);
+      return std::clamp(i - 1, std::min(dead_time_ + trust_least_, N), N);
   }
   return N;
 }
@@ -76,7 +79,8 @@ void IteratedLaw::planned(const InternalModel& model, Eigen::Index i,
 
 void IteratedLaw::retune(const FmbpcParams& params) {
   lead_ = params.reference_lead_steps;
-  solver_.retune(params.iterations, params.weight_output, params.weight_move);
+  solver_.retune(params.iterations, params.weight_output, params.weight_move, params.weight_input,
+                 params.input_target);
 }
 
 }  // namespace fpc

@@ -5,14 +5,18 @@
 #include <memory>
 
 #include "control/fmbpc/core.hpp"
+#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/fuzzy/model_match.hpp"
 
 namespace fpc {
 namespace {
 
-const FmbpcParams& valid(const FmbpcParams& params, const PlantInfo& plant) {
-  params.validate(countOf(plant.outputs), countOf(plant.inputs));
+FmbpcParams valid(FmbpcParams params, const PlantInfo& plant) {
+  const Eigen::Index n_u = countOf(plant.inputs);
+  params.validate(countOf(plant.outputs), n_u);
+  if (params.weight_input.size() == 0)
+    params.weight_input = params.input_target = Vector::Zero(n_u);
   return params;
 }
 
@@ -24,9 +28,9 @@ std::vector<std::string> outputSignals(const FmbpcParams& params) {
 }  // namespace
 
 FmbpcLaw::FmbpcLaw(const FmbpcParams& params, const InputLimits& limits, const PlantInfo& plant)
-    : PredictiveLaw(valid(params, plant), limits, plant, outputSignals(params),
-                    namesOf(params.observer.estimated)),
-      params_(params),
+    : PredictiveLaw((params.validate(countOf(plant.outputs), countOf(plant.inputs)), params),
+                    limits, plant, outputSignals(params), namesOf(params.observer.estimated)),
+      params_(valid(params, plant)),
       forecast_(countOf(plant.disturbances), params.horizon_steps, params.forecast_period_steps,
                 params.forecast_pole, params.forecast_memory_steps) {}
 
@@ -49,10 +53,28 @@ Settings FmbpcLaw::settings() const {
   return fmbpcSettings().show(params_, {plant().outputs, plant().inputs});
 }
 
+/// A key that the law does not heed may come along as it is.
+void FmbpcLaw::requireHeeded(const Settings& asked, const FmbpcParams& next) const {
+  for (const auto& setting : asked) {
+    const char* instead = lawsInsteadOf(params_.law, setting.first);
+    if (instead == nullptr) continue;
+    const SettingSignals signals{plant().outputs, plant().inputs};
+    const Settings before = fmbpcSettings().show(params_, signals),
+                   after = fmbpcSettings().show(next, signals);
+    const auto same = [&](std::size_t i) {
+      return after[i].first != setting.first || after[i].second == before[i].second;
+    };
+    for (std::size_t i = 0; i < after.size(); ++i)
+      require(same(i), "controller." + setting.first, instead);
+  }
+}
+
 bool FmbpcLaw::retune(const Settings& settings) {
   FmbpcParams next = params_;
-  fmbpcSettings().take(settings, {plant().outputs, plant().inputs}, next);
-  params_ = valid(next, plant());
+  const SettingSignals signals{plant().outputs, plant().inputs};
+  fmbpcSettings().take(settings, signals, next);
+  requireHeeded(settings, next);
+  params_ = valid(std::move(next), plant());
   if (LawCore* core = newest()) static_cast<FmbpcCore*>(core)->prepareTuning(params_);
   tuningPrepared(params_.reference_pole);
   return true;

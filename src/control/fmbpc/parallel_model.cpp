@@ -20,6 +20,16 @@ void ParallelModel::advance(const Measurement& now, VectorRef disturbances) {
   if (delayed_) delayed_->advance(now.input_applied);
 }
 
+void ParallelModel::foresee(VectorRef input, VectorRef /*disturbances*/,
+                            Eigen::Ref<Vector> outputs) {
+  predict(input);
+  if (delayed_)
+    delayed_->foresee(outputs);
+  else
+    outputs.noalias() = affine().C.lazyProduct(next_);
+  outputs += offset_output_;
+}
+
 bool ParallelModel::blend(VectorRef disturbances) {
   const bool fired = InternalModel::blend(disturbances);
   if (delayed_) delayed_->blend(disturbances, at_measured_ ? &measured_ : nullptr);

@@ -1,5 +1,7 @@
 // Checks of the parameters of the fuzzy model-based predictive law.
 #include <algorithm>
+#include <initializer_list>
+#include <utility>
 
 #include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -30,6 +32,20 @@ void requireCombination(const FmbpcParams& p) {
 
 }  // namespace
 
+const char* lawsInsteadOf(FmbpcForm law, const std::string& key) {
+  const auto among = [&](std::initializer_list<const char*> keys) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  if (law != FmbpcForm::kIterated && among({"horizon_steps", "iterations", "forecast_period_h",
+                                            "forecast_pole", "forecast_memory_h"}))
+    return "law iterated with it";
+  if (law == FmbpcForm::kPublished && among({"weight_output", "weight_move"}))
+    return "law general or iterated with it";
+  if (law == FmbpcForm::kIterated && key == "coincidence_steps")
+    return "law published or general with it";
+  return nullptr;
+}
+
 void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   PredictiveLawParams::validate(n_y);
   requireCombination(*this);
@@ -38,6 +54,9 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
           "an integer from 1 to 100000");
   require(offset_gain >= 0.0 && offset_gain <= 1.0, "controller.offset_gain",
           "a number from 0 to 1");
+  for (const auto& [key, weight] :
+       {std::pair{"weight_output", &weight_output}, std::pair{"weight_move", &weight_move}})
+    requireNonNegative(*weight, weight->size(), std::string("controller.") + key);
   if (law == FmbpcForm::kPublished) {
     require(n_u == 1, "controller.law",
             "general for a plant with " + std::to_string(n_u) + " inputs; published has one");
@@ -49,6 +68,13 @@ void FmbpcParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
           "an integer from 1 to 1000");
   requireNonNegative(weight_output, n_y, "controller.weight_output");
   requireNonNegative(weight_move, n_u, "controller.weight_move");
+  if (weight_input.size() > 0 || input_target.size() > 0) {
+    requireNonNegative(weight_input, n_u, "controller.weight_input");
+    require(input_target.size() == n_u && input_target.allFinite(), "controller.input_target",
+            std::to_string(n_u) + " finite numbers");
+    require(law == FmbpcForm::kIterated || weight_input.isZero(0.0), "controller.weight_input",
+            "0 for a law other than iterated");
+  }
   require((weight_output.array() > 0.0).any(), "controller.weight_output",
           "at least one number > 0");
 }

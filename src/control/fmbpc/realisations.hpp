@@ -17,6 +17,7 @@ class ParallelModel : public InternalModel {
   ParallelModel(const TsModel& model, const FmbpcParams& params);
   void rest(const Measurement& now, VectorRef disturbances) override;
   void advance(const Measurement& now, VectorRef disturbances) override;
+  void foresee(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> outputs) override;
   bool blend(VectorRef disturbances) override;
   void compare(const Measurement& now) override;
   bool inherit(const InternalModel& older) override;
@@ -45,6 +46,7 @@ class RealignedModel final : public InternalModel {
   RealignedModel(const TsModel& model, const FmbpcParams& params);
   void rest(const Measurement& now, VectorRef disturbances) override;
   void advance(const Measurement& now, VectorRef disturbances) override;
+  void foresee(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> outputs) override;
   void compare(const Measurement& now) override;
   bool inherit(const InternalModel& older) override;
   double correctionOf(Eigen::Index output) const override { return error_filtered_[output]; }
@@ -60,6 +62,7 @@ class ObservedModel final : public InternalModel {
   ObservedModel(const TsModel& model, const FmbpcParams& params);
   void rest(const Measurement& now, VectorRef disturbances) override;
   void advance(const Measurement& now, VectorRef disturbances) override;
+  void foresee(VectorRef input, VectorRef disturbances, Eigen::Ref<Vector> outputs) override;
   void compare(const Measurement& now) override;
   bool inherit(const InternalModel& older) override;
   double correctionOf(Eigen::Index output) const override {

@@ -15,6 +15,9 @@ const SettingsTable<FmbpcParams>& fmbpcSettings() {
                 "of squared errors (general, iterated): 'x=1 s=2', or '1 2', or one number");
     t.ofInputs("weight_move", &FmbpcParams::weight_move,
                "of squared moves (general, iterated), in the same way");
+    t.ofInputs("weight_input", &FmbpcParams::weight_input,
+               "of squared distances to input_target (iterated); leaves an offset");
+    t.ofInputs("input_target", &FmbpcParams::input_target, "u_t (iterated), in the same way");
     t.integer("iterations", &FmbpcParams::iterations, "most linearisations per sample (iterated)",
               1, 1000);
     return t;

@@ -28,10 +28,19 @@ void SmithPredictor::rest(VectorRef outputs, VectorRef input, VectorRef disturba
   }
 }
 
-void SmithPredictor::advance(VectorRef input) {
+void SmithPredictor::predict() {
   next_ = affine().g;
   next_.noalias() += affine().A * state_;
   next_.noalias() += affine().B * inputs_.col(oldest_input_);
+}
+
+void SmithPredictor::foresee(Eigen::Ref<Vector> y) {
+  predict();
+  y.noalias() = affine().C.lazyProduct(next_);
+}
+
+void SmithPredictor::advance(VectorRef input) {
+  predict();
   state_.swap(next_);
   inputs_.col(oldest_input_) = input;
   oldest_input_ = (oldest_input_ + 1) % inputs_.cols();

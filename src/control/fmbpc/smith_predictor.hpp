@@ -20,13 +20,15 @@ class SmithPredictor {
 
   /// Everything, the register too, has rested at these values.
   void rest(VectorRef outputs, VectorRef input, VectorRef disturbances);
-  void advance(VectorRef input);  ///< from k-1 to k; `input` acted at k-1
+  void advance(VectorRef input);       ///< from k-1 to k; `input` acted at k-1
+  void foresee(Eigen::Ref<Vector> y);  ///< y_m(k+1), after blend()
   /// Rules at the model's own outputs, or at `antecedents` (laid out as LocalModel's state) if
   /// given.
   void blend(VectorRef disturbances, const Vector* antecedents);
   void output(Eigen::Ref<Vector> y) const;  ///< y_m(k), after blend()
 
  private:
+  void predict();  ///< next_ from state_
   const AffineModel& affine() const { return canonical_ ? canonical_->affine() : local_.affine(); }
 
   LocalModel local_;

@@ -85,6 +85,18 @@ void HorizonMpc::lookOn(const Measurement& now) {
   fresh_ = !state_.allFinite();
 }
 
+/// inputs_ and past_ are still those of the sample before.
+bool HorizonMpc::foresee(const Measurement& now, Eigen::Ref<Vector> outputs) {
+  if (!model_ || fresh_ || !goesOn(now.header)) return false;
+  next_ = state_;
+  const bool late = inputs_.cols() > 1;
+  if (!(late ? model_->step(inputs_.col(1), past_.col(1), next_)
+             : model_->step(now.input_applied, disturbances_, next_)))
+    return false;
+  for (Index i = 0; i < n_y_; ++i) outputs[i] = next_[model_->outputState(i)] + correction_[i];
+  return true;
+}
+
 /// All inputs as the one in force.
 void HorizonMpc::restPlan(const Measurement& now) {
   for (Index j = 0; j < plan_.size(); ++j) plan_[j] = now.input_applied[j % n_u_];

@@ -9,16 +9,44 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kGridPoints = 4000;  // of all outputs together, where extremes are checked
-constexpr double kSlack = 1e-12;      // of the comparison of two predictions
+constexpr double kGridPoints = 4000;   // of all outputs together, where extremes are checked
+constexpr double kMostPoints = 40000;  // with the corners of sets
+constexpr double kSlack = 1e-12;       // of the comparison of two predictions
 
-/// Moves to the next point of a grid of `n` points a side; false after the last one.
-bool nextPoint(std::vector<int>& index, int n) {
-  for (int& i : index) {
-    if (++i < n) return true;
-    i = 0;
+using Axis = std::vector<double>;
+
+/// Moves to the next point of a grid; false after the last one.
+bool nextPoint(std::vector<std::size_t>& index, const std::vector<Axis>& axes) {
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    if (++index[i] < axes[i].size()) return true;
+    index[i] = 0;
   }
   return false;
+}
+
+/// Where the sets on an output have corners, and half-way between them: a rule that holds between
+/// two points of an even grid only is seen as well.
+void addCorners(const TsModel& model, int output, Axis& axis) {
+  const double lower = axis.front(), upper = axis.back();
+  Axis corners;
+  for (const OutputModel& submodel : model.submodels)
+    for (std::size_t j = 0; j < submodel.antecedents.size(); ++j) {
+      const Regressor& z = submodel.antecedents[j];
+      if (z.kind != SignalKind::kOutput || z.index != output) continue;
+      for (const Rule& rule : submodel.rules) {
+        if (rule.multivariate) continue;
+        const auto& set = rule.antecedents[j].parameters;
+        corners.insert(corners.end(), set.begin(), set.end());
+      }
+    }
+  std::sort(corners.begin(), corners.end());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const double middle = 0.5 * (corners[i] + corners[i > 0 ? i - 1 : 0]);
+    for (const double point : {corners[i], middle})
+      if (point > lower && point < upper) axis.push_back(point);
+  }
+  std::sort(axis.begin(), axis.end());
+  axis.erase(std::unique(axis.begin(), axis.end()), axis.end());
 }
 
 }  // namespace
@@ -155,29 +183,36 @@ int HybridEvolution::extremeChoice(double sign) {
 }
 
 // On a grid: no choice leads further, and the map grows with every output. Three points along each
-// of many outputs are more than can be tried: then nothing is claimed.
+// of many outputs, or many corners, are more than can be tried: then nothing is claimed.
 bool HybridEvolution::isExtreme(int choice, double sign) {
   const auto n_y = static_cast<std::size_t>(model_.stateSize());
   if (std::pow(3.0, static_cast<double>(n_y)) > kGridPoints) return false;
   const int n =
       std::max(3, static_cast<int>(std::pow(kGridPoints, 1.0 / static_cast<double>(n_y))));
-  std::vector<int> index(n_y, 0);
-  Vector step(model_.stateSize()), state(model_.stateSize());
   const auto& outputs = model_.model().outputs;
+  std::vector<Axis> axes(n_y);
+  double points = 1.0;
+  for (std::size_t i = 0; i < n_y; ++i) {
+    const double step = (outputs[i].upper - outputs[i].lower) / (n - 1);
+    for (int j = 0; j < n; ++j) axes[i].push_back(outputs[i].lower + j * step);
+    addCorners(model_.model(), static_cast<int>(i), axes[i]);
+    points *= static_cast<double>(axes[i].size());
+  }
+  if (points > kMostPoints) return false;
+  std::vector<std::size_t> index(n_y, 0);
+  Vector state(model_.stateSize());
   do {
-    for (std::size_t i = 0; i < n_y; ++i) {
-      step[static_cast<Index>(i)] = (outputs[i].upper - outputs[i].lower) / (n - 1);
-      state[static_cast<Index>(i)] = outputs[i].lower + index[i] * step[static_cast<Index>(i)];
-    }
+    for (std::size_t i = 0; i < n_y; ++i) state[static_cast<Index>(i)] = axes[i][index[i]];
     const Vector here = mapped(choice, state);
     for (int other = 0; other < static_cast<int>(params_.choices.cols()); ++other)
       if ((sign * (here - mapped(other, state))).minCoeff() < -kSlack) return false;
-    for (Index i = 0; i < state.size(); ++i) {
+    for (std::size_t i = 0; i < n_y; ++i) {
+      if (index[i] + 1 == axes[i].size()) continue;
       Vector further = state;
-      further[i] += step[i];
+      further[static_cast<Index>(i)] = axes[i][index[i] + 1];
       if ((mapped(choice, further) - here).minCoeff() < -kSlack) return false;
     }
-  } while (nextPoint(index, n));
+  } while (nextPoint(index, axes));
   return true;
 }
 

@@ -88,6 +88,16 @@ void FuzzyOptimalCore::advance(const LawSample& sample) {
   local_.shiftState(now.outputs, now.input_applied, sample.past_disturbances, state_);
 }
 
+void FuzzyOptimalCore::foresee(VectorRef input, VectorRef past_disturbances,
+                               Eigen::Ref<Vector> outputs) {
+  if (observer_) return observer_->foresee(input, past_disturbances, outputs);
+  predicted_ = offset_state_;
+  predicted_.noalias() += local_.affine().A * state_;
+  predicted_.noalias() += local_.affine().B * input;
+  outputs.noalias() = local_.affine().C.lazyProduct(predicted_);
+  outputs += offset_output_;
+}
+
 /// predicted_ = x(k|k-1) of a model that was blended at k-1.
 void FuzzyOptimalCore::predictOneStep(const AffineModel& model, VectorRef input) {
   predicted_ = model.g;

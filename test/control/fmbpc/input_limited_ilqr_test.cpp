@@ -19,8 +19,12 @@ struct Task {
       : generator(seed),
         limits(std::move(limits_)),
         local(model),
-        params{kHorizon, 60, Vector::Ones(count(model.outputs)),
-               Vector::Constant(count(model.inputs), 0.1)},
+        params{kHorizon,
+               60,
+               Vector::Ones(count(model.outputs)),
+               Vector::Constant(count(model.inputs), 0.1),
+               Vector::Constant(count(model.inputs), seed % 2 == 0 ? 0.05 : 0.0),
+               Vector::Constant(count(model.inputs), 0.3)},
         planner(local, params, limits),
         state(test::randomVector(generator, local.stateSize())),
         correction(Vector::Zero(local.stateSize())),
@@ -39,13 +43,16 @@ struct Task {
   /// Square roots of the terms of the cost under these inputs (n_u kHorizon), stacked.
   Vector residuals(const Matrix& inputs) {
     const Eigen::Index n_y = offset.size(), n_u = previous.size();
-    Vector r((n_y + n_u) * kHorizon), xi = state, before = previous;
+    Vector r((n_y + 2 * n_u) * kHorizon), xi = state, before = previous;
     for (Eigen::Index i = 0; i < kHorizon; ++i) {
       local.blend(xi, inputs.col(i), loads.col(i));
       const AffineModel& m = local.affine();
       xi = (m.A * xi + m.B * inputs.col(i) + m.g).eval();
-      r.segment(i * (n_y + n_u), n_y) = m.C * xi + offset - reference.col(i);
-      r.segment(i * (n_y + n_u) + n_y, n_u) = std::sqrt(0.1) * (inputs.col(i) - before);
+      const Eigen::Index row = i * (n_y + 2 * n_u);
+      r.segment(row, n_y) = m.C * xi + offset - reference.col(i);
+      r.segment(row + n_y, n_u) = std::sqrt(0.1) * (inputs.col(i) - before);
+      r.segment(row + n_y + n_u, n_u) =
+          params.weight_input.cwiseSqrt().cwiseProduct(inputs.col(i) - params.input_target);
       before = inputs.col(i);
     }
     return r;
@@ -75,12 +82,18 @@ QpResult solveAsProgramme(Task& task) {
     J.col(j) = task.residuals(inputs) - r;
     inputs(j % n_u, j / n_u) = 0.0;
   }
-  QpProblem problem(n, 0);
+  QpProblem problem(n, n);  // rows: moves
+  problem.A.setIdentity();
+  problem.A.bottomRows(n - n_u).leftCols(n - n_u).diagonal().array() -= 1.0;
+  problem.a_upper = task.limits.move.replicate(kHorizon, 1);
+  problem.a_lower = -problem.a_upper;
+  problem.a_upper.head(n_u) += task.previous;
+  problem.a_lower.head(n_u) += task.previous;
   problem.H = J.transpose() * J;
   problem.g = J.transpose() * r;
   problem.x_lower = task.limits.lower.replicate(kHorizon, 1);
   problem.x_upper = task.limits.upper.replicate(kHorizon, 1);
-  return QpSolver(n, 0).solve(problem);
+  return QpSolver(n, n).solve(problem);
 }
 
 class PlanOfALinearModel : public ::testing::TestWithParam<double> {};
@@ -103,9 +116,32 @@ TEST_P(PlanOfALinearModel, IsTheSolutionOfTheQuadraticProgramme) {
   }
 }
 
+// An input at its move limit follows the one before. Where a bound and a move limit change places
+// along the horizon, the sweep stops short of the least: by 0.0085 at most of the 180 plans here,
+// and by 1.4e-5 where the bounds are wide. It was 0.17 when such an input stood still.
+TEST_P(PlanOfALinearModel, IsTheSolutionWithMoveLimitsAsWell) {
+  double dearest = 0.0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    std::mt19937_64 generator(seed);
+    InputLimits limits = test::wideLimits(2, GetParam());
+    const double move = seed % 3 == 0 ? 0.05 : 0.15;
+    limits.move = test::pair(move, seed % 2 == 0 ? kInfinity : 2.0 * move);
+    Task task(linear(generator), limits, seed);
+    ASSERT_TRUE(task.plan());
+    const QpResult answer = solveAsProgramme(task);
+    ASSERT_TRUE(answer.usable());
+    const Matrix best = Eigen::Map<const Matrix>(answer.x.data(), 2, kHorizon);
+    const double least = task.residuals(best).squaredNorm();
+    dearest = std::max(dearest, task.planner.cost() / least - 1.0);
+    EXPECT_GE(task.planner.cost(), (1.0 - 1e-9) * least);
+  }
+  EXPECT_LE(dearest, GetParam() < 1.0 ? 0.01 : 1e-4);
+}
+
 // Where only five errors count, the plan is that of a horizon of five, and holds its last input.
 TEST(InputLimitedIlqr, ErrorsThatDoNotCountShortenTheHorizon) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 19; seed += 2) {  // no weight_input, which counts to the end
     SCOPED_TRACE("seed " + std::to_string(seed));
     std::mt19937_64 generator(seed);
     Task task(linear(generator), test::wideLimits(2, 1.0), seed);

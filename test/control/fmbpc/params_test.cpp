@@ -32,6 +32,11 @@ TEST(FmbpcParams, ValidateNamesTheField) {
   expect("weight_output", [](FmbpcParams& p) { p.weight_output = one(1.0); });
   expect("weight_output", [](FmbpcParams& p) { p.weight_output.setZero(); });
   expect("weight_move", [](FmbpcParams& p) { p.weight_move = one(-1.0); });
+  for (const FmbpcForm law : {FmbpcForm::kPublished, FmbpcForm::kGeneral, FmbpcForm::kIterated})
+    expect("weight_output", [law](FmbpcParams& p) {
+      p.law = law;
+      p.weight_output[1] = std::nan("");
+    });
 }
 
 }  // namespace control_fmbpc_params_test

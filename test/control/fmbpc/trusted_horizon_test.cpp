@@ -20,8 +20,8 @@ FmbpcParams planning(int horizon) {
 }
 
 /// Inputs at outputs that are given, of a model whose data end at `upper`.
-std::vector<double> plannedInputs(int horizon, double upper, Eigen::Index least) {
-  TsModel model = test::firstOrder(0.8, 0.3, 0.05);
+std::vector<double> plannedInputs(int horizon, double upper, Eigen::Index least, int delay = 0) {
+  TsModel model = test::firstOrder(0.8, 0.3, 0.05, delay);
   model.outputs[0].lower = -upper;
   model.outputs[0].upper = upper;
   const PlantInfo info = test::infoOf(model);
@@ -54,6 +54,15 @@ TEST(TrustedHorizon, ErrorsCountAsFarAsTheModelIsTrusted) {
     EXPECT_NEAR(far[k], near[k], 1e-6) << k;
     EXPECT_EQ(inside[k], whole[k]) << k;
     EXPECT_GT(std::abs(near[k] - whole[k]), 1e-3) << k;
+  }
+}
+
+// What counts always is counted from the dead time on: no input does anything about errors before.
+TEST(TrustedHorizon, TheDeadTimeDoesNotUseUpWhatAlwaysCounts) {
+  const auto far = plannedInputs(40, 1.0, 4, 15), near = plannedInputs(19, 1.0, 0, 15);
+  for (std::size_t k = 1; k < far.size(); ++k) {
+    EXPECT_NEAR(far[k], near[k], 1e-6) << k;
+    EXPECT_GT(std::abs(far[k] - 1.0), 1e-3) << k;  // it does not rest
   }
 }
 

@@ -64,6 +64,53 @@ TEST(HybridMpc, TheCostOfABlockIsThatOfEquation45) {
   }
 }
 
+/// y(k+1) = y + u, but y + 5 (1 - u) in a band that no point of an even grid over 0 to 90 meets.
+TsModel bandModel() {
+  TsModel model;
+  model.name = "band";
+  model.sample_time_s = 1.0;
+  model.outputs = {{"y", "", 0.0, 90.0}};
+  model.inputs = {{"u", "", 0.0, 1.0}};
+  const Regressor y{SignalKind::kOutput, 0, 0}, u{SignalKind::kInput, 0, 0};
+  const auto rule = [](double from, double to, double gain, double offset) {
+    Rule r;
+    r.antecedents = {{MembershipShape::kTrapezoidal, {from, from, to, to}}};
+    r.coefficients = Eigen::Vector2d(1.0, gain);
+    r.offset = offset;
+    return r;
+  };
+  model.submodels = {{{y}, {y, u}, {}}};
+  model.submodels[0].rules = {rule(-1.0, 49.995, 1.0, 0.0), rule(49.995, 50.005, -5.0, 5.0),
+                              rule(50.005, 200.0, 1.0, 0.0)};
+  return model;
+}
+
+// From 49 the way leads through the band, where the input that raises y elsewhere lowers it.
+TEST(HybridMpc, ABandBetweenTwoPointsOfAGridIsNotMissedByTheBound) {
+  PlantInfo info;
+  info.outputs = bandModel().outputs;
+  info.inputs = bandModel().inputs;
+  const InputLimits limits{Vector::Zero(1), Vector::Ones(1), Vector::Constant(1, kInfinity)};
+  double cost[2];
+  for (const BranchBound bound : {BranchBound::kCost, BranchBound::kReach}) {
+    HybridMpcParams params;
+    params.choices = (Matrix(1, 2) << 0.0, 1.0).finished();
+    params.hold_samples = 1;
+    params.horizon_blocks = 4;
+    params.weight_tracking = Vector::Ones(1);
+    params.weight_consumption = Vector::Zero(1);
+    params.bound = bound;
+    HybridMpc mpc(params, limits, info);
+    mpc.setModel(bandModel());
+    const Matrix reference = Matrix::Constant(1, 4, 56.0);
+    cost[bound == BranchBound::kReach] =
+        mpc.decide(Vector::Constant(1, 49.0), Vector::Zero(1), Vector(0), reference).cost;
+    EXPECT_FALSE(mpc.boundsByReach());
+  }
+  EXPECT_EQ(cost[0], 36.0 + 1.0 + 0.0 + 0.0);
+  EXPECT_EQ(cost[1], cost[0]);
+}
+
 TEST(HybridMpc, AnInputIsHeldForItsBlockAndDecidedAtItsStart) {
   ControllerSession session = sessionOf(test::batchReactorParams(44, BranchBound::kReach));
   Vector applied = kShut;

@@ -15,12 +15,16 @@ struct IlqrParams {
   int iterations{8};      ///< most linearisations per sample
   Vector weight_output;   ///< n_y, diagonal W
   Vector weight_move;     ///< n_u, diagonal L
+  Vector weight_input;    ///< n_u, diagonal R; empty: 0
+  Vector input_target;    ///< n_u, u_t; with weight_input
 };
 
-/// Minimises  sum_{i=1..N} |y(k+i) - y_r(k+i)|^2_W + sum_{i<N} |u(k+i) - u(k+i-1)|^2_L  over inputs
+/// Minimises  sum_{i=1..N} |y(k+i) - y_r(k+i)|^2_W + sum_{i<N} |u(k+i) - u(k+i-1)|^2_L
+/// + |u(k+i) - u_t|^2_R  over inputs
 /// inside their limits, with the rules blended anew at every predicted sample: Gauss-Newton steps
 /// by a Riccati sweep backwards and a simulation of the model forwards, from the plan of the sample
-/// before. Bounds are kept by clipping the sweep's inputs (the others are found again).
+/// before. An input at a bound stays there, one at its move limit goes where u(k+i-1) goes; the
+/// others are found again.
 /// Source: li2004; bounds after tassa2014. Work is linear in N
 /// and bounded by `iterations`. No allocation after construction.
 class InputLimitedIlqr {
@@ -28,7 +32,8 @@ class InputLimitedIlqr {
   InputLimitedIlqr(const LocalModel& model, IlqrParams params, InputLimits limits);
   void forget();  ///< the next plan starts from the input held
   /// From the next plan on; the horizon stays.
-  void retune(int iterations, VectorRef weight_output, VectorRef weight_move);
+  void retune(int iterations, VectorRef weight_output, VectorRef weight_move,
+              VectorRef weight_input, VectorRef input_target);
   /// From the next plan on only the errors of x(k+1)..x(k+n) count, 0 <= n <= N; at first all.
   void countErrors(Eigen::Index n) { counted_ = n; }
   bool warm() const { return warm_; }  ///< the next plan goes on from the last one
@@ -50,6 +55,7 @@ class InputLimitedIlqr {
   void findPattern();
   void multiplyByA(const Matrix& A);
   bool chooseInput(Eigen::Index i);
+  bool atMoveLimit(Eigen::Index i, Eigen::Index a) const;
   bool solveFree();
   bool fixMore();
   bool release();

@@ -43,6 +43,7 @@ class HorizonMpc : public Controller {
   void step(const Measurement& now, const SetpointSource& setpoint,
             ControllerOutput& output) override;
   void lookOn(const Measurement& now) override;
+  bool foresee(const Measurement& now, Eigen::Ref<Vector> outputs) override;
   const std::vector<std::pair<std::string, double>>& signals() const override { return signals_; }
   const Vector& plan() const { return plan_; }  ///< n_u M, of the last sample
 

@@ -68,11 +68,12 @@ struct HybridMpcParams {
 /// If nothing is allowed the allowed vector nearest to the input in force is sent. Only vectors of
 /// `choices` are ever sent.
 /// bound `reach`: where the model has no memory besides its outputs, and on a grid over its ranges
-/// one choice raises all outputs most, one lowers them most and both maps grow with the outputs,
-/// the least error that any sequence must make is that of the band between these two trajectories.
-/// Elsewhere the bound is `cost`. The result is the same, with fewer nodes.
-/// Source: karer2007, section 4, eqs. 21-32, 44, 45.
-/// signals(): choice (index), search_cost, search_nodes of the last decision.
+/// and the corners of its sets one choice raises all outputs most, one lowers them most and both
+/// maps grow with the outputs, the least error that any sequence must make is that of the band
+/// between these two trajectories. Elsewhere the bound is `cost`. Fewer nodes; the result is the
+/// same unless the model does something else between two points of the grid, which `cost` does not
+/// depend on. Source: karer2007, section 4, eqs. 21-32, 44, 45. signals(): choice (index),
+/// search_cost, search_nodes of the last decision.
 class HybridMpc final : public Controller {
  public:
   /// @throws InputError naming the field, also for choices outside the bounds.

@@ -1,4 +1,4 @@
-// A short name for a text, to tell whether it is still the same. Private to the room.
+// A short name for a text, to tell whether it is still the same.
 #pragma once
 
 #include <cstdint>

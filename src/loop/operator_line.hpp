@@ -1,0 +1,25 @@
+// What a person asks of a loop that runs over topics, answered in the same terminal. In a build
+// with ROS done in room ros, else refused in words (tool/no_bags.cpp).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace fpc {
+
+enum class OperatorVerb { kSet, kDisturb, kManual, kAuto, kRelease };
+
+struct OperatorCommand {
+  OperatorVerb verb{OperatorVerb::kSet};
+  std::vector<std::pair<std::string, double>> values;  ///< set, disturb, manual: by name
+  std::vector<std::string> names;                      ///< release; none: everything
+  bool offset{false};                                  ///< set, disturb: added, not instead
+};
+
+/// Asks it of the loop on the present master (ROS_MASTER_URI, ROS_NAMESPACE) and waits for the
+/// sample since which it is in force: what became of it, one line per thing asked.
+/// @throws InputError if there is no loop, it refuses (with its reason), or nothing comes of it.
+std::string askLoop(const OperatorCommand& command);
+
+}  // namespace fpc

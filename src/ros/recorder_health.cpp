@@ -1,0 +1,32 @@
+// What the recorder says of itself.
+#include "ros/loop_recorder.hpp"
+
+namespace fpc {
+
+Health LoopRecorder::health(double) const {
+  if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
+  if (!store_->problem().empty()) return {LoopMode::kFailed, store_->problem(), {}};
+  if (!problem_.empty()) return {LoopMode::kFailed, problem_, {}};
+  if (bag_ && !bag_->problem().empty()) return {LoopMode::kFailed, bag_->problem(), {}};
+  if (!ready_.announced()) return {LoopMode::kStarting, "waiting for publishers of the ring", {}};
+  if (written_) return {LoopMode::kFinished, "written", {}};
+  if (session_.gapCount() > 0)
+    return {LoopMode::kDegraded, "recording, with gaps: " + session_.gaps(1).front(), {}};
+  return {LoopMode::kAutomatic, session_.running() ? "recording" : "waiting", {}};
+}
+
+void LoopRecorder::report(Diagnostics::Status& status) const {
+  status.add("step", session_.latest().step);
+  status.add("samples on disk", store_->samples() - store_->unwritten() - store_->lost());
+  status.add("samples that wait for the disk", store_->unwritten());
+  status.add("samples lost", store_->lost());
+  if (!store_->remark().empty()) status.add("run before", store_->remark());
+  status.add("samples with gaps", session_.gapCount());
+  status.add("waiting for what belongs to them", session_.waiting());
+  status.add("dropped: other run", session_.strays());
+  status.add("dropped: wrong size or not finite", session_.wrongSize());
+  addRefused(status, refused());
+  addRefused(status, authority().refused());
+}
+
+}  // namespace fpc

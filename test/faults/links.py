@@ -1,0 +1,121 @@
+"""Connections that are taken away: every node must have them again within five seconds of the end of the cause, or say what is
+missing."""
+import os
+import resource
+import time
+import xmlrpc.client
+
+from fault import Fault
+
+ME = "/fault_matrix"
+PLANT, CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER = NODES = (
+    "plant_simulator", "fmbpc_controller", "clp_optimizer", "loop_recorder", "fuzzy_identifier")
+MENDED = 5.0  # s
+
+
+def needs(node):
+    return ("optimizer",) if node == OPTIMIZER else ()
+
+
+def proxy(loop, node):
+    return xmlrpc.client.ServerProxy(loop.master.lookupNode("/" + node))
+
+
+def missing(loop, node):
+    """Registrations and connections of a node of the loop that should be there, in words."""
+    published, subscribed, _ = ({topic: names for topic, names in kind} for kind in loop.master.getSystemState())
+    try:
+        own = proxy(loop, node)
+        publications, subscriptions, info = (call(ME)[2] for call in (own.getPublications, own.getSubscriptions, own.getBusInfo))
+    except (OSError, Exception) as error:  # pylint: disable=broad-except
+        return [f"{node}: {type(error).__name__}"]
+    name, links = "/" + node, {(link[4], link[1]) for link in info if link[2] == "i"}
+    lost = [f"{node} is not registered for {topic}" for topics, by in ((publications, published), (subscriptions, subscribed))
+            for topic, _ in topics if name not in by.get(topic, [])]
+    for topic, _ in subscriptions:
+        lost += [f"{node} does not hear {topic} of {other}" for other in published.get(topic, [])
+                 if other in loop.nodes and other != name and (topic, loop.master.lookupNode(other)) not in links]
+    lost += [f"nobody publishes {topic} for {node}" for topic in loop.spoken.get(node, []) if not published.get(topic)]
+    return lost
+
+
+def remember(loop):
+    """Topics that a node hears before the fault."""
+    loop.spoken = {}
+    published = {topic for topic, _ in loop.master.getSystemState()[0]}
+    for node in (name.lstrip("/") for name in loop.nodes):
+        loop.spoken[node] = [topic for topic, _ in proxy(loop, node).getSubscriptions(ME)[2] if topic in published]
+
+
+def whole(loop):
+    """All nodes of the loop are connected as they should be, in time; otherwise what is missing."""
+    end = time.monotonic() + MENDED
+    while True:
+        lost = [words for node in loop.nodes for words in missing(loop, node.lstrip("/"))]
+        if not lost:
+            return None
+        if time.monotonic() > end:
+            return f"not mended within {MENDED:.0f} s: " + "; ".join(lost[:4])
+        time.sleep(0.1)
+
+
+def forget_publishers(loop, node):
+    """Somebody tells a node that nobody publishes what it hears."""
+    remember(loop)
+    own = proxy(loop, node)
+    for topic, _ in own.getSubscriptions(ME)[2]:
+        own.publisherUpdate(ME, topic, [])
+
+
+def forged(node):
+    return Fault(f"{node}: publisherUpdate with empty lists", lambda loop: forget_publishers(loop, node), whole,
+                 needs=needs(node))
+
+
+def clean_up(loop, node):
+    """What `rosnode cleanup` does with a node that does not answer."""
+    remember(loop)
+    loop.freeze(node)
+    name, uri, master = "/" + node, loop.master.lookupNode("/" + node), xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"])
+    published, subscribed, services = loop.master.getSystemState()
+    for topics, forget in ((published, master.unregisterPublisher), (subscribed, master.unregisterSubscriber)):
+        for topic, names in topics:
+            if name in names:
+                forget(name, topic, uri)
+    for service, names in services:
+        if name in names:
+            master.unregisterService(name, service, loop.master.lookupService(service))
+
+
+def thaw(loop):
+    loop.thaw()
+    return whole(loop)
+
+
+def cleaned(node):
+    return Fault(f"rosnode cleanup while {node} hangs for 3 s", lambda loop: clean_up(loop, node), thaw, needs=needs(node),
+                 lasts=3.0)
+
+
+def use_up(loop, node):
+    """No file descriptor is left to a node; then somebody whom it hears is started again."""
+    remember(loop)
+    loop.starved = loop.pid("/" + node)
+    loop.descriptors = resource.prlimit(loop.starved, resource.RLIMIT_NOFILE)
+    open_now = {int(name) for name in os.listdir(f"/proc/{loop.starved}/fd")}
+    free = next(number for number in range(len(open_now) + 1) if number not in open_now)
+    resource.prlimit(loop.starved, resource.RLIMIT_NOFILE, (free, loop.descriptors[1]))
+    loop.kill(CONTROLLER)
+
+
+def give_back(loop):
+    resource.prlimit(loop.starved, resource.RLIMIT_NOFILE, loop.descriptors)
+    return whole(loop)
+
+
+def starved(node):
+    return Fault(f"{node}: no file descriptor is left while the controller is killed", lambda loop: use_up(loop, node), give_back,
+                 said=f"/{node} .*(no connection can be made|not connected)", said_within=5.0, touches=(CONTROLLER,), lasts=2.0)
+
+
+FAULTS = [forged(node) for node in NODES] + [cleaned(node) for node in NODES] + [starved(RECORDER), starved(PLANT)]
