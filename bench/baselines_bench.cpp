@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "fmbpc/loop/factory.hpp"
+#include "runtime/factory.hpp"
 
 namespace {
 

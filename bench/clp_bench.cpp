@@ -1,6 +1,6 @@
 // One step of the closed-loop paradigm on a plant of the activated sludge's size: 42 free inputs, 3
 // states. The base law runs into its limits all the time, so that every step solves a QP.
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "control/clp/closed_loop_paradigm.hpp"
 
 #include <string>
 

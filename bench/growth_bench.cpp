@@ -7,9 +7,9 @@
 #include <memory>
 #include <vector>
 
-#include "fmbpc/plant/integrator.hpp"
 #include "growth_cases.hpp"
 #include "pairs.hpp"
+#include "plant/integrator.hpp"
 
 namespace fpc::bench {
 namespace {

@@ -6,11 +6,11 @@
 #include <limits>
 #include <string>
 
+#include "control/clp/closed_loop_paradigm.hpp"
+#include "control/fmbpc/law.hpp"
 #include "fmbpc/base/signals.hpp"
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
 #include "fmbpc/plant/plant.hpp"
-#include "fuzzy/model_fixture.hpp"
+#include "identification/model_fixture.hpp"
 
 namespace fpc::bench {
 

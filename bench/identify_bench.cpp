@@ -4,9 +4,9 @@
 
 #include <random>
 
-#include "fmbpc/fuzzy/clustering.hpp"
-#include "fmbpc/fuzzy/consequents.hpp"
-#include "fmbpc/fuzzy/partition.hpp"
+#include "identification/clustering.hpp"
+#include "identification/consequents.hpp"
+#include "identification/partition.hpp"
 
 namespace fpc {
 namespace {

@@ -1,8 +1,8 @@
 // What a sample costs: one step of a predictive law, one plant sample, a whole run in process.
 #include <benchmark/benchmark.h>
 
-#include "fmbpc/loop/factory.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/run.hpp"
 
 namespace {
 

@@ -2,15 +2,15 @@
 // plan of the iterated law, a decision by branch and bound, a fit to free runs.
 #include <random>
 
+#include "control/fmbpc/input_limited_ilqr.hpp"
 #include "control/hybrid/fixture.hpp"
-#include "fmbpc/control/fmbpc/input_limited_ilqr.hpp"
-#include "fmbpc/fuzzy/choice_model.hpp"
-#include "fmbpc/fuzzy/consequents.hpp"
-#include "fmbpc/fuzzy/free_run_fit.hpp"
-#include "fmbpc/fuzzy/prediction.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "fuzzy/model_fixture.hpp"
+#include "identification/consequents.hpp"
+#include "identification/free_run_fit.hpp"
+#include "identification/model_fixture.hpp"
+#include "identification/prediction.hpp"
+#include "model/choice_model.hpp"
 #include "pairs.hpp"
+#include "runtime/factory.hpp"
 
 namespace fpc::bench {
 namespace {

@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "arithmetic_peak.hpp"
+#include "base/parallel.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/base/parallel.hpp"
-#include "fmbpc/fuzzy/clustering.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/plant/integrator.hpp"
-#include "fuzzy/cluster_kernels.hpp"
-#include "fuzzy/cluster_pass.hpp"
+#include "identification/cluster_kernels.hpp"
+#include "identification/cluster_pass.hpp"
+#include "identification/clustering.hpp"
 #include "pairs.hpp"
+#include "plant/integrator.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc::bench {
 namespace {

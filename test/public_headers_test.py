@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The headers that are installed are those that docs/ and examples/ name, and what these include: no more, no less."""
+"""include/fmbpc holds the headers that docs/ and examples/ name, and what these include: no more, no less. All of it is installed."""
 import pathlib
 import re
 import unittest
@@ -8,13 +8,12 @@ TOP = pathlib.Path(__file__).resolve().parent.parent
 INCLUDE = TOP / "include" / "fmbpc"
 OWN = re.compile(r'^#include ["<]fmbpc/([\w/.]+)[">]', re.MULTILINE)
 NAMED = re.compile(r"\bfmbpc/([a-z0-9_]+/[a-z0-9_/]+\.hpp)\b")
-ALLOWED_ROOMS = {"base", "plant", "fuzzy", "control"}
+ALLOWED_ROOMS = {"base", "plant", "model", "control"}
 SYSTEM = re.compile(r"^#include <([\w/.]+)>", re.MULTILINE)
 
 
 def installed():
-    text = (TOP / "cmake" / "public_headers.cmake").read_text()
-    return re.search(r"set\(FMBPC_PUBLIC_HEADERS\n(.*?)\)", text, re.DOTALL).group(1).split()
+    return sorted(str(path.relative_to(INCLUDE)) for path in INCLUDE.rglob("*.hpp"))
 
 
 def closure(roots):
@@ -34,15 +33,11 @@ def named():
 
 
 class PublicHeaders(unittest.TestCase):
-    def test_the_list_is_in_order_and_every_one_is_there(self):
-        self.assertEqual(sorted(set(installed())), installed())
-        self.assertEqual([], [header for header in installed() if not (INCLUDE / header).is_file()])
-
     def test_pages_and_examples_name_installed_ones_only(self):
         self.assertGreaterEqual(len(named()), 8)
         self.assertEqual(set(), named() - set(installed()))
 
-    def test_the_list_is_what_they_name_and_what_that_includes(self):
+    def test_the_folder_is_what_they_name_and_what_that_includes(self):
         self.assertEqual(closure(named()), set(installed()))
 
     def test_they_show_a_compiler_nothing_but_eigen_and_the_standard_library(self):
@@ -60,7 +55,7 @@ class PublicHeaders(unittest.TestCase):
             text = re.sub(r"#[^\n]*", "", cmake.read_text())
             for call in re.findall(r"\binstall\(([^)]*)\)", text):
                 if re.search(r"\binclude\b|\.hpp", call):
-                    self.assertEqual("FILES include/fmbpc/${header} DESTINATION ${FMBPC_INCLUDE}/${room}", call, cmake)
+                    self.assertEqual("DIRECTORY include/fmbpc/ DESTINATION ${FMBPC_INCLUDE}", call, cmake)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 
 namespace fpc::bench {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "fmbpc/base/types.hpp"
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 
 namespace fpc::bench {
 

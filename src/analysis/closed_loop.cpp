@@ -1,12 +1,12 @@
-#include "fmbpc/analysis/closed_loop.hpp"
+#include "analysis/closed_loop.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "control/fmbpc/coincidence.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/fmbpc/coincidence.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,4 @@
-#include "fmbpc/analysis/common_lyapunov.hpp"
+#include "analysis/common_lyapunov.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/SVD>
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/closed_loop.hpp"
 #include "analysis/csdp.hpp"
-#include "fmbpc/analysis/closed_loop.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

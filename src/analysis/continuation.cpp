@@ -1,10 +1,10 @@
-#include "fmbpc/analysis/continuation.hpp"
+#include "analysis/continuation.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "analysis/curve.hpp"
-#include "fmbpc/analysis/steady_state.hpp"
+#include "analysis/steady_state.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <exception>
 
-#include "fmbpc/analysis/linearise.hpp"
+#include "analysis/linearise.hpp"
 
 namespace fpc {
 namespace {

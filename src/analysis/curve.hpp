@@ -3,7 +3,7 @@
 // keller1977.
 #pragma once
 
-#include "fmbpc/analysis/continuation.hpp"
+#include "analysis/continuation.hpp"
 
 namespace fpc {
 

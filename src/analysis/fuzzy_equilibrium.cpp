@@ -1,10 +1,10 @@
-#include "fmbpc/analysis/fuzzy_equilibrium.hpp"
+#include "analysis/fuzzy_equilibrium.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/analysis/steady_state.hpp"
-#include "fmbpc/fuzzy/local_model.hpp"
+#include "analysis/steady_state.hpp"
+#include "fmbpc/model/local_model.hpp"
 
 namespace fpc {
 namespace {

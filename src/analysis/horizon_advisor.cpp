@@ -1,4 +1,4 @@
-#include "fmbpc/analysis/horizon_advisor.hpp"
+#include "analysis/horizon_advisor.hpp"
 
 #include <cmath>
 #include <cstdio>

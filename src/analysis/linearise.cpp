@@ -1,4 +1,4 @@
-#include "fmbpc/analysis/linearise.hpp"
+#include "analysis/linearise.hpp"
 
 #include <Eigen/Dense>
 #include <cmath>

@@ -2,7 +2,7 @@
 // controller and no user needs it.
 #pragma once
 
-#include "fmbpc/analysis/closed_loop.hpp"
+#include "analysis/closed_loop.hpp"
 
 namespace fpc {
 

@@ -1,6 +1,6 @@
-#include "fmbpc/analysis/performance.hpp"
+#include "analysis/performance.hpp"
 
-#include "fmbpc/analysis/running_indices.hpp"
+#include "analysis/running_indices.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

@@ -1,9 +1,9 @@
-#include "fmbpc/analysis/rule_models.hpp"
+#include "analysis/rule_models.hpp"
 
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/local_model.hpp"
+#include "fmbpc/model/local_model.hpp"
 
 namespace fpc {
 namespace {

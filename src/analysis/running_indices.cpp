@@ -1,4 +1,4 @@
-#include "fmbpc/analysis/running_indices.hpp"
+#include "analysis/running_indices.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 namespace fpc {
 namespace {
 
-constexpr int kBisections = 60;
+constexpr int kPointBisections = 60;
 constexpr double kNoSlope = 1e-7;  // of a unit tangent: what differences of the field cannot tell
 constexpr double kNarrowest = 1e-11;  // of the arc length, in sizes
 
@@ -21,7 +21,7 @@ struct Bracket {
 /// Halves the bracket while `changed` tells on which side the change lies.
 bool bisect(const Curve& curve, const TracedPoint& from, Bracket& bracket,
             const std::function<bool(const TracedPoint&)>& changed) {
-  for (int i = 0; i < kBisections && std::abs(bracket.high - bracket.low) > kNarrowest; ++i) {
+  for (int i = 0; i < kPointBisections && std::abs(bracket.high - bracket.low) > kNarrowest; ++i) {
     const double middle = 0.5 * (bracket.low + bracket.high);
     TracedPoint point;
     if (!curve.step(from, middle, point)) return false;

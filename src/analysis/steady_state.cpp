@@ -1,4 +1,4 @@
-#include "fmbpc/analysis/steady_state.hpp"
+#include "analysis/steady_state.hpp"
 
 #include <Eigen/LU>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kDifference =
+constexpr double kJacobianStep =
     6e-6;                           // cube root of the rounding error: best for central differences
 constexpr double kSingular = 1e-9;  // pivots below this part of the largest are rounding
 constexpr double kShortestDamping = 1e-6;
@@ -62,13 +62,13 @@ bool Newton::computeJacobian() {
   const Eigen::Index n = result_.x.size();
   Vector x = result_.x, ahead(n), behind(n);
   for (Eigen::Index j = 0; j < n; ++j) {
-    const double h = kDifference * scale_[j];
+    const double h = kJacobianStep * scale_[j];
     x[j] = result_.x[j] + h;
     if (!evaluate(x, ahead)) return false;
     x[j] = result_.x[j] - h;
     if (!evaluate(x, behind)) return false;
     x[j] = result_.x[j];
-    jacobian_.col(j) = (ahead - behind) / (2.0 * kDifference);
+    jacobian_.col(j) = (ahead - behind) / (2.0 * kJacobianStep);
   }
   return true;
 }

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/analysis/performance.hpp"
+#include "analysis/performance.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

@@ -1,4 +1,4 @@
-#include "fmbpc/analysis/transfer.hpp"
+#include "analysis/transfer.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fmbpc/base/csv.hpp"
+#include "base/csv.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <set>
 
 #include "base/csv_cell.hpp"
-#include "fmbpc/base/csv_header.hpp"
-#include "fmbpc/base/csv_writer.hpp"
+#include "base/csv_header.hpp"
+#include "base/csv_writer.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 

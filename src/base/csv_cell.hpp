@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/base/csv.hpp"
+#include "base/csv.hpp"
 
 namespace fpc {
 

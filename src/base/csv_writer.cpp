@@ -1,4 +1,4 @@
-#include "fmbpc/base/csv_writer.hpp"
+#include "base/csv_writer.hpp"
 
 #include <cmath>
 

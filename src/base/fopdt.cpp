@@ -1,4 +1,4 @@
-#include "fmbpc/base/fopdt.hpp"
+#include "base/fopdt.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fmbpc/base/no_value.hpp"
+#include "base/no_value.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "fmbpc/base/number.hpp"
+#include "base/number.hpp"
 
 #include <algorithm>
 #include <array>

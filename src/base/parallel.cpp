@@ -1,4 +1,4 @@
-#include "fmbpc/base/parallel.hpp"
+#include "base/parallel.hpp"
 
 #include <algorithm>
 #include <atomic>

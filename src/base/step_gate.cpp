@@ -1,4 +1,4 @@
-#include "fmbpc/base/step_gate.hpp"
+#include "base/step_gate.hpp"
 
 namespace fpc {
 namespace {

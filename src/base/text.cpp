@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "base/near_names.hpp"
+#include "base/number.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/number.hpp"
 
 namespace fpc {
 namespace {

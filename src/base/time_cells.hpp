@@ -1,7 +1,7 @@
 // What cells of a time column cannot mean as plain numbers. Private to the package.
 #pragma once
 
-#include "fmbpc/base/csv.hpp"
+#include "base/csv.hpp"
 
 namespace fpc {
 

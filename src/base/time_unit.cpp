@@ -1,4 +1,4 @@
-#include "fmbpc/base/time_unit.hpp"
+#include "base/time_unit.hpp"
 
 #include <map>
 

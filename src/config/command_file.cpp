@@ -1,13 +1,13 @@
-#include "fmbpc/config/command_file.hpp"
+#include "config/command_file.hpp"
 
 #include <algorithm>
 #include <filesystem>
 
+#include "config/disturbance_source.hpp"
+#include "config/model_file.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/disturbance_source.hpp"
-#include "fmbpc/config/model_file.hpp"
 
 namespace fpc {
 namespace {

@@ -6,11 +6,11 @@
 #include <sstream>
 
 #include "base/near_names.hpp"
+#include "config/loop_file.hpp"
+#include "config/study_file.hpp"
+#include "config/tuning_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/config/study_file.hpp"
-#include "fmbpc/config/tuning_file.hpp"
 
 #ifndef FMBPC_SOURCE_CONFIG
 #define FMBPC_SOURCE_CONFIG ""

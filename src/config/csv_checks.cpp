@@ -4,10 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include "fmbpc/base/csv_header.hpp"
+#include "base/csv_header.hpp"
+#include "config/extending_loop.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/extending_loop.hpp"
 
 namespace fpc {
 namespace {

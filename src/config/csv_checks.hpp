@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,4 @@
-#include "fmbpc/config/disturbance_source.hpp"
+#include "config/disturbance_source.hpp"
 
 #include "config/csv_checks.hpp"
 #include "fmbpc/base/input_error.hpp"

@@ -1,4 +1,4 @@
-#include "fmbpc/config/extending_loop.hpp"
+#include "config/extending_loop.hpp"
 
 #include <filesystem>
 #include <sstream>

@@ -1,4 +1,4 @@
-#include "fmbpc/config/fitness_index.hpp"
+#include "config/fitness_index.hpp"
 
 #include <algorithm>
 #include <utility>

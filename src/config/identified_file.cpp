@@ -1,9 +1,9 @@
-#include "fmbpc/config/identified_file.hpp"
+#include "config/identified_file.hpp"
 
 #include "base/list_of.hpp"
+#include "config/model_file.hpp"
 #include "config/model_file_parts.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/model_file.hpp"
 
 namespace fpc {
 namespace {

@@ -1,4 +1,4 @@
-#include "fmbpc/config/loop_brief.hpp"
+#include "config/loop_brief.hpp"
 
 #include <algorithm>
 #include <cstdlib>

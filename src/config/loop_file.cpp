@@ -1,16 +1,16 @@
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 
 #include "config/plant_sample_model.hpp"
+#include "config/plugins.hpp"
 #include "config/read.hpp"
 #include "config/read_safety.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/plugins.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/model/model_match.hpp"
 
 namespace fpc {
 namespace {

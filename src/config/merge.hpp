@@ -8,7 +8,7 @@
 #include <string>
 
 #include "base/yaml_node.hpp"
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 namespace fpc {
 

@@ -1,14 +1,14 @@
 // Reads and writes model files. Every key is checked, so that a misspelt regressor cannot pass for
 // a zero coefficient.
-#include "fmbpc/config/model_file.hpp"
+#include "config/model_file.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "config/model_file_parts.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
-#include "fuzzy/regressor_text.hpp"
+#include "fmbpc/model/model_match.hpp"
+#include "model/regressor_text.hpp"
 
 namespace fpc {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/yaml_node.hpp"
-#include "fmbpc/fuzzy/ts_model.hpp"
+#include "fmbpc/model/ts_model.hpp"
 
 namespace fpc {
 

@@ -4,7 +4,7 @@
 
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/filtered_input.hpp"
+#include "model/filtered_input.hpp"
 
 namespace fpc {
 namespace {

@@ -1,8 +1,8 @@
 // Overrides as a person types them, one or many in a line.
 #include <cctype>
 
+#include "config/loop_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {
 namespace {

@@ -15,9 +15,9 @@ using Eigen::Index;
 
 constexpr int kRestSamples = 10000;
 constexpr int kNewtonSteps = 30;
-constexpr double kDifference = 1e-6;  // relative, of finite differences
-constexpr double kWhole = 1e-6;       // of a sample
-constexpr double kStill = 1e-12;      // relative change of a state that rests
+constexpr double kDifference = 1e-6;   // relative, of finite differences
+constexpr double kWholeSample = 1e-6;  // of a sample
+constexpr double kStill = 1e-12;       // relative change of a state that rests
 
 /// All outputs are measured so many samples late.
 int delayOf(const SimulationParams& params, const std::string& where) {
@@ -25,7 +25,7 @@ int delayOf(const SimulationParams& params, const std::string& where) {
   for (const double& late : params.output_delay_s) {
     const double samples = late / params.sample_time_s;
     const auto whole = static_cast<int>(std::lround(samples));
-    require(std::abs(samples - whole) < kWhole, where, "delays of whole samples");
+    require(std::abs(samples - whole) < kWholeSample, where, "delays of whole samples");
     require(&late == params.output_delay_s.data() || whole == delay, where,
             "outputs that are measured equally late");
     delay = whole;

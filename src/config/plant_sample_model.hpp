@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "fmbpc/control/horizon/sample_model.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "control/mpc/sample_model.hpp"
+#include "plant/simulation.hpp"
 
 namespace fpc {
 

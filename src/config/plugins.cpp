@@ -1,4 +1,4 @@
-#include "fmbpc/config/plugins.hpp"
+#include "config/plugins.hpp"
 
 #include <dlfcn.h>
 #include <link.h>

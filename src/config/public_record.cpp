@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "base/yaml_load.hpp"
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 namespace fpc {
 namespace {

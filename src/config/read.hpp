@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "config/loop_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/yaml_section.hpp"
-#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {
 

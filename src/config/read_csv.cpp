@@ -1,10 +1,10 @@
 // Key `disturbance.csv`: a user's record, how it is written, and what becomes of bad cells.
 #include <algorithm>
 
+#include "base/time_unit.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/base/time_unit.hpp"
 
 namespace fpc {
 namespace {

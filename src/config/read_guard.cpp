@@ -1,7 +1,7 @@
 // Section `guard`: what a law does outside its model's data, and when it is locked up.
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
-#include "fmbpc/control/pi/pi_reader.hpp"
+#include "control/pi/pi_reader.hpp"
 
 namespace fpc {
 

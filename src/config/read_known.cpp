@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "config/structure_file.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
-#include "fmbpc/config/structure_file.hpp"
 
 namespace fpc {
 namespace {

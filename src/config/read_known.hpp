@@ -2,8 +2,8 @@
 #pragma once
 
 #include "fmbpc/base/yaml_section.hpp"
-#include "fmbpc/fuzzy/prior_knowledge.hpp"
-#include "fmbpc/fuzzy/structure.hpp"
+#include "identification/prior_knowledge.hpp"
+#include "identification/structure.hpp"
 
 namespace fpc {
 

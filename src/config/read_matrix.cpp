@@ -1,6 +1,6 @@
 // Key `plant.matrix`: any matrix of lags with dead times in place of the Wood-Berry column.
 #include "config/read.hpp"
-#include "fmbpc/plant/transfer_matrix.hpp"
+#include "plant/transfer_matrix.hpp"
 
 namespace fpc {
 namespace {

@@ -2,10 +2,10 @@
 // way.
 #include <utility>
 
+#include "config/model_file.hpp"
 #include "config/read.hpp"
+#include "config/structure_file.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
 
 namespace fpc {
 namespace {

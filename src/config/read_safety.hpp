@@ -2,8 +2,8 @@
 // it. Private to the room.
 #pragma once
 
+#include "config/loop_file.hpp"
 #include "fmbpc/base/yaml_section.hpp"
-#include "fmbpc/config/loop_file.hpp"
 
 namespace fpc {
 

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <set>
 
+#include "config/fitness_index.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/fitness_index.hpp"
 
 namespace fpc {
 namespace {

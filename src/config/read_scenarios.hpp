@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/yaml_node.hpp"
-#include "fmbpc/config/tuning_file.hpp"
+#include "config/tuning_file.hpp"
 
 namespace fpc {
 

@@ -90,7 +90,8 @@ AffineTerm readTerm(YamlSection& item, const SignalNames& names) {
 void readStandstill(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("standstill");
   const PlantInfo& plant = loop.plant_info;
-  const SignalNames names{namesOf(plant.outputs), namesOf(plant.inputs), namesOf(plant.disturbances)};
+  const SignalNames names{namesOf(plant.outputs), namesOf(plant.inputs),
+                          namesOf(plant.disturbances)};
   StandstillParams& params = loop.standstill;
   bool enabled = true;
   double window_h = 6.0;

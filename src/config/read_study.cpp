@@ -10,9 +10,9 @@
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "config/read_scenarios.hpp"
+#include "config/study_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/study_file.hpp"
 
 namespace fpc {
 namespace {

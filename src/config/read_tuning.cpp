@@ -8,10 +8,10 @@
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "config/read_scenarios.hpp"
+#include "config/tuning_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/tuning_file.hpp"
 
 namespace fpc {
 namespace {

@@ -4,14 +4,14 @@
 #include <filesystem>
 
 #include "base/yaml_load.hpp"
+#include "config/disturbance_source.hpp"
 #include "config/merge.hpp"
+#include "config/plugins.hpp"
 #include "config/public_record.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/disturbance_source.hpp"
-#include "fmbpc/config/plugins.hpp"
 
 namespace fpc {
 namespace {

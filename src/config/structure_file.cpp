@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <optional>
 
+#include "base/time_unit.hpp"
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
 #include "config/read_known.hpp"
+#include "config/structure_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/base/time_unit.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fuzzy/regressor_text.hpp"
+#include "model/regressor_text.hpp"
 
 namespace fpc {
 
@@ -77,8 +77,8 @@ std::vector<int> readOrders(YamlSection& section, const std::string& key,
   return orders;
 }
 
-std::vector<Regressor> readRegressors(YamlSection& section, const std::string& key,
-                                      const TsModel& model) {
+std::vector<Regressor> readStructureRegressors(YamlSection& section, const std::string& key,
+                                               const TsModel& model) {
   std::vector<std::string> texts;
   section.names(key, texts);
   std::vector<Regressor> regressors;
@@ -96,7 +96,7 @@ std::vector<Regressor> readDependence(YamlSection& section, const TsModel& model
   const bool orders = section.has("N_y") || section.has("N_u") || section.has("N_d");
   if (section.has("regressors")) {
     if (orders) section.fail("regressors", "either regressors or N_y, N_u, N_d");
-    return readRegressors(section, "regressors", model);
+    return readStructureRegressors(section, "regressors", model);
   }
   auto channels = namesOf(model.inputs);
   for (const auto& name : namesOf(model.disturbances)) channels.push_back(name);
@@ -166,7 +166,7 @@ OutputStructure readSubmodel(YamlSection& submodels, const TsModel& model,
   structure.regressors = readDependence(section, model);
   structure.antecedents = structure.regressors;
   if (section.has("antecedents"))
-    structure.antecedents = readRegressors(section, "antecedents", model);
+    structure.antecedents = readStructureRegressors(section, "antecedents", model);
   readClusters(section, structure);
   readSets(section, model, structure);
   readSubmodelKnown(section, model, output, known);

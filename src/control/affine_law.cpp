@@ -1,4 +1,4 @@
-#include "fmbpc/control/affine_law.hpp"
+#include "control/affine_law.hpp"
 
 #include <cmath>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "fmbpc/control/controller_around.hpp"
+#include "control/controller_around.hpp"
 
 #include "fmbpc/base/input_error.hpp"
 

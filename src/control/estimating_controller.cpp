@@ -1,11 +1,11 @@
-#include "fmbpc/control/estimating_controller.hpp"
+#include "control/estimating_controller.hpp"
 
 #include <algorithm>
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/model/model_match.hpp"
 
 namespace fpc {
 

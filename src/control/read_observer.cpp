@@ -1,5 +1,5 @@
 // Section `controller.observer` of the laws that estimate a disturbance.
-#include "fmbpc/control/read_observer.hpp"
+#include "control/read_observer.hpp"
 
 #include <algorithm>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/number.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/number.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 

@@ -1,4 +1,4 @@
-#include "fmbpc/optim/gauss_newton.hpp"
+#include "optim/gauss_newton.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Row-wise QR: a block of rows is stacked under the triangle and folded into it by Householder
 // reflections.
-#include "fmbpc/optim/least_squares.hpp"
+#include "optim/least_squares.hpp"
 
 #include <Eigen/QR>
 #include <algorithm>

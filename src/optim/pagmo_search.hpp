@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "fmbpc/optim/population_search.hpp"
+#include "optim/population_search.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,4 @@
-#include "fmbpc/optim/particle_swarm.hpp"
+#include "optim/particle_swarm.hpp"
 
 #include <algorithm>
 #include <cmath>

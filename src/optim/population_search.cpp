@@ -1,4 +1,4 @@
-#include "fmbpc/optim/population_search.hpp"
+#include "optim/population_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/optim/particle_swarm.hpp"
 #include "optim/pagmo_search.hpp"
+#include "optim/particle_swarm.hpp"
 
 namespace fpc {
 namespace {

@@ -1,5 +1,5 @@
 // The QP solver's public side: what it accepts, and what a solve forgets and remembers.
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 
 #include <cmath>
 

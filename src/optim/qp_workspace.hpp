@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 
 namespace fpc::qp {
 

@@ -1,5 +1,5 @@
 // Potter's square-root form of recursive least squares (bierman1977, sec. V.3) with forgetting.
-#include "fmbpc/optim/rls.hpp"
+#include "optim/rls.hpp"
 
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace fpc {
 namespace {
 
-constexpr int kPowerIterations =
+constexpr int kTracePowerIterations =
     8;  // towards the direction of largest variance; PSD whatever they reach
 
 }  // namespace
@@ -71,7 +71,7 @@ void RecursiveLeastSquares::boundCovariance() {
     gain_.setZero();
     gain_[widest] = 1.0;
     double variance = largest;
-    for (int i = 0; i < kPowerIterations; ++i) {
+    for (int i = 0; i < kTracePowerIterations; ++i) {
       projected_.noalias() = root_.transpose() * gain_;
       gain_.noalias() = root_ * projected_;
       variance = gain_.norm();

@@ -1,4 +1,4 @@
-#include "fmbpc/optim/tree_search.hpp"
+#include "optim/tree_search.hpp"
 
 #include <algorithm>
 #include <cmath>

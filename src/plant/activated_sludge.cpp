@@ -90,7 +90,8 @@ class ActivatedSludge final : public Plant {
   double K_01_, K_la_, f_k_, c_s_;
 };
 
-ActivatedSludge::ActivatedSludge(const PlantParameters& parameters) : description_(describeActivatedSludge()) {
+ActivatedSludge::ActivatedSludge(const PlantParameters& parameters)
+    : description_(describeActivatedSludge()) {
   const Vector p = parameterValues(description_, parameters);
   Eigen::Index i = 0;
   for (double* value : {&V_, &A_, &l_d_, &l_b_, &l_r_, &q_p_, &x_i_, &mu_, &Y_, &K_s_, &K_d_, &K_c_,
@@ -116,9 +117,10 @@ void ActivatedSludge::derivatives(VectorRef state, VectorRef u, VectorRef d,
   dxdt[5] = (q_2 * (x_b - x_r) / A_ + flux_b) / l_r_;
 }
 
-const bool kActivatedSludgeRegistered = registerPlant("activated_sludge", [](const PlantParameters& parameters) {
-  return std::make_unique<ActivatedSludge>(parameters);
-});
+const bool kActivatedSludgeRegistered =
+    registerPlant("activated_sludge", [](const PlantParameters& parameters) {
+      return std::make_unique<ActivatedSludge>(parameters);
+    });
 
 }  // namespace
 }  // namespace fpc

@@ -67,9 +67,9 @@ class BatchReactor final : public Plant {
   double core_rate_, jacket_rate_, ambient_rate_, flow_rate_;  // [1/s]
 };
 
-const bool kBatchReactorRegistered = registerPlant("batch_reactor", [](const PlantParameters& parameters) {
-  return std::make_unique<BatchReactor>(parameters);
-});
+const bool kBatchReactorRegistered = registerPlant(
+    "batch_reactor",
+    [](const PlantParameters& parameters) { return std::make_unique<BatchReactor>(parameters); });
 
 }  // namespace
 }  // namespace fpc

@@ -5,11 +5,11 @@
 #include <map>
 
 #include "base/csv_cell.hpp"
+#include "base/order_statistics.hpp"
 #include "base/time_cells.hpp"
+#include "base/time_unit.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/order_statistics.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/base/time_unit.hpp"
 
 namespace fpc {
 namespace {

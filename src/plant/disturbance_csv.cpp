@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/base/csv.hpp"
+#include "base/csv.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/plant/disturbance.hpp"
 #include "plant/channel_rows.hpp"
 #include "plant/csv_rows.hpp"
+#include "plant/disturbance.hpp"
 
 namespace fpc {
 namespace {

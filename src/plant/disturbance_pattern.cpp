@@ -11,8 +11,8 @@
 #include "base/random.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/plant/disturbance.hpp"
 #include "plant/channel_rows.hpp"
+#include "plant/disturbance.hpp"
 
 namespace fpc {
 namespace {

@@ -1,10 +1,10 @@
-#include "fmbpc/plant/instruments.hpp"
+#include "plant/instruments.hpp"
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/no_value.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/no_value.hpp"
 #include "fmbpc/base/text.hpp"
 
 namespace fpc {

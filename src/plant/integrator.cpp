@@ -1,4 +1,4 @@
-#include "fmbpc/plant/integrator.hpp"
+#include "plant/integrator.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // For an input a + b t each lag i = 1..n follows a + b t - i b tau, and what differs from that
 // fades through the chain: gap_i(t) = sum_j exp(-t/tau) (t/tau)^(i-j) / (i-j)! gap_j(0).
-#include "fmbpc/plant/lag_chain.hpp"
+#include "plant/lag_chain.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -11,7 +11,7 @@
 // Source: taieb2017, eq. 4.
 #include <cmath>
 
-#include "fmbpc/plant/transfer_matrix.hpp"
+#include "plant/transfer_matrix.hpp"
 
 namespace fpc {
 namespace {

@@ -1,6 +1,6 @@
-#include "fmbpc/plant/process.hpp"
+#include "plant/process.hpp"
 
-#include "fmbpc/base/same_sample.hpp"
+#include "base/same_sample.hpp"
 
 namespace fpc {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "fmbpc/plant/integrator.hpp"
+#include "plant/integrator.hpp"
 
 namespace fpc {
 

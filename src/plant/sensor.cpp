@@ -1,4 +1,4 @@
-#include "fmbpc/plant/sensor.hpp"
+#include "plant/sensor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace fpc {
 namespace {
 
-constexpr double kEarly = 1e-6;  // [s], rounding of times that are sums of steps
+constexpr double kEarlySample = 1e-6;  // [s], rounding of times that are sums of steps
 constexpr double kClassNoise = 0.025;
 constexpr std::uint64_t kLossStream = 1;
 
@@ -88,8 +88,8 @@ void Sensor::advance(double from, double to, double seconds) {
   if (chain_) chain_->advance(from, to, seconds);
   time_s_ += seconds;
   const double value = delayed(chain_ ? chain_->output() : to, seconds);
-  const bool stuck = time_s_ >= 3600.0 * params_.stuck_from_h - kEarly &&
-                     time_s_ < 3600.0 * params_.stuck_to_h - kEarly;
+  const bool stuck = time_s_ >= 3600.0 * params_.stuck_from_h - kEarlySample &&
+                     time_s_ < 3600.0 * params_.stuck_to_h - kEarlySample;
   if (!stuck) shown_ = value;
   if (!stuck) show();
   sum_ += reading_;
@@ -98,9 +98,9 @@ void Sensor::advance(double from, double to, double seconds) {
 
 /// A new reading, if one is due.
 void Sensor::show() {
-  if (time_s_ < due_s_ - kEarly) return;
+  if (time_s_ < due_s_ - kEarlySample) return;
   if (params_.interval_s > 0.0)
-    due_s_ = (std::floor((time_s_ + kEarly) / params_.interval_s) + 1.0) * params_.interval_s;
+    due_s_ = (std::floor((time_s_ + kEarlySample) / params_.interval_s) + 1.0) * params_.interval_s;
   const double noise = params_.noise_std > 0.0 ? params_.noise_std * standardNormal(engine_) : 0.0;
   double value = shown_ + noise;
   if (params_.resolution > 0.0) value = params_.resolution * std::round(value / params_.resolution);

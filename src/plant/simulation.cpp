@@ -1,7 +1,7 @@
 // Timing of one sample k: commands due at k come into force; measurement k shows y(k), d(k),
 // u(k-1); then u(k) passes the actuator, its faults and the plant's local loop, and the plant moves
 // over [t_k, t_k + Ts) with u(k) and d(k) held.
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 
 namespace fpc {
 namespace {

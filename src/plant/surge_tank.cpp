@@ -104,9 +104,9 @@ std::unique_ptr<PlantStepper> SurgeTank::makeStepper(double sample_time_s) const
   return std::make_unique<EulerStepper>(*this, step_, static_cast<int>(steps));
 }
 
-const bool kSurgeTankRegistered = registerPlant("surge_tank", [](const PlantParameters& parameters) {
-  return std::make_unique<SurgeTank>(parameters);
-});
+const bool kSurgeTankRegistered = registerPlant(
+    "surge_tank",
+    [](const PlantParameters& parameters) { return std::make_unique<SurgeTank>(parameters); });
 
 }  // namespace
 }  // namespace fpc

@@ -1,5 +1,5 @@
 // Names and equations of the transfer matrix. Its motion with dead times: transfer_stepper.cpp.
-#include "fmbpc/plant/transfer_matrix.hpp"
+#include "plant/transfer_matrix.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -199,11 +199,12 @@ std::unique_ptr<PlantStepper> TransferMatrixPlant::makeStepper(double sample_tim
 
 namespace {
 
-const bool kTransferMatrixRegistered = registerPlant("distillation_column", [](const PlantParameters& given) {
-  auto plant = std::make_unique<TransferMatrixPlant>(woodBerry());
-  parameterValues(plant->description(), given);  // has none: refuses every name
-  return plant;
-});
+const bool kTransferMatrixRegistered =
+    registerPlant("distillation_column", [](const PlantParameters& given) {
+      auto plant = std::make_unique<TransferMatrixPlant>(woodBerry());
+      parameterValues(plant->description(), given);  // has none: refuses every name
+      return plant;
+    });
 
 }  // namespace
 }  // namespace fpc

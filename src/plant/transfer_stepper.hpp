@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fmbpc/plant/transfer_matrix.hpp"
+#include "plant/transfer_matrix.hpp"
 
 namespace fpc {
 

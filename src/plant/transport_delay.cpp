@@ -1,4 +1,4 @@
-#include "fmbpc/plant/transport_delay.hpp"
+#include "plant/transport_delay.hpp"
 
 #include <algorithm>
 #include <cmath>

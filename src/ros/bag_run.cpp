@@ -1,4 +1,4 @@
-#include "loop/bag_reader.hpp"
+#include "runtime/bag_reader.hpp"
 
 #include <fmbpc/CommandEffect.h>
 #include <fmbpc/ControlAction.h>

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "base/files.hpp"
-#include "fmbpc/loop/recover.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
+#include "runtime/recover.hpp"
 
 namespace fpc {
 namespace {

@@ -1,10 +1,10 @@
 #include "ros/clp_optimizer.hpp"
 
-#include "fmbpc/base/same_sample.hpp"
-#include "fmbpc/loop/factory.hpp"
+#include "base/same_sample.hpp"
 #include "ros/conversions.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
+#include "runtime/factory.hpp"
 
 namespace fpc {
 namespace {

@@ -11,9 +11,7 @@
 #include <cstdint>
 #include <string>
 
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/control/session.hpp"
-#include "fmbpc/loop/first_answers.hpp"
+#include "config/loop_file.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
@@ -23,6 +21,8 @@
 #include "ros/signal_publishers.hpp"
 #include "ros/summary_listener.hpp"
 #include "ros/wall_throttle.hpp"
+#include "runtime/first_answers.hpp"
+#include "runtime/session.hpp"
 
 namespace fpc {
 

@@ -2,12 +2,12 @@
 
 #include <utility>
 
-#include "fmbpc/base/same_sample.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "loop/remark_lines.hpp"
+#include "base/same_sample.hpp"
 #include "ros/conversions.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/remark_lines.hpp"
 
 namespace fpc {
 namespace {

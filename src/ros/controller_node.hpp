@@ -19,11 +19,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/control/session.hpp"
-#include "fmbpc/loop/first_answers.hpp"
-#include "fmbpc/loop/model_inbox.hpp"
-#include "fmbpc/loop/sample_remarks.hpp"
+#include "config/loop_file.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
@@ -36,6 +32,10 @@
 #include "ros/signal_publishers.hpp"
 #include "ros/summary_listener.hpp"
 #include "ros/wall_throttle.hpp"
+#include "runtime/first_answers.hpp"
+#include "runtime/model_inbox.hpp"
+#include "runtime/sample_remarks.hpp"
+#include "runtime/session.hpp"
 
 namespace fpc {
 

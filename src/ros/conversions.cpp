@@ -5,8 +5,8 @@
 #include <limits>
 #include <string>
 
+#include "base/no_value.hpp"
 #include "conversion_parts.hpp"
-#include "fmbpc/base/no_value.hpp"
 
 namespace fpc {
 

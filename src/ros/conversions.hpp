@@ -24,8 +24,8 @@
 
 #include "fmbpc/base/command_table.hpp"
 #include "fmbpc/base/ring.hpp"
-#include "fmbpc/fuzzy/ts_model.hpp"
-#include "fmbpc/loop/model_inbox.hpp"
+#include "fmbpc/model/ts_model.hpp"
+#include "runtime/model_inbox.hpp"
 
 namespace fpc {
 

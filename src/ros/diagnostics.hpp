@@ -9,7 +9,7 @@
 #include <map>
 #include <string>
 
-#include "fmbpc/base/step_gate.hpp"
+#include "base/step_gate.hpp"
 #include "ros/wall_throttle.hpp"
 
 namespace fpc {

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 namespace fpc {
 

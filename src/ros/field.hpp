@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "fmbpc/loop/plant_gateway.hpp"
+#include "runtime/plant_gateway.hpp"
 
 namespace fpc {
 

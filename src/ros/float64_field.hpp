@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/loop/tag_owner.hpp"
 #include "ros/field.hpp"
 #include "ros/node.hpp"
 #include "ros/wall_throttle.hpp"
+#include "runtime/tag_owner.hpp"
 
 namespace fpc {
 

@@ -4,14 +4,14 @@
 #include <fstream>
 #include <utility>
 
+#include "config/model_file.hpp"
+#include "config/structure_file.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
 #include "ros/identify_messages.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
+#include "runtime/remark_lines.hpp"
 
 namespace fpc {
 namespace {

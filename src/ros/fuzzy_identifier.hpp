@@ -13,14 +13,14 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/loop/identifier_duty.hpp"
-#include "fmbpc/loop/identifier_session.hpp"
+#include "config/loop_file.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/identification_worker.hpp"
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
+#include "runtime/identifier_duty.hpp"
+#include "runtime/identifier_session.hpp"
 
 namespace fpc {
 

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "fmbpc/base/ring.hpp"
-#include "fmbpc/loop/health.hpp"
 #include "ros/diagnostics.hpp"
 #include "ros/wall_throttle.hpp"
+#include "runtime/health.hpp"
 
 namespace fpc {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "fmbpc/loop/identifier_session.hpp"
+#include "runtime/identifier_session.hpp"
 
 namespace fpc {
 

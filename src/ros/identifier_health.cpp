@@ -6,7 +6,8 @@
 namespace fpc {
 namespace {
 
-constexpr double kNews = 5.0;  // [s] in which a model that could not be had degrades the identifier
+constexpr double kModelNews =
+    5.0;  // [s] in which a model that could not be had degrades the identifier
 
 }  // namespace
 
@@ -18,7 +19,7 @@ Health FuzzyIdentifier::health(double now_s) const {
   std::string words =
       session_.published() == 0 ? "collecting, no model yet" : "published " + session_.model().name;
   if (!failure_.empty()) words += "; " + failure_;
-  const bool news = !failure_.empty() && now_s - failed_s_ < kNews;
+  const bool news = !failure_.empty() && now_s - failed_s_ < kModelNews;
   return {news ? LoopMode::kDegraded : LoopMode::kAutomatic, std::move(words), {}};
 }
 

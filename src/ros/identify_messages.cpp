@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fmbpc/config/model_file.hpp"
+#include "config/model_file.hpp"
 
 namespace fpc {
 

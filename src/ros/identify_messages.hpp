@@ -4,7 +4,7 @@
 #include <fmbpc/IdentifyModelFeedback.h>
 #include <fmbpc/IdentifyModelResult.h>
 
-#include "fmbpc/fuzzy/record_identification.hpp"
+#include "identification/record_identification.hpp"
 
 namespace fpc {
 

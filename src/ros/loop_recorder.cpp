@@ -5,21 +5,21 @@
 #include <algorithm>
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/loop/plot.hpp"
 #include "ros/conversions.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
+#include "runtime/plot.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr double kRecorderPoll = 0.05;   // [s] of wall time
-constexpr double kLastWords = 0.3;     // [s] between run_end and the end of this process
-constexpr double kLastMessages = 0.1;  // [s] after the last sample, for the bag
-constexpr double kHeard = 1.0;         // [s] in which a run under way is heard of
-constexpr double kLookForRing = 0.01;  // [s] of wall time, at who is there
-constexpr double kSettled = 0.1;       // [s]: a connection is complete at both ends a moment later
+constexpr double kRecorderPoll = 0.05;  // [s] of wall time
+constexpr double kLastWords = 0.3;      // [s] between run_end and the end of this process
+constexpr double kLastMessages = 0.1;   // [s] after the last sample, for the bag
+constexpr double kHeard = 1.0;          // [s] in which a run under way is heard of
+constexpr double kLookForRing = 0.01;   // [s] of wall time, at who is there
+constexpr double kSettled = 0.1;        // [s]: a connection is complete at both ends a moment later
 constexpr double kLookForTopics = 0.1, kLookForMore = 0.5;  // [s], until ready and then
 constexpr double kPredecessor = 5.0;  // [s] in which one of the same name may end in order
 

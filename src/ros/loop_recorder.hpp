@@ -14,16 +14,16 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/loop/record_store.hpp"
-#include "fmbpc/loop/recorder_clock.hpp"
-#include "fmbpc/loop/recorder_session.hpp"
+#include "config/loop_file.hpp"
 #include "ros/bag_writer.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/node.hpp"
 #include "ros/plant_gate.hpp"
 #include "ros/ready.hpp"
 #include "ros/run_end.hpp"
+#include "runtime/record_store.hpp"
+#include "runtime/recorder_clock.hpp"
+#include "runtime/recorder_session.hpp"
 
 namespace fpc {
 

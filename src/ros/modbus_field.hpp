@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "fmbpc/loop/lease.hpp"
 #include "ros/field.hpp"
 #include "ros/modbus_link.hpp"
+#include "runtime/lease.hpp"
 
 namespace fpc {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fmbpc/config/gateway_params.hpp"
+#include "config/gateway_params.hpp"
 
 namespace fpc {
 

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "conversion_parts.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/model/model_match.hpp"
 
 namespace fpc {
 namespace {

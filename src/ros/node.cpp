@@ -12,13 +12,13 @@
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/loop/health.hpp"
 #include "ros/topics.hpp"
+#include "runtime/health.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr double kShown = 5.0;             // [s] that a refusal stays in words
+constexpr double kShownMissing = 5.0;      // [s] that a refusal stays in words
 constexpr std::size_t kMostLetters = 300;  // of them
 constexpr std::size_t kMostCommands = 10;  // refused ones that are told to the record
 
@@ -95,7 +95,7 @@ std::string Node::withRefusal(std::string words, double now_s) const {
 }
 
 std::string Node::refusedLately(double now_s) const {
-  return refusal_.empty() || now_s - refusal_s_ > kShown ? "" : refusal_;
+  return refusal_.empty() || now_s - refusal_s_ > kShownMissing ? "" : refusal_;
 }
 
 void Node::mishap(const char* topic, const std::string& what) {

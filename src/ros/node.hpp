@@ -11,9 +11,8 @@
 #include <set>
 #include <string>
 
+#include "config/loop_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/loop/authority.hpp"
 #include "ros/counted_vectors.hpp"
 #include "ros/guard.hpp"
 #include "ros/master_watch.hpp"
@@ -22,6 +21,7 @@
 #include "ros/quick_negotiation.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
+#include "runtime/authority.hpp"
 
 namespace fpc {
 

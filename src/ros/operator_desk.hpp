@@ -9,8 +9,8 @@
 #include <functional>
 #include <optional>
 
-#include "fmbpc/control/session.hpp"
 #include "ros/node.hpp"
+#include "runtime/session.hpp"
 
 namespace fpc {
 

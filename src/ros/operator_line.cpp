@@ -1,4 +1,4 @@
-#include "loop/operator_line.hpp"
+#include "runtime/operator_line.hpp"
 
 #include <fmbpc/CommandEffect.h>
 #include <fmbpc/ControlAction.h>
@@ -16,11 +16,11 @@
 #include <functional>
 #include <utility>
 
+#include "config/disturbance_source.hpp"
+#include "config/loop_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/disturbance_source.hpp"
-#include "fmbpc/config/loop_file.hpp"
 #include "ros/node.hpp"
 #include "ros/quick_negotiation.hpp"
 #include "ros/topics.hpp"
@@ -29,10 +29,10 @@
 namespace fpc {
 namespace {
 
-constexpr double kPatience = 5.0;           // [s] of wall time, for answers of nodes that live
+constexpr double kAnswerPatience = 5.0;     // [s] of wall time, for answers of nodes that live
 constexpr std::uint32_t kAnswerIsLost = 3;  // samples after which a command is said again
 constexpr double kOnItsWay = 0.02;          // [s], for what was sent before a service answered
-constexpr char kController[] = "fmbpc_controller";
+constexpr char kControllerName[] = "fmbpc_controller";
 
 /// The latest message of a topic, of those that count.
 template <typename Msg>
@@ -108,7 +108,8 @@ class Line {
   /// [s] of wall time within which the next sample should come.
   double patience() const {
     const bool by_clock = loop_.ring.pace != Pace::kLockstep;
-    return kPatience + (by_clock ? 2.0 * loop_.simulation.sample_time_s / loop_.ring.speedup : 0.0);
+    return kAnswerPatience +
+           (by_clock ? 2.0 * loop_.simulation.sample_time_s / loop_.ring.speedup : 0.0);
   }
 
   std::string state() const {
@@ -137,7 +138,7 @@ class Line {
     msg.header.stamp = uniqueStamp();
     Latest<fmbpc::CommandEffect> effect(
         node_, answers, [&](const fmbpc::CommandEffect& e) { return e.asked == msg.header.stamp; });
-    require(wait([&] { return effect.connected() && measurement_.get(); }, kPatience), topic,
+    require(wait([&] { return effect.connected() && measurement_.get(); }, kAnswerPatience), topic,
             std::string("a loop that takes it: nobody publishes ") +
                 (effect.connected() ? topics::kMeasurement : answers));
     const ros::Publisher publisher = node_.advertise<Msg>(topic, 10, true);
@@ -224,8 +225,8 @@ class Line {
   std::string hand(const OperatorCommand& c) {
     const bool manual = c.verb == OperatorVerb::kManual;
     Latest<fmbpc::ControlAction> action(node_, topics::kControlAction);
-    require(wait([&] { return action.connected() && measurement_.get(); }, kPatience), "manual",
-            "a loop that runs: nobody publishes control_action");
+    require(wait([&] { return action.connected() && measurement_.get(); }, kAnswerPatience),
+            "manual", "a loop that runs: nobody publishes control_action");
     fmbpc::ManualInput put = byHand(c);
     std_srvs::SetBool on;
     on.request.data = manual;
@@ -266,7 +267,7 @@ class Line {
 
   template <typename Service>
   void call(const char* name, Service& service) {
-    const std::string full = std::string(kController) + "/" + name;
+    const std::string full = std::string(kControllerName) + "/" + name;
     require(ros::service::call(full, service), full, "a controller that answers");
     if (!service.response.success)
       throw InputError(std::string(name) + " refused: " + service.response.message);

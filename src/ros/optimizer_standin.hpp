@@ -8,11 +8,11 @@
 
 #include <string>
 
-#include "fmbpc/control/session.hpp"
-#include "fmbpc/loop/first_answers.hpp"
-#include "fmbpc/loop/optimizer_watch.hpp"
 #include "ros/node.hpp"
 #include "ros/ring_publisher.hpp"
+#include "runtime/first_answers.hpp"
+#include "runtime/optimizer_watch.hpp"
+#include "runtime/session.hpp"
 
 namespace fpc {
 

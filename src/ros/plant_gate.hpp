@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 namespace fpc {
 

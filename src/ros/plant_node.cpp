@@ -12,11 +12,11 @@
 
 namespace fpc {
 namespace {
-constexpr double kPoll = 0.05;          // [s] of wall time
-constexpr double kLookForStart = 0.01;  // [s] of wall time, at who is there
-constexpr double kIntroduceAgain = 1;   // [s], while nobody answers (in realtime samples go on)
-constexpr double kActionPatience = 1.0;       // [s] without an action before that is said
-constexpr double kLastWords = 0.3;      // [s] between run_end and the end of this process
+constexpr double kPoll = 0.05;           // [s] of wall time
+constexpr double kLookForStart = 0.01;   // [s] of wall time, at who is there
+constexpr double kIntroduceAgain = 1;    // [s], while nobody answers (in realtime samples go on)
+constexpr double kActionPatience = 1.0;  // [s] without an action before that is said
+constexpr double kPlantLastWords = 0.3;  // [s] between run_end and the end of this process
 constexpr char kRecorder[] = "loop_recorder";
 
 std::vector<std::string> namesToWaitFor(const LoopFile& loop, const ros::NodeHandle& private_node) {
@@ -109,7 +109,7 @@ void PlantNode::onPoll() {
 
 void PlantNode::waitForOthers() {
   if (failed_s_ >= 0) {
-    if (steadyNow() - failed_s_ > kLastWords) fail(failure_);
+    if (steadyNow() - failed_s_ > kPlantLastWords) fail(failure_);
     return;
   }
   missing_ = ready_.missing();
@@ -275,7 +275,8 @@ Health PlantNode::runningHealth(double now_s) const {
   }
   const Health plant = plantHealth();
   const bool its_own_hand = plant.mode == LoopMode::kManual;
-  const bool late = session_.unansweredFor(now_s) > kActionPatience && loop_.ring.pace != Pace::kRealtime;
+  const bool late =
+      session_.unansweredFor(now_s) > kActionPatience && loop_.ring.pace != Pace::kRealtime;
   const LoopMode worst = late ? std::max(others.mode, LoopMode::kStalled) : others.mode;
   if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= worst)) return plant;
   if (late) return {LoopMode::kStalled, "no action for sample " + step + who, silent};

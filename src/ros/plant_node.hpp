@@ -16,8 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/loop/plant_session.hpp"
+#include "config/loop_file.hpp"
 #include "ros/equipment_frames.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/listener_gate.hpp"
@@ -27,6 +26,7 @@
 #include "ros/ready.hpp"
 #include "ros/run_end.hpp"
 #include "ros/wall_throttle.hpp"
+#include "runtime/plant_session.hpp"
 
 namespace fpc {
 

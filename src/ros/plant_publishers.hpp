@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "config/loop_file.hpp"
 #include "fmbpc/base/sample_clock.hpp"
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/plant/process.hpp"
+#include "plant/process.hpp"
 #include "ros/signal_publishers.hpp"
 
 namespace fpc {

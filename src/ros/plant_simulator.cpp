@@ -4,18 +4,18 @@
 
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "fmbpc/loop/late_lines.hpp"
-#include "loop/remark_lines.hpp"
 #include "ros/conversions.hpp"
 #include "ros/queues.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/late_lines.hpp"
+#include "runtime/remark_lines.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr double kBurst = 200;  // commands at once
+constexpr double kCommandBurst = 200;  // commands at once
 
 }  // namespace
 
@@ -34,7 +34,7 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
                 namesOf(makePlant(loop.simulation)->description().disturbances)),
       simulation_(static_cast<SimulatedProcess&>(session().process()).simulation()),
       lines_(loop.tf.sample_lines),
-      commands_(loop.ring.commands_per_s, kBurst),
+      commands_(loop.ring.commands_per_s, kCommandBurst),
       forced_(simulation_.info()),
       cut_(simulation_.description().disturbances),
       state_(

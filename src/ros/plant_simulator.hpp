@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/loop/cut_offsets.hpp"
-#include "fmbpc/loop/forced_inputs.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 #include "ros/plant_node.hpp"
+#include "runtime/cut_offsets.hpp"
+#include "runtime/forced_inputs.hpp"
 
 namespace fpc {
 

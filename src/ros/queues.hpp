@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 namespace fpc {
 

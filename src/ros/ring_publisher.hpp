@@ -6,12 +6,12 @@
 #include <string>
 #include <utility>
 
-#include "fmbpc/loop/authority.hpp"
-#include "fmbpc/loop/first_answers.hpp"
 #include "ros/queues.hpp"
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
+#include "runtime/authority.hpp"
+#include "runtime/first_answers.hpp"
 
 namespace fpc {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "fmbpc/loop/health.hpp"
 #include "ros/node.hpp"
 #include "ros/topics.hpp"
+#include "runtime/health.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,4 @@
-#include "fmbpc/study/evaluate.hpp"
+#include "study/evaluate.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "fmbpc/study/fitness.hpp"
+#include "study/fitness.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,12 @@
 #include <map>
 #include <optional>
 
+#include "base/time_unit.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/base/time_unit.hpp"
-#include "fmbpc/loop/recorder_session.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/study/evaluate.hpp"
+#include "runtime/recorder_session.hpp"
+#include "runtime/report.hpp"
+#include "study/evaluate.hpp"
 
 namespace fpc {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/time_unit.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/base/time_unit.hpp"
 
 namespace fpc {
 namespace {

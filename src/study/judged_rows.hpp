@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "fmbpc/base/csv.hpp"
-#include "fmbpc/study/evaluate.hpp"
+#include "base/csv.hpp"
+#include "study/evaluate.hpp"
 
 namespace fpc {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 namespace fpc {
 

@@ -1,11 +1,11 @@
-#include "fmbpc/study/run_judgement.hpp"
+#include "study/run_judgement.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/study/fitness.hpp"
+#include "runtime/report.hpp"
+#include "study/fitness.hpp"
 
 namespace fpc {
 namespace {

@@ -1,9 +1,9 @@
-#include "fmbpc/study/run_pool.hpp"
+#include "study/run_pool.hpp"
 
 #include <mutex>
 
+#include "base/parallel.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/parallel.hpp"
 
 namespace fpc {
 

@@ -1,5 +1,5 @@
 // Source of the principle: pontryagin1962, time-optimal control with one bounded input.
-#include "fmbpc/study/shortest_step.hpp"
+#include "study/shortest_step.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 
 namespace fpc {
 namespace {

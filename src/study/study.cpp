@@ -1,4 +1,4 @@
-#include "fmbpc/study/study.hpp"
+#include "study/study.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "runtime/run.hpp"
 #include "study/run_journal.hpp"
 #include "study/study_state.hpp"
 

@@ -1,4 +1,4 @@
-#include "fmbpc/study/study_plan.hpp"
+#include "study/study_plan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,11 +6,11 @@
 
 #include "base/random.hpp"
 #include "base/text_hash.hpp"
+#include "config/extending_loop.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/extending_loop.hpp"
-#include "fmbpc/study/fitness.hpp"
+#include "study/fitness.hpp"
 #include "study/loop_contents.hpp"
 
 namespace fpc {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fmbpc/study/study.hpp"
+#include "study/study.hpp"
 
 namespace fpc {
 

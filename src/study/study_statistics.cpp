@@ -1,4 +1,4 @@
-#include "fmbpc/study/study_statistics.hpp"
+#include "study/study_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fmbpc/study/tune.hpp"
+#include "study/tune.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/study/tune.hpp"
+#include "study/tune.hpp"
 
 namespace fpc {
 

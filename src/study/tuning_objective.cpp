@@ -1,4 +1,4 @@
-#include "fmbpc/study/tuning_objective.hpp"
+#include "study/tuning_objective.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +8,11 @@
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "base/text_hash.hpp"
+#include "config/extending_loop.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/extending_loop.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/study/fitness.hpp"
+#include "runtime/run.hpp"
+#include "study/fitness.hpp"
 #include "study/loop_contents.hpp"
 
 namespace fpc {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/base/csv.hpp"
-#include "fmbpc/fuzzy/structure.hpp"
+#include "base/csv.hpp"
+#include "identification/structure.hpp"
 
 namespace fpc::tool {
 

@@ -8,9 +8,9 @@
 
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/study/evaluate.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
+#include "study/evaluate.hpp"
 #include "tool/commands.hpp"
 #include "tool/watched_run.hpp"
 

@@ -5,10 +5,10 @@
 #include <iostream>
 
 #include "base/files.hpp"
+#include "config/loop_file.hpp"
+#include "config/model_file.hpp"
+#include "config/structure_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
 #include "tool/commands.hpp"
 #include "tool/identify_auto.hpp"
 #include "tool/identify_report.hpp"

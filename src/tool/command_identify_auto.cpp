@@ -7,10 +7,10 @@
 
 #include "base/files.hpp"
 #include "base/ordered_json.hpp"
+#include "config/structure_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/record_remarks.hpp"
+#include "identification/record_remarks.hpp"
 #include "tool/auto_structure.hpp"
 #include "tool/figures_json.hpp"
 #include "tool/identify_auto.hpp"

@@ -7,11 +7,11 @@
 
 #include "base/near_names.hpp"
 #include "base/ordered_json.hpp"
+#include "base/parallel.hpp"
+#include "config/loop_brief.hpp"
+#include "config/loop_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/parallel.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/loop_brief.hpp"
-#include "fmbpc/config/loop_file.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

@@ -4,10 +4,10 @@
 
 #include "base/near_names.hpp"
 #include "base/ordered_json.hpp"
+#include "config/loop_file.hpp"
+#include "config/model_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/config/model_file.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

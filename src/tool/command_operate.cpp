@@ -3,9 +3,9 @@
 #include <memory>
 #include <optional>
 
+#include "base/number.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/number.hpp"
-#include "loop/operator_line.hpp"
+#include "runtime/operator_line.hpp"
 #include "tool/topic_options.hpp"
 
 namespace fpc::tool {

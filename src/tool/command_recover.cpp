@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/loop/plot.hpp"
-#include "fmbpc/loop/recover.hpp"
+#include "runtime/plot.hpp"
+#include "runtime/recover.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

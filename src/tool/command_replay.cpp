@@ -4,9 +4,9 @@
 #include <iostream>
 
 #include "base/ordered_json.hpp"
+#include "config/loop_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/loop_file.hpp"
-#include "loop/bag_reader.hpp"
+#include "runtime/bag_reader.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

@@ -11,11 +11,11 @@
 #include "base/near_names.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/loop/plot.hpp"
+#include "papers/picture.hpp"
+#include "papers/report.hpp"
+#include "papers/runs.hpp"
+#include "runtime/plot.hpp"
 #include "tool/commands.hpp"
-#include "tool/reproduce/picture.hpp"
-#include "tool/reproduce/report.hpp"
-#include "tool/reproduce/runs.hpp"
 
 namespace fpc::tool {
 namespace {

@@ -1,7 +1,7 @@
 // fmbpc resolve LOOP: the one text that nodes read.
 #include <iostream>
 
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

@@ -6,12 +6,12 @@
 #include <set>
 
 #include "base/files.hpp"
+#include "config/command_file.hpp"
+#include "config/model_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/command_file.hpp"
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/loop/plot.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "runtime/plot.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 #include "tool/commands.hpp"
 #include "tool/watched_run.hpp"
 

@@ -6,14 +6,14 @@
 #include <iostream>
 #include <numeric>
 
+#include "analysis/common_lyapunov.hpp"
+#include "analysis/horizon_advisor.hpp"
+#include "analysis/transfer.hpp"
 #include "base/files.hpp"
-#include "fmbpc/analysis/common_lyapunov.hpp"
-#include "fmbpc/analysis/horizon_advisor.hpp"
-#include "fmbpc/analysis/transfer.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/local_model.hpp"
-#include "fmbpc/loop/plant_continuation.hpp"
-#include "fmbpc/loop/plot.hpp"
+#include "fmbpc/model/local_model.hpp"
+#include "runtime/plant_continuation.hpp"
+#include "runtime/plot.hpp"
 #include "tool/commands.hpp"
 #include "tool/stability_report.hpp"
 #include "tool/stability_subject.hpp"

@@ -9,7 +9,7 @@
 #include "base/near_names.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/loop/plot.hpp"
+#include "runtime/plot.hpp"
 #include "tool/commands.hpp"
 #include "tool/progress_bar.hpp"
 #include "tool/study_report.hpp"

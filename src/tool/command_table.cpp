@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "fmbpc/loop/report.hpp"
+#include "runtime/report.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

@@ -7,7 +7,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/loop/plot.hpp"
+#include "runtime/plot.hpp"
 #include "tool/commands.hpp"
 #include "tool/progress_bar.hpp"
 #include "tool/tune_report.hpp"

@@ -7,7 +7,7 @@
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/fuzzy/record_remarks.hpp"
+#include "identification/record_remarks.hpp"
 #include "tool/auto_structure.hpp"
 #include "tool/commands.hpp"
 #include "tool/identify_verdict.hpp"

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/loop/plot.hpp"
+#include "runtime/plot.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

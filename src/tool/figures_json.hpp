@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/finite_json.hpp"
-#include "fmbpc/fuzzy/prediction.hpp"
+#include "identification/prediction.hpp"
 
 namespace fpc::tool {
 

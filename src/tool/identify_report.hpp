@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/validation.hpp"
+#include "identification/identify.hpp"
+#include "identification/validation.hpp"
 
 namespace fpc::tool {
 

@@ -5,9 +5,9 @@
 
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/fuzzy/interval_coverage.hpp"
-#include "fmbpc/fuzzy/prediction.hpp"
-#include "fmbpc/fuzzy/record_remarks.hpp"
+#include "identification/interval_coverage.hpp"
+#include "identification/prediction.hpp"
+#include "identification/record_remarks.hpp"
 #include "tool/figures_json.hpp"
 
 namespace fpc::tool {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/ordered_json.hpp"
-#include "fmbpc/config/identified_file.hpp"
+#include "config/identified_file.hpp"
 
 namespace fpc::tool {
 

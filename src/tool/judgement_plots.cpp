@@ -1,11 +1,11 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "base/csv.hpp"
 #include "base/files.hpp"
 #include "base/list_of.hpp"
 #include "base/ordered_json.hpp"
-#include "fmbpc/base/csv.hpp"
-#include "fmbpc/loop/plot.hpp"
+#include "runtime/plot.hpp"
 #include "tool/judgement.hpp"
 #include "tool/model_plots.hpp"
 

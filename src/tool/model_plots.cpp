@@ -8,7 +8,7 @@
 #include "base/files.hpp"
 #include "base/list_of.hpp"
 #include "base/ordered_json.hpp"
-#include "fmbpc/loop/plot.hpp"
+#include "runtime/plot.hpp"
 
 namespace fpc::tool {
 namespace {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fmbpc/study/run_pool.hpp"
+#include "study/run_pool.hpp"
 
 namespace fpc::tool {
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "fmbpc/study/run_pool.hpp"
+#include "study/run_pool.hpp"
 
 namespace fpc::tool {
 

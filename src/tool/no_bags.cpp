@@ -1,7 +1,7 @@
 // In place of bag_run.cpp, bag_table.cpp and operator_line.cpp in a build without ROS.
 #include "fmbpc/base/input_error.hpp"
-#include "loop/bag_reader.hpp"
-#include "loop/operator_line.hpp"
+#include "runtime/bag_reader.hpp"
+#include "runtime/operator_line.hpp"
 
 namespace fpc {
 namespace {

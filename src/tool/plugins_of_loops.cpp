@@ -1,8 +1,8 @@
 // Lists of plants and controllers hold what the packages of the loops bring.
 #include <fstream>
 
+#include "config/loop_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/loop_file.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

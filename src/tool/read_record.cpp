@@ -6,7 +6,7 @@
 
 #include "config/public_record.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "loop/bag_reader.hpp"
+#include "runtime/bag_reader.hpp"
 
 namespace fpc::tool {
 namespace {

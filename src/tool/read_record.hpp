@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fmbpc/base/csv.hpp"
+#include "base/csv.hpp"
 
 namespace fpc::tool {
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "fmbpc/base/csv.hpp"
-#include "fmbpc/fuzzy/data_set.hpp"
+#include "base/csv.hpp"
+#include "identification/data_set.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

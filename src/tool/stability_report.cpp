@@ -42,7 +42,7 @@ std::string pointText(const Json& at, const Json& units) {
   return objectText(at["inputs"], units) + (disturbances.empty() ? "" : "; ") + disturbances;
 }
 
-constexpr char kLegend[] =
+constexpr char kStabilityLegend[] =
     "H: coincidence horizon [samples]. rules: the rule of each output; blended: all of them,\n"
     "weighted at the point. |open|, |closed|: largest modulus of the eigenvalues of the model and\n"
     "of the loop, below 1 is stable; rho: relative degree [samples]; stable from H: the least\n"
@@ -71,7 +71,8 @@ std::string modelText(const Json& r) {
          "\n  rules    |open|     rho   |closed|  stable from H  closed-loop eigenvalues\n";
   out += linearText("blended", r["blended"]);
   for (const auto& rule : r["rules"]) out += linearText(rule["rules"].get<std::string>(), rule);
-  out += std::string("\n") + kLegend + "\nblended loop over the horizon: its eigenvalues\n";
+  out +=
+      std::string("\n") + kStabilityLegend + "\nblended loop over the horizon: its eigenvalues\n";
   for (const auto& row : r["horizon"]) {
     const int H = row["coincidence_steps"].get<int>();
     if (H > 10 && H % 50 != 0) continue;

@@ -7,15 +7,15 @@
 #include <map>
 #include <sstream>
 
+#include "config/extending_loop.hpp"
+#include "config/loop_file.hpp"
+#include "config/model_file.hpp"
+#include "control/fmbpc/law.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/base/yaml_section.hpp"
-#include "fmbpc/config/extending_loop.hpp"
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
-#include "fmbpc/fuzzy/undelayed.hpp"
+#include "fmbpc/model/model_match.hpp"
+#include "model/undelayed.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {

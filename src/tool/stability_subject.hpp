@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
-#include "fmbpc/analysis/closed_loop.hpp"
-#include "fmbpc/analysis/fuzzy_equilibrium.hpp"
+#include "analysis/closed_loop.hpp"
+#include "analysis/fuzzy_equilibrium.hpp"
 #include "fmbpc/plant/plant.hpp"
 
 namespace fpc::tool {

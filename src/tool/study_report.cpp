@@ -79,7 +79,7 @@ std::string medianText(const PairStatistics& pair, double confidence) {
   return "none (n < " + std::to_string(casesForMedianInterval(confidence)) + ")";
 }
 
-std::string percent(double share) { return shortText(100.0 * share) + " %"; }
+std::string percentText(double share) { return shortText(100.0 * share) + " %"; }
 
 Rows loopRows(const StudyStatistics& statistics) {
   Rows rows{{"loop", "runs", "median cost", "quartiles", "worst", "worst case", "move",
@@ -105,10 +105,10 @@ Rows pairRows(const StudyPlan& plan, const StudyStatistics& statistics) {
   Rows rows{
       {"pairs", "against", "n", "won", "share", "its " + sure, "median ratio", "its " + sure}};
   for (const auto& pair : statistics.pairs)
-    rows.push_back({pair.name, pair.against, std::to_string(pair.pairs), shortText(pair.wins),
-                    percent(pair.share), percent(pair.lower) + ".." + percent(pair.upper),
-                    shortText(pair.median_ratio),
-                    medianText(pair, 0.01 * plan.study().confidence_percent)});
+    rows.push_back(
+        {pair.name, pair.against, std::to_string(pair.pairs), shortText(pair.wins),
+         percentText(pair.share), percentText(pair.lower) + ".." + percentText(pair.upper),
+         shortText(pair.median_ratio), medianText(pair, 0.01 * plan.study().confidence_percent)});
   return rows;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "base/ordered_json.hpp"
-#include "fmbpc/study/study_statistics.hpp"
+#include "study/study_statistics.hpp"
 
 namespace fpc::tool {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "base/order_statistics.hpp"
 #include "base/time_cells.hpp"
+#include "base/time_unit.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/base/order_statistics.hpp"
-#include "fmbpc/base/time_unit.hpp"
 
 namespace fpc::tool {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/base/csv.hpp"
+#include "base/csv.hpp"
 
 namespace fpc::tool {
 

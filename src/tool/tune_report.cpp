@@ -7,9 +7,9 @@
 #include "base/files.hpp"
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
+#include "config/extending_loop.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/extending_loop.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -57,8 +57,9 @@ Json parametersJson(const TuningObjective& objective, const TunedLoop& tuned) {
   return list;
 }
 
-void addScores(TuneRows& rows, const std::string& title, const std::vector<TuningScenario>& scenarios,
-               const TuningScore& before, const TuningScore& after) {
+void addScores(TuneRows& rows, const std::string& title,
+               const std::vector<TuningScenario>& scenarios, const TuningScore& before,
+               const TuningScore& after) {
   const auto ratio = [](double b, double a) { return shortText(a / b); };
   for (std::size_t i = 0; i < scenarios.size(); ++i)
     rows.push_back({"  " + scenarios[i].name, shortText(before.scenarios[i]),

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/ordered_json.hpp"
-#include "fmbpc/study/tune.hpp"
+#include "study/tune.hpp"
 
 namespace fpc::tool {
 

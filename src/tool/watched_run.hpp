@@ -1,7 +1,7 @@
 // A run in process that somebody watches and may end.
 #pragma once
 
-#include "fmbpc/loop/run.hpp"
+#include "runtime/run.hpp"
 #include "tool/progress_bar.hpp"
 
 namespace fpc::tool {

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/undelayed.hpp"
+#include "model/undelayed.hpp"
 
 namespace fpc {
 namespace analysis_closed_loop_test {

@@ -1,12 +1,12 @@
 // Certificates on systems whose answer is known.
-#include "fmbpc/analysis/common_lyapunov.hpp"
+#include "analysis/common_lyapunov.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "fmbpc/analysis/closed_loop.hpp"
+#include "analysis/closed_loop.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

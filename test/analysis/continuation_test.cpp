@@ -1,12 +1,12 @@
 // Textbook systems whose folds, Hopf points and branches are known on paper.
-#include "fmbpc/analysis/continuation.hpp"
+#include "analysis/continuation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/analysis/linearise.hpp"
+#include "analysis/linearise.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

@@ -1,11 +1,11 @@
 // Rests of fuzzy models on models whose rests are known on paper.
-#include "fmbpc/analysis/fuzzy_equilibrium.hpp"
+#include "analysis/fuzzy_equilibrium.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "fuzzy/multivariate_fixture.hpp"
+#include "identification/multivariate_fixture.hpp"
 
 namespace fpc {
 namespace analysis_fuzzy_equilibrium_test {

@@ -1,5 +1,5 @@
 // Advice on a first-order model, where every figure is known on paper.
-#include "fmbpc/analysis/horizon_advisor.hpp"
+#include "analysis/horizon_advisor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fmbpc/analysis/performance.hpp"
+#include "analysis/performance.hpp"
 
 #include <cmath>
 #include <limits>

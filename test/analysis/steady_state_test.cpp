@@ -1,4 +1,4 @@
-#include "fmbpc/analysis/steady_state.hpp"
+#include "analysis/steady_state.hpp"
 
 #include <gtest/gtest.h>
 

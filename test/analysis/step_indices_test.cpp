@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fmbpc/analysis/performance.hpp"
+#include "analysis/performance.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

@@ -1,5 +1,5 @@
 // Zeros, relative degree and the three propositions of blazic2007 for all their rules.
-#include "fmbpc/analysis/transfer.hpp"
+#include "analysis/transfer.hpp"
 
 #include <gtest/gtest.h>
 

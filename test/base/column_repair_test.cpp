@@ -1,4 +1,4 @@
-#include "fmbpc/base/column_repair.hpp"
+#include "base/column_repair.hpp"
 
 #include <gtest/gtest.h>
 

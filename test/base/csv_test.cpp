@@ -1,4 +1,4 @@
-#include "fmbpc/base/csv.hpp"
+#include "base/csv.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <fstream>
 #include <limits>
 
+#include "base/csv_header.hpp"
 #include "error_words.hpp"
-#include "fmbpc/base/csv_header.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace base_files_test {

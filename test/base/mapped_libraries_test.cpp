@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "fmbpc/base/parallel.hpp"
+#include "base/parallel.hpp"
 
 namespace fpc::testing {
 namespace base_mapped_libraries_test {

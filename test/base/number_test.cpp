@@ -1,6 +1,6 @@
 // Numbers as text: known cases, and the portable way beside the standard library's over random
 // doubles.
-#include "fmbpc/base/number.hpp"
+#include "base/number.hpp"
 
 #include <gtest/gtest.h>
 

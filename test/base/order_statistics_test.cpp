@@ -1,5 +1,5 @@
 // Medians and quantiles beside a full sort.
-#include "fmbpc/base/order_statistics.hpp"
+#include "base/order_statistics.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "fmbpc/base/register_codec.hpp"
+#include "base/register_codec.hpp"
 
 #include <gtest/gtest.h>
 

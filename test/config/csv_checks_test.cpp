@@ -1,8 +1,8 @@
 // A record against the plant: units that the header states, and values that the plant cannot take.
 #include <gtest/gtest.h>
 
-#include "fmbpc/config/disturbance_source.hpp"
-#include "loop/loop_fixture.hpp"
+#include "config/disturbance_source.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_csv_checks_test {

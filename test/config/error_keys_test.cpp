@@ -1,7 +1,7 @@
 // Every error names a key that the file can have, by its whole path, and a misspelt section first.
 #include <gtest/gtest.h>
 
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_error_keys_test {

@@ -1,9 +1,9 @@
 // Loop files that extend others, overrides, and the one text that comes of them.
 #include <gtest/gtest.h>
 
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/control/pi/pi.hpp"
-#include "loop/loop_fixture.hpp"
+#include "control/fmbpc/law.hpp"
+#include "control/pi/pi.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_extends_test {

@@ -1,7 +1,7 @@
-#include "fmbpc/config/gateway_params.hpp"
+#include "config/gateway_params.hpp"
 
-#include "loop/gateway_fixture.hpp"
-#include "loop/loop_fixture.hpp"
+#include "runtime/gateway_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_gateway_params_test {

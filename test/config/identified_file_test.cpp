@@ -1,9 +1,9 @@
-#include "fmbpc/config/identified_file.hpp"
+#include "config/identified_file.hpp"
 
 #include <gtest/gtest.h>
 
+#include "config/model_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/model_file.hpp"
 
 namespace fpc {
 namespace config_identified_file_test {

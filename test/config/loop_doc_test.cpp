@@ -8,16 +8,16 @@
 
 #include "base/yaml_node.hpp"
 #include "config/read.hpp"
+#include "control/excitation/excitation.hpp"
+#include "control/fmbpc/law.hpp"
+#include "control/fuzzy_lq/law.hpp"
+#include "control/mpc/nmpc.hpp"
+#include "control/mpc/swarm_mpc.hpp"
+#include "control/pi/pi.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/control/excitation/excitation.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/control/horizon/nmpc.hpp"
-#include "fmbpc/control/horizon/swarm_mpc.hpp"
-#include "fmbpc/control/optimal/law.hpp"
-#include "fmbpc/control/pi/pi.hpp"
-#include "loop/loops_of_type.hpp"
 #include "paths.hpp"
+#include "runtime/loops_of_type.hpp"
 
 namespace fpc {
 namespace config_loop_doc_test {

@@ -2,7 +2,7 @@
 // expected.
 #include <gtest/gtest.h>
 
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_loop_errors_test {

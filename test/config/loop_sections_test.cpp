@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "loop/loop_fixture.hpp"
+#include "control/fmbpc/law.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_loop_sections_test {

@@ -1,12 +1,12 @@
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
+#include "config/model_file.hpp"
+#include "fmbpc/model/model_match.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fuzzy/model_fixture.hpp"
+#include "identification/model_fixture.hpp"
 
 namespace fpc {
 namespace config_model_file_test {

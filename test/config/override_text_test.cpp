@@ -1,7 +1,7 @@
 // Several overrides in one text, as roslaunch hands them over.
 #include <gtest/gtest.h>
 
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_override_text_test {

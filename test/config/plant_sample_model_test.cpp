@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace config_plant_sample_model_test {

@@ -1,15 +1,15 @@
 // Libraries with plants and controllers of others: found, loaded, or one clear error.
-#include "fmbpc/config/plugins.hpp"
+#include "config/plugins.hpp"
 
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "fmbpc/loop/run.hpp"
 #include "fmbpc/plant/plant.hpp"
-#include "loop/loop_fixture.hpp"
 #include "paths.hpp"
+#include "runtime/loop_fixture.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace config_plugins_test {

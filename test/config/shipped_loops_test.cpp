@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "fmbpc/config/disturbance_source.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "loop/loop_fixture.hpp"
+#include "config/disturbance_source.hpp"
+#include "control/fmbpc/law.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_shipped_loops_test {

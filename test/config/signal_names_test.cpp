@@ -1,7 +1,7 @@
 // Names of signals are keys and columns: what would stand for two things is refused.
 #include <gtest/gtest.h>
 
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace config_signal_names_test {

@@ -1,7 +1,7 @@
 // Which signals a law needs, and which it steers, by type: what plausibility and guard ask.
 #include <gtest/gtest.h>
 
-#include "fmbpc/config/loop_file.hpp"
+#include "config/loop_file.hpp"
 
 namespace fpc {
 namespace config_signal_use_test {

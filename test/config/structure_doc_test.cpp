@@ -7,9 +7,9 @@
 #include <regex>
 #include <set>
 
+#include "config/structure_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/structure_file.hpp"
 #include "paths.hpp"
 
 namespace fpc {

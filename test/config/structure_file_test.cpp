@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
+#include "config/structure_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/structure_file.hpp"
 #include "paths.hpp"
 
 namespace fpc {

@@ -1,5 +1,5 @@
 // The reader of study files: what it reads, what it refuses, and that docs/study.md tells it all.
-#include "fmbpc/config/study_file.hpp"
+#include "config/study_file.hpp"
 
 #include <fstream>
 #include <regex>

@@ -7,10 +7,10 @@
 #include "base/yaml_node.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/study/fitness.hpp"
-#include "fmbpc/study/tuning_objective.hpp"
 #include "paths.hpp"
+#include "study/fitness.hpp"
 #include "study/tuning_fixture.hpp"
+#include "study/tuning_objective.hpp"
 
 namespace fpc {
 namespace config_tuning_file_test {

@@ -1,9 +1,9 @@
 // An affine law of what is measured: its value on paper, its lag, and what is not finite.
-#include "fmbpc/control/affine_law.hpp"
+#include "control/affine_law.hpp"
 
 #include <cmath>
 
-#include "control/session_fixture.hpp"
+#include "runtime/session_fixture.hpp"
 
 namespace fpc::test_session {
 namespace control_affine_law_test {

@@ -1,5 +1,5 @@
-#include "control/session_fixture.hpp"
-#include "fmbpc/control/pi/pi.hpp"
+#include "control/pi/pi.hpp"
+#include "runtime/session_fixture.hpp"
 
 namespace fpc {
 namespace control_controller_safety_test {

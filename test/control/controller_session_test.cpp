@@ -1,4 +1,4 @@
-#include "control/session_fixture.hpp"
+#include "runtime/session_fixture.hpp"
 
 namespace fpc {
 namespace control_controller_session_test {

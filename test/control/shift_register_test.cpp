@@ -3,8 +3,8 @@
 // shift but 0.
 #include <gtest/gtest.h>
 
+#include "control/excitation/excitation.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/excitation/excitation.hpp"
 
 namespace fpc {
 namespace control_shift_register_test {

@@ -9,13 +9,13 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "fmbpc/loop/run.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/scratch_file.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"
-#include "loop/bag_reader.hpp"
 #include "ros/conversions.hpp"
+#include "runtime/bag_reader.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc::fuzz {
 namespace {

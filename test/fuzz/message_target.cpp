@@ -2,8 +2,8 @@
 // was.
 #include <stdexcept>
 
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
+#include "config/loop_file.hpp"
+#include "fmbpc/model/model_match.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"

@@ -4,9 +4,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "fmbpc/optim/qp.hpp"
 #include "fuzz/bytes.hpp"
 #include "fuzz/targets.hpp"
+#include "optim/qp.hpp"
 
 namespace fpc::fuzz {
 namespace {

@@ -11,15 +11,15 @@
 #include <stdexcept>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "fmbpc/loop/identifier_session.hpp"
-#include "fmbpc/loop/plant_session.hpp"
-#include "fmbpc/loop/recorder_session.hpp"
+#include "fmbpc/model/model_match.hpp"
 #include "fuzz/message_mutator.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"
 #include "ros/conversions.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/identifier_session.hpp"
+#include "runtime/plant_session.hpp"
+#include "runtime/recorder_session.hpp"
 
 namespace fpc::fuzz {
 namespace {

@@ -3,16 +3,16 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "fmbpc/base/csv.hpp"
+#include "base/csv.hpp"
+#include "config/model_file.hpp"
+#include "config/structure_file.hpp"
+#include "config/tuning_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/config/tuning_file.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/plant/disturbance.hpp"
 #include "fuzz/scratch_file.hpp"
 #include "fuzz/targets.hpp"
 #include "fuzz/tolerant.hpp"
+#include "plant/disturbance.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc::fuzz {
 namespace {

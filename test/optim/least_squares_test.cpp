@@ -1,4 +1,4 @@
-#include "fmbpc/optim/least_squares.hpp"
+#include "optim/least_squares.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 #include "paths.hpp"
 
 namespace fpc::testing {

@@ -1,14 +1,14 @@
 // Every method on functions whose least value is known, with seeds; budgets; what is refused.
-#include "fmbpc/optim/population_search.hpp"
+#include "optim/population_search.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "base/parallel.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/base/parallel.hpp"
-#include "fmbpc/optim/particle_swarm.hpp"
+#include "optim/particle_swarm.hpp"
 
 namespace fpc {
 namespace optim_population_search_test {

@@ -1,5 +1,5 @@
 // Every way in which the QP solver can fail, and what its KKT residual sees.
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 
 #include <string>
 

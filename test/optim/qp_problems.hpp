@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 
 namespace fpc::testing {
 

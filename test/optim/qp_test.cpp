@@ -1,5 +1,5 @@
 // Small quadratic programmes whose primal and dual answers are known on paper, cold and warm.
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 
 #include <initializer_list>
 #include <utility>

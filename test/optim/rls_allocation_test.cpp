@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "allocation_counter.hpp"
-#include "fmbpc/optim/rls.hpp"
+#include "optim/rls.hpp"
 
 namespace fpc {
 namespace optim_rls_allocation_test {

@@ -1,4 +1,4 @@
-#include "fmbpc/optim/rls.hpp"
+#include "optim/rls.hpp"
 
 #include <gtest/gtest.h>
 

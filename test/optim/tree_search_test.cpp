@@ -1,5 +1,5 @@
 // Branch and bound against enumeration on random trees, ties, dead ends and budgets included.
-#include "fmbpc/optim/tree_search.hpp"
+#include "optim/tree_search.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <iterator>
 
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/study/run_judgement.hpp"
+#include "runtime/run.hpp"
+#include "study/run_judgement.hpp"
 
 namespace fpc {
 namespace paper_asp_events_test {

@@ -7,12 +7,12 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/validation.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "config/structure_file.hpp"
+#include "identification/identify.hpp"
+#include "identification/validation.hpp"
 #include "paths.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace paper_asp_excite_test {

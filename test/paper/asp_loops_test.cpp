@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace paper_asp_loops_test {

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "config/model_file.hpp"
+#include "config/structure_file.hpp"
+#include "identification/identify.hpp"
 #include "paths.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace paper_asp_own_model_test {

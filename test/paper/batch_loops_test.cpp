@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace paper_batch_loops_test {

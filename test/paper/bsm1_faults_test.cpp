@@ -5,10 +5,10 @@
 
 #include <algorithm>
 
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/study/evaluate.hpp"
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
+#include "study/evaluate.hpp"
 
 namespace fpc {
 namespace paper_bsm1_faults_test {

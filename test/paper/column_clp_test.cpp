@@ -4,12 +4,12 @@
 
 #include <random>
 
-#include "fmbpc/fuzzy/fopdt_identification.hpp"
-#include "fmbpc/fuzzy/linear_model.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
-#include "fmbpc/loop/report.hpp"
+#include "fmbpc/model/model_match.hpp"
+#include "identification/fopdt_identification.hpp"
+#include "model/linear_model.hpp"
 #include "paper/column_run.hpp"
 #include "paper/plain_mpc.hpp"
+#include "runtime/report.hpp"
 
 namespace fpc {
 namespace paper_column_clp_test {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "fmbpc/loop/run.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc::test {
 

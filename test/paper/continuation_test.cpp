@@ -1,11 +1,11 @@
 // What continuation finds on the shipped plants without being told where: the folds and the Hopf
 // point of the stirred tank (blazic2007, section 2) with and without its sampled
 // compensator, the hump of the biomass in the activated-sludge plant.
-#include "fmbpc/analysis/continuation.hpp"
+#include "analysis/continuation.hpp"
 
 #include <gtest/gtest.h>
 
-#include "fmbpc/loop/plant_continuation.hpp"
+#include "runtime/plant_continuation.hpp"
 
 namespace fpc {
 namespace paper_continuation_test {

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fmbpc/fuzzy/local_model.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "fmbpc/model/local_model.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace paper_cstr_limits_test {

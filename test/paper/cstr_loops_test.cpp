@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fmbpc/control/pi/pi.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "control/pi/pi.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace paper_cstr_loops_test {

@@ -7,14 +7,14 @@
 #include <filesystem>
 #include <fstream>
 
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
-#include "fmbpc/loop/factory.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
+#include "config/model_file.hpp"
+#include "config/structure_file.hpp"
+#include "fmbpc/model/model_match.hpp"
+#include "identification/identify.hpp"
 #include "paths.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace paper_cstr_own_model_test {

@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <random>
 
-#include "fmbpc/fuzzy/local_model.hpp"
-#include "fuzzy/model_fixture.hpp"
+#include "fmbpc/model/local_model.hpp"
+#include "identification/model_fixture.hpp"
 #include "paper/paper_plant.hpp"
 
 namespace fpc {

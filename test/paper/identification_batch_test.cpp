@@ -9,17 +9,17 @@
 #include <string>
 #include <vector>
 
+#include "config/structure_file.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/choice_model.hpp"
-#include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
-#include "fmbpc/fuzzy/prediction.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/plant/integrator.hpp"
+#include "fmbpc/model/model_match.hpp"
 #include "fmbpc/plant/plant.hpp"
+#include "identification/identify.hpp"
+#include "identification/prediction.hpp"
+#include "model/choice_model.hpp"
 #include "paths.hpp"
+#include "plant/integrator.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace paper_identification_batch_test {

@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/validation.hpp"
+#include "config/structure_file.hpp"
+#include "identification/identify.hpp"
+#include "identification/validation.hpp"
 #include "paths.hpp"
 
 namespace fpc {

@@ -5,11 +5,11 @@
 
 #include <random>
 
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/validation.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "config/structure_file.hpp"
+#include "identification/identify.hpp"
+#include "identification/validation.hpp"
 #include "paths.hpp"
+#include "plant/simulation.hpp"
 
 namespace fpc {
 namespace paper_identification_sludge_test {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 
 namespace fpc::test {
 

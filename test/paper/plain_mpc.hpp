@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "fmbpc/optim/qp.hpp"
-#include "fuzzy/column_model.hpp"
+#include "model/column_model.hpp"
+#include "optim/qp.hpp"
 
 namespace fpc::test {
 

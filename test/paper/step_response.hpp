@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fmbpc/loop/run.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc::test {
 

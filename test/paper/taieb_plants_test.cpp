@@ -7,17 +7,17 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "config/model_file.hpp"
+#include "config/structure_file.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/identify.hpp"
-#include "fmbpc/fuzzy/validation.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/plant/integrator.hpp"
-#include "fmbpc/study/shortest_step.hpp"
+#include "identification/identify.hpp"
+#include "identification/validation.hpp"
 #include "paths.hpp"
+#include "plant/integrator.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
+#include "study/shortest_step.hpp"
 
 namespace fpc {
 namespace paper_taieb_plants_test {

@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "fmbpc/analysis/steady_state.hpp"
-#include "fmbpc/plant/integrator.hpp"
+#include "analysis/steady_state.hpp"
 #include "fmbpc/plant/plant.hpp"
+#include "plant/integrator.hpp"
 
 namespace fpc {
 namespace plant_activated_sludge_test {

@@ -1,4 +1,4 @@
-#include "fmbpc/plant/actuator.hpp"
+#include "plant/actuator.hpp"
 
 #include <gtest/gtest.h>
 

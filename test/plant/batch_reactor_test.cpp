@@ -5,9 +5,9 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "fmbpc/analysis/steady_state.hpp"
-#include "fmbpc/plant/integrator.hpp"
+#include "analysis/steady_state.hpp"
 #include "fmbpc/plant/plant.hpp"
+#include "plant/integrator.hpp"
 
 namespace fpc {
 namespace plant_batch_reactor_test {

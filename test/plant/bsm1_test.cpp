@@ -4,10 +4,10 @@
 
 #include <map>
 
-#include "fmbpc/base/number.hpp"
-#include "fmbpc/plant/integrator.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "base/number.hpp"
 #include "plant/bsm1_fixture.hpp"
+#include "plant/integrator.hpp"
+#include "plant/simulation.hpp"
 
 namespace fpc {
 namespace plant_bsm1_test {

@@ -1,8 +1,8 @@
 // The stirred-tank reactor of blazic2007: rest, branches, compensator, disturbance.
 #include <gtest/gtest.h>
 
-#include "fmbpc/analysis/steady_state.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "analysis/steady_state.hpp"
+#include "plant/simulation.hpp"
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {

@@ -1,5 +1,5 @@
 // The times of a record: in another decimal, or rounded up past their samples.
-#include "fmbpc/plant/disturbance.hpp"
+#include "plant/disturbance.hpp"
 
 #include <gtest/gtest.h>
 

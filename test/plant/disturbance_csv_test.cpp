@@ -5,7 +5,7 @@
 
 #include "error_words.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/plant/disturbance.hpp"
+#include "plant/disturbance.hpp"
 
 namespace fpc {
 namespace plant_disturbance_csv_test {

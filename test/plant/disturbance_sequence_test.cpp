@@ -3,7 +3,7 @@
 #include <fstream>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/plant/disturbance.hpp"
+#include "plant/disturbance.hpp"
 
 namespace fpc {
 namespace plant_disturbance_sequence_test {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "fmbpc/plant/integrator.hpp"
+#include "plant/integrator.hpp"
 
 namespace fpc {
 namespace integrator_fixture {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "fmbpc/analysis/steady_state.hpp"
-#include "fmbpc/plant/integrator.hpp"
+#include "analysis/steady_state.hpp"
+#include "plant/integrator.hpp"
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {

@@ -1,4 +1,4 @@
-#include "fmbpc/plant/sensor.hpp"
+#include "plant/sensor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,4 @@
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 
 #include <gtest/gtest.h>
 

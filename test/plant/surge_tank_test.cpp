@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {

@@ -1,5 +1,5 @@
 // A matrix of lags with dead times against answers known on paper.
-#include "fmbpc/plant/transfer_matrix.hpp"
+#include "plant/transfer_matrix.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/plant/simulation.hpp"
+#include "plant/simulation.hpp"
 
 namespace fpc {
 namespace plant_transfer_matrix_test {

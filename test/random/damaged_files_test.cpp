@@ -2,16 +2,16 @@
 // whatever stands there. More of it: FMBPC_LONG_TESTS, and the fuzzers of test/fuzz.
 #include <filesystem>
 
-#include "fmbpc/base/csv.hpp"
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/config/tuning_file.hpp"
-#include "fmbpc/fuzzy/data_set.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "loop/loop_fixture.hpp"
+#include "base/csv.hpp"
+#include "config/model_file.hpp"
+#include "config/structure_file.hpp"
+#include "config/tuning_file.hpp"
+#include "identification/data_set.hpp"
 #include "paths.hpp"
 #include "random/damage.hpp"
 #include "random/random_loop.hpp"
+#include "runtime/loop_fixture.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace random_damaged_files_test {

@@ -10,12 +10,12 @@
 
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/control/registry.hpp"
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/study/run_judgement.hpp"
-#include "loop/loop_fixture.hpp"
 #include "random/random_parts.hpp"
 #include "random/run_checks.hpp"
+#include "runtime/loop_fixture.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
+#include "study/run_judgement.hpp"
 
 namespace fpc {
 namespace random_random_loops_test {

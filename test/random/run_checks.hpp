@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "fmbpc/config/loop_file.hpp"
-#include "fmbpc/loop/record.hpp"
+#include "config/loop_file.hpp"
+#include "runtime/record.hpp"
 
 namespace fpc {
 namespace random_random_loops_test {

@@ -4,8 +4,8 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/control/registry.hpp"
-#include "loop/loops_of_type.hpp"
 #include "random/random_parts.hpp"
+#include "runtime/loops_of_type.hpp"
 
 namespace fpc {
 namespace {

@@ -1,5 +1,5 @@
 // A bag is the table that the same run writes.
-#include "loop/bag_reader.hpp"
+#include "runtime/bag_reader.hpp"
 
 #include <fmbpc/Measurement.h>
 #include <fmbpc/PlantInfo.h>
@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "loop/loop_fixture.hpp"
 #include "ros/conversions.hpp"
+#include "runtime/loop_fixture.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
 
 namespace fpc {
 namespace ros_bag_table_test {

@@ -1,5 +1,5 @@
 // Indices of a record made by hand, and of short runs of the plant.
-#include "fmbpc/study/evaluate.hpp"
+#include "study/evaluate.hpp"
 
 #include <gtest/gtest.h>
 

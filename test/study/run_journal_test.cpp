@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 namespace study_run_journal_test {

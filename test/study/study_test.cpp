@@ -1,14 +1,14 @@
 // Studies of a cheap loop: paired cases, the same bits on any number of threads and after a stop,
 // failures by kind, statistics known on paper.
-#include "fmbpc/study/study.hpp"
+#include "study/study.hpp"
 
 #include <atomic>
 #include <cmath>
 #include <fstream>
 
-#include "fmbpc/loop/report.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/study/study_statistics.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
+#include "study/study_statistics.hpp"
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {

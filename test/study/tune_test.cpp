@@ -1,16 +1,16 @@
 // Tuning of a cheap loop: better on what it has not seen, the same bits on any number of threads
 // and after a stop, the budget to the run, failures that do not win.
-#include "fmbpc/study/tune.hpp"
+#include "study/tune.hpp"
 
 #include <atomic>
 #include <cmath>
 #include <sstream>
 
-#include "fmbpc/config/extending_loop.hpp"
-#include "fmbpc/control/pi/pi.hpp"
-#include "fmbpc/loop/run.hpp"
-#include "fmbpc/study/fitness.hpp"
+#include "config/extending_loop.hpp"
+#include "control/pi/pi.hpp"
 #include "paths.hpp"
+#include "runtime/run.hpp"
+#include "study/fitness.hpp"
 #include "study/tuning_fixture.hpp"
 
 namespace fpc {

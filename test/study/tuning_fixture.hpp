@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "fmbpc/config/tuning_file.hpp"
-#include "loop/loop_fixture.hpp"
+#include "config/tuning_file.hpp"
+#include "runtime/loop_fixture.hpp"
 
 namespace fpc {
 

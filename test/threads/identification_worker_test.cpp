@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-#include "fuzzy/identify_fixture.hpp"
+#include "identification/identify_fixture.hpp"
 
 namespace fpc {
 namespace identification_worker_test {

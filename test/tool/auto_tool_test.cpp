@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/random.hpp"
-#include "fmbpc/config/identified_file.hpp"
+#include "config/identified_file.hpp"
 #include "tool/identify_fixture.hpp"
 
 namespace fpc {

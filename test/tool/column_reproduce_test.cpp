@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "tool/reproduce/experiment.hpp"
-#include "tool/reproduce/report.hpp"
+#include "papers/experiment.hpp"
+#include "papers/report.hpp"
 
 namespace fpc::tool {
 namespace tool_column_reproduce_test {

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "loop/loop_fixture.hpp"
 #include "paths.hpp"
+#include "runtime/loop_fixture.hpp"
 #include "tool/tool_run.hpp"
 
 namespace fpc {

@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fmbpc/base/csv.hpp"
-#include "fuzzy/identify_fixture.hpp"
-#include "loop/loop_fixture.hpp"
+#include "base/csv.hpp"
+#include "identification/identify_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 #include "tool/tool_run.hpp"
 
 namespace fpc {

@@ -4,9 +4,9 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/config/structure_file.hpp"
-#include "fmbpc/fuzzy/validation.hpp"
+#include "config/model_file.hpp"
+#include "config/structure_file.hpp"
+#include "identification/validation.hpp"
 #include "tool/identify_fixture.hpp"
 
 namespace fpc {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 #include "tool/tool_run.hpp"
 
 namespace fpc {

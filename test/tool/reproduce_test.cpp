@@ -9,11 +9,11 @@
 #include <tuple>
 
 #include "fmbpc/base/input_error.hpp"
-#include "tool/reproduce/picture.hpp"
-#include "tool/reproduce/report.hpp"
-#include "tool/reproduce/runs.hpp"
-#include "tool/reproduce/sludge_printed.hpp"
-#include "tool/reproduce/taieb_steps.hpp"
+#include "papers/picture.hpp"
+#include "papers/report.hpp"
+#include "papers/runs.hpp"
+#include "papers/sludge_printed.hpp"
+#include "papers/taieb_steps.hpp"
 
 namespace fpc::tool {
 namespace tool_reproduce_test {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "loop/loop_fixture.hpp"
+#include "runtime/loop_fixture.hpp"
 #include "tool/tool_run.hpp"
 
 namespace fpc {

@@ -6,8 +6,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "loop/loop_fixture.hpp"
 #include "paths.hpp"
+#include "runtime/loop_fixture.hpp"
 #include "tool/tool_run.hpp"
 
 namespace fpc {

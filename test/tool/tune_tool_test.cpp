@@ -4,7 +4,7 @@
 #include <csignal>
 #include <nlohmann/json.hpp>
 
-#include "fmbpc/optim/population_search.hpp"
+#include "optim/population_search.hpp"
 #include "study/tuning_fixture.hpp"
 #include "tool/tool_run.hpp"
 

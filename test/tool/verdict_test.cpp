@@ -1,5 +1,5 @@
 // The one function that turns a printed figure and ours into a verdict, and that nothing else does.
-#include "tool/reproduce/verdict.hpp"
+#include "papers/verdict.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@
 #include <regex>
 
 #include "fmbpc/base/input_error.hpp"
+#include "papers/experiment.hpp"
+#include "papers/runs.hpp"
 #include "paths.hpp"
-#include "tool/reproduce/experiment.hpp"
-#include "tool/reproduce/runs.hpp"
 
 namespace fpc::tool {
 namespace tool_verdict_test {

@@ -11,7 +11,7 @@
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
 #include "fmbpc/control/settings.hpp"
-#include "fmbpc/fuzzy/ts_model.hpp"
+#include "fmbpc/model/ts_model.hpp"
 
 namespace fpc {
 

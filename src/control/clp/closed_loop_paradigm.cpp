@@ -1,4 +1,4 @@
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "control/clp/closed_loop_paradigm.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,7 +1,7 @@
 #include "control/clp/cost.hpp"
 
+#include "control/clp/closed_loop_paradigm.hpp"
 #include "control/power_of_two.hpp"
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 
 #include <algorithm>
 #include <cmath>

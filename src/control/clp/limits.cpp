@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "control/clp/closed_loop_paradigm.hpp"
 #include "control/power_of_two.hpp"
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
 
 namespace fpc {
 namespace {

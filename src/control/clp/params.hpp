@@ -1,7 +1,7 @@
 // What the parts of the closed-loop paradigm share about their parameters.
 #pragma once
 
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "control/clp/closed_loop_paradigm.hpp"
 
 namespace fpc {
 

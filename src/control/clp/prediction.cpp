@@ -1,6 +1,6 @@
 #include "control/clp/prediction.hpp"
 
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "control/clp/closed_loop_paradigm.hpp"
 
 namespace fpc {
 

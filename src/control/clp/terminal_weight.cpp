@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "control/clp/closed_loop_paradigm.hpp"
 
 namespace fpc {
 

@@ -1,4 +1,4 @@
-#include "fmbpc/control/excitation/excitation.hpp"
+#include "control/excitation/excitation.hpp"
 
 #include <algorithm>
 #include <array>

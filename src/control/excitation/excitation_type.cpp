@@ -1,7 +1,7 @@
 // Controller type excitation: its section of a loop file. Times are given in samples or in seconds
 // that are a whole number of samples.
+#include "control/excitation/excitation.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/control/excitation/excitation.hpp"
 
 #include <cmath>
 #include <set>

@@ -1,4 +1,4 @@
-#include "fmbpc/control/fmbpc/coincidence.hpp"
+#include "control/fmbpc/coincidence.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fmbpc/control/fmbpc/disturbance_forecast.hpp"
+#include "control/fmbpc/disturbance_forecast.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 // Controller type fmbpc: its section of a loop file.
 #include <cmath>
 
+#include "control/fmbpc/law.hpp"
+#include "control/read_observer.hpp"
+#include "estimation/model_observer.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/control/model_observer.hpp"
-#include "fmbpc/control/read_observer.hpp"
 #include "fmbpc/control/registry.hpp"
 
 namespace fpc {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fmbpc/control/fmbpc/input_limited_ilqr.hpp"
+#include "control/fmbpc/input_limited_ilqr.hpp"
 
 namespace fpc {
 namespace {

@@ -1,5 +1,5 @@
 #include "control/fmbpc/input_law.hpp"
-#include "fmbpc/fuzzy/model_inputs.hpp"
+#include "model/model_inputs.hpp"
 
 namespace fpc {
 

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "control/fmbpc/coincidence.hpp"
+#include "control/fmbpc/disturbance_forecast.hpp"
+#include "control/fmbpc/input_limited_ilqr.hpp"
 #include "control/fmbpc/internal_model.hpp"
-#include "fmbpc/control/fmbpc/coincidence.hpp"
-#include "fmbpc/control/fmbpc/disturbance_forecast.hpp"
-#include "fmbpc/control/fmbpc/input_limited_ilqr.hpp"
 #include "fmbpc/control/predictive_law.hpp"
 
 namespace fpc {

@@ -1,4 +1,4 @@
-#include "fmbpc/control/fmbpc/input_limited_ilqr.hpp"
+#include "control/fmbpc/input_limited_ilqr.hpp"
 
 #include <algorithm>
 #include <cmath>

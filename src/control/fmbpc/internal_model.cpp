@@ -2,8 +2,8 @@
 
 #include "control/fmbpc/realisations.hpp"
 #include "fmbpc/base/signals.hpp"
-#include "fmbpc/fuzzy/undelayed.hpp"
-#include "fuzzy/same_rules.hpp"
+#include "model/same_rules.hpp"
+#include "model/undelayed.hpp"
 
 namespace fpc {
 

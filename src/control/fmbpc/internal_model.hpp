@@ -4,8 +4,8 @@
 
 #include <memory>
 
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/fuzzy/local_model.hpp"
+#include "control/fmbpc/law.hpp"
+#include "fmbpc/model/local_model.hpp"
 
 namespace fpc {
 

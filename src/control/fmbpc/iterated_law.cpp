@@ -2,9 +2,9 @@
 
 #include "control/fmbpc/input_law.hpp"
 #include "fmbpc/base/signals.hpp"
-#include "fmbpc/fuzzy/domain.hpp"
-#include "fmbpc/fuzzy/process_trust.hpp"
-#include "fmbpc/fuzzy/undelayed.hpp"
+#include "fmbpc/model/domain.hpp"
+#include "model/process_trust.hpp"
+#include "model/undelayed.hpp"
 
 namespace fpc {
 namespace {

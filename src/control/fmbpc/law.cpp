@@ -1,13 +1,13 @@
 // The fuzzy model-based predictive law. Source: vallejo2019, eqs. 19-37; the prediction form is
 // vallejo2021b, eqs. 1-10.
-#include "fmbpc/control/fmbpc/law.hpp"
+#include "control/fmbpc/law.hpp"
 
 #include <memory>
 
 #include "control/fmbpc/core.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
+#include "fmbpc/model/model_match.hpp"
 
 namespace fpc {
 namespace {

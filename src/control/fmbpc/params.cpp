@@ -3,9 +3,9 @@
 #include <initializer_list>
 #include <utility>
 
-#include "control/require_numbers.hpp"
+#include "base/require_numbers.hpp"
+#include "control/fmbpc/law.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
 
 namespace fpc {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "control/fmbpc/internal_model.hpp"
 #include "control/fmbpc/smith_predictor.hpp"
-#include "fmbpc/control/model_observer.hpp"
-#include "fmbpc/fuzzy/canonical_form.hpp"
+#include "estimation/model_observer.hpp"
+#include "model/canonical_form.hpp"
 
 namespace fpc {
 

@@ -1,5 +1,5 @@
 // What may change of the fuzzy model-based predictive law in a run.
-#include "fmbpc/control/fmbpc/law.hpp"
+#include "control/fmbpc/law.hpp"
 
 namespace fpc {
 

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "fmbpc/fuzzy/canonical_form.hpp"
-#include "fmbpc/fuzzy/local_model.hpp"
+#include "fmbpc/model/local_model.hpp"
+#include "model/canonical_form.hpp"
 
 namespace fpc {
 

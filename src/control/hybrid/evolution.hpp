@@ -2,8 +2,8 @@
 // follows must cost at least.
 #pragma once
 
-#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
-#include "fmbpc/fuzzy/choice_model.hpp"
+#include "control/hybrid/hybrid_mpc.hpp"
+#include "model/choice_model.hpp"
 
 namespace fpc {
 

@@ -1,10 +1,10 @@
-#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
+#include "control/hybrid/hybrid_mpc.hpp"
 
 #include <cmath>
 #include <string>
 
+#include "base/require_numbers.hpp"
 #include "control/hybrid/evolution.hpp"
-#include "control/require_numbers.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {

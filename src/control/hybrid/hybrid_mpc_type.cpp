@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "control/hybrid/evolution.hpp"
+#include "control/hybrid/hybrid_mpc.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
-#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
 #include "fmbpc/control/registry.hpp"
 
 namespace fpc {

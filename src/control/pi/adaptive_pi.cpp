@@ -1,13 +1,13 @@
 // Order within a sample: what was applied is recorded, gains are learned from the new outputs, the
 // loops are retuned inside the guards, then the PI terms and the decoupling give u(k).
-#include "fmbpc/control/pi/adaptive_pi.hpp"
+#include "control/pi/adaptive_pi.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "fmbpc/control/pi/decoupling.hpp"
-#include "fmbpc/control/pi/tuning.hpp"
+#include "control/pi/decoupling.hpp"
+#include "control/pi/tuning.hpp"
 
 namespace fpc {
 namespace {

@@ -1,8 +1,8 @@
 // What the adaptive loops need to be right before they start.
 #include <cmath>
 
+#include "control/pi/adaptive_pi.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/pi/adaptive_pi.hpp"
 
 namespace fpc {
 namespace {

@@ -1,9 +1,9 @@
 // Controller type adaptive_pi: its section of a loop file.
 #include <algorithm>
 
+#include "control/pi/adaptive_pi.hpp"
+#include "control/pi/decoupling.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/control/pi/adaptive_pi.hpp"
-#include "fmbpc/control/pi/decoupling.hpp"
 #include "fmbpc/control/registry.hpp"
 
 namespace fpc {

@@ -1,4 +1,4 @@
-#include "fmbpc/control/pi/decoupling.hpp"
+#include "control/pi/decoupling.hpp"
 
 #include <algorithm>
 #include <cmath>

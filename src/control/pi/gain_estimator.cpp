@@ -1,4 +1,4 @@
-#include "fmbpc/control/pi/gain_estimator.hpp"
+#include "control/pi/gain_estimator.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fmbpc/control/pi/pi_terms.hpp"
+#include "control/pi/pi_terms.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Reads a PI from its section, of a controller or of a guard. Private to the room.
 #pragma once
 
-#include "fmbpc/control/pi/pi_reader.hpp"
+#include "control/pi/pi_reader.hpp"
 #include "fmbpc/control/settings_table.hpp"
 
 namespace fpc {

@@ -1,4 +1,4 @@
-#include "fmbpc/control/pi/tuning.hpp"
+#include "control/pi/tuning.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "fmbpc/control/supervisor/load_supervisor.hpp"
+#include "control/supervisor/load_supervisor.hpp"
 
 #include <algorithm>
 #include <cmath>

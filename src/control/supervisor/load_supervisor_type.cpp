@@ -1,6 +1,6 @@
 // Controller type load_supervisor: its section of a loop file.
+#include "control/supervisor/load_supervisor.hpp"
 #include "fmbpc/control/registry.hpp"
-#include "fmbpc/control/supervisor/load_supervisor.hpp"
 
 namespace fpc {
 namespace {

@@ -138,7 +138,8 @@ bool enlist(Front front) {
   });
 }
 
-const bool kBsm1Registered = enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
+const bool kBsm1Registered =
+    enlist(Front::kValves) && enlist(Front::kSetpoints) && enlist(Front::kAir);
 
 }  // namespace
 }  // namespace fpc::bsm1

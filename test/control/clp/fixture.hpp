@@ -3,7 +3,7 @@
 // with.
 #pragma once
 
-#include "fmbpc/control/clp/closed_loop_paradigm.hpp"
+#include "control/clp/closed_loop_paradigm.hpp"
 
 #include <cstdint>
 #include <random>

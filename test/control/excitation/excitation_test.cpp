@@ -1,6 +1,6 @@
 // Excitation signals sample by sample: levels, hold times, streams that do not depend on each
 // other, limits, and mistakes named.
-#include "fmbpc/control/excitation/excitation.hpp"
+#include "control/excitation/excitation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/session.hpp"
+#include "runtime/session.hpp"
 
 namespace fpc {
 namespace control_excitation_excitation_test {

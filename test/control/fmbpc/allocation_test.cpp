@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "control/steady_law.hpp"
-#include "fuzzy/multivariate_fixture.hpp"
+#include "identification/multivariate_fixture.hpp"
 
 namespace fpc {
 namespace control_fmbpc_allocation_test {

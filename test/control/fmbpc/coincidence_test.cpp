@@ -1,11 +1,11 @@
-#include "fmbpc/control/fmbpc/coincidence.hpp"
+#include "control/fmbpc/coincidence.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "fmbpc/fuzzy/local_model.hpp"
-#include "fuzzy/model_fixture.hpp"
+#include "fmbpc/model/local_model.hpp"
+#include "identification/model_fixture.hpp"
 
 namespace fpc {
 namespace control_fmbpc_coincidence_test {

@@ -5,7 +5,7 @@
 
 #include "control/fmbpc/law_fixture.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/fuzzy/undelayed.hpp"
+#include "model/undelayed.hpp"
 
 namespace fpc {
 namespace control_fmbpc_delay_test {

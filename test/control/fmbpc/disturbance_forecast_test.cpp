@@ -1,5 +1,5 @@
 // What is expected of disturbances, on numbers one can follow.
-#include "fmbpc/control/fmbpc/disturbance_forecast.hpp"
+#include "control/fmbpc/disturbance_forecast.hpp"
 
 #include <gtest/gtest.h>
 

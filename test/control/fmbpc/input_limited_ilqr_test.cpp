@@ -1,12 +1,12 @@
 // Plans along a fuzzy model against what a quadratic programme says where both must agree.
-#include "fmbpc/control/fmbpc/input_limited_ilqr.hpp"
+#include "control/fmbpc/input_limited_ilqr.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "control/fmbpc/law_fixture.hpp"
-#include "fmbpc/optim/qp.hpp"
+#include "optim/qp.hpp"
 
 namespace fpc {
 namespace control_fmbpc_input_limited_ilqr_test {

@@ -4,10 +4,10 @@
 #include <functional>
 #include <utility>
 
+#include "control/fmbpc/law.hpp"
 #include "fmbpc/base/option.hpp"
-#include "fmbpc/control/fmbpc/law.hpp"
-#include "fmbpc/fuzzy/local_model.hpp"
-#include "fuzzy/model_fixture.hpp"
+#include "fmbpc/model/local_model.hpp"
+#include "identification/model_fixture.hpp"
 
 namespace fpc::test {
 

@@ -1,5 +1,5 @@
 // The published law against its formula, written out a second time in plain loops.
-#include "fmbpc/control/fmbpc/law.hpp"
+#include "control/fmbpc/law.hpp"
 
 #include <gtest/gtest.h>
 

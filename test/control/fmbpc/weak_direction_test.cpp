@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "control/fmbpc/law_fixture.hpp"
-#include "fmbpc/fuzzy/gain_sign.hpp"
+#include "model/gain_sign.hpp"
 
 namespace fpc {
 namespace control_fmbpc_weak_direction_test {

@@ -6,9 +6,9 @@
 #include <string>
 #include <utility>
 
-#include "fmbpc/config/model_file.hpp"
-#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
-#include "fmbpc/fuzzy/model_match.hpp"
+#include "config/model_file.hpp"
+#include "control/hybrid/hybrid_mpc.hpp"
+#include "fmbpc/model/model_match.hpp"
 #include "paths.hpp"
 
 namespace fpc::test {

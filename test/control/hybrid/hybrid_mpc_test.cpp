@@ -1,6 +1,6 @@
 // Behaviour of the hybrid predictive law around its search: costs by hand, blocks, transitions,
 // faults, budgets; and what it never sends.
-#include "fmbpc/control/hybrid/hybrid_mpc.hpp"
+#include "control/hybrid/hybrid_mpc.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 
 #include "control/hybrid/fixture.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/session.hpp"
+#include "runtime/session.hpp"
 
 namespace fpc {
 namespace control_hybrid_hybrid_mpc_test {

@@ -4,8 +4,8 @@
 #include <random>
 
 #include "control/fmbpc/law_fixture.hpp"
-#include "fmbpc/control/pi/adaptive_pi.hpp"
-#include "fuzzy/column_model.hpp"
+#include "control/pi/adaptive_pi.hpp"
+#include "model/column_model.hpp"
 
 namespace fpc::test {
 

@@ -1,5 +1,5 @@
 // The adaptive loops sample by sample, on a column made of its elements.
-#include "fmbpc/control/pi/adaptive_pi.hpp"
+#include "control/pi/adaptive_pi.hpp"
 
 #include <gtest/gtest.h>
 

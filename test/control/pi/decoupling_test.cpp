@@ -1,11 +1,11 @@
-#include "fmbpc/control/pi/decoupling.hpp"
+#include "control/pi/decoupling.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fuzzy/column_model.hpp"
+#include "model/column_model.hpp"
 
 namespace fpc {
 namespace control_pi_decoupling_test {

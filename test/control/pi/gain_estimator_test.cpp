@@ -1,4 +1,4 @@
-#include "fmbpc/control/pi/gain_estimator.hpp"
+#include "control/pi/gain_estimator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fuzzy/column_model.hpp"
+#include "model/column_model.hpp"
 
 namespace fpc {
 namespace control_pi_gain_estimator_test {

@@ -1,8 +1,8 @@
 // Gains that change while the loop runs: no bump, and from then on the new law.
 #include <gtest/gtest.h>
 
+#include "control/pi/pi.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
 namespace control_pi_pi_retune_test {

@@ -3,8 +3,8 @@
 
 #include <limits>
 
+#include "control/pi/pi.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
 namespace control_pi_pi_schedule_test {

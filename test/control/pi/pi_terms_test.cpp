@@ -1,12 +1,12 @@
 // What a PI may take besides its error, on numbers known on paper.
-#include "fmbpc/control/pi/pi_terms.hpp"
+#include "control/pi/pi_terms.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "control/pi/pi.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "fmbpc/control/pi/pi.hpp"
 
 namespace fpc {
 namespace control_pi_pi_terms_test {

@@ -1,4 +1,4 @@
-#include "fmbpc/control/pi/pi.hpp"
+#include "control/pi/pi.hpp"
 
 #include <cmath>
 

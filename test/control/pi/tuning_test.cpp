@@ -1,4 +1,4 @@
-#include "fmbpc/control/pi/tuning.hpp"
+#include "control/pi/tuning.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
-#include "fuzzy/column_model.hpp"
+#include "model/column_model.hpp"
 
 namespace fpc {
 namespace control_pi_tuning_test {

@@ -1,0 +1,34 @@
+// Controller type nmpc: its section of a loop file.
+#include "control/mpc/nmpc.hpp"
+#include "control/mpc/read_horizon.hpp"
+
+namespace fpc {
+namespace {
+
+NmpcParams readNmpc(YamlSection& section, const ControllerContext& loop) {
+  NmpcParams params;
+  params.horizon = readHorizon(section, loop);
+  section.integer("max_iterations", params.solver.max_iterations, 1, 10000);
+  section.integer("integration_steps", params.integration_steps, 1, 10000);
+  if (!loop.plant_model)
+    section.fail("type", "a plant that can be simulated: nmpc predicts with the plant's equations");
+  checked(section, [&] {
+    params.validate(loop.outputCount(), loop.inputCount());
+    loop.plant_model(params.integration_steps);
+  });
+  return params;
+}
+
+std::unique_ptr<Controller> makeNmpc(const NmpcParams& params, const ControllerContext& loop) {
+  return std::make_unique<Nmpc>(params, loop.limits, loop.plant,
+                                loop.plant_model(params.integration_steps));
+}
+
+const bool kNmpcRegistered = registerController<NmpcParams>(
+    {{"nmpc",
+      "nonlinear predictive control on the plant's own equations: a baseline told the truth"},
+     &readNmpc,
+     &makeNmpc});
+
+}  // namespace
+}  // namespace fpc

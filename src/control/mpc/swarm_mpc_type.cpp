@@ -1,0 +1,46 @@
+// Controller type swarm_mpc: its section of a loop file.
+#include "control/mpc/read_horizon.hpp"
+#include "control/mpc/swarm_mpc.hpp"
+
+namespace fpc {
+namespace {
+
+SwarmParams readSwarm(YamlSection& controller) {
+  SwarmParams params = SwarmMpcParams{}.swarm;
+  YamlSection section = controller.section("swarm");
+  section.integer("particles", params.particles, 1, 100000);
+  section.integer("iterations", params.iterations, 0, 100000);
+  section.number("inertia_start", params.inertia_start, kFiniteNotNegative);
+  section.number("inertia_end", params.inertia_end, kFiniteNotNegative);
+  section.number("cognitive", params.cognitive, kFiniteNotNegative);
+  section.number("social", params.social, kFiniteNotNegative);
+  section.number("speed_upper", params.speed_upper, {0.0, 1.0, true});
+  section.seed("seed", params.seed);
+  section.finish();
+  return params;
+}
+
+SwarmMpcParams readSwarmMpc(YamlSection& section, const ControllerContext& loop) {
+  SwarmMpcParams params;
+  params.horizon = readHorizon(section, loop);
+  params.swarm = readSwarm(section);
+  checked(section, [&] { params.validate(loop.outputCount(), loop.inputCount()); });
+  return params;
+}
+
+std::unique_ptr<Controller> makeSwarmMpc(const SwarmMpcParams& params,
+                                         const ControllerContext& loop) {
+  return std::make_unique<SwarmMpc>(params, loop.limits, loop.plant);
+}
+
+ControllerType describeSwarmMpc() {
+  ControllerType type{"swarm_mpc", "predictive control by a particle swarm on a fuzzy model"};
+  type.needs_model = true;
+  return type;
+}
+
+const bool kSwarmMpcRegistered =
+    registerController<SwarmMpcParams>({describeSwarmMpc(), &readSwarmMpc, &makeSwarmMpc});
+
+}  // namespace
+}  // namespace fpc

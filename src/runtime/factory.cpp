@@ -1,0 +1,57 @@
+#include "runtime/factory.hpp"
+
+#include "config/disturbance_source.hpp"
+#include "control/estimating_controller.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "supervision/guard.hpp"
+#include "supervision/standstill.hpp"
+
+namespace fpc {
+namespace {
+
+/// The law, guarded if it predicts with a model.
+std::unique_ptr<Controller> makeGuarded(const LoopFile& loop) {
+  std::unique_ptr<Controller> law = loop.controller->make(controllerContext(loop));
+  if (!loop.guard.enabled || !law->needsModel()) return law;
+  return std::make_unique<GuardedController>(std::move(law), loop.guard,
+                                             loop.simulation.actuator.limits, loop.plant_info);
+}
+
+/// The guarded law, on estimates of what is not measured.
+std::unique_ptr<Controller> makeEstimating(const LoopFile& loop) {
+  std::unique_ptr<Controller> law = makeGuarded(loop);
+  if (loop.estimator.outputs.empty()) return law;
+  return std::make_unique<EstimatingController>(std::move(law), loop.estimator, loop.plant_info);
+}
+
+/// The law, and around it what watches its sensors if the loop asks for it.
+std::unique_ptr<Controller> makeController(const LoopFile& loop) {
+  std::unique_ptr<Controller> law = makeEstimating(loop);
+  if (loop.standstill.signals.empty()) return law;
+  return std::make_unique<StandstillWatch>(std::move(law), loop.standstill,
+                                           loop.simulation.actuator.limits, loop.plant_info);
+}
+
+}  // namespace
+
+Simulation makeSimulation(const LoopFile& loop) {
+  requireSimulated(loop);
+  SimulationParams params = loop.simulation;
+  params.disturbance = makeDisturbance(loop);
+  return Simulation(std::move(params));
+}
+
+ControllerSession makeControllerSession(const LoopFile& loop) {
+  const ActuatorParams& actuator = loop.simulation.actuator;
+  ControllerSession session(makeController(loop), loop.setpoint, actuator.limits, actuator.initial,
+                            loop.plant_info, loop.max_pole, loop.plausibility);
+  if (loop.has_clp) session.leadsAnOptimizer();
+  return session;
+}
+
+OptimizerSession makeOptimizerSession(const LoopFile& loop) {
+  require(loop.has_clp, loop.name + ": clp", "a section clp that is enabled");
+  return {loop.clp, loop.simulation.actuator.limits, loop.plant_info};
+}
+
+}  // namespace fpc

@@ -1,0 +1,18 @@
+// Core objects from a loop file: nodes, tool and tests build them here and nowhere else.
+#pragma once
+
+#include <memory>
+
+#include "config/loop_file.hpp"
+#include "plant/simulation.hpp"
+#include "runtime/session.hpp"
+
+namespace fpc {
+
+Simulation makeSimulation(const LoopFile& loop);  ///< @throws InputError for an external plant
+ControllerSession makeControllerSession(
+    const LoopFile& loop);  ///< without a model: send it by setModel()
+OptimizerSession makeOptimizerSession(
+    const LoopFile& loop);  ///< @throws InputError without a clp section
+
+}  // namespace fpc

@@ -1,0 +1,201 @@
+#include "runtime/run.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+#include "runtime/command_player.hpp"
+#include "runtime/cut_offsets.hpp"
+#include "runtime/factory.hpp"
+#include "runtime/forced_inputs.hpp"
+#include "runtime/identifier_session.hpp"
+#include "runtime/late_lines.hpp"
+#include "runtime/operator_notes.hpp"
+#include "runtime/plant_session.hpp"
+#include "runtime/recorder_session.hpp"
+#include "runtime/remark_lines.hpp"
+#include "runtime/sample_remarks.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr std::uint64_t kRunId = 1;
+
+/// The members of the ring, called in the order in which messages would travel.
+class Ring {
+ public:
+  Ring(const LoopFile& loop, const RunOptions& options)
+      : loop_(loop),
+        options_(options),
+        made_(std::make_unique<SimulatedProcess>(makeSimulation(loop))),
+        simulation_(made_->simulation()),
+        plant_(std::move(made_), lockstepPolicy(loop)),
+        controller_(makeControllerSession(loop)),
+        player_(options.commands, simulation_.clock()),
+        record_(recordLayout(loop).emptyRecord()),
+        recorder_(recordLayout(loop),
+                  [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
+        remarks_(loop),
+        forced_(simulation_.info()),
+        cut_(simulation_.description().disturbances),
+        targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
+                 [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
+    if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
+    if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
+    plant_.begin(kRunId);
+    recorder_.announce(kRunId);
+    if (identifier_) begin(identifier_->start());
+    require(controller_.ready(), loop.name + ": model.file",
+            "a model for controller " + loop.controllerType().name);
+    player_.begin(targets_);
+    plant_.start(0.0);
+  }
+
+  /// Answers the present sample; false after the final one.
+  bool step() {
+    const Measurement now = simulation_.measurement();
+    present_ = now.header.step;
+    player_.advance(present_, targets_);
+    recorder_.receive(now);
+    forced_.look(now.header.step, simulation_.effects());
+    cut_.look(simulation_);
+    recorder_.receive(simulation_.state(),
+                      joinedLines(late(), joinedLines(forced_.lines(), cut_.lines())));
+    controller_.receive(now);
+    const ControllerAnswer& answer = controller_.answer();
+    recorder_.receive(answer.tracking,
+                      joinedLines(remarks_.look(controller_), std::exchange(missed_, {})));
+    if (!now.final) {
+      recorder_.receiveBase(answer.base);
+      plant_.receive(optimizer_ ? optimize(answer) : answer.base);
+      plant_.advance(0.0);
+    }
+    if (loop_.has_identify) learn(now);
+    return !now.final;
+  }
+
+  RunRecord take() {
+    recorder_.close();
+    conclude(record_, recorder_.complete());
+    if (!missed_.empty()) notes_.failed(present_, inOneLine(missed_));  // at the very end
+    for (RunRemark& note : notes_.remarks()) record_.remarks.push_back(std::move(note));
+    const std::string unplayed = player_.unplayed();
+    if (!unplayed.empty()) record_.remarks.push_back({unplayed, 0, 0});
+    return std::move(record_);
+  }
+
+ private:
+  std::string late() const {
+    return present_ == 0 ? lateLines(loop_, loop_.simulation.output_delay_s) : "";
+  }
+
+  const ControlAction& optimize(const ControllerAnswer& answer) {
+    if (answer.has_prediction) optimizer_->receive(answer.prediction);
+    optimizer_->receive(answer.base);
+    recorder_.receiveAction(optimizer_->action());
+    recorder_.receive(optimizer_->report());
+    return optimizer_->action();
+  }
+
+  void learn(const Measurement& now) {
+    const IdentifierSession::Due due = identifier_->take(now);
+    if (!due.refusal.empty()) fail(due.refusal);
+    use(due.model);
+    if (due.job) identify(*due.job);
+  }
+
+  void identifyAsked(int window) {
+    require(identifier_ && loop_.has_identify, "identify", "a loop with model.identify");
+    identify(identifier_->job(loop_.identify.structure, static_cast<std::size_t>(window),
+                              loop_.identify.validation_share));
+  }
+
+  void identify(const IdentificationJob& job) {
+    try {
+      const RecordIdentification result =
+          identifyRecord(job.values, job.structure, job.source, job.share);
+      const TsModel& model = identifier_->accept(result.found.model);
+      if (options_.identified) options_.identified(model);
+      use(&model);
+    } catch (const InputError& error) {
+      fail(std::string("identification: ") + error.what());
+    }
+  }
+
+  void use(const TsModel* model) {
+    if (model == nullptr || !controller_.controller().needsModel()) return;
+    try {
+      controller_.setModel(*model);
+    } catch (const InputError& error) {
+      fail(error.what());
+    }
+  }
+
+  /// Without the model that the loop file names there is no run.
+  void begin(const TsModel* model) {
+    if (model == nullptr || !controller_.controller().needsModel()) return;
+    try {
+      controller_.setModel(*model);
+    } catch (const InputError& error) {
+      throw InputError(loop_.name + ": controller: " + error.what());
+    }
+  }
+
+  /// A model that could not be had, or used: told at once, recorded with the next sample that is
+  /// answered, from which on it was to be used.
+  void fail(const std::string& words) {
+    missed_ = joinedLines(missed_, inOneLine(words));
+    tell(present_, words);
+  }
+
+  void tell(std::uint32_t step, const std::string& words) const {
+    remark("sample " + std::to_string(step) + ": " + words);
+  }
+
+  /// What an operator asked in vain is told at once and kept.
+  void refuse(std::uint32_t step, const std::string& words) {
+    notes_.refused(step, words);
+    tell(step, words);
+  }
+
+  void remark(const std::string& words) const {
+    if (options_.remark) options_.remark(words);
+  }
+
+  const LoopFile& loop_;
+  const RunOptions& options_;
+  std::string missed_;       // what went wrong with models since the sample answered last, by line
+  std::uint32_t present_{};  // the sample that is answered
+  std::unique_ptr<SimulatedProcess> made_;  // until it is the session's
+  Simulation& simulation_;
+  PlantSession plant_;
+  ControllerSession controller_;
+  std::optional<OptimizerSession> optimizer_;
+  std::optional<IdentifierSession> identifier_;
+  CommandPlayer player_;
+  RunRecord record_;
+  RecorderSession recorder_;
+  SampleRemarks remarks_;
+  ForcedInputs forced_;
+  CutOffsets cut_;
+  OperatorNotes notes_;
+  CommandTargets targets_;
+};
+
+}  // namespace
+
+RunRecord runLoop(const LoopFile& loop, const RunOptions& options) {
+  const std::uint32_t samples = loop.simulation.samples;
+  require(samples > 0, loop.name + ": sampling.duration_h",
+          "a time > 0: a run in one process must end");
+  Ring ring(loop, options);
+  for (std::uint32_t step = 0; ring.step(); ++step) {
+    if (options.progress) options.progress(step + 1, samples);
+    if (options.stop && options.stop()) break;
+  }
+  return ring.take();
+}
+
+}  // namespace fpc

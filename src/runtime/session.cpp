@@ -1,0 +1,285 @@
+#include "runtime/session.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
+#include "fmbpc/model/model_match.hpp"
+#include "model/gain_sign.hpp"
+#include "model/model_check.hpp"
+#include "supervision/reaction_watch.hpp"
+
+namespace fpc {
+namespace {
+
+SampleClock clockOf(const PlantInfo& plant) {
+  return SampleClock(plant.sample_time_s, static_cast<double>(plant.header.time_ns) / 1e9);
+}
+
+constexpr const char* kNotFinite = "data before were not finite";
+constexpr const char* kDoubted = "data before were doubtful";
+
+bool isIn(const TsModel& model, SignalKind kind, Eigen::Index index) {
+  for (const auto& submodel : model.submodels)
+    for (const auto* list : {&submodel.antecedents, &submodel.regressors})
+      for (const Regressor& regressor : *list)
+        if (regressor.kind == kind && regressor.index == index) return true;
+  return false;
+}
+
+std::string missingSamples(std::uint32_t first, std::uint32_t last) {
+  if (first == last) return "sample " + std::to_string(first) + " missing";
+  return "samples " + std::to_string(first) + ".." + std::to_string(last) + " missing";
+}
+
+}  // namespace
+
+ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
+                                     SetpointParams setpoint, InputLimits limits,
+                                     Vector initial_input, PlantInfo plant, double max_pole,
+                                     PlausibilityParams plausibility)
+    : controller_(std::move(controller)),
+      setpoint_(std::move(setpoint), plant, clockOf(plant)),
+      limits_(std::move(limits)),
+      plant_(std::move(plant)),
+      last_input_(std::move(initial_input)),
+      transfer_(countOf(plant_.inputs)),
+      moves_(limits_),
+      plausibility_(std::move(plausibility), plant_),
+      recent_(plant_),
+      max_pole_(max_pole) {
+  require(controller_ != nullptr, "controller", "a controller");
+  const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
+  limits_.validate(n_u);
+  require(last_input_.size() == n_u && last_input_.allFinite(), "actuator.initial",
+          std::to_string(n_u) + " finite numbers");
+  manual_input_ = last_input_;
+  seen_.outputs = Vector::Zero(countOf(plant_.outputs));
+  seen_.disturbances = Vector::Zero(countOf(plant_.disturbances));
+  seen_.input_applied = answer_.base.input = last_input_;
+  answer_.tracking.reference = setpoint_.present();
+  if (!controller_->followsSetpoint()) answer_.tracking.reference.setConstant(std::nan(""));
+  noteNeeds();
+}
+
+ControllerSession::ControllerSession(ControllerSession&&) noexcept = default;
+ControllerSession::~ControllerSession() = default;
+
+// What is in no model of a law with a model cannot move its input.
+void ControllerSession::noteNeeds() {
+  const std::size_t n_y = plant_.outputs.size();
+  for (std::size_t i = 0; i < n_y + plant_.disturbances.size(); ++i) {
+    const SignalKind kind = i < n_y ? SignalKind::kOutput : SignalKind::kDisturbance;
+    const auto index = static_cast<Eigen::Index>(i < n_y ? i : i - n_y);
+    const bool in_model = kind == SignalKind::kOutput || models_ == 0 ||
+                          !controller_->needsModel() || isIn(model_, kind, index);
+    const auto& needs = plausibility_.params().needs;
+    plausibility_.need(i, in_model && (needs.empty() || needs[i]));
+  }
+}
+
+bool ControllerSession::ready() const { return models_ > 0 || !controller_->needsModel(); }
+
+bool ControllerSession::sizesFit(const Measurement& m) const {
+  return static_cast<std::size_t>(m.outputs.size()) == plant_.outputs.size() &&
+         static_cast<std::size_t>(m.disturbances.size()) == plant_.disturbances.size() &&
+         static_cast<std::size_t>(m.input_applied.size()) == plant_.inputs.size();
+}
+
+Receipt ControllerSession::receive(const Measurement& measurement) {
+  if (!sizesFit(measurement)) {
+    gate_.countWrongSize();
+    return Receipt::kDropped;
+  }
+  if (!ready()) return Receipt::kNotReady;
+  const StepHeader before = gate_.last();
+  const Arrival arrival = gate_.pass(measurement.header);
+  const bool again = arrival == Arrival::kRepeat;
+  // A sample that was called the last one, and is not, is answered when it comes again.
+  if (again && (answer_.has_action || measurement.final)) return Receipt::kRepeated;
+  if (!again && !isNew(arrival)) return Receipt::kDropped;
+  begin(measurement, again ? Arrival::kResync : arrival, before);
+  process(measurement);
+  return Receipt::kAnswered;
+}
+
+// What a sample brings whatever its values are: identity, setpoints, and why memory may be invalid.
+void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepHeader& before) {
+  const std::uint32_t step = m.header.step;
+  arrival_ = arrival;
+  if (arrival == Arrival::kFirst) arrival_reason_ = "first sample is " + std::to_string(step);
+  if (arrival == Arrival::kNewRun) arrival_reason_ = "new run";
+  if (arrival == Arrival::kGap) arrival_reason_ = missingSamples(before.step + 1, step - 1);
+  if (arrival == Arrival::kResync)
+    arrival_reason_ = "back to sample " + std::to_string(step) + ", where the plant is";
+  if (arrival == Arrival::kNewRun) beginAnew();
+  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) setpoint_.anchor(m.header);
+
+  answer_.base.header = answer_.tracking.header = m.header;
+  answer_.has_action = !m.final;
+  answer_.has_prediction = false;
+  answer_.tracking.setpoint = setpoint_.advance(step);
+  if (!controller_->followsSetpoint()) answer_.tracking.setpoint.setConstant(std::nan(""));
+  answer_.effects = setpoint_.effects();
+  for (CommandEffect& effect : answer_.effects) effect.header = m.header;
+  reset_reason_.clear();
+}
+
+void ControllerSession::process(const Measurement& m) {
+  fell_back_ = false;
+  if (needsReset(arrival_)) forgetSamples();
+  lookAtMoves(m);
+  const Verdict verdict =
+      plausibility_.look(m, [&](Eigen::Ref<Vector> outputs) { return foresee(m, outputs); });
+  const Measurement& accepted = verdict == Verdict::kClean ? m : plausibility_.accepted();
+  const bool usable = m.input_applied.allFinite() && verdict <= Verdict::kRepaired;
+  const bool finite = allFinite(m);
+  if (!finite) gate_.countNotFinite();
+  if (usable)
+    keep(accepted);
+  else
+    interrupt();
+  if (unreleased_) {
+    hold(m, "joined a run without knowing what its operator asked: held until ~manual is called");
+    interruption_ = "released";
+  } else if (manual_ && m.input_applied.allFinite()) {
+    sendManual(accepted);
+    interruption_ = "back from manual";
+  } else if (!takes_actions_) {
+    hold(m,
+         "the plant takes no actions: its own hand has the input, its link is lost, or no input "
+         "follows its command");
+    interruption_ = "the plant takes actions again";
+  } else if (!m.input_applied.allFinite()) {
+    hold(m, "the applied input is not finite: input held");
+    interruption_ = kNotFinite;
+  } else if (const std::string* bad = imposing(DoubtAction::kFallback)) {
+    fallBack(m, bad->c_str());
+    interruption_ = kDoubted;
+  } else if (verdict == Verdict::kFallback) {
+    fallBack(m, plausibility_.words());
+    interruption_ = kDoubted;
+  } else if (const std::string* doubt = imposing(DoubtAction::kHold)) {
+    hold(m, doubt->c_str());
+    interruption_ = kDoubted;
+  } else if (!usable) {
+    hold(m, plausibility_.words());
+    interruption_ = finite ? kDoubted : kNotFinite;
+  } else {
+    runLaw(seen(accepted));
+    if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
+  }
+  if (interruption_ != nullptr && usable) controller_->lookOn(accepted);
+  if (remark_due_ && *output_.remark == '\0') {
+    output_.remark = model_remark_.c_str();
+    remark_due_ = false;
+  }
+  if (*output_.remark == '\0') output_.remark = reaction().c_str();
+  answered();
+}
+
+void ControllerSession::forgetSamples() {
+  plausibility_.reset();
+  recent_.reset();
+  if (reaction_) reaction_->reset();
+}
+
+/// An accepted sample; only who has a model is asked for its past.
+void ControllerSession::keep(const Measurement& accepted) {
+  present_ = accepted;
+  if (models_ > 0) recent_.add(accepted);
+  watchReaction(accepted);
+}
+
+void ControllerSession::interrupt() {
+  recent_.reset();
+  if (reaction_) reaction_->interrupt();
+}
+
+/// What a law expects that has run up to now, in case the sample is not accepted.
+bool ControllerSession::foresee(const Measurement& m, Eigen::Ref<Vector> outputs) {
+  return interruption_ == nullptr && arrival_reason_.empty() && m.input_applied.allFinite() &&
+         controller_->foresee(seen(m), outputs);
+}
+
+void ControllerSession::doubtPlant(const std::string& difference) { plant_doubt_ = difference; }
+
+const std::string& ControllerSession::reaction() const {
+  static const std::string nothing;
+  return reaction_ ? reaction_->words() : nothing;
+}
+
+/// Why the loop file wants this done now; none if it does not.
+const std::string* ControllerSession::imposing(DoubtAction action) const {
+  const PlausibilityParams& params = plausibility_.params();
+  if (params.plant_bounds == action && !plant_doubt_.empty()) return &plant_doubt_;
+  return params.reaction == action && !reaction().empty() ? &reaction() : nullptr;
+}
+
+void ControllerSession::watchReaction(const Measurement& m) {
+  if (reaction_) reaction_->look(m);
+}
+
+void ControllerSession::runLaw(const Measurement& m) {
+  if (interruption_ != nullptr || !arrival_reason_.empty()) {
+    reset_reason_ = arrival_reason_;
+    if (interruption_ != nullptr) {
+      if (!reset_reason_.empty()) reset_reason_ += "; ";
+      reset_reason_ += interruption_;
+    }
+    controller_->reset(m);
+    transfer_.reset(other_hand_ || transfer_.active());
+    other_hand_ = false;
+    interruption_ = nullptr;
+    arrival_reason_.clear();
+  }
+  if (std::exchange(gains_due_, false)) lookAtGains(m);
+  output_.begin();
+  controller_->step(m, setpoint_, output_);
+  if (output_.reference.size() == m.outputs.size()) answer_.tracking.reference = output_.reference;
+  if (!output_.ok) return hold(m, output_.remark);
+  if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
+    return hold(m, "the law gave no finite input: input held");
+  answer_.base.input = output_.input;
+  handOver(m);
+  limit(m);
+  answer_.base.source = output_.source;
+  answer_.has_prediction = output_.predictive && !m.final;
+  if (!answer_.has_prediction) return;
+  answer_.prediction = output_.prediction;
+  answer_.prediction.header = m.header;
+}
+
+/// Of the first model, at the first sample.
+void ControllerSession::lookAtGains(const Measurement& m) {
+  const std::string weak = weakDirection(model_, m);
+  if (weak.empty()) return;
+  model_remark_ = weak;
+  remark_due_ = true;
+}
+
+void ControllerSession::setModel(const TsModel& model) {
+  const bool matters = controller_->needsModel() && !model.submodels.empty();
+  TsModel matched = matters ? matchToPlant(model, plant_) : TsModel();
+  if (models_ > 0 && matters && present_.outputs.size() > 0) {
+    requireStable(matched, present_, max_pole_);
+    const auto turned = turnedGains(model_, matched, present_);
+    if (plausibility_.params().gain_sign && !turned.empty()) {
+      requireFewTurned(turned, matched);
+      requireForeseen(turned, matched, recent_.errorsOf(model_), recent_.errorsOf(matched));
+    }
+    model_remark_ = wordsOf(turned, matched);
+    remark_due_ = !model_remark_.empty();
+  }
+  controller_->setModel(model);
+  model_ = std::move(matched);
+  if (matters) plausibility_.setModel(model_);
+  gains_due_ = matters && models_ == 0;
+  const int window = plausibility_.params().reaction_samples;
+  if (matters && window > 0) reaction_ = std::make_unique<ReactionWatch>(model_, window);
+  ++models_;
+  noteNeeds();
+}
+
+}  // namespace fpc

@@ -1,0 +1,90 @@
+// What an operator asks of a controller: manual, adaptation, settings; kept by others for one that
+// comes back.
+#include <algorithm>
+#include <utility>
+
+#include "fmbpc/base/input_error.hpp"
+#include "runtime/session.hpp"
+#include "supervision/reaction_watch.hpp"
+
+namespace fpc {
+
+void ControllerSession::manual(bool on) {
+  if (on && !manual_) manual_given_ = false;
+  if (!on && manual_ && reaction_) reaction_->reset();  // a person has seen to it
+  manual_ = on;
+  manual_asked_ = true;
+  unreleased_ = false;
+}
+
+void ControllerSession::holdRecipe(bool on) {
+  setpoint_.hold(on);
+  recipe_asked_ = true;
+}
+
+void ControllerSession::manualInput(VectorRef input) {
+  require(manual_, "manual input", "manual mode: switch to manual first");
+  require(input.size() == last_input_.size(), "manual input",
+          std::to_string(last_input_.size()) + " numbers");
+  require(input.allFinite(), "manual input", "finite numbers");
+  require(controller_->mayBeSent(input), "manual input", "an input that the controller may send");
+  manual_input_ = input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
+  manual_given_ = true;
+}
+
+bool ControllerSession::adapt(bool on) {
+  const bool done = controller_->adapt(on);
+  if (done) adapt_ = on;
+  return done;
+}
+
+bool ControllerSession::retune(const Settings& settings) {
+  if (!controller_->retune(settings)) return false;
+  for (const auto& [key, value] : settings) {
+    const auto known = std::find_if(settings_.begin(), settings_.end(),
+                                    [&name = key](const auto& s) { return s.first == name; });
+    if (known == settings_.end())
+      settings_.emplace_back(key, value);
+    else
+      known->second = value;
+  }
+  return true;
+}
+
+OperatorWishes ControllerSession::wishes() const {
+  return {manual_, manual_given_, manual_input_,       setpoint_.recipe(),
+          adapt_,  settings_,     setpoint_.standing()};
+}
+
+void ControllerSession::restore(const OperatorWishes& wishes) {
+  if (gate_.counts().accepted > 0) return;
+  if (!manual_asked_) restoreManual(wishes);
+  const bool hold = recipe_asked_ ? setpoint_.held() : wishes.recipe.held;
+  setpoint_.restore(wishes.recipe);
+  setpoint_.hold(hold);
+  for (const Command& command : wishes.setpoints) setpoint_.restore(command);
+  if (wishes.adapt && !adapt_) adapt(*wishes.adapt);
+  Settings older;
+  for (const auto& setting : wishes.settings)
+    if (std::none_of(settings_.begin(), settings_.end(),
+                     [&](const auto& asked) { return asked.first == setting.first; }))
+      older.push_back(setting);
+  if (!older.empty()) retune(older);
+}
+
+void ControllerSession::beginAnew() {
+  if (std::exchange(carries_, false))
+    setpoint_.carryOver();
+  else
+    setpoint_.restart();
+}
+
+void ControllerSession::restoreManual(const OperatorWishes& wishes) {
+  manual_ = wishes.manual;
+  manual_given_ = wishes.manual_given && wishes.manual_input.size() == last_input_.size() &&
+                  wishes.manual_input.allFinite();
+  if (manual_given_)
+    manual_input_ = wishes.manual_input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
+}
+
+}  // namespace fpc

@@ -1,0 +1,91 @@
+#include "supervision/flat_line.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fpc {
+namespace {
+
+constexpr double kRounding = 1e-6;  // of the value: numbers of 32 bits tremble by less
+constexpr double kBits = 1e-9;      // of the value: differences of equal steps
+constexpr double kFar = 16.0;       // resolutions
+constexpr double kLeastWhite = 0.25, kMostWhite = 0.75;
+constexpr double kSurely = 0.5;  // of the variance that a window shows
+constexpr int kLarge = 8;        // steps of two resolutions: rounding alone makes none
+constexpr int kNever = std::numeric_limits<int>::max();
+
+}  // namespace
+
+void FlatLine::push(double step) {
+  steps_[static_cast<std::size_t>(next_)] = step;
+  next_ = (next_ + 1) % kWindow;
+  known_ = std::min(known_ + 1, kWindow);
+}
+
+void FlatLine::add(double value) {
+  if (!started_) {
+    started_ = true;
+    value_ = largest_ = value;
+    return;
+  }
+  if (value == value_) {
+    if (repeats_ == 0) {
+      allowed_ = allowed();
+      moves_ = isInMotion();
+    }
+    if (repeats_ < kNever) ++repeats_;
+    return;
+  }
+  const int missed = std::min(repeats_, kWindow);
+  const bool late = isRepeated();
+  for (int k = missed; k > 0; --k) push(late ? (value - value_) / (missed + 1) : 0.0);
+  push(late ? (value - value_) / (missed + 1) : value - value_);
+  repeats_ = 0;
+  allowed_ = kNever;
+  value_ = value;
+  largest_ = std::max(largest_, value);
+}
+
+double FlatLine::resolution() const {
+  double least = 0.0, before = 0.0;
+  const auto take = [&](double size) { least = least == 0.0 ? size : std::min(least, size); };
+  for (int k = 0; k < kWindow; ++k) {
+    const double now = step(k), turn = std::abs(now - before);
+    if (now != 0.0) take(std::abs(now));
+    if (before != 0.0 && turn > kBits * std::abs(value_)) take(turn);
+    before = now;
+  }
+  return least;
+}
+
+bool FlatLine::isInMotion() const {
+  if (known_ < kWindow || changes() < kMoving) return false;
+  const double last = step(kWindow - 1), next = 2.0 * last - step(kWindow - 2);
+  return std::abs(last) > std::max(kFar * resolution(), kRounding * std::abs(value_)) &&
+         next / last > 0.5;
+}
+
+int FlatLine::changes() const {
+  return known_ - static_cast<int>(std::count(steps_.begin(), steps_.begin() + known_, 0.0));
+}
+
+/// Of a run that begins now.
+int FlatLine::allowed() const {
+  if (known_ < kWindow || changes() < kFewest) return kNever;
+  const double q = resolution();
+  double products = 0.0, squares = 0.0;
+  int large = 0;
+  for (int k = 0; k < kWindow; ++k) {
+    squares += step(k) * step(k);
+    if (k > 0) products += step(k) * step(k - 1);
+    large += std::abs(step(k)) > 1.5 * q ? 1 : 0;
+  }
+  const double white = -products / squares, noise = -kSurely * products / (kWindow - 1);
+  const bool trembles = white > kLeastWhite && white < kMostWhite && large >= kLarge;
+  if (!trembles || !(noise > std::pow(kRounding * value_, 2))) return kNever;
+  const double by_noise = std::erf(q / std::sqrt(8.0 * noise));
+  const double seen = (kWindow - changes() + 1.0) / (kWindow + 2.0);
+  return static_cast<int>(std::ceil(std::log(kChance) / std::log(std::max(by_noise, seen))));
+}
+
+}  // namespace fpc

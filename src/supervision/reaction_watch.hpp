@@ -1,0 +1,59 @@
+// Do the outputs react to the inputs as the model says? Finds an input that does not move although
+// nothing is read back of it, and one that pushes the other way.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fmbpc/base/ring.hpp"
+#include "fmbpc/model/local_model.hpp"
+
+namespace fpc {
+
+/// For output o and input i, with e(k) the model's error one sample ahead and phi(k) that part of
+/// its forecast that comes from input i, least squares over the last `samples` samples give
+///   e(k) = a + (c - 1) phi(k):
+/// c is the share of the forecast reaction that was seen, 1 if the model is right, 0 if the input
+/// stands still, below 0 if it pushes the other way. Of the outputs the one with the smallest
+/// standard error s of c counts; residuals and phi that follow each other widen it by
+/// sqrt((1 + r) / (1 - r)), r the product of their autocorrelations at lag one. An input does not
+/// react once c + 2 s < kLeast for a quarter of the window, s below kSure; it does again once
+/// c - 2 s is larger. Without moves nothing is judged.
+/// Symbols:  c, s per input;  a, e, phi per output [of the output]
+class ReactionWatch {
+ public:
+  static constexpr double kLeast = 0.35, kSure = 0.15;
+
+  /// `model` is matched to the plant. @throws InputError unless samples >= 8.
+  ReactionWatch(const TsModel& model, int samples);
+  /// Forgets everything.
+  void reset();
+  /// A sample was lost or not accepted: goes on with the next one.
+  void interrupt() { known_ = false; }
+  /// Sample k; its input_applied is what was told, or what was read back. No allocation.
+  void look(const Measurement& now);
+  /// "the outputs do not react to input q_r as the model says"; empty if they do, or nobody knows.
+  const std::string& words() const { return words_; }
+  double share(Eigen::Index input) const { return share_[input]; }  ///< c; NaN: not known
+
+ private:
+  void predict(const Measurement& now);
+  void keep();
+  void judge();
+  void estimate(Eigen::Index output, Eigen::Index input, double& share, double& error) const;
+
+  LocalModel local_;
+  std::vector<std::string> names_;         // of the inputs
+  std::vector<Eigen::Index> first_, end_;  // rows of each input's past in the state
+  Vector state_, part_, next_, effect_, before_, reference_;
+  Matrix errors_, phi_;      // n_y N; n_y n_u, N
+  Vector error_, forecast_;  // of this sample: n_y; n_y n_u
+  Vector share_;             // n_u
+  std::vector<int> away_;    // samples in a row
+  std::vector<bool> dead_;
+  Eigen::Index filled_{}, place_{};
+  bool known_{false}, started_{false};
+  std::string words_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,89 @@
+// Loops of the hybrid law: sets of inputs, recipes, windows and consumption as people write them,
+// and what is refused.
+#include <cmath>
+
+#include "control/hybrid/hybrid_mpc.hpp"
+#include "runtime/loop_fixture.hpp"
+#include "runtime/report.hpp"
+#include "runtime/run.hpp"
+
+namespace fpc {
+namespace loop_hybrid_loop_test {
+
+LoopFile read(const Overrides& overrides) { return readLoop("batch_fuzzy_eq45", overrides); }
+
+TEST(HybridLoop, LevelsWithoutTheForbiddenAreTheListOfInputs) {
+  const LoopFile listed = read({});
+  const LoopFile combined = readLoop(
+      "batch_fuzzy_eq45",
+      {{"controller.inputs", "[]"},
+       {"controller.levels", "{kM: [0, 0.01, 0.02, 0.05, 0.1, 1], kC: [0, 1], kH: [1, 0]}"},
+       {"controller.forbidden",
+        "[{kC: 1, kH: 1}, {kC: 0, kH: 0}, {kM: 0, kC: 1}, {kM: 0.01, kC: 1}, {kM: 0.02, kC: 1},"
+        " {kM: 0.05, kC: 1}, {kM: 0.1, kC: 1}]"}});
+  const Matrix& choices = listed.controllerParams<HybridMpcParams>().choices;
+  EXPECT_EQ(combined.controllerParams<HybridMpcParams>().choices, choices);
+  EXPECT_EQ(choices.cols(), 7);
+}
+
+TEST(HybridLoop, ARecipeIsASchedule) {
+  const LoopFile loop =
+      read({{"setpoint.recipe",
+             "[{T: 30, hold_min: 30}, {T: 50, ramp_h: 1, hold_s: 900}, {T: 20, ramp_min: 15}]"}});
+  ASSERT_EQ(loop.setpoint.schedule.size(), 3U);
+  const double starts[] = {0.0, 0.5, 1.75}, ramps[] = {0.0, 1.0, 0.25}, T[] = {30.0, 50.0, 20.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(loop.setpoint.schedule[i].time_h, starts[i]);
+    EXPECT_DOUBLE_EQ(loop.setpoint.schedule[i].ramp_h, ramps[i]);
+    EXPECT_EQ(loop.setpoint.schedule[i].value[0], T[i]);
+    EXPECT_TRUE(std::isnan(loop.setpoint.schedule[i].value[1]));
+  }
+}
+
+TEST(HybridLoop, WindowsAndConsumptionAreSumsOverTheRecord) {
+  const LoopFile loop =
+      read({{"sampling.duration_h", "0.5"},
+            {"report.windows", "[{name: w, output: T, from_min: 10, to_min: 20}, {name: v}]"},
+            {"report.windows.1.to_h", "0"}});
+  const RunRecord record = runLoop(loop);
+  const Summary summary = summarize(loop, record, 0.0);
+  ASSERT_EQ(summary.windows.size(), 3U);  // w of T, v of T, v of Tw
+  double sum = 0.0, water = 0.0;
+  for (std::size_t k = 60; k <= 120; ++k)
+    sum += std::pow(record.samples[k].measurement.outputs[0] - 62.0, 2);
+  for (std::size_t k = 1; k <= 180; ++k)
+    water += 37.4 * record.samples[k].measurement.input_applied[0];
+  EXPECT_EQ(summary.windows[0].samples, 61U);
+  EXPECT_NEAR(summary.windows[0].rmse, std::sqrt(sum / 61.0), 1e-9);
+  EXPECT_LT(summary.windows[0].mean_error, 0.0);
+  EXPECT_EQ(summary.windows[1].samples, 1U);
+  ASSERT_EQ(summary.consumption.size(), 1U);
+  EXPECT_NEAR(summary.consumption[0].second, water, 1e-9 * water);
+  const std::string json = toJson(summary);
+  for (const char* key : {"\"windows\"", "\"water_kg\"", "\"switches\"", "\"travel\""})
+    EXPECT_NE(json.find(key), std::string::npos) << key;
+}
+
+TEST(HybridLoop, MistakesAreNamed) {
+  const auto error = [](const std::string& key, const std::string& value) {
+    return errorOf([&] { read({{key, value}}); });
+  };
+  expectWords(error("controller.inputs", "[]"), {"controller.inputs", "levels"});
+  expectWords(error("controller.inputs", "[{kM: 0, kC: 0}]"), {"controller.inputs[0]", "kH"});
+  expectWords(error("controller.inputs.1.kM", "0"), {"controller.inputs", "only once"});
+  expectWords(error("controller.inputs.0.kM", "2"), {"inputs", "bounds"});
+  expectWords(error("controller.forbidden", "[{}]"), {"controller.forbidden", "leave an input"});
+  expectWords(error("controller.cost.switching.0.before", "kX"), {"one of kM, kC, kH"});
+  expectWords(error("controller.cost.tracking", "{T: -1}"), {"controller.cost.tracking.T"});
+  expectWords(error("controller.node_budget", "20"), {"budget", "28"});
+  expectWords(error("actuator.fallback", "{kM: 0.5}"), {"fallback", "controller.inputs"});
+  expectWords(error("setpoint.schedule", "[{time_h: 1, T: 30}]"), {"setpoint.recipe", "either"});
+  expectWords(error("setpoint.recipe", "[{T: 30, hold_h: 1, hold_min: 5}]"), {"in one unit"});
+  expectWords(error("report.windows", "[{name: w, from_h: 2, to_h: 1}]"),
+              {"report.windows[0].to_h"});
+  expectWords(error("report.consumption", "{steps: {kM: 1}}"), {"report.consumption.steps"});
+  expectWords(error("model", "{}"), {"model.file", "hybrid_mpc"});
+}
+
+}  // namespace loop_hybrid_loop_test
+}  // namespace fpc

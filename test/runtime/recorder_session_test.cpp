@@ -1,0 +1,289 @@
+#include "runtime/recorder_session.hpp"
+
+#include <gtest/gtest.h>
+
+namespace fpc {
+namespace loop_recorder_session_test {
+
+StepHeader header(std::uint32_t step, std::uint64_t run = 7) { return {1000 + step, run, step}; }
+
+Measurement measurement(std::uint32_t step, bool final = false, std::uint64_t run = 7) {
+  Measurement m;
+  m.header = header(step, run);
+  m.outputs = Vector::Constant(1, step);
+  m.disturbances = Vector(0);
+  m.input_applied = Vector::Zero(1);
+  m.final = final;
+  return m;
+}
+
+Tracking tracking(std::uint32_t step) { return {header(step), Vector::Ones(1), Vector::Ones(1)}; }
+PlantState state(std::uint32_t step) {
+  PlantState s;
+  s.header = header(step);
+  s.outputs = Vector::Ones(1);
+  return s;
+}
+ControlAction action(std::uint32_t step) {
+  return {header(step), Vector::Ones(1), ActionSource::kBase};
+}
+SolverReport report(std::uint32_t step) {
+  SolverReport r;
+  r.header = header(step);
+  r.perturbation = Vector::Zero(1);
+  return r;
+}
+
+class RecorderSessionTest : public ::testing::Test {
+ protected:
+  RecorderSession recorder(bool has_optimizer = false, bool has_state = false) {
+    RecordLayout layout;
+    layout.info.outputs = {{"y", "-", 0, 1}};
+    layout.info.inputs = {{"u", "-", 0, 1}};
+    layout.has_optimizer = has_optimizer;
+    layout.has_state = has_state;
+    return {layout, [this](const SampleRecord& s) { passed_.push_back(s); }};
+  }
+  static void addSample(RecorderSession& r, std::uint32_t step, bool final = false) {
+    r.receive(measurement(step, final));
+    r.receive(tracking(step));
+    if (!final) r.receiveBase(action(step));
+  }
+  std::vector<SampleRecord> passed_;
+};
+
+TEST_F(RecorderSessionTest, IsCompleteWithTheFinalSampleAndNoGap) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  EXPECT_FALSE(r.complete());
+  addSample(r, 0);
+  addSample(r, 1);
+  EXPECT_FALSE(r.complete());
+  EXPECT_EQ(r.passedOn(), 2U);
+  addSample(r, 2, true);
+  EXPECT_TRUE(r.finalSeen() && r.complete());
+  ASSERT_EQ(passed_.size(), 3U);
+  EXPECT_TRUE(passed_[0].has_base && passed_[0].has_action);
+  EXPECT_EQ(passed_[2].measurement.outputs[0], 2.0);
+}
+
+TEST_F(RecorderSessionTest, OrderOfArrivalDoesNotMatterAndSamplesGoOutInOrder) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 2, true);
+  addSample(r, 0);
+  EXPECT_EQ(r.gaps(), (std::vector<std::string>{"sample 1: no measurement", "sample 1: no tracking",
+                                                "sample 1: no control_action"}));
+  addSample(r, 1);
+  EXPECT_TRUE(r.complete());
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(passed_[k].measurement.header.step, k);
+}
+
+TEST_F(RecorderSessionTest, HoldsASampleWhenAllOfItIsThere) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  r.receive(measurement(1));
+  r.receiveBase(action(1));
+  EXPECT_FALSE(r.holds(header(1)));
+  r.receive(tracking(1));
+  EXPECT_TRUE(r.holds(header(1)));  // though sample 0 has not come
+  EXPECT_FALSE(r.holds(header(0)) || r.holds(header(2)) || r.holds(header(1, 8)));
+  addSample(r, 0);
+  EXPECT_TRUE(r.holds(header(0)) && r.holds(header(1)));
+  r.resume(9, 5);
+  EXPECT_TRUE(r.holds(header(4, 9)));  // on disk since before
+}
+
+TEST_F(RecorderSessionTest, AFinalSampleBeforeTheLoopsLastIsNotTheEnd) {
+  RecordLayout layout = recorder().layout();
+  layout.samples = 3;
+  RecorderSession r(layout, [](const SampleRecord&) {});
+  r.announce(7);
+  addSample(r, 0);
+  addSample(r, 1, true);
+  EXPECT_TRUE(r.finalSeen());
+  EXPECT_FALSE(r.complete());
+  r.receiveBase(action(1));
+  addSample(r, 2);
+  addSample(r, 3, true);
+  EXPECT_TRUE(r.complete());
+}
+
+TEST_F(RecorderSessionTest, AnOptimizerOwesActionAndReport) {
+  RecorderSession r = recorder(true);
+  r.announce(7);
+  addSample(r, 0);
+  addSample(r, 1, true);
+  EXPECT_EQ(r.gaps(), (std::vector<std::string>{"sample 0: no control_action",
+                                                "sample 0: no solver_report"}));
+  EXPECT_EQ(r.gaps(1).size(), 1U);
+  r.receiveAction(action(0));
+  r.receive(report(0));
+  EXPECT_TRUE(r.complete());
+}
+
+TEST_F(RecorderSessionTest, WhatComesBeforeTheAnnouncementIsNotLost) {
+  RecorderSession r = recorder();
+  addSample(r, 0);
+  EXPECT_EQ(r.passedOn(), 0U);
+  r.announce(7);
+  EXPECT_EQ(r.passedOn(), 1U);
+}
+
+TEST_F(RecorderSessionTest, AnAnnouncedRunStartsOverWhicheverNumberIsLarger) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  r.receive(measurement(1, true, 1ULL << 63));
+  EXPECT_FALSE(r.finalSeen());
+  EXPECT_EQ(r.strays(), 1U);
+  r.announce(3);
+  addSample(r, 1);  // of run 7
+  EXPECT_EQ(r.passedOn(), 0U);
+  EXPECT_EQ(r.strays(), 4U);
+}
+
+TEST_F(RecorderSessionTest, AForgedFinalDoesNotEndARunThatGoesOn) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  r.receive(measurement(1, true));
+  EXPECT_TRUE(r.finalSeen());
+  r.receive(measurement(2));
+  EXPECT_FALSE(r.finalSeen());
+}
+
+TEST_F(RecorderSessionTest, AStrayStepNumberDoesNotFillTheMemory) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  r.receive(measurement(4000000000U));
+  r.receive(tracking(4000000000U));
+  EXPECT_EQ(r.waiting(), 0U);
+  EXPECT_EQ(r.strays(), 2U);
+  addSample(r, 1);
+  EXPECT_EQ(r.passedOn(), 2U);
+}
+
+TEST_F(RecorderSessionTest, RepeatedStraysFarAheadLeaveNoHolesOnTheDisk) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  for (std::uint32_t k = 0; k < 50; ++k) {
+    addSample(r, k);
+    for (int times = 0; times < 3; ++times) r.receive(measurement(4000000U + k));
+  }
+  EXPECT_EQ(passed_.size(), 50U);
+  EXPECT_EQ(r.gapCount(), 0U);
+  EXPECT_EQ(r.strays(), 150U);
+}
+
+TEST_F(RecorderSessionTest, ARecorderThatWasAwayForLongGoesOn) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  const std::uint32_t later = 3 * RecorderSession::kWindow;
+  for (std::uint32_t k = later; k < later + 20; ++k) addSample(r, k);
+  EXPECT_EQ(r.latest().step, later + 19);
+  EXPECT_GT(r.gapCount(), RecorderSession::kWindow);
+}
+
+TEST_F(RecorderSessionTest, RemarksOfTheLawBelongToTheirSamples) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  r.receive(tracking(0), "outside the data of the model");
+  r.receive(measurement(0));
+  r.receiveBase(action(0));
+  addSample(r, 1, true);
+  RunRecord record;
+  record.samples = passed_;
+  conclude(record, true);
+  ASSERT_EQ(record.remarks.size(), 1U);
+  EXPECT_EQ(record.remarks[0].words, "outside the data of the model");
+  EXPECT_EQ(record.remarks[0].samples, 1U);
+  EXPECT_EQ(record.remarks[0].first, 0U);
+}
+
+TEST_F(RecorderSessionTest, RemarksOfASampleAreCountedLineByLine) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  for (const std::uint32_t step : {0U, 1U}) {
+    r.receive(tracking(step), step == 0 ? "clamped" : "held\nclamped");
+    r.receive(measurement(step));
+    r.receiveBase(action(step));
+  }
+  addSample(r, 2, true);
+  RunRecord record;
+  record.samples = passed_;
+  conclude(record, true);
+  ASSERT_EQ(record.remarks.size(), 2U);
+  EXPECT_EQ(record.remarks[0].words, "clamped");
+  EXPECT_EQ(record.remarks[0].samples, 2U);
+  EXPECT_EQ(record.remarks[1].words, "held");
+  EXPECT_EQ(record.remarks[1].first, 1U);
+}
+
+TEST_F(RecorderSessionTest, RemarksOfThePlantFollowThoseOfTheControllerWhoeverIsHeardFirst) {
+  RecorderSession r = recorder(false, true);
+  r.announce(7);
+  for (const bool plant_first : {true, false}) {
+    const std::uint32_t step = plant_first ? 0 : 1;
+    if (plant_first) r.receive(state(step), "clamped");
+    r.receive(tracking(step), "held");
+    if (!plant_first) r.receive(state(step), "clamped");
+    r.receive(measurement(step));
+    r.receiveBase(action(step));
+  }
+  ASSERT_EQ(passed_.size(), 2U);
+  EXPECT_EQ(passed_[0].remark, "held\nclamped");
+  EXPECT_EQ(passed_[1].remark, "held\nclamped");
+}
+
+TEST_F(RecorderSessionTest, OfTooManyRemarksTheWholeLinesAreKeptThatAJournalHolds) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  const std::string line(200, 'a');
+  r.receive(tracking(0), line + "\n" + line + "\n" + line);
+  r.receive(measurement(0));
+  r.receiveBase(action(0));
+  r.receive(tracking(1), std::string(600, 'b'));
+  r.receive(measurement(1, true));
+  ASSERT_EQ(passed_.size(), 2U);
+  EXPECT_EQ(passed_[0].remark, line + "\n" + line);
+  EXPECT_EQ(passed_[1].remark, std::string(511, 'b'));
+}
+
+TEST_F(RecorderSessionTest, WhatIsMissingForLongIsGivenUpAndNamed) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  r.receive(measurement(0));  // its tracking never comes
+  r.receiveBase(action(0));
+  for (std::uint32_t k = 1; k <= RecorderSession::kWindow; ++k) addSample(r, k);
+  EXPECT_EQ(r.gapCount(), 1U);
+  EXPECT_EQ(r.gaps(), (std::vector<std::string>{"sample 0: no tracking"}));
+  EXPECT_EQ(passed_.size(), RecorderSession::kWindow + 1U);
+  EXPECT_EQ(r.waiting(), 0U);
+}
+
+TEST_F(RecorderSessionTest, ClosePassesOnWhatWaits) {
+  RecorderSession r = recorder(true);
+  r.announce(7);
+  addSample(r, 0);
+  r.receive(tracking(1));
+  r.close();
+  ASSERT_EQ(passed_.size(), 1U);
+  EXPECT_TRUE(passed_[0].has_base && !passed_[0].has_action);
+  EXPECT_FALSE(r.complete());
+}
+
+TEST_F(RecorderSessionTest, WrongSizesAreCounted) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  Measurement m = measurement(0);
+  m.outputs = Vector::Zero(2);
+  r.receive(m);
+  EXPECT_EQ(r.wrongSize(), 1U);
+  EXPECT_FALSE(r.running());
+}
+
+}  // namespace loop_recorder_session_test
+}  // namespace fpc

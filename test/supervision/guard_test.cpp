@@ -1,0 +1,216 @@
+// The guard around a law of which everything is known: untouched inside, smaller moves and a PI
+// outside, bumpless both ways.
+#include "supervision/guard.hpp"
+
+#include "control/pi/pi.hpp"
+
+#include "runtime/session_fixture.hpp"
+
+namespace fpc::test_session {
+namespace control_guard_test {
+
+/// Asks for the same input always.
+struct Wish final : Controller {
+  void reset(const Measurement& start) override { resets.push_back(start.header.step); }
+  void forget() override { forgotten_before_reset = resets.size(); }
+  void step(const Measurement& now, const SetpointSource& setpoint,
+            ControllerOutput& output) override {
+    output.input = of({wish});
+    output.source = ActionSource::kBase;
+    output.reference = setpoint.present();
+    output.predictive = true;
+    output.prediction = resting(now.outputs);
+    output.ok = true;
+    output.remark = "";
+    seen = now.input_applied[0];
+  }
+  /// Nothing moves, whatever the input.
+  PredictiveAction resting(const Vector& outputs) const {
+    PredictiveAction p;
+    p.state = outputs;
+    p.A = p.C = Matrix::Identity(2, 2);
+    p.B = Matrix::Zero(2, 1);
+    p.K = Matrix::Zero(1, 2);
+    p.offset_state = p.offset_output = Vector::Zero(2);
+    p.feedforward = Matrix::Constant(1, 1, wish);
+    return p;
+  }
+  bool needsModel() const override { return true; }
+  void setModel(const TsModel&) override {}
+  std::vector<std::uint32_t> resets;
+  std::size_t forgotten_before_reset{99};
+  double wish{700.0}, seen{};
+};
+
+class Guard : public testing::Test {
+ protected:
+  void make(GuardParams params) {
+    auto owned = std::make_unique<Wish>();
+    law = owned.get();
+    guard =
+        std::make_unique<GuardedController>(std::move(owned), std::move(params), limits(), plant());
+    guard->setModel(boxModel());
+    guard->reset(sample(0));
+  }
+  static GuardParams params(bool with_pi = false) {
+    GuardParams p;
+    p.lock_samples = 0;
+    p.least_move = 0.02;
+    p.return_samples = 3;
+    if (!with_pi) return p;
+    PiLoop pi;
+    pi.output = 1;
+    pi.kp = 0.5;
+    pi.ki_per_h = 1.0;
+    pi.bias = 775.0;
+    PiParams fallback;
+    fallback.loops = {pi};
+    p.pi = std::make_shared<const PiParams>(fallback);
+    return p;
+  }
+  double step(std::uint32_t k, double x, double applied) {
+    Measurement now = sample(k, 1, applied);
+    now.outputs[1] = x;
+    setpoint.advance(k);
+    guard->step(now, setpoint, out);
+    return out.input[0];
+  }
+
+  Wish* law{};
+  std::unique_ptr<GuardedController> guard;
+  SetpointSource setpoint{setpoints(), {"s", "x"}, SampleClock(720.0, 1.0)};
+  ControllerOutput out;
+};
+
+TEST_F(Guard, InsideTheDataTheLawPassesUntouched) {
+  make(params());
+  EXPECT_EQ(step(0, 2000.0, 570.0), 700.0);
+  EXPECT_EQ(out.source, ActionSource::kBase);
+  EXPECT_TRUE(out.predictive);
+  EXPECT_EQ(out.prediction.input_lower[0], 0.0);
+  EXPECT_EQ(out.prediction.input_upper[0], 1600.0);
+  EXPECT_STREQ(out.remark, "");
+  EXPECT_EQ(guard->view().trust, 1.0);
+  EXPECT_EQ(guard->signals().front().first, "model_trust");
+  EXPECT_EQ(guard->signals().front().second, 1.0);
+}
+
+TEST_F(Guard, OutsideMovesShrinkToTheLeast) {
+  make(params());
+  // x 2200 + half of its range: no trust at all.
+  EXPECT_DOUBLE_EQ(step(0, 2400.0, 570.0), 570.0 + 0.02 * 1600.0);
+  EXPECT_EQ(out.source, ActionSource::kGuarded);
+  ASSERT_TRUE(out.predictive);  // an optimizer stays in charge of the limits of outputs
+  EXPECT_DOUBLE_EQ(out.prediction.input_lower[0], 570.0 - 0.02 * 1600.0);
+  EXPECT_DOUBLE_EQ(out.prediction.input_upper[0], 570.0 + 0.02 * 1600.0);
+  EXPECT_NE(std::string(out.remark).find("outside the model"), std::string::npos);
+  EXPECT_TRUE(guard->view().outside);
+  EXPECT_EQ(guard->signals().front().second, 0.0);
+}
+
+TEST_F(Guard, AWishOutsideTheDataIsSaidAndGranted) {
+  make(params());
+  law->wish = 1400.0;  // two thirds of the range beyond
+  EXPECT_DOUBLE_EQ(step(0, 2000.0, 990.0), 1400.0);
+  EXPECT_EQ(guard->view().trust, 0.0);
+  EXPECT_TRUE(guard->view().outside);
+  EXPECT_STREQ(out.remark, "outside the model");
+  EXPECT_EQ(out.source, ActionSource::kBase);
+}
+
+TEST_F(Guard, BetweenTheThresholdsMovesShrinkInProportion) {
+  GuardParams p = params();
+  p.trust_low = 0.0;
+  p.trust_high = 1.0;
+  make(p);
+  law->wish = 0.0;
+  const double moved = 900.0 - step(0, 2250.0, 900.0);  // an eighth of the range: trust 0.5
+  EXPECT_NEAR(moved, (0.02 + 0.48 * 0.5) * 1600.0, 1e-9);
+}
+
+TEST_F(Guard, ThePiTakesOverWithoutABumpAndTheLawComesBackWithoutOne) {
+  make(params(true));
+  EXPECT_EQ(step(0, 2000.0, 570.0), 700.0);
+  EXPECT_EQ(step(1, 2400.0, 700.0), 700.0);  // bumpless
+  EXPECT_EQ(out.source, ActionSource::kFallback);
+  EXPECT_LT(step(2, 2400.0, 700.0), 700.0);  // x too high: less
+  law->resets.clear();
+  EXPECT_NE(step(3, 2000.0, 690.0), 700.0);
+  EXPECT_NE(step(4, 2000.0, 690.0), 700.0);
+  EXPECT_TRUE(law->resets.empty());
+  EXPECT_EQ(law->forgotten_before_reset, 99U);
+  EXPECT_EQ(step(5, 2000.0, 690.0), 700.0);  // the third sample inside
+  EXPECT_EQ(law->resets, Steps{5});          // reset: its own bumpless start
+  EXPECT_EQ(law->forgotten_before_reset, 0U) << "what it learned out there, before that reset";
+  EXPECT_EQ(out.source, ActionSource::kBase);
+}
+
+TEST_F(Guard, AnInputThatTheModelDoesNotKnowIsNeverLockedUp) {
+  GuardParams p = params();
+  p.lock_samples = 8;
+  for (const bool known : {true, false}) {
+    make(p);
+    TsModel model = boxModel();
+    if (!known)
+      for (OutputModel& sub : model.submodels)
+        for (auto* of : {&sub.regressors, &sub.antecedents})
+          for (Regressor& r : *of)
+            if (r.kind == SignalKind::kInput) r = {SignalKind::kOutput, 0, 3};
+    guard->setModel(model);
+    law->wish = limits().lower[0];
+    bool acted = false;
+    double applied = law->wish;
+    for (std::uint32_t k = 1; k < 200; ++k) {
+      applied = step(k, 900.0 - k, applied);  // further and further from its setpoint
+      acted = acted || applied != law->wish;
+    }
+    EXPECT_EQ(acted, known);
+  }
+}
+
+TEST_F(Guard, WhatSwingsFromEndToEndMovesLess) {
+  GuardParams p = params();
+  p.swing_move = 0.25;
+  make(p);
+  double applied = 700.0, largest = 0.0;
+  for (std::uint32_t k = 1; k < 60; ++k) {
+    law->wish = k % 2 == 0 ? limits().lower[0] : limits().upper[0];
+    const double next = step(k, 1800.0, applied);
+    if (k > 20) {
+      largest = std::max(largest, std::abs(next - applied));
+      EXPECT_STREQ(out.remark, "swings from end to end: moves shrink");
+    }
+    applied = next;
+  }
+  EXPECT_LE(largest, 0.021 * (limits().upper[0] - limits().lower[0]));
+  EXPECT_GT(largest, 0.0);
+  p.swing_move = 0.0;
+  make(p);
+  law->wish = limits().upper[0];
+  EXPECT_EQ(step(1, 1800.0, 0.0), limits().upper[0]);
+}
+
+TEST_F(Guard, MistakesNameTheirKey) {
+  const auto errorWith = [](const std::function<void(GuardParams&)>& change) -> std::string {
+    GuardParams p = params();
+    change(p);
+    try {
+      p.validate(2, 1, 1);
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto names = [](const std::string& error, const std::string& key) {
+    EXPECT_NE(error.find(key), std::string::npos) << error;
+  };
+  names(errorWith([](GuardParams& p) { p.trust_high = 0.1; }), "guard.trust_high");
+  names(errorWith([](GuardParams& p) { p.least_move = 0.0; }), "guard.least_move");
+  names(errorWith([](GuardParams& p) { p.return_samples = 0; }), "guard.return_samples");
+  names(errorWith([](GuardParams& p) { p.lock_samples = -1; }), "guard.lock_samples");
+  names(errorWith([](GuardParams& p) { p.lock_step = 2.0; }), "guard.lock_step");
+  names(errorWith([](GuardParams& p) { p.lock_outputs = {2}; }), "guard.lock_outputs");
+}
+
+}  // namespace control_guard_test
+}  // namespace fpc::test_session

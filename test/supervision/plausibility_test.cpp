@@ -1,0 +1,289 @@
+#include "supervision/plausibility.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include "base/no_value.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace control_plausibility_test {
+
+PlantInfo plant() {
+  PlantInfo info;
+  info.sample_time_s = 3600.0;
+  info.outputs = {{"x", "mg/l", 0.0, 100.0}};
+  info.disturbances = {{"q", "m3/h", 0.0, 10.0}};
+  info.inputs = {{"u", "m3/h", 0.0, 10.0}};
+  return info;
+}
+
+PlausibilityParams params(const std::function<void(SignalPlausibility&)>& change = nullptr) {
+  PlausibilityParams p;
+  p.enabled = true;
+  p.hold_samples = 3;
+  p.fallback = Vector::Constant(1, 5.0);
+  p.outputs.resize(1);
+  p.disturbances.resize(1);
+  if (change) change(p.outputs[0]);
+  return p;
+}
+
+struct Watch {
+  explicit Watch(const PlausibilityParams& p) : judge(p, plant()) {}
+  Verdict look(double x, double u = 1.0, double q = 2.0, const Foresee& foresee = {}) {
+    Measurement m;
+    m.outputs = Vector::Constant(1, x);
+    m.disturbances = Vector::Constant(1, q);
+    m.input_applied = Vector::Constant(1, u);
+    return judge.look(m, foresee);
+  }
+  Plausibility judge;
+};
+
+TEST(Plausibility, AsksNothingByItselfButNumbers) {
+  Watch watch{PlausibilityParams{}};
+  EXPECT_EQ(watch.look(1e9), Verdict::kClean);
+  EXPECT_EQ(watch.look(-1e9), Verdict::kClean);
+  EXPECT_EQ(watch.look(kNaN), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x is no number: input held");
+}
+
+TEST(Plausibility, AValueThatIsMissingForAReasonIsCalledByIt) {
+  Watch watch(params());
+  EXPECT_EQ(watch.look(noValue(NoValue::kStale)), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x is stale: input held");
+  EXPECT_EQ(watch.look(noValue(NoValue::kMissing)), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x has not come: input held");
+}
+
+TEST(Plausibility, RangeHoldsThenFallsBackAndReturnsAtOnce) {
+  Watch watch(params([](SignalPlausibility& s) { s.upper = 110.0; }));
+  EXPECT_EQ(watch.look(110.0), Verdict::kClean);
+  for (int k = 0; k < 3; ++k) EXPECT_EQ(watch.look(110.1), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x is outside [-inf, 110]: input held");
+  EXPECT_EQ(watch.look(110.1), Verdict::kFallback);
+  EXPECT_STREQ(watch.judge.words(), "x is outside [-inf, 110]: the configured fallback");
+  EXPECT_EQ(watch.look(100.0), Verdict::kClean);
+  EXPECT_STREQ(watch.judge.words(), "");
+}
+
+TEST(Plausibility, ASignalThatTheLawDoesNotNeedHoldsNothing) {
+  Watch watch(params());
+  watch.judge.need(1, false);
+  EXPECT_EQ(watch.look(1.0, 1.0, 7.0), Verdict::kClean);
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(watch.look(1.0, 1.0, kNaN), Verdict::kRepaired);
+  EXPECT_EQ(watch.judge.accepted().disturbances[0], 7.0);
+  EXPECT_STREQ(watch.judge.words(), "q is no number: its last good value is used");
+}
+
+TEST(Plausibility, TheRateIsMeasuredFromTheLastAcceptedValue) {
+  Watch watch(params([](SignalPlausibility& s) { s.rate_per_h = 10.0; }));  // a sample an hour
+  EXPECT_EQ(watch.look(50.0), Verdict::kClean);
+  EXPECT_EQ(watch.look(60.0), Verdict::kClean);
+  EXPECT_EQ(watch.look(75.0), Verdict::kHold);
+  EXPECT_EQ(watch.judge.doubt(0), Doubt::kRate);
+  EXPECT_EQ(watch.look(75.0), Verdict::kClean);  // 15 in two hours can be true
+}
+
+TEST(Plausibility, AJumpIsAcceptedOnceItStays) {
+  Watch watch(params([](SignalPlausibility& s) { s.jump = 20.0; }));
+  EXPECT_EQ(watch.look(50.0), Verdict::kClean);
+  EXPECT_EQ(watch.look(90.0), Verdict::kHold);
+  EXPECT_EQ(watch.look(52.0), Verdict::kClean);  // it was a spike
+  EXPECT_EQ(watch.look(90.0), Verdict::kHold);
+  EXPECT_EQ(watch.look(91.0), Verdict::kHold);
+  EXPECT_EQ(watch.judge.doubt(0), Doubt::kJump);
+  EXPECT_EQ(watch.look(92.0), Verdict::kClean);  // the third sample there
+  EXPECT_EQ(watch.look(93.0), Verdict::kClean);
+}
+
+TEST(Plausibility, FrozenIsWhatDoesNotChangeWhileAnInputMoves) {
+  Watch watch(params([](SignalPlausibility& s) { s.frozen_samples = 4; }));
+  for (int k = 0; k < 10; ++k) EXPECT_EQ(watch.look(50.0, 1.0), Verdict::kClean);  // at rest
+  EXPECT_EQ(watch.look(50.0, 2.5), Verdict::kHold);
+  EXPECT_EQ(watch.judge.doubt(0), Doubt::kFrozen);
+  EXPECT_EQ(watch.look(50.000001, 2.5), Verdict::kClean);
+  EXPECT_EQ(watch.look(50.000001, 5.0), Verdict::kClean);  // the count starts anew
+}
+
+Foresee expecting(double x) {
+  return [x](Eigen::Ref<Vector> outputs) {
+    outputs[0] = x;
+    return true;
+  };
+}
+
+TEST(Plausibility, AShortGapIsBridgedByWhatTheLawExpects) {
+  PlausibilityParams asked = params();
+  asked.hold_samples = 10;
+  asked.bridge_samples = 2;
+  Watch watch(asked);
+  EXPECT_EQ(watch.look(kNaN, 1.0, 2.0, expecting(7.0)), Verdict::kRepaired);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 7.0);
+  EXPECT_EQ(watch.look(50.0, 1.0, 2.0, expecting(7.0)), Verdict::kClean);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 50.0);
+  EXPECT_EQ(watch.look(kNaN), Verdict::kRepaired);  // nothing is expected
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 50.0);
+  EXPECT_STREQ(watch.judge.words(), "x is no number: its last good value is used");
+  EXPECT_EQ(watch.look(kNaN, 1.0, kNaN, expecting(8.0)), Verdict::kRepaired);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 8.0);
+  EXPECT_EQ(watch.judge.accepted().disturbances[0], 2.0);
+  EXPECT_EQ(watch.look(kNaN, 1.0, 2.0, expecting(9.0)), Verdict::kHold);  // a long one
+}
+
+TEST(Plausibility, TheLastGoodValueOrTheModelsTakesItsPlace) {
+  Watch good(params([](SignalPlausibility& s) {
+    s.upper = 100.0;
+    s.substitute = Substitute::kLastGood;
+  }));
+  EXPECT_EQ(good.look(1000.0), Verdict::kHold);  // there is none yet
+  good.look(50.0);
+  EXPECT_EQ(good.look(1000.0), Verdict::kRepaired);
+  EXPECT_EQ(good.judge.accepted().outputs[0], 50.0);
+  EXPECT_STREQ(good.judge.words(), "x is outside [-inf, 100]: its last good value is used");
+
+  Watch model(params([](SignalPlausibility& s) {
+    s.upper = 100.0;
+    s.substitute = Substitute::kModel;
+  }));
+  model.look(50.0);
+  EXPECT_EQ(model.look(1000.0, 1.0, 2.0, expecting(58.0)), Verdict::kRepaired);
+  EXPECT_EQ(model.judge.accepted().outputs[0], 58.0);
+  EXPECT_STREQ(model.judge.words(), "x is outside [-inf, 100]: the model's value is used");
+  for (int k = 0; k < 2; ++k) EXPECT_EQ(model.look(1000.0), Verdict::kRepaired);
+  EXPECT_EQ(model.look(1000.0), Verdict::kFallback);  // nor for ever
+}
+
+/// Frozen is judged by the signal's own noise.
+PlausibilityParams byNoise() {
+  PlausibilityParams p = params([](SignalPlausibility& s) {
+    s.frozen_samples = -1;
+    s.scale_lower = 0.0;
+    s.scale_upper = 100.0;
+  });
+  p.disturbances[0] = p.outputs[0];
+  p.disturbances[0].scale_upper = 10.0;
+  return p;
+}
+
+/// y(k+1) = 0.9 y(k) + 0.5 u(k).
+TsModel lag() {
+  TsModel model;
+  model.name = "lag";
+  model.sample_time_s = 3600.0;
+  model.outputs = plant().outputs;
+  model.inputs = plant().inputs;
+  model.disturbances = plant().disturbances;
+  Rule rule;
+  rule.coefficients = (Vector(2) << 0.9, 0.5).finished();
+  OutputModel submodel;
+  submodel.regressors = {{SignalKind::kOutput, 0, 0}, {SignalKind::kInput, 0, 0}};
+  submodel.rules = {rule};
+  model.submodels = {submodel};
+  return model;
+}
+
+TEST(Plausibility, AnOutputWithoutItsNoiseIsFrozenAndTheModelsValueIsUsed) {
+  std::mt19937_64 engine(1);
+  std::normal_distribution<double> noise;
+  Watch watch(byNoise());
+  for (int k = 0; k < 200; ++k)
+    EXPECT_EQ(watch.look(50.0 + noise(engine), 1.0, 5.0 + 0.1 * noise(engine)), Verdict::kClean);
+  int after = 0;
+  for (; after < 20 && watch.judge.doubt(0) != Doubt::kFrozen; ++after) {
+    watch.look(50.5, 1.0, 5.0 + 0.1 * noise(engine), expecting(7.0));
+  }
+  EXPECT_LE(after, 8);
+  EXPECT_EQ(watch.judge.doubt(0), Doubt::kFrozen);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 7.0);
+  EXPECT_STREQ(watch.judge.words(), "x is frozen: the model's value is used");
+  EXPECT_EQ(watch.look(50.5, 1.0, 5.0), Verdict::kHold) << "nothing was foreseen";
+  EXPECT_EQ(watch.look(50.4, 1.0, 5.1), Verdict::kClean) << "it moves again";
+}
+
+TEST(Plausibility, ADisturbanceWithoutItsNoiseIsSaidAndTheLawGoesOn) {
+  std::mt19937_64 engine(2);
+  std::normal_distribution<double> noise;
+  Watch watch(byNoise());
+  for (int k = 0; k < 200; ++k) watch.look(50.0 + noise(engine), 1.0, 5.0 + 0.1 * noise(engine));
+  for (int k = 0; k < 30; ++k) watch.look(50.0 + noise(engine), 1.0, 5.0);
+  EXPECT_EQ(watch.judge.doubt(1), Doubt::kFrozen);
+  EXPECT_EQ(watch.look(50.0 + noise(engine), 1.0, 5.0), Verdict::kRepaired) << "for ever";
+  EXPECT_STREQ(watch.judge.words(), "q is frozen: its last good value is used");
+}
+
+TEST(Plausibility, AReadingThatComesTwiceInMotionIsBridged) {
+  PlausibilityParams p = byNoise();
+  p.bridge_samples = 3;
+  Watch watch(p);
+  const auto motion = [](int k) { return 50.0 + 5.0 * std::sin(0.05 * k); };
+  for (int k = 0; k < 130; ++k) EXPECT_EQ(watch.look(motion(k)), Verdict::kClean) << k;
+  EXPECT_EQ(watch.look(motion(129), 1.0, 2.0, expecting(51.0)), Verdict::kRepaired);
+  EXPECT_EQ(watch.judge.accepted().outputs[0], 51.0);
+  EXPECT_STREQ(watch.judge.words(), "x was not read anew: the model's value is used");
+  EXPECT_EQ(watch.look(motion(131)), Verdict::kClean);
+}
+
+TEST(Plausibility, AtTheEndOfItsScaleNothingIsFrozen) {
+  std::mt19937_64 engine(3);
+  std::normal_distribution<double> noise;
+  Watch watch(byNoise());
+  for (int k = 0; k < 200; ++k) watch.look(95.0 + noise(engine), 1.0, 5.0 + 0.1 * noise(engine));
+  for (int k = 0; k < 200; ++k)
+    EXPECT_EQ(watch.look(100.0, 1.0, 5.0 + 0.1 * noise(engine)), Verdict::kClean);
+}
+
+// Without noise only the model can say that a reading should have moved: by more than 2 % of the
+// range, for longer than a late instrument needs.
+TEST(Plausibility, AReadingThatDoesNotFollowItsInputsIsFrozen) {
+  Watch watch(byNoise());
+  watch.judge.setModel(lag());
+  for (int k = 0; k < 1000; ++k) EXPECT_EQ(watch.look(50.0, 10.0), Verdict::kClean) << "at rest";
+  int after = 0;  // 5 (1 - 0.9^k) > 2 from the fifth sample on
+  for (; after < 50 && watch.judge.doubt(0) == Doubt::kNone; ++after) watch.look(50.0, 9.0);
+  EXPECT_EQ(watch.judge.doubt(0), Doubt::kFrozen);
+  EXPECT_EQ(after, 5 + 12);
+
+  Watch follows(byNoise());
+  follows.judge.setModel(lag());
+  double x = 50.0;
+  for (int k = 0; k < 300; ++k) {
+    const double u = k < 100 ? 10.0 : 2.0;
+    EXPECT_EQ(follows.look(std::round(x), u), Verdict::kClean) << k;  // a coarse scale
+    x = 0.9 * x + 0.5 * u;
+  }
+}
+
+TEST(Plausibility, AValueOutsideItsRangeMovesNothingUnlessAFallbackIsAskedFor) {
+  PlausibilityParams p = params([](SignalPlausibility& s) { s.upper = 110.0; });
+  p.range_falls = false;
+  Watch watch(p);
+  watch.look(100.0);
+  for (int k = 0; k < 30; ++k) EXPECT_EQ(watch.look(111.0), Verdict::kHold);
+  EXPECT_STREQ(watch.judge.words(), "x is outside [-inf, 110]: input held");
+  for (int k = 0; k < 3; ++k) watch.look(kNaN);
+  EXPECT_EQ(watch.look(kNaN), Verdict::kFallback) << "what is not measured at all";
+}
+
+TEST(Plausibility, ANewRunForgetsThePast) {
+  Watch watch(params([](SignalPlausibility& s) { s.jump = 20.0; }));
+  watch.look(50.0);
+  watch.judge.reset();
+  EXPECT_EQ(watch.look(90.0), Verdict::kClean);
+}
+
+TEST(Plausibility, RefusesWhatMakesNoSense) {
+  EXPECT_THROW(Plausibility(params([](SignalPlausibility& s) { s.jump = 0.0; }), plant()),
+               InputError);
+  PlausibilityParams p = params();
+  p.fallback = Vector::Zero(2);
+  EXPECT_THROW(Plausibility(p, plant()), InputError);
+}
+
+}  // namespace control_plausibility_test
+}  // namespace fpc
