@@ -261,7 +261,7 @@ Health PlantNode::runningHealth(double now_s) const {
   std::string who = silent.empty() ? "" : "; no word from " + join(silent);
   if (who.empty() && !others.words.empty()) who = "; " + others.words;
   const std::string step = std::to_string(session_.process().measurement().header.step);
-  if (session_.unrecordedFor(now_s) > kPatience)
+  if (session_.unrecordedFor(now_s) > kActionPatience)
     return {LoopMode::kStalled,
             "sample " + step + " is not recorded" + who,
             {node_.resolveName(kRecorder)}};
