@@ -106,6 +106,7 @@ class Simulation {
   void updateDisturbances();
   void passLocalLoop();
   void measure();
+  void gatherEvents();
   void startInstruments();
   void lookAtPlant();
   const Measurement& integrate();
@@ -124,7 +125,7 @@ class Simulation {
   PlantState state_;
   std::vector<CommandEffect> effects_;
   std::mt19937_64 noise_;
-  std::string trouble_;
+  std::string trouble_, failure_;        // failure_: over the sample before
   Vector scheduled_;                     // disturbances without commands
   Vector state_before_;                  // one sample ago
   Vector true_outputs_, true_measured_;  // what the sensors look at

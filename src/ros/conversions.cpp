@@ -220,16 +220,42 @@ SolverReport fromMsg(const fmbpc::SolverReport& msg) {
           msg.active_rows};
 }
 
+static_assert(fmbpc::Event::INFO == number(Severity::kInfo));
+static_assert(fmbpc::Event::WARNING == number(Severity::kWarning));
+static_assert(fmbpc::Event::ERROR == number(Severity::kError));
+
+fmbpc::Event toMsg(const Event& event) {
+  fmbpc::Event msg;
+  msg.code = kindOf(event.code).name;
+  msg.severity = number(event.severity());
+  msg.signal = event.signal;
+  msg.first = event.first;
+  msg.last = event.last;
+  msg.count = event.count;
+  msg.text = event.text;
+  return msg;
+}
+
+Event fromMsg(const fmbpc::Event& msg) {
+  return {eventCodeOr(msg.code, EventCode::kNote),
+          msg.signal,
+          msg.text,
+          msg.first,
+          msg.last,
+          msg.count};
+}
+
 fmbpc::Tracking toMsg(const Tracking& tracking) {
   fmbpc::Tracking msg;
   fillHeader(msg, tracking.header);
   msg.setpoint = numbers(tracking.setpoint);
   msg.reference = numbers(tracking.reference);
+  msg.events = list<fmbpc::Event>(tracking.events);
   return msg;
 }
 
 Tracking fromMsg(const fmbpc::Tracking& msg) {
-  return {stepHeader(msg), vector(msg.setpoint), vector(msg.reference)};
+  return {stepHeader(msg), vector(msg.setpoint), vector(msg.reference), structs<Event>(msg.events)};
 }
 
 fmbpc::PlantState toMsg(const PlantState& state) {
@@ -241,12 +267,14 @@ fmbpc::PlantState toMsg(const PlantState& state) {
   msg.actuator_clips = state.actuator_clips;
   msg.input_missing = state.input_missing;
   msg.trouble = state.trouble;
+  msg.events = list<fmbpc::Event>(state.events);
   return msg;
 }
 
 PlantState fromMsg(const fmbpc::PlantState& msg) {
-  return {stepHeader(msg),    vector(msg.state),      vector(msg.outputs), vector(msg.disturbances),
-          msg.actuator_clips, msg.input_missing != 0, msg.trouble};
+  return {
+      stepHeader(msg),    vector(msg.state),      vector(msg.outputs), vector(msg.disturbances),
+      msg.actuator_clips, msg.input_missing != 0, msg.trouble,         structs<Event>(msg.events)};
 }
 
 }  // namespace fpc

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {
@@ -112,8 +113,9 @@ struct SolverReport {
 /// What a controller follows at sample k.
 struct Tracking {
   StepHeader header;
-  Vector setpoint;   ///< n_y, clamped and rate-limited
-  Vector reference;  ///< n_y, y_r(k)
+  Vector setpoint;            ///< n_y, clamped and rate-limited
+  Vector reference;           ///< n_y, y_r(k)
+  std::vector<Event> events;  ///< of the controller at this sample
 };
 
 /// What only a simulator knows of sample k.
@@ -125,6 +127,7 @@ struct PlantState {
   std::uint32_t actuator_clips{};  ///< how many inputs of u(k-1) the actuator had to clip
   bool input_missing{};            ///< no action in time for u(k-1): held or fallback
   std::string trouble;             ///< why the plant did not move with u(k-1), empty if it did
+  std::vector<Event> events;       ///< of the plant at this sample
 };
 
 /// How a value sent by a person acts on a named signal.
