@@ -47,7 +47,7 @@ TEST(Events, AListCountsByCodeSignalAndText) {
 
 TEST(Events, AFloodOfTextsIsBounded) {
   EventList list;
-  list.add(eventOf({EventCode::kInputHeld}, 0));
+  list.add(eventOf(Notice{EventCode::kInputHeld}, 0));
   for (std::uint32_t k = 0; k < 1000; ++k)
     list.add(eventOf({EventCode::kCommandRefused, std::to_string(k).c_str()}, k));
   EXPECT_EQ(list.all().size(), 1 + EventList::kMostTexts);

@@ -29,7 +29,7 @@ class BlindValve {
       told_ = session_.answer().base.input;
       if (stuck) told_where_ = told_where_.size() == 0 ? plant_.actuator().applied() : told_where_;
       plant_.advance(stuck ? told_where_ : told_);
-      if (!session_.reaction().empty()) return k + 1;
+      if (session_.reaction().code != EventCode::kNone) return k + 1;
     }
     return samples;
   }

@@ -18,7 +18,7 @@ Measurement measurement(std::uint32_t step, bool final = false, std::uint64_t ru
   return m;
 }
 
-Tracking tracking(std::uint32_t step) { return {header(step), Vector::Ones(1), Vector::Ones(1)}; }
+Tracking tracking(std::uint32_t step) { return {header(step), Vector::Ones(1), Vector::Ones(1), {}}; }
 PlantState state(std::uint32_t step) {
   PlantState s;
   s.header = header(step);
