@@ -237,12 +237,11 @@ fmbpc::Event toMsg(const Event& event) {
 }
 
 Event fromMsg(const fmbpc::Event& msg) {
-  return {eventCodeOr(msg.code, EventCode::kNote),
-          msg.signal,
-          msg.text,
-          msg.first,
-          msg.last,
-          msg.count};
+  Event event = eventOf(
+      {eventCodeOr(msg.code, EventCode::kNote), msg.text.c_str(), msg.signal.c_str()}, msg.first);
+  event.last = msg.last;
+  event.count = msg.count;
+  return event;
 }
 
 fmbpc::Tracking toMsg(const Tracking& tracking) {
