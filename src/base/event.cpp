@@ -14,7 +14,6 @@ using C = EventCode;
 constexpr Severity kI = Severity::kInfo, kW = Severity::kWarning, kE = Severity::kError;
 
 constexpr std::size_t kMostLetters = 300;  // of a text
-constexpr std::size_t kMostLetters = 300;  // of a text
 constexpr EventKind kUnknownKind{C::kNone, "", kI, "", "", ""};
 
 // code, name, severity, cause, consequence, remedy.
