@@ -13,7 +13,7 @@ namespace {
 using C = EventCode;
 constexpr Severity kI = Severity::kInfo, kW = Severity::kWarning, kE = Severity::kError;
 
-constexpr std::size_t kMostLetters = 300;  // of a text
+constexpr std::size_t kMostOfText = 300;  // of a text
 constexpr EventKind kUnknownKind{C::kNone, "", kI, "", "", ""};
 
 // code, name, severity, cause, consequence, remedy.
@@ -153,7 +153,7 @@ Event eventOf(const Notice& notice, std::uint32_t step) {
   const char* text = *notice.text == '\0' ? kindOf(notice.code).cause : notice.text;
   Event event{notice.code, notice.signal, text, step, step, 1};
   for (std::string* words : {&event.signal, &event.text}) {
-    if (words->size() > kMostLetters) words->resize(kMostLetters);
+    if (words->size() > kMostOfText) words->resize(kMostOfText);
     std::replace_if(
         words->begin(), words->end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
   }
