@@ -11,10 +11,7 @@ namespace fpc::test {
 /// What controller and plant said of the samples, and what was said besides.
 inline std::vector<Event> eventsOf(const RunRecord& record) {
   EventList list;
-  for (const SampleRecord& sample : record.samples) {
-    list.add(sample.tracking.events);
-    list.add(sample.state.events);
-  }
+  for (const SampleRecord& sample : record.samples) list.add(sample.events);
   list.add(record.events);
   return list.all();
 }

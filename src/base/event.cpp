@@ -166,6 +166,11 @@ Event eventOf(EventCode code, const std::string& text, const std::string& signal
   return event;
 }
 
+std::vector<Event> joined(std::vector<Event> first, const std::vector<Event>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
 std::string textOf(const std::vector<Event>& events) {
   std::vector<std::string> texts;
   for (const Event& event : events) texts.push_back(event.text);

@@ -258,10 +258,9 @@ void Simulation::measure() {
 /// limits, or an offset wider than they are apart (one that an offset leads beyond them from where
 /// it is told to be is no slip); of a disturbance an offset out of its range.
 void Simulation::gatherEvents() {
-  std::vector<Event>& events = state_.events;
-  events.clear();
+  events_.clear();
   const auto say = [&](EventCode code, const std::string& signal, const std::string& text) {
-    events.push_back(eventOf({code, text.c_str(), signal.c_str()}, measurement_.header.step));
+    events_.push_back(eventOf({code, text.c_str(), signal.c_str()}, measurement_.header.step));
   };
   if (!failure_.empty()) say(EventCode::kPlantFailed, "", failure_);
   const std::vector<Quantity>& ranges = plant_->description().disturbances;

@@ -18,7 +18,7 @@ std::string ControllerNode::plantName() const {
   return names.empty() ? "the plant" : names.front();
 }
 
-std::string ControllerNode::said() const { return textOf(session_.answer().tracking.events); }
+std::string ControllerNode::said() const { return textOf(session_.answer().events); }
 
 // Nothing that waits is "controlling".
 Health ControllerNode::health(double now_s) const {
@@ -61,7 +61,7 @@ Health ControllerNode::health(double now_s) const {
             EventCode::kOptimizerLost,
             "no answer of " + standin_->optimizer() + ": the base action goes to the plant",
             {standin_->optimizer()}};
-  const Event worst = worstOf(session_.answer().tracking.events);
+  const Event worst = worstOf(session_.answer().events);
   if (session_.isManual())
     return {LoopMode::kManual, worst.code, withRefusal("manual" + after("; ", said()), now_s), {}};
   if (session_.fellBack()) return {LoopMode::kFallback, worst.code, said(), {}};
@@ -83,7 +83,7 @@ Health ControllerNode::whileControlling(double now_s) const {
             {}};
   std::string words = "controlling";
   if (!session_.modelText().empty()) words += "; " + session_.modelText();
-  for (const Event& event : session_.answer().tracking.events)
+  for (const Event& event : session_.answer().events)
     if (event.text != session_.modelText()) words += "; " + event.text;
   return {LoopMode::kAutomatic, EventCode::kNone, withRefusal(std::move(words), now_s), {}};
 }

@@ -203,11 +203,10 @@ void ControllerNode::answer(const Measurement& measurement) {
 
 void ControllerNode::gatherEvents() {
   const StepHeader& now = session_.answer().tracking.header;
-  others_ = inbox_.takeEvents(now);
-  for (const auto& more : {std::exchange(models_refused_, {}), takeRefusedCommands(now.step)})
-    others_.insert(others_.end(), more.begin(), more.end());
-  health_.say(session_.answer().tracking.events);
-  health_.say(others_);
+  events_ = joined(session_.answer().events, inbox_.takeEvents(now));
+  events_ =
+      joined(joined(events_, std::exchange(models_refused_, {})), takeRefusedCommands(now.step));
+  health_.say(events_);
 }
 
 void ControllerNode::publish(bool repeated) {
@@ -229,7 +228,7 @@ void ControllerNode::publish(bool repeated) {
 void ControllerNode::publishTracking(bool repeated) {
   if (!tracking_.needed()) return;
   fmbpc::Tracking tracking = toMsg(session_.answer().tracking);
-  for (const Event& event : others_) tracking.events.push_back(toMsg(event));
+  tracking.events = toMsg(events_);
   tracking_.publish(std::move(tracking), repeated);
 }
 

@@ -96,7 +96,7 @@ class ControllerNode : public Node {
       model_problem_;                  // name of the one in use; why the latest was refused
   double model_refused_s_{};           // when
   std::vector<Event> models_refused_;  // that could not be used; until they are in an answer
-  std::vector<Event> others_;          // of the present answer, besides those of the session
+  std::vector<Event> events_;          // of the present answer, and what came with it
 
   RingPublisher<fmbpc::ControlAction> base_;
   RingPublisher<fmbpc::PredictiveAction> prediction_;

@@ -244,17 +244,22 @@ Event fromMsg(const fmbpc::Event& msg) {
   return event;
 }
 
+std::vector<fmbpc::Event> toMsg(const std::vector<Event>& events) {
+  return list<fmbpc::Event>(events);
+}
+
+std::vector<Event> fromMsg(const std::vector<fmbpc::Event>& msg) { return structs<Event>(msg); }
+
 fmbpc::Tracking toMsg(const Tracking& tracking) {
   fmbpc::Tracking msg;
   fillHeader(msg, tracking.header);
   msg.setpoint = numbers(tracking.setpoint);
   msg.reference = numbers(tracking.reference);
-  msg.events = list<fmbpc::Event>(tracking.events);
   return msg;
 }
 
 Tracking fromMsg(const fmbpc::Tracking& msg) {
-  return {stepHeader(msg), vector(msg.setpoint), vector(msg.reference), structs<Event>(msg.events)};
+  return {stepHeader(msg), vector(msg.setpoint), vector(msg.reference)};
 }
 
 fmbpc::PlantState toMsg(const PlantState& state) {
@@ -266,14 +271,12 @@ fmbpc::PlantState toMsg(const PlantState& state) {
   msg.actuator_clips = state.actuator_clips;
   msg.input_missing = state.input_missing;
   msg.trouble = state.trouble;
-  msg.events = list<fmbpc::Event>(state.events);
   return msg;
 }
 
 PlantState fromMsg(const fmbpc::PlantState& msg) {
-  return {
-      stepHeader(msg),    vector(msg.state),      vector(msg.outputs), vector(msg.disturbances),
-      msg.actuator_clips, msg.input_missing != 0, msg.trouble,         structs<Event>(msg.events)};
+  return {stepHeader(msg),    vector(msg.state),      vector(msg.outputs), vector(msg.disturbances),
+          msg.actuator_clips, msg.input_missing != 0, msg.trouble};
 }
 
 }  // namespace fpc

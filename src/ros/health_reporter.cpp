@@ -94,7 +94,7 @@ void HealthReporter::publish() {
   msg.code = kindOf(shown_.code).name;
   msg.reason = shown_.words;
   msg.missing = shown_.missing;
-  for (const Event& event : events_.all()) msg.events.push_back(toMsg(event));
+  msg.events = toMsg(events_.all());
   publisher_.publish(msg);
 }
 

@@ -62,17 +62,18 @@ void PlantSimulator::afterSample() {
 
 void PlantSimulator::publishState() {
   const std::uint32_t step = simulation_.measurement().header.step;
-  PlantState state = simulation_.state();
-  for (const auto& more :
-       {delayEvents(loop(), simulation_.outputDelays(), step), takeRefusedCommands(step)})
-    state.events.insert(state.events.end(), more.begin(), more.end());
-  health().say(state.events);
-  last_ = shared(toMsg(state));
+  const std::vector<Event> events =
+      joined(joined(simulation_.events(), delayEvents(loop(), simulation_.outputDelays(), step)),
+             takeRefusedCommands(step));
+  health().say(events);
+  fmbpc::PlantState state = toMsg(simulation_.state());
+  state.events = toMsg(events);
+  last_ = shared(std::move(state));
   state_.publish(last_);
 }
 
 Health PlantSimulator::plantHealth() const {
-  const std::vector<Event>& events = simulation_.state().events;
+  const std::vector<Event>& events = simulation_.events();
   if (events.empty()) return PlantNode::plantHealth();
   return {LoopMode::kDegraded, worstOf(events).code, textOf(events), {}};
 }

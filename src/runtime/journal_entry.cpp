@@ -110,7 +110,7 @@ JournalSizes::JournalSizes(const RecordLayout& layout)
 
 std::size_t JournalSizes::entry() const {
   return 4 + n_y + n_d + n_u + 1 + n_x + n_y + n_true + 2 + 2 * n_y + 2 * n_u + 5 + n_u + kTrouble +
-         2 * kEvents;
+         kEvents;
 }
 
 void keepWhatFits(std::vector<Event>& events) {
@@ -177,8 +177,7 @@ std::vector<double> packEntry(const SampleRecord& s, const JournalSizes& n) {
   p.bits(s.report.active_rows);
   p.vector(s.report.perturbation, n.n_u);
   p.text(s.state.trouble, kTrouble);
-  p.text(linesOf(s.tracking.events), kEvents);
-  p.text(linesOf(s.state.events), kEvents);
+  p.text(linesOf(s.events), kEvents);
   return p.take();
 }
 
@@ -221,8 +220,7 @@ SampleRecord unpackEntry(const double* at, const JournalSizes& n) {
   s.report.active_rows = static_cast<std::uint32_t>(u.bits());
   s.report.perturbation = u.vector(n.n_u);
   s.state.trouble = u.text(kTrouble);
-  s.tracking.events = eventsIn(u.text(kEvents), header.step);
-  s.state.events = eventsIn(u.text(kEvents), header.step);
+  s.events = eventsIn(u.text(kEvents), header.step);
   return s;
 }
 

@@ -23,7 +23,7 @@ struct JournalHeader {
 };
 static_assert(sizeof(JournalHeader) == 80, "the header has no holes");
 
-constexpr std::size_t kMostOfEvents = 511;  ///< letters that an entry holds, twice
+constexpr std::size_t kMostOfEvents = 511;  ///< letters that an entry holds
 /// Those for which an entry has room, so that a run on disk and one in memory say the same.
 void keepWhatFits(std::vector<Event>& events);
 

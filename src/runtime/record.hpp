@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 
 namespace fpc {
@@ -19,6 +20,7 @@ struct SampleRecord {
   ControlAction base;
   ControlAction action;  ///< what the plant was told (equals base without an optimizer)
   SolverReport report;
+  std::vector<Event> events;  ///< of the controller, then of the plant
   bool has_measurement{}, has_state{}, has_tracking{}, has_base{}, has_action{}, has_report{};
 };
 

@@ -117,20 +117,24 @@ void RecorderSession::receive(const Measurement& m) {
   });
 }
 
-void RecorderSession::receive(const PlantState& s) {
-  collect(s, &SampleRecord::has_state, [](SampleRecord& sample, const PlantState& item) {
+// The controller's events before the plant's, whoever was heard first.
+void RecorderSession::receive(const PlantState& s, const std::vector<Event>& events) {
+  collect(s, &SampleRecord::has_state, [events](SampleRecord& sample, const PlantState& item) {
     sample.state = item;
-    keepWhatFits(sample.state.events);
+    sample.events.insert(sample.events.end(), events.begin(), events.end());
+    keepWhatFits(sample.events);
   });
 }
 
-void RecorderSession::receive(const Tracking& t) {
-  collect(t, &SampleRecord::has_tracking, [this](SampleRecord& sample, const Tracking& item) {
+void RecorderSession::receive(const Tracking& t, const std::vector<Event>& events) {
+  const auto place = [this, events](SampleRecord& sample, const Tracking& item) {
     sample.tracking = item;
-    keepWhatFits(sample.tracking.events);
+    sample.events.insert(sample.events.begin(), events.begin(), events.end());
+    keepWhatFits(sample.events);
     for (const Eigen::Index i : layout_.without_setpoint)
       sample.tracking.setpoint[i] = sample.tracking.reference[i] = kNaN;
-  });
+  };
+  collect(t, &SampleRecord::has_tracking, place);
 }
 
 void RecorderSession::receiveBase(const ControlAction& a) {

@@ -51,10 +51,13 @@ class Ring {
     present_ = now.header.step;
     player_.advance(present_, targets_);
     recorder_.receive(now);
-    recordWith(simulation_.state(), delayEvents(loop_, loop_.simulation.output_delay_s, present_));
+    recorder_.receive(simulation_.state(),
+                      joined(simulation_.events(),
+                             delayEvents(loop_, loop_.simulation.output_delay_s, present_)));
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    recordWith(answer.tracking, std::exchange(pending_, {}));
+    for (Event& event : pending_) event.first = event.last = present_;
+    recorder_.receive(answer.tracking, joined(answer.events, std::exchange(pending_, {})));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimizer_ ? optimize(answer) : answer.base);
@@ -75,18 +78,6 @@ class Ring {
   }
 
  private:
-  /// A message as it is, or with these events of the same sample.
-  template <typename Item>
-  void recordWith(const Item& item, std::vector<Event> events) {
-    if (events.empty()) return recorder_.receive(item);
-    Item more = item;
-    for (Event& event : events) {
-      event.first = event.last = present_;
-      more.events.push_back(std::move(event));
-    }
-    recorder_.receive(more);
-  }
-
   const ControlAction& optimize(const ControllerAnswer& answer) {
     if (answer.has_prediction) optimizer_->receive(answer.prediction);
     optimizer_->receive(answer.base);

@@ -75,12 +75,11 @@ void RunEvents::add(const SampleRecord& sample, const Rejections& rejected) {
 }
 
 void RunEvents::addSaid(const SampleRecord& sample) {
-  for (const auto* said : {&sample.tracking.events, &sample.state.events})
-    for (Event event : *said) {
-      event.first = event.last = step_;
-      event.count = 1;
-      list_.add(event);
-    }
+  for (Event event : sample.events) {
+    event.first = event.last = step_;
+    event.count = 1;
+    list_.add(event);
+  }
 }
 
 /// Scores without them would be silent of them.
@@ -91,8 +90,7 @@ void RunEvents::addRejected(const SampleRecord& sample, const Rejections& reject
     if (rejected.of(i)) say({EventCode::kMeasurementRejected, "", outputs[i].name.c_str()}, step_);
   if (!has_domain_ || !isOutsideModel(loop_, sample, rejected)) return;
   ++outside_model_;
-  if (!contains(sample.tracking.events, EventCode::kOutsideModel))
-    say({EventCode::kOutsideModel}, step_);
+  if (!contains(sample.events, EventCode::kOutsideModel)) say({EventCode::kOutsideModel}, step_);
 }
 
 void RunEvents::addSources(const SampleRecord& sample) {

@@ -229,7 +229,7 @@ Notice ControllerSession::imposing(DoubtAction action) const {
 
 /// What is said of this sample; nothing of the final one, which has no action.
 void ControllerSession::gatherEvents() {
-  std::vector<Event>& events = answer_.tracking.events;
+  std::vector<Event>& events = answer_.events;
   events.clear();
   if (!answer_.has_action) return;
   Notices& said = output_.events;

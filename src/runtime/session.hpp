@@ -29,6 +29,7 @@ struct ControllerAnswer {
   bool has_prediction{false};
   PredictiveAction prediction;
   std::vector<CommandEffect> effects;  ///< setpoint commands that took effect with this sample
+  std::vector<Event> events;           ///< what is to be known of this sample
 };
 
 /// What an operator has asked of a controller, apart from its model: kept by others for one that

@@ -190,7 +190,7 @@ TEST(SimulationCommands, OffsetsNeverTakeADisturbanceOutOfItsRange) {
 /// What was asked in vain at the present sample, by signal.
 std::vector<std::string> clamped(const Simulation& simulation) {
   std::vector<std::string> signals;
-  for (const Event& event : simulation.state().events) signals.push_back(event.signal);
+  for (const Event& event : simulation.events()) signals.push_back(event.signal);
   return signals;
 }
 
@@ -208,7 +208,7 @@ TEST(SimulationCommands, AnInputAskedBeyondItsLimitsIsSaidUntilItIsReleased) {
   EXPECT_EQ(after(command("input/q_r", -range, CommandMode::kOffset)), Names{});
   EXPECT_EQ(after(command("output/x", 1e300)), Names{});
   EXPECT_EQ(after(command("input/q_r", 1e300)), Names{"input/q_r"});
-  EXPECT_EQ(simulation.state().events[0].code, EventCode::kInputClamped);
+  EXPECT_EQ(simulation.events()[0].code, EventCode::kInputClamped);
   simulation.advance(kU);
   EXPECT_EQ(clamped(simulation), Names{"input/q_r"});
   EXPECT_EQ(after(command("input/q_r", 1.1 * range, CommandMode::kOffset)), Names{"input/q_r"});
@@ -231,7 +231,7 @@ TEST(SimulationCommands, AnOffsetOutOfTheRangeOfADisturbanceIsSaidWhileItActs) {
   };
   EXPECT_EQ(after(command("q_i", -room, CommandMode::kOffset)), Names{}) << "on the bound";
   EXPECT_EQ(after(command("q_i", -room - 0.5, CommandMode::kOffset)), Names{"q_i"});
-  EXPECT_EQ(simulation.state().events[0].code, EventCode::kDisturbanceClamped);
+  EXPECT_EQ(simulation.events()[0].code, EventCode::kDisturbanceClamped);
   EXPECT_EQ(after(command("q_i", 1500.0)), Names{}) << "an override takes its place";
   EXPECT_EQ(after(command("q_i", -room - 0.5, CommandMode::kOffset)), Names{})
       << "nothing acts on the final sample";

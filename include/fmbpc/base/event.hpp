@@ -142,6 +142,7 @@ struct Event {
 Event eventOf(const Notice& notice, std::uint32_t step);
 /// Of the run as a whole.
 Event eventOf(EventCode code, const std::string& text = "", const std::string& signal = "");
+std::vector<Event> joined(std::vector<Event> first, const std::vector<Event>& second);
 /// Their texts, between semicolons: a line for a log.
 std::string textOf(const std::vector<Event>& events);
 bool contains(const std::vector<Event>& events, EventCode code);

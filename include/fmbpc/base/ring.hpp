@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {
@@ -113,9 +112,8 @@ struct SolverReport {
 /// What a controller follows at sample k.
 struct Tracking {
   StepHeader header;
-  Vector setpoint;            ///< n_y, clamped and rate-limited
-  Vector reference;           ///< n_y, y_r(k)
-  std::vector<Event> events;  ///< of the controller at this sample
+  Vector setpoint;   ///< n_y, clamped and rate-limited
+  Vector reference;  ///< n_y, y_r(k)
 };
 
 /// What only a simulator knows of sample k.
@@ -127,7 +125,6 @@ struct PlantState {
   std::uint32_t actuator_clips{};  ///< how many inputs of u(k-1) the actuator had to clip
   bool input_missing{};            ///< no action in time for u(k-1): held or fallback
   std::string trouble;             ///< why the plant did not move with u(k-1), empty if it did
-  std::vector<Event> events;       ///< of the plant at this sample
 };
 
 /// How a value sent by a person acts on a named signal.
