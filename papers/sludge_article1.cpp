@@ -70,8 +70,9 @@ Rows table11() {
 
 /// Runs whose input stays at a limit for the last tenth and more.
 double lockedSeeds(const std::string& loop) {
-  const Values locked =
-      overSeeds(loop, [](const Summary& run) { return run.locked.empty() ? 0.0 : 1.0; });
+  const Values locked = overSeeds(loop, [](const Summary& run) {
+    return contains(run.events, EventCode::kInputAtLimit) ? 1.0 : 0.0;
+  });
   double count = 0.0;
   for (const double one : locked.all()) count += one;
   return count;

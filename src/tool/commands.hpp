@@ -156,6 +156,8 @@ int resolve(const std::string& loop, const std::vector<std::string>& set, const 
 /// What the plugins of all loops that are found register, so that lists show it.
 void loadPluginsOfLoops();
 int plants(bool json);
+/// Codes, or docs/events.md if none is named. @throws InputError for one that is none.
+int events(const std::vector<std::string>& codes);
 int controllers(bool json);
 /// Names, titles, plants and controllers of the loops that contain all words (in any of these).
 int loops(const std::vector<std::string>& words, bool names_only, bool json);

@@ -160,6 +160,11 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
   controllers->footer("Example: fmbpc controllers\n");
   controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
+  CLI::App* events = app.add_subcommand(
+      "events", "Lists what a loop may say of itself: causes, consequences, remedies");
+  events->add_option("CODES", a.loops, "only these (default: docs/events.md)");
+  events->footer("Example: fmbpc events signal_frozen\n");
+  events->callback([&a] { chosen = [&a] { return fpc::tool::events(a.loops); }; });
   CLI::App* model =
       app.add_subcommand("model", "Reports what to know of a model file before trusting it");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);

@@ -1,5 +1,4 @@
 // What the record of the disturbances adds to a summary, from one reading of it.
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -8,9 +7,9 @@
 #include "runtime/run.hpp"
 
 namespace fpc {
-namespace loop_disturbance_remarks_test {
+namespace loop_disturbance_events_test {
 
-class DisturbanceRemarks : public LoopFolder {
+class DisturbanceEvents : public LoopFolder {
  protected:
   /// An hour of the heated tank; T_in comes every 30 s from a file with times in days.
   Summary summaryWith(int digits, const std::string& commands = "[]") {
@@ -30,46 +29,44 @@ class DisturbanceRemarks : public LoopFolder {
                            "hold, channels: {T_in: {column: v}}}\n"));
     return summarize(loop, runLoop(loop), 0.0);
   }
-  static bool says(const Summary& summary, const std::string& words) {
-    return std::any_of(summary.remarks.begin(), summary.remarks.end(), [&](const RunRemark& r) {
-      return r.words.find(words) != std::string::npos;
-    });
+  static bool says(const Summary& summary, EventCode code) {
+    return contains(summary.events, code);
   }
 };
 
-TEST_F(DisturbanceRemarks, RoundedTimesAreSaidAndExactOnesAreNot) {
+TEST_F(DisturbanceEvents, RoundedTimesAreSaidAndExactOnesAreNot) {
   const Summary rounded = summaryWith(5);
-  EXPECT_TRUE(says(rounded, "of 119 rows of the disturbance record come at most 2 % of a sample"));
-  EXPECT_FALSE(says(summaryWith(10), "rows of the disturbance record"));
-  EXPECT_EQ(rounded.repaired_cells, 1U);
+  EXPECT_TRUE(says(rounded, EventCode::kTimesRounded));
+  EXPECT_FALSE(says(summaryWith(10), EventCode::kTimesRounded));
+  EXPECT_TRUE(says(rounded, EventCode::kCellsFilled));
 }
 
-TEST_F(DisturbanceRemarks, ARecordOfWhichOnlyOneRowActsIsSaid) {
+TEST_F(DisturbanceEvents, ARecordOfWhichOnlyOneRowActsIsSaid) {
   write("long.csv", "t,v\n0,15\n1,16\n2,17\n");
-  const auto remark = [&](const std::string& unit) {
+  const auto said = [&](const std::string& unit) {
     const LoopFile loop =
         readLoop(write("l.yaml",
                        "extends: heated_tank\nsampling: {duration_h: 1.5}\ndisturbance:\n"
                        "  source: csv\n  commands: []\n  csv: {file: long.csv, time_column: t, "
                        "time_unit: " +
                            unit + ", channels: {T_in: {column: v}}}\n"));
-    return says(summarize(loop, runLoop(loop), 0.0), "only the first row");
+    return says(summarize(loop, runLoop(loop), 0.0), EventCode::kRecordUnused);
   };
-  EXPECT_FALSE(remark("h"));
-  EXPECT_TRUE(remark("d"));
+  EXPECT_FALSE(said("h"));
+  EXPECT_TRUE(said("d"));
 }
 
-TEST_F(DisturbanceRemarks, ARecordThatIsLedInForTheWholeRunIsNotCalledOneRow) {
+TEST_F(DisturbanceEvents, ARecordThatIsLedInForTheWholeRunIsNotCalledOneRow) {
   write("long.csv", "t,v\n0,15\n1,16\n2,17\n");
   const LoopFile loop = readLoop(
       write("l.yaml",
             "extends: heated_tank\nsampling: {duration_h: 1.5}\ndisturbance:\n  source: csv\n"
             "  commands: []\n  csv: {file: long.csv, time_column: t, time_unit: h, lead_in_h: 1.5, "
             "channels: {T_in: {column: v}}}\n"));
-  EXPECT_FALSE(says(summarize(loop, runLoop(loop), 0.0), "only the first row"));
+  EXPECT_FALSE(says(summarize(loop, runLoop(loop), 0.0), EventCode::kRecordUnused));
 }
 
-TEST_F(DisturbanceRemarks, ARecordThatGoesDuringTheRunCostsNoRun) {
+TEST_F(DisturbanceEvents, ARecordThatGoesDuringTheRunCostsNoRun) {
   write("long.csv", "t,v\n0,15\n1,16\n2,17\n");
   const LoopFile loop = readLoop(write(
       "l.yaml",
@@ -83,22 +80,22 @@ TEST_F(DisturbanceRemarks, ARecordThatGoesDuringTheRunCostsNoRun) {
   EXPECT_TRUE(runLoop(loop, options).complete);
 }
 
-TEST_F(DisturbanceRemarks, AWindowBeyondTheRunIsSaid) {
-  const auto remark = [](const char* from) {
+TEST_F(DisturbanceEvents, AWindowBeyondTheRunIsSaid) {
+  const auto said = [](const char* from) {
     const LoopFile loop = readLoop(
         "heated_tank",
         {{"report.windows", "[{name: late, from_h: " + std::string(from) + ", to_h: 12}]"}});
-    return says(summarize(loop, runLoop(loop), 0.0), "window late of report.windows begins only");
+    return says(summarize(loop, runLoop(loop), 0.0), EventCode::kBeyondRun);
   };
-  EXPECT_TRUE(remark("10"));
-  EXPECT_FALSE(remark("2"));
+  EXPECT_TRUE(said("10"));
+  EXPECT_FALSE(said("2"));
 }
 
-TEST_F(DisturbanceRemarks, OffsetsAreCutAgainstTheRecord) {
-  const std::string cut = "an offset of T_in was asked beyond its range, 0..40";
+TEST_F(DisturbanceEvents, OffsetsAreCutAgainstTheRecord) {
+  const EventCode cut = EventCode::kDisturbanceClamped;
   EXPECT_TRUE(says(summaryWith(10, "[{time_h: 0.5, name: T_in, value: -20, mode: offset}]"), cut));
   EXPECT_FALSE(says(summaryWith(10, "[{time_h: 0.5, name: T_in, value: -9, mode: offset}]"), cut));
 }
 
-}  // namespace loop_disturbance_remarks_test
+}  // namespace loop_disturbance_events_test
 }  // namespace fpc
