@@ -62,9 +62,29 @@ std::string otherSeparator(const std::string& line, char said) {
   return "";
 }
 
+/// True if every cell is a number or a date: a row of values, not of names. Whole numbers 1, 2, ..
+/// are names.
+bool isRowOfValues(const std::vector<std::string>& cells, const CsvFormat& format) {
+  bool counts = true;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!cellNumber(cells[i], format) && !cellTime(cells[i])) return false;
+    counts = counts && cells[i] == std::to_string(i + 1);
+  }
+  return !counts;
+}
+
 void readHeader(const std::string& line, const CsvFormat& format, CsvTable& table) {
+  const auto cells = cellsOf(line, format.separator);
+  if (!format.header) {
+    for (std::size_t i = 1; i <= cells.size(); ++i) table.names.push_back(std::to_string(i));
+    table.units.resize(cells.size());
+    return;
+  }
+  require(!isRowOfValues(cells, format), table.file + ":1",
+          "a header line with a name for every column, got values (--no-header, or csv.header: "
+          "false in a structure file, calls the columns 1, 2, ..)");
   std::set<std::string> seen;
-  for (const auto& cell : cellsOf(line, format.separator)) {
+  for (const auto& cell : cells) {
     const auto open = cell.find('[');
     const bool has_unit = open != std::string::npos && cell.back() == ']';
     std::string name = has_unit ? cell.substr(0, open) : cell;
@@ -87,8 +107,12 @@ CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat
   std::getline(stream, line);
   if (line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
   requireText(line, file, 1);
-  require(!isBlank(line), file + ":1", "a header line");
+  require(!isBlank(line), file + ":1", format.header ? "a header line" : "a row of values");
   readHeader(line, format, table);
+  if (!format.header) {
+    stream.clear();
+    stream.seekg(0);
+  }
   return table;
 }
 
@@ -123,7 +147,8 @@ std::vector<std::vector<double>> readRows(std::istream& stream, const CsvFormat&
                                           CsvTable& table, std::vector<ColumnKind>& kinds) {
   std::vector<std::vector<double>> rows;
   std::string line;
-  for (std::size_t number = 2; std::getline(stream, line); ++number) {
+  for (std::size_t number = format.header ? 2 : 1; std::getline(stream, line); ++number) {
+    if (number == 1 && line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
     requireText(line, table.file, number);
     if (isBlank(line)) continue;
     const auto cells = cellsOf(line, format.separator);
@@ -152,7 +177,7 @@ void checkColumn(const CsvTable& table, const CsvFormat& format, const std::stri
           (kind.number != 0
                ? "a finite number, or a text that is said to mean missing (missing_values, "
                  "--missing), got '"
-               : "a date or time of ISO 8601, got '") +
+               : "a date or time of ISO 8601, or DD.MM.YYYY, got '") +
               kind.text + "'" + decimalHint(kind.text, format.decimal));
   require(kind.number == 0 || kind.date == 0, at(std::max(kind.number, kind.date)),
           "either dates or numbers in one column");

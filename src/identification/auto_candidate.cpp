@@ -91,6 +91,7 @@ class CandidateFit {
     const RecurrentFitResult line = fitLinear();
     RecurrentFitResult best = line;
     if (c_.rules > 1 && line.finite) best = fitRules(line);
+    fitted_.work = work_;
     fitted_.parameters = best.parameters;
     fitted_.finite = best.finite;
     if (c_.rules > 1 && best.finite) {
@@ -116,7 +117,10 @@ class CandidateFit {
     Fitted form = fitted_;
     form.shape = shape;
     params.admit = admission(data_, form);
-    return fitRecurrent(shape, record_, stretches_, anchor, start, params, proceed_);
+    RecurrentFitResult result =
+        fitRecurrent(shape, record_, stretches_, anchor, start, params, proceed_);
+    work_ += result.work;
+    return result;
   }
 
   /// A start that runs away is damped until it does not.
@@ -187,10 +191,14 @@ class CandidateFit {
     return values;
   }
 
-  RecurrentFitResult fitRules(const RecurrentFitResult& line) const {
+  RecurrentFitResult fitRules(const RecurrentFitResult& line) {
     const RecurrentShape& shape = fitted_.shape;
     const Matrix z = antecedentValues(line);
     if (z.cols() < 5 * shape.rules) return {};
+    if (!c_.hidden) {  // the states of a hidden model move with its rules
+      params_.centre_lower = z.rowwise().minCoeff().replicate(shape.rules, 1);
+      params_.centre_upper = z.rowwise().maxCoeff().replicate(shape.rules, 1);
+    }
     Vector start = ruleStart(shape, z, line.parameters, 0.1 * data_.rate, c_.seed);
     Vector anchor = Vector::Zero(shape.parameterCount());
     for (Index r = 0; r < shape.rules; ++r)
@@ -235,6 +243,7 @@ class CandidateFit {
   RecurrentData record_;
   RecurrentShape linear_;
   RecurrentFitParams params_;
+  mutable double work_{};
   Fitted fitted_;
 };
 

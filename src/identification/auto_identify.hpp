@@ -8,6 +8,7 @@
 
 #include "identification/data_set.hpp"
 #include "identification/prior_knowledge.hpp"
+#include "identification/row_reading.hpp"
 #include "identification/state_model.hpp"
 
 namespace fpc {
@@ -18,12 +19,14 @@ enum class ModelKind { kLinear, kRegressors, kState, kBlend };
 const std::string& name(ModelKind kind);
 
 struct AutoParams {
-  double budget_s{45.0};         ///< wall time after which no new fit begins
+  double work{45.0};             ///< after which no new fit begins, see WorkMeter
+  double budget_s{};             ///< wall time after which no new fit begins; 0: none
   int blocks{4};                 ///< of the cross-validation, >= 2
   Eigen::Index most_rows{2000};  ///< that the search uses
   Eigen::Index most_last{8000};  ///< that the last fit uses
   int window{5};                 ///< measured samples that start a free run
   int longest_delay{0};          ///< [samples]; 0: a tenth of the rows, at most 100
+  RowReading rows{RowReading::kFound};  ///< whether inputs act within their sample
   bool keep_still{false};        ///< use inputs that hardly moved as well, see stillCauses()
   bool states{true};             ///< search models with a state of their own as well
   int threads{0};                ///< 0: all cores
@@ -72,8 +75,10 @@ struct AutoIdentification {
   StateModel state;
   std::vector<AutoOutput> outputs;
   std::vector<AutoTrial> trials;
+  std::vector<bool> same_row;  ///< of inputs, then disturbances: read by asRead()
   std::vector<std::string> contradictions;  ///< where the record speaks against what is known
   std::vector<std::string> remarks;
+  double work{};  ///< that the search did, in the unit of AutoParams::work
   bool cancelled{false};
 };
 
@@ -83,8 +88,8 @@ struct AutoProgress {
 };
 using AutoCallback = std::function<bool(const AutoProgress&)>;  ///< false: keep the best so far
 
-/// Searches per output. Same data and parameters, same result, unless the budget ended the search
-/// (a remark says so). @throws InputError naming the data's column or the parameter.
+/// Searches per output. Same data and parameters, same result, on any machine and number of threads;
+/// only a budget of seconds makes it another (a remark says so). @throws InputError naming the data's column or the parameter.
 AutoIdentification autoIdentify(const DataSet& data, const AutoParams& params,
                                 const AutoCallback& callback = {});
 

@@ -37,8 +37,7 @@ class OutputSearch {
     findDelays();
     searched_ = searchStructures(data_, found_.delay, params_.states, params_.seed, limits_);
     if (searched_.skipped > 0)
-      remark("the time budget left out " + std::to_string(searched_.skipped) +
-             " of the structures; a longer --budget may find better ones");
+      remark(leftOutWords(limits_, std::to_string(searched_.skipped) + " of the fits"));
     require(!searched_.linear.empty(), data_.data->source + ": output '" + name() + "'",
             "a linear model that runs freely without leaving the data; none did in all of " +
                 std::to_string(data_.windows.size()) +
@@ -122,8 +121,6 @@ class OutputSearch {
         remark("'" + judged[i].candidate.text() + "' is fitted to " + std::to_string(whole.rows) +
                " rows only: fitted to all, it runs away under larger inputs");
       model = toSubmodel(data_, whole);
-      for (auto& rule : model.rules)
-        rule.data_count = static_cast<std::uint64_t>(data_.data->rows()) / model.rules.size();
       return static_cast<int>(i);
     }
     return -1;

@@ -69,11 +69,8 @@ class Search {
   void judge(const Candidates& candidates, double from, double to);
   void judgeGroups(const Candidates& structures, double from, double to);
   void deepen(std::size_t groups, double from, double to);
-  void judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const;
+  double judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const;
   void sortAll();
-  bool over() const {
-    return Clock::now() > limits_.deadline || (limits_.proceed && !limits_.proceed());
-  }
 
   const AutoData& data_;
   const std::vector<int>& delay_;
@@ -119,18 +116,20 @@ void Search::deepen(std::size_t groups, double from, double to) {
   }
 }
 
-void Search::judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const {
+/// @return the work that it took
+double Search::judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const {
   const auto training = trainingStretches(data_, static_cast<int>(block));
   Candidate c = j.candidate;
   if (!c.block_delay.empty()) c.delay = c.block_delay[block];
   const Fitted fitted = fitCandidate(data_, c, training);
-  if (!fitted.finite) return;
+  if (!fitted.finite) return fitted.work;
   const Stretch w = data_.windows[block];
   free = freeRunOf(data_, fitted, w, limits_.window);
   free.head(std::min<Index>(w.first + limits_.window, free.size())).setConstant(kNaN);
   if (!j.candidate.hidden) one = oneStepOf(data_, fitted, w);
   j.parameters = fitted.shape.parameterCount();
   if (j.candidate.hidden) j.seen.assign(1, seenError(data_, fitted, training, limits_.window));
+  return fitted.work;
 }
 
 /// One judgement per candidate; its score is infinite where a block could not be judged.
@@ -138,15 +137,13 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
   const std::size_t blocks = data_.windows.size();
   std::vector<Vector> free(candidates.size() * blocks), one(free.size());
   std::vector<Judgement> parts(free.size());
-  std::vector<char> tried(free.size(), 0);
-  parallelFor(free.size(), limits_.threads, [&](std::size_t task) {
-    if (over()) return;
-    tried[task] = 1;
+  const auto tried = limitedFor(free.size(), limits_, [&](std::size_t task) {
     parts[task].candidate = candidates[task / blocks];
-    judgeBlock(parts[task], task % blocks, free[task], one[task]);
+    const double work = judgeBlock(parts[task], task % blocks, free[task], one[task]);
     if (task % (blocks * 2) == 0 && limits_.progress)
       limits_.progress(from +
                        (to - from) * static_cast<double>(task) / static_cast<double>(free.size()));
+    return work;
   });
   std::vector<Judgement> judged(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -191,6 +188,32 @@ void Search::sortAll() {
 }
 
 }  // namespace
+
+std::vector<char> limitedFor(std::size_t n, const SearchLimits& limits,
+                             const std::function<double(std::size_t)>& work) {
+  constexpr std::size_t kLot = 32;
+  std::vector<char> begun(n, 0);
+  std::vector<double> spent(kLot);
+  for (std::size_t first = 0; first < n && !limits.isSpent(); first += kLot) {
+    const std::size_t count = std::min(kLot, n - first);
+    std::fill(spent.begin(), spent.end(), 0.0);
+    parallelFor(count, limits.threads, [&](std::size_t i) {
+      if (limits.isLate()) return;
+      begun[first + i] = 1;
+      spent[i] = work(first + i);
+    });
+    for (std::size_t i = 0; i < count; ++i) limits.spend(spent[i]);
+  }
+  return begun;
+}
+
+std::string leftOutWords(const SearchLimits& limits, const std::string& what) {
+  if (limits.proceed && !limits.proceed()) return "the search was stopped before " + what;
+  return limits.isSpent()
+             ? "the limit of work left out " + what + "; more --work may find better ones"
+             : "the time that was asked for (--budget) left out " + what +
+                   ": on another machine the same command may find another model";
+}
 
 double scoreOf(const AutoData& data, const Judgement& judged) {
   const double one_step = rmseOf(data, judged.one_step);

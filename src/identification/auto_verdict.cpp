@@ -56,6 +56,10 @@ std::string verdictOf(const AutoOutput& found, const AutoFigures& best) {
 void decide(AutoOutput& found) {
   const AutoFigures* best = &found.linear;
   found.best = ModelKind::kLinear;
+  if (found.fuzzy_model && !isWorthIt(found.regressors, found.linear)) {
+    found.fuzzy_model = false;
+    found.blend = {};
+  }
   if (found.fuzzy_model) {
     best = &found.regressors;
     found.best = ModelKind::kRegressors;
@@ -70,6 +74,10 @@ void decide(AutoOutput& found) {
   }
   found.beats_linear = found.best != ModelKind::kLinear;
   found.verdict = verdictOf(found, *best);
+  const AutoFigures& laws = found.fuzzy_model ? found.regressors : found.linear;
+  if (best->fit > kTells && !(laws.fit > 0.0))
+    found.verdict += "; what control laws take is worse than the mean of the record in free run (fit " +
+                     shortText(laws.fit) + " %)";
   if (best->fit > kTells) return;
   found.verdict =
       (best->fit > 0.0 ? "no model says much more than the mean of the record in free run over "

@@ -139,14 +139,10 @@ class Doubt {
       next = i;
       best = f;
     }
-    if (next == statements_.size() || isStopped()) return statements_.size();
+    if (next == statements_.size() || limits_.isOver()) return statements_.size();
     dropped[next] = 1;
     now = best;
     return next;
-  }
-
-  bool isStopped() const {
-    return Clock::now() > limits_.deadline || (limits_.proceed && !limits_.proceed());
   }
 
   const AutoData& data_;
@@ -187,7 +183,6 @@ std::string contradiction(const DataSet& given, int output,
   AutoData prepared = prepareAuto(data, output, kBlocks, kMostRows, kMostRows);
   prepared.known = known;
   SearchLimits limits;
-  limits.deadline = Clock::time_point::max();
   return contradiction(prepared, {delay}, limits);
 }
 

@@ -83,7 +83,7 @@ bool IdentifiedModel::has(ModelKind kind) const {
 }
 
 IdentifiedModel toIdentified(const AutoIdentification& found) {
-  IdentifiedModel m{found.model, found.linear.submodels, found.state, {}};
+  IdentifiedModel m{found.model, found.linear.submodels, found.state, {}, found.same_row};
   for (const auto& o : found.outputs) {
     const AutoFigures& f = o.fuzzy_model ? o.regressors : o.linear;
     m.outputs.push_back({o.best, o.sensor_lower, o.sensor_upper, f.width, f.one_step_width});
@@ -157,8 +157,10 @@ KindPrediction predictBest(const IdentifiedModel& model, const DataSet& data) {
   return best;
 }
 
-Matrix predictSteps(const IdentifiedModel& model, const DataSet& data, int steps) {
-  Matrix predicted = stepsAhead(model.model, data, steps);
+AheadPrediction predictSteps(const IdentifiedModel& model, const DataSet& data, int steps) {
+  AheadPrediction predicted;
+  predicted.laws = stepsAhead(model.model, data, steps);
+  predicted.best = predicted.laws;
   if (model.has(ModelKind::kState)) {
     const Matrix free_run = predictFreeRun(model.state, data);
     for (std::size_t i = 0; i < model.state.outputs.size(); ++i) {
@@ -167,10 +169,12 @@ Matrix predictSteps(const IdentifiedModel& model, const DataSet& data, int steps
       const auto c = static_cast<Index>(i);
       const Vector own = correctedAhead(data.values.col(c), free_run.col(c),
                                         model.state.outputs[i].correction, steps);
-      predicted.col(c) = best == ModelKind::kState ? own : Vector(0.5 * (predicted.col(c) + own));
+      auto column = predicted.best.col(c);
+      column = best == ModelKind::kState ? own : Vector(0.5 * (column + own));
     }
   }
-  clipToSensors(model, predicted);
+  clipToSensors(model, predicted.best);
+  clipToSensors(model, predicted.laws);
   return predicted;
 }
 

@@ -43,7 +43,7 @@ AutoRecords readAll(const IdentifyArguments& a) {
   const Structure structure = autoStructure(first, columns, r.remarks);
   if (!a.known.empty()) r.known = readKnown(a.known, structure);
   const auto take = [&](const CsvTable& table, const std::string& rows) {
-    return makeData(withEvenTimes(table, structure.time_column, r.remarks), structure, rows);
+    return makeJoinedData(table, structure, rows, r.remarks);
   };
   r.each.push_back(take(first, a.rows));
   for (std::size_t i = 1; i < a.data.size(); ++i)
@@ -67,12 +67,16 @@ std::optional<ModelKind> kindOf(const std::string& word) {
 
 AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records) {
   AutoParams params;
+  params.work = a.work;
   params.budget_s = a.budget_s;
   params.blocks = a.blocks;
   params.window = a.window;
   params.seed = a.seed;
   params.known = records.known;
   params.longest_delay = a.longest_delay;
+  params.rows = a.input_row == "next"   ? RowReading::kNext
+                : a.input_row == "same" ? RowReading::kSame
+                                        : RowReading::kFound;
   params.keep_still = a.keep_inputs;
   const std::optional<ModelKind> kind = kindOf(a.kind);
   params.states = !kind || kind == ModelKind::kState;
@@ -174,6 +178,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
                               {"chosen", t.chosen}});
   json["warnings"] = firstWords(parts);
   json["remarks"] = remarks;
+  json["work"] = found.work;
   json["seconds"] = seconds;
   return json;
 }
@@ -209,9 +214,10 @@ Row remarksOf(const AutoRecords& records, const AutoIdentification& found,
   if (found.cancelled) remarks.push_back("stopped: the best found so far is kept");
   add("", found.remarks);
   const TsModel linear = model.linearModel();
-  add("", recordRemarks(records.joined, &linear));
+  add("", recordRemarks(asRead(records.joined, model.same_row), &linear));
   for (const auto& part : parts) add(part.title + ": ", part.remarks);
-  if (records.validation) add("validation: ", recordRemarks(*records.validation, nullptr));
+  if (records.validation) 
+    add("validation: ", recordRemarks(asRead(*records.validation, model.same_row), nullptr));
   return remarks;
 }
 
@@ -250,7 +256,8 @@ int identifyAuto(const IdentifyArguments& a) {
             << crossTable(found) << "\n"
             << searchTable(found) << "\n"
             << toTable(parts) << "\n";
-  std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s\n";
+  std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s, "
+            << shortText(found.work) << " of work\n";
   if (!a.out.empty()) std::cout << "written: " << a.out << "\n";
   return 0;
 }

@@ -35,6 +35,7 @@ struct LoopsArguments {
 struct RecordFormat {
   std::string separator{"comma"}, decimal{"point"};
   std::vector<std::string> missing;
+  bool no_header{false};
 };
 
 struct IdentifyArguments {
@@ -52,9 +53,10 @@ struct IdentifyArguments {
   RecordFormat format;
   double sample_time_s{};    ///< 0: from the time column
   std::string kind{"best"};  ///< best, linear, regressors, state
-  double budget_s{45.0};
+  double work{45.0}, budget_s{};  ///< limits of the search; 0 s: no limit of time
   int blocks{4}, window{5};
   int longest_delay{};      ///< [samples], 0: by the length of the record
+  std::string input_row{"auto"};  ///< auto, next, same: see RowReading
   bool keep_inputs{false};  ///< those that hardly moved too
   std::string known;        ///< of the outputs: file or text, empty: nothing
   std::uint64_t seed{1};

@@ -39,20 +39,30 @@ CsvTable predictionsOf(const IdentifiedModel& model, const RecordJudgement& part
   CsvTable table;
   table.names = {"time"};
   table.units = {"s"};
-  table.values.resize(data.rows(), 1 + 4 * n_y);
+  const Index each = 5, n_v = data.values.cols() - n_y;
+  table.values.resize(data.rows(), 1 + each * n_y + n_v);
   table.values.col(0) = Vector::LinSpaced(
       data.rows(), 0.0, static_cast<double>(data.rows() - 1) * data.sample_time_s);
   for (Index i = 0; i < n_y; ++i) {
     const SignalInfo& y = data.outputs[static_cast<std::size_t>(i)];
-    for (const char* what : {"", "_one_step", "_free_run", "_linear_free_run"}) {
+    for (const char* what : {"", "_one_step", "_free_run", "_linear_free_run", "_laws_free_run"}) {
       table.names.push_back(y.name + what);
       table.units.push_back(y.unit);
     }
-    table.values.col(1 + 4 * i) = data.values.col(i);
-    table.values.col(2 + 4 * i) = part.best.one_step.col(i);
-    table.values.col(3 + 4 * i) = part.best.free_run.col(i);
-    table.values.col(4 + 4 * i) = line.col(i);
+    const Index at = 1 + each * i;
+    table.values.col(at) = data.values.col(i);
+    table.values.col(at + 1) = part.best.one_step.col(i);
+    table.values.col(at + 2) = part.best.free_run.col(i);
+    table.values.col(at + 3) = line.col(i);
+    table.values.col(at + 4) = part.laws.free_run.col(i);
   }
+  for (const auto* signals : {&data.inputs, &data.disturbances})
+    for (const auto& signal : *signals) {
+      const auto at = static_cast<Index>(table.names.size());
+      table.names.push_back(signal.name);
+      table.units.push_back(signal.unit);
+      table.values.col(at) = data.values.col(n_y + at - 1 - each * n_y);
+    }
   return table;
 }
 

@@ -51,6 +51,7 @@ void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
   command.add_option("--decimal", f.decimal, "point or comma")->capture_default_str();
   command.add_option("--missing", f.missing, "cells that mean missing beside empty ones and nan")
       ->delimiter(',');
+  command.add_flag("--no-header", f.no_header, "the first line holds values; columns are 1, 2, ..");
 }
 
 void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
@@ -95,8 +96,14 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--kind", a.kind, "best, linear, regressors or state")
       ->capture_default_str()
       ->check(CLI::IsMember({"best", "linear", "regressors", "state"}));
-  identify->add_option("--budget", a.budget_s, "[s] of the search")
+  identify
+      ->add_option("--work", a.work,
+                   "of the search, counted alike on every machine; 1 is about a second of one core")
       ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  identify
+      ->add_option("--budget", a.budget_s,
+                   "[s] that end the search earlier; the model then depends on the machine")
       ->check(CLI::PositiveNumber);
   identify->add_option("--blocks", a.blocks, "held out in turn")
       ->capture_default_str()
@@ -108,6 +115,12 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
       ->add_option("--longest-delay", a.longest_delay,
                    "[samples] (default: a tenth of the rows, at most 100)")
       ->check(CLI::PositiveNumber);
+  identify
+      ->add_option("--input-row", a.input_row,
+                   "what the inputs of a row do: next (act from then on), same (were in force when "
+                   "its outputs were measured) or auto")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "next", "same"}));
   identify->add_flag("--keep-inputs", a.keep_inputs, "inputs that hardly moved too");
   identify->add_option("--known", a.known,
                        "what is known of the outputs: a file, or text like "
