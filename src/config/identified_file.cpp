@@ -81,6 +81,7 @@ std::string writeSection(const IdentifiedModel& m) {
     out << YAML::EndMap;
   }
   out << YAML::EndMap;
+  if (m.reach > 0) out << YAML::Key << "reach" << YAML::Value << m.reach;
   if (std::find(m.same_row.begin(), m.same_row.end(), true) != m.same_row.end()) {
     out << YAML::Key << "same_row" << YAML::Value << YAML::Flow << YAML::BeginSeq;
     for (std::size_t j = 0; j < m.same_row.size(); ++j)
@@ -193,6 +194,9 @@ IdentifiedModel readSections(YamlSection& top) {
     if (has_linear) m.linear.push_back(readSubmodel(linear, m.model, y.name));
     if (has_state) m.state.outputs.push_back(readStateOutput(state.section(y.name), m.model));
   }
+  int reach = 0;
+  section.integer("reach", reach, 0, 100000);
+  m.reach = reach;
   std::vector<std::string> same;
   section.names("same_row", same);
   const std::size_t causes = m.model.inputs.size() + m.model.disturbances.size();

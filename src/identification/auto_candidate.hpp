@@ -26,6 +26,7 @@ struct Candidate {
   int input_terms{2};                         ///< past values of each input, not hidden
   std::vector<int> delay;                     ///< of each input and disturbance
   std::vector<std::vector<int>> block_delay;  ///< the same for each held-out block; none: `delay`
+  std::vector<int> second;  ///< lags of as many terms more of each, for what comes later; or empty
   std::vector<int> partners;  ///< other outputs, from their present value on; not hidden
   int later{};                ///< added to every delay, but none becomes negative
   int rules{1};

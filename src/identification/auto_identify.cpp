@@ -92,17 +92,28 @@ DataSet prepared(const DataSet& given, const AutoParams& params,
   return data;
 }
 
+/// The shortest reach that an output asks for; 0: none does.
+Index commonReach(const DataSet& data, const AutoParams& params) {
+  Index reach = 0;
+  for (std::size_t i = 0; i < data.outputs.size(); ++i) {
+    const Index own = reachOf(prepareAuto(data, static_cast<int>(i), params.blocks,
+                                          params.most_rows, params.most_last));
+    if (own > 0 && (reach == 0 || own < reach)) reach = own;
+  }
+  return reach;
+}
+
 /// The search over outputs on a record that is prepared.
-AutoIdentification search(const DataSet& full, const AutoParams& params,
+AutoIdentification search(const DataSet& full, const AutoParams& given,
                           const AutoCallback& callback, AutoIdentification result) {
-  const int windows = 2 * params.blocks;
-  const bool thinned = full.rows() > params.most_last;
-  const DataSet data = thinned ? subsample(full, params.most_last, windows) : full;
-  if (thinned || full.rows() > params.most_rows)
+  const int windows = 2 * given.blocks;
+  const bool thinned = full.rows() > given.most_last;
+  const DataSet data = thinned ? subsample(full, given.most_last, windows) : full;
+  if (thinned || full.rows() > given.most_rows)
     result.remarks.push_back("long record: the search uses " +
-                             std::to_string(std::min(full.rows(), params.most_rows)) + " rows in " +
-                             std::to_string(params.blocks) + " windows, the last fit " +
-                             std::to_string(std::min(full.rows(), params.most_last)) + " of " +
+                             std::to_string(std::min(full.rows(), given.most_rows)) + " rows in " +
+                             std::to_string(given.blocks) + " windows, the last fit " +
+                             std::to_string(std::min(full.rows(), given.most_last)) + " of " +
                              std::to_string(full.rows()) + " rows");
   result.model = emptyModel(data);
   result.model.outputs = full.outputs;
@@ -110,6 +121,17 @@ AutoIdentification search(const DataSet& full, const AutoParams& params,
   result.linear.name += "_linear";
   const auto begin = Clock::now();
   const std::size_t n_y = data.outputs.size();
+  AutoParams params = given;
+  if (params.reach < 0) params.reach = commonReach(data, params);
+  result.reach = params.reach;
+  if (params.reach > 0) {
+    params.states = false;  // their starts are estimated from rows that runs of this length lack
+    result.remarks.insert(
+        result.remarks.begin(),
+        "a free run says nothing of this process (a pole at or beyond 1: it integrates or is "
+        "unstable by itself): models are fitted and judged by runs of " +
+            std::to_string(params.reach) + " samples, each from measured ones");
+  }
   std::atomic<bool> stopped{false};
   std::mutex guard;
   WorkMeter meter;

@@ -25,6 +25,7 @@ struct AutoParams {
   Eigen::Index most_rows{2000};  ///< that the search uses
   Eigen::Index most_last{8000};  ///< that the last fit uses
   int window{5};                 ///< measured samples that start a free run
+  Eigen::Index reach{-1};  ///< samples after which runs start anew; 0: never, -1: by reachOf()
   int longest_delay{0};          ///< [samples]; 0: a tenth of the rows, at most 100
   RowReading rows{RowReading::kFound};  ///< whether inputs act within their sample
   bool keep_still{false};        ///< use inputs that hardly moved as well, see stillCauses()
@@ -65,6 +66,8 @@ struct AutoOutput {
   bool beats_linear{false};  ///< the best fuzzy model is better than linear beyond the spread
   bool fuzzy_model{false};   ///< `model` is fuzzy here, else linear
   std::string verdict;       ///< the same in words
+  double hold{};             ///< rmse of the last measured value over runs of `reach`; 0: not asked
+  Eigen::Index reach{};      ///< its "free runs" start anew after so many samples; 0: never
   std::vector<int> delay;    ///< of inputs, then disturbances [samples]; 0: acts on the next output
   double sensor_lower{}, sensor_upper{};  ///< limits seen in the data; equal: none
 };
@@ -75,6 +78,7 @@ struct AutoIdentification {
   StateModel state;
   std::vector<AutoOutput> outputs;
   std::vector<AutoTrial> trials;
+  Eigen::Index reach{};        ///< of all outputs, see AutoOutput
   std::vector<bool> same_row;  ///< of inputs, then disturbances: read by asRead()
   std::vector<std::string> contradictions;  ///< where the record speaks against what is known
   std::vector<std::string> remarks;

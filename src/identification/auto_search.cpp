@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.hpp"
+#include "identification/validation.hpp"
 #include "identification/auto_structures.hpp"
 
 namespace fpc {
@@ -17,11 +19,27 @@ constexpr std::uint64_t kMoreSeeds = 6;
 /// The sign of a state that only its size tells of traps many starts.
 std::uint64_t firstSeeds(const Candidate& c) { return c.absolute ? 10 : 4; }
 
+/// One-step errors of the best linear model that are correlated in time where a longer past would
+/// take that out.
+bool asksForMore(const AutoData& data, const std::vector<Judgement>& linear) {
+  constexpr double kMuch = 0.3, kShare = 0.3;
+  const auto best = std::find_if(linear.begin(), linear.end(),
+                                 [](const Judgement& j) { return !j.candidate.hidden; });
+  if (best == linear.end()) return false;
+  const Vector error = data.data->values.col(data.output) - best->one_step;
+  const ValidationParams params;
+  const Vector r = autocorrelation(error, params);
+  const auto known = static_cast<double>(error.array().isFinite().count());
+  const auto outside = (r.array().abs() > 2.58 / std::sqrt(std::max(known, 1.0))).count();
+  return r.size() > 0 && r.cwiseAbs().maxCoeff() > kMuch &&
+         static_cast<double>(outside) > kShare * static_cast<double>(r.size());
+}
+
 class Search {
  public:
   Search(const AutoData& data, const std::vector<int>& delay, std::uint64_t seed,
-         const SearchLimits& limits)
-      : data_(data), delay_(delay), seed_(seed), limits_(limits) {}
+         const SearchLimits& limits, std::vector<int> second = {})
+      : data_(data), delay_(delay), second_(std::move(second)), seed_(seed), limits_(limits) {}
 
   /// The lowest score of a few linear models.
   double lowestOfLines(const std::vector<std::vector<int>>& block_delay) {
@@ -37,7 +55,10 @@ class Search {
   }
 
   StructureSearch run(bool states) {
-    judge(linearCandidates(base(), states), 0.0, 0.08);
+    judge(linearCandidates(base(), states), 0.0, 0.06);
+    sortAll();
+    if (!second_.empty()) judge(laterLines(base(), second_), 0.06, 0.07);
+    if (asksForMore(data_, result_.linear)) judge(longerLines(base()), 0.07, 0.08);
     sortAll();
     judge(shiftedLines(result_.linear), 0.08, 0.1);
     sortAll();
@@ -74,6 +95,7 @@ class Search {
 
   const AutoData& data_;
   const std::vector<int>& delay_;
+  std::vector<int> second_;
   std::uint64_t seed_;
   const SearchLimits& limits_;
   StructureSearch result_;
@@ -223,8 +245,9 @@ double scoreOf(const AutoData& data, const Judgement& judged) {
 }
 
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
-                                 std::uint64_t seed, const SearchLimits& limits) {
-  return Search(data, delay, seed, limits).run(states);
+                                 std::uint64_t seed, const SearchLimits& limits,
+                                 const std::vector<int>& second) {
+  return Search(data, delay, seed, limits, second).run(states);
 }
 
 std::vector<Judgement> judgeCandidates(const AutoData& data, const Candidates& candidates,

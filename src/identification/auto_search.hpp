@@ -70,7 +70,8 @@ struct StructureSearch {
   int skipped{};             ///< fits that the limits prevented
 };
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
-                                 std::uint64_t seed, const SearchLimits& limits);
+                                 std::uint64_t seed, const SearchLimits& limits,
+                                 const std::vector<int>& second = {});
 
 /// Each candidate over the blocks, in their order; an infinite score: it could not be judged.
 std::vector<Judgement> judgeCandidates(const AutoData& data,

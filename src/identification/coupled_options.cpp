@@ -84,13 +84,16 @@ std::vector<Vector> CoupledOptions::freeRuns(const CoupledChoice& choice) const 
     std::vector<JointMember> members;
     for (std::size_t i = 0; i < outputs(); ++i)
       members.push_back({&option(i, choice[i]).blocks[b], &option(i, choice[i]).record});
-    const Matrix run = jointFreeRun(members, measured_, windows[b]);
-    const Index first = std::min(windows[b].first + Index{limits_.window}, windows[b].last);
-    for (std::size_t i = 0; i < outputs(); ++i) {
-      const auto c = static_cast<Index>(i);
-      free[i].segment(first, windows[b].last - first) =
-          (data_[i].scale[c] * run.col(c).segment(first, windows[b].last - first)).array() +
-          data_[i].shift[c];
+    for (const Stretch& piece : runsOf(data_.front(), {windows[b]})) {
+      const Matrix run = jointFreeRun(members, measured_, piece);
+      const Index start = data_.front().reach > 0 ? kRunStart : Index{limits_.window};
+      const Index first = std::min(piece.first + start, piece.last);
+      for (std::size_t i = 0; i < outputs(); ++i) {
+        const auto c = static_cast<Index>(i);
+        free[i].segment(first, piece.last - first) =
+            (data_[i].scale[c] * run.col(c).segment(first, piece.last - first)).array() +
+            data_[i].shift[c];
+      }
     }
   }
   return free;

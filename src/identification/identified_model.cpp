@@ -83,7 +83,7 @@ bool IdentifiedModel::has(ModelKind kind) const {
 }
 
 IdentifiedModel toIdentified(const AutoIdentification& found) {
-  IdentifiedModel m{found.model, found.linear.submodels, found.state, {}, found.same_row};
+  IdentifiedModel m{found.model, found.linear.submodels, found.state, {}, found.same_row, found.reach};
   for (const auto& o : found.outputs) {
     const AutoFigures& f = o.fuzzy_model ? o.regressors : o.linear;
     m.outputs.push_back({o.best, o.sensor_lower, o.sensor_upper, f.width, f.one_step_width});
@@ -128,7 +128,7 @@ KindPrediction predictKind(const IdentifiedModel& model, ModelKind kind, const D
   } else {
     const TsModel ts = kind == ModelKind::kLinear ? model.linearModel() : model.model;
     p.one_step = predictOneStep(ts, data);
-    p.free_run = predictFreeRun(ts, data);
+    p.free_run = predictFreeRun(ts, data, model.reach);
     for (std::size_t i = 0; kind == ModelKind::kRegressors && i < model.outputs.size(); ++i) {
       p.one_step_width[static_cast<Index>(i)] = model.outputs[i].one_step_width;
       p.free_run_width[static_cast<Index>(i)] = model.outputs[i].free_run_width;

@@ -24,6 +24,7 @@ struct IdentifiedModel {
   std::vector<IdentifiedOutput> outputs;  ///< one per output, or none
   /// Of inputs, then disturbances: the record's rows are read by asRead(); empty: as they are.
   std::vector<bool> same_row;
+  Eigen::Index reach{};  ///< free runs start anew after so many samples; 0: never
 
   TsModel linearModel() const;     ///< with the names of `model`; only if there is one
   bool has(ModelKind kind) const;  ///< kBlend: of any output

@@ -16,6 +16,7 @@
 #include "tool/identify_auto.hpp"
 #include "tool/identify_verdict.hpp"
 #include "tool/judgement.hpp"
+#include "tool/model_points.hpp"
 #include "tool/progress_bar.hpp"
 #include "tool/read_record.hpp"
 #include "tool/record_files.hpp"
@@ -71,6 +72,7 @@ AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records
   params.budget_s = a.budget_s;
   params.blocks = a.blocks;
   params.window = a.window;
+  params.reach = a.reach;
   params.seed = a.seed;
   params.known = records.known;
   params.longest_delay = a.longest_delay;
@@ -167,6 +169,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
     else
       json["records"][part.title] = toJson(part);
   }
+  json["reach"] = found.reach;
   json["search"] = Json::array();
   for (const auto& t : found.trials)
     json["search"].push_back({{"output", t.output},
@@ -176,6 +179,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
                               {"free_run", numberOrNull(t.free_run)},
                               {"spread", numberOrNull(t.spread)},
                               {"chosen", t.chosen}});
+  json["points"] = pointsJson(found.model);
   json["warnings"] = firstWords(parts);
   json["remarks"] = remarks;
   json["work"] = found.work;
@@ -255,7 +259,8 @@ int identifyAuto(const IdentifyArguments& a) {
   std::cout << "\n"
             << crossTable(found) << "\n"
             << searchTable(found) << "\n"
-            << toTable(parts) << "\n";
+            << toTable(parts) << "\n"
+            << pointsTable(model.model) << "\n";
   std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s, "
             << shortText(found.work) << " of work\n";
   if (!a.out.empty()) std::cout << "written: " << a.out << "\n";

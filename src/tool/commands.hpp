@@ -55,6 +55,7 @@ struct IdentifyArguments {
   std::string kind{"best"};  ///< best, linear, regressors, state
   double work{45.0}, budget_s{};  ///< limits of the search; 0 s: no limit of time
   int blocks{4}, window{5};
+  int reach{-1};            ///< samples of the runs that judge, 0: free ones, -1: by the data
   int longest_delay{};      ///< [samples], 0: by the length of the record
   std::string input_row{"auto"};  ///< auto, next, same: see RowReading
   bool keep_inputs{false};  ///< those that hardly moved too
@@ -161,7 +162,7 @@ int plants(bool json);
 int controllers(bool json);
 /// Names, titles, plants and controllers of the loops that contain all words (in any of these).
 int loops(const std::vector<std::string>& words, bool names_only, bool json);
-int model(const std::string& file, bool json);
+int model(const std::string& file, bool json, const std::string& plots);
 /// A path, or a name below config/model; what it was given if there is neither.
 std::string findModel(const std::string& name);
 /// The same. @throws InputError with the nearest names.

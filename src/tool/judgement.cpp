@@ -102,6 +102,7 @@ RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
   part.title = title;
   part.data = withoutOutliers(asRead(data, model.same_row));
   part.steps = steps;
+  part.reach = model.reach;
   part.best = predictBest(model, part.data);
   part.laws = predictKind(model, ModelKind::kRegressors, part.data);
   const AheadPrediction ahead = predictSteps(model, part.data, steps);
@@ -160,7 +161,11 @@ std::string toTable(const std::vector<RecordJudgement>& parts) {
     }
   std::string text = alignedTable(rows) +
                      "(RMSE in the unit of the output; * chosen; laws: what control laws take; free runs "
-                     "start from the first samples)\n\n";
+                     "start from the first samples" +
+                     (parts.front().reach > 0
+                          ? " and anew after every " + std::to_string(parts.front().reach)
+                          : "") +
+                     ")\n\n";
   std::vector<Row> residuals{{"residuals of", "rows", "correlations outside %", "bound"}};
   for (const auto& part : parts)
     for (const auto& o : part.outputs)

@@ -36,6 +36,7 @@ struct RecordJudgement {
   std::string title;  ///< "identification", "validation"
   DataSet data;       ///< without outliers
   int steps{};
+  Eigen::Index reach{};  ///< of the free runs, see IdentifiedModel
   std::vector<OutputJudgement> outputs;
   KindPrediction best, laws;  ///< laws: of the model that control laws take
   std::vector<std::string> remarks;

@@ -39,8 +39,8 @@ CsvTable predictionsOf(const IdentifiedModel& model, const RecordJudgement& part
   CsvTable table;
   table.names = {"time"};
   table.units = {"s"};
-  const Index each = 5, n_v = data.values.cols() - n_y;
-  table.values.resize(data.rows(), 1 + each * n_y + n_v);
+  const Index each = 5;
+  table.values.resize(data.rows(), 1 + each * n_y);
   table.values.col(0) = Vector::LinSpaced(
       data.rows(), 0.0, static_cast<double>(data.rows() - 1) * data.sample_time_s);
   for (Index i = 0; i < n_y; ++i) {
@@ -56,13 +56,7 @@ CsvTable predictionsOf(const IdentifiedModel& model, const RecordJudgement& part
     table.values.col(at + 3) = line.col(i);
     table.values.col(at + 4) = part.laws.free_run.col(i);
   }
-  for (const auto* signals : {&data.inputs, &data.disturbances})
-    for (const auto& signal : *signals) {
-      const auto at = static_cast<Index>(table.names.size());
-      table.names.push_back(signal.name);
-      table.units.push_back(signal.unit);
-      table.values.col(at) = data.values.col(n_y + at - 1 - each * n_y);
-    }
+  addCauses(data, table);
   return table;
 }
 
@@ -72,7 +66,7 @@ void plotJudgements(const IdentifiedModel& model, const std::vector<RecordJudgem
                     Json json, const std::string& folder) {
   makeFolder(folder);
   const fs::path path(folder);
-  json["memberships"] = membershipsJson(model.model);
+  addModelJson(model.model, json);
   std::error_code error;
   for (const char* title : {"identification", "validation"})
     fs::remove(path / (std::string(title) + ".csv"), error);  // of an earlier run

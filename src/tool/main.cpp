@@ -112,6 +112,11 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   identify
+      ->add_option("--reach", a.reach,
+                   "[samples] after which runs start anew from measured ones, 0 for free runs "
+                   "(default: free, 10 to 30 where the process integrates or is unstable)")
+      ->check(CLI::Range(0, 100000));
+  identify
       ->add_option("--longest-delay", a.longest_delay,
                    "[samples] (default: a tenth of the rows, at most 100)")
       ->check(CLI::PositiveNumber);
@@ -174,11 +179,13 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   controllers->footer("Example: fmbpc controllers\n");
   controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
   CLI::App* model =
-      app.add_subcommand("model", "Reports what to know of a model file before trusting it");
+      app.add_subcommand("model", "Reports gains, time constants, poles and dead times of a model, and what not to trust");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
   model->add_flag("--json", a.json, "print one JSON object and nothing else");
-  model->footer("Example: fmbpc model fm_1\n");
-  model->callback([&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json); }; });
+  model->add_option("--plots", a.out, "folder for pictures of its sets and step responses");
+  model->footer("Example: fmbpc model fm_1 --plots results/fm_1\n");
+  model->callback(
+      [&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json, a.out); }; });
   CLI::App* table =
       app.add_subcommand("table", "Prints one table of runs that were written before");
   table->add_option("DIR", a.loops, "folders with a summary.json")->required();
