@@ -75,14 +75,9 @@ bool isRowOfValues(const std::vector<std::string>& cells, const CsvFormat& forma
 
 void readHeader(const std::string& line, const CsvFormat& format, CsvTable& table) {
   const auto cells = cellsOf(line, format.separator);
-  if (!format.header) {
-    for (std::size_t i = 1; i <= cells.size(); ++i) table.names.push_back(std::to_string(i));
-    table.units.resize(cells.size());
-    return;
-  }
   require(!isRowOfValues(cells, format), table.file + ":1",
-          "a header line with a name for every column, got values (--no-header, or csv.header: "
-          "false in a structure file, calls the columns 1, 2, ..)");
+          "a header line with a name for every column, got values (--no-header calls the "
+          "columns 1, 2, ..)");
   std::set<std::string> seen;
   for (const auto& cell : cells) {
     const auto open = cell.find('[');
@@ -97,8 +92,10 @@ void readHeader(const std::string& line, const CsvFormat& format, CsvTable& tabl
   }
 }
 
-/// The table without rows; the stream stands behind the header then.
-CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat& format) {
+/// The table without rows; the stream stands behind the header then, or at the begin of a file
+/// without one.
+CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat& format,
+                  bool header = true) {
   format.validate();
   require(stream.good(), file, "a readable file");
   CsvTable table;
@@ -107,12 +104,15 @@ CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat
   std::getline(stream, line);
   if (line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
   requireText(line, file, 1);
-  require(!isBlank(line), file + ":1", format.header ? "a header line" : "a row of values");
-  readHeader(line, format, table);
-  if (!format.header) {
-    stream.clear();
-    stream.seekg(0);
+  require(!isBlank(line), file + ":1", header ? "a header line" : "a row of values");
+  if (header) {
+    readHeader(line, format, table);
+    return table;
   }
+  table.units.resize(cellsOf(line, format.separator).size());
+  for (std::size_t i = 1; i <= table.units.size(); ++i) table.names.push_back(std::to_string(i));
+  stream.clear();
+  stream.seekg(0);
   return table;
 }
 
@@ -144,10 +144,11 @@ double readCell(const std::string& cell, std::size_t line, const CsvFormat& form
 }
 
 std::vector<std::vector<double>> readRows(std::istream& stream, const CsvFormat& format,
-                                          CsvTable& table, std::vector<ColumnKind>& kinds) {
+                                          CsvTable& table, std::vector<ColumnKind>& kinds,
+                                          std::size_t first_line) {
   std::vector<std::vector<double>> rows;
   std::string line;
-  for (std::size_t number = format.header ? 2 : 1; std::getline(stream, line); ++number) {
+  for (std::size_t number = first_line; std::getline(stream, line); ++number) {
     if (number == 1 && line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
     requireText(line, table.file, number);
     if (isBlank(line)) continue;
@@ -228,11 +229,13 @@ CsvTable readCsvHeader(const std::string& file, const CsvFormat& format) {
   return headerOf(stream, file, format);
 }
 
-CsvTable readCsv(const std::string& file, const CsvFormat& format) {
+namespace {
+
+CsvTable readTable(const std::string& file, const CsvFormat& format, bool header) {
   std::ifstream stream(file);
-  CsvTable table = headerOf(stream, file, format);
+  CsvTable table = headerOf(stream, file, format, header);
   std::vector<ColumnKind> kinds(table.names.size());
-  const auto rows = readRows(stream, format, table, kinds);
+  const auto rows = readRows(stream, format, table, kinds, header ? 2 : 1);
   require(!rows.empty(), file, "at least one row below the header");
   table.values.resize(static_cast<Eigen::Index>(rows.size()),
                       static_cast<Eigen::Index>(table.names.size()));
@@ -245,6 +248,16 @@ CsvTable readCsv(const std::string& file, const CsvFormat& format) {
     table.texts.push_back(kinds[c].text);
   }
   return table;
+}
+
+}  // namespace
+
+CsvTable readCsv(const std::string& file, const CsvFormat& format) {
+  return readTable(file, format, true);
+}
+
+CsvTable readCsvWithoutHeader(const std::string& file, const CsvFormat& format) {
+  return readTable(file, format, false);
 }
 
 void writeCsv(const CsvTable& table, const std::string& file) {

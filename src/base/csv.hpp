@@ -14,7 +14,6 @@ struct CsvFormat {
   char decimal{'.'};    ///< '.' or ','
   std::vector<std::string>
       missing_values;     ///< cells that mean "missing": the same text, or the same number (-999)
-  bool header{true};      ///< false: the first line holds values, and columns are called 1, 2, ..
   void validate() const;  ///< @throws InputError naming the field
 };
 
@@ -42,13 +41,13 @@ struct CsvTable {
 };
 
 /// Reads a table. Header cells may carry a unit, "x[mg/l]". Dates and times of ISO 8601
-/// (YYYY-MM-DD, with T or a space hh:mm or hh:mm:ss, fractions, Z or +hh:mm), or with a date
-/// DD.MM.YYYY, become days since 1970-01-01 (UTC if the zone is given). Empty cells, "nan" and the format's missing values are
+/// (YYYY-MM-DD, with T or a space hh:mm or hh:mm:ss, fractions, Z or +hh:mm) become days since
+/// 1970-01-01 (UTC if the zone is given). Empty cells, "nan" and the format's missing values are
 /// missing; infinite numbers are errors. CRLF, a byte order mark, empty lines and quoted cells are
 /// accepted. Cells that are neither a number, a date nor missing are kept as NaN only in columns
 /// that hold nothing else; elsewhere they are errors, and so is a column of dates and numbers, or
 /// of times with and without a zone.
-/// @throws InputError with file and line: unreadable file, no header (a first line of values), repeated name, a row of other
+/// @throws InputError with file and line: unreadable file, no header, repeated name, a row of other
 /// length, bad cell.
 CsvTable readCsv(const std::string& file, const CsvFormat& format = {});
 

@@ -23,7 +23,7 @@ inline std::string decimalHint(const std::string& text) {
   return decimalHint(text, text.find(',') != std::string::npos ? '.' : ',');
 }
 
-/// A moment of ISO 8601, or with a date DD.MM.YYYY.
+/// A moment of ISO 8601.
 struct CellTime {
   double days{};  ///< since 1970-01-01
   bool zoned{false};

@@ -6,7 +6,7 @@
 
 namespace fpc {
 
-std::vector<std::string> timeUnits();  ///< s, min, h, d, ms
+std::vector<std::string> timeUnits();  ///< s, min, h, d
 /// Seconds in a unit; 0 if it is none of timeUnits().
 double secondsPer(const std::string& unit);
 

@@ -247,7 +247,6 @@ Structure readSections(YamlSection& top, std::vector<PriorKnowledge>* known) {
   readTime(top.section("time"), structure);
   YamlSection csv = top.section("csv");
   readCsvFormat(csv, structure.csv);
-  csv.boolean("header", structure.csv.header);
   csv.finish();
   structure.outputs = readSignals(top, "outputs");
   structure.inputs = readSignals(top, "inputs");

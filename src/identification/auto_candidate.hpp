@@ -48,7 +48,7 @@ struct Fitted {
   std::vector<Regressor> exogenous;
   Vector parameters;
   StartPrior prior;  ///< hidden only
-  double work{};  ///< of the fit, see WorkMeter
+  double work{};     ///< of the fit, see WorkMeter
   bool finite{false};
   bool wild{false};     ///< not finite since it runs away under larger inputs, see endures()
   Eigen::Index rows{};  ///< that it was fitted to; fitWhole()

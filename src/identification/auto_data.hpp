@@ -50,10 +50,10 @@ RecurrentData recurrentData(const AutoData& prepared, const std::vector<Regresso
 std::vector<Stretch> runsOf(const AutoData& prepared, const std::vector<Stretch>& stretches);
 inline constexpr Eigen::Index kRunStart = 8;  ///< measured rows before each piece of `reach`
 
-/// Samples that runs may take where free ones say nothing: a one-step or free-run linear model has a
-/// pole outside the unit circle, or a real one so near it (1 - 2 / rows) that the record cannot tell
-/// it from an integrator. 0 for other processes. At most 30, fewer where an unstable pole would
-/// make 20 of an error of 1 before.
+/// Samples that runs may take where free ones say nothing: a one-step or free-run linear model has
+/// a pole outside the unit circle, or a real one so near it (1 - 2 / rows) that the record cannot
+/// tell it from an integrator. 0 for other processes. At most 30, fewer where an unstable pole
+/// would make 20 of an error of 1 before.
 Eigen::Index reachOf(const AutoData& prepared);
 
 Eigen::Index rowsOf(const std::vector<Stretch>& stretches);

@@ -217,13 +217,13 @@ std::vector<int> earliestDelays(const AutoData& p, const std::vector<int>& delay
   if (n < 3.0 * static_cast<double>(q)) return earliest;
   const Matrix inverse = H.selfadjointView<Eigen::Lower>().ldlt().solve(Matrix::Identity(q, q));
   const Vector theta = inverse * g;
-  const double variance =
-      std::max(squares - g.dot(theta), 0.0) / (n - static_cast<double>(q));
+  const double variance = std::max(squares - g.dot(theta), 0.0) / (n - static_cast<double>(q));
   Index at = 1 + kOwn;
   for (std::size_t c = 0; c < causes.size(); at += lags[c], ++c) {
     int& own = earliest[static_cast<std::size_t>(causes[c])];
     for (int d = own - 1; d >= 0; --d)
-      if (std::abs(theta[at + d]) > kSurely * std::sqrt(variance * inverse(at + d, at + d))) own = d;
+      if (std::abs(theta[at + d]) > kSurely * std::sqrt(variance * inverse(at + d, at + d)))
+        own = d;
   }
   return earliest;
 }

@@ -96,8 +96,8 @@ DataSet prepared(const DataSet& given, const AutoParams& params,
 Index commonReach(const DataSet& data, const AutoParams& params) {
   Index reach = 0;
   for (std::size_t i = 0; i < data.outputs.size(); ++i) {
-    const Index own = reachOf(prepareAuto(data, static_cast<int>(i), params.blocks,
-                                          params.most_rows, params.most_last));
+    const Index own = reachOf(
+        prepareAuto(data, static_cast<int>(i), params.blocks, params.most_rows, params.most_last));
     if (own > 0 && (reach == 0 || own < reach)) reach = own;
   }
   return reach;
@@ -149,7 +149,8 @@ AutoIdentification search(const DataSet& full, const AutoParams& given,
   };
   std::vector<SearchedOutput> alone;
   for (std::size_t i = 0; i < n_y; ++i) {
-    allow(static_cast<double>(i + 1) / static_cast<double>(n_y) * (n_y > 1 ? 1.0 - kTogether : 1.0));
+    allow(static_cast<double>(i + 1) / static_cast<double>(n_y) *
+          (n_y > 1 ? 1.0 - kTogether : 1.0));
     limits.progress = [&](double part) {
       const std::lock_guard<std::mutex> lock(guard);
       const double done = (static_cast<double>(i) + part) / static_cast<double>(n_y);

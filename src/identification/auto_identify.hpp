@@ -26,11 +26,11 @@ struct AutoParams {
   Eigen::Index most_last{8000};  ///< that the last fit uses
   int window{5};                 ///< measured samples that start a free run
   Eigen::Index reach{-1};  ///< samples after which runs start anew; 0: never, -1: by reachOf()
-  int longest_delay{0};          ///< [samples]; 0: a tenth of the rows, at most 100
+  int longest_delay{0};    ///< [samples]; 0: a tenth of the rows, at most 100
   RowReading rows{RowReading::kFound};  ///< whether inputs act within their sample
-  bool keep_still{false};        ///< use inputs that hardly moved as well, see stillCauses()
-  bool states{true};             ///< search models with a state of their own as well
-  int threads{0};                ///< 0: all cores
+  bool keep_still{false};               ///< use inputs that hardly moved as well, see stillCauses()
+  bool states{true};                    ///< search models with a state of their own as well
+  int threads{0};                       ///< 0: all cores
   std::uint64_t seed{1};
   std::vector<PriorKnowledge> known;  ///< one per output, or none
 };
@@ -78,8 +78,8 @@ struct AutoIdentification {
   StateModel state;
   std::vector<AutoOutput> outputs;
   std::vector<AutoTrial> trials;
-  Eigen::Index reach{};        ///< of all outputs, see AutoOutput
-  std::vector<bool> same_row;  ///< of inputs, then disturbances: read by asRead()
+  Eigen::Index reach{};                     ///< of all outputs, see AutoOutput
+  std::vector<bool> same_row;               ///< of inputs, then disturbances: read by asRead()
   std::vector<std::string> contradictions;  ///< where the record speaks against what is known
   std::vector<std::string> remarks;
   double work{};  ///< that the search did, in the unit of AutoParams::work
@@ -92,8 +92,9 @@ struct AutoProgress {
 };
 using AutoCallback = std::function<bool(const AutoProgress&)>;  ///< false: keep the best so far
 
-/// Searches per output. Same data and parameters, same result, on any machine and number of threads;
-/// only a budget of seconds makes it another (a remark says so). @throws InputError naming the data's column or the parameter.
+/// Searches per output. Same data and parameters, same result, on any machine and number of
+/// threads; only a budget of seconds makes it another (a remark says so). @throws InputError naming
+/// the data's column or the parameter.
 AutoIdentification autoIdentify(const DataSet& data, const AutoParams& params,
                                 const AutoCallback& callback = {});
 

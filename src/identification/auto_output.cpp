@@ -41,7 +41,8 @@ class OutputSearch {
     found_.output = name();
     findDelays();
     leaveOutCauses();
-    searched_ = searchStructures(data_, found_.delay, params_.states, params_.seed, limits_, second_);
+    searched_ =
+        searchStructures(data_, found_.delay, params_.states, params_.seed, limits_, second_);
     if (searched_.skipped > 0)
       remark(leftOutWords(limits_, std::to_string(searched_.skipped) + " of the fits"));
     require(!searched_.linear.empty(), data_.data->source + ": output '" + name() + "'",
@@ -178,9 +179,10 @@ class OutputSearch {
       const double other = lowestOfRules(without);
       if (!(other < bent)) return;  // what it does may bend
       const std::size_t n_u = data_.data->inputs.size();
-      remark((worst < n_u ? data_.data->inputs[worst] : data_.data->disturbances[worst - n_u]).name +
-             " is left out: models without it run closer over held-out blocks (score " +
-             shortText(lowest) + " beside " + shortText(now) + "; --keep-inputs keeps it)");
+      remark(
+          (worst < n_u ? data_.data->inputs[worst] : data_.data->disturbances[worst - n_u]).name +
+          " is left out: models without it run closer over held-out blocks (score " +
+          shortText(lowest) + " beside " + shortText(now) + "; --keep-inputs keeps it)");
       data_.unused[worst] = true;
       left.erase(std::find(left.begin(), left.end(), worst));
       now = lowest;

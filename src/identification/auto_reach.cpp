@@ -12,9 +12,9 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kLongestReach = 30, kShortestReach = 10;
-constexpr double kGrowth = 20.0;       // of an error within the reach
-constexpr double kOutside = 1.0005;    // a pole beyond it is unstable
-constexpr double kOfRecord = 2.0;      // time constants that a record must hold
+constexpr double kGrowth = 20.0;     // of an error within the reach
+constexpr double kOutside = 1.0005;  // a pole beyond it is unstable
+constexpr double kOfRecord = 2.0;    // time constants that a record must hold
 
 struct SlowestPoles {
   double outside{};  ///< largest radius
@@ -83,7 +83,8 @@ SlowestPoles freeRunPole(const AutoData& p) {
 }  // namespace
 
 Index reachOf(const AutoData& p) {
-  const double nearly = 1.0 - kOfRecord / static_cast<double>(std::max<Index>(rowsOf(p.windows), 10));
+  const double nearly =
+      1.0 - kOfRecord / static_cast<double>(std::max<Index>(rowsOf(p.windows), 10));
   const SlowestPoles step = oneStepPoles(p), run = freeRunPole(p);
   const double outside = std::max(step.outside, run.outside);
   if (!(outside > kOutside) && !(std::max(step.real, run.real) > nearly)) return 0;

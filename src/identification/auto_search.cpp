@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "base/parallel.hpp"
-#include "identification/validation.hpp"
 #include "identification/auto_structures.hpp"
+#include "identification/validation.hpp"
 
 namespace fpc {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "identification/auto_candidate.hpp"
 #include "identification/auto_delay.hpp"
-#include "identification/work_meter.hpp"
 #include "identification/auto_identify.hpp"
+#include "identification/work_meter.hpp"
 
 namespace fpc {
 

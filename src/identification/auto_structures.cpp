@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kSearchIterations = 60;  // models of the output's past
 constexpr int kStateIterations = 100;
-constexpr int kLongestOfRules = 4;  // past values
+constexpr int kLongestOfRules = 4;    // past values
 constexpr std::size_t kFamilies = 3;  // whose ridge and number of rules are refined
 
 /// Leaves out what was judged before; `known` are texts.

@@ -79,7 +79,8 @@ class Doubt {
     free_ = bestWithout(std::vector<char>(statements_.size(), 1));
     if (!(free_.fit > kContradicts) || !isWorse(bound, free_)) return "";
     if (onlySigns(data_.known) && std::isfinite(bound.mean) &&
-        !isWorse(bestWithout(dropped, true), bestWithout(std::vector<char>(dropped.size(), 1), true)))
+        !isWorse(bestWithout(dropped, true),
+                 bestWithout(std::vector<char>(dropped.size(), 1), true)))
       return "";  // rules may bend against a sign that the process as a whole has
     AutoFigures now = bound;
     std::vector<std::string> blamed;

@@ -86,21 +86,13 @@ Matrix predictOneStep(const TsModel& model, const DataSet& data) {
   return predicted;
 }
 
-Matrix predictFreeRun(const TsModel& model, const DataSet& data, Index reach) {
+Matrix predictFreeRun(const TsModel& model, const DataSet& data) {
   Predictor predictor(model, data);
   const auto n_y = static_cast<Index>(model.outputs.size());
   Matrix predicted = Matrix::Constant(data.rows(), n_y, kNaN);
   Matrix past = data.values;  // outputs are replaced by predictions as the run goes on
   Vector next(n_y);
-  Index begun = predictor.longest();
   for (Index k = predictor.longest(); k + 1 < data.rows(); ++k) {
-    if (reach > 0 && k - begun >= reach) {
-      const Index first = k - predictor.longest();
-      const auto measured = data.values.block(first, 0, k - first + 1, n_y);
-      auto own = past.block(first, 0, k - first + 1, n_y);
-      own = measured.array().isFinite().select(measured, own).eval();
-      begun = k;
-    }
     for (Index i = 0; i < n_y; ++i)
       next[i] = predictor.predict(static_cast<std::size_t>(i), past, k);
     if (!next.allFinite()) continue;  // past row k + 1 keeps the measured outputs: a new start

@@ -12,9 +12,8 @@ Matrix predictOneStep(const TsModel& model, const DataSet& data);
 
 /// Predictions from the model's own pasts: measured outputs only start it, at the first complete
 /// sample and after every gap in inputs or disturbances. NaN before the start. A run that leaves
-/// the range of the data by more than 100 spans is held there. With `reach` > 0 the run starts anew
-/// from measured outputs after every so many samples.
-Matrix predictFreeRun(const TsModel& model, const DataSet& data, Eigen::Index reach = 0);
+/// the range of the data by more than 100 spans is held there.
+Matrix predictFreeRun(const TsModel& model, const DataSet& data);
 
 /// Distances between a measured output and its prediction, over the rows where both are finite.
 struct FitFigures {

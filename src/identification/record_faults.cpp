@@ -14,13 +14,13 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kShortestFrozen = 20;
-constexpr double kFrozenTimes = 5.0;   // of the longest usual repetition
-constexpr double kRestless = 0.8;      // share of rows in which a signal changes
+constexpr double kFrozenTimes = 5.0;  // of the longest usual repetition
+constexpr double kRestless = 0.8;     // share of rows in which a signal changes
 constexpr Index kMovesWhileFrozen = 3;
 constexpr Index kFewestSideRows = 20;     // on either side of a change of unit
 constexpr double kFewestSideShare = 0.1;  // of the record
 constexpr double kAlikeFactor = 1.4;
-constexpr Index kNearby = 10;          // rows beside a change of unit that must show it
+constexpr Index kNearby = 10;  // rows beside a change of unit that must show it
 constexpr double kNearbyFactor = 2.5;
 constexpr double kExplained = 0.98;
 constexpr Index kMostCollinearRows = 4000;
@@ -90,7 +90,8 @@ std::vector<FaultyRows> frozenRows(const DataSet& data, Index column) {
   Index repeated = 0, longest_usual = 1;
   double lowest = kInfinity, highest = -kInfinity, known = 0.0;
   for (const double v : y)
-    if (std::isfinite(v)) lowest = std::min(lowest, v), highest = std::max(highest, v), known += 1.0;
+    if (std::isfinite(v))
+      lowest = std::min(lowest, v), highest = std::max(highest, v), known += 1.0;
   for (const FaultyRows run : repetitions(y)) {
     const bool inside = y[run.first] > lowest && y[run.first] < highest;
     (inside && run.last - run.first >= kShortestFrozen ? frozen : usual).push_back(run);
@@ -122,8 +123,8 @@ UnitChange unitChange(const Eigen::Ref<const Vector>& values) {
   for (Index k = 0; k < values.size(); ++k)
     if (std::isfinite(values[k])) known.push_back(values[k]), rows.push_back(k);
   const auto n = static_cast<Index>(known.size());
-  const Index side = std::max(
-      kFewestSideRows, static_cast<Index>(kFewestSideShare * static_cast<double>(n)));
+  const Index side =
+      std::max(kFewestSideRows, static_cast<Index>(kFewestSideShare * static_cast<double>(n)));
   if (n < 2 * side) return {};
   std::vector<double> sizes(known.size() + 1, 0.0), moves(known.size() + 1, 0.0);
   for (std::size_t k = 0; k < known.size(); ++k) {
@@ -144,7 +145,8 @@ UnitChange unitChange(const Eigen::Ref<const Vector>& values) {
   }
   if (at == 0 || change.factor == 0.0) return {};
   const Eigen::Map<const Vector> all(known.data(), n);
-  const double near = medianSize(all.segment(at, kNearby)) / medianSize(all.segment(at - kNearby, kNearby));
+  const double near =
+      medianSize(all.segment(at, kNearby)) / medianSize(all.segment(at - kNearby, kNearby));
   if (!(std::abs(std::log(near / change.factor)) < std::log(kNearbyFactor))) return {};
   change.row = rows[static_cast<std::size_t>(at)];
   return change;
@@ -211,7 +213,8 @@ std::vector<std::string> faultRemarks(const DataSet& data) {
                         (c < n_y ? ": left out of fits and figures" : ""));
     const UnitChange change = unitChange(data.values.col(c));
     if (change.row > 0)
-      remarks.push_back(name + ": from row " + std::to_string(change.row + 1) + " on values and moves are " +
+      remarks.push_back(name + ": from row " + std::to_string(change.row + 1) +
+                        " on values and moves are " +
                         (change.factor > 1.0 ? shortText(change.factor) + " times larger"
                                              : shortText(1.0 / change.factor) + " times smaller") +
                         ": another unit? (--rows takes a part)");
@@ -219,8 +222,9 @@ std::vector<std::string> faultRemarks(const DataSet& data) {
   for (const Collinear& pair : collinearCauses(data)) {
     char share[16];
     std::snprintf(share, sizeof share, "%.1f", 100.0 * pair.share);
-    remarks.push_back(nameOf(data, pair.column) + " moves with " + nameOf(data, pair.partner) + " (" +
-                      share + " % of it): the effects of the two cannot be told apart, and a gain "
+    remarks.push_back(nameOf(data, pair.column) + " moves with " + nameOf(data, pair.partner) +
+                      " (" + share +
+                      " % of it): the effects of the two cannot be told apart, and a gain "
                       "of one alone means nothing");
   }
   return remarks;

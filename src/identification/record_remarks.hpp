@@ -21,8 +21,9 @@ std::vector<std::vector<Eigen::Index>> outliersOf(const DataSet& data);
 /// one.
 DataSet withoutOutliers(const DataSet& data);
 
-/// Inputs that hardly moved, faults (record_faults.hpp), outliers, inputs that answer to outputs (closed loop), a sample time
-/// far from the process' time constants (by the linear model; null: not judged).
+/// Inputs that hardly moved, faults (record_faults.hpp), outliers, inputs that answer to outputs
+/// (closed loop), a sample time far from the process' time constants (by the linear model; null:
+/// not judged).
 std::vector<std::string> recordRemarks(const DataSet& data, const TsModel* linear);
 
 /// Inputs and disturbances (columns) with fewer than four moves beside others that move ten times

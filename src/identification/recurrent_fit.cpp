@@ -136,8 +136,8 @@ class Objective {
   }
 
   void count(Index rows, bool derived) {
-    const auto n = static_cast<double>(shape_.states), unknowns = static_cast<double>(
-                   shape_.parameterCount() + n_starts_);
+    const auto n = static_cast<double>(shape_.states),
+               unknowns = static_cast<double>(shape_.parameterCount() + n_starts_);
     const double step = kPerRow + static_cast<double>(shape_.linearCount()) +
                         kPerSet * static_cast<double>(shape_.setCount());
     const double derivative = n * n * unknowns + 0.5 * unknowns * unknowns + 2.0 * step;

@@ -13,6 +13,7 @@ namespace {
 using Eigen::Index;
 
 constexpr double kActsWithin = 0.9;  // of the squared error: what the same row must reach
+constexpr double kExact = 1e-4;      // of it: as a law without noise gives, or a noise-free process
 constexpr Index kOwnLags = 4, kCauseLags = 4;
 constexpr Index kMostReadRows = 8000;
 
@@ -81,24 +82,30 @@ ReadRows readRows(const DataSet& data, RowReading reading) {
     const Index column = n_y + static_cast<Index>(j);
     if (isStillColumn(data, column)) continue;
     std::string driven, feedback;
+    bool exact = false;
     for (Index i = 0; i < n_y; ++i) {
       std::vector<bool> trial = read.same;
       const double next = oneRowError(data, i, trial);
       trial[j] = true;
       const std::string& y = data.outputs[static_cast<std::size_t>(i)].name;
-      if (next > 0.0 && oneRowError(data, i, trial) < kActsWithin * next) driven = y;
+      const double within = next > 0.0 ? oneRowError(data, i, trial) : 0.0;
+      if (within < kActsWithin * next) driven = y;
+      if (within < kExact * next) exact = true;
       if (feedbackShare(data.values.col(column), data.values.col(i), 1) > 0.0) feedback = y;
     }
     if (driven.empty()) continue;
     const std::string& u = causeName(data, j);
-    read.same[j] = feedback.empty();
+    read.same[j] = feedback.empty() && !exact;
     read.remarks.push_back(
-        feedback.empty()
+        read.same[j]
             ? u + " acts within its sample (nk = 0): " + driven +
                   " follows the value in its own row, which is read as in force when the row was "
                   "measured (--input-row next reads it as acting from then on)"
-            : u + " and " + driven + " move within one row, and " + u + " answers to what " +
-                  feedback + " was before: read as a closed loop, in which " + u +
+            : u + " and " + driven + " move within one row" +
+                  (feedback.empty()
+                       ? ", exactly as a law without noise would move " + u
+                       : ", and " + u + " answers to what " + feedback + " was before") +
+                  ": read as a closed loop, in which " + u +
                   " acts from its row on (--input-row same reads it as in force when the row was "
                   "measured)");
   }

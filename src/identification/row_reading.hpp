@@ -24,8 +24,9 @@ struct ReadRows {
 /// Looks for inputs and disturbances whose value of the same row lowers the squared one-step error
 /// of a linear model of y, with as many regressors, by a tenth and more. Where no past output
 /// explains such an input beyond its own past (feedbackShare() with delay 1) it acts within its
-/// sample; where one does, the record is of a closed loop and the rows are read as loops write
-/// them. `constant` columns are left out.
+/// sample; where one does, or nothing of the error is left, as under a law without noise, the
+/// record is of a closed loop and the rows are read as loops write them. `constant` columns are
+/// left out.
 ReadRows readRows(const DataSet& data, RowReading reading);
 
 /// The record with the columns in `same` (empty: none) moved up by one row, so that lag 0 of a

@@ -110,8 +110,8 @@ class Judge {
 
 namespace {
 
-constexpr Index kPeakLags = 6;       // samples of each input that may make a peak, the row's own too
-constexpr double kExplains = 0.25;   // of the squares that a straight line leaves
+constexpr Index kPeakLags = 6;      // samples of each input that may make a peak, the row's own too
+constexpr double kExplains = 0.25;  // of the squares that a straight line leaves
 
 /// y(k) by y(k-1), y(k-2) and values and squares of all inputs of the rows k-5..k.
 class PeakModel {

@@ -91,9 +91,8 @@ void linearise(LocalModel& local, const Vector& state, int samples, OperatingPoi
   Matrix C = Matrix::Zero(n_y, n_x);
   for (Index i = 0; i < n_y; ++i) C(i, local.outputState(i)) = 1.0;
   const Eigen::FullPivLU<Matrix> rest(Matrix::Identity(n_x, n_x) - A);
-  const bool integrates = std::any_of(point.poles.begin(), point.poles.end(), [](const auto& p) {
-    return std::abs(p - 1.0) < 1e-9;
-  });
+  const bool integrates = std::any_of(point.poles.begin(), point.poles.end(),
+                                      [](const auto& p) { return std::abs(p - 1.0) < 1e-9; });
   point.gains = integrates ? Matrix::Constant(n_y, n_u, kInfinity) : (C * rest.solve(B)).eval();
   const int n = samples > 0 ? samples : stepSamples(point, model.sample_time_s);
   for (Index j = 0; j < n_u; ++j) {
@@ -150,7 +149,8 @@ Eigen::MatrixXi deadTimes(const TsModel& model) {
   Eigen::MatrixXi dead = Eigen::MatrixXi::Constant(n_y, n_u, kNever);
   for (Index i = 0; i < n_y; ++i)
     for (const auto& r : model.submodels[static_cast<std::size_t>(i)].regressors) {
-      if (r.kind == SignalKind::kOutput) through(i, r.index) = std::min(through(i, r.index), r.lag + 1);
+      if (r.kind == SignalKind::kOutput)
+        through(i, r.index) = std::min(through(i, r.index), r.lag + 1);
       if (r.kind == SignalKind::kInput) dead(i, r.index) = std::min(dead(i, r.index), r.lag + 1);
     }
   for (Index pass = 0; pass < n_y; ++pass)

@@ -12,12 +12,12 @@ namespace fpc {
 
 /// A model linearised at a rest, the slopes of its rules' weights included.
 struct OperatingPoint {
-  std::string name;                        ///< "middle", "q low", "q high"
-  Vector outputs, inputs, disturbances;    ///< there
-  bool rests{};                            ///< false: no rest was reached; outputs are mid-range
-  std::vector<std::complex<double>> poles; ///< of all outputs together, the largest first
-  std::vector<double> time_constants_s;    ///< of real poles in (0, 1) and pairs, the longest first
-  Matrix gains;                            ///< n_y x n_u, at rest; infinite with a pole at 1
+  std::string name;                         ///< "middle", "q low", "q high"
+  Vector outputs, inputs, disturbances;     ///< there
+  bool rests{};                             ///< false: no rest was reached; outputs are mid-range
+  std::vector<std::complex<double>> poles;  ///< of all outputs together, the largest first
+  std::vector<double> time_constants_s;  ///< of real poles in (0, 1) and pairs, the longest first
+  Matrix gains;                          ///< n_y x n_u, at rest; infinite with a pole at 1
   std::vector<Matrix> steps;  ///< per input: samples x n_y, answers to a step of one unit
 };
 

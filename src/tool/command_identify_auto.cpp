@@ -39,7 +39,7 @@ struct AutoRecords {
 
 AutoRecords readAll(const IdentifyArguments& a) {
   AutoRecords r;
-  const CsvTable first = readRecord(a.data.front(), csvFormat(a.format));
+  const CsvTable first = readRecord(a.data.front(), csvFormat(a.format), !a.format.no_header);
   const AutoColumns columns{a.outputs, a.inputs, a.disturbances, a.time, a.sample_time_s};
   const Structure structure = autoStructure(first, columns, r.remarks);
   if (!a.known.empty()) r.known = readKnown(a.known, structure);
@@ -48,12 +48,14 @@ AutoRecords readAll(const IdentifyArguments& a) {
   };
   r.each.push_back(take(first, a.rows));
   for (std::size_t i = 1; i < a.data.size(); ++i)
-    r.each.push_back(take(readRecord(a.data[i], csvFormat(a.format)), a.rows));
+    r.each.push_back(take(readRecord(a.data[i], csvFormat(a.format), !a.format.no_header), a.rows));
   r.joined = joinRecords(r.each);
   if (a.validate.empty() && a.validate_rows.empty()) return r;
   std::error_code ignored;
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  r.validation = take(same ? first : readRecord(a.validate, csvFormat(a.format)), a.validate_rows);
+  r.validation =
+      take(same ? first : readRecord(a.validate, csvFormat(a.format), !a.format.no_header),
+           a.validate_rows);
   if (same && rowsOverlap(a.rows, a.validate_rows))
     r.remarks.push_back("validation rows are among the identification rows: not held out");
   return r;
@@ -220,7 +222,7 @@ Row remarksOf(const AutoRecords& records, const AutoIdentification& found,
   const TsModel linear = model.linearModel();
   add("", recordRemarks(asRead(records.joined, model.same_row), &linear));
   for (const auto& part : parts) add(part.title + ": ", part.remarks);
-  if (records.validation) 
+  if (records.validation)
     add("validation: ", recordRemarks(asRead(*records.validation, model.same_row), nullptr));
   return remarks;
 }

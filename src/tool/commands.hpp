@@ -51,15 +51,15 @@ struct IdentifyArguments {
   std::vector<std::string> inputs, outputs, disturbances;  ///< columns
   std::string time;                                        ///< column, empty: found
   RecordFormat format;
-  double sample_time_s{};    ///< 0: from the time column
-  std::string kind{"best"};  ///< best, linear, regressors, state
+  double sample_time_s{};         ///< 0: from the time column
+  std::string kind{"best"};       ///< best, linear, regressors, state
   double work{45.0}, budget_s{};  ///< limits of the search; 0 s: no limit of time
   int blocks{4}, window{5};
-  int reach{-1};            ///< samples of the runs that judge, 0: free ones, -1: by the data
-  int longest_delay{};      ///< [samples], 0: by the length of the record
+  int reach{-1};                  ///< samples of the runs that judge, 0: free ones, -1: by the data
+  int longest_delay{};            ///< [samples], 0: by the length of the record
   std::string input_row{"auto"};  ///< auto, next, same: see RowReading
-  bool keep_inputs{false};  ///< those that hardly moved too
-  std::string known;        ///< of the outputs: file or text, empty: nothing
+  bool keep_inputs{false};        ///< those that hardly moved too
+  std::string known;              ///< of the outputs: file or text, empty: nothing
   std::uint64_t seed{1};
 };
 

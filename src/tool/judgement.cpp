@@ -159,13 +159,13 @@ std::string toTable(const std::vector<RecordJudgement>& parts) {
         title.clear();
       }
     }
-  std::string text = alignedTable(rows) +
-                     "(RMSE in the unit of the output; * chosen; laws: what control laws take; free runs "
-                     "start from the first samples" +
-                     (parts.front().reach > 0
-                          ? " and anew after every " + std::to_string(parts.front().reach)
-                          : "") +
-                     ")\n\n";
+  std::string text =
+      alignedTable(rows) +
+      "(RMSE in the unit of the output; * chosen; laws: what control laws take; free runs "
+      "start from the first samples" +
+      (parts.front().reach > 0 ? " and anew after every " + std::to_string(parts.front().reach)
+                               : "") +
+      ")\n\n";
   std::vector<Row> residuals{{"residuals of", "rows", "correlations outside %", "bound"}};
   for (const auto& part : parts)
     for (const auto& o : part.outputs)

@@ -178,8 +178,9 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
   controllers->footer("Example: fmbpc controllers\n");
   controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
-  CLI::App* model =
-      app.add_subcommand("model", "Reports gains, time constants, poles and dead times of a model, and what not to trust");
+  CLI::App* model = app.add_subcommand(
+      "model",
+      "Reports gains, time constants, poles and dead times of a model, and what not to trust");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
   model->add_flag("--json", a.json, "print one JSON object and nothing else");
   model->add_option("--plots", a.out, "folder for pictures of its sets and step responses");

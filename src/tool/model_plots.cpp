@@ -144,7 +144,8 @@ void addModelJson(const TsModel& model, Json& json) {
 void addCauses(const DataSet& data, CsvTable& table) {
   const auto n_y = static_cast<Index>(data.outputs.size()), before = table.values.cols();
   table.values.conservativeResize(Eigen::NoChange, before + data.values.cols() - n_y);
-  table.values.rightCols(data.values.cols() - n_y) = data.values.rightCols(data.values.cols() - n_y);
+  table.values.rightCols(data.values.cols() - n_y) =
+      data.values.rightCols(data.values.cols() - n_y);
   for (const auto* signals : {&data.inputs, &data.disturbances})
     for (const auto& signal : *signals) {
       table.names.push_back(signal.name);

@@ -18,8 +18,7 @@ std::string rowsText(const std::string& text) { return text.empty() ? ":" : text
 }  // namespace
 
 CsvFormat csvFormat(const RecordFormat& format) {
-  CsvFormat csv{separatorOf(format.separator), decimalOf(format.decimal), format.missing,
-                !format.no_header};
+  CsvFormat csv{separatorOf(format.separator), decimalOf(format.decimal), format.missing};
   csv.validate();
   return csv;
 }
@@ -41,7 +40,8 @@ DataSet makeJoinedData(const CsvTable& table, const Structure& structure, const 
   std::vector<DataSet> parts;
   Eigen::Index before = 0;
   for (auto& piece : pieces) {
-    const Eigen::Index count = piece.rows(), first = std::max(asked.first - before, Eigen::Index{1});
+    const Eigen::Index count = piece.rows(),
+                       first = std::max(asked.first - before, Eigen::Index{1});
     const Eigen::Index last = asked.last == 0 ? count : std::min(asked.last - before, count);
     before += count;
     if (first > last) continue;

@@ -21,8 +21,8 @@ constexpr double kEven = 0.02;    // of the spacing: steps that count as equal, 
 constexpr double kJitter = 0.25;  // of the spacing: a row is still the sample that it is nearest to
 constexpr double kTold = 0.005;   // jitter below it is rounding
 constexpr double kRound = 1e-4;   // of the spacing: a rounder number as near as this is meant
-constexpr double kMostSteps = 1e6;  // in one hole
-constexpr double kUsual = 0.9;      // share of the steps that are one sample
+constexpr double kMostSteps = 1e6;    // in one hole
+constexpr double kUsual = 0.9;        // share of the steps that are one sample
 constexpr Index kShortestPiece = 30;  // rows between two jumps back
 
 /// Letters and digits of a name in lower case, cut at all else: "time (s)" gives time, s.
@@ -42,9 +42,9 @@ std::vector<std::string> wordsOf(const std::string& name) {
 /// One of timeUnits() by itself or by a longer word; empty for another word.
 std::string unitOf(const std::string& word) {
   static const std::map<std::string, std::string> longer{
-      {"sec", "s"},      {"secs", "s"},  {"second", "s"}, {"seconds", "s"}, {"mins", "min"},
-      {"minute", "min"}, {"hr", "h"},    {"hrs", "h"},    {"hour", "h"},    {"minutes", "min"},
-      {"hours", "h"},    {"day", "d"},   {"days", "d"},   {"msec", "ms"},   {"milliseconds", "ms"}};
+      {"sec", "s"},      {"secs", "s"}, {"second", "s"}, {"seconds", "s"}, {"mins", "min"},
+      {"minute", "min"}, {"hr", "h"},   {"hrs", "h"},    {"hour", "h"},    {"minutes", "min"},
+      {"hours", "h"},    {"day", "d"},  {"days", "d"},   {"msec", "ms"},   {"milliseconds", "ms"}};
   if (secondsPer(word) > 0.0) return word;
   const auto found = longer.find(word);
   return found != longer.end() ? found->second : "";
@@ -118,8 +118,8 @@ bool mayBeTime(const CsvTable& table, const std::string& name) {
 }
 
 bool isCalledTime(const CsvTable& table, const std::string& name) {
-  static const std::set<std::string> sure{"time",     "times", "timestamp", "datetime",
-                                          "date",     "dates", "timestamps", "zeit"};
+  static const std::set<std::string> sure{"time", "times", "timestamp",  "datetime",
+                                          "date", "dates", "timestamps", "zeit"};
   const auto words = wordsOf(name);
   if (words.empty()) return false;
   if (sure.count(words.front()) != 0 || name == "t") return true;
@@ -161,8 +161,9 @@ void requireRising(const CsvTable& table, const std::string& name, const Spacing
 
 void requireNoClock(const CsvTable& table, const std::vector<std::string>& used) {
   for (const auto& name : used)
-    require(!(isCalledTime(table, name) && alwaysRisesOrFalls(table.values.col(table.column(name)))),
-            table.file + ": column '" + name + "'", "a signal, not the times");
+    require(
+        !(isCalledTime(table, name) && alwaysRisesOrFalls(table.values.col(table.column(name)))),
+        table.file + ": column '" + name + "'", "a signal, not the times");
 }
 
 void TimeColumn::fitTo(double sample_time_s) {
@@ -177,8 +178,10 @@ TimeColumn timeColumn(const CsvTable& table, const std::string& named,
   time.name = named.empty() ? found(table, used) : named;
   if (time.name.empty()) return time;
   const Index column = table.column(time.name);
-  const std::string& text = table.texts.empty() ? time.name : table.texts[static_cast<std::size_t>(column)];
-  require(!table.values.col(column).array().isNaN().all(), table.file + ": column '" + time.name + "'",
+  const std::string& text =
+      table.texts.empty() ? time.name : table.texts[static_cast<std::size_t>(column)];
+  require(!table.values.col(column).array().isNaN().all(),
+          table.file + ": column '" + time.name + "'",
           "times in s, min, h, d or ms, or dates of ISO 8601 or DD.MM.YYYY, got '" + text + "'");
   requirePlainTimes(table, column);
   const Spacing spacing = spacingOf(table.values.col(column));
@@ -234,7 +237,8 @@ std::vector<CsvTable> piecesOf(const CsvTable& table, const std::string& name,
       piece.lines = {table.lines.begin() + first, table.lines.begin() + first + count};
     if (i > 0)
       remarks.push_back("times of '" + name + "' jump back at " +
-                        table.at(first, table.column(name)) + ": the rows from there on are taken "
+                        table.at(first, table.column(name)) +
+                        ": the rows from there on are taken "
                         "as a record of their own");
   }
   return pieces;

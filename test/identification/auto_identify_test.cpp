@@ -174,8 +174,8 @@ TEST(AutoIdentify, ARuleCountsTheRowsInWhichItFiresMostAndItsCentresLieInTheData
   for (std::size_t r = 0; r < counts.size(); ++r) {
     EXPECT_EQ(model.rules[r].data_count, counts[r]);
     for (std::size_t j = 0; j < model.antecedents.size(); ++j) {
-      const auto column = data.values.col(
-          data.column(model.antecedents[j].kind, model.antecedents[j].index));
+      const auto column =
+          data.values.col(data.column(model.antecedents[j].kind, model.antecedents[j].index));
       const double centre = model.rules[r].antecedents[j].parameters[0];
       EXPECT_GE(centre, column.minCoeff() - 1e-9);
       EXPECT_LE(centre, column.maxCoeff() + 1e-9);

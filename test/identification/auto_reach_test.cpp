@@ -1,5 +1,5 @@
-// Processes that integrate, are unstable by themselves or answer the wrong way first: judged by runs
-// of a few samples.
+// Processes that integrate, are unstable by themselves or answer the wrong way first: judged by
+// runs of a few samples.
 #include <gtest/gtest.h>
 
 #include <cmath>

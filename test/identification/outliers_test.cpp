@@ -119,8 +119,7 @@ TEST(Outliers, PeaksThatTheInputsExplainAreKept) {
     std::mt19937_64 random(seed);
     double before = 0.0;
     for (Index k = 0; k + 1 < 400; ++k) {
-      data.values(k + 1, 0) =
-          3.0 * (data.values(k, 1) - before) + 0.02 * standardNormal(random);
+      data.values(k + 1, 0) = 3.0 * (data.values(k, 1) - before) + 0.02 * standardNormal(random);
       before = data.values(k, 1);
     }
     EXPECT_TRUE(outliersOf(data)[0].empty()) << "seed " << seed;

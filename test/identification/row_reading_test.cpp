@@ -46,13 +46,14 @@ DataSet openLoop(Index ahead, double noise, std::uint64_t seed, double colour) {
 }
 
 /// A law of the same row: u(k) = gain (r(k) - y(k)) + integral.
-DataSet closedLoop(double gain, double integral, double noise, std::uint64_t seed) {
+DataSet closedLoop(double gain, double integral, double noise, std::uint64_t seed,
+                   double setpoint = 1.0) {
   std::mt19937_64 random(seed);
   const Index rows = 500;
   Matrix values(rows, 2);
   double x = 0.0, sum = 0.0, r = 0.0, load = 0.0;
   for (Index k = 0; k < rows; ++k) {
-    if (k % 40 == 0) r = standardNormal(random);
+    if (k % 40 == 0) r = setpoint * standardNormal(random);
     const double y = x + noise * standardNormal(random);
     sum += integral * (r - y);
     const double u = gain * (r - y) + sum;
@@ -84,8 +85,10 @@ TEST(RowReading, AClosedLoopIsNeverReadAsAnInputThatActsWithinItsSample) {
     for (const double gain : {0.5, 2.0})
       for (const double integral : {0.0, 0.1})
         for (const double noise : {0.0, 0.05}) {
-          ++loops;
-          if (readSame(closedLoop(gain, integral, noise, seed))) ++wrong;
+          for (const double setpoint : {0.0, 1.0}) {
+            ++loops;
+            if (readSame(closedLoop(gain, integral, noise, seed, setpoint))) ++wrong;
+          }
         }
   EXPECT_EQ(wrong, 0) << "of " << loops;
 }

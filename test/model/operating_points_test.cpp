@@ -56,8 +56,13 @@ TEST(OperatingPoints, OfRulesHaveTheSlopeOfTheCurveAtEachRest) {
   OutputModel& s = model.submodels[0];
   s.regressors[1].lag = 0;
   s.antecedents = {{SignalKind::kInput, 0, 0}};
-  s.rules = {{{{MembershipShape::kGaussian, {0.0, 2.0}}}, (Vector(2) << 0.5, 0.5).finished(), 0.0, 0, {}},
-             {{{MembershipShape::kGaussian, {10.0, 2.0}}}, (Vector(2) << 0.5, 1.5).finished(), 0.0, 0, {}}};
+  s.rules = {
+      {{{MembershipShape::kGaussian, {0.0, 2.0}}}, (Vector(2) << 0.5, 0.5).finished(), 0.0, 0, {}},
+      {{{MembershipShape::kGaussian, {10.0, 2.0}}},
+       (Vector(2) << 0.5, 1.5).finished(),
+       0.0,
+       0,
+       {}}};
   model.outputs[0].upper = 40.0;
   const auto rest = [&](double u) {
     TsModel at = model;

@@ -192,14 +192,17 @@ TEST_F(AutoTool, DatesOfADayMonthAndYearAreTimes) {
     char cell[32];
     std::snprintf(cell, sizeof cell, "%02d.%02d.2024 %02d:%02d", 28 + static_cast<int>(k / 48) % 3,
                   2, static_cast<int>(k % 48) / 2, static_cast<int>(k % 2) * 30);
-    if (k >= 96) std::snprintf(cell, sizeof cell, "1.3.2024 %02d:%02d",
-                               static_cast<int>(k % 48) / 2, static_cast<int>(k % 2) * 30);
+    if (k >= 96)
+      std::snprintf(cell, sizeof cell, "1.3.2024 %02d:%02d", static_cast<int>(k % 48) / 2,
+                    static_cast<int>(k % 2) * 30);
     text += std::string(cell) + "," + std::to_string(table.values(k, 1)) + "," +
             std::to_string(table.values(k, 2)) + "\n";
   }
   const std::string file = write("dated.csv", text), model = path("dated.yaml");
   ASSERT_EQ(tool("identify " + file + " --auto --inputs u --outputs y --kind linear --work 0.1 " +
-                 "--out " + model).code, 0);
+                 "--out " + model)
+                .code,
+            0);
   EXPECT_EQ(readIdentified(model).model.sample_time_s, 1800.0);
 }
 
@@ -230,8 +233,9 @@ TEST_F(AutoTool, APieceWhoseTimesJumpBackIsARecordOfItsOwn) {
 }
 
 TEST_F(AutoTool, TheModelThatControlLawsTakeIsJudgedBesideTheStarredOne) {
-  const Outcome outcome = tool("identify " + data_ + " --auto --inputs u --outputs y --rows 1:200 " +
-                               "--work 2 --plots " + path("plots") + " --json");
+  const Outcome outcome =
+      tool("identify " + data_ + " --auto --inputs u --outputs y --rows 1:200 " +
+           "--work 2 --plots " + path("plots") + " --json");
   ASSERT_EQ(outcome.code, 0);
   const auto y = parsed(outcome.printed).at("identification").at("y");
   const std::string laws = y.at("laws").at("kind");
