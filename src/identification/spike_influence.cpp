@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "base/order_statistics.hpp"
 
 namespace fpc {
 namespace {
@@ -112,6 +115,9 @@ namespace {
 
 constexpr Index kPeakLags = 6;      // samples of each input that may make a peak, the row's own too
 constexpr double kExplains = 0.25;  // of the squares that a straight line leaves
+constexpr int kPeakPasses = 3;
+constexpr double kPeakTrim = 8.0;      // median errors
+constexpr std::size_t kPeakFolds = 5;  // peaks are told by models that did not see them
 
 /// y(k) by y(k-1), y(k-2) and values and squares of all inputs of the rows k-5..k.
 class PeakModel {
@@ -126,25 +132,36 @@ class PeakModel {
     }
   }
 
-  bool fit(const std::vector<Group>& peaks) {
+  /// Fitted to all rows but those of `hidden` peaks, then without those that it errs most in.
+  bool fit(const std::vector<Group>& hidden) {
     std::vector<Index> kept;
     const Index last = std::min(values_.rows(), kMostSpikeRows);
     for (Index k = kPeakLags; k < last; ++k) {
-      const bool near = std::any_of(peaks.begin(), peaks.end(), [k](const Group& g) {
+      const bool near = std::any_of(hidden.begin(), hidden.end(), [k](const Group& g) {
         return k >= g.first && k <= g.last + 2;
       });
       if (!near && std::isfinite(values_(k, output_)) && rowAt(values_.col(output_), k).allFinite())
         kept.push_back(k);
     }
-    const auto n = static_cast<Index>(kept.size());
-    if (n < 3 * size()) return false;
-    Matrix a(n, size());
-    Vector b(n);
-    for (Index i = 0; i < n; ++i) {
-      a.row(i) = rowAt(values_.col(output_), kept[static_cast<std::size_t>(i)]).transpose();
-      b[i] = values_(kept[static_cast<std::size_t>(i)], output_);
+    for (int pass = 0; pass < kPeakPasses; ++pass) {
+      const auto n = static_cast<Index>(kept.size());
+      if (n < 3 * size()) return false;
+      Matrix a(n, size());
+      Vector b(n);
+      for (Index i = 0; i < n; ++i) {
+        a.row(i) = rowAt(values_.col(output_), kept[static_cast<std::size_t>(i)]).transpose();
+        b[i] = values_(kept[static_cast<std::size_t>(i)], output_);
+      }
+      theta_ = a.colPivHouseholderQr().solve(b);
+      const Vector sizes = (b - a * theta_).cwiseAbs();
+      const double most =
+          kPeakTrim * upperMedian(std::vector<double>(sizes.data(), sizes.data() + n));
+      if (!(most > 0.0)) return true;
+      std::vector<Index> usual;
+      for (Index i = 0; i < n; ++i)
+        if (sizes[i] < most) usual.push_back(kept[static_cast<std::size_t>(i)]);
+      kept = std::move(usual);
     }
-    theta_ = a.colPivHouseholderQr().solve(b);
     return true;
   }
 
@@ -191,9 +208,14 @@ std::vector<Index> explained(const DataSet& data, Index output, const std::vecto
   if (rows.empty()) return found;
   const std::vector<Group> peaks = groupsOf(rows);
   PeakModel model(data, output);
-  if (!model.fit(peaks)) return found;
-  for (const Group& g : peaks)
-    for (Index k = g.first; model.explains(g) && k <= g.last; ++k) found.push_back(k);
+  for (std::size_t fold = 0; fold < std::min(kPeakFolds, peaks.size()); ++fold) {
+    std::vector<Group> hidden;
+    for (std::size_t i = fold; i < peaks.size(); i += kPeakFolds) hidden.push_back(peaks[i]);
+    if (!model.fit(hidden)) return {};
+    for (const Group& g : hidden)
+      for (Index k = g.first; model.explains(g) && k <= g.last; ++k) found.push_back(k);
+  }
+  std::sort(found.begin(), found.end());
   return found;
 }
 

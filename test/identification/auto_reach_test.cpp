@@ -83,7 +83,7 @@ TEST(AutoReach, OfAStableProcessRunsAreFree) {
 TEST(AutoReach, AProcessThatIntegratesOrIsUnstableIsJudgedByShortRuns) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     EXPECT_EQ(reach(swell(seed)), 30) << seed;
-    EXPECT_EQ(reach(unstable(1.3, seed)), 11) << seed;
+    EXPECT_NEAR(static_cast<double>(reach(unstable(1.3, seed))), 11.0, 2.0) << seed;
   }
 }
 
