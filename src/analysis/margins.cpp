@@ -15,7 +15,7 @@ using Complex = std::complex<double>;
 
 constexpr double kHalfTurn = 3.14159265358979323846;
 constexpr int kPerDecade = 200;  // frequencies
-constexpr int kBisections = 60;
+constexpr int kSignHalvings = 60;
 
 double swing(const Matrix& response, Index from, Index count) {
   return response.middleCols(from, count).cwiseAbs().maxCoeff();
@@ -25,7 +25,7 @@ double swing(const Matrix& response, Index from, Index count) {
 template <typename Function>
 double signChange(double low, double high, Function value) {
   const bool above = value(low) > 0.0;
-  for (int i = 0; i < kBisections; ++i) {
+  for (int i = 0; i < kSignHalvings; ++i) {
     const double middle = 0.5 * (low + high);
     ((value(middle) > 0.0) == above ? low : high) = middle;
   }

@@ -15,6 +15,7 @@ using Eigen::Index;
 
 constexpr double kNoRange = 1e6;        // of a signal whose data nobody knows
 constexpr int kResponseSamples = 2000;  // of a load
+constexpr double kDiedOut = 1e-12;      // square of a response to 1
 constexpr int kRestSteps = 50;          // of Newton's method
 constexpr double kSameSampleTime = 1e-3;
 constexpr double kParts[] = {0.5, 0.35, 0.65, 0.2, 0.8, 0.05, 0.95};  // of the inputs' ranges
@@ -190,7 +191,7 @@ ModelNoise noiseOf(const TsModel& model, const ModelErrors& errors, VectorRef ou
     Vector state = Vector::Zero(local.stateSize());
     state[row] = 1.0;
     double response = 0.0;
-    for (int k = 0; k < kResponseSamples && std::isfinite(response); ++k) {
+    for (int k = 0; k < kResponseSamples && state.squaredNorm() > kDiedOut; ++k) {
       response += state[row] * state[row];
       state = A * state;
     }

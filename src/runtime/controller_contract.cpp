@@ -15,7 +15,7 @@ namespace {
 using Eigen::Index;
 
 constexpr std::uint32_t kSettled = 30, kWhole = 60;  // samples
-constexpr double kRounding = 1e-9;                   // of an input's range
+constexpr double kSameInput = 1e-9;                  // of an input's range
 constexpr double kBump = 1e-6;                       // likewise
 
 std::string atSample(std::uint32_t k, const std::string& words) {
@@ -71,7 +71,7 @@ class ControllerContract {
     Measurement now = makeSimulation(loop).measurement();
     now.header.run_id = 1;
     std::mt19937_64 engine = seededEngine(7, {});
-    const Vector slack = kRounding * range;
+    const Vector slack = kSameInput * range;
     for (std::uint32_t k = 0; k < kWhole; ++k) {
       now.header.step = k;
       now.header.time_ns += 1;
@@ -169,7 +169,7 @@ class ControllerContract {
     run(twin, loop_, kWhole, [&](const Measurement& now) {
       expect(now.header.step != kSettled || session.retune(shown), "its own settings are refused");
       session.receive(now);
-      expect(distance(session.answer().base.input, twin.answer().base.input) <= kRounding,
+      expect(distance(session.answer().base.input, twin.answer().base.input) <= kSameInput,
              atSample(now.header.step, "its own settings move the input"));
     });
     expect(session.controller().settings() == shown, "its own settings change when taken");

@@ -35,13 +35,13 @@ std::string timeText(double seconds) {
   return seconds < 7200.0 ? figure(seconds / 60.0) + " min" : figure(seconds / 3600.0) + " h";
 }
 
-Json finite(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json finiteOrNull(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 template <typename Signals>
 Json valuesOf(const Signals& signals, const Vector& values) {
   Json object = Json::object();
   for (std::size_t i = 0; i < signals.size() && static_cast<Index>(i) < values.size(); ++i)
-    object[signals[i].name] = finite(values[static_cast<Index>(i)]);
+    object[signals[i].name] = finiteOrNull(values[static_cast<Index>(i)]);
   return object;
 }
 
@@ -66,7 +66,7 @@ Json curveOf(const PulseResponse& response, Index input) {
   for (std::size_t i = 0; i < all.size(); i += stride) {
     const auto L = response.loopGain(input, all[i]);
     curve["rad_s"].push_back(all[i]);
-    curve["loop_gain"].push_back({finite(L.real()), finite(L.imag())});
+    curve["loop_gain"].push_back({finiteOrNull(L.real()), finiteOrNull(L.imag())});
   }
   return curve;
 }
@@ -83,19 +83,19 @@ void addLinear(const LoopFile& loop, const LoopProbe& probe, bool curves, Json& 
       tightest.gain_lower = std::max(tightest.gain_lower, m.gain_lower);
       tightest.phase_deg = std::min(tightest.phase_deg, m.phase_deg);
       tightest.delay_s = std::min(tightest.delay_s, m.delay_s);
-      row.update({{"gain_upper", finite(m.gain_upper)},
+      row.update({{"gain_upper", finiteOrNull(m.gain_upper)},
                   {"gain_lower", m.gain_lower},
                   {"phase_deg", m.phase_deg},
-                  {"delay_s", finite(m.delay_s)},
+                  {"delay_s", finiteOrNull(m.delay_s)},
                   {"crossover_rad_s", m.crossover_rad_s}});
       if (curves) row["curve"] = curveOf(*probe.response, input);
     }
     json["inputs"].push_back(row);
   }
-  json["gain_upper"] = finite(tightest.gain_upper);
+  json["gain_upper"] = finiteOrNull(tightest.gain_upper);
   json["gain_lower"] = tightest.gain_lower;
   json["phase_deg"] = tightest.phase_deg;
-  json["delay_s"] = finite(tightest.delay_s);
+  json["delay_s"] = finiteOrNull(tightest.delay_s);
   json["sensitivity_peak"] = probe.response->peak();
   json["verdict"] = stableWords(tightest);
 }
@@ -117,7 +117,7 @@ Json probeJson(const LoopFile& loop, const LoopProbe& probe, bool curves) {
       addLinear(loop, probe, curves, json);
       break;
     case ProbeResult::kGrows:
-      json["growth"] = finite(probe.growth);
+      json["growth"] = finiteOrNull(probe.growth);
       json["verdict"] =
           "unstable, a deviation grows by " + figure(100.0 * (probe.growth - 1.0)) + " % a sample";
       break;

@@ -38,7 +38,7 @@ struct StepResponses {
   Vector y_range, u_range;
 };
 
-std::string number(double value) {
+std::string digits(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%.4g", value);
   return text;
@@ -182,9 +182,9 @@ class LoopWriter {
       const double lambda = std::max({lag.dead_time, 0.5 * lag.time_constant, sample_ / 60.0});
       const PiTuning t = imcTuning(lag, lambda);
       out << "    - {input: " << inputs()[p.input].name << ", output: " << outputs()[p.output].name
-          << ", kp: " << number(t.kp) << ", ki_per_h: " << number(t.kp * 60.0 / t.integral_time_min)
-          << ", start: bumpless}  # gain " << number(lag.gain) << ", lag "
-          << number(lag.time_constant) << " min, dead time " << number(lag.dead_time) << " min\n";
+          << ", kp: " << digits(t.kp) << ", ki_per_h: " << digits(t.kp * 60.0 / t.integral_time_min)
+          << ", start: bumpless}  # gain " << digits(lag.gain) << ", lag "
+          << digits(lag.time_constant) << " min, dead time " << digits(lag.dead_time) << " min\n";
     }
     return out.str();
   }
@@ -200,7 +200,7 @@ class LoopWriter {
   static std::string mapping(const std::vector<SignalInfo>& signals, const Vector& values) {
     std::string text = "{";
     for (std::size_t i = 0; i < signals.size(); ++i)
-      text += (i ? ", " : "") + signals[i].name + ": " + number(values[static_cast<Index>(i)]);
+      text += (i ? ", " : "") + signals[i].name + ": " + digits(values[static_cast<Index>(i)]);
     return text + "}";
   }
 
@@ -221,7 +221,7 @@ class LoopWriter {
       text += "    - {name: " + s.name;
       if (!s.unit.empty()) text += ", unit: '" + s.unit + "'";
       if (std::isfinite(s.lower) && std::isfinite(s.upper))
-        text += ", lower: " + number(s.lower - more) + ", upper: " + number(s.upper + more);
+        text += ", lower: " + digits(s.lower - more) + ", upper: " + digits(s.upper + more);
       text += "}\n";
     }
     return text;
@@ -306,9 +306,9 @@ class LoopWriter {
         << "  reference_pole: " << mapping(model_.outputs, pole)
         << "  # half the lag, or the dead time\n"
         << "  weight_output: " << mapping(model_.outputs, y_weight) << "  # 1 / range^2\n"
-        << "  weight_move: " << mapping(model_.inputs, u_weight) << "  # " << number(move_weight)
+        << "  weight_move: " << mapping(model_.inputs, u_weight) << "  # " << digits(move_weight)
         << " / range^2: the least of five whose sensitivity peak on the model is below "
-        << number(kPeak) << "\n"
+        << digits(kPeak) << "\n"
         << "  realisation: observer\n"
         << "  observer:"
         << (known_noise_ ? "                        # of the model's errors on its record\n"
