@@ -207,11 +207,11 @@ void LoopRecorder::onMeasurement(const fmbpc::Measurement& msg, const std::strin
 }
 
 void LoopRecorder::onState(const fmbpc::PlantState& msg, const std::string&) {
-  record(topics::kPlantState, msg, [&] { session_.receive(fromMsg(msg), msg.remark); });
+  record(topics::kPlantState, msg, [&] { session_.receive(fromMsg(msg), fromMsg(msg.events)); });
 }
 
 void LoopRecorder::onTracking(const fmbpc::Tracking& msg, const std::string&) {
-  record(topics::kTracking, msg, [&] { session_.receive(fromMsg(msg), msg.remark); });
+  record(topics::kTracking, msg, [&] { session_.receive(fromMsg(msg), fromMsg(msg.events)); });
 }
 
 void LoopRecorder::onBase(const fmbpc::ControlAction& msg, const std::string&) {

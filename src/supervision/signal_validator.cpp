@@ -52,6 +52,28 @@ std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
   return "";
 }
 
+EventCode codeOf(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::kNoNumber:
+    case Doubt::kStale:
+    case Doubt::kMissing:
+      return EventCode::kSignalMissing;
+    case Doubt::kRange:
+      return EventCode::kSignalOutOfRange;
+    case Doubt::kRate:
+      return EventCode::kSignalTooFast;
+    case Doubt::kJump:
+      return EventCode::kSignalJumped;
+    case Doubt::kFrozen:
+      return EventCode::kSignalFrozen;
+    case Doubt::kRepeated:
+      return EventCode::kSignalNotRenewed;
+    case Doubt::kNone:
+      break;
+  }
+  return EventCode::kNone;
+}
+
 Doubt doubtOf(NoValue why) {
   if (why == NoValue::kStale) return Doubt::kStale;
   return why == NoValue::kMissing ? Doubt::kMissing : Doubt::kNoNumber;
@@ -90,17 +112,17 @@ SignalValidator::SignalValidator(PlausibilityParams params, const PlantInfo& pla
       needed_(asked_.size(), true) {
   params_.validate(n_y_, plant.disturbances.size(), static_cast<Eigen::Index>(plant.inputs.size()));
   expected_ = Vector::Zero(static_cast<Eigen::Index>(n_y_));
-  writeWords(plant);
+  writeTexts(plant);
 }
 
-void SignalValidator::writeWords(const PlantInfo& plant) {
+void SignalValidator::writeTexts(const PlantInfo& plant) {
   texts_.resize(signals_.size());
   for (std::size_t i = 0; i < signals_.size(); ++i) {
-    const std::string& name = i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name;
+    names_.push_back(i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name);
     for (std::size_t doubt = 0; doubt < kDoubts; ++doubt)
       for (const char* action : kActionWords)
-        texts_[i].push_back(name + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) + ": " +
-                            action);
+        texts_[i].push_back(names_[i] + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) +
+                            ": " + action);
   }
 }
 
@@ -217,7 +239,7 @@ Verdict SignalValidator::look(const Measurement& now, const Foresee& foresee) {
 }
 
 void SignalValidator::say(Verdict verdict) {
-  words_ = "";
+  notice_ = {};
   const bool needed_only = verdict == Verdict::kHold || verdict == Verdict::kFallback;
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     if (signals_[i].doubt == Doubt::kNone || (needed_only && !needed_[i])) continue;
@@ -225,7 +247,9 @@ void SignalValidator::say(Verdict verdict) {
                                : verdict == Verdict::kHold   ? 2
                                : signals_[i].foreseen        ? 1
                                                              : 0;
-    words_ = texts_[i][static_cast<std::size_t>(signals_[i].doubt) * kActions + action].c_str();
+    const auto doubt = static_cast<std::size_t>(signals_[i].doubt);
+    notice_ = {codeOf(signals_[i].doubt), texts_[i][doubt * kActions + action].c_str(),
+               names_[i].c_str()};
     return;
   }
 }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "supervision/flat_line.hpp"
 #include "supervision/plausibility_params.hpp"
@@ -55,7 +56,7 @@ class SignalValidator {
   const Measurement& accepted() const { return accepted_; }
   Doubt doubt(std::size_t signal) const { return signals_[signal].doubt; }
   /// Of the first doubted signal, with what is done about it; lives as long as this object.
-  const char* words() const { return words_; }
+  const Notice& notice() const { return notice_; }
   const PlausibilityParams& params() const { return params_; }
 
  private:
@@ -76,7 +77,7 @@ class SignalValidator {
   bool expectsFrom(const Foresee& foresee);
   bool replace(std::size_t signal, const Foresee& foresee);
   void say(Verdict verdict);
-  void writeWords(const PlantInfo& plant);
+  void writeTexts(const PlantInfo& plant);
 
   PlausibilityParams params_;
   std::size_t n_y_;
@@ -85,7 +86,8 @@ class SignalValidator {
   std::vector<Memory> signals_;
   std::vector<bool> needed_;
   std::vector<std::vector<std::string>> texts_;  // by signal; by doubt and action
-  const char* words_{""};
+  std::vector<std::string> names_;               // by signal
+  Notice notice_;
   Measurement accepted_;
   Vector expected_;
   bool asked_law_{false}, has_expected_{false};  // at this sample
