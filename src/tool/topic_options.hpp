@@ -20,6 +20,7 @@ void addOperate(CLI::App& app, std::function<int()>& chosen);
 
 /// `watch` for the list of commands only: its words are those of a script.
 void addWatch(CLI::App& app);
+void addExport(CLI::App& app, std::function<int()>& chosen);
 /// What stands behind `fmbpc watch`, whatever it is, --help too; nothing of another command.
 std::optional<std::vector<std::string>> wordsForWatch(int argc, char** argv);
 
