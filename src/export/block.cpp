@@ -213,7 +213,7 @@ class BlockBuilder {
     low_ = p_.works("low", Kind::kReal, n_u_);
     up_ = p_.works("up", Kind::kReal, n_u_);
     mv_ = p_.works("mv", Kind::kReal, n_u_);
-    sub_ = p_.works("sub", Kind::kReal, n_u_);
+    sub_ = p_.works("spare", Kind::kReal, n_u_);
     u_ = p_.works("u", Kind::kReal, n_u_);
     expected_ = p_.works("expected", Kind::kReal, n_y_);
     foreseen_ = p_.work("foreseen", Kind::kBool);
