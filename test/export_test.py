@@ -2,6 +2,7 @@
 """Exported blocks against the law in process: C99 by this machine's compiler, Structured Text by the interpreter of scripts/."""
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -88,6 +89,18 @@ class Export(unittest.TestCase):
         old.v_hash += 1
         old()
         self.assertEqual((500.0, 500.0), (old.v_rout_q_r, new.v_rout_q_r))
+
+    def test_single_precision_is_exported_where_the_law_allows_it(self):
+        self.exported("asp_case1", "--real", "--samples", "250")
+        said = export_check.native(self.folder, "law", "gcc", "-O0", self.into)
+        self.assertTrue(said["passed"], said)
+        self.assertLess(1e-9, said["difference"])
+        self.assertEqual(said["hash"], export_check.interpreted(self.folder, "law")["hash"])
+        shutil.rmtree(self.folder)
+        done = export(self.folder, "column_clip", "--real", "--samples", "500")
+        self.assertEqual(1, done.returncode)
+        self.assertIn("--real", done.stderr)
+        self.assertFalse(self.folder.exists())
 
     def test_what_is_not_exported_is_refused_by_name_and_nothing_is_written(self):
         for loop, words in (("cstr_tracking_nmpc", ("controller.type", "nmpc")),

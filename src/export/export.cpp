@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -9,11 +10,13 @@
 
 #include "base/text_hash.hpp"
 #include "export/block.hpp"
+#include "export/evaluate.hpp"
 #include "export/page.hpp"
 #include "export/print.hpp"
 #include "export/print_tests.hpp"
 #include "export/vectors.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 
 namespace fpc {
 namespace {
@@ -38,6 +41,30 @@ ExportIdentity identityOf(const LoopFile& loop, const ExportOptions& options) {
           blockHash(loop),
           blockNumber(loop),
           loop.plant_info.sample_time_s};
+}
+
+/// Single precision is for laws that it does not change.
+void requireSingleWillDo(const LoopFile& loop, const ExportOptions& options,
+                         const ir::Program& program) {
+  BlockVectors vectors(loop, program, options.seed, options.samples);
+  ProgramRunner runner(program);
+  const auto& limits = loop.simulation.actuator.limits;
+  const std::size_t n_in = vectors.inputs().size();
+  double worst = 0.0;
+  for (int k = 0; k < options.samples; ++k) {
+    const std::vector<double>& row = vectors.next();
+    for (std::size_t i = 0; i < n_in; ++i) runner.give(vectors.inputs()[i], row[i]);
+    runner.step();
+    for (Eigen::Index i = 0; i < limits.lower.size(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double away = std::abs(runner.taken(vectors.outputs()[at]) - row[n_in + at]);
+      const double span = std::max(limits.upper[i] - limits.lower[i], 1e-300);
+      if (!(away / span <= worst)) worst = away / span;
+    }
+  }
+  require(worst <= kSingleTolerance, loop.name + ": --real",
+          "double precision: in single the output is off by up to " + shortText(worst) +
+              " of its span, and " + shortText(kSingleTolerance) + " is allowed");
 }
 
 void writeFile(const std::filesystem::path& path, const std::string& text) {
@@ -65,6 +92,7 @@ std::vector<std::string> exportLoop(const LoopFile& loop, const ExportOptions& o
   ir::Program program;
   makeProgram(loop, options, program);
   const ExportIdentity identity = identityOf(loop, options);
+  if (options.single) requireSingleWillDo(loop, options, program);
   BlockVectors vectors(loop, program, options.seed, options.samples);
   std::error_code failed;
   std::filesystem::create_directories(folder, failed);
