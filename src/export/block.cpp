@@ -478,7 +478,7 @@ class BlockBuilder {
                 raw_[i] < lower[i] || raw_[i] > upper[i], [&] { p_.set(doubt, kRange); },
                 [&] {
                   p_.when(
-                      has_good_[i] && a_ > rate[i] * ir::toReal(since_good_[i] + 1),
+                      has_good_[i] && a_ > rate[i] * (ir::toReal(since_good_[i]) + 1.0),
                       [&] { p_.set(doubt, kRate); },
                       [&] { p_.when(jumped, [&] { p_.set(doubt, kJump); }); });
                 });

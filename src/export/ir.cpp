@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -23,7 +24,52 @@ NodePtr alike(const Value& a, Kind kind) {
   return numberOf(node.number, kind);
 }
 
+bool isInteger(const Value& a) {
+  return a.node().operation == Operation::kNumber && a.kind() == Kind::kInt;
+}
+
+bool isInteger(const Value& a, double number) { return isInteger(a) && a.node().number == number; }
+
+/// Integers that are known beforehand: an index of a table, a loop of one pass.
+std::optional<Value> folded(Operation operation, const Value& a, const Value& b) {
+  if (operation == Operation::kAdd && isInteger(a, 0)) return b;
+  if ((operation == Operation::kAdd || operation == Operation::kSubtract) && isInteger(b, 0))
+    return a;
+  if (operation == Operation::kMultiply && isInteger(a, 1)) return b;
+  if (operation == Operation::kMultiply && isInteger(b, 1)) return a;
+  if (!isInteger(a) || !isInteger(b)) return std::nullopt;
+  const int x = static_cast<int>(a.node().number), y = static_cast<int>(b.node().number);
+  switch (operation) {
+    case Operation::kAdd:
+      return Value(x + y);
+    case Operation::kSubtract:
+      return Value(x - y);
+    case Operation::kMultiply:
+      return Value(x * y);
+    case Operation::kLess:
+      return Value(x < y);
+    case Operation::kLessEqual:
+      return Value(x <= y);
+    case Operation::kEqual:
+      return Value(x == y);
+    default:
+      return std::nullopt;
+  }
+}
+
+bool isFlag(const Value& a, bool flag) {
+  return a.node().operation == Operation::kNumber && a.kind() == Kind::kBool &&
+         (a.node().number != 0.0) == flag;
+}
+
 Value binary(Operation operation, const Value& a, const Value& b, bool compares = false) {
+  if (a.kind() == Kind::kInt && b.kind() == Kind::kInt)
+    if (const auto known = folded(operation, a, b)) return *known;
+  if (operation == Operation::kAnd || operation == Operation::kOr) {
+    const bool neutral = operation == Operation::kAnd;
+    if (isFlag(a, neutral) || isFlag(b, !neutral)) return b;
+    if (isFlag(b, neutral) || isFlag(a, !neutral)) return a;
+  }
   const bool real = a.kind() == Kind::kReal || b.kind() == Kind::kReal;
   const Kind kind = real ? Kind::kReal : a.kind();
   std::vector<NodePtr> of{alike(a, kind), alike(b, kind)};
@@ -185,6 +231,8 @@ void Program::inside(Statements& where, const std::function<void()>& build) {
 
 void Program::when(const Value& condition, const std::function<void()>& then,
                    const std::function<void()>& otherwise) {
+  if (isFlag(condition, true)) return then();
+  if (isFlag(condition, false)) return otherwise ? otherwise() : void();
   Statement statement{Statement::Form::kIf, nullptr, condition.pointer(), {}, {}, nullptr, 0, ""};
   inside(statement.then, then);
   if (otherwise) inside(statement.otherwise, otherwise);
