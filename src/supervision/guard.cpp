@@ -15,15 +15,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr const char* kOutside = "outside the model: moves shrink";
-constexpr const char* kFallback = "outside the model: the fallback acts";
-constexpr const char* kOutsideOnly = "outside the model";
-constexpr const char* kOutsideAhead = "what the law expects leaves the model";
-constexpr const char* kShrinkAhead = "what the law expects leaves the model: moves shrink";
-constexpr const char* kSwings = "swings from end to end: moves shrink";
-constexpr const char* kSwingsFallback = "swings from end to end: the fallback acts";
 constexpr int kMostPatient = 1 << 10;  // times return_samples
-constexpr const char* kLocked = "locked up: the input's bound is drawn in";
 
 /// Outputs, an input and disturbances, as models have them.
 void place(const Measurement& now, VectorRef input, Vector& point) {
@@ -81,7 +73,7 @@ void GuardedController::reset(const Measurement& start) {
   if (pi_) pi_->reset(start);
   for (LockUpWatch& lock : locks_) lock.reset();
   for (SwingWatch& swing : swings_) swing.reset();
-  fallback_ = false;
+  fallback_ = swung_ = false;
   above_ = 0;
   patience_ = 1;
   ahead_.reset();
@@ -112,7 +104,7 @@ void GuardedController::lookAhead(const Measurement& now, const ControllerOutput
 void GuardedController::comeBack(const Measurement& now, double trust) {
   above_ = trust >= params_.trust_high ? above_ + 1 : 0;
   if (!fallback_ || above_ / patience_ < params_.return_samples) return;
-  fallback_ = false;
+  fallback_ = swung_ = false;
   for (SwingWatch& swing : swings_) swing.reset();
   inside_->forget();
   inside_->reset(now);
@@ -163,8 +155,7 @@ void GuardedController::shrink(double trust) {
 /// The law has the process swing: the fallback has it, and after every further swing twice as long.
 void GuardedController::handOver(const Measurement& now) {
   if (!pi_ || fallback_ || !view_.swinging) return;
-  fallback_ = true;
-  why_ = kSwingsFallback;
+  fallback_ = swung_ = true;
   above_ = 0;
   patience_ = std::min(2 * patience_, kMostPatient);
   pi_->reset(now);
@@ -230,24 +221,16 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     output.prediction.input_lower = lower_;
     output.prediction.input_upper = upper_;
   }
-  if (view_.outside)
-    output.remark = kOutsideOnly;
-  else if (view_.ahead < params_.trust_low && output.remark[0] == 0)
-    output.remark = kOutsideAhead;
   if (fallback_) {
     output.source = ActionSource::kFallback;
     output.predictive = false;
-    output.remark = why_;
     view_.acting = true;
+    if (swung_) output.events.add({EventCode::kOscillation});
   }
   if (!view_.acting || fallback_) return;
   output.source = ActionSource::kGuarded;
-  if (drawn)
-    output.remark = kLocked;
-  else if (view_.swinging)
-    output.remark = kSwings;
-  else
-    output.remark = trust < params_.trust_high ? kOutside : kShrinkAhead;
+  if (drawn) output.events.add({EventCode::kLockUp});
+  if (view_.swinging) output.events.add({EventCode::kOscillation});
 }
 
 void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,
@@ -264,12 +247,12 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
     view_.trust = std::min(present, trustAt(now, output.input));
     if (pi_ && !fallback_ && process < params_.trust_low) {
       fallback_ = true;
-      why_ = kFallback;
       pi_->reset(now);
     }
     view_.outside = view_.trust < params_.trust_low;
     act(now, setpoint, output);
   }
+  if (process < params_.trust_low) output.events.add({EventCode::kOutsideModel});
   refreshSignals();
 }
 

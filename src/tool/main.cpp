@@ -160,6 +160,11 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
   controllers->footer("Example: fmbpc controllers\n");
   controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
+  CLI::App* events = app.add_subcommand(
+      "events", "Lists what a loop may say of itself: causes, consequences, remedies");
+  events->add_option("CODES", a.loops, "only these (default: docs/events.md)");
+  events->footer("Example: fmbpc events signal_frozen\n");
+  events->callback([&a] { chosen = [&a] { return fpc::tool::events(a.loops); }; });
   CLI::App* model =
       app.add_subcommand("model", "Reports what to know of a model file before trusting it");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
@@ -192,22 +197,6 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
   stability->callback([&a] { chosen = [&a] { return fpc::tool::stability(a); }; });
 }
 
-void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
-  CLI::App* reproduce =
-      app.add_subcommand("reproduce", "Tables and figures of the papers: paper | here | verdict");
-  reproduce->add_option("NAME", a.names,
-                        "papers, experiments (or how their names begin), loops behind them; all of "
-                        "them if none is named");
-  reproduce->add_flag("--list", a.list, "only list them: what each shows and prints");
-  reproduce->add_flag("--details", a.details,
-                      "every row of every paper; a paper that is named shows its rows anyway");
-  reproduce->add_option("--plots", a.plots, "folder for a picture of every figure");
-  reproduce->add_flag("--markdown", a.markdown, "the page docs/results.md");
-  reproduce->add_flag("--json", a.json, "print one JSON array and nothing else");
-  reproduce->footer("Example: fmbpc reproduce blazic2007 --plots figures\n");
-  reproduce->callback([&a] { chosen = [&a] { return fpc::tool::reproduce(a); }; });
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -230,8 +219,7 @@ int main(int argc, char** argv) {
   addLists(app, arguments);
   fpc::tool::StabilityArguments stability;
   addStability(app, stability);
-  fpc::tool::ReproduceArguments reproduce;
-  addReproduce(app, reproduce);
+  fpc::tool::addReproduce(app);
   fpc::tool::TuneArguments tune;
   fpc::tool::addTune(app, tune, chosen);
   fpc::tool::StudyArguments study;
@@ -244,7 +232,7 @@ int main(int argc, char** argv) {
   fpc::tool::addWatch(app);
   fpc::tool::refuseEmptyNames(app);
   try {
-    if (const auto words = fpc::tool::wordsForWatch(argc, argv)) return fpc::tool::watch(*words);
+    if (const int code = fpc::tool::runOther(argc, argv); code >= 0) return code;
     const std::string unknown = fpc::tool::unknownCommand(app, argc, argv);
     if (!unknown.empty()) throw std::invalid_argument(unknown);  // before its --help is answered
     app.parse(argc, argv);
