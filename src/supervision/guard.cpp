@@ -73,7 +73,7 @@ void GuardedController::reset(const Measurement& start) {
   if (pi_) pi_->reset(start);
   for (LockUpWatch& lock : locks_) lock.reset();
   for (SwingWatch& swing : swings_) swing.reset();
-  fallback_ = swung_ = false;
+  fallback_ = false;
   above_ = 0;
   patience_ = 1;
   ahead_.reset();
@@ -104,7 +104,7 @@ void GuardedController::lookAhead(const Measurement& now, const ControllerOutput
 void GuardedController::comeBack(const Measurement& now, double trust) {
   above_ = trust >= params_.trust_high ? above_ + 1 : 0;
   if (!fallback_ || above_ / patience_ < params_.return_samples) return;
-  fallback_ = swung_ = false;
+  fallback_ = false;
   for (SwingWatch& swing : swings_) swing.reset();
   inside_->forget();
   inside_->reset(now);
@@ -155,7 +155,8 @@ void GuardedController::shrink(double trust) {
 /// The law has the process swing: the fallback has it, and after every further swing twice as long.
 void GuardedController::handOver(const Measurement& now) {
   if (!pi_ || fallback_ || !view_.swinging) return;
-  fallback_ = swung_ = true;
+  fallback_ = true;
+  why_ = EventCode::kOscillation;
   above_ = 0;
   patience_ = std::min(2 * patience_, kMostPatient);
   pi_->reset(now);
@@ -224,8 +225,8 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   if (fallback_) {
     output.source = ActionSource::kFallback;
     output.predictive = false;
+    if (why_ != EventCode::kNone) output.events.add({why_});
     view_.acting = true;
-    if (swung_) output.events.add({EventCode::kOscillation});
   }
   if (!view_.acting || fallback_) return;
   output.source = ActionSource::kGuarded;
@@ -247,6 +248,7 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
     view_.trust = std::min(present, trustAt(now, output.input));
     if (pi_ && !fallback_ && process < params_.trust_low) {
       fallback_ = true;
+      why_ = EventCode::kNone;
       pi_->reset(now);
     }
     view_.outside = view_.trust < params_.trust_low;

@@ -131,7 +131,8 @@ class GuardedController final : public ControllerAround {
   std::vector<bool> moved_;         // by input: the model knows it, so the law may move it
   TsModel model_;
   bool known_{false};  // the model says where its data were
-  bool fallback_{false}, swung_{false};  // the PI acts; because the law swings
+  bool fallback_{false};
+  EventCode why_{EventCode::kNone};  // why the fallback acts, besides outside_model
   int above_{};          // samples in a row above trust_high
   int patience_{1};      // times return_samples before the law is back
   Vector point_, proposed_;
