@@ -30,7 +30,7 @@ double usualBend(const Eigen::Ref<const Vector>& y) {
     const double bend = bendAt(y, k);
     if (std::isfinite(bend) && bend != 0.0) bends.push_back(std::abs(bend));
   }
-  return 1.4826 * quantile(std::move(bends), 0.5);
+  return 1.4826 * sampleQuantile(std::move(bends), 0.5);
 }
 
 /// One sample far from both neighbours, where these agree.
@@ -53,7 +53,7 @@ std::vector<int> farSides(const Eigen::Ref<const Vector>& y) {
   std::vector<double> known;
   for (const double v : y)
     if (std::isfinite(v)) known.push_back(v);
-  const double low = quantile(known, kTail), high = quantile(known, 1.0 - kTail);
+  const double low = sampleQuantile(known, kTail), high = sampleQuantile(known, 1.0 - kTail);
   const double margin = kFar * (high - low);
   std::vector<int> sides;
   for (const double v : y) sides.push_back(v > high + margin ? 1 : v < low - margin ? -1 : 0);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fmbpc/base/command_table.hpp"
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/plant/plant.hpp"
@@ -95,6 +96,8 @@ class Simulation {
   /// record.
   const Vector& scheduledDisturbances() const { return scheduled_; }
 
+  /// What people ask in vain at the present sample, and a plant that was not moved to it.
+  const std::vector<Event>& events() const { return events_; }
   /// Last sample since the reset at which the plant could not be moved, with the reason; empty if
   /// none. The state was held over it, and state().trouble says so at the sample after it.
   const std::string& trouble() const { return trouble_; }
@@ -108,6 +111,7 @@ class Simulation {
   void updateDisturbances();
   void passLocalLoop();
   void measure();
+  void gatherEvents();
   void startInstruments();
   double outputOf(std::size_t i) const;
   void lookAtPlant();
@@ -126,8 +130,9 @@ class Simulation {
   Measurement measurement_;
   PlantState state_;
   std::vector<CommandEffect> effects_;
+  std::vector<Event> events_;
   std::mt19937_64 noise_, disturbance_noise_;
-  std::string trouble_;
+  std::string trouble_, failure_;        // failure_: over the sample before
   Vector scheduled_;                     // disturbances without commands
   Vector disturbance_error_;             // of their noise, at this sample
   Vector state_before_;                  // one sample ago

@@ -50,25 +50,25 @@ void ControllerSession::answered() {
     moves_.sent(last_input_);
 }
 
-void ControllerSession::fallBack(const Measurement& m, const char* remark) {
+void ControllerSession::fallBack(const Measurement& m, const Notice& why) {
   Vector& input = answer_.base.input;
   input = plausibility_.params().fallback;
   limits_.clip(input, m.input_applied.allFinite() ? moves_.proven() : m.input_applied);
   controller_->makeSendable(input);
   answer_.base.source = output_.source = ActionSource::kFallback;
   output_.ok = output_.predictive = false;
-  output_.remark = remark;
+  output_.events.add(why);
   fell_back_ = true;
 }
 
-void ControllerSession::hold(const Measurement& m, const char* remark) {
+void ControllerSession::hold(const Measurement& m, const Notice& why) {
   Vector& input = answer_.base.input;
   input = m.input_applied.allFinite() ? moves_.proven() : last_input_;
   limits_.clip(input, input);
   controller_->makeSendable(input);
   answer_.base.source = output_.source = ActionSource::kHeld;
   output_.ok = output_.predictive = false;
-  output_.remark = remark;
+  if (why.code != EventCode::kNone) output_.events.add(why);
 }
 
 void ControllerSession::sendManual(const Measurement& m) {
@@ -81,7 +81,6 @@ void ControllerSession::sendManual(const Measurement& m) {
   if (controller_->followsSetpoint()) answer_.tracking.reference = m.outputs;
   output_.ok = true;
   output_.predictive = false;
-  output_.remark = "";
 }
 
 }  // namespace fpc

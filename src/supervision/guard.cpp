@@ -16,14 +16,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr const char* kOutside = "outside the model: moves shrink";
-constexpr const char* kFallback = "outside the model: the fallback acts";
-constexpr const char* kOutsideOnly = "outside the model";
-constexpr const char* kOutsideAhead = "what the law expects leaves the model";
-constexpr const char* kShrinkAhead = "what the law expects leaves the model: moves shrink";
-constexpr const char* kSwings = "swings from end to end: moves shrink";
-constexpr const char* kLocked = "locked up: the input's bound is drawn in";
-
 /// Outputs, an input and disturbances, as models have them.
 void place(const Measurement& now, VectorRef input, Vector& point) {
   const Index n_y = now.outputs.size(), n_u = input.size();
@@ -234,24 +226,15 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
     output.prediction.input_lower = lower_;
     output.prediction.input_upper = upper_;
   }
-  if (view_.outside)
-    output.remark = kOutsideOnly;
-  else if (view_.ahead < params_.trust_low && output.remark[0] == 0)
-    output.remark = kOutsideAhead;
   if (fallback_) {
     output.source = ActionSource::kFallback;
     output.predictive = false;
-    output.remark = kFallback;
     view_.acting = true;
   }
   if (!view_.acting || fallback_) return;
   output.source = ActionSource::kGuarded;
-  if (drawn)
-    output.remark = kLocked;
-  else if (view_.swinging)
-    output.remark = kSwings;
-  else
-    output.remark = trust < params_.trust_high ? kOutside : kShrinkAhead;
+  if (drawn) output.events.add({EventCode::kLockUp});
+  if (view_.swinging) output.events.add({EventCode::kOscillation});
 }
 
 void GuardedController::step(const Measurement& now, const SetpointSource& setpoint,
@@ -273,6 +256,7 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
     view_.outside = view_.trust < params_.trust_low;
     act(now, setpoint, output);
   }
+  if (process < params_.trust_low) output.events.add({EventCode::kOutsideModel});
   refreshSignals();
 }
 

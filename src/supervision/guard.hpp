@@ -87,7 +87,7 @@ class LockUpWatch {
 ///   model knows the input: others stand where the plant has them;
 /// - an input that the law throws from end to end of its range (see SwingWatch) moves less;
 /// - so the guard narrows the limits of u(k): the law's input is put inside them (source `guarded`,
-///   and remark says why), and the prediction hands them to an optimizer; where the PI acts the
+///   and an event says why), and the prediction hands them to an optimizer; where the PI acts the
 ///   source is `fallback` and there is no prediction.
 /// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
 /// then model_trust, model_trust_ahead (the least over the horizon), model_trust_steps (samples

@@ -91,15 +91,6 @@ struct NewArguments {
   std::string out{"."};
 };
 
-struct ReproduceArguments {
-  std::vector<std::string> names;
-  std::string plots;  ///< folder, empty: none
-  bool list{false};
-  bool details{false};
-  bool markdown{false};
-  bool json{false};
-};
-
 struct TuneArguments {
   std::string loop;
   std::string tuning;
@@ -166,6 +157,8 @@ int resolve(const std::string& loop, const std::vector<std::string>& set, const 
 /// What the plugins of all loops that are found register, so that lists show it.
 void loadPluginsOfLoops();
 int plants(bool json);
+/// Codes, or docs/events.md if none is named. @throws InputError for one that is none.
+int events(const std::vector<std::string>& codes);
 int controllers(bool json);
 /// Names, titles, plants and controllers of the loops that contain all words (in any of these).
 int loops(const std::vector<std::string>& words, bool names_only, bool json);
@@ -179,7 +172,6 @@ int newLoop(const NewArguments& arguments);
 /// `kind`: plant or controller.
 int newPackage(const NewArguments& arguments, const std::string& kind);
 int check(const std::string& package);
-int reproduce(const ReproduceArguments& arguments);
 int tune(const TuneArguments& arguments);
 int study(const StudyArguments& arguments);
 /// `brief`: only what all of them control, and the movement.
@@ -188,7 +180,8 @@ int table(const std::vector<std::string>& folders, bool brief);
 void printVerdict(const std::vector<Summary>& summaries);
 int replay(const ReplayArguments& arguments);
 int recover(const RecoverArguments& arguments);
-/// Becomes another program: returns only by throwing.
+/// These become other programs: they return only by throwing.
 int watch(const std::vector<std::string>& words);
+int reproduce(const std::vector<std::string>& words);
 
 }  // namespace fpc::tool

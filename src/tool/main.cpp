@@ -164,6 +164,11 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
   controllers->footer("Example: fmbpc controllers\n");
   controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
+  CLI::App* events = app.add_subcommand(
+      "events", "Lists what a loop may say of itself: causes, consequences, remedies");
+  events->add_option("CODES", a.loops, "only these (default: docs/events.md)");
+  events->footer("Example: fmbpc events signal_frozen\n");
+  events->callback([&a] { chosen = [&a] { return fpc::tool::events(a.loops); }; });
   CLI::App* model =
       app.add_subcommand("model", "Reports what to know of a model file before trusting it");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
@@ -245,22 +250,6 @@ void addCheck(CLI::App& app, fpc::tool::NewArguments& a) {
   check->callback([&a] { chosen = [&a] { return fpc::tool::check(a.name); }; });
 }
 
-void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
-  CLI::App* reproduce =
-      app.add_subcommand("reproduce", "Tables and figures of the papers: paper | here | verdict");
-  reproduce->add_option("NAME", a.names,
-                        "papers, experiments (or how their names begin), loops behind them; all of "
-                        "them if none is named");
-  reproduce->add_flag("--list", a.list, "only list them: what each shows and prints");
-  reproduce->add_flag("--details", a.details,
-                      "every row of every paper; a paper that is named shows its rows anyway");
-  reproduce->add_option("--plots", a.plots, "folder for a picture of every figure");
-  reproduce->add_flag("--markdown", a.markdown, "the page docs/results.md");
-  reproduce->add_flag("--json", a.json, "print one JSON array and nothing else");
-  reproduce->footer("Example: fmbpc reproduce blazic2007 --plots figures\n");
-  reproduce->callback([&a] { chosen = [&a] { return fpc::tool::reproduce(a); }; });
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -286,8 +275,7 @@ int main(int argc, char** argv) {
   fpc::tool::NewArguments creation;
   addNew(app, creation);
   addCheck(app, creation);
-  fpc::tool::ReproduceArguments reproduce;
-  addReproduce(app, reproduce);
+  fpc::tool::addReproduce(app);
   fpc::tool::TuneArguments tune;
   fpc::tool::addTune(app, tune, chosen);
   fpc::tool::StudyArguments study;
@@ -300,7 +288,7 @@ int main(int argc, char** argv) {
   fpc::tool::addWatch(app);
   fpc::tool::refuseEmptyNames(app);
   try {
-    if (const auto words = fpc::tool::wordsForWatch(argc, argv)) return fpc::tool::watch(*words);
+    if (const int code = fpc::tool::runOther(argc, argv); code >= 0) return code;
     const std::string unknown = fpc::tool::unknownCommand(app, argc, argv);
     if (!unknown.empty()) throw std::invalid_argument(unknown);  // before its --help is answered
     app.parse(argc, argv);
