@@ -55,6 +55,7 @@ void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
   command.add_option("--decimal", f.decimal, "point or comma")->capture_default_str();
   command.add_option("--missing", f.missing, "cells that mean missing beside empty ones and nan")
       ->delimiter(',');
+  command.add_flag("--no-header", f.no_header, "the first line holds values; columns are 1, 2, ..");
 }
 
 void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
@@ -99,8 +100,14 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--kind", a.kind, "best, linear, regressors or state")
       ->capture_default_str()
       ->check(CLI::IsMember({"best", "linear", "regressors", "state"}));
-  identify->add_option("--budget", a.budget_s, "[s] of the search")
+  identify
+      ->add_option("--work", a.work,
+                   "of the search, counted alike on every machine; 1 is about a second of one core")
       ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  identify
+      ->add_option("--budget", a.budget_s,
+                   "[s] that end the search earlier; the model then depends on the machine")
       ->check(CLI::PositiveNumber);
   identify->add_option("--blocks", a.blocks, "held out in turn")
       ->capture_default_str()
@@ -109,9 +116,20 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   identify
+      ->add_option("--reach", a.reach,
+                   "[samples] after which runs start anew from measured ones, 0 for free runs "
+                   "(default: free, 10 to 30 where the process integrates or is unstable)")
+      ->check(CLI::Range(0, 100000));
+  identify
       ->add_option("--longest-delay", a.longest_delay,
                    "[samples] (default: a tenth of the rows, at most 100)")
       ->check(CLI::PositiveNumber);
+  identify
+      ->add_option("--input-row", a.input_row,
+                   "what the inputs of a row do: next (act from then on), same (were in force when "
+                   "its outputs were measured) or auto")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "next", "same"}));
   identify->add_flag("--keep-inputs", a.keep_inputs, "inputs that hardly moved too");
   identify->add_option("--known", a.known,
                        "what is known of the outputs: a file, or text like "
@@ -169,12 +187,15 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   events->add_option("CODES", a.loops, "only these (default: docs/events.md)");
   events->footer("Example: fmbpc events signal_frozen\n");
   events->callback([&a] { chosen = [&a] { return fpc::tool::events(a.loops); }; });
-  CLI::App* model =
-      app.add_subcommand("model", "Reports what to know of a model file before trusting it");
+  CLI::App* model = app.add_subcommand(
+      "model",
+      "Reports gains, time constants, poles and dead times of a model, and what not to trust");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
   model->add_flag("--json", a.json, "print one JSON object and nothing else");
-  model->footer("Example: fmbpc model fm_1\n");
-  model->callback([&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json); }; });
+  model->add_option("--plots", a.out, "folder for pictures of its sets and step responses");
+  model->footer("Example: fmbpc model fm_1 --plots results/fm_1\n");
+  model->callback(
+      [&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json, a.out); }; });
   CLI::App* table =
       app.add_subcommand("table", "Prints one table of runs that were written before");
   table->add_option("DIR", a.loops, "folders with a summary.json")->required();
