@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/order_statistics.hpp"
+#include "identification/record_faults.hpp"
 #include "identification/record_remarks.hpp"
 #include "identification/spike_influence.hpp"
 
@@ -104,9 +105,13 @@ std::vector<std::vector<Index>> outliersOf(const DataSet& data) {
   for (Index c = n_y; c < data.values.cols(); ++c) pulses.push_back(outliersOf(data.values.col(c)));
   for (Index c = 0; c < n_y; ++c) {
     std::vector<Index> rows = outliersOf(data.values.col(c));
-    rows.erase(
-        std::remove_if(rows.begin(), rows.end(), [&](Index row) { return caused(pulses, row); }),
-        rows.end());
+    const std::vector<Index> genuine = explained(data, c, rows);
+    rows.erase(std::remove_if(rows.begin(), rows.end(),
+                              [&](Index row) {
+                                return caused(pulses, row) ||
+                                       std::binary_search(genuine.begin(), genuine.end(), row);
+                              }),
+               rows.end());
     found.push_back(std::move(rows));
   }
   for (std::size_t j = 0; j < pulses.size(); ++j)
@@ -121,7 +126,13 @@ DataSet withoutOutliers(const DataSet& data) {
   for (std::size_t c = 0; c < found.size(); ++c) {
     auto column = clean.values.col(static_cast<Index>(c));
     for (const Index k : found[c]) column[k] = kNaN;
-    if (found[c].empty()) continue;
+    bool changed = !found[c].empty();
+    if (c < n_y)
+      for (const FaultyRows frozen : frozenRows(data, static_cast<Index>(c))) {
+        column.segment(frozen.first + 1, frozen.last - frozen.first - 1).setConstant(kNaN);
+        changed = true;
+      }
+    if (!changed) continue;
     if (c >= n_y) bridge(column, found[c]);
     setRange(clean, c);
   }

@@ -18,6 +18,16 @@ std::map<std::string, PlantFactory>& registry() {
   return plants;
 }
 
+struct ReadPlant {
+  std::string title;
+  PlantReader reader;
+};
+
+std::map<std::string, ReadPlant>& readers() {
+  static std::map<std::string, ReadPlant> plants;
+  return plants;
+}
+
 std::vector<std::string>& refused() {
   static std::vector<std::string> names;
   return names;
@@ -31,9 +41,30 @@ template <>
 void requireSameLayout<PlantLayout>() {}
 
 bool addPlant(const std::string& name, PlantFactory factory) {
-  const bool is_new = registry().emplace(name, std::move(factory)).second;
+  const bool is_new =
+      readers().count(name) == 0 && registry().emplace(name, std::move(factory)).second;
   if (!is_new) refused().push_back(name);
   return is_new;
+}
+
+bool registerPlantReader(const std::string& name, const std::string& title, PlantReader reader) {
+  const bool is_new = registry().count(name) == 0 &&
+                      readers().emplace(name, ReadPlant{title, std::move(reader)}).second;
+  if (!is_new) refused().push_back(name);
+  return is_new;
+}
+
+std::map<std::string, std::string> plantTypes() {
+  std::map<std::string, std::string> types;
+  for (const auto& [name, read] : readers()) types[name] = read.title;
+  for (const auto& [name, factory] : registry()) types[name] = factory({})->description().title;
+  return types;
+}
+
+PlantFactory plantFactory(const std::string& type, YamlSection& plant) {
+  const auto read = readers().find(type);
+  if (read != readers().end()) return read->second.reader(plant);
+  return [type](const PlantParameters& parameters) { return makePlant(type, parameters); };
 }
 
 std::vector<std::string> refusedPlants() { return refused(); }
@@ -53,8 +84,11 @@ std::vector<std::string> plantNames() {
 std::vector<const void*> plantCode() {
   std::vector<const void*> code;
   for (const auto& entry : registry()) code.push_back(codeAddress(entry.second));
+  for (const auto& entry : readers()) code.push_back(codeAddress(entry.second.reader));
   return code;
 }
+
+void Plant::algebraic(VectorRef, VectorRef, VectorRef, Eigen::Ref<Vector>) const {}
 
 void Plant::localLoop(VectorRef, VectorRef, Eigen::Ref<Vector>) const {}
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fmbpc/base/command_table.hpp"
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/plant/plant.hpp"
@@ -16,7 +17,6 @@
 #include "plant/disturbance.hpp"
 #include "plant/instruments.hpp"
 #include "plant/integrator.hpp"
-#include "plant/transfer_matrix.hpp"
 #include "plant/transport_delay.hpp"
 
 namespace fpc {
@@ -32,9 +32,9 @@ struct ScheduledCommand {
 struct SimulationParams {
   std::string plant;
   PlantParameters parameters;
-  TransferMatrix matrix;             ///< if not empty it is the plant, and `plant` its name
-  Vector initial_state;              ///< n_states
-  std::vector<std::string> outputs;  ///< measured states, in this order; empty: the plant's default
+  PlantFactory factory;                ///< of the loop file; empty: makePlant() by name
+  Vector initial_state;                ///< n_states
+  std::vector<std::string> outputs;    ///< measured ones, in this order; empty: the plant's default
   std::vector<double> output_delay_s;  ///< transport delay of each measured output; empty: none
   std::vector<std::string> measured_disturbances;  ///< subset of the plant's, in PlantInfo order
   IntegratorParams integrator;
@@ -42,6 +42,7 @@ struct SimulationParams {
   Vector disturbance_nominal;     ///< n_d
   DisturbanceRecord disturbance;  ///< empty: nominal for ever; an endless run keeps the last column
   std::vector<ScheduledCommand> disturbance_commands;
+  Vector disturbance_noise_std;  ///< n_d, of white noise on each disturbance; empty: none
   Vector noise_std;  ///< n_y, standard deviation of white measurement noise; empty: none
   std::uint64_t noise_seed{1};
   InstrumentParams instruments;  ///< sensors of outputs and measured disturbances
@@ -50,7 +51,9 @@ struct SimulationParams {
   std::uint32_t samples{};  ///< N; 0 is endless
 };
 
-/// The plant of these params. @throws InputError as makePlant() and TransferMatrix::validate().
+/// States and algebraic quantities, in this order.
+std::vector<Quantity> measurable(const PlantDescription& plant);
+/// The plant of these params. @throws InputError as makePlant() by name.
 std::unique_ptr<Plant> makePlant(const SimulationParams& params);
 
 /// Owns the state of a simulated plant. Deterministic: same params, commands and actions give the
@@ -93,6 +96,8 @@ class Simulation {
   /// record.
   const Vector& scheduledDisturbances() const { return scheduled_; }
 
+  /// What people ask in vain at the present sample, and a plant that was not moved to it.
+  const std::vector<Event>& events() const { return events_; }
   /// Last sample since the reset at which the plant could not be moved, with the reason; empty if
   /// none. The state was held over it, and state().trouble says so at the sample after it.
   const std::string& trouble() const { return trouble_; }
@@ -106,7 +111,9 @@ class Simulation {
   void updateDisturbances();
   void passLocalLoop();
   void measure();
+  void gatherEvents();
   void startInstruments();
+  double outputOf(std::size_t i) const;
   void lookAtPlant();
   const Measurement& integrate();
   void movePlant();
@@ -123,13 +130,16 @@ class Simulation {
   Measurement measurement_;
   PlantState state_;
   std::vector<CommandEffect> effects_;
-  std::mt19937_64 noise_;
-  std::string trouble_;
+  std::vector<Event> events_;
+  std::mt19937_64 noise_, disturbance_noise_;
+  std::string trouble_, failure_;        // failure_: over the sample before
   Vector scheduled_;                     // disturbances without commands
+  Vector disturbance_error_;             // of their noise, at this sample
   Vector state_before_;                  // one sample ago
   Vector true_outputs_, true_measured_;  // what the sensors look at
   Vector plant_input_;                   // the applied input as the plant's local loop passes it on
-  std::vector<Eigen::Index> output_state_;          // index of the state behind each output
+  std::vector<Eigen::Index> output_index_;  // of each output: among the states, then the algebraic
+  Vector held_input_, algebraic_;           // u until now, and what the plant makes of it
   std::vector<Eigen::Index> measured_disturbance_;  // index into the plant's disturbances
   std::vector<TransportDelay> delays_;              // of each output
 };

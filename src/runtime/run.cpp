@@ -7,16 +7,11 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/command_player.hpp"
-#include "runtime/cut_offsets.hpp"
 #include "runtime/factory.hpp"
-#include "runtime/forced_inputs.hpp"
 #include "runtime/identifier_session.hpp"
-#include "runtime/late_lines.hpp"
-#include "runtime/operator_notes.hpp"
 #include "runtime/plant_session.hpp"
 #include "runtime/recorder_session.hpp"
-#include "runtime/remark_lines.hpp"
-#include "runtime/sample_remarks.hpp"
+#include "runtime/run_events.hpp"
 
 namespace fpc {
 namespace {
@@ -37,11 +32,8 @@ class Ring {
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
-        remarks_(loop),
-        forced_(simulation_.info()),
-        cut_(simulation_.description().disturbances),
         targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
-                 [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
+                 [this](const std::string& why) { say(EventCode::kCommandRefused, why); }} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
     plant_.begin(kRunId);
@@ -59,14 +51,13 @@ class Ring {
     present_ = now.header.step;
     player_.advance(present_, targets_);
     recorder_.receive(now);
-    forced_.look(now.header.step, simulation_.effects());
-    cut_.look(simulation_);
     recorder_.receive(simulation_.state(),
-                      joinedLines(late(), joinedLines(forced_.lines(), cut_.lines())));
+                      joined(simulation_.events(),
+                             delayEvents(loop_, loop_.simulation.output_delay_s, present_)));
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    recorder_.receive(answer.tracking,
-                      joinedLines(remarks_.look(controller_), std::exchange(missed_, {})));
+    for (Event& event : pending_) event.first = event.last = present_;
+    recorder_.receive(answer.tracking, joined(answer.events, std::exchange(pending_, {})));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimizer_ ? optimize(answer) : answer.base);
@@ -79,18 +70,14 @@ class Ring {
   RunRecord take() {
     recorder_.close();
     conclude(record_, recorder_.complete());
-    if (!missed_.empty()) notes_.failed(present_, inOneLine(missed_));  // at the very end
-    for (RunRemark& note : notes_.remarks()) record_.remarks.push_back(std::move(note));
+    record_.events = std::move(pending_);  // of the very end
     const std::string unplayed = player_.unplayed();
-    if (!unplayed.empty()) record_.remarks.push_back({unplayed, 0, 0});
+    if (!unplayed.empty())
+      record_.events.push_back(eventOf(EventCode::kCommandsUnplayed, unplayed));
     return std::move(record_);
   }
 
  private:
-  std::string late() const {
-    return present_ == 0 ? lateLines(loop_, loop_.simulation.output_delay_s) : "";
-  }
-
   const ControlAction& optimize(const ControllerAnswer& answer) {
     if (answer.has_prediction) optimizer_->receive(answer.prediction);
     optimizer_->receive(answer.base);
@@ -101,7 +88,7 @@ class Ring {
 
   void learn(const Measurement& now) {
     const IdentifierSession::Due due = identifier_->take(now);
-    if (!due.refusal.empty()) fail(due.refusal);
+    if (!due.refusal.empty()) say(due.refused, due.refusal);
     use(due.model);
     if (due.job) identify(*due.job);
   }
@@ -120,7 +107,7 @@ class Ring {
       if (options_.identified) options_.identified(model);
       use(&model);
     } catch (const InputError& error) {
-      fail(std::string("identification: ") + error.what());
+      say(EventCode::kIdentificationFailed, error.what());
     }
   }
 
@@ -129,7 +116,7 @@ class Ring {
     try {
       controller_.setModel(*model);
     } catch (const InputError& error) {
-      fail(error.what());
+      say(EventCode::kModelRefused, error.what());
     }
   }
 
@@ -143,31 +130,17 @@ class Ring {
     }
   }
 
-  /// A model that could not be had, or used: told at once, recorded with the next sample that is
-  /// answered, from which on it was to be used.
-  void fail(const std::string& words) {
-    missed_ = joinedLines(missed_, inOneLine(words));
-    tell(present_, words);
-  }
-
-  void tell(std::uint32_t step, const std::string& words) const {
-    remark("sample " + std::to_string(step) + ": " + words);
-  }
-
-  /// What an operator asked in vain is told at once and kept.
-  void refuse(std::uint32_t step, const std::string& words) {
-    notes_.refused(step, words);
-    tell(step, words);
-  }
-
-  void remark(const std::string& words) const {
-    if (options_.remark) options_.remark(words);
+  /// What an operator asked in vain, or a model that could not be had or used: told at once,
+  /// recorded with the sample that is answered next, from which on it was to be used.
+  void say(EventCode code, const std::string& text) {
+    pending_.push_back(eventOf({code, text.c_str()}, present_));
+    if (options_.said) options_.said(pending_.back());
   }
 
   const LoopFile& loop_;
   const RunOptions& options_;
-  std::string missed_;       // what went wrong with models since the sample answered last, by line
-  std::uint32_t present_{};  // the sample that is answered
+  std::vector<Event> pending_;              // since the sample answered last
+  std::uint32_t present_{};                 // the sample that is answered
   std::unique_ptr<SimulatedProcess> made_;  // until it is the session's
   Simulation& simulation_;
   PlantSession plant_;
@@ -177,10 +150,6 @@ class Ring {
   CommandPlayer player_;
   RunRecord record_;
   RecorderSession recorder_;
-  SampleRemarks remarks_;
-  ForcedInputs forced_;
-  CutOffsets cut_;
-  OperatorNotes notes_;
   CommandTargets targets_;
 };
 

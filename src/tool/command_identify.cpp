@@ -29,7 +29,7 @@ struct Records {
 };
 
 Records readRecords(const IdentifyArguments& a, const Structure& structure) {
-  const CsvTable table = readRecord(a.data.front(), structure.csv);
+  const CsvTable table = readRecord(a.data.front(), structure.csv, !a.format.no_header);
   Records records{makeData(table, structure, a.rows), {}, false};
   if (a.validate.empty() && a.validate_rows.empty()) return records;
   Structure judging = structure;
@@ -37,7 +37,8 @@ Records readRecords(const IdentifyArguments& a, const Structure& structure) {
   std::error_code ignored;              // a file that is not there is told by its reader
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
   records.validation =
-      makeData(same ? table : readRecord(a.validate, structure.csv), judging, a.validate_rows);
+      makeData(same ? table : readRecord(a.validate, structure.csv, !a.format.no_header), judging,
+               a.validate_rows);
   records.overlap = same && rowsOverlap(a.rows, a.validate_rows);
   return records;
 }

@@ -16,6 +16,7 @@
 #include "tool/identify_auto.hpp"
 #include "tool/identify_verdict.hpp"
 #include "tool/judgement.hpp"
+#include "tool/model_points.hpp"
 #include "tool/progress_bar.hpp"
 #include "tool/read_record.hpp"
 #include "tool/record_files.hpp"
@@ -38,21 +39,23 @@ struct AutoRecords {
 
 AutoRecords readAll(const IdentifyArguments& a) {
   AutoRecords r;
-  const CsvTable first = readRecord(a.data.front(), csvFormat(a.format));
+  const CsvTable first = readRecord(a.data.front(), csvFormat(a.format), !a.format.no_header);
   const AutoColumns columns{a.outputs, a.inputs, a.disturbances, a.time, a.sample_time_s};
   const Structure structure = autoStructure(first, columns, r.remarks);
   if (!a.known.empty()) r.known = readKnown(a.known, structure);
   const auto take = [&](const CsvTable& table, const std::string& rows) {
-    return makeData(withEvenTimes(table, structure.time_column, r.remarks), structure, rows);
+    return makeJoinedData(table, structure, rows, r.remarks);
   };
   r.each.push_back(take(first, a.rows));
   for (std::size_t i = 1; i < a.data.size(); ++i)
-    r.each.push_back(take(readRecord(a.data[i], csvFormat(a.format)), a.rows));
+    r.each.push_back(take(readRecord(a.data[i], csvFormat(a.format), !a.format.no_header), a.rows));
   r.joined = joinRecords(r.each);
   if (a.validate.empty() && a.validate_rows.empty()) return r;
   std::error_code ignored;
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  r.validation = take(same ? first : readRecord(a.validate, csvFormat(a.format)), a.validate_rows);
+  r.validation =
+      take(same ? first : readRecord(a.validate, csvFormat(a.format), !a.format.no_header),
+           a.validate_rows);
   if (same && rowsOverlap(a.rows, a.validate_rows))
     r.remarks.push_back("validation rows are among the identification rows: not held out");
   return r;
@@ -67,12 +70,17 @@ std::optional<ModelKind> kindOf(const std::string& word) {
 
 AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records) {
   AutoParams params;
+  params.work = a.work;
   params.budget_s = a.budget_s;
   params.blocks = a.blocks;
   params.window = a.window;
+  params.reach = a.reach;
   params.seed = a.seed;
   params.known = records.known;
   params.longest_delay = a.longest_delay;
+  params.rows = a.input_row == "next"   ? RowReading::kNext
+                : a.input_row == "same" ? RowReading::kSame
+                                        : RowReading::kFound;
   params.keep_still = a.keep_inputs;
   const std::optional<ModelKind> kind = kindOf(a.kind);
   params.states = !kind || kind == ModelKind::kState;
@@ -163,6 +171,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
     else
       json["records"][part.title] = toJson(part);
   }
+  json["reach"] = found.reach;
   json["search"] = Json::array();
   for (const auto& t : found.trials)
     json["search"].push_back({{"output", t.output},
@@ -172,8 +181,10 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
                               {"free_run", numberOrNull(t.free_run)},
                               {"spread", numberOrNull(t.spread)},
                               {"chosen", t.chosen}});
+  json["points"] = pointsJson(found.model);
   json["warnings"] = firstWords(parts);
   json["remarks"] = remarks;
+  json["work"] = found.work;
   json["seconds"] = seconds;
   return json;
 }
@@ -209,9 +220,10 @@ Row remarksOf(const AutoRecords& records, const AutoIdentification& found,
   if (found.cancelled) remarks.push_back("stopped: the best found so far is kept");
   add("", found.remarks);
   const TsModel linear = model.linearModel();
-  add("", recordRemarks(records.joined, &linear));
+  add("", recordRemarks(asRead(records.joined, model.same_row), &linear));
   for (const auto& part : parts) add(part.title + ": ", part.remarks);
-  if (records.validation) add("validation: ", recordRemarks(*records.validation, nullptr));
+  if (records.validation)
+    add("validation: ", recordRemarks(asRead(*records.validation, model.same_row), nullptr));
   return remarks;
 }
 
@@ -249,8 +261,10 @@ int identifyAuto(const IdentifyArguments& a) {
   std::cout << "\n"
             << crossTable(found) << "\n"
             << searchTable(found) << "\n"
-            << toTable(parts) << "\n";
-  std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s\n";
+            << toTable(parts) << "\n"
+            << pointsTable(model.model) << "\n";
+  std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s, "
+            << shortText(found.work) << " of work\n";
   if (!a.out.empty()) std::cout << "written: " << a.out << "\n";
   return 0;
 }

@@ -112,17 +112,17 @@ std::vector<std::string> firstWords(const RecordJudgement& part) {
 
 int validate(const ValidateArguments& a) {
   const IdentifiedModel model = readIdentified(requireModel(a.model));
-  CsvTable table = readRecord(a.data, csvFormat(a.format));
+  const CsvTable table = readRecord(a.data, csvFormat(a.format), !a.format.no_header);
   const auto columns = columnsOf(a.columns);
   requireSignals(columns, model.model);
   Structure structure = structureOf(model.model, table, columns);
   std::vector<std::string> remarks;
   if (!a.no_time) setTimes(table, structure, remarks);
-  table = withEvenTimes(std::move(table), structure.time_column, remarks);
-  const DataSet data = makeData(table, structure, a.rows);
+  const DataSet data = makeJoinedData(table, structure, a.rows, remarks);
   const RecordJudgement part = judgeRecord("validation", data, model, a.steps);
   remarks.insert(remarks.end(), data.repairs.begin(), data.repairs.end());
-  for (const auto& remark : recordRemarks(data, nullptr)) remarks.push_back(remark);
+  for (const auto& remark : recordRemarks(asRead(data, model.same_row), nullptr))
+    remarks.push_back(remark);
   remarks.insert(remarks.end(), part.remarks.begin(), part.remarks.end());
   Json json{{"name", model.model.name}, {"data", data.source}, {"validation", toJson(part)}};
   const std::vector<std::string> first = firstWords(part);

@@ -19,6 +19,7 @@ struct RunArguments {
   std::vector<std::string> set;  ///< "path=value"
   std::string sets;              ///< several of them in one text
   std::string out;               ///< folder, empty: nothing is written
+  bool on_model{false};          ///< the loop's model in the place of its plant
   std::string commands;          ///< file of what an operator does, empty: nothing
   bool json{false};
   bool no_plot{false};
@@ -35,6 +36,7 @@ struct LoopsArguments {
 struct RecordFormat {
   std::string separator{"comma"}, decimal{"point"};
   std::vector<std::string> missing;
+  bool no_header{false};
 };
 
 struct IdentifyArguments {
@@ -50,13 +52,15 @@ struct IdentifyArguments {
   std::vector<std::string> inputs, outputs, disturbances;  ///< columns
   std::string time;                                        ///< column, empty: found
   RecordFormat format;
-  double sample_time_s{};    ///< 0: from the time column
-  std::string kind{"best"};  ///< best, linear, regressors, state
-  double budget_s{45.0};
+  double sample_time_s{};         ///< 0: from the time column
+  std::string kind{"best"};       ///< best, linear, regressors, state
+  double work{45.0}, budget_s{};  ///< limits of the search; 0 s: no limit of time
   int blocks{4}, window{5};
-  int longest_delay{};      ///< [samples], 0: by the length of the record
-  bool keep_inputs{false};  ///< those that hardly moved too
-  std::string known;        ///< of the outputs: file or text, empty: nothing
+  int reach{-1};                  ///< samples of the runs that judge, 0: free ones, -1: by the data
+  int longest_delay{};            ///< [samples], 0: by the length of the record
+  std::string input_row{"auto"};  ///< auto, next, same: see RowReading
+  bool keep_inputs{false};        ///< those that hardly moved too
+  std::string known;              ///< of the outputs: file or text, empty: nothing
   std::uint64_t seed{1};
 };
 
@@ -78,8 +82,16 @@ struct StabilityArguments {
   std::string out;
   double noise_gain{0.0};  ///< limits of the advisor; 0: no advice
   int settling{0};
+  int points{4};         ///< of the run at which a loop is linearised; 0: none
+  bool on_model{false};  ///< the loop's model in the place of its plant
   bool json{false};
   bool no_plot{false};
+};
+
+struct NewArguments {
+  std::string name, model;
+  std::string plant{"model"};  ///< of a loop: model, external, float64 or modbus
+  std::string out{"."};
 };
 
 struct TuneArguments {
@@ -143,19 +155,26 @@ int identify(const IdentifyArguments& arguments);
 int validate(const ValidateArguments& arguments);
 int run(const RunArguments& arguments);
 /// `sets`: more of them in one text, see parseOverrides().
-int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets);
+int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets,
+            bool on_model);
 /// What the plugins of all loops that are found register, so that lists show it.
 void loadPluginsOfLoops();
 int plants(bool json);
+/// Codes, or docs/events.md if none is named. @throws InputError for one that is none.
+int events(const std::vector<std::string>& codes);
 int controllers(bool json);
 /// Names, titles, plants and controllers of the loops that contain all words (in any of these).
 int loops(const std::vector<std::string>& words, bool names_only, bool json);
-int model(const std::string& file, bool json);
+int model(const std::string& file, bool json, const std::string& plots);
 /// A path, or a name below config/model; what it was given if there is neither.
 std::string findModel(const std::string& name);
 /// The same. @throws InputError with the nearest names.
 std::string requireModel(const std::string& name);
 int stability(const StabilityArguments& arguments);
+int newLoop(const NewArguments& arguments);
+/// `kind`: plant or controller.
+int newPackage(const NewArguments& arguments, const std::string& kind);
+int check(const std::string& package);
 int tune(const TuneArguments& arguments);
 int study(const StudyArguments& arguments);
 /// `brief`: only what all of them control, and the movement.

@@ -28,6 +28,8 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
                   "it each, with comparison.png (default: nothing is written)");
   run->add_option("--commands", a.commands,
                   "file of what an operator does at which time (docs/operation.md)");
+  run->add_flag("--on-model", a.on_model,
+                "the loop's model, with its noise, in the place of its plant: a rehearsal");
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
   run->add_flag("--no-plot", a.no_plot, "no plot.png");
   run->footer("Example: fmbpc run asp_best asp_case1_pi_x_best --out results\n");
@@ -39,10 +41,12 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
       "resolve", "Merges and checks a loop file and prints what nodes would read");
   resolve->add_option("LOOP", a.loops, "name or path")->required()->expected(1);
   resolve->add_option("--set", a.set, "KEY.PATH=VALUE, may be repeated")->allow_extra_args(false);
+  resolve->add_flag("--on-model", a.on_model, "with the loop's model in the place of its plant");
   resolve->add_option("--sets", a.sets, "several of them in one text, separated by spaces");
   resolve->footer("Example: fmbpc resolve asp_case1 --set controller.coincidence_steps=3\n");
-  resolve->callback(
-      [&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets); }; });
+  resolve->callback([&a] {
+    chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets, a.on_model); };
+  });
 }
 
 void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
@@ -51,6 +55,7 @@ void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
   command.add_option("--decimal", f.decimal, "point or comma")->capture_default_str();
   command.add_option("--missing", f.missing, "cells that mean missing beside empty ones and nan")
       ->delimiter(',');
+  command.add_flag("--no-header", f.no_header, "the first line holds values; columns are 1, 2, ..");
 }
 
 void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
@@ -95,8 +100,14 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--kind", a.kind, "best, linear, regressors or state")
       ->capture_default_str()
       ->check(CLI::IsMember({"best", "linear", "regressors", "state"}));
-  identify->add_option("--budget", a.budget_s, "[s] of the search")
+  identify
+      ->add_option("--work", a.work,
+                   "of the search, counted alike on every machine; 1 is about a second of one core")
       ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  identify
+      ->add_option("--budget", a.budget_s,
+                   "[s] that end the search earlier; the model then depends on the machine")
       ->check(CLI::PositiveNumber);
   identify->add_option("--blocks", a.blocks, "held out in turn")
       ->capture_default_str()
@@ -105,9 +116,20 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   identify
+      ->add_option("--reach", a.reach,
+                   "[samples] after which runs start anew from measured ones, 0 for free runs "
+                   "(default: free, 10 to 30 where the process integrates or is unstable)")
+      ->check(CLI::Range(0, 100000));
+  identify
       ->add_option("--longest-delay", a.longest_delay,
                    "[samples] (default: a tenth of the rows, at most 100)")
       ->check(CLI::PositiveNumber);
+  identify
+      ->add_option("--input-row", a.input_row,
+                   "what the inputs of a row do: next (act from then on), same (were in force when "
+                   "its outputs were measured) or auto")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "next", "same"}));
   identify->add_flag("--keep-inputs", a.keep_inputs, "inputs that hardly moved too");
   identify->add_option("--known", a.known,
                        "what is known of the outputs: a file, or text like "
@@ -160,12 +182,20 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
   controllers->footer("Example: fmbpc controllers\n");
   controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
-  CLI::App* model =
-      app.add_subcommand("model", "Reports what to know of a model file before trusting it");
+  CLI::App* events = app.add_subcommand(
+      "events", "Lists what a loop may say of itself: causes, consequences, remedies");
+  events->add_option("CODES", a.loops, "only these (default: docs/events.md)");
+  events->footer("Example: fmbpc events signal_frozen\n");
+  events->callback([&a] { chosen = [&a] { return fpc::tool::events(a.loops); }; });
+  CLI::App* model = app.add_subcommand(
+      "model",
+      "Reports gains, time constants, poles and dead times of a model, and what not to trust");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
   model->add_flag("--json", a.json, "print one JSON object and nothing else");
-  model->footer("Example: fmbpc model fm_1\n");
-  model->callback([&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json); }; });
+  model->add_option("--plots", a.out, "folder for pictures of its sets and step responses");
+  model->footer("Example: fmbpc model fm_1 --plots results/fm_1\n");
+  model->callback(
+      [&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json, a.out); }; });
   CLI::App* table =
       app.add_subcommand("table", "Prints one table of runs that were written before");
   table->add_option("DIR", a.loops, "folders with a summary.json")->required();
@@ -175,8 +205,11 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
 }
 
 void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
-  CLI::App* stability = app.add_subcommand(
-      "stability", "Steady states, eigenvalues over the horizon, zeros, a Lyapunov certificate");
+  CLI::App* stability =
+      app.add_subcommand("stability",
+                         "Of a loop: margins in gain and delay where its run leads it. Of a fuzzy "
+                         "law: eigenvalues over "
+                         "the horizon, a Lyapunov certificate. Steady states of the plant");
   stability->add_option("MODEL|LOOP", a.name, "model or loop, by name or path")->required();
   stability->add_option("--at", a.at,
                         "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
@@ -185,11 +218,57 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
   stability->add_option("--noise-gain", a.noise_gain,
                         "advise a horizon: largest std of the input per std of measurement noise");
   stability->add_option("--settling", a.settling, "advise a horizon: largest settling [samples]");
+  stability
+      ->add_option("--points", a.points,
+                   "of a loop: so many places of its run, each the farthest from the others, at "
+                   "which it is linearised; 0: none")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100));
+  stability->add_flag(
+      "--on-model", a.on_model,
+      "of a loop: its model in the place of its plant (of an external plant anyway)");
   stability->add_option("--out", a.out, "folder for stability.json and plots");
   stability->add_flag("--json", a.json, "print one JSON object and nothing else");
   stability->add_flag("--no-plot", a.no_plot, "no plots");
-  stability->footer("Example: fmbpc stability fm_1 --at q_r=570,q_i=1300,s_i=366.67\n");
+  stability->footer(
+      "Example: fmbpc stability cstr_tracking_pi --out results/stability\n"
+      "         fmbpc stability fm_1 --at q_r=570,q_i=1300,s_i=366.67\n");
   stability->callback([&a] { chosen = [&a] { return fpc::tool::stability(a); }; });
+}
+
+void addNew(CLI::App& app, fpc::tool::NewArguments& a) {
+  CLI::App* create = app.add_subcommand(
+      "new", "Writes a loop file for a model, or a package with a plant or controller of your own");
+  create->require_subcommand(1);
+  CLI::App* loop = create->add_subcommand(
+      "loop",
+      "A loop file that runs, with numbers from a model and its record, and a PI beside it");
+  loop->add_option("NAME", a.name, "of the loop (default: the model's, with _loop)");
+  loop->add_option("--model", a.model, "name of config/model, or path")->required();
+  loop->add_option("--plant", a.plant, "what is controlled")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"model", "external", "float64", "modbus"}));
+  loop->add_option("--out", a.out, "folder")->capture_default_str();
+  loop->footer("Example: fmbpc new loop tank --model tank_model.yaml --plant modbus\n");
+  loop->callback([&a] { chosen = [&a] { return fpc::tool::newLoop(a); }; });
+  for (const char* kind : {"plant", "controller"}) {
+    CLI::App* package = create->add_subcommand(
+        kind, std::string("A package with a ") + kind + " of your own: it builds, its tests pass");
+    package->add_option("NAME", a.name, "of package, library and type")->required();
+    package->add_option("--out", a.out, "folder in which the package's is made")
+        ->capture_default_str();
+    package->footer(std::string("Example: fmbpc new ") + kind + " my_" + kind + "\n");
+    package->callback(
+        [&a, kind] { chosen = [&a, kind] { return fpc::tool::newPackage(a, kind); }; });
+  }
+}
+
+void addCheck(CLI::App& app, fpc::tool::NewArguments& a) {
+  CLI::App* check = app.add_subcommand(
+      "check", "Asks the plants and controllers of a package for what every one promises");
+  check->add_option("PACKAGE", a.name, "a plugin's name, or the path of its library")->required();
+  check->footer("Example: fmbpc check two_tanks\n");
+  check->callback([&a] { chosen = [&a] { return fpc::tool::check(a.name); }; });
 }
 
 }  // namespace
@@ -215,6 +294,9 @@ int main(int argc, char** argv) {
   fpc::tool::StabilityArguments stability;
   addStability(app, stability);
   fpc::tool::addReproduce(app);
+  fpc::tool::NewArguments creation;
+  addNew(app, creation);
+  addCheck(app, creation);
   fpc::tool::TuneArguments tune;
   fpc::tool::addTune(app, tune, chosen);
   fpc::tool::StudyArguments study;
@@ -224,6 +306,7 @@ int main(int argc, char** argv) {
   fpc::tool::RecoverArguments recover;
   fpc::tool::addRecover(app, recover, chosen);
   fpc::tool::addOperate(app, chosen);
+  fpc::tool::addExport(app, chosen);
   fpc::tool::addWatch(app);
   fpc::tool::refuseEmptyNames(app);
   try {
