@@ -42,11 +42,6 @@ void requireExportable(const LoopFile& loop) {
          "no estimator: what is not measured cannot be estimated in the exported block");
   refuse(!loop.standstill.signals.empty(), "standstill",
          "no standstill watch in the exported block");
-  const auto signals = {&loop.plausibility.outputs, &loop.plausibility.disturbances};
-  for (const auto* group : signals)
-    for (const SignalPlausibility& s : *group)
-      refuse(s.frozen_samples != 0, "plausibility.signals: frozen_samples",
-             "0: frozen sensors are not looked for in the exported block");
   refuse(loop.plausibility.reaction_samples > 0, "plausibility.reaction_samples",
          "0: the reaction of the outputs is not watched in the exported block");
 }

@@ -146,7 +146,7 @@ double periodOf(const Matrix& values, Index from, Index count, double sample_tim
 
 class Probing {
  public:
-  Probing(const LoopFile& loop, const OperatingPoint& point)
+  Probing(const LoopFile& loop, const CoursePoint& point)
       : loop_(loop),
         limits_(loop.simulation.actuator.limits),
         y_range_(rangesOf(loop.plant_info.outputs)),
@@ -314,7 +314,7 @@ LoopCourse::LoopCourse(const LoopFile& loop) : sample_time_(loop.plant_info.samp
   }
 }
 
-std::vector<OperatingPoint> LoopCourse::points(int count) const {
+std::vector<CoursePoint> LoopCourse::points(int count) const {
   const Matrix y = scaled(setpoints_.array().isNaN().select(0.0, setpoints_)),
                d = scaled(disturbances_);
   Matrix z(y.rows() + d.rows(), y.cols());
@@ -331,13 +331,13 @@ std::vector<OperatingPoint> LoopCourse::points(int count) const {
     far.maxCoeff(&next);
   }
   std::sort(chosen.begin(), chosen.end());
-  std::vector<OperatingPoint> points;
+  std::vector<CoursePoint> points;
   for (const Index k : chosen)
     points.push_back({static_cast<std::uint32_t>(k), setpoints_.col(k), disturbances_.col(k)});
   return points;
 }
 
-LoopFile LoopCourse::stayingAt(const LoopFile& loop, const OperatingPoint& point) const {
+LoopFile LoopCourse::stayingAt(const LoopFile& loop, const CoursePoint& point) const {
   LoopFile staying = loop;
   SimulationParams& sim = staying.simulation;
   const Index last = point.step, first = std::max<Index>(0, last - kApproach);
@@ -365,7 +365,7 @@ LoopFile LoopCourse::stayingAt(const LoopFile& loop, const OperatingPoint& point
   return staying;
 }
 
-LoopProbe probeLoop(const LoopFile& staying, const OperatingPoint& point) {
+LoopProbe probeLoop(const LoopFile& staying, const CoursePoint& point) {
   return Probing(staying, point).run();
 }
 

@@ -13,7 +13,7 @@
 namespace fpc {
 
 /// What a loop is asked, and what acts on its plant, at a sample of its run.
-struct OperatingPoint {
+struct CoursePoint {
   std::uint32_t step{};
   Vector setpoint;      ///< n_y
   Vector disturbances;  ///< n_d, those that act on the plant
@@ -25,10 +25,10 @@ class LoopCourse {
   /// @throws InputError for an external plant or an endless run.
   explicit LoopCourse(const LoopFile& loop);
   /// At most `count` of them, each the farthest from those before it, in order of time.
-  std::vector<OperatingPoint> points(int count) const;
+  std::vector<CoursePoint> points(int count) const;
   /// The loop with neither noise nor faults that follows its course up to the point and then stays
   /// there.
-  LoopFile stayingAt(const LoopFile& loop, const OperatingPoint& point) const;
+  LoopFile stayingAt(const LoopFile& loop, const CoursePoint& point) const;
 
  private:
   double sample_time_;
@@ -45,7 +45,7 @@ enum class ProbeResult {
 };
 
 struct LoopProbe {
-  OperatingPoint point;
+  CoursePoint point;
   ProbeResult result{ProbeResult::kFailed};
   std::string words;           ///< of a failure
   Vector outputs, input;       ///< at rest (kSwings: the last sample)
@@ -58,6 +58,6 @@ struct LoopProbe {
 
 /// `staying`: see LoopCourse::stayingAt(). Samples: at most 3000 to come to rest and 6400 of
 /// response after the point.
-LoopProbe probeLoop(const LoopFile& staying, const OperatingPoint& point);
+LoopProbe probeLoop(const LoopFile& staying, const CoursePoint& point);
 
 }  // namespace fpc

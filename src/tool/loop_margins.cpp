@@ -236,7 +236,7 @@ Json worstRules(const LoopFile& staying, const LoopProbe& rest, const Vector& me
   for (const RuleChoice& choice : firing(model, rest.outputs, rest.input, measured)) {
     const TsModel one = oneRule(model, choice, rest.outputs, rest.input, measured);
     const LoopFile loop = aroundModel(staying, one, rest, measured);
-    OperatingPoint point = rest.point;
+    CoursePoint point = rest.point;
     point.step = 0;
     Json json = probeJson(loop, probeLoop(loop, point), false);
     json["rules"] = text(choice);
@@ -248,7 +248,7 @@ Json worstRules(const LoopFile& staying, const LoopProbe& rest, const Vector& me
 }
 
 /// What of the disturbances is measured, at the point.
-Vector measuredOf(const LoopFile& loop, const OperatingPoint& point) {
+Vector measuredOf(const LoopFile& loop, const CoursePoint& point) {
   const auto plant = makePlant(loop.simulation);
   const auto& all = plant->description().disturbances;
   Vector values(static_cast<Index>(loop.plant_info.disturbances.size()));
@@ -272,7 +272,7 @@ Json marginsOf(const LoopFile& loop, int points,
   const LoopCourse course(loop);
   const auto disturbances = makePlant(loop.simulation)->description().disturbances;
   Json list = Json::array();
-  for (const OperatingPoint& point : course.points(points)) {
+  for (const CoursePoint& point : course.points(points)) {
     show("point " + std::to_string(list.size() + 1));
     const LoopFile staying = course.stayingAt(loop, point);
     const LoopProbe probe = probeLoop(staying, point);

@@ -342,7 +342,7 @@ double peakOf(const std::string& text, const std::string& name) {
   const LoopFile loop = parseLoop(text, name, {{"plant.type", "model"}});
   const LoopCourse course(loop);
   double worst = 0.0;
-  for (const OperatingPoint& point : course.points(3)) {
+  for (const CoursePoint& point : course.points(3)) {
     const LoopProbe probe = probeLoop(course.stayingAt(loop, point), point);
     if (probe.result == ProbeResult::kHeld) continue;
     if (probe.result != ProbeResult::kLinear) return std::numeric_limits<double>::infinity();

@@ -31,7 +31,7 @@ std::string tank(double kp, double ki_per_h, const std::string& more = "") {
 std::vector<LoopProbe> probe(const LoopFile& loop, int points) {
   const LoopCourse course(loop);
   std::vector<LoopProbe> found;
-  for (const OperatingPoint& point : course.points(points))
+  for (const CoursePoint& point : course.points(points))
     found.push_back(probeLoop(course.stayingAt(loop, point), point));
   return found;
 }
@@ -118,7 +118,7 @@ TEST_F(LoopProbeOf, ADriveCountsToTheLoop) {
 TEST_F(LoopProbeOf, PointsAreTheExtremesOfTheRun) {
   const LoopCourse course(readLoop("cstr_tracking"));
   std::vector<double> setpoints;
-  for (const OperatingPoint& p : course.points(3)) setpoints.push_back(p.setpoint[0]);
+  for (const CoursePoint& p : course.points(3)) setpoints.push_back(p.setpoint[0]);
   std::sort(setpoints.begin(), setpoints.end());
   EXPECT_EQ(setpoints, (std::vector<double>{0.045, 0.1, 0.15}));
   EXPECT_EQ(course.points(9).size(), 3U) << "no point twice";
