@@ -8,8 +8,8 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double kUsual = 0x1p-12;  // from here on a size counts as 1
-constexpr int kLeast = -300;        // of the exponent, so that products stay finite
+constexpr double kUsual = 0x1p-7;  // from here on a size counts as 1
+constexpr int kLeast = -300;       // of the exponent, so that products stay finite
 
 }  // namespace
 

@@ -13,7 +13,7 @@ class ScaledProblem {
  public:
   void resize(Eigen::Index n, Eigen::Index m);
   /// Finds s by what bounds, rows and cost say of each unknown alone: its box, or the median of
-  /// |limit|, |limit_i / a_ij| and |g_j / H_jj|, whichever is less. Sizes from 2^-12 on count as 1.
+  /// |limit|, |limit_i / a_ij| and |g_j / H_jj|, whichever is less. Sizes from 2^-7 on count as 1.
   /// @return false if all are 1: then the problem is used as it is
   bool scale(const QpProblem& given);
   const QpProblem& problem() const { return scaled_; }
