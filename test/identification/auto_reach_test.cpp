@@ -98,7 +98,7 @@ double slowestPole(const TsModel& model) {
 }
 
 TEST(AutoReach, AnUnstablePoleIsFound) {
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const AutoIdentification found = searched(unstable(1.3, seed));
     EXPECT_GT(found.reach, 0);
     EXPECT_NEAR(slowestPole(found.linear), 1.3, 0.06) << seed;
@@ -108,7 +108,7 @@ TEST(AutoReach, AnUnstablePoleIsFound) {
 }
 
 TEST(AutoReach, AnInverseResponseIsNoDelay) {
-  for (const std::uint64_t seed : {1, 2}) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const AutoIdentification found = searched(swell(seed));
     EXPECT_EQ(found.outputs[0].delay[0], 0) << seed;
     EXPECT_NEAR(slowestPole(found.linear), 1.0, 0.02) << seed;
