@@ -116,6 +116,7 @@ TEST(RowReading, TheSearchTakesItAndTheFirstRemarkSaysSo) {
   const DataSet data = openLoop(1, 0.02, 3, 0.5);
   AutoParams params;
   params.states = false;
+  params.work = 0.2;
   const AutoIdentification found = autoIdentify(data, params);
   ASSERT_EQ(found.same_row, std::vector<bool>{true});
   EXPECT_LT(found.outputs[0].linear.one_step, 0.05);
