@@ -74,14 +74,14 @@ DataSet swell(std::uint64_t seed) {
 }
 
 TEST(AutoReach, OfAStableProcessRunsAreFree) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
     for (const double pole : {0.0, 0.5, 0.9, 0.98})
       for (const double noise : {0.001, 0.1})
         EXPECT_EQ(reach(stable(pole, noise, seed)), 0) << pole << ", " << noise << ", " << seed;
 }
 
 TEST(AutoReach, AProcessThatIntegratesOrIsUnstableIsJudgedByShortRuns) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     EXPECT_EQ(reach(swell(seed)), 30) << seed;
     EXPECT_NEAR(static_cast<double>(reach(unstable(1.3, seed))), 11.0, 2.0) << seed;
   }
@@ -89,7 +89,7 @@ TEST(AutoReach, AProcessThatIntegratesOrIsUnstableIsJudgedByShortRuns) {
 
 AutoIdentification searched(const DataSet& data) {
   AutoParams params;
-  params.work = 10.0;
+  params.work = 1.5;
   return autoIdentify(data, params);
 }
 
@@ -98,7 +98,7 @@ double slowestPole(const TsModel& model) {
 }
 
 TEST(AutoReach, AnUnstablePoleIsFound) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const AutoIdentification found = searched(unstable(1.3, seed));
     EXPECT_GT(found.reach, 0);
     EXPECT_NEAR(slowestPole(found.linear), 1.3, 0.06) << seed;
@@ -108,7 +108,7 @@ TEST(AutoReach, AnUnstablePoleIsFound) {
 }
 
 TEST(AutoReach, AnInverseResponseIsNoDelay) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const AutoIdentification found = searched(swell(seed));
     EXPECT_EQ(found.outputs[0].delay[0], 0) << seed;
     EXPECT_NEAR(slowestPole(found.linear), 1.0, 0.02) << seed;

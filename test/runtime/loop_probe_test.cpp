@@ -42,7 +42,7 @@ std::complex<double> loopGain(double kp, double ki_per_h, double turn) {
   const std::complex<double> z = std::polar(1.0, turn);
   const double a = std::exp(-kSample / kTau);
   const std::complex<double> plant = kGain * (1.0 - a) / (z - a) * std::pow(z, -2);
-  return plant * (kp + ki_per_h * kSample / 60.0 * z / (z - 1.0));
+  return plant * (kp + ki_per_h * kSample / 60.0 / (z - 1.0));
 }
 
 double root(double low, double high, const std::function<double(double)>& f) {
