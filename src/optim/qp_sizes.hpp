@@ -20,10 +20,13 @@ class ScaledProblem {
   const Vector& size() const { return size_; }  ///< s
 
  private:
+  void readLimits(const QpProblem& p);
+  bool mostlyUsual(const QpProblem& p, Eigen::Index j) const;
   double sizeOf(const QpProblem& p, Eigen::Index j);
 
   QpProblem scaled_;
-  Vector size_, said_;
+  Vector size_, said_, low_, high_;
+  Eigen::Index most_{};  // numbers that limits can say of an unknown
 };
 
 }  // namespace fpc::qp
