@@ -131,10 +131,7 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   if (arrival == Arrival::kResync)
     arrival_reason_ = "back to sample " + std::to_string(step) + ", where the plant is";
   if (arrival == Arrival::kNewRun) beginAnew();
-  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) {
-    setpoint_.anchor(m.header);
-    begun_ = step > 0;
-  }
+  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) setpoint_.anchor(m.header);
 
   answer_.base.header = answer_.tracking.header = m.header;
   answer_.has_action = !m.final;
@@ -266,7 +263,7 @@ void ControllerSession::runLaw(const Measurement& m) {
       if (!reset_reason_.empty()) reset_reason_ += "; ";
       reset_reason_ += interruption_;
     }
-    start(m);
+    controller_->reset(m);
     transfer_.reset(other_hand_ || transfer_.active());
     other_hand_ = false;
     interruption_ = nullptr;
@@ -287,15 +284,6 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (!answer_.has_prediction) return;
   answer_.prediction = output_.prediction;
   answer_.prediction.header = m.header;
-}
-
-/// Samples that were lost before anybody had moved an input are no part of the law's run.
-void ControllerSession::start(const Measurement& m) {
-  if (begun_) return controller_->reset(m);
-  controller_->forget();
-  Measurement first = m;
-  first.header.step = 0;
-  controller_->reset(first);
 }
 
 /// Of the first model, at the first sample.
