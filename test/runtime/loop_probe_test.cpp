@@ -102,7 +102,11 @@ TEST_F(LoopProbeOf, AnInputAtItsLimitHasNoFeedback) {
 TEST_F(LoopProbeOf, NoiseIsLeftOut) {
   const auto still = probe(readLoop(write("a.yaml", tank(1.5, 10.0))), 1)[0];
   const auto noisy =
-      probe(readLoop(write("b.yaml", tank(1.5, 10.0, "noise: {std: {T: 0.5}}\n"))), 1)[0];
+      probe(readLoop(write(
+                "b.yaml",
+                tank(1.5, 10.0,
+                     "noise: {std: {T: 0.5}}\ndisturbance: {noise_std: {gain/T/heat: 0.2}}\n"))),
+            1)[0];
   ASSERT_TRUE(noisy.response);
   EXPECT_EQ(noisy.response->margins(0).gain_upper, still.response->margins(0).gain_upper);
 }
