@@ -99,9 +99,7 @@ TEST(SignalFaults, AFrozenAnalyserIsFoundAndReplaced) {
 
 // Healthy instruments with noise, whose lines could be flat.
 TEST(SignalFaults, NoSignalOfAHealthyNoisyLoopIsCalledFrozen) {
-  std::vector<std::string> loops{"batch_fuzzy_eq44_noise", "batch_linear_eq45_noise"};
-  if (hasRecords()) loops.insert(loops.end(), {"bsm1_fmbpc_noise", "asp_uci_daily_pi_best"});
-  for (const std::string& name : loops) {
+  for (const char* name : {"batch_fuzzy_eq44_noise", "batch_linear_eq45_noise"}) {
     const LoopFile loop = readLoop(name);
     SignalValidator validator(loop.plausibility, loop.plant_info);
     int judged = 0, frozen = 0;
