@@ -130,7 +130,7 @@ class LaunchFile(unittest.TestCase):
              "set:=sampling.duration_h=20 loop.ready_timeout_s=600 loop.wait_for=[loop_recorder,fmbpc_controller,launch_file]"]), **quiet)
         self.addCleanup(ring.killed, launch)
         master = rosgraph.Master("/launch_file", environment["ROS_MASTER_URI"])
-        nodes = ("/plant_simulator", "/fmbpc_controller", "/loop_recorder", "/end_launch")
+        nodes = ("/plant_simulator", "/fmbpc_controller", "/fuzzy_identifier", "/loop_recorder", "/end_launch")
         ring.wait_until(lambda: known(master, *nodes), "the nodes", PATIENT)
         processes = {node: ring.pid(node, master) for node in nodes}
         launch.kill()
