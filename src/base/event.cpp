@@ -1,6 +1,7 @@
 #include "fmbpc/base/event.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 #include <utility>
 
@@ -149,15 +150,42 @@ bool Notices::has(EventCode code) const {
   return std::any_of(begin(), end(), [&](const Notice& notice) { return notice.code == code; });
 }
 
-Event eventOf(const Notice& notice, std::uint32_t step) {
+namespace {
+
+void put(const Notice& notice, std::uint32_t step, Event& event) {
   const char* text = *notice.text == '\0' ? kindOf(notice.code).cause : notice.text;
-  Event event{notice.code, notice.signal, text, step, step, 1};
-  for (std::string* words : {&event.signal, &event.text}) {
-    if (words->size() > kMostOfText) words->resize(kMostOfText);
+  event.code = notice.code;
+  event.signal.assign(notice.signal, strnlen(notice.signal, kMostOfText));
+  event.text.assign(text, strnlen(text, kMostOfText));
+  event.first = event.last = step;
+  event.count = 1;
+  for (std::string* words : {&event.signal, &event.text})
     std::replace_if(
         words->begin(), words->end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
-  }
+}
+
+}  // namespace
+
+Event eventOf(const Notice& notice, std::uint32_t step) {
+  Event event;
+  put(notice, step, event);
   return event;
+}
+
+EventWriter::EventWriter() : spare_(Notices::kMost) {
+  for (Event& event : spare_) {
+    event.signal.reserve(kMostOfText);
+    event.text.reserve(kMostOfText);
+  }
+}
+
+void EventWriter::write(const Notices& said, std::uint32_t step, std::vector<Event>& events) {
+  for (; !events.empty(); events.pop_back()) spare_.push_back(std::move(events.back()));
+  for (const Notice& notice : said) {
+    put(notice, step, spare_.back());
+    events.push_back(std::move(spare_.back()));
+    spare_.pop_back();
+  }
 }
 
 Event eventOf(EventCode code, const std::string& text, const std::string& signal) {

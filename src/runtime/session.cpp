@@ -66,6 +66,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
       recent_(plant_),
       max_pole_(max_pole) {
   require(controller_ != nullptr, "controller", "a controller");
+  answer_.events.reserve(Notices::kMost);
   const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
   limits_.validate(n_u);
   require(last_input_.size() == n_u && last_input_.allFinite(), "actuator.initial",
@@ -229,9 +230,7 @@ Notice ControllerSession::imposing(DoubtAction action) const {
 
 /// What is said of this sample; nothing of the final one, which has no action.
 void ControllerSession::gatherEvents() {
-  std::vector<Event>& events = answer_.events;
-  events.clear();
-  if (!answer_.has_action) return;
+  if (!answer_.has_action) return written_.write({}, 0, answer_.events);
   Notices& said = output_.events;
   if (const EventCode code = std::exchange(model_event_, EventCode::kNone);
       code != EventCode::kNone)
@@ -245,7 +244,7 @@ void ControllerSession::gatherEvents() {
     if (!setpoint_texts_[i].empty() && setpoint_.isClamped(static_cast<Eigen::Index>(i)))
       said.add({EventCode::kSetpointClamped, setpoint_texts_[i].c_str(),
                 plant_.outputs[i].name.c_str()});
-  for (const Notice& notice : said) events.push_back(eventOf(notice, answer_.tracking.header.step));
+  written_.write(said, answer_.tracking.header.step, answer_.events);
 }
 
 void ControllerSession::withoutSetpoint(const std::vector<Eigen::Index>& outputs) {

@@ -199,6 +199,7 @@ class ControllerSession {
   Measurement present_;  // the last that was accepted; empty before the first
   RecentSamples recent_;
   std::string model_text_, plant_doubt_;
+  EventWriter written_;
   EventCode model_event_{EventCode::kNone};  // that has not been said yet
   std::vector<std::string> manual_texts_;    // by input; empty: not clamped
   std::unique_ptr<ReactionWatch> reaction_;  // of a law with a model, if it is asked for

@@ -48,20 +48,17 @@ void expectNoAllocations(std::unique_ptr<Controller> controller) {
   Measurement m{header(0), Vector::Constant(2, 50.0), Vector(), Vector::Constant(1, 570.0), false};
   session.receive(m);
   std::uint64_t answered = 0;
-  std::size_t told = 0;
   testing::AllocationCounter counter;
   for (std::uint32_t step = 1; step < 200; ++step) {
     if (step == 150) session.manual(true);
     m.header = header(step);
     m.outputs[0] = step == 149 ? std::numeric_limits<double>::quiet_NaN() : 50.0 + step;
-    const std::size_t before = counter.count();
     answered += session.receive(m) == Receipt::kAnswered ? 1 : 0;
-    if (step == 149) told += counter.count() - before;  // the event of a sample that is held
     session.receive(m);
     m.header = header(step - 1);
     session.receive(m);
   }
-  const std::size_t allocations = counter.count() - told;
+  const std::size_t allocations = counter.count();
   EXPECT_EQ(allocations, 0u);
   EXPECT_EQ(answered, 199u);
   EXPECT_EQ(session.counts().not_finite, 1u);
