@@ -20,8 +20,8 @@ constexpr Index kMovesWhileFrozen = 3;
 constexpr Index kFewestSideRows = 20;     // on either side of a change of unit
 constexpr double kFewestSideShare = 0.1;  // of the record
 constexpr double kAlikeFactor = 1.4;
-constexpr Index kNearby = 20;  // rows beside a change of unit that must show it
-constexpr double kNearbyFactor = 5.0;
+constexpr Index kNearby = 10;  // rows beside a change of unit that must show it
+constexpr double kNearbyFactor = 2.5;
 constexpr double kExplained = 0.98;
 constexpr Index kMostCollinearRows = 4000;
 

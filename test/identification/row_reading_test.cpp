@@ -1,5 +1,6 @@
 // Inputs that act within their sample: found in open loop, never taken for one in closed loop.
 #include "identification/row_reading.hpp"
+#include "identification/pair_data.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,20 +14,6 @@ namespace fpc {
 namespace identification_row_reading_test {
 
 using Eigen::Index;
-
-DataSet dataOf(const Matrix& values) {
-  DataSet data;
-  data.source = "made up";
-  data.sample_time_s = 1.0;
-  data.values = values;
-  const auto info = [&](const char* name, Index c) {
-    return SignalInfo{name, "", values.col(c).minCoeff(), values.col(c).maxCoeff()};
-  };
-  data.outputs = {info("y", 0)};
-  data.inputs = {info("u", 1)};
-  data.constant.assign(2, false);
-  return data;
-}
 
 /// x(k+1) = 0.8 x(k) + 0.2 u(k + ahead); the row holds x(k) with noise and u(k).
 DataSet openLoop(Index ahead, double noise, std::uint64_t seed, double colour) {
@@ -42,7 +29,7 @@ DataSet openLoop(Index ahead, double noise, std::uint64_t seed, double colour) {
     values.row(k) << x + noise * standardNormal(random), u[k];
     x = 0.8 * x + 0.2 * u[k + ahead];
   }
-  return dataOf(values);
+  return pairData(values);
 }
 
 /// A law of the same row: u(k) = gain (r(k) - y(k)) + integral.
@@ -61,7 +48,7 @@ DataSet closedLoop(double gain, double integral, double noise, std::uint64_t see
     load = 0.95 * load + 0.1 * standardNormal(random);
     x = 0.8 * x + 0.2 * (u + load);
   }
-  return dataOf(values);
+  return pairData(values);
 }
 
 bool readSame(const DataSet& data) { return readRows(data, RowReading::kFound).same[0]; }
