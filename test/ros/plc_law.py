@@ -44,6 +44,8 @@ class PlcLaw(unittest.TestCase):
         self.await_line(lambda line: abs(line["setpoint"] - 0.08) < 1e-3, "the setpoint in the PLC")
 
         nodes = [ring.pid(node) for node in ("/plant_gateway", "/fmbpc_controller")]
+        for node in ("/plant_simulator", "/loop_recorder", "/end_launch"):  # the run has no end, and neither have they
+            self.addCleanup(os.kill, ring.pid(node), signal.SIGKILL)
         os.kill(launch.pid, signal.SIGKILL)
         for node in nodes:
             os.kill(node, signal.SIGKILL)

@@ -96,7 +96,7 @@ bool showsDefault(const std::string& help, const std::string& word) {
 
 TEST_F(Tool, HelpShowsDefaults) {
   const std::string identify = tool("identify --help").printed;
-  for (const char* word : {"best", "45", "comma", "point", "1"})
+  for (const char* word : {"best", "90", "comma", "point", "1"})
     EXPECT_TRUE(showsDefault(identify, word)) << word << "\n" << identify;
   EXPECT_TRUE(showsDefault(tool("validate --help").printed, "10"));
   EXPECT_NE(tool("study --help").printed.find("(default: ise)"), std::string::npos);
