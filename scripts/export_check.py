@@ -328,6 +328,6 @@ class Check:
 if __name__ == "__main__":
     if {"-h", "--help"} & set(sys.argv[1:]):
         sys.exit(print(__doc__))
-    if len(sys.argv) != 2 or sys.argv[1] in ("-h", "--help"):
+    if len(sys.argv) != 2:
         sys.exit(__doc__)
     sys.exit(Check(sys.argv[1]).run())
