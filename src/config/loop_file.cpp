@@ -38,9 +38,10 @@ void describePlant(YamlSection& root, LoopFile& loop) {
 
 const std::vector<std::string>& sections() {
   static const std::vector<std::string> names{
-      "actuator", "clp",      "controller", "disturbance", "estimator",  "extends",      "gateway",
-      "guard",    "loop",     "model",      "noise",       "plant",      "plausibility", "plugins",
-      "report",   "sampling", "sensors",    "setpoint",    "standstill", "tf",           "title"};
+      "actuator", "candidate",    "clp",     "controller", "disturbance", "estimator",
+      "extends",  "gateway",      "guard",   "loop",       "model",       "noise",
+      "plant",    "plausibility", "plugins", "report",     "sampling",    "sensors",
+      "setpoint", "standstill",   "tf",      "title"};
   return names;
 }
 
@@ -141,6 +142,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readStandstill(root, loop);
   readPlausibility(root, loop);
   readModelSection(root, loop);
+  readCandidate(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);
   root.finish();
