@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
@@ -10,8 +9,8 @@
 #include "runtime/cut_offsets.hpp"
 #include "runtime/factory.hpp"
 #include "runtime/forced_inputs.hpp"
-#include "runtime/identifier_session.hpp"
 #include "runtime/late_lines.hpp"
+#include "runtime/loop_controller.hpp"
 #include "runtime/operator_notes.hpp"
 #include "runtime/plant_session.hpp"
 #include "runtime/recorder_session.hpp"
@@ -32,7 +31,8 @@ class Ring {
         made_(std::make_unique<SimulatedProcess>(makeSimulation(loop))),
         simulation_(made_->simulation()),
         plant_(std::move(made_), lockstepPolicy(loop)),
-        controller_(makeControllerSession(loop)),
+        controller_(loop, {options.identified,
+                           [this](const std::string& words) { tell(present_, words); }}),
         player_(options.commands, simulation_.clock()),
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
@@ -40,15 +40,11 @@ class Ring {
         remarks_(loop),
         forced_(simulation_.info()),
         cut_(simulation_.description().disturbances),
-        targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
+        targets_{simulation_, controller_.session(),
+                 [this](int window) { controller_.identify(window); },
                  [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
-    if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
-    if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
     plant_.begin(kRunId);
     recorder_.announce(kRunId);
-    if (identifier_) begin(identifier_->start());
-    require(controller_.ready(), loop.name + ": model.file",
-            "a model for controller " + loop.controllerType().name);
     player_.begin(targets_);
     plant_.start(0.0);
   }
@@ -65,21 +61,22 @@ class Ring {
                       joinedLines(late(), joinedLines(forced_.lines(), cut_.lines())));
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    recorder_.receive(answer.tracking,
-                      joinedLines(remarks_.look(controller_), std::exchange(missed_, {})));
+    recorder_.receive(answer.tracking, joinedLines(remarks_.look(controller_.session()),
+                                                   controller_.takeFailures()));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
-      plant_.receive(optimizer_ ? optimize(answer) : answer.base);
+      plant_.receive(optimize());
       plant_.advance(0.0);
     }
-    if (loop_.has_identify) learn(now);
+    controller_.learn(now);
     return !now.final;
   }
 
   RunRecord take() {
     recorder_.close();
     conclude(record_, recorder_.complete());
-    if (!missed_.empty()) notes_.failed(present_, inOneLine(missed_));  // at the very end
+    const std::string missed = controller_.takeFailures();
+    if (!missed.empty()) notes_.failed(present_, inOneLine(missed));  // at the very end
     for (RunRemark& note : notes_.remarks()) record_.remarks.push_back(std::move(note));
     const std::string unplayed = player_.unplayed();
     if (!unplayed.empty()) record_.remarks.push_back({unplayed, 0, 0});
@@ -91,63 +88,13 @@ class Ring {
     return present_ == 0 ? lateLines(loop_, loop_.simulation.output_delay_s) : "";
   }
 
-  const ControlAction& optimize(const ControllerAnswer& answer) {
-    if (answer.has_prediction) optimizer_->receive(answer.prediction);
-    optimizer_->receive(answer.base);
-    recorder_.receiveAction(optimizer_->action());
-    recorder_.receive(optimizer_->report());
-    return optimizer_->action();
-  }
-
-  void learn(const Measurement& now) {
-    const IdentifierSession::Due due = identifier_->take(now);
-    if (!due.refusal.empty()) fail(due.refusal);
-    use(due.model);
-    if (due.job) identify(*due.job);
-  }
-
-  void identifyAsked(int window) {
-    require(identifier_ && loop_.has_identify, "identify", "a loop with model.identify");
-    identify(identifier_->job(loop_.identify.structure, static_cast<std::size_t>(window),
-                              loop_.identify.validation_share));
-  }
-
-  void identify(const IdentificationJob& job) {
-    try {
-      const RecordIdentification result =
-          identifyRecord(job.values, job.structure, job.source, job.share);
-      const TsModel& model = identifier_->accept(result.found.model);
-      if (options_.identified) options_.identified(model);
-      use(&model);
-    } catch (const InputError& error) {
-      fail(std::string("identification: ") + error.what());
+  const ControlAction& optimize() {
+    const ControlAction& action = controller_.optimize();
+    if (controller_.hasOptimizer()) {
+      recorder_.receiveAction(action);
+      recorder_.receive(controller_.report());
     }
-  }
-
-  void use(const TsModel* model) {
-    if (model == nullptr || !controller_.controller().needsModel()) return;
-    try {
-      controller_.setModel(*model);
-    } catch (const InputError& error) {
-      fail(error.what());
-    }
-  }
-
-  /// Without the model that the loop file names there is no run.
-  void begin(const TsModel* model) {
-    if (model == nullptr || !controller_.controller().needsModel()) return;
-    try {
-      controller_.setModel(*model);
-    } catch (const InputError& error) {
-      throw InputError(loop_.name + ": controller: " + error.what());
-    }
-  }
-
-  /// A model that could not be had, or used: told at once, recorded with the next sample that is
-  /// answered, from which on it was to be used.
-  void fail(const std::string& words) {
-    missed_ = joinedLines(missed_, inOneLine(words));
-    tell(present_, words);
+    return action;
   }
 
   void tell(std::uint32_t step, const std::string& words) const {
@@ -166,14 +113,11 @@ class Ring {
 
   const LoopFile& loop_;
   const RunOptions& options_;
-  std::string missed_;       // what went wrong with models since the sample answered last, by line
-  std::uint32_t present_{};  // the sample that is answered
+  std::uint32_t present_{};                 // the sample that is answered
   std::unique_ptr<SimulatedProcess> made_;  // until it is the session's
   Simulation& simulation_;
   PlantSession plant_;
-  ControllerSession controller_;
-  std::optional<OptimizerSession> optimizer_;
-  std::optional<IdentifierSession> identifier_;
+  LoopController controller_;
   CommandPlayer player_;
   RunRecord record_;
   RecorderSession recorder_;
