@@ -36,24 +36,20 @@ struct AutoRecords {
   std::vector<std::string> remarks;
 };
 
-AutoRecords readAll(const IdentifyArguments& a) {
+AutoRecords recordsOf(const IdentifyArguments& a, const IdentifyTables& tables) {
   AutoRecords r;
-  const CsvTable first = readRecord(a.data.front(), csvFormat(a.format));
+  const CsvTable& first = tables.data.front();
   const AutoColumns columns{a.outputs, a.inputs, a.disturbances, a.time, a.sample_time_s};
   const Structure structure = autoStructure(first, columns, r.remarks);
   if (!a.known.empty()) r.known = readKnown(a.known, structure);
   const auto take = [&](const CsvTable& table, const std::string& rows) {
     return makeData(withEvenTimes(table, structure.time_column, r.remarks), structure, rows);
   };
-  r.each.push_back(take(first, a.rows));
-  for (std::size_t i = 1; i < a.data.size(); ++i)
-    r.each.push_back(take(readRecord(a.data[i], csvFormat(a.format)), a.rows));
+  for (const CsvTable& table : tables.data) r.each.push_back(take(table, a.rows));
   r.joined = joinRecords(r.each);
-  if (a.validate.empty() && a.validate_rows.empty()) return r;
-  std::error_code ignored;
-  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  r.validation = take(same ? first : readRecord(a.validate, csvFormat(a.format)), a.validate_rows);
-  if (same && rowsOverlap(a.rows, a.validate_rows))
+  if (!tables.validation && a.validate_rows.empty()) return r;
+  r.validation = take(tables.validation ? *tables.validation : first, a.validate_rows);
+  if (!tables.validation && rowsOverlap(a.rows, a.validate_rows))
     r.remarks.push_back("validation rows are among the identification rows: not held out");
   return r;
 }
@@ -65,7 +61,8 @@ std::optional<ModelKind> kindOf(const std::string& word) {
   return std::nullopt;
 }
 
-AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records) {
+AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records,
+                          const AutoCallback& progress) {
   AutoParams params;
   params.budget_s = a.budget_s;
   params.blocks = a.blocks;
@@ -76,12 +73,7 @@ AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records
   params.keep_still = a.keep_inputs;
   const std::optional<ModelKind> kind = kindOf(a.kind);
   params.states = !kind || kind == ModelKind::kState;
-  ProgressBar bar("auto");
-  AutoIdentification found =
-      autoIdentify(records.joined, params, [&bar](const AutoProgress& progress) {
-        bar.show(progress.share, progress.stage);
-        return !interruption();
-      });
+  AutoIdentification found = autoIdentify(records.joined, params, progress);
   if (kind) chooseByKind(*kind, found);
   return found;
 }
@@ -224,33 +216,61 @@ void checkArguments(const IdentifyArguments& a) {
 
 }  // namespace
 
+IdentifyTables readTables(const IdentifyArguments& a, const CsvFormat& format) {
+  IdentifyTables tables;
+  for (const auto& file : a.data) tables.data.push_back(readRecord(file, format));
+  std::error_code ignored;  // a file that is not there is told by its reader
+  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
+  if (!same) tables.validation = readRecord(a.validate, format);
+  if (same && !a.validate.empty() && a.validate_rows.empty()) tables.validate_all = true;
+  return tables;
+}
+
+AutoReport searchModel(IdentifyArguments a, const IdentifyTables& tables,
+                       const AutoCallback& progress) {
+  if (tables.validate_all) a.validate_rows = ":";
+  const AutoRecords records = recordsOf(a, tables);
+  const auto start = std::chrono::steady_clock::now();
+  AutoReport report;
+  report.found = search(a, records, progress);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  report.seconds = wall.count();
+  report.source = records.joined.source;
+  if (!a.out.empty()) report.found.model.name = fs::path(a.out).stem().string();
+  report.model = settle(a, records, report.found);
+  report.parts = judgeAll(records, report.model);
+  if (records.validation) tellCoverage(report.parts.back(), report.found);
+  report.remarks = remarksOf(records, report.found, report.model, report.parts);
+  report.json = toJson(report.found, report.parts, report.remarks, report.seconds);
+  return report;
+}
+
 int identifyAuto(const IdentifyArguments& a) {
   checkArguments(a);
-  const AutoRecords records = readAll(a);
+  const IdentifyTables tables = readTables(a, csvFormat(a.format));
   catchInterrupts();
-  const auto start = std::chrono::steady_clock::now();
-  AutoIdentification found = search(a, records);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  if (!a.out.empty()) found.model.name = fs::path(a.out).stem().string();
-  const IdentifiedModel model = settle(a, records, found);
-  if (!a.out.empty()) writeText(writeIdentified(model), a.out);
-  const auto parts = judgeAll(records, model);
-  if (records.validation) tellCoverage(parts.back(), found);
-  const Row remarks = remarksOf(records, found, model, parts);
-  const Json json = toJson(found, parts, remarks, wall.count());
-  if (!a.plots.empty()) plotJudgements(model, parts, json, a.plots);
+  AutoReport report;
+  {
+    ProgressBar bar("auto");
+    report = searchModel(a, tables, [&bar](const AutoProgress& progress) {
+      bar.show(progress.share, progress.stage);
+      return !interruption();
+    });
+  }
+  if (!a.out.empty()) writeText(writeIdentified(report.model), a.out);
+  if (!a.plots.empty()) plotJudgements(report.model, report.parts, report.json, a.plots);
   if (a.json) {
-    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    std::cout << report.json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     return 0;
   }
-  for (const auto& o : found.outputs) std::cout << o.output << ": " << o.verdict << "\n";
-  for (const auto& words : firstWords(parts)) std::cout << "warning: " << words << "\n";
-  for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
+  for (const auto& o : report.found.outputs) std::cout << o.output << ": " << o.verdict << "\n";
+  for (const auto& words : firstWords(report.parts)) std::cout << "warning: " << words << "\n";
+  for (const auto& remark : report.remarks) std::cout << "remark: " << remark << "\n";
   std::cout << "\n"
-            << crossTable(found) << "\n"
-            << searchTable(found) << "\n"
-            << toTable(parts) << "\n";
-  std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s\n";
+            << crossTable(report.found) << "\n"
+            << searchTable(report.found) << "\n"
+            << toTable(report.parts) << "\n";
+  std::cout << "searched " << report.source << " in " << shortText(report.seconds) << " s\n";
   if (!a.out.empty()) std::cout << "written: " << a.out << "\n";
   return 0;
 }
