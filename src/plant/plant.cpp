@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <shared_mutex>
 
 #include "base/code_address.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -23,6 +25,12 @@ std::vector<std::string>& refused() {
   return names;
 }
 
+/// A class of Python may register while other threads make plants.
+std::shared_mutex& registryMutex() {
+  static std::shared_mutex mutex;
+  return mutex;
+}
+
 }  // namespace
 
 std::unique_ptr<PlantStepper> Plant::makeStepper(double) const { return nullptr; }
@@ -31,6 +39,7 @@ template <>
 void requireSameLayout<PlantLayout>() {}
 
 bool addPlant(const std::string& name, PlantFactory factory) {
+  const std::unique_lock lock(registryMutex());
   const bool is_new = registry().emplace(name, std::move(factory)).second;
   if (!is_new) refused().push_back(name);
   return is_new;
@@ -39,12 +48,18 @@ bool addPlant(const std::string& name, PlantFactory factory) {
 std::vector<std::string> refusedPlants() { return refused(); }
 
 std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters) {
-  const auto found = registry().find(name);
-  require(found != registry().end(), "plant.type '" + name + "'", "one of " + join(plantNames()));
-  return found->second(parameters);
+  PlantFactory make;
+  {
+    const std::shared_lock lock(registryMutex());
+    const auto found = registry().find(name);
+    if (found != registry().end()) make = found->second;
+  }
+  require(make != nullptr, "plant.type '" + name + "'", "one of " + join(plantNames()));
+  return make(parameters);
 }
 
 std::vector<std::string> plantNames() {
+  const std::shared_lock lock(registryMutex());
   std::vector<std::string> names;
   for (const auto& entry : registry()) names.push_back(entry.first);
   return names;
