@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "base/statistics.hpp"
+
 namespace fpc::bench {
 
 /// How long and how often: 2 s and 10 pairs, or what FMBPC_BENCH_SECONDS and FMBPC_BENCH_PAIRS say.
@@ -42,12 +44,6 @@ double microseconds(const Work& work, double seconds) {
     passed = std::chrono::duration<double>(Clock::now() - start).count();
   } while (passed < seconds);
   return 1e6 * passed / static_cast<double>(calls);
-}
-
-inline double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 /// Something of somebody else's that is measured beside ours.

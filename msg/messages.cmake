@@ -3,6 +3,7 @@ add_message_files(DIRECTORY msg FILES
   CommandEffect.msg
   ControlAction.msg
   Disturbance.msg
+  Event.msg
   FuzzyModel.msg
   FuzzyRegressor.msg
   FuzzyRule.msg

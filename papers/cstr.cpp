@@ -1,23 +1,69 @@
-// The control experiments of the stirred-tank reactor (blazic2007, section 5): the
-// four printed sums of (y_r - y)^2, the printed optimum of the PI, and what they leave out.
+// The stirred-tank reactor (blazic2007): its static curve, the propositions on the horizon, what
+// the dead time leaves to any law, and the optimum of the PI.
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 
+#include "analysis/transfer.hpp"
+#include "papers/expression.hpp"
+#include "papers/picture.hpp"
 #include "papers/runs.hpp"
+#include "papers/words.hpp"
+#include "runtime/plant_continuation.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace {
+
+PlantContinuation continuationOf(double compensator) {
+  const std::shared_ptr<const Plant> plant = makePlant("cstr", {{"compensator_gain", compensator}});
+  return plantContinuation(plant, 0, 6.0, -1.0, -1.0);
+}
+
+/// special(fold|hopf, COMPENSATOR, NUMBER, q_c|CA): the largest coolant flow first.
+Values special(const Words& w) {
+  const SpecialKind kind =
+      placeOf(w[0], {"fold", "hopf"}) == 0 ? SpecialKind::kFold : SpecialKind::kHopf;
+  const PlantContinuation set = continuationOf(toNumber(w[1]));
+  std::vector<SpecialPoint> found;
+  for (const auto& branch : continueBranches(set.problem, set.params))
+    for (const auto& point : branch.special)
+      if (point.kind == kind) found.push_back(point);
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.parameter > b.parameter; });
+  const std::size_t i = toIndex(w[2]);
+  if (i >= found.size()) return kNotPrinted;
+  return placeOf(w[3], {"q_c", "CA"}) == 0 ? found[i].parameter : found[i].state[0];
+}
+
+/// nominal(CA|T): of the working branch, at the nominal coolant flow.
+Values nominal(const Words& w) {
+  const auto i = static_cast<Eigen::Index>(placeOf(w[0], {"CA", "T"}));
+  const PlantContinuation set = continuationOf(0.0);
+  for (const auto& point : steadyStatesAt(set.problem, set.params, 103.4066))
+    if (point.state[0] < 0.12) return point.state[i];
+  return kNotPrinted;
+}
+
+/// propositions(gain_below|zeros|poles): the largest over the six rules of eq. 12.
+Values propositions(const Words& w) {
+  constexpr double kA1[] = {-1.3462, -1.4506, -1.5681, -1.7114, -1.8111, -1.9157};
+  constexpr double kA2[] = {0.4298, 0.5262, 0.6437, 0.7689, 0.8592, 0.9485};
+  constexpr double kB[] = {1.8124e-4, 2.1795e-4, 2.7762e-4, 2.6703e-4, 2.8716e-4, 2.85e-4};
+  double Propositions::*const parts[] = {&Propositions::gain_below, &Propositions::zeros_distance,
+                                         &Propositions::poles_distance};
+  const auto part = parts[placeOf(w[0], {"gain_below", "zeros", "poles"})];
+  double worst = 0.0;
+  for (int i = 0; i < 6; ++i)
+    worst = std::max(worst, checkPropositions(canonicalRule(kA1[i], kA2[i], kB[i]), 3000).*part);
+  return worst;
+}
 
 constexpr int kDelaySteps = 5;  // of the measurement
 constexpr double kReferencePole = 0.96;
-constexpr char kUnit[] = "mol2/l2";
-
-double score(const std::string& loop, const Overrides& overrides = {}) {
-  return indicesOf(summaryOf(loop, overrides), "CA").ise_reference;
-}
 
 /// What is measured before an answer to steps of the setpoint can be: y goes on along the old y_r.
-double unanswered(const RunRecord& run) {
+double unansweredSteps(const RunRecord& run) {
   double sum = 0.0, before = run.samples[0].measurement.outputs[0];
   for (const auto& sample : run.samples) {
     if (!sample.has_tracking) continue;
@@ -31,7 +77,7 @@ double unanswered(const RunRecord& run) {
 
 /// What a step of the disturbance does in an open loop before an answer to it is measured: one
 /// sample and the delay until it is seen, the same again until the answer is.
-double unanswered(double step) {
+double unansweredLoad(double step) {
   const RunRecord& run =
       recordOf("cstr_disturbance_pi", {{"controller.loops.0.kp", "0"},
                                        {"controller.loops.0.ki_per_h", "0"},
@@ -43,52 +89,18 @@ double unanswered(double step) {
   return sum;
 }
 
-double boundOf(const std::string& loop) {
-  return loop == "cstr_tracking" ? unanswered(recordOf(loop))
-                                 : 2.0 * (unanswered(3.0) + unanswered(-3.0));  // on and off, twice
-}
-
-Rows scores(const std::string& loop, double pi, double fmbpc) {
-  Rows rows{figure("sum (y_r - y)^2, PI", pi, score(loop + "_pi"), kUnit, {0.05})};
-  const auto add = [&](ReproduceRow row, const std::string& name) {
-    rows.push_back(std::move(row));
-    rows.back().behind = name;
-  };
-  const std::string as_printed = loop + "_literal", calibrated = loop + "_literal_b";
-  add(figure("sum, FMBPC as printed, model A", fmbpc, score(as_printed), kUnit,
-             {0.05, Direction::kLower}, "the paper's law and rules; sets from a static fit"),
-      as_printed);
-  add(incomparable("sum, FMBPC as printed, model B", fmbpc, score(calibrated), kUnit,
-                   "fitted to this figure: the sets of model B, as figure 1 is lost"),
-      calibrated);
-  const auto ours = [&](const char* what, const std::string& name, const char* note) {
-    add(check(what, score(name), Direction::kLower, fmbpc, kUnit, note), name);
-  };
-  ours("sum, NARX states, model A, at most the paper's", loop, "ours: without the extra sample");
-  ours("sum, NARX, identified model, at most the paper's", loop + "_own",
-       "ours: a model from our own record");
-  ours("sum, aiming at y_r(k + H + delay), at most the paper's", loop + "_preview",
-       "ours: an option");
-  const auto against = [&](const char* what, const std::string& mine, const std::string& baseline,
-                           const char* note) {
-    rows.push_back(check(what, score(mine) / score(baseline), Direction::kLower, 1.0, "-", note));
-    rows.back().behind = mine + ", " + baseline;
-  };
-  against("FMBPC as printed, model A / PI", as_printed, loop + "_pi",
-          "the paper: better than the PI");
-  against("NARX, model A / gain-scheduled PI", loop, loop + "_gspi",
-          "the honest baseline, not in the paper");
-  rows.push_back(check("NARX, model A / what the dead time leaves to any law",
-                       score(loop) / boundOf(loop), Direction::kHigher, 1.0, "-",
-                       "a lower bound without preview, ours"));
-  return rows;
+/// dead_time_bound(LOOP): the least sum (y_r - y)^2 of any law without preview.
+Values deadTimeBound(const Words& w) {
+  return placeOf(w[0], {"cstr_tracking", "cstr_disturbance"}) == 0
+             ? unansweredSteps(recordOf(w[0]))
+             : 2.0 * (unansweredLoad(3.0) + unansweredLoad(-3.0));  // on and off, twice
 }
 
 double tuned(double kp, double Ti_min) {
   const Summary run = freshSummaryOf(
       "cstr_tracking_pi", {{"controller.loops.0.kp", std::to_string(kp)},
                            {"controller.loops.0.ki_per_h", std::to_string(60.0 * kp / Ti_min)}});
-  return indicesOf(run, "CA").ise_reference;
+  return run.outputs.at(0).ise_reference;
 }
 
 /// Least of `cost` over two positive numbers: a compass search in their logarithms.
@@ -112,63 +124,25 @@ std::pair<double, double> leastOf(const std::function<double(double, double)>& c
   return {a, b};
 }
 
-Rows optimum() {
-  const auto [kp, Ti] = leastOf(tuned, 40.0, 1.0);
-  const double least = tuned(kp, Ti), printed = tuned(64.6454, 0.6721);
-  return {figure("Kp of the least sum (y_r - y)^2", 64.6454, kp, "l2/(mol min)"),
-          figure("Ti of the least sum", 0.6721, Ti, "min"),
-          check("sum at the printed optimum / least sum found", printed / least, Direction::kLower,
-                1.01, "-", "the paper: optimal for experiment 1")};
+/// pi_optimum(kp|Ti|excess): of the PI for experiment 1; excess: the sum at the printed optimum
+/// over the least.
+Values piOptimum(const Words& w) {
+  static const auto least = leastOf(tuned, 40.0, 1.0);
+  const std::size_t what = placeOf(w[0], {"kp", "Ti", "excess"});
+  if (what == 2) return tuned(64.6454, 0.6721) / tuned(least.first, least.second);
+  return what == 0 ? least.first : least.second;
 }
 
-Rows smallSteps() {
-  Rows rows;
-  for (const char* name :
-       {"cstr_small_steps_literal_b", "cstr_small_steps_literal", "cstr_small_steps",
-        "cstr_small_steps_own", "cstr_small_steps_preview", "cstr_small_steps_gspi"}) {
-    rows.push_back(check(std::string(name) + " / the PI",
-                         score(name) / score("cstr_small_steps_pi"), Direction::kLower, 1.0, "-",
-                         "steps of 0.12 and 0.08 mol/l"));
-    rows.back().behind = std::string(name) + ", cstr_small_steps_pi";
-  }
-  return rows;
-}
+const bool kRegistered = registerComputation("special", 4, special) &&
+                         registerComputation("nominal", 1, nominal) &&
+                         registerComputation("propositions", 1, propositions) &&
+                         registerComputation("dead_time_bound", 1, deadTimeBound) &&
+                         registerComputation("pi_optimum", 1, piOptimum);
 
-/// Tracking with bounds that bite: what winds up, and what does not.
-Rows bounds() {
-  Rows rows;
-  const std::pair<const char*, const char*> pairs[] = {{"85", "115"}, {"60", "113"}};
-  for (const auto& [lower, upper] : pairs) {
-    const Overrides limits{{"actuator.input_lower.q_c", lower},
-                           {"actuator.input_upper.q_c", upper}};
-    const std::string within = std::string(", q_c ") + lower + ".." + upper;
-    const double pi = score("cstr_tracking_pi", limits);
-    const auto add = [&](const std::string& what, const std::string& loop) {
-      rows.push_back(check(what + " / the PI" + within, score(loop, limits) / pi, Direction::kLower,
-                           1.0, "-", "the paper sets no bounds"));
-      rows.back().behind = loop + ", cstr_tracking_pi --set actuator.input_lower.q_c=" + lower;
-    };
-    add("PI with anti-windup", "cstr_tracking_pi_aw");
-    add("gain-scheduled PI", "cstr_tracking_gspi");
-    add("FMBPC as printed, model B", "cstr_tracking_literal_b");
-    add("NARX, model A", "cstr_tracking");
-  }
-  return rows;
-}
-
-const bool kRegistered = registerExperiments(
-    {{"cstr_pi_optimum", "blazic2007", "section 5, PI", "PI tuned for experiment 1", "2 numbers",
-      "cstr_tracking_pi --set controller.loops.0.kp=...", optimum},
-     {"cstr_figure_2", "blazic2007", "figure 2", "tracking: FMBPC and PI, eqs. 38 and 39",
-      "2 numbers, curves", "cstr_tracking_literal_b, cstr_tracking_pi",
-      [] { return scores("cstr_tracking", 0.0165, 0.0061); }},
-     {"cstr_figure_3", "blazic2007", "figure 3", "disturbance: FMBPC and PI, eqs. 40 and 41",
-      "2 numbers, curves", "cstr_disturbance_literal_b, cstr_disturbance_pi",
-      [] { return scores("cstr_disturbance", 0.0076, 0.0036); }},
-     {"cstr_bounds", "blazic2007", "beyond the paper: bounds", "tracking within bounds", "none",
-      "cstr_tracking with bounds", bounds},
-     {"cstr_small_steps", "blazic2007", "beyond the paper: small steps",
-      "steps too small for the nonlinearity to matter", "none", "cstr_small_steps", smallSteps}});
+const bool kPicture = registerPicture("cstr_figure_1", [] {
+  const LoopFile loop = readLoop("cstr_tracking_literal");
+  return pictureOfSets(loop.model.submodels.at(0), 0, "CA [mol/l]", 0.04, 0.19);
+});
 
 }  // namespace
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -4,151 +4,324 @@
 #include <cctype>
 #include <cmath>
 #include <exception>
-#include <limits>
+#include <filesystem>
+#include <map>
 
+#include "base/yaml_node.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "papers/expression.hpp"
+#include "papers/paper_file.hpp"
+#include "papers/report.hpp"
+#include "papers/settings.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace {
 
-std::vector<Experiment>& registry() {
-  static std::vector<Experiment> all;
+const char* const kKeys[] = {"blazic2007", "vallejo2019", "vallejo2021a", "vallejo2021b",
+                             "karer2007",  "mekki",       "taieb2017",    "bsm1"};
+const std::vector<std::string> kDeviations{"deviation", "deviation_of_medians"};
+
+/// Median over the rows so far that have a printed number other than 0, of 100 |here / printed -
+/// 1|: of each run, or of the rows' medians.
+Values deviation(const Rows& rows, bool of_medians) {
+  std::vector<double> all;
+  const auto of = [&](auto&& here) {
+    std::vector<double> off;
+    for (const Row& row : rows)
+      if (!row.statement && std::isfinite(row.paper) && row.paper != 0.0)
+        off.push_back(100.0 * std::abs(here(row) / row.paper - 1.0));
+    return Values(off).median();
+  };
+  if (of_medians) return of([](const Row& row) { return row.here.median(); });
+  for (std::size_t run = 0; run < rows.at(0).here.count(); ++run)
+    all.push_back(of([&](const Row& row) { return row.here.all().at(run); }));
   return all;
 }
 
-std::size_t rankOf(const std::string& key) {
-  const auto& all = papers();
-  const auto at =
-      std::find_if(all.begin(), all.end(), [&](const Paper& p) { return p.key == key; });
-  require(at != all.end(), key, "the key of a paper");
-  return static_cast<std::size_t>(at - all.begin());
+std::string filled(std::string text, double number) {
+  const auto at = text.find("{}");
+  return at == std::string::npos ? text : text.replace(at, 2, figureText(number));
 }
 
-/// "figure 9" before "figure 10": digits get leading zeros.
-std::string sortable(const std::string& text) {
-  std::string result, digits;
-  for (const char c : text + " ") {
-    if (std::isdigit(static_cast<unsigned char>(c))) {
-      digits += c;
-      continue;
+Row computed(const PlannedRow& planned, const Rows& before) {
+  Row row = planned.row;
+  try {
+    row.here = evaluate(planned.here, [&](const std::string& name) {
+      return deviation(before, name == kDeviations[1]);
+    });
+    if (planned.only_if) {
+      const double found = evaluate(planned.only_if->here).median();
+      if (!(found >= planned.only_if->at_least && found <= planned.only_if->at_most))
+        row.incomparable = filled(planned.only_if->otherwise, found);
     }
-    if (!digits.empty()) result += std::string(6 - std::min<std::size_t>(digits.size(), 6), '0');
-    result += digits + c;
-    digits.clear();
+    if (!planned.note_value.empty())
+      row.note = filled(row.note, evaluate(planned.note_value).median());
+  } catch (const std::exception& e) {
+    row.here = kNotPrinted;
+    row.incomparable.clear();
+    row.note = e.what();
   }
-  return result;
+  return row;
 }
 
-bool before(const Experiment& a, const Experiment& b) {
-  if (a.paper != b.paper) return rankOf(a.paper) < rankOf(b.paper);
-  const auto ours = [](const Experiment& e) { return e.item.rfind("beyond", 0) == 0; };
-  if (ours(a) != ours(b)) return ours(b);
-  return sortable(a.item + a.name) < sortable(b.item + b.name);
+/// A number, or how it comes of printed ones: "0.05 * 2000".
+void readNumber(YamlSection& s, const std::string& key, double& value) {
+  std::string text;
+  s.text(key, text);
+  if (text.empty()) return;
+  checked(s, [&] { value = evaluate(text).median(); });
+  if (!std::isfinite(value)) s.fail(key, "a number, or an expression that is one");
+}
+
+void readStatement(YamlSection& s, Row& row) {
+  for (const auto& [key, side] : {std::pair<const char*, Direction>{"at_most", Direction::kLower},
+                                  {"at_least", Direction::kHigher},
+                                  {"equals", Direction::kEqual}}) {
+    if (!s.has(key)) continue;
+    row.statement = true;
+    row.direction = side;
+    readNumber(s, key, row.paper);
+  }
+  s.number("within", row.tolerance.absolute, kFiniteNotNegative);
+  s.boolean("observed", row.observed);
+}
+
+void readFigure(YamlSection& s, Row& row) {
+  readNumber(s, "paper", row.paper);
+  s.number("reproduced", row.tolerance.reproduced, kFiniteNotNegative);
+  s.number("close", row.tolerance.close, kFiniteNotNegative);
+  s.number("absolute", row.tolerance.absolute, kFiniteNotNegative);
+  if (!s.has("better")) return;
+  std::string better = "lower";
+  s.oneOf("better", better, {"lower", "higher"});
+  row.direction = better == "lower" ? Direction::kLower : Direction::kHigher;
+}
+
+void readCondition(YamlSection s, PlannedRow& planned) {
+  PlannedRow::Condition condition;
+  for (const char* key : {"here", "otherwise"}) need(s, key, "a text");
+  s.text("here", condition.here);
+  s.number("at_least", condition.at_least, kFinite);
+  s.number("at_most", condition.at_most, kFinite);
+  s.text("otherwise", condition.otherwise);
+  s.finish();
+  planned.only_if = condition;
+}
+
+/// What a row, or the `each` of an experiment, says over what it has.
+void readInto(YamlSection& s, PlannedRow& planned) {
+  Row& row = planned.row;
+  s.text("of", row.quantity);
+  s.text("unit", row.unit);
+  readStatement(s, row);
+  readFigure(s, row);
+  s.text("not_compared", row.incomparable);
+  s.text("note", row.note);
+  s.text("behind", row.behind);
+  s.text("here", planned.here);
+  s.text("note_value", planned.note_value);
+  if (s.has("only_if")) readCondition(s.section("only_if"), planned);
+  s.finish();
+}
+
+using Environment = std::map<std::string, std::string>;
+
+std::string replaced(std::string text, const Environment& environment) {
+  for (const auto& [key, value] : environment)
+    for (std::size_t at = 0; (at = text.find("{" + key + "}", at)) != std::string::npos;
+         at += value.size())
+      text.replace(at, key.size() + 2, value);
+  return text;
+}
+
+/// A copy of the node with every {key} of its texts replaced.
+YAML::Node replaced(const YAML::Node& node, const Environment& environment) {
+  if (node.IsScalar()) {
+    YAML::Node copy = YAML::Clone(node);
+    copy = replaced(node.Scalar(), environment);
+    return copy;
+  }
+  YAML::Node copy(node.Type());
+  if (node.IsMap())
+    for (const auto& entry : node) copy[entry.first.Scalar()] = replaced(entry.second, environment);
+  if (node.IsSequence())
+    for (const auto& entry : node) copy.push_back(replaced(entry, environment));
+  return copy;
+}
+
+/// The lists of `over`, side by side. @throws InputError unless they are equally long
+std::vector<Environment> environmentsOf(const YAML::Node& over, const std::string& where) {
+  std::vector<Environment> all;
+  for (const auto& entry : over) {
+    require(entry.second.IsSequence() && (all.empty() || all.size() == entry.second.size()),
+            where + "over." + entry.first.Scalar(), "a list, as long as those beside it");
+    all.resize(entry.second.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      all[i][entry.first.Scalar()] = entry.second[i].Scalar();
+  }
+  require(!all.empty(), where + "over", "a mapping of lists");
+  return all;
+}
+
+/// Rows, and groups of rows over lists of words: {over: {loop: [a, b]}, rows: [...]}.
+class RowReader {
+ public:
+  RowReader(const std::string& file, Experiment& experiment, const PlannedRow& each)
+      : file_(file), experiment_(experiment), each_(each) {}
+
+  void take(const YAML::Node& rows) {
+    require(rows.IsSequence(), where() + "rows", "a list of rows");
+    for (const auto& node : rows) {
+      if (!node.IsMap() || !node["over"]) {
+        one(node);
+        continue;
+      }
+      YAML::Node body = YAML::Clone(node);
+      body.remove("over");
+      for (const Environment& environment : environmentsOf(node["over"], where()))
+        one(replaced(body, environment));
+    }
+  }
+
+ private:
+  std::string where() const { return file_ + ": " + experiment_.name + "."; }
+
+  void one(const YAML::Node& node) {
+    if (node.IsMap() && node["rows"]) return take(node["rows"]);
+    PlannedRow planned = each_;
+    YamlSection section(
+        YamlNode(node), file_,
+        experiment_.name + ".rows[" + std::to_string(experiment_.rows.size()) + "]");
+    readInto(section, planned);
+    check(section, planned);
+    experiment_.rows.push_back(std::move(planned));
+  }
+
+  void check(const YamlSection& section, const PlannedRow& planned) const {
+    need(section, "of", "a text");
+    if (planned.here.empty()) section.fail("here", "an expression");
+    if (!planned.row.statement && !std::isfinite(planned.row.paper) &&
+        planned.row.incomparable.empty())
+      section.fail("paper", "a number, at_most, at_least, equals or not_compared");
+    if (planned.row.observed && !planned.row.statement)
+      section.fail("observed", "a statement: at_most, at_least or equals");
+    try {
+      requireSound(planned.here, kDeviations);
+      if (planned.only_if) requireSound(planned.only_if->here, {});
+      if (!planned.note_value.empty()) requireSound(planned.note_value, {});
+    } catch (const InputError& e) {
+      section.fail("here", e.what());
+    }
+  }
+
+  const std::string& file_;
+  Experiment& experiment_;
+  const PlannedRow& each_;
+};
+
+Experiment readExperiment(YamlSection s, const std::string& key) {
+  Experiment e;
+  e.paper = key;
+  for (const char* word : {"name", "item", "shows", "printed", "behind", "rows"})
+    need(s, word, "what the other experiments have");
+  s.text("name", e.name);
+  s.text("item", e.item);
+  s.text("shows", e.shows);
+  s.text("printed", e.printed);
+  s.text("behind", e.behind);
+  if (s.has("picture")) {
+    YamlSection picture = s.section("picture");
+    e.picture.emplace();
+    picture.names("runs", e.picture->runs);
+    picture.names("signals", e.picture->signals);
+    picture.finish();
+  }
+  PlannedRow each;
+  each.row.behind = e.behind;
+  YamlSection defaults = s.section("each");
+  readInto(defaults, each);
+  RowReader(s.file(), e, each).take(s.raw("rows"));
+  s.finish();
+  return e;
+}
+
+struct Book {
+  std::vector<Paper> papers;
+  std::vector<Experiment> experiments;
+  Settings settings;
+};
+
+void readSettings(YamlSection s, Settings& settings) {
+  for (const std::string& name : s.keys()) {
+    const YamlNode node = s.raw(name);
+    std::vector<Overrides> all;
+    const auto add = [&](const YAML::Node& one) {
+      Overrides set;
+      for (const auto& entry : one) set.emplace_back(entry.first.Scalar(), entry.second.Scalar());
+      all.push_back(std::move(set));
+    };
+    if (node.IsSequence())
+      for (const auto& one : node) add(one);
+    else
+      add(node);
+    require(settings.emplace(name, std::move(all)).second, s.where(name), "a name that is new");
+  }
+}
+
+void readPaper(YamlSection s, const std::string& key, Book& book) {
+  Paper paper{key, ""};
+  need(s, "title", "the paper's");
+  s.text("title", paper.title);
+  readSettings(s.section("settings"), book.settings);
+  for (YamlSection& one : s.list("experiments"))
+    book.experiments.push_back(readExperiment(std::move(one), key));
+  s.finish();
+  book.papers.push_back(std::move(paper));
+}
+
+const Book& book() {
+  static const Book all = [] {
+    Book book;
+    for (const char* key : kKeys) readPaper(YamlSection::load(paperFile(key)), key, book);
+    return book;
+  }();
+  return all;
 }
 
 }  // namespace
 
-bool Values::sound() const {
-  return !all_.empty() &&
-         std::all_of(all_.begin(), all_.end(), [](double value) { return std::isfinite(value); });
+Verdict Row::verdictAt(double value) const {
+  return verdictOf({statement, paper, value, tolerance, direction, incomparable.empty(), observed});
 }
 
-double Values::median() const {
-  if (!sound()) return notPrinted();
-  std::vector<double> sorted = all_;
-  std::sort(sorted.begin(), sorted.end());
-  const std::size_t half = sorted.size() / 2;
-  return sorted.size() % 2 == 1 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
+double Row::agreeing() const {
+  const Verdict median = verdict();
+  const auto same = std::count_if(here.all().begin(), here.all().end(),
+                                  [&](double value) { return verdictAt(value) == median; });
+  return static_cast<double>(same) / static_cast<double>(std::max<std::size_t>(here.count(), 1));
 }
 
-double Values::lowest() const {
-  return sound() ? *std::min_element(all_.begin(), all_.end()) : notPrinted();
+std::string paperFile(const std::string& name) {
+  for (const auto& folder : configFolders()) {
+    std::string file = folder + "/../papers/" + name + ".yaml";
+    if (std::filesystem::exists(file)) return file;
+  }
+  throw InputError("papers/" + name + ".yaml: expected beside one of the config folders");
 }
 
-double Values::highest() const {
-  return sound() ? *std::max_element(all_.begin(), all_.end()) : notPrinted();
-}
+const std::vector<Paper>& papers() { return book().papers; }
+const std::vector<Experiment>& experiments() { return book().experiments; }
+const Settings& settings() { return book().settings; }
 
-Verdict ReproduceRow::verdict() const {
-  return verdictOf({statement, paper, here.median(), tolerance, direction, incomparable.empty()});
-}
-
-double ReproduceRow::agreeing() const {
-  double same = 0.0;
-  for (const double value : here.all())
-    if (verdictOf({statement, paper, value, tolerance, direction, incomparable.empty()}) ==
-        verdict())
-      same += 1.0;
-  return same / static_cast<double>(std::max<std::size_t>(here.count(), 1));
-}
-
-ReproduceRow figure(std::string quantity, double paper, Values here, std::string unit,
-                    Judged judged, std::string note) {
-  ReproduceRow row;
-  row.quantity = std::move(quantity);
-  row.paper = paper;
-  row.here = std::move(here);
-  row.unit = std::move(unit);
-  row.tolerance = {Tolerance{}.reproduced, judged.close, judged.absolute};
-  row.direction = judged.better;
-  row.note = std::move(note);
-  return row;
-}
-
-ReproduceRow check(std::string quantity, Values here, Direction side, double limit,
-                   std::string unit, std::string note, double absolute) {
-  ReproduceRow row = figure(std::move(quantity), limit, std::move(here), std::move(unit),
-                            {0.0, side, absolute}, std::move(note));
-  row.statement = true;
-  return row;
-}
-
-ReproduceRow incomparable(std::string quantity, double paper, Values here, std::string unit,
-                          std::string reason) {
-  ReproduceRow row = figure(std::move(quantity), paper, std::move(here), std::move(unit));
-  require(!reason.empty(), row.quantity, "the reason why it cannot be compared");
-  row.incomparable = std::move(reason);
-  return row;
-}
-
-double notPrinted() { return std::numeric_limits<double>::quiet_NaN(); }
-
-const std::vector<Paper>& papers() {
-  static const std::vector<Paper> all{
-      {"blazic2007", "Blazic and Skrjanc 2007: stirred-tank reactor"},
-      {"vallejo2019",
-       "Vallejo and Vega 2019 (article 1 of the thesis of 2021): activated sludge, law and cases A "
-       "to D"},
-      {"vallejo2021a",
-       "Vallejo and Vega 2021 (article 2): activated sludge, stability, cases 1 to 3"},
-      {"vallejo2021b", "Vallejo and Vega 2021 (article 3): activated sludge, FMBPC/CLP"},
-      {"karer2007", "Karer, Music, Skrjanc and Zupancic 2007: batch reactor"},
-      {"mekki", "Mekki and Saad: distillation column"},
-      {"taieb2017", "Taieb, Soltani and Chaari 2017: surge tank and stirred tank"},
-      {"bsm1", "Alex et al. 2008: benchmark simulation model no. 1, reference figures"}};
-  return all;
-}
-
-bool registerExperiments(std::vector<Experiment> some) {
-  for (auto& experiment : some) registry().push_back(std::move(experiment));
-  return true;
-}
-
-std::vector<Experiment> experiments() {
-  std::vector<Experiment> all = registry();
-  std::sort(all.begin(), all.end(), before);
-  return all;
+std::vector<Experiment> experimentsIn(const std::string& text, const std::string& key) {
+  Book book;
+  readPaper(YamlSection::parse(text, key), key, book);
+  return book.experiments;
 }
 
 Rows rowsOf(const Experiment& experiment) {
   Rows rows;
-  try {
-    rows = experiment.rows();
-  } catch (const std::exception& e) {
-    rows = {figure("rows of " + experiment.name, notPrinted(), notPrinted(), "-", {}, e.what())};
-  }
-  for (auto& row : rows)
-    if (row.behind.empty()) row.behind = experiment.behind;
+  for (const PlannedRow& planned : experiment.rows) rows.push_back(computed(planned, rows));
   return rows;
 }
 
@@ -161,4 +334,4 @@ bool isTableOrFigure(const Experiment& experiment) {
   return false;
 }
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -1,65 +1,55 @@
-// The table of experiments of `fmbpc reproduce`: every table and figure with results in the papers,
-// one entry each, and the rows that stand for it. One file a system.
+// The experiments of `fmbpc reproduce`: every table and figure with results in the papers, one
+// entry each, as papers/KEY.yaml lists them with the expression that computes each number.
 #pragma once
 
-#include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "papers/values.hpp"
 #include "papers/verdict.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 
-/// One figure, or the same of many runs (seeds): judged by the median, shown with the range.
-class Values {
- public:
-  Values(double value) : all_{value} {}                            // NOLINT: a number is one value
-  Values(std::vector<double> values) : all_{std::move(values)} {}  // NOLINT
-  std::size_t count() const { return all_.size(); }
-  double median() const;  ///< NaN if there is none, or if one is not finite: a run failed
-  double lowest() const;  ///< NaN as the median
-  double highest() const;
-  const std::vector<double>& all() const { return all_; }
-
- private:
-  bool sound() const;  ///< at least one value, all finite
-  std::vector<double> all_;
-};
-
-struct ReproduceRow {
+struct Row {
   std::string quantity;
   bool statement{false};
-  double paper{};  ///< printed figure, or the limit of a statement; NaN: none
-  Values here{0.0};
-  std::string unit;
+  double paper{kNotPrinted};  ///< printed figure, or the limit of a statement; NaN: none
+  Values here{kNotPrinted};
+  std::string unit{"-"};
   Tolerance tolerance{};
   Direction direction{Direction::kEqual};
   std::string incomparable;  ///< reason, empty: comparable
+  bool observed{false};      ///< a statement that no wrong plant or law changes
   std::string note;
-  std::string behind;  ///< loops or command; empty: those of the experiment
-  Verdict verdict() const;
+  std::string behind;  ///< loops or command
+  Verdict verdict() const { return verdictAt(here.median()); }
+  Verdict verdictAt(double value) const;
   double agreeing() const;  ///< share of the runs that give the same verdict
 };
+using Rows = std::vector<Row>;
 
-using Rows = std::vector<ReproduceRow>;
-
-/// How a figure is judged besides the 1 % of Tolerance.
-struct Judged {
-  double close{0.1};
-  Direction better{Direction::kEqual};
-  double absolute{0.0};
+/// A row before it is computed.
+struct PlannedRow {
+  /// What must hold for the figure to be compared; else `otherwise` is the reason, {} in it the
+  /// number found.
+  struct Condition {
+    std::string here;
+    double at_least{-std::numeric_limits<double>::infinity()};
+    double at_most{std::numeric_limits<double>::infinity()};
+    std::string otherwise;
+  };
+  Row row;
+  std::string here;        ///< expression: papers/expression.hpp
+  std::string note_value;  ///< expression of what stands for {} in the note
+  std::optional<Condition> only_if;
 };
 
-ReproduceRow figure(std::string quantity, double paper, Values here, std::string unit,
-                    Judged judged = {}, std::string note = "");
-/// A statement tested here: `here` at most (kLower) or at least (kHigher) `limit`; kEqual: within
-/// `absolute` of it.
-ReproduceRow check(std::string quantity, Values here, Direction side, double limit,
-                   std::string unit, std::string note, double absolute = 0.0);
-/// Ours beside what cannot be compared with it. `paper` NaN: it prints none.
-ReproduceRow incomparable(std::string quantity, double paper, Values here, std::string unit,
-                          std::string reason);
-double notPrinted();
+/// Runs over time that stand for a figure.
+struct RunPicture {
+  std::vector<std::string> runs, signals;
+};
 
 struct Experiment {
   std::string name;     ///< "cstr_figure_2"
@@ -68,20 +58,22 @@ struct Experiment {
   std::string shows;    ///< in a few words
   std::string printed;  ///< figures it prints: "4 numbers", "curves"
   std::string behind;   ///< loops or command
-  std::function<Rows()> rows;
+  std::optional<RunPicture> picture;
+  std::vector<PlannedRow> rows;
 };
 
 struct Paper {
   std::string key, title;
 };
 
-const std::vector<Paper>& papers();
-bool registerExperiments(std::vector<Experiment> some);
-/// By paper, then by item, numbers in their order.
-std::vector<Experiment> experiments();
-/// Its rows with `behind` filled in. What throws becomes one row without a result.
+const std::vector<Paper>& papers();  ///< in the order of the page
+/// As the files list them. @throws InputError naming file, place and key of what is wrong.
+const std::vector<Experiment>& experiments();
+/// Those of one text in the form of papers/KEY.yaml; for tests.
+std::vector<Experiment> experimentsIn(const std::string& text, const std::string& key);
+/// Computed. What cannot be has no result and says why.
 Rows rowsOf(const Experiment& experiment);
 /// A numbered table or figure of a paper, not an equation, a section or an addition of ours.
 bool isTableOrFigure(const Experiment& experiment);
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

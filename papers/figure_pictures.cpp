@@ -2,18 +2,17 @@
 // curve that they belong to.
 #include <cmath>
 
-#include "papers/column_gains.hpp"
+#include "papers/expression.hpp"
 #include "papers/picture.hpp"
 #include "papers/report.hpp"
+#include "papers/runs.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace {
 
-using Names = std::vector<std::string>;
-
 std::string scored(const std::string& loop, double printed) {
-  const double sum = indicesOf(summaryOf(loop), "CA").ise_reference;
-  return loop + ": sum " + figureText(sum) + ", printed " + figureText(printed);
+  const Values sum = evaluate("ise_reference(" + loop + ", CA)");
+  return loop + ": sum " + figureText(sum.median()) + ", printed " + figureText(printed);
 }
 
 /// Figures 2 and 3 (blazic2007): the printed sums in the legend.
@@ -27,16 +26,14 @@ bool addReactor(const std::string& figure, const std::string& loop, double pi, d
   });
 }
 
-/// Figures 6 to 8 (mekki): the loops of the rows, with the gains of table 1, and the learned ones.
-Picture columnPicture(const std::string& loop, bool feed) {
+/// Figures 6 to 8 (mekki): the loops of the rows, with the gains of table 1.
+Picture columnPicture(const std::string& loop, const std::string& feed) {
   std::vector<LabelledRun> runs;
-  for (const ColumnGains* gains : {&kNominalGains, &kMaxGains, &kMinGains}) {
-    Overrides set = withGains(*gains, feed);
-    set.insert(set.end(), fittedBottomLoop().begin(), fittedBottomLoop().end());
-    runs.push_back({&recordOf(loop, set), std::string("gains ") + gains->name});
-  }
+  for (const char* gains : {"nominal", "Max", "Min"})
+    runs.push_back(
+        {&recordOf(loop + "+gains_" + gains + feed + "+fitted"), std::string("gains ") + gains});
   Picture picture = pictureOfRuns(runs, {"y_D", "x_B"});
-  if (!feed) return picture;
+  if (feed.empty()) return picture;
   const Vector setpoint = runs.front().run->samples.front().tracking.setpoint;
   picture.panels[0].marks = {{"printed: less than 0.1 % off", 1.001 * setpoint[0]},
                              {"", 0.999 * setpoint[0]}};
@@ -97,9 +94,9 @@ Picture analyserPicture() {
 const bool kRegistered =
     addReactor("cstr_figure_2", "cstr_tracking", 0.0165, 0.0061) &&
     addReactor("cstr_figure_3", "cstr_disturbance", 0.0076, 0.0036) &&
-    registerPicture("column_figure_6", [] { return columnPicture("column_pso", false); }) &&
-    registerPicture("column_figure_7", [] { return columnPicture("column_pso_bottom", false); }) &&
-    registerPicture("column_figure_8", [] { return columnPicture("column_pso_feed", true); }) &&
+    registerPicture("column_figure_6", [] { return columnPicture("column_pso", ""); }) &&
+    registerPicture("column_figure_7", [] { return columnPicture("column_pso_bottom", ""); }) &&
+    registerPicture("column_figure_8", [] { return columnPicture("column_pso_feed", "_feed"); }) &&
     registerPicture("batch_figure_12", [] { return batchPicture(0); }) &&
     registerPicture("batch_figure_13", [] { return batchPicture(1); }) &&
     registerPicture("batch_figure_14", [] { return batchPicture(2); }) &&
@@ -107,4 +104,4 @@ const bool kRegistered =
     registerPicture("taieb_figure_10", analyserPicture);
 
 }  // namespace
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -6,8 +6,9 @@
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "papers/runs.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace {
 
 using Json = OrderedJson;
@@ -136,11 +137,17 @@ bool registerPicture(const std::string& experiment, std::function<Picture()> pic
   return true;
 }
 
-bool hasPicture(const std::string& experiment) { return registry().count(experiment) > 0; }
+bool hasPicture(const Experiment& experiment) {
+  return experiment.picture || registry().count(experiment.name) > 0;
+}
 
-Picture pictureOf(const std::string& experiment) {
-  require(hasPicture(experiment), experiment, "an experiment with a picture");
-  return registry()[experiment]();
+Picture pictureOf(const Experiment& experiment) {
+  require(hasPicture(experiment), experiment.name, "an experiment with a picture");
+  if (!experiment.picture) return registry()[experiment.name]();
+  std::vector<LabelledRun> runs;
+  for (const std::string& run : experiment.picture->runs)
+    runs.push_back({&recordOf(run), run.substr(0, run.find('+'))});
+  return pictureOfRuns(runs, experiment.picture->signals);
 }
 
 Json toJson(const Picture& picture) {
@@ -163,4 +170,4 @@ Json toJson(const Picture& picture) {
   return json;
 }
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

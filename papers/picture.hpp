@@ -9,9 +9,10 @@
 
 #include "base/ordered_json.hpp"
 #include "fmbpc/model/ts_model.hpp"
+#include "papers/experiment.hpp"
 #include "runtime/record.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 
 struct Curve {
   std::string label;
@@ -57,11 +58,12 @@ Curve curveOf(const RunRecord& run, const std::string& label, const char* style,
 /// Fuzzy sets of one variable of an output, over lower..upper.
 Picture pictureOfSets(const OutputModel& model, std::size_t variable, const std::string& x_label,
                       double lower, double upper);
-/// The picture that stands for an experiment; false if it has none.
-bool hasPicture(const std::string& experiment);
-Picture pictureOf(const std::string& experiment);
+/// The picture that stands for an experiment: a registered one, or the runs that it names; false if
+/// it has none.
+bool hasPicture(const Experiment& experiment);
+Picture pictureOf(const Experiment& experiment);
 /// For pictures that do not come from runs alone. @return true
 bool registerPicture(const std::string& experiment, std::function<Picture()> picture);
 OrderedJson toJson(const Picture& picture);
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

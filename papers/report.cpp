@@ -8,7 +8,7 @@
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/text.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace {
 
 using Json = OrderedJson;
@@ -20,7 +20,7 @@ std::string format(const char* pattern, double value) {
 }
 
 /// What the paper prints, or the statement: "<= 1".
-std::string paperCell(const ReproduceRow& row) {
+std::string paperCell(const Row& row) {
   if (std::isnan(row.paper)) return "-";
   if (!row.statement) return figureText(row.paper);
   const char* sign = row.direction == Direction::kLower    ? "<= "
@@ -29,7 +29,7 @@ std::string paperCell(const ReproduceRow& row) {
   return sign + figureText(row.paper);
 }
 
-std::string spreadOf(const ReproduceRow& row) {
+std::string spreadOf(const Row& row) {
   if (row.here.count() == 1) return "";
   std::string text = "median of " + std::to_string(row.here.count()) + ", " +
                      figureText(row.here.lowest()) + " .. " + figureText(row.here.highest());
@@ -40,7 +40,7 @@ std::string spreadOf(const ReproduceRow& row) {
   return text;
 }
 
-std::string deviationOf(const ReproduceRow& row) {
+std::string deviationOf(const Row& row) {
   const double here = row.here.median();
   if (row.statement || !row.incomparable.empty() || !std::isfinite(row.paper - here)) return "";
   if (row.paper == 0.0) return "";
@@ -92,6 +92,14 @@ void addTable(std::string& page, const std::vector<Outcome>& outcomes) {
   }
 }
 
+/// Of a statement, also of one that is only observed; null where there is none to judge.
+Json holds(Row row) {
+  row.observed = false;
+  const Verdict verdict = row.verdict();
+  if (verdict == Verdict::kHolds) return true;
+  return verdict == Verdict::kFails ? Json(false) : Json(nullptr);
+}
+
 }  // namespace
 
 std::string figureText(double value) {
@@ -100,7 +108,7 @@ std::string figureText(double value) {
   return text == "-0" ? "0" : text;
 }
 
-std::string hereText(const ReproduceRow& row) {
+std::string hereText(const Row& row) {
   const double here = row.here.median();
   std::string text = figureText(here);
   if (row.verdict() != Verdict::kFails) return text;
@@ -126,7 +134,7 @@ std::string inWords(const Counts& counts) {
   return join(words);
 }
 
-std::string remarkOf(const ReproduceRow& row) {
+std::string remarkOf(const Row& row) {
   std::vector<std::string> words;
   for (const std::string& part : {deviationOf(row), spreadOf(row), row.incomparable, row.note})
     if (!part.empty()) words.push_back(part);
@@ -138,9 +146,8 @@ std::vector<std::string> failuresOf(const std::vector<Outcome>& outcomes,
   std::vector<std::string> lines;
   for (const auto& text : failed_runs) lines.push_back("failed: " + text);
   const Rows rows = rowsOfAll(outcomes);
-  const auto lost = std::count_if(rows.begin(), rows.end(), [](const ReproduceRow& row) {
-    return row.verdict() == Verdict::kNoResult;
-  });
+  const auto lost = std::count_if(
+      rows.begin(), rows.end(), [](const Row& row) { return row.verdict() == Verdict::kNoResult; });
   if (lost > 0) lines.push_back(std::to_string(lost) + " rows without a result");
   return lines;
 }
@@ -149,9 +156,9 @@ std::string reasonOf(const Rows& rows) {
   const auto first = [&](auto&& condition) {
     return std::find_if(rows.begin(), rows.end(), condition);
   };
-  auto at = first([](const ReproduceRow& row) { return isShort(row.verdict()); });
+  auto at = first([](const Row& row) { return isShort(row.verdict()); });
   if (at != rows.end()) return at->quantity + ": " + remarkOf(*at);
-  at = first([](const ReproduceRow& row) { return !row.incomparable.empty(); });
+  at = first([](const Row& row) { return !row.incomparable.empty(); });
   return at == rows.end() ? "" : at->incomparable;
 }
 
@@ -204,6 +211,7 @@ Json toJson(const std::vector<Outcome>& outcomes) {
                      {"runs", row.here.count()},
                      {"unit", row.unit},
                      {"verdict", name(row.verdict())},
+                     {"holds", holds(row)},
                      {"note", remarkOf(row)},
                      {"behind", row.behind}});
   return all;
@@ -226,4 +234,4 @@ std::string markdown(const std::vector<Outcome>& outcomes) {
   return page;
 }
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -4,7 +4,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace {
 
 Eigen::Index indexOf(const std::vector<SignalInfo>& known, const std::string& name,
@@ -39,4 +39,4 @@ DataSet dataOf(const RunRecord& run, const Structure& structure) {
   return makeDataSet(values, structure, run.loop);
 }
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

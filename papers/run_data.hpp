@@ -6,10 +6,10 @@
 #include "identification/data_set.hpp"
 #include "runtime/record.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 
 /// Row k holds y(k) and the u(k), d(k) that act from then on; the last sample has no action and is
 /// left out. @throws InputError naming a signal of the structure that the run does not have.
 DataSet dataOf(const RunRecord& run, const Structure& structure);
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

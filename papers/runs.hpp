@@ -1,4 +1,7 @@
-// Runs that several rows of `fmbpc reproduce` share: each loop runs once in a call of the tool.
+// Runs that several numbers share: each is made once in a call of the program.
+//
+// A run is named by its loop and what is changed in it: "asp_case1", "column_pso+gains_max+fitted"
+// (settings of papers/KEY.yaml), "asp_case1*" for seeds() runs, from the seed of the loop on.
 #pragma once
 
 #include <functional>
@@ -6,35 +9,40 @@
 #include <vector>
 
 #include "config/loop_file.hpp"
-#include "papers/experiment.hpp"
+#include "papers/values.hpp"
 #include "runtime/report.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 
-constexpr int kSeeds = 24;  ///< of the disturbance pattern behind every ratio that depends on it
+std::size_t seeds();  ///< of the disturbance pattern behind every ratio that depends on it: 24
+void setSeeds(std::size_t count);
 
-/// The run of a shipped loop in process; kept until the tool ends, nothing is stored. A run that
-/// fails throws each time it is asked for and leaves nothing behind.
-/// @throws std::exception if it cannot be run, or did not go as asked.
-const RunRecord& recordOf(const std::string& loop, const Overrides& overrides = {});
-const Summary& summaryOf(const std::string& loop, const Overrides& overrides = {});
-/// The same, run anew and not kept: for searches.
+/// What stays of a run of which there are many.
+struct RunFigures {
+  Summary summary;
+  double active{};  ///< share of the samples in which a bound of the optimizer is active [%]
+};
+using OfRun = std::function<double(const RunFigures&)>;
+
+/// The record of one run; kept until the program ends. A run that fails throws each time it is
+/// asked for and leaves nothing behind.
+/// @throws std::exception if it cannot be run, did not go as asked, or if it is more than one.
+const RunRecord& recordOf(const std::string& run);
+const RunRecord& recordOf(const std::string& loop, const Overrides& overrides);
+LoopFile loopOf(const std::string& run);  ///< as it would be run
+/// Run anew and not kept: for searches.
 Summary freshSummaryOf(const std::string& loop, const Overrides& overrides);
-/// @throws InputError if the loop has no such output.
-const OutputIndices& indicesOf(const Summary& summary, const std::string& output);
-
-using OfSummary = std::function<double(const Summary&)>;
-/// One figure of each of kSeeds runs on all cores: seeds from that of the loop file on. NaN where a
-/// run failed.
-Values overSeeds(const std::string& loop, const OfSummary& what);
-/// ISE of one output over the seeds.
-Values iseOver(const std::string& loop, const std::string& output);
-/// Share of the samples in which a bound of the optimizer is active [%].
-Values activeOver(const std::string& loop);
-/// Seed by seed. @throws InputError if there are not equally many.
-Values ratio(const Values& above, const Values& below);
-Values difference(const Values& from, const Values& subtracted);  ///< likewise
-/// What went wrong in runs over seeds: "asp_case1, seed 3: ...".
+/// One figure of each run, of several on all cores: NaN where one failed. @throws as recordOf() of
+/// a single one
+Values overRuns(const std::string& run, const OfRun& what);
+/// @throws InputError if the loop has no such signal.
+Eigen::Index indexOf(const std::vector<std::string>& names, const std::string& name,
+                     const std::string& loop);
+Eigen::Index indexOf(const std::vector<SignalInfo>& signals, const std::string& name,
+                     const std::string& loop);
+/// What went wrong in one of several runs: "asp_case1, seed 3: ...".
 const std::vector<std::string>& failedRuns();
+/// A change of every loop from now on, for perturbed(): see papers/perturbations.yaml.
+void perturbEachLoop(std::function<Overrides(const LoopFile&)> change);
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -3,7 +3,7 @@
 // A1 and A2 (sets: a row a set in the order of the tables, by output, variable, rule).
 #include "papers/sludge_printed.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace {
 
 using Table = std::vector<std::vector<double>>;
@@ -117,4 +117,4 @@ double unlike(const std::vector<std::vector<double>>& printed,
   return count;
 }
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace fpc::tool {
+namespace fpc::papers {
 
 /// A row a rule: six of s, then five of x; the regressors that the rule has, then the offset.
 const std::vector<std::vector<double>>& printedConsequents(int model);
@@ -16,4 +16,4 @@ const std::vector<std::vector<double>>& printedSets(int model);
 double unlike(const std::vector<std::vector<double>>& printed,
               const std::vector<std::vector<double>>& held);
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

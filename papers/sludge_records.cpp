@@ -9,7 +9,7 @@
 #include "papers/runs.hpp"
 #include "runtime/run.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 
 DataSet excited(const std::string& loop, const Structure& structure, int seed,
                 const Overrides& overrides) {
@@ -24,11 +24,11 @@ const std::vector<TsModel>& modelsOver(const std::string& structure) {
   const auto known = all.find(structure);
   if (known != all.end()) return known->second;
   const Structure read = readStructure(findStructure(structure));
-  std::vector<TsModel> models(kSeeds);
+  std::vector<TsModel> models(seeds());
   parallelFor(models.size(), 0, [&](std::size_t i) {
     models[i] = identify(excited("asp_excite", read, static_cast<int>(i) + 1), read).model;
   });
   return all.emplace(structure, std::move(models)).first->second;
 }
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

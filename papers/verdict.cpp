@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace {
 
 Verdict ofStatement(const Claim& c) {
@@ -28,12 +28,14 @@ Verdict ofFigure(const Claim& c) {
 Verdict verdictOf(const Claim& claim) {
   if (!claim.comparable) return Verdict::kNotComparable;
   if (!std::isfinite(claim.here) || !std::isfinite(claim.paper)) return Verdict::kNoResult;
+  if (claim.observed) return Verdict::kObserved;
   return claim.statement ? ofStatement(claim) : ofFigure(claim);
 }
 
 const char* name(Verdict verdict) {
-  static const char* const names[] = {"reproduced",     "close", "better", "not_reproduced",
-                                      "not_comparable", "holds", "fails",  "no_result"};
+  static const char* const names[] = {"reproduced",     "close",          "better",
+                                      "not_reproduced", "not_comparable", "holds",
+                                      "fails",          "observed",       "no_result"};
   return names[static_cast<int>(verdict)];
 }
 
@@ -48,4 +50,4 @@ bool isShort(Verdict verdict) {
   return verdict == Verdict::kNotReproduced || verdict == Verdict::kFails;
 }
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace fpc::tool {
+namespace fpc::papers {
 
 enum class Verdict {
   kReproduced,     ///< within `reproduced` of the printed figure, or within `absolute`
@@ -14,6 +14,7 @@ enum class Verdict {
   kNotComparable,  ///< the row gives the reason
   kHolds,          ///< a statement tested here: true
   kFails,          ///< a statement tested here: false
+  kObserved,       ///< a statement that no wrong plant or law changes: shown, not judged
   kNoResult        ///< a run failed, or gave no figure
 };
 
@@ -34,6 +35,7 @@ struct Claim {
   Tolerance tolerance{};
   Direction direction{Direction::kEqual};
   bool comparable{true};
+  bool observed{false};  ///< a statement without a verdict
 };
 
 Verdict verdictOf(const Claim& claim);
@@ -42,4 +44,4 @@ std::vector<Verdict> allVerdicts();
 /// Figures that fall short and statements that do not hold.
 bool isShort(Verdict verdict);
 
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -2,7 +2,7 @@
 """The plain command `fmbpc identify DATA --auto` on simulated records of many kinds, judged in free run on records with new inputs: the
 model it chose beside its linear one and beside a least-squares ARX model whose orders were chosen by free runs over the last rows.
 
-    scripts/identification_bench.py [KIND..] [--seeds N] [--first SEED] [--budget S] [--tool FILE]
+    scripts/identification_bench.py [KIND..] [--seeds N] [--first SEED] [--work W] [--tool FILE]
 
 Prints a table; exit code 1 if on some record the chosen model is worse than linear by more than 5 %."""
 import argparse
@@ -80,7 +80,7 @@ def identify(folder, kind, seed, arguments):
     held = folder / (kind + "_held_out.csv")
     write(held, judge)
     command = [arguments.tool, "identify", *files, "--auto", "--inputs", ",".join(inputs), "--outputs", ",".join(outputs),
-               "--validate", str(held), "--budget", str(arguments.budget), "--json"]
+               "--validate", str(held), "--work", str(arguments.work), "--json"]
     report = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     for output in outputs:
         validation = report["validation"][output]
@@ -96,7 +96,7 @@ def main():
     parser.add_argument("kinds", nargs="*", metavar="KIND", help=", ".join(KINDS))
     parser.add_argument("--seeds", type=int, default=1, help="records of each kind")
     parser.add_argument("--first", type=int, default=1, help="first seed")
-    parser.add_argument("--budget", type=float, default=45.0, help="[s] per record")
+    parser.add_argument("--work", type=float, default=45.0, help="per record")
     parser.add_argument("--tool", default=str(TOOL), help="the tool fmbpc")
     arguments = parser.parse_args()
     unknown = [kind for kind in arguments.kinds if kind not in KINDS]

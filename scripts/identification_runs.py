@@ -91,18 +91,18 @@ def loop_row(name, told):
             "%.3f" % pair["median_ratio"] + interval, "yes" if pair["median_ratio"] <= CLOSE else "**no**"]
 
 
-def loops(records, budget, write):
+def loops(records, work, write):
     rows = []
     for name, (record, part, columns, model) in LOOPS.items():
         file = records.folder / (model + ".yaml")
-        asked("identify", records.of(record), "--auto", "--kind", "regressors", "--rows", part, *columns, "--budget", budget, "--out", file)
+        asked("identify", records.of(record), "--auto", "--kind", "regressors", "--rows", part, *columns, "--work", work, "--out", file)
         if write:
             (CONFIG / "model" / file.name).write_text(file.read_text(encoding="utf-8"), encoding="utf-8")
         rows.append(loop_row(name, study_of(name, file, records.folder)))
     return table(["study", "loop", "median cost, by --auto", "shipped model", "ratio of pairs (95 %)", "within 5 %"], rows)
 
 
-def structures(records, budget, write):
+def structures(records, work, write):
     rows = []
     for name, source, part, judge in STRUCTURES:
         public = source.endswith(".csv")
@@ -118,7 +118,7 @@ def structures(records, budget, write):
     return table(["record, rows, output", "structure", "judged on", "one step: rmse, fuzzy / linear", "fit %", "free run: rmse", "fit %"], rows)
 
 
-def cases(records, budget, write):
+def cases(records, work, write):
     rows = []
     own, other = records.of("asp_excite"), records.of("asp_excite_validation")
     for case, (structure, on_own, thesis_s, thesis_x) in CASES.items():
@@ -136,19 +136,19 @@ def vaf_text(told, kind, aim):
     return "%s (%s)%s" % ("%.1f" % vaf if vaf > 0 else "below 0", kind, "" if vaf >= aim else ", **no**")
 
 
-def states(records, budget, write):
+def states(records, work, write):
     rows = []
     for own, other in PAIRS:
         model = records.folder / ("without_xr_%d.yaml" % own)
         report = asked("identify", records.of("asp_excite", own), "--auto", "--inputs", "q_r", "--disturbances", "s_i", "--outputs", "s,x",
-                       "--time", "time", "--budget", budget, "--out", model)
+                       "--time", "time", "--work", work, "--out", model)
         best = report["cross_validation"]["x"]["best"]
         told = asked("validate", model, records.of("asp_excite_validation", other))["validation"]
         rows.append(["%d, %d" % (own, other), vaf_text(report["identification"], best, AIM_OWN), vaf_text(told, best, AIM_OTHER)])
     return table(["seeds of the two records", "own record, at least %g" % AIM_OWN, "another, at least %g" % AIM_OTHER], rows)
 
 
-def long_record(records, budget, write):
+def long_record(records, work, write):
     """A million rows of a bent first-order process with two inputs, one of which acts."""
     random = numpy.random.default_rng(1)
     n = 1000000
@@ -159,7 +159,7 @@ def long_record(records, budget, write):
     y += 0.01 * random.standard_normal(n)
     file = records.folder / "long.csv"
     numpy.savetxt(file, numpy.column_stack([y, u]), fmt="%.6g", delimiter=",", header="y,u,v", comments="")
-    command = ["identify", file, "--auto", "--inputs", "u,v", "--outputs", "y", "--sample-time", 1, "--budget", budget]
+    command = ["identify", file, "--auto", "--inputs", "u,v", "--outputs", "y", "--sample-time", 1, "--work", work]
     begun = time.monotonic()
     with subprocess.Popen([str(TOOL), *map(str, command), "--json"], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as process:
         told = json.load(process.stdout)["cross_validation"]["y"]

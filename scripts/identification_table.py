@@ -2,7 +2,7 @@
 """Every table of figures in docs/identification.md: `fmbpc identify --auto` on public records (identified from the first rows of each,
 judged on the others in free run and one step ahead), then the sections of identification_runs.py.
 
-    FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--section SECTION]... [--budget S] [--write]
+    FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--section SECTION]... [--work W] [--write]
 
 NAME: of a record, and no other section. --write puts each table between its marks in docs/identification.md, and the models of the
 section `loops` into config/model.
@@ -24,16 +24,16 @@ PLANT_INPUTS = "u1_gas_flow,u2_turbine_valves,u3_superheater_spray,u4_gas_damper
 PLANT_OUTPUTS = "y1_steam_pressure,y2_main_steam_temp,y3_reheat_steam_temp"
 COLUMN_INPUTS = "u_reboil_ratio_n0,u_reflux_ratio_n0,u_distillate_ratio_n0,u_feed_ethane_n0,u_top_pressure_n0"
 COLUMN_OUTPUTS = "y_top_ethane_n0,y_bottom_ethylene_n0,y_dp_n0"
-# name: file, inputs, outputs, last row to identify from (0: all rows, judged by held-out blocks only)
+# name: file, inputs, outputs, last row to identify from (0: all rows, judged by held-out blocks only), sample time [s] where no column tells it
 RECORDS = {
     "tanks": ("cascaded_tanks_estimation.csv", "u_V", "y_V", 0),
     "drives_1": ("coupled_drives_1_estimation.csv", "u_V", "y", 300),
     "drives_2": ("coupled_drives_2_estimation.csv", "u_V", "y", 300),
     "cstr": ("daisy_cstr.csv", "q_lpm", "Ca_molL,T_K", 5000),
-    "power_plant": ("daisy_powerplant.csv", PLANT_INPUTS, PLANT_OUTPUTS, 140),
+    "power_plant": ("daisy_powerplant.csv", PLANT_INPUTS, PLANT_OUTPUTS, 140, 1228.8),
     "heating": ("daisy_heating_system.csv", "u_voltage_V", "y_temp_C", 530),
-    "gas_furnace": ("box_jenkins_gas_furnace.csv", "u_gas_rate_ft3min", "y_co2_pct", 200),
-    "column": ("daisy_destill.csv", COLUMN_INPUTS, COLUMN_OUTPUTS, 0),
+    "gas_furnace": ("box_jenkins_gas_furnace.csv", "u_gas_rate_ft3min", "y_co2_pct", 200, 9),
+    "column": ("daisy_destill.csv", COLUMN_INPUTS, COLUMN_OUTPUTS, 0, 900),
 }
 
 # record, output, figure: published linear, best published baseline, aim. Published: free run over other rows of the same records.
@@ -52,11 +52,12 @@ def asked(*arguments):
     return json.loads(subprocess.run([str(TOOL), *arguments, "--json"], check=True, capture_output=True, text=True).stdout)
 
 
-def identified(name, budget):
+def identified(name, work):
     """Held-out rows are shown to the finished model only: `identify --validate-rows` may refuse a fuzzy model by them."""
-    file, inputs, outputs, last = RECORDS[name]
+    file, inputs, outputs, last, *sample_time = RECORDS[name]
     record = os.path.join(os.environ["FMBPC_DATA"], file)
-    command = ["identify", record, "--auto", "--inputs", inputs, "--outputs", outputs, "--budget", str(budget)]
+    command = ["identify", record, "--auto", "--inputs", inputs, "--outputs", outputs, "--work", str(work)]
+    command += ["--sample-time", str(*sample_time)] if sample_time else []
     if not last:
         return asked(*command)
     with tempfile.TemporaryDirectory() as folder:
@@ -125,7 +126,7 @@ def written(page, section, tables):
     return before + begin + "\n" + tables + "\n" + END + rest.split(END, 1)[1]
 
 
-def tables_of(names, budget):
+def tables_of(names, work):
     """Both tables, each row printed as it is found."""
     lines = []
 
@@ -137,7 +138,7 @@ def tables_of(names, budget):
     say("|---" * 7 + "|")
     aims = []
     for name in names:
-        report = identified(name, budget)
+        report = identified(name, work)
         aims += aim_rows(name, report)
         for cells in rows(name, report):
             say("| " + " | ".join(cells) + " |")
@@ -148,9 +149,9 @@ def tables_of(names, budget):
     return "\n".join(lines) + "\n"
 
 
-def tables_of_section(section, budget, write):
+def tables_of_section(section, work, write):
     with tempfile.TemporaryDirectory() as folder:
-        lines = SECTIONS[section](Records(folder), budget, write)
+        lines = SECTIONS[section](Records(folder), work, write)
     print("\n%s\n\n%s" % (section, "\n".join(lines)), flush=True)
     return "\n".join(lines) + "\n"
 
@@ -171,7 +172,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(RECORDS))
     parser.add_argument("--section", action="append", choices=["records", *SECTIONS], help="all, if none is named")
-    parser.add_argument("--budget", type=float, default=45.0, help="[s] per record")
+    parser.add_argument("--work", type=float, default=45.0, help="per record")
     parser.add_argument("--write", action="store_true", help="into docs/identification.md as well")
     arguments = parser.parse_args()
     wrong = refused(arguments)
@@ -180,9 +181,9 @@ def main():
         return 1
     for section in arguments.section or (["records"] if arguments.names else ["records", *SECTIONS]):
         if section == "records":
-            tables = tables_of(arguments.names or RECORDS, arguments.budget)
+            tables = tables_of(arguments.names or RECORDS, arguments.work)
         else:
-            tables = tables_of_section(section, arguments.budget, arguments.write)
+            tables = tables_of_section(section, arguments.work, arguments.write)
         if arguments.write:
             PAGE.write_text(written(PAGE.read_text(encoding="utf-8"), section, tables), encoding="utf-8")
     return 0

@@ -52,6 +52,12 @@ def row(view, signal):
     return f"{name:>12} {value:>12.6g} {to} {signal.unit:<8} {course(view.history[name])}"
 
 
+def events_of(view):
+    """What was said last, the newest first."""
+    said = sorted((event for state in view.states.values() for event in state.events), key=lambda event: -event.last)
+    return [f"{e.code}: {e.text} (samples {e.first} to {e.last}: {e.count})" for e in said[:5]]
+
+
 def frame(view, colour, outcome=None):
     """The lines of one picture; the last one says how it ended."""
     state = view.summary
@@ -65,7 +71,7 @@ def frame(view, colour, outcome=None):
     lines = [f"{view.info.name}   sample {view.step}   {view.axis.at(view.seconds):.4g} {view.axis.unit}   {word}: {reason}", ""]
     lines += [row(view, signal) for signal in list(view.info.outputs) + list(view.info.inputs)]
     others = [] if outcome else [s for node, s in sorted(view.states.items()) if not s.summary and s.word not in ("automatic", "finished")]
-    return lines + ["", *[f"{s.node} {s.word}: {s.reason}" for s in others]]
+    return lines + ["", *[f"{s.node} {s.word}: {s.reason}" for s in others], *events_of(view)]
 
 
 def terminal(view, arguments):

@@ -135,18 +135,14 @@ class Equal(unittest.TestCase):
         self.assertEqual(len(there), len(here))
         print(f"realtime: {same - 1} of {steps + 1} rows compared, {len(late)} actions too late")
 
-    def test_a_setpoint_and_an_offset_clamped_are_remarked_in_both_ways(self):
-        offset, remark = self.compare_case(*CLAMPED)["remarks"]
-        self.assertEqual((300, 60), (offset["samples"], offset["first"]))
-        self.assertIn("an offset of T_in was asked beyond its range, 0..40", offset["words"])
-        self.assertEqual((240, 120), (remark["samples"], remark["first"]))
-        self.assertIn("beyond its limits, 0..55", remark["words"])
+    def test_a_setpoint_and_an_offset_clamped_are_events_in_both_ways(self):
+        self.assertEqual([("disturbance_clamped", "T_in", 60, 300), ("setpoint_clamped", "T", 120, 240)],
+                         [(e["code"], e["signal"], e["first"], e["count"]) for e in self.compare_case(*CLAMPED)["events"]])
 
-    def test_models_that_could_not_be_had_are_remarked_in_both_ways(self):
-        remarks = self.compare_case(*MODELS_REFUSED)["remarks"]
-        said = [(r["first"], r["words"]) for r in remarks if "identification: " in r["words"] or "model.max_pole" in r["words"]]
-        self.assertEqual([10, 41, 81], [first for first, _ in said], remarks)  # from the next sample on they were to be used
-        self.assertIn("expected at least 10 rows", said[0][1])
+    def test_models_that_could_not_be_had_are_events_in_both_ways(self):
+        said = [(e["code"], e["first"]) for e in self.compare_case(*MODELS_REFUSED)["events"]]
+        self.assertEqual([("identification_failed", 10), ("model_refused", 41), ("model_refused", 81)],  # from the next sample on
+                         [event for event in said if event[0] in ("identification_failed", "model_refused")], said)
 
     def test_types_without_a_case_run_their_first_loop(self):
         """A new type is compared by the loop that it brings."""

@@ -46,7 +46,7 @@ class Golden(unittest.TestCase):
     def test_it_holds_trajectory_and_indices(self):
         facts = {tuple(line.split("\t")[:3]) for line in self.table.read_text().splitlines()}
         self.assertLessEqual({("heated_tank", "run", "end"), ("heated_tank", "column", "T[degC]"), ("heated_tank", "index", "outputs.T.ise")}, facts)
-        self.assertFalse([fact for fact in facts if fact[2].startswith(("wall", "remarks"))])
+        self.assertFalse([fact for fact in facts if fact[2].startswith(("wall", "events"))])
 
     def test_what_differs_is_named(self):
         for kind, value in (("column", "0123"), ("index", "42"), ("run", "1")):

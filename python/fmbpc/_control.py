@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Sequence, Union
 import numpy
 
 from fmbpc import _text
+from fmbpc._run import Event
 
 if TYPE_CHECKING:
     from fmbpc._loop import Loop
@@ -98,9 +99,9 @@ class Controller:
         return self._core.source
 
     @property
-    def events(self) -> list[str]:
-        """What was to be said of the last sample, in words."""
-        return self._core.remarks
+    def events(self) -> list[Event]:
+        """What is to be known of the last sample."""
+        return [Event(*event) for event in self._core.events]
 
     @property
     def signals(self) -> dict[str, float]:

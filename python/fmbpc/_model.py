@@ -167,7 +167,7 @@ class Model:
 def identify(data, *, outputs: Sequence[str] = (), inputs: Sequence[str] = (), disturbances: Sequence[str] = (), auto: bool = True,
              structure: str | os.PathLike | None = None, validation=None, rows: str = "", validation_rows: str = "",
              time: str = "", sample_time_s: float = 0.0, known: str | os.PathLike | Mapping | None = None, name: str = "",
-             kind: str = "best", budget_s: float = 45.0, blocks: int = 4, window: int = 5, longest_delay: int = 0, keep_inputs: bool = False,
+             kind: str = "best", work: float = 45.0, budget_s: float = 0.0, blocks: int = 4, window: int = 5, longest_delay: int = 0, keep_inputs: bool = False,
              seed: int = 1, progress: bool | Callable[[float, str], None] | None = None) -> Model:
     """Identifies a model from a record: columns `outputs` from columns `inputs` and `disturbances`.
 
@@ -177,7 +177,7 @@ def identify(data, *, outputs: Sequence[str] = (), inputs: Sequence[str] = (), d
     validation: another record to judge on; validation_rows: "FIRST:LAST" of it, or of the first record
     time: column of times, else found by its name; sample_time_s: instead of one
     known: what is known of the outputs, a file, a text or {"y": {"gain": {"u": "positive"}}}
-    kind: best, linear, regressors or state; budget_s of the search; the rest as `fmbpc identify --help` says
+    kind: best, linear, regressors or state; work: where the search ends, whatever the machine; budget_s: [s] of it, 0 no limit; the rest as `fmbpc identify --help` says
     Ctrl-C keeps the best that the search found. Raises InputError naming record and column.
     """
     records = data if isinstance(data, (list, tuple)) else [data]
@@ -190,7 +190,7 @@ def identify(data, *, outputs: Sequence[str] = (), inputs: Sequence[str] = (), d
     known_text = "" if known is None else ", ".join(f"{k}: {_text._flow(v)}" for k, v in known.items()) if isinstance(known, Mapping) else os.fspath(known)
     options = {"outputs": _names(outputs), "inputs": _names(inputs), "disturbances": _names(disturbances), "rows": rows,
                "validate_rows": validation_rows, "time": time, "sample_time_s": float(sample_time_s), "known": known_text, "kind": kind,
-               "budget_s": float(budget_s), "blocks": int(blocks), "window": int(window), "longest_delay": int(longest_delay),
+               "work": float(work), "budget_s": float(budget_s), "blocks": int(blocks), "window": int(window), "longest_delay": int(longest_delay),
                "keep_inputs": bool(keep_inputs), "seed": int(seed), "name": name,
                "structure": "" if structure is None else os.fspath(structure)}
     with _progress.bar("identify", progress) as bar:

@@ -183,7 +183,7 @@ def _check_law(cls, loop, samples, rng):
     if any((a != b).any() for a, b in zip(first, second)):
         wrong.append("step: not the same bits again with the same readings")
     if law.source == "held":
-        wrong.append("step: gave no finite input: " + "; ".join(law.events))
+        wrong.append("step: gave no finite input: " + "; ".join(e.text for e in law.events))
     return wrong
 
 

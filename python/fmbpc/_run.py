@@ -62,11 +62,15 @@ class Signals(Mapping):
 
 
 class Event(NamedTuple):
-    """What did not go as asked: in words, the first sample at which it was said, at how many; 0: of the whole run."""
+    """What did not go as asked (docs/events.md): `count` samples from `first` to `last`; 0: the run as a whole."""
 
-    words: str
+    code: str
+    severity: str
+    signal: str
+    text: str
     first: int
-    samples: int
+    last: int
+    count: int
 
 
 class Run:
@@ -117,8 +121,8 @@ class Run:
 
     @property
     def events(self) -> list[Event]:
-        """What did not go as asked."""
-        return [Event(*remark) for remark in self._core.remarks]
+        """What did not go as asked, as the tool and the nodes say it."""
+        return [Event(**event) for event in self.summary["events"]]
 
     @property
     def complete(self) -> bool:

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/plant/plant.hpp"
 
@@ -17,6 +18,8 @@ void bindReports(py::module_& m);
 
 /// (name, unit, lower, upper) of each.
 py::list listOf(const std::vector<SignalInfo>& signals);
+/// (code, severity, signal, text, first, last, count) of each.
+py::list listOf(const std::vector<Event>& events);
 /// Name, title, time unit, outputs, and quantities as (name, unit, nominal, lower, upper).
 py::dict dictOf(const PlantDescription& plant);
 

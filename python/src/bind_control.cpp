@@ -51,7 +51,8 @@ void bindController(py::module_& m) {
       .def_property_readonly("setpoint", &SteppedController::setpoint)
       .def_property_readonly("reference", &SteppedController::reference)
       .def_property_readonly("source", &SteppedController::source)
-      .def_property_readonly("remarks", &SteppedController::remarks)
+      .def_property_readonly("events",
+                             [](const SteppedController& c) { return listOf(c.events()); })
       .def_property_readonly("prediction", &SteppedController::prediction)
       .def_property_readonly("signals", &SteppedController::signals)
       .def_property_readonly("settings", &SteppedController::settings)

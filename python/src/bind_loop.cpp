@@ -22,7 +22,6 @@ struct MadeRun {
   RunRecord record;
   double wall_s{};
   bool interrupted{};
-  std::vector<std::string> said;  // while it ran
 };
 
 LoopPtr readLoopFrom(const std::string& name, const Overrides& overrides) {
@@ -47,7 +46,6 @@ std::shared_ptr<MadeRun> runHere(LoopPtr loop, const std::string& commands, py::
     share = static_cast<double>(step) / samples;
   };
   options.stop = [&] { return !watch.goOn(share); };
-  options.remark = [&run](const std::string& words) { run->said.push_back(words); };
   try {
     const py::gil_scoped_release release;
     const auto start = std::chrono::steady_clock::now();
@@ -75,13 +73,6 @@ py::tuple tableOf(const MadeRun& run) {
   return py::make_tuple(table.names, table.units, values);
 }
 
-py::list remarksIn(const MadeRun& run) {
-  py::list list;
-  for (const RunRemark& remark : run.record.remarks)
-    list.append(py::make_tuple(remark.words, remark.first, remark.samples));
-  return list;
-}
-
 std::string titleOf(const LoopFile& loop) {
   return loop.report.title.empty() ? loop.name : loop.report.title;
 }
@@ -91,6 +82,14 @@ std::string titleOf(const LoopFile& loop) {
 py::list listOf(const std::vector<SignalInfo>& signals) {
   py::list list;
   for (const SignalInfo& s : signals) list.append(py::make_tuple(s.name, s.unit, s.lower, s.upper));
+  return list;
+}
+
+py::list listOf(const std::vector<Event>& events) {
+  py::list list;
+  for (const Event& e : events)
+    list.append(py::make_tuple(kindOf(e.code).name, nameOf(e.severity()), e.signal, e.text, e.first,
+                               e.last, e.count));
   return list;
 }
 
@@ -140,8 +139,6 @@ void bindLoop(py::module_& m) {
              const py::gil_scoped_release release;
              writeRun(*r.loop, r.record, summarize(*r.loop, r.record, r.wall_s), folder);
            })
-      .def_property_readonly("remarks", &remarksIn)
-      .def_readonly("said", &MadeRun::said)
       .def_readonly("wall_s", &MadeRun::wall_s)
       .def_readonly("interrupted", &MadeRun::interrupted)
       .def_property_readonly("complete", [](const MadeRun& r) { return r.record.complete; });

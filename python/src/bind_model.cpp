@@ -61,6 +61,8 @@ void setArguments(const py::dict& options, IdentifyArguments& a) {
       a.sample_time_s = value.cast<double>();
     else if (key == "kind")
       a.kind = value.cast<std::string>();
+    else if (key == "work")
+      a.work = value.cast<double>();
     else if (key == "budget_s")
       a.budget_s = value.cast<double>();
     else if (key == "blocks")
@@ -222,8 +224,8 @@ void bindModel(py::module_& m) {
            [](const ModelHandle& h, py::handle y, py::handle u, py::handle d, int steps) {
              require(steps >= 1, "steps", "an integer >= 1");
              const DataSet data = dataOf(h.identified.model, y, u, d);
-             return toArray(steps == 1 ? predictBest(h.identified, data).one_step
-                                       : predictSteps(h.identified, data, steps));
+             if (steps == 1) return toArray(predictBest(h.identified, data).one_step);
+             return toArray(predictSteps(h.identified, data, steps).best);
            })
       .def("validate",
            [](const ModelHandle& h, py::handle record, const std::string& rows,

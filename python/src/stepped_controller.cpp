@@ -10,7 +10,7 @@
 namespace fpc::python {
 namespace {
 
-std::string nameOf(ActionSource source) {
+std::string sourceName(ActionSource source) {
   switch (source) {
     case ActionSource::kBase:
       return "base";
@@ -49,7 +49,7 @@ void SteppedController::begin() {
   applied_ = loop_->simulation.actuator.initial;
   disturbances_good_ = loop_->disturbance_nominal;
   setpoint_ = Vector::Constant(countOf(outputs_), kNaN);
-  remarks_.clear();
+  events_.clear();
 }
 
 Array SteppedController::step(py::handle outputs, py::handle setpoint, py::handle disturbance,
@@ -96,6 +96,7 @@ Array SteppedController::step(py::handle outputs, py::handle setpoint, py::handl
 
 Array SteppedController::answer() {
   now_.header = {clock_.timeAt(step_), run_id_, step_};
+  controller_.turnTo(step_);
   Watch watch{py::none()};
   try {
     const py::gil_scoped_release release;
@@ -107,24 +108,21 @@ Array SteppedController::answer() {
     throw;
   }
   ++step_;
-  remarks_.clear();
-  const char* remark = controller_.session().output().remark;
-  if (*remark != '\0') remarks_.emplace_back(remark);
-  const std::string failures = controller_.takeFailures();
-  if (!failures.empty()) remarks_.push_back(failures);
+  events_ = controller_.answer().events;
+  for (Event& event : controller_.takeEvents()) events_.push_back(std::move(event));
   return toArray(applied_);
 }
 
 Array SteppedController::reset(py::handle outputs, py::handle setpoint, py::handle disturbance,
                                py::handle applied, py::handle quality) {
-  const auto before = std::tuple(step_, applied_, disturbances_good_, setpoint_, remarks_);
+  const auto before = std::tuple(step_, applied_, disturbances_good_, setpoint_, events_);
   begin();
   ++run_id_;
   try {
     return step(outputs, setpoint, disturbance, applied, quality);
   } catch (...) {
     if (step_ == 0) {
-      std::tie(step_, applied_, disturbances_good_, setpoint_, remarks_) = before;
+      std::tie(step_, applied_, disturbances_good_, setpoint_, events_) = before;
       --run_id_;
     }
     throw;
@@ -180,7 +178,7 @@ Array SteppedController::reference() const {
 
 std::string SteppedController::source() const {
   if (step_ == 0) return "none";
-  return nameOf(controller_.sent().source);
+  return sourceName(controller_.sent().source);
 }
 
 py::object SteppedController::prediction() const {

@@ -34,7 +34,7 @@ class SteppedController {
   Array setpoint() const;
   Array reference() const;
   std::string source() const;
-  Names remarks() const { return remarks_; }
+  const std::vector<Event>& events() const { return events_; }  ///< of the last sample
   py::object prediction() const;  ///< a dict of arrays; None: the law does not predict
   py::dict signals() const;
   py::dict settings() const;
@@ -53,7 +53,7 @@ class SteppedController {
   Measurement now_;                                    // the sample that is answered
   Vector outputs_good_, disturbances_good_, applied_;  // what counts where nothing new is said
   Vector setpoint_;                                    // in force by setpoint=; NaN: the schedule's
-  Names remarks_;
+  std::vector<Event> events_;
 };
 
 }  // namespace fpc::python

@@ -62,9 +62,24 @@ std::string otherSeparator(const std::string& line, char said) {
   return "";
 }
 
+/// True if every cell is a number or a date: a row of values, not of names. Whole numbers 1, 2, ..
+/// are names.
+bool isRowOfValues(const std::vector<std::string>& cells, const CsvFormat& format) {
+  bool counts = true;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!cellNumber(cells[i], format) && !cellTime(cells[i])) return false;
+    counts = counts && cells[i] == std::to_string(i + 1);
+  }
+  return !counts;
+}
+
 void readHeader(const std::string& line, const CsvFormat& format, CsvTable& table) {
+  const auto cells = cellsOf(line, format.separator);
+  require(!isRowOfValues(cells, format), table.file + ":1",
+          "a header line with a name for every column, got values (--no-header calls the "
+          "columns 1, 2, ..)");
   std::set<std::string> seen;
-  for (const auto& cell : cellsOf(line, format.separator)) {
+  for (const auto& cell : cells) {
     const auto open = cell.find('[');
     const bool has_unit = open != std::string::npos && cell.back() == ']';
     std::string name = has_unit ? cell.substr(0, open) : cell;
@@ -77,8 +92,10 @@ void readHeader(const std::string& line, const CsvFormat& format, CsvTable& tabl
   }
 }
 
-/// The table without rows; the stream stands behind the header then.
-CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat& format) {
+/// The table without rows; the stream stands behind the header then, or at the begin of a file
+/// without one.
+CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat& format,
+                  bool header = true) {
   format.validate();
   require(stream.good(), file, "a readable file");
   CsvTable table;
@@ -87,8 +104,15 @@ CsvTable headerOf(std::istream& stream, const std::string& file, const CsvFormat
   std::getline(stream, line);
   if (line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
   requireText(line, file, 1);
-  require(!isBlank(line), file + ":1", "a header line");
-  readHeader(line, format, table);
+  require(!isBlank(line), file + ":1", header ? "a header line" : "a row of values");
+  if (header) {
+    readHeader(line, format, table);
+    return table;
+  }
+  table.units.resize(cellsOf(line, format.separator).size());
+  for (std::size_t i = 1; i <= table.units.size(); ++i) table.names.push_back(std::to_string(i));
+  stream.clear();
+  stream.seekg(0);
   return table;
 }
 
@@ -120,10 +144,12 @@ double readCell(const std::string& cell, std::size_t line, const CsvFormat& form
 }
 
 std::vector<std::vector<double>> readRows(std::istream& stream, const CsvFormat& format,
-                                          CsvTable& table, std::vector<ColumnKind>& kinds) {
+                                          CsvTable& table, std::vector<ColumnKind>& kinds,
+                                          std::size_t first_line) {
   std::vector<std::vector<double>> rows;
   std::string line;
-  for (std::size_t number = 2; std::getline(stream, line); ++number) {
+  for (std::size_t number = first_line; std::getline(stream, line); ++number) {
+    if (number == 1 && line.rfind(kByteOrderMark, 0) == 0) line.erase(0, kByteOrderMark.size());
     requireText(line, table.file, number);
     if (isBlank(line)) continue;
     const auto cells = cellsOf(line, format.separator);
@@ -152,7 +178,7 @@ void checkColumn(const CsvTable& table, const CsvFormat& format, const std::stri
           (kind.number != 0
                ? "a finite number, or a text that is said to mean missing (missing_values, "
                  "--missing), got '"
-               : "a date or time of ISO 8601, got '") +
+               : "a date or time of ISO 8601, or DD.MM.YYYY, got '") +
               kind.text + "'" + decimalHint(kind.text, format.decimal));
   require(kind.number == 0 || kind.date == 0, at(std::max(kind.number, kind.date)),
           "either dates or numbers in one column");
@@ -203,11 +229,13 @@ CsvTable readCsvHeader(const std::string& file, const CsvFormat& format) {
   return headerOf(stream, file, format);
 }
 
-CsvTable readCsv(const std::string& file, const CsvFormat& format) {
+namespace {
+
+CsvTable readTable(const std::string& file, const CsvFormat& format, bool header) {
   std::ifstream stream(file);
-  CsvTable table = headerOf(stream, file, format);
+  CsvTable table = headerOf(stream, file, format, header);
   std::vector<ColumnKind> kinds(table.names.size());
-  const auto rows = readRows(stream, format, table, kinds);
+  const auto rows = readRows(stream, format, table, kinds, header ? 2 : 1);
   require(!rows.empty(), file, "at least one row below the header");
   table.values.resize(static_cast<Eigen::Index>(rows.size()),
                       static_cast<Eigen::Index>(table.names.size()));
@@ -220,6 +248,16 @@ CsvTable readCsv(const std::string& file, const CsvFormat& format) {
     table.texts.push_back(kinds[c].text);
   }
   return table;
+}
+
+}  // namespace
+
+CsvTable readCsv(const std::string& file, const CsvFormat& format) {
+  return readTable(file, format, true);
+}
+
+CsvTable readCsvWithoutHeader(const std::string& file, const CsvFormat& format) {
+  return readTable(file, format, false);
 }
 
 void writeCsv(const CsvTable& table, const std::string& file) {

@@ -144,15 +144,41 @@ std::string decimalHint(const std::string& text, char decimal) {
   return point ? " (decimal: point; is it comma?)" : " (decimal: comma; is it point?)";
 }
 
+namespace {
+
+/// Days of a date YYYY-MM-DD, or DD.MM.YYYY with one or two digits of day and month.
+double dateOf(Scanner& scan, const std::string& cell) {
+  int year = 0, month = 0, day = 0;
+  const auto shortNumber = [&](int upper) {
+    const int first = scan.number(1, 0, 9);
+    const int value = scan.ok && scan.isDigit() ? 10 * first + scan.number(1, 0, 9) : first;
+    scan.ok = scan.ok && value >= 1 && value <= upper;
+    return value;
+  };
+  const auto point = cell.find('.');
+  if (point == 1 || point == 2) {
+    day = shortNumber(31);
+    scan.expect('.');
+    month = shortNumber(12);
+    scan.expect('.');
+    year = scan.number(4, 0, 9999);
+  } else {
+    year = scan.number(4, 0, 9999);
+    scan.expect('-');
+    month = scan.number(2, 1, 12);
+    scan.expect('-');
+    day = scan.number(2, 1, 31);
+  }
+  scan.ok = scan.ok && day <= daysIn(month, year);
+  return scan.ok ? dayNumber(year, month, day) : 0.0;
+}
+
+}  // namespace
+
 std::optional<CellTime> cellTime(const std::string& cell) {
   Scanner scan(cell);
-  const int year = scan.number(4, 0, 9999);
-  scan.expect('-');
-  const int month = scan.number(2, 1, 12);
-  scan.expect('-');
-  const int day = scan.number(2, 1, 31);
-  if (!scan.ok || day > daysIn(month, year)) return std::nullopt;
-  CellTime time{dayNumber(year, month, day), false};
+  CellTime time{dateOf(scan, cell), false};
+  if (!scan.ok) return std::nullopt;
   if (scan.done()) return time;
   if (!scan.skip('T') && !scan.skip('t')) scan.expect(' ');
   double seconds = scan.ok ? secondsOfDay(scan) : 0.0;

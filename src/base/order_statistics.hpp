@@ -1,4 +1,5 @@
-// Values by their rank: medians and quantiles that are values of the sample, never between two.
+// Values by their rank: medians and quantiles that are values of the sample, never between two (as
+// base/statistics.hpp joins them), found without sorting the rest.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +24,7 @@ inline double orderStatistic(std::vector<double> values, std::size_t place) {
 
 /// The value at the place share (n - 1), rounded down; share: 0 (smallest) to 1 (largest). With
 /// share 0.5 and an even number of values the lower one in the middle.
-inline double quantile(std::vector<double> values, double share) {
+inline double sampleQuantile(std::vector<double> values, double share) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const auto place = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
   return orderStatistic(std::move(values), place);

@@ -1,5 +1,7 @@
 #include "config/identified_file.hpp"
 
+#include <algorithm>
+
 #include "base/list_of.hpp"
 #include "config/model_file.hpp"
 #include "config/model_file_parts.hpp"
@@ -59,6 +61,11 @@ void writeState(YAML::Emitter& out, const TsModel& names, const StateModel& stat
   out << YAML::EndMap;
 }
 
+const std::string& causeName(const TsModel& model, std::size_t j) {
+  return j < model.inputs.size() ? model.inputs[j].name
+                                 : model.disturbances[j - model.inputs.size()].name;
+}
+
 std::string writeSection(const IdentifiedModel& m) {
   YAML::Emitter out;
   out << YAML::BeginMap << YAML::Key << "identified" << YAML::Value << YAML::BeginMap;
@@ -74,6 +81,13 @@ std::string writeSection(const IdentifiedModel& m) {
     out << YAML::EndMap;
   }
   out << YAML::EndMap;
+  if (m.reach > 0) out << YAML::Key << "reach" << YAML::Value << m.reach;
+  if (std::find(m.same_row.begin(), m.same_row.end(), true) != m.same_row.end()) {
+    out << YAML::Key << "same_row" << YAML::Value << YAML::Flow << YAML::BeginSeq;
+    for (std::size_t j = 0; j < m.same_row.size(); ++j)
+      if (m.same_row[j]) out << causeName(m.model, j);
+    out << YAML::EndSeq;
+  }
   if (!m.linear.empty()) {
     out << YAML::Key << "linear" << YAML::Value;
     writeSubmodels(out, m.model, m.linear);
@@ -180,6 +194,17 @@ IdentifiedModel readSections(YamlSection& top) {
     if (has_linear) m.linear.push_back(readSubmodel(linear, m.model, y.name));
     if (has_state) m.state.outputs.push_back(readStateOutput(state.section(y.name), m.model));
   }
+  int reach = 0;
+  section.integer("reach", reach, 0, 100000);
+  m.reach = reach;
+  std::vector<std::string> same;
+  section.names("same_row", same);
+  const std::size_t causes = m.model.inputs.size() + m.model.disturbances.size();
+  for (std::size_t j = 0; !same.empty() && j < causes; ++j)
+    m.same_row.push_back(std::find(same.begin(), same.end(), causeName(m.model, j)) != same.end());
+  if (std::count(m.same_row.begin(), m.same_row.end(), true) !=
+      static_cast<std::ptrdiff_t>(same.size()))
+    section.fail("same_row", "inputs or disturbances of this model, each once");
   outputs.finish();
   linear.finish();
   state.finish();

@@ -128,9 +128,8 @@ void readLine(YamlSection& item, const YamlSection& tf, LoopFile& loop, const Lo
 
 /// Keys of summary.json; what is consumed stands beside them.
 const std::set<std::string> kSummaryKeys{
-    "loop",   "title",   "run_id",         "first_step", "complete",   "steps",
-    "wall_s", "outputs", "inputs",         "limits",     "violations", "actuator_clips",
-    "clp",    "sources", "repaired_cells", "remarks",    "locked"};
+    "loop",   "title",  "run_id",     "first_step",     "complete", "steps",   "wall_s", "outputs",
+    "inputs", "limits", "violations", "actuator_clips", "clp",      "sources", "events"};
 
 ReportWindow readWindow(YamlSection& item, const std::vector<std::string>& outputs) {
   ReportWindow window;

@@ -123,7 +123,8 @@ Proposal PredictiveLaw::propose(const LawSample& sample) {
 /// would have done otherwise. If the old one had nothing to propose, the new one goes on from the
 /// applied input.
 void PredictiveLaw::handOver(const LawSample& sample, bool& fired, Proposal& proposal) {
-  if (proposal.trouble || !proposal_.allFinite()) proposal_ = sample.now.input_applied;
+  if (proposal.trouble != EventCode::kNone || !proposal_.allFinite())
+    proposal_ = sample.now.input_applied;
   transfer_.begin(proposal_);
   const bool other_core = successor_ != nullptr;
   adopt();
@@ -135,13 +136,13 @@ void PredictiveLaw::handOver(const LawSample& sample, bool& fired, Proposal& pro
   transfer_.finish(proposal_);
 }
 
-void PredictiveLaw::hold(const Measurement& now, const char* reason, ControllerOutput& output) {
+void PredictiveLaw::hold(const Measurement& now, const Notice& why, ControllerOutput& output) {
   if (now.input_applied.allFinite()) last_input_ = now.input_applied;
   limits_.clip(last_input_, last_input_);
   output.input = last_input_;
   output.source = ActionSource::kHeld;
   output.ok = false;
-  output.remark = reason;
+  output.events.add(why);
   transfer_.reset(true);
 }
 
@@ -170,7 +171,8 @@ void PredictiveLaw::act(const LawSample& sample, ControllerOutput& output) {
   const Measurement& now = sample.now;
   if (!core_ || !allFinite(now)) {
     start_pending_ = true;
-    return hold(now, core_ ? "the measurement is not finite" : "no model", output);
+    return hold(now, {EventCode::kLawFailed, core_ ? "the measurement is not finite" : "no model"},
+                output);
   }
   estimate(sample);
   bool fired = core_->look(sample);
@@ -178,12 +180,13 @@ void PredictiveLaw::act(const LawSample& sample, ControllerOutput& output) {
   if (successor_ || tuning_waits_) handOver(sample, fired, proposal);
   refreshSignals();
   if (!core_->finite()) start_pending_ = true;
-  if (proposal.trouble) return hold(now, proposal.trouble, output);
-  if (!proposal_.allFinite()) return hold(now, "the law gave no finite input", output);
+  if (proposal.trouble != EventCode::kNone) return hold(now, {proposal.trouble}, output);
+  if (!proposal_.allFinite()) return hold(now, {EventCode::kLawFailed}, output);
   limits_.clip(output.input = proposal_, now.input_applied);
   last_input_ = output.input;
   output.source = output.input == proposal_ ? ActionSource::kBase : ActionSource::kClipped;
-  output.remark = fired ? proposal.remark : "no rule fired: the nearest one was used";
+  if (!fired) output.events.add({EventCode::kNoRuleFired});
+  if (proposal.notice.code != EventCode::kNone) output.events.add(proposal.notice);
   predict(sample, output.prediction);
   output.predictive = true;
   transfer_.fade();
@@ -196,14 +199,11 @@ bool PredictiveLaw::holdBack(const Measurement& now) {
 void PredictiveLaw::step(const Measurement& now, const SetpointSource& setpoint,
                          ControllerOutput& output) {
   const bool held_back = holdBack(now);
+  output.begin();
   output.reference = reference_.asked();
-  output.predictive = false;
-  output.ok = true;
-  output.remark = "";
   running_ = true;
   act({now, setpoint, reference_, disturbances_, past_disturbances_}, output);
-  if (held_back && *output.remark == '\0')
-    output.remark = "reference held back: an output is farther from it than reference_holdback";
+  if (held_back) output.events.add({EventCode::kReferenceHeldBack});
   reference_.advance(setpoint, now.header.step);
 }
 

@@ -79,7 +79,7 @@ SetpointSource::SetpointSource(SetpointParams params, CommandTable commands,
   for (const SetpointStep& entry : params_.schedule)
     schedule_steps_.push_back(clock_.firstStepAtHours(entry.time_h));
   asked_ = params_.initial.cwiseMax(params_.lower).cwiseMin(params_.upper);
-  present_ = asked_;
+  present_ = unclamped_ = asked_;
   playParams();
 }
 
@@ -158,7 +158,9 @@ const Vector& SetpointSource::advance(std::uint32_t step) {
   effects_.clear();
   for (const Command& command : commands_.advance(step))
     effects_.push_back({{clock_.timeAt(step) + clock_shift_ns_, 0, step}, command});
-  scheduled(step, asked_);
+  scheduleAt(step, unclamped_);
+  commands_.apply(unclamped_);
+  asked_ = unclamped_.cwiseMax(params_.lower).cwiseMin(params_.upper);
   const std::uint32_t passed = step >= next_step_ ? step - next_step_ + 1 : 0;
   const double hours = clock_.hoursAt(passed);
   for (Eigen::Index i = 0; i < asked_.size(); ++i) {

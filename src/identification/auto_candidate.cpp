@@ -21,22 +21,28 @@ constexpr int kProbe = 8;        // iterations that tell a good start from a bad
 constexpr double kBeyond = 0.5;  // of the states' span: how far a run may leave them
 
 /// Inputs, disturbances, each from its delay on, none that tell nothing; then other outputs.
-std::vector<Regressor> exogenousOf(const DataSet& data, const Candidate& c) {
+std::vector<Regressor> exogenousOf(const AutoData& p, const Candidate& c) {
+  const DataSet& data = *p.data;
   std::vector<Regressor> v;
   const int n_u = static_cast<int>(data.inputs.size());
   for (int j = 0; j < n_u + static_cast<int>(data.disturbances.size()); ++j) {
-    if (data.constant.at(data.outputs.size() + static_cast<std::size_t>(j))) continue;
-    for (int lag = 0; lag < (c.hidden ? 1 : c.input_terms); ++lag)
-      v.push_back({j < n_u ? SignalKind::kInput : SignalKind::kDisturbance, j < n_u ? j : j - n_u,
-                   std::max(c.delay[static_cast<std::size_t>(j)] + c.later, 0) + lag});
+    const auto cause = static_cast<std::size_t>(j);
+    if (p.isLeftOut(cause)) continue;
+    const auto kind = j < n_u ? SignalKind::kInput : SignalKind::kDisturbance;
+    const int terms = c.hidden ? 1 : c.input_terms, first = std::max(c.delay[cause] + c.later, 0);
+    for (int lag = 0; lag < terms; ++lag) v.push_back({kind, j < n_u ? j : j - n_u, first + lag});
+    if (c.second.empty() || c.hidden) continue;
+    for (int lag = std::max(c.second[cause], first + terms); lag < c.second[cause] + terms; ++lag)
+      v.push_back({kind, j < n_u ? j : j - n_u, lag});
   }
   for (const int other : c.partners)
     for (int lag = 0; lag < c.input_terms; ++lag) v.push_back({SignalKind::kOutput, other, lag});
   return v;
 }
 
-std::vector<Index> antecedentsOf(const Candidate& c, Index exogenous) {
+std::vector<Index> antecedentsOf(const Candidate& c, const std::vector<Regressor>& v) {
   std::vector<Index> z;
+  const auto exogenous = static_cast<Index>(v.size());
   const Index n = c.order, step = c.hidden ? 1 : c.input_terms;
   const auto a = c.antecedents;
   if (a == AntecedentChoice::kOutput || a == AntecedentChoice::kOutputAndInputs) z.push_back(0);
@@ -45,14 +51,18 @@ std::vector<Index> antecedentsOf(const Candidate& c, Index exogenous) {
     for (Index i = 0; i < n; ++i) z.push_back(i);
   if (a == AntecedentChoice::kInputs || a == AntecedentChoice::kOutputAndInputs ||
       a == AntecedentChoice::kStateAndInputs)
-    for (Index j = 0; j < exogenous; j += step) z.push_back(n + j);
+    for (Index j = 0; j < exogenous; ++j) {
+      const auto i = static_cast<std::size_t>(j);  // the newest value of each signal
+      if (i == 0 || v[i].kind != v[i - 1].kind || v[i].index != v[i - 1].index) z.push_back(n + j);
+    }
   if (a == AntecedentChoice::kPartners)
     for (auto p = static_cast<Index>(c.partners.size()); p > 0; --p)
       z.push_back(n + exogenous - p * step);
   return z;
 }
 
-RecurrentShape shapeOf(const AutoData& data, const Candidate& c, Index exogenous) {
+RecurrentShape shapeOf(const AutoData& data, const Candidate& c, const std::vector<Regressor>& v) {
+  const auto exogenous = static_cast<Index>(v.size());
   RecurrentShape s;
   s.states = c.order;
   s.exogenous = exogenous;
@@ -65,7 +75,7 @@ RecurrentShape shapeOf(const AutoData& data, const Candidate& c, Index exogenous
     s.lower = data.lower + zero;
     s.upper = data.upper + zero;
   }
-  if (c.rules > 1) s.antecedents = antecedentsOf(c, exogenous);
+  if (c.rules > 1) s.antecedents = antecedentsOf(c, v);
   return s;
 }
 
@@ -74,9 +84,9 @@ class CandidateFit {
   CandidateFit(const AutoData& data, const Candidate& c, const std::vector<Stretch>& stretches,
                const std::function<bool()>& proceed)
       : data_(data), c_(c), stretches_(stretches) {
-    fitted_.exogenous = exogenousOf(*data.data, c);
+    fitted_.exogenous = exogenousOf(data, c);
     record_ = recurrentData(data, fitted_.exogenous, c.absolute);
-    fitted_.shape = shapeOf(data, c, record_.v.rows());
+    fitted_.shape = shapeOf(data, c, fitted_.exogenous);
     linear_ = fitted_.shape;
     linear_.rules = 1;
     linear_.antecedents.clear();
@@ -91,9 +101,10 @@ class CandidateFit {
     const RecurrentFitResult line = fitLinear();
     RecurrentFitResult best = line;
     if (c_.rules > 1 && line.finite) best = fitRules(line);
+    fitted_.work = work_;
     fitted_.parameters = best.parameters;
     fitted_.finite = best.finite;
-    if (c_.rules > 1 && best.finite) {
+    if (c_.rules > 1 && best.finite && data_.reach == 0) {  // else all runs leave the data
       Fitted straight = fitted_;
       straight.shape = linear_;
       straight.parameters = line.parameters;
@@ -116,7 +127,10 @@ class CandidateFit {
     Fitted form = fitted_;
     form.shape = shape;
     params.admit = admission(data_, form);
-    return fitRecurrent(shape, record_, stretches_, anchor, start, params, proceed_);
+    RecurrentFitResult result =
+        fitRecurrent(shape, record_, stretches_, anchor, start, params, proceed_);
+    work_ += result.work;
+    return result;
   }
 
   /// A start that runs away is damped until it does not.
@@ -187,10 +201,14 @@ class CandidateFit {
     return values;
   }
 
-  RecurrentFitResult fitRules(const RecurrentFitResult& line) const {
+  RecurrentFitResult fitRules(const RecurrentFitResult& line) {
     const RecurrentShape& shape = fitted_.shape;
     const Matrix z = antecedentValues(line);
     if (z.cols() < 5 * shape.rules) return {};
+    if (!c_.hidden) {  // the states of a hidden model move with its rules
+      params_.centre_lower = z.rowwise().minCoeff().replicate(shape.rules, 1);
+      params_.centre_upper = z.rowwise().maxCoeff().replicate(shape.rules, 1);
+    }
     Vector start = ruleStart(shape, z, line.parameters, 0.1 * data_.rate, c_.seed);
     Vector anchor = Vector::Zero(shape.parameterCount());
     for (Index r = 0; r < shape.rules; ++r)
@@ -235,6 +253,7 @@ class CandidateFit {
   RecurrentData record_;
   RecurrentShape linear_;
   RecurrentFitParams params_;
+  mutable double work_{};
   Fitted fitted_;
 };
 
@@ -253,6 +272,7 @@ std::string Candidate::text() const {
   if (absolute) words += ", size of";
   if (hidden && chain) words += ", chain";
   if (!partners.empty()) words += ", with other outputs";
+  if (!second.empty()) words += " and later";
   if (later != 0) words += ", delays " + std::string(later > 0 ? "+" : "") + std::to_string(later);
   if (rules == 1) {
     if (!free_run) words += ", one-step fit";
@@ -277,9 +297,18 @@ Fitted fitCandidate(const AutoData& data, const Candidate& candidate,
 
 Vector freeRunOf(const AutoData& data, const Fitted& fitted, Stretch stretch, int window) {
   const RecurrentData record = recurrentData(data, fitted.exogenous, fitted.shape.absolute);
-  return inOwnUnit(
-      data, fitted,
-      runRecurrent(fitted.shape, record, stretch, fitted.parameters, fitted.prior, window));
+  const auto run = [&](Stretch s) {
+    return runRecurrent(fitted.shape, record, s, fitted.parameters, fitted.prior, window);
+  };
+  if (data.reach == 0) return inOwnUnit(data, fitted, run(stretch));
+  Vector all = Vector::Constant(record.y.size(), kNaN);
+  for (const Stretch& piece : runsOf(data, {stretch})) {
+    // the last measured rows of the start are all that it is to see
+    const Index first = std::min(piece.first + kRunStart, piece.last);
+    const Vector own = run({std::max(piece.first, first - fitted.shape.states), piece.last});
+    all.segment(first, piece.last - first) = own.segment(first, piece.last - first);
+  }
+  return inOwnUnit(data, fitted, all);
 }
 
 Vector oneStepOf(const AutoData& data, const Fitted& fitted, Stretch stretch) {

@@ -26,6 +26,7 @@ struct Candidate {
   int input_terms{2};                         ///< past values of each input, not hidden
   std::vector<int> delay;                     ///< of each input and disturbance
   std::vector<std::vector<int>> block_delay;  ///< the same for each held-out block; none: `delay`
+  std::vector<int> second;  ///< lags of as many terms more of each, for what comes later; or empty
   std::vector<int> partners;  ///< other outputs, from their present value on; not hidden
   int later{};                ///< added to every delay, but none becomes negative
   int rules{1};
@@ -47,6 +48,7 @@ struct Fitted {
   std::vector<Regressor> exogenous;
   Vector parameters;
   StartPrior prior;  ///< hidden only
+  double work{};     ///< of the fit, see WorkMeter
   bool finite{false};
   bool wild{false};     ///< not finite since it runs away under larger inputs, see endures()
   Eigen::Index rows{};  ///< that it was fitted to; fitWhole()
@@ -58,8 +60,11 @@ Fitted fitCandidate(const AutoData& data, const Candidate& candidate,
                     const std::vector<Stretch>& stretches,
                     const std::function<bool()>& proceed = {});
 
-/// A model of the output's past as a submodel with Gaussian sets, in the signals' own units.
+/// A model of the output's past as a submodel with Gaussian sets, in the signals' own units, its
+/// rows counted.
 OutputModel toSubmodel(const AutoData& data, const Fitted& fitted);
+/// Sets data_count of each rule to the number of complete rows of `data` in which it fires most.
+void countRows(const DataSet& data, int output, OutputModel& model);
 
 /// Free run over a stretch in the output's own unit (NaN before its start), from `window` samples.
 Vector freeRunOf(const AutoData& data, const Fitted& fitted, Stretch stretch, int window);

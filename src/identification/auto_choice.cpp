@@ -123,7 +123,7 @@ Fitted fitWhole(const AutoData& data, const Judgement& judged, int window, doubl
   Fitted best;
   best.error = kInfinity;
   const auto isGood = [&](const std::vector<Stretch>& stretches) {
-    Fitted fitted = fitCandidate(data, c, stretches);
+    Fitted fitted = fitCandidate(data, c, runsOf(data, stretches));
     fitted.rows = rowsOf(stretches);
     fitted.error = fitted.finite ? seenError(data, fitted, data.all, window) : kInfinity;
     if (fitted.error < best.error || !best.finite) best = std::move(fitted);

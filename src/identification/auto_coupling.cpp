@@ -37,8 +37,7 @@ class Coupling {
     }
     if (lines_.isOver())
       result_.remarks.push_back(
-          "the time budget left out models in which outputs depend on each other; a longer "
-          "--budget may find better ones");
+          leftOutWords(limits_, "models in which outputs depend on each other"));
   }
 
  private:
@@ -113,8 +112,6 @@ class Coupling {
     const Fitted whole = fitWhole(from.data(i), judged, limits_.window);
     if (!whole.finite) return false;
     model = toSubmodel(from.data(i), whole);
-    for (auto& rule : model.rules)
-      rule.data_count = static_cast<std::uint64_t>(from.data(i).data->rows()) / model.rules.size();
     return true;
   }
 

@@ -145,7 +145,16 @@ std::vector<Stretch> trainingStretches(const AutoData& p, int left_out) {
     else
       kept.push_back(w);
   }
-  return kept;
+  return runsOf(p, kept);
+}
+
+std::vector<Stretch> runsOf(const AutoData& p, const std::vector<Stretch>& stretches) {
+  if (p.reach == 0) return stretches;
+  std::vector<Stretch> runs;
+  for (const Stretch& s : stretches)
+    for (Index first = s.first + kRunStart; first < s.last; first += p.reach)
+      runs.push_back({first - kRunStart, std::min(first + p.reach, s.last)});
+  return runs;
 }
 
 }  // namespace fpc

@@ -43,17 +43,12 @@ double oneStepError(const AutoData& p, const std::vector<int>& delay, Index long
   return std::max(yy - g.dot(theta), 0.0) / n;
 }
 
-bool isStill(const AutoData& p, std::size_t cause) {
-  const std::size_t column = p.data->outputs.size() + cause;
-  return column < p.data->constant.size() && p.data->constant[column];
-}
-
 void guessNear(const AutoData& p, int longest, double worth, DelayGuess& guess) {
   const std::size_t m = guess.delay.size();
   double best = oneStepError(p, guess.delay, longest);
   for (int pass = 0; pass < 2; ++pass)
     for (std::size_t j = 0; j < m; ++j) {
-      if (isStill(p, j)) continue;
+      if (p.isLeftOut(j)) continue;
       std::vector<double> errors;
       auto trial = guess.delay;
       for (trial[j] = 0; trial[j] <= longest; ++trial[j])
@@ -77,7 +72,7 @@ std::vector<int> guessFar(const AutoData& p, std::vector<int> delay, int near, i
                           double worth) {
   double best = oneStepError(p, delay, longest);
   for (std::size_t j = 0; j < delay.size(); ++j) {
-    if (isStill(p, j)) continue;
+    if (p.isLeftOut(j)) continue;
     auto trial = delay;
     for (trial[j] = near + 1; trial[j] <= longest; ++trial[j]) {
       const double error = oneStepError(p, trial, longest);
@@ -140,7 +135,7 @@ std::vector<int> freeRunDelays(const AutoData& p, int near, int longest) {
   std::vector<Vector> parts(delay.size(), Vector::Zero(rows));
   for (int pass = 0; pass < 2; ++pass)
     for (std::size_t j = 0; j < delay.size(); ++j) {
-      if (isStill(p, j)) continue;
+      if (p.isLeftOut(j)) continue;
       Vector rest = y;
       for (std::size_t i = 0; i < parts.size(); ++i)
         if (i != j) rest -= parts[i];
@@ -187,6 +182,50 @@ std::vector<DelayGuess> guessDelaysByBlock(const AutoData& p, int longest, int t
     guesses[b] = guessDelays(seen, longest);
   });
   return guesses;
+}
+
+std::vector<int> earliestDelays(const AutoData& p, const std::vector<int>& delay) {
+  constexpr Index kOwn = 4, kBehind = 6;
+  constexpr double kSurely = 5.0;  // standard errors
+  std::vector<int> earliest = delay;
+  const auto n_y = static_cast<Index>(p.data->outputs.size());
+  std::vector<Index> causes, lags;
+  Index q = kOwn + 1, longest = kOwn;
+  for (std::size_t j = 0; j < delay.size(); ++j) {
+    if (p.isLeftOut(j)) continue;
+    causes.push_back(static_cast<Index>(j));
+    lags.push_back(delay[j] + kBehind);
+    q += lags.back();
+    longest = std::max(longest, lags.back());
+  }
+  Matrix H = 1e-6 * Matrix::Identity(q, q);
+  Vector g = Vector::Zero(q), x(q);
+  double squares = 0.0, n = 0.0;
+  for (const auto& w : p.windows)
+    for (Index k = w.first + longest; k + 1 < w.last; ++k) {
+      Index at = 0;
+      x[at++] = 1.0;
+      for (Index lag = 0; lag < kOwn; ++lag) x[at++] = p.y(k - lag);
+      for (std::size_t c = 0; c < causes.size(); ++c)
+        for (Index lag = 0; lag < lags[c]; ++lag) x[at++] = p.scaled(k - lag, n_y + causes[c]);
+      if (!x.allFinite() || !std::isfinite(p.y(k + 1))) continue;
+      H.selfadjointView<Eigen::Lower>().rankUpdate(x);
+      g += x * p.y(k + 1);
+      squares += p.y(k + 1) * p.y(k + 1);
+      n += 1.0;
+    }
+  if (n < 3.0 * static_cast<double>(q)) return earliest;
+  const Matrix inverse = H.selfadjointView<Eigen::Lower>().ldlt().solve(Matrix::Identity(q, q));
+  const Vector theta = inverse * g;
+  const double variance = std::max(squares - g.dot(theta), 0.0) / (n - static_cast<double>(q));
+  Index at = 1 + kOwn;
+  for (std::size_t c = 0; c < causes.size(); at += lags[c], ++c) {
+    int& own = earliest[static_cast<std::size_t>(causes[c])];
+    for (int d = own - 1; d >= 0; --d)
+      if (std::abs(theta[at + d]) > kSurely * std::sqrt(variance * inverse(at + d, at + d)))
+        own = d;
+  }
+  return earliest;
 }
 
 bool DelayGuess::isOpen() const {

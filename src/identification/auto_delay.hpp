@@ -22,4 +22,9 @@ DelayGuess guessDelays(const AutoData& prepared, int longest);
 /// The same from what the fit for each block may see: of outputs in the block nothing is known.
 std::vector<DelayGuess> guessDelaysByBlock(const AutoData& prepared, int longest, int threads);
 
+/// For each cause the least lag up to `delay` whose coefficient is certain (5 standard errors) in a
+/// one-step model of four past outputs and all lags: an inverse response acts before most of its
+/// effect comes. `delay` where none is.
+std::vector<int> earliestDelays(const AutoData& prepared, const std::vector<int>& delay);
+
 }  // namespace fpc

@@ -66,7 +66,7 @@ double seenError(const AutoData& data, const Fitted& fitted, const std::vector<S
 }
 
 std::vector<bool> stuckStarts(const std::vector<double>& seen) {
-  const double quartile = quantile(seen, 0.25);
+  const double quartile = sampleQuantile(seen, 0.25);
   std::vector<bool> stuck;
   for (const double e : seen) stuck.push_back(!(e <= kStuck * quartile));
   return stuck;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <mutex>
+#include <utility>
 
 #include "fmbpc/base/input_error.hpp"
 #include "identification/auto_coupling.hpp"
@@ -16,10 +17,11 @@ namespace {
 using Eigen::Index;
 
 constexpr Index kFewestRows = 60;
-constexpr double kTogether = 0.15;  // of the budget, for outputs that depend on each other
+constexpr double kTogether = 0.15;  // of the work, for outputs that depend on each other
 
 void checkParams(const DataSet& data, const AutoParams& p) {
-  require(p.budget_s > 0.0, "budget_s", "a number > 0");
+  require(p.work > 0.0, "work", "a number > 0");
+  require(p.budget_s >= 0.0, "budget_s", "a number > 0, or 0 for none");
   require(p.blocks >= 2, "blocks", "at least 2");
   require(p.window >= 1, "window", "at least 1");
   require(p.longest_delay >= 0, "longest_delay", "0 (by the record) or more samples");
@@ -90,17 +92,28 @@ DataSet prepared(const DataSet& given, const AutoParams& params,
   return data;
 }
 
+/// The shortest reach that an output asks for; 0: none does.
+Index commonReach(const DataSet& data, const AutoParams& params) {
+  Index reach = 0;
+  for (std::size_t i = 0; i < data.outputs.size(); ++i) {
+    const Index own = reachOf(
+        prepareAuto(data, static_cast<int>(i), params.blocks, params.most_rows, params.most_last));
+    if (own > 0 && (reach == 0 || own < reach)) reach = own;
+  }
+  return reach;
+}
+
 /// The search over outputs on a record that is prepared.
-AutoIdentification search(const DataSet& full, const AutoParams& params,
+AutoIdentification search(const DataSet& full, const AutoParams& given,
                           const AutoCallback& callback, AutoIdentification result) {
-  const int windows = 2 * params.blocks;
-  const bool thinned = full.rows() > params.most_last;
-  const DataSet data = thinned ? subsample(full, params.most_last, windows) : full;
-  if (thinned || full.rows() > params.most_rows)
+  const int windows = 2 * given.blocks;
+  const bool thinned = full.rows() > given.most_last;
+  const DataSet data = thinned ? subsample(full, given.most_last, windows) : full;
+  if (thinned || full.rows() > given.most_rows)
     result.remarks.push_back("long record: the search uses " +
-                             std::to_string(std::min(full.rows(), params.most_rows)) + " rows in " +
-                             std::to_string(params.blocks) + " windows, the last fit " +
-                             std::to_string(std::min(full.rows(), params.most_last)) + " of " +
+                             std::to_string(std::min(full.rows(), given.most_rows)) + " rows in " +
+                             std::to_string(given.blocks) + " windows, the last fit " +
+                             std::to_string(std::min(full.rows(), given.most_last)) + " of " +
                              std::to_string(full.rows()) + " rows");
   result.model = emptyModel(data);
   result.model.outputs = full.outputs;
@@ -108,18 +121,36 @@ AutoIdentification search(const DataSet& full, const AutoParams& params,
   result.linear.name += "_linear";
   const auto begin = Clock::now();
   const std::size_t n_y = data.outputs.size();
+  AutoParams params = given;
+  if (params.reach < 0) params.reach = commonReach(data, params);
+  result.reach = params.reach;
+  if (params.reach > 0) {
+    params.states = false;  // their starts are estimated from rows that runs of this length lack
+    result.remarks.insert(
+        result.remarks.begin(),
+        "a free run says nothing of this process (a pole at or beyond 1: it integrates or is "
+        "unstable by itself): models are fitted and judged by runs of " +
+            std::to_string(params.reach) + " samples, each from measured ones");
+  }
   std::atomic<bool> stopped{false};
   std::mutex guard;
+  WorkMeter meter;
+  SearchLimits limits;
+  limits.meter = &meter;
+  limits.threads = params.threads;
+  limits.window = params.window;
+  limits.proceed = [&stopped] { return !stopped.load(); };
+  const auto allow = [&](double share) {
+    meter.limit = std::max(params.work * share * WorkMeter::kPerUnit,
+                           meter.spent + 1.0);  // each output has its first linear models
+    if (params.budget_s > 0.0)
+      limits.deadline = begin + std::chrono::duration_cast<Clock::duration>(
+                                    std::chrono::duration<double>(params.budget_s * share));
+  };
   std::vector<SearchedOutput> alone;
   for (std::size_t i = 0; i < n_y; ++i) {
-    SearchLimits limits;
-    limits.threads = params.threads;
-    limits.window = params.window;
-    const double share =
-        static_cast<double>(i + 1) / static_cast<double>(n_y) * (n_y > 1 ? 1.0 - kTogether : 1.0);
-    limits.deadline = begin + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(params.budget_s * share));
-    limits.proceed = [&stopped] { return !stopped.load(); };
+    allow(static_cast<double>(i + 1) / static_cast<double>(n_y) *
+          (n_y > 1 ? 1.0 - kTogether : 1.0));
     limits.progress = [&](double part) {
       const std::lock_guard<std::mutex> lock(guard);
       const double done = (static_cast<double>(i) + part) / static_cast<double>(n_y);
@@ -127,18 +158,18 @@ AutoIdentification search(const DataSet& full, const AutoParams& params,
     };
     alone.push_back(searchOutput(data, static_cast<int>(i), params, limits, result));
   }
-  SearchLimits together;
-  together.threads = params.threads;
-  together.window = params.window;
-  together.deadline = begin + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(params.budget_s));
-  together.proceed = [&stopped] { return !stopped.load(); };
-  coupleOutputs(alone, together, result);
+  allow(1.0);
+  limits.progress = {};
+  coupleOutputs(alone, limits, result);
+  result.work = meter.spent / WorkMeter::kPerUnit;
   if (result.state.outputs.size() != n_y) {  // a file holds states of all outputs or of none
     result.state.outputs.clear();
     for (auto& found : result.outputs) found.state = found.blend = {};
   }
-  for (auto& found : result.outputs) decide(found);
+  for (std::size_t i = 0; i < n_y; ++i) {
+    decide(result.outputs[i]);
+    if (!result.outputs[i].fuzzy_model) result.model.submodels[i] = result.linear.submodels[i];
+  }
   result.cancelled = stopped;
   result.model.validate();
   result.linear.validate();
@@ -157,8 +188,11 @@ AutoIdentification autoIdentify(const DataSet& data, const AutoParams& params,
                                 const AutoCallback& callback) {
   checkParams(data, params);
   AutoIdentification result;
-  result.remarks = data.repairs;
-  const DataSet clean = prepared(data, params, result.remarks);
+  ReadRows read = readRows(data, params.rows);
+  result.remarks = std::move(read.remarks);
+  result.same_row = std::move(read.same);
+  result.remarks.insert(result.remarks.end(), data.repairs.begin(), data.repairs.end());
+  const DataSet clean = prepared(asRead(data, result.same_row), params, result.remarks);
   return search(clean, params, callback, std::move(result));
 }
 

@@ -8,6 +8,7 @@
 
 #include "identification/data_set.hpp"
 #include "identification/prior_knowledge.hpp"
+#include "identification/row_reading.hpp"
 #include "identification/state_model.hpp"
 
 namespace fpc {
@@ -18,15 +19,18 @@ enum class ModelKind { kLinear, kRegressors, kState, kBlend };
 const std::string& name(ModelKind kind);
 
 struct AutoParams {
-  double budget_s{45.0};         ///< wall time after which no new fit begins
+  double work{45.0};             ///< after which no new fit begins, see WorkMeter
+  double budget_s{};             ///< wall time after which no new fit begins; 0: none
   int blocks{4};                 ///< of the cross-validation, >= 2
   Eigen::Index most_rows{2000};  ///< that the search uses
   Eigen::Index most_last{8000};  ///< that the last fit uses
   int window{5};                 ///< measured samples that start a free run
-  int longest_delay{0};          ///< [samples]; 0: a tenth of the rows, at most 100
-  bool keep_still{false};        ///< use inputs that hardly moved as well, see stillCauses()
-  bool states{true};             ///< search models with a state of their own as well
-  int threads{0};                ///< 0: all cores
+  Eigen::Index reach{-1};  ///< samples after which runs start anew; 0: never, -1: by reachOf()
+  int longest_delay{0};    ///< [samples]; 0: a tenth of the rows, at most 100
+  RowReading rows{RowReading::kFound};  ///< whether inputs act within their sample
+  bool keep_still{false};               ///< use inputs that hardly moved as well, see stillCauses()
+  bool states{true};                    ///< search models with a state of their own as well
+  int threads{0};                       ///< 0: all cores
   std::uint64_t seed{1};
   std::vector<PriorKnowledge> known;  ///< one per output, or none
 };
@@ -62,6 +66,8 @@ struct AutoOutput {
   bool beats_linear{false};  ///< the best fuzzy model is better than linear beyond the spread
   bool fuzzy_model{false};   ///< `model` is fuzzy here, else linear
   std::string verdict;       ///< the same in words
+  double hold{};             ///< rmse of the last measured value over runs of `reach`; 0: not asked
+  Eigen::Index reach{};      ///< its "free runs" start anew after so many samples; 0: never
   std::vector<int> delay;    ///< of inputs, then disturbances [samples]; 0: acts on the next output
   double sensor_lower{}, sensor_upper{};  ///< limits seen in the data; equal: none
 };
@@ -72,8 +78,11 @@ struct AutoIdentification {
   StateModel state;
   std::vector<AutoOutput> outputs;
   std::vector<AutoTrial> trials;
+  Eigen::Index reach{};                     ///< of all outputs, see AutoOutput
+  std::vector<bool> same_row;               ///< of inputs, then disturbances: read by asRead()
   std::vector<std::string> contradictions;  ///< where the record speaks against what is known
   std::vector<std::string> remarks;
+  double work{};  ///< that the search did, in the unit of AutoParams::work
   bool cancelled{false};
 };
 
@@ -83,8 +92,9 @@ struct AutoProgress {
 };
 using AutoCallback = std::function<bool(const AutoProgress&)>;  ///< false: keep the best so far
 
-/// Searches per output. Same data and parameters, same result, unless the budget ended the search
-/// (a remark says so). @throws InputError naming the data's column or the parameter.
+/// Searches per output. Same data and parameters, same result, on any machine and number of
+/// threads; only a budget of seconds makes it another (a remark says so). @throws InputError naming
+/// the data's column or the parameter.
 AutoIdentification autoIdentify(const DataSet& data, const AutoParams& params,
                                 const AutoCallback& callback = {});
 

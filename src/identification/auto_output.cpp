@@ -6,9 +6,11 @@
 
 #include "base/parallel.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "identification/auto_choice.hpp"
 #include "identification/auto_confirm.hpp"
 #include "identification/auto_delay.hpp"
+#include "identification/auto_structures.hpp"
 #include "identification/contradiction.hpp"
 
 namespace fpc {
@@ -17,6 +19,7 @@ namespace {
 using Eigen::Index;
 
 constexpr std::size_t kShown = 5;  // trials of each kind in the report
+constexpr double kUseless = 0.98;  // of the score with an input: what models without it must reach
 constexpr int kLongestDelay = 100;
 constexpr Index kRowsPerDelay = 10;
 
@@ -29,16 +32,19 @@ class OutputSearch {
         params_(params),
         limits_(limits),
         result_(result) {
+    data_.reach = params.reach;
+    found_.reach = params.reach;
     if (!params.known.empty()) data_.known = params.known[static_cast<std::size_t>(output)];
   }
 
   SearchedOutput run() {
     found_.output = name();
     findDelays();
-    searched_ = searchStructures(data_, found_.delay, params_.states, params_.seed, limits_);
+    leaveOutCauses();
+    searched_ =
+        searchStructures(data_, found_.delay, params_.states, params_.seed, limits_, second_);
     if (searched_.skipped > 0)
-      remark("the time budget left out " + std::to_string(searched_.skipped) +
-             " of the structures; a longer --budget may find better ones");
+      remark(leftOutWords(limits_, std::to_string(searched_.skipped) + " of the fits"));
     require(!searched_.linear.empty(), data_.data->source + ": output '" + name() + "'",
             "a linear model that runs freely without leaving the data; none did in all of " +
                 std::to_string(data_.windows.size()) +
@@ -48,6 +54,7 @@ class OutputSearch {
     chooseModels();
     chooseState();
     chooseBlend();
+    found_.hold = holdError();
     keepTrials();
     for (const auto* model : {&result_.linear, &result_.model})
       for (const auto& key :
@@ -83,8 +90,104 @@ class OutputSearch {
     if (guess.isOpen())
       found_.delay = bestDelays(data_, guess, guessDelaysByBlock(data_, longest, limits_.threads),
                                 params_.seed, limits_);
+    takeEarlier();
     remarkDelays(guess, longest);
     if (!data_.known.empty()) contradict({guess.delay, found_.delay});
+  }
+
+  /// Lowest score of linear models, those with later values of the inputs among them.
+  double lowestScore(const AutoData& data, const std::vector<int>& delay,
+                     const std::vector<int>& second) const {
+    Candidate base;
+    base.delay = delay;
+    base.seed = params_.seed;
+    Candidates list = delayCandidates(base);
+    if (!second.empty())
+      for (const auto& c : laterLines(base, second)) list.push_back(c);
+    base.order = base.input_terms = 4;
+    for (const bool free : {false, true}) {
+      base.free_run = free;
+      list.push_back(base);
+    }
+    SearchLimits limits = limits_;
+    limits.progress = {};
+    double lowest = kInfinity;
+    for (const auto& j : judgeCandidates(data, list, limits)) lowest = std::min(lowest, j.score);
+    return lowest;
+  }
+
+  /// An inverse response acts before most of its effect comes.
+  void takeEarlier() {
+    const std::vector<int> earlier = earliestDelays(data_, found_.delay);
+    if (earlier == found_.delay ||
+        !(lowestScore(data_, earlier, found_.delay) < lowestScore(data_, found_.delay, {})))
+      return;
+    second_ = found_.delay;
+    found_.delay = earlier;
+  }
+
+  bool isKnown(std::size_t cause) const {
+    const auto says = [cause](const std::vector<int>& signs) {
+      return cause < signs.size() && signs[cause] != 0;
+    };
+    return says(data_.known.gain) || says(data_.known.monotone) || !data_.known.steady.empty();
+  }
+
+  /// Lowest score of two rules on the inputs: they see what bends.
+  double lowestOfRules(const AutoData& data) const {
+    Candidate c;
+    c.delay = found_.delay;
+    c.seed = params_.seed;
+    c.rules = 2;
+    c.iterations = 60;
+    c.antecedents = AntecedentChoice::kInputs;
+    Candidates list;
+    for (const int n : {1, 2}) {
+      c.order = c.input_terms = n;
+      list.push_back(c);
+    }
+    SearchLimits limits = limits_;
+    limits.progress = {};
+    double lowest = kInfinity;
+    for (const auto& j : judgeCandidates(data, list, limits)) lowest = std::min(lowest, j.score);
+    return lowest;
+  }
+
+  /// Inputs without which models run better over the held-out blocks, one after the other.
+  void leaveOutCauses() {
+    const std::size_t m = found_.delay.size();
+    std::vector<std::size_t> left;
+    for (std::size_t j = 0; j < m; ++j)
+      if (!data_.isLeftOut(j)) left.push_back(j);
+    if (left.size() < 2 || params_.keep_still) return;
+    data_.unused.assign(m, false);
+    double now = lowestScore(data_, found_.delay, second_), bent = -1.0;
+    while (left.size() > 1) {
+      std::size_t worst = m;
+      double lowest = kUseless * now;
+      for (const std::size_t j : left) {
+        if (isKnown(j)) continue;
+        AutoData without = data_;
+        without.unused[j] = true;
+        const double score = lowestScore(without, found_.delay, second_);
+        if (score < lowest) lowest = score, worst = j;
+      }
+      if (worst == m || limits_.isOver()) return;
+      if (bent < 0.0) bent = lowestOfRules(data_);
+      AutoData without = data_;
+      without.unused[worst] = true;
+      const double other = lowestOfRules(without);
+      if (!(other < bent)) return;  // what it does may bend
+      const std::size_t n_u = data_.data->inputs.size();
+      remark(
+          (worst < n_u ? data_.data->inputs[worst] : data_.data->disturbances[worst - n_u]).name +
+          " is left out: models without it run closer over held-out blocks (score " +
+          shortText(lowest) + " beside " + shortText(now) + "; --keep-inputs keeps it)");
+      data_.unused[worst] = true;
+      left.erase(std::find(left.begin(), left.end(), worst));
+      now = lowest;
+      bent = other;
+    }
   }
 
   void contradict(const std::vector<std::vector<int>>& delays) {
@@ -122,8 +225,6 @@ class OutputSearch {
         remark("'" + judged[i].candidate.text() + "' is fitted to " + std::to_string(whole.rows) +
                " rows only: fitted to all, it runs away under larger inputs");
       model = toSubmodel(data_, whole);
-      for (auto& rule : model.rules)
-        rule.data_count = static_cast<std::uint64_t>(data_.data->rows()) / model.rules.size();
       return static_cast<int>(i);
     }
     return -1;
@@ -194,6 +295,19 @@ class OutputSearch {
                              meanOf(confirmed_.regressors, confirmed_.state));
   }
 
+  /// rmse of the last measured value over runs of `reach` samples.
+  double holdError() const {
+    double sum = 0.0, n = 0.0;
+    if (data_.reach == 0) return 0.0;
+    const auto y = data_.data->values.col(data_.output);
+    for (const Stretch& run : runsOf(data_, data_.windows))
+      for (Index k = run.first + kRunStart; k < run.last; ++k) {
+        const double error = y[k] - y[run.first + kRunStart - 1];
+        if (std::isfinite(error)) sum += error * error, n += 1.0;
+      }
+    return n > 0.0 ? std::sqrt(sum / n) : 0.0;
+  }
+
   void keepTrials() {
     keepKind(searched_.linear, false, ModelKind::kLinear, {linear_text_});
     keepKind(searched_.regressors, false, ModelKind::kRegressors,
@@ -244,6 +358,7 @@ class OutputSearch {
   Committee committee_;
   const Judgement* fuzzy_{nullptr};  ///< of the fuzzy model, in searched_
   bool fuzzy_chosen_{false}, states_complete_{true};
+  std::vector<int> second_;  ///< where most of an inverse response comes; empty: none seen
   std::string linear_text_, fuzzy_text_, contradiction_;
   std::vector<std::string> members_;
 };

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "identification/auto_structures.hpp"
+#include "identification/validation.hpp"
 
 namespace fpc {
 namespace {
@@ -17,11 +19,27 @@ constexpr std::uint64_t kMoreSeeds = 6;
 /// The sign of a state that only its size tells of traps many starts.
 std::uint64_t firstSeeds(const Candidate& c) { return c.absolute ? 10 : 4; }
 
+/// One-step errors of the best linear model that are correlated in time where a longer past would
+/// take that out.
+bool asksForMore(const AutoData& data, const std::vector<Judgement>& linear) {
+  constexpr double kMuch = 0.3, kShare = 0.3;
+  const auto best = std::find_if(linear.begin(), linear.end(),
+                                 [](const Judgement& j) { return !j.candidate.hidden; });
+  if (best == linear.end()) return false;
+  const Vector error = data.data->values.col(data.output) - best->one_step;
+  const ValidationParams params;
+  const Vector r = autocorrelation(error, params);
+  const auto known = static_cast<double>(error.array().isFinite().count());
+  const auto outside = (r.array().abs() > 2.58 / std::sqrt(std::max(known, 1.0))).count();
+  return r.size() > 0 && r.cwiseAbs().maxCoeff() > kMuch &&
+         static_cast<double>(outside) > kShare * static_cast<double>(r.size());
+}
+
 class Search {
  public:
   Search(const AutoData& data, const std::vector<int>& delay, std::uint64_t seed,
-         const SearchLimits& limits)
-      : data_(data), delay_(delay), seed_(seed), limits_(limits) {}
+         const SearchLimits& limits, std::vector<int> second = {})
+      : data_(data), delay_(delay), second_(std::move(second)), seed_(seed), limits_(limits) {}
 
   /// The lowest score of a few linear models.
   double lowestOfLines(const std::vector<std::vector<int>>& block_delay) {
@@ -37,7 +55,10 @@ class Search {
   }
 
   StructureSearch run(bool states) {
-    judge(linearCandidates(base(), states), 0.0, 0.08);
+    judge(linearCandidates(base(), states), 0.0, 0.06);
+    sortAll();
+    if (!second_.empty()) judge(laterLines(base(), second_), 0.06, 0.07);
+    if (asksForMore(data_, result_.linear)) judge(longerLines(base()), 0.07, 0.08);
     sortAll();
     judge(shiftedLines(result_.linear), 0.08, 0.1);
     sortAll();
@@ -69,14 +90,12 @@ class Search {
   void judge(const Candidates& candidates, double from, double to);
   void judgeGroups(const Candidates& structures, double from, double to);
   void deepen(std::size_t groups, double from, double to);
-  void judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const;
+  double judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const;
   void sortAll();
-  bool over() const {
-    return Clock::now() > limits_.deadline || (limits_.proceed && !limits_.proceed());
-  }
 
   const AutoData& data_;
   const std::vector<int>& delay_;
+  std::vector<int> second_;
   std::uint64_t seed_;
   const SearchLimits& limits_;
   StructureSearch result_;
@@ -119,18 +138,20 @@ void Search::deepen(std::size_t groups, double from, double to) {
   }
 }
 
-void Search::judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const {
+/// @return the work that it took
+double Search::judgeBlock(Judgement& j, std::size_t block, Vector& free, Vector& one) const {
   const auto training = trainingStretches(data_, static_cast<int>(block));
   Candidate c = j.candidate;
   if (!c.block_delay.empty()) c.delay = c.block_delay[block];
   const Fitted fitted = fitCandidate(data_, c, training);
-  if (!fitted.finite) return;
+  if (!fitted.finite) return fitted.work;
   const Stretch w = data_.windows[block];
   free = freeRunOf(data_, fitted, w, limits_.window);
   free.head(std::min<Index>(w.first + limits_.window, free.size())).setConstant(kNaN);
   if (!j.candidate.hidden) one = oneStepOf(data_, fitted, w);
   j.parameters = fitted.shape.parameterCount();
   if (j.candidate.hidden) j.seen.assign(1, seenError(data_, fitted, training, limits_.window));
+  return fitted.work;
 }
 
 /// One judgement per candidate; its score is infinite where a block could not be judged.
@@ -138,15 +159,13 @@ std::vector<Judgement> Search::judgeAll(const Candidates& candidates, double fro
   const std::size_t blocks = data_.windows.size();
   std::vector<Vector> free(candidates.size() * blocks), one(free.size());
   std::vector<Judgement> parts(free.size());
-  std::vector<char> tried(free.size(), 0);
-  parallelFor(free.size(), limits_.threads, [&](std::size_t task) {
-    if (over()) return;
-    tried[task] = 1;
+  const auto tried = limitedFor(free.size(), limits_, [&](std::size_t task) {
     parts[task].candidate = candidates[task / blocks];
-    judgeBlock(parts[task], task % blocks, free[task], one[task]);
+    const double work = judgeBlock(parts[task], task % blocks, free[task], one[task]);
     if (task % (blocks * 2) == 0 && limits_.progress)
       limits_.progress(from +
                        (to - from) * static_cast<double>(task) / static_cast<double>(free.size()));
+    return work;
   });
   std::vector<Judgement> judged(candidates.size());
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -192,6 +211,32 @@ void Search::sortAll() {
 
 }  // namespace
 
+std::vector<char> limitedFor(std::size_t n, const SearchLimits& limits,
+                             const std::function<double(std::size_t)>& work) {
+  constexpr std::size_t kLot = 32;
+  std::vector<char> begun(n, 0);
+  std::vector<double> spent(kLot);
+  for (std::size_t first = 0; first < n && !limits.isSpent(); first += kLot) {
+    const std::size_t count = std::min(kLot, n - first);
+    std::fill(spent.begin(), spent.end(), 0.0);
+    parallelFor(count, limits.threads, [&](std::size_t i) {
+      if (limits.isLate()) return;
+      begun[first + i] = 1;
+      spent[i] = work(first + i);
+    });
+    for (std::size_t i = 0; i < count; ++i) limits.spend(spent[i]);
+  }
+  return begun;
+}
+
+std::string leftOutWords(const SearchLimits& limits, const std::string& what) {
+  if (limits.proceed && !limits.proceed()) return "the search was stopped before " + what;
+  return limits.isSpent()
+             ? "the limit of work left out " + what + "; more --work may find better ones"
+             : "the time that was asked for (--budget) left out " + what +
+                   ": on another machine the same command may find another model";
+}
+
 double scoreOf(const AutoData& data, const Judgement& judged) {
   const double one_step = rmseOf(data, judged.one_step);
   const double weight = std::isfinite(one_step) && one_step > 0.0 ? kOneStepShare : 0.0;
@@ -200,8 +245,9 @@ double scoreOf(const AutoData& data, const Judgement& judged) {
 }
 
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
-                                 std::uint64_t seed, const SearchLimits& limits) {
-  return Search(data, delay, seed, limits).run(states);
+                                 std::uint64_t seed, const SearchLimits& limits,
+                                 const std::vector<int>& second) {
+  return Search(data, delay, seed, limits, second).run(states);
 }
 
 std::vector<Judgement> judgeCandidates(const AutoData& data, const Candidates& candidates,

@@ -7,6 +7,7 @@
 #include "identification/auto_candidate.hpp"
 #include "identification/auto_delay.hpp"
 #include "identification/auto_identify.hpp"
+#include "identification/work_meter.hpp"
 
 namespace fpc {
 
@@ -26,12 +27,29 @@ struct Judgement {
 using Clock = std::chrono::steady_clock;
 
 struct SearchLimits {
-  Clock::time_point deadline;
+  WorkMeter* meter{};  ///< null: work is not limited
+  Clock::time_point deadline{Clock::time_point::max()};
   int threads{0};
   int window{5};
   std::function<bool()> proceed;  ///< false: no new fit
   std::function<void(double)> progress;
+
+  bool isLate() const { return Clock::now() > deadline || (proceed && !proceed()); }
+  bool isSpent() const { return meter != nullptr && meter->isSpent(); }
+  bool isOver() const { return isSpent() || isLate(); }
+  void spend(double work) const {
+    if (meter != nullptr) meter->spent += work;
+  }
 };
+
+/// Calls work(i) for i = 0..n-1 on the threads of `limits`, in lots: none is begun once the limits
+/// are over. A lot is the same on any number of threads, and so is where the work ends. What
+/// `work` returns is spent. @return for each i, whether it was begun
+std::vector<char> limitedFor(std::size_t n, const SearchLimits& limits,
+                             const std::function<double(std::size_t)>& work);
+
+/// "the work of the search left out ..", or "the time ..".
+std::string leftOutWords(const SearchLimits& limits, const std::string& what);
 
 /// One structure from several starts; their free runs are averaged, which tells more of the
 /// structure than any single fit. Starts that got stuck far above the others are left out.
@@ -49,10 +67,11 @@ std::vector<bool> stuckStarts(const std::vector<double>& seen);
 struct StructureSearch {
   std::vector<Judgement> linear, regressors;
   std::vector<Group> state;  ///< own states that are not linear
-  int skipped{};             ///< fits that the deadline prevented
+  int skipped{};             ///< fits that the limits prevented
 };
 StructureSearch searchStructures(const AutoData& data, const std::vector<int>& delay, bool states,
-                                 std::uint64_t seed, const SearchLimits& limits);
+                                 std::uint64_t seed, const SearchLimits& limits,
+                                 const std::vector<int>& second = {});
 
 /// Each candidate over the blocks, in their order; an infinite score: it could not be judged.
 std::vector<Judgement> judgeCandidates(const AutoData& data,

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kSearchIterations = 60;  // models of the output's past
 constexpr int kStateIterations = 100;
+constexpr int kLongestOfRules = 4;    // past values
 constexpr std::size_t kFamilies = 3;  // whose ridge and number of rules are refined
 
 /// Leaves out what was judged before; `known` are texts.
@@ -71,11 +72,39 @@ Candidates linearCandidates(const Candidate& base, bool states) {
   return list;
 }
 
+Candidates longerLines(const Candidate& base) {
+  Candidates list;
+  Candidate c = base;
+  c.iterations = kSearchIterations;
+  for (const int n : {5, 6, 8, 10})
+    for (const bool free : {false, true}) {
+      c.order = c.input_terms = n;
+      c.free_run = free;
+      list.push_back(c);
+    }
+  return list;
+}
+
+Candidates laterLines(const Candidate& base, const std::vector<int>& second) {
+  Candidates list;
+  Candidate c = base;
+  c.iterations = kSearchIterations;
+  c.second = second;
+  for (const auto& [n, m] : std::vector<std::pair<int, int>>{{1, 1}, {2, 1}, {2, 2}, {3, 3}})
+    for (const bool free : {false, true}) {
+      c.order = n;
+      c.input_terms = m;
+      c.free_run = free;
+      list.push_back(c);
+    }
+  return list;
+}
+
 Candidates ruleCandidates(const Candidate& base, const std::vector<Judgement>& linear) {
   Candidates list;
   std::vector<std::pair<int, int>> orders;
   for (const auto& j : linear) {
-    if (j.candidate.hidden) continue;
+    if (j.candidate.hidden || j.candidate.order > kLongestOfRules) continue;
     const std::pair<int, int> o{j.candidate.order, j.candidate.input_terms};
     if (orders.size() < 2 && std::find(orders.begin(), orders.end(), o) == orders.end())
       orders.push_back(o);

@@ -10,6 +10,10 @@ using Candidates = std::vector<Candidate>;
 /// A few simple linear models, enough to tell delays apart.
 Candidates delayCandidates(const Candidate& base);
 Candidates linearCandidates(const Candidate& base, bool states);
+/// Linear models of longer pasts, up to ten values.
+Candidates longerLines(const Candidate& base);
+/// Linear models that take later values of the inputs as well, from `second` on.
+Candidates laterLines(const Candidate& base, const std::vector<int>& second);
 /// Two and three rules on the orders of the best linear models.
 Candidates ruleCandidates(const Candidate& base, const std::vector<Judgement>& linear);
 /// The best with other ridges, numbers of rules and starts.

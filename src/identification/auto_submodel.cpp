@@ -41,7 +41,22 @@ OutputModel toSubmodel(const AutoData& data, const Fitted& fitted) {
     }
     model.rules.push_back(std::move(rule));
   }
+  countRows(*data.data, data.output, model);
   return model;
+}
+
+void countRows(const DataSet& data, int output, OutputModel& model) {
+  const Regression rows = makeRegression(data, model.regressors, model.antecedents, output);
+  for (auto& rule : model.rules) rule.data_count = 0;
+  FiringResult firing;
+  for (Index k = 0; k < rows.rows(); ++k) {
+    Index most = 0;
+    if (model.rules.size() > 1) {
+      firingWeights(model, rows.antecedents.row(k).transpose(), firing);
+      firing.weights.maxCoeff(&most);
+    }
+    ++model.rules[static_cast<std::size_t>(most)].data_count;
+  }
 }
 
 }  // namespace fpc

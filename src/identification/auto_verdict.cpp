@@ -12,14 +12,20 @@
 namespace fpc {
 namespace {
 
-constexpr double kTells = 10.0;       // [%] of fit: less is hardly more than the mean
+constexpr double kTells = 10.0;  // [%] of fit: less is hardly more than the mean
+constexpr double kBetterThanHold = 0.97;
 constexpr double kWorseAhead = 1.05;  // of the linear model's error one sample ahead
+
+/// "free run", or what stands for it.
+std::string runWords(const AutoOutput& found) {
+  return found.reach > 0 ? "runs of " + std::to_string(found.reach) + " samples" : "free run";
+}
 
 std::string lowestFuzzyText(const AutoOutput& found) {
   double lowest = kInfinity;
   for (const auto* f : {&found.regressors, &found.state, &found.blend})
     if (!f->blocks.empty()) lowest = std::min(lowest, f->confirmed);
-  return std::isfinite(lowest) ? "free run " + shortText(lowest) : "none ran to the end";
+  return std::isfinite(lowest) ? runWords(found) + " " + shortText(lowest) : "none ran to the end";
 }
 
 /// A model that is chosen by its free runs may be the worse one for who predicts a sample.
@@ -36,8 +42,8 @@ std::string verdictOf(const AutoOutput& found, const AutoFigures& best) {
            lowestFuzzyText(found) + ", beside " + shortText(line.confirmed) +
            "): the linear model is written";
   std::string words =
-      "the fuzzy model beats linear beyond the spread over held-out blocks: free run " +
-      shortText(best.confirmed) + " beside " + shortText(line.confirmed) +
+      "the fuzzy model beats linear beyond the spread over held-out blocks: " + runWords(found) +
+      " " + shortText(best.confirmed) + " beside " + shortText(line.confirmed) +
       " of the best linear one, each block by a choice that did not look at it";
   if (found.best == ModelKind::kState)
     words += "; it has a state of its own, for simulation; what control laws take reaches " +
@@ -56,6 +62,10 @@ std::string verdictOf(const AutoOutput& found, const AutoFigures& best) {
 void decide(AutoOutput& found) {
   const AutoFigures* best = &found.linear;
   found.best = ModelKind::kLinear;
+  if (found.fuzzy_model && !isWorthIt(found.regressors, found.linear)) {
+    found.fuzzy_model = false;
+    found.blend = {};
+  }
   if (found.fuzzy_model) {
     best = &found.regressors;
     found.best = ModelKind::kRegressors;
@@ -70,14 +80,22 @@ void decide(AutoOutput& found) {
   }
   found.beats_linear = found.best != ModelKind::kLinear;
   found.verdict = verdictOf(found, *best);
-  if (best->fit > kTells) return;
-  found.verdict =
-      (best->fit > 0.0 ? "no model says much more than the mean of the record in free run over "
-                         "held-out blocks (fit " +
-                             shortText(best->fit) + " %): "
-                       : "no model says more than the mean of the record in free run over "
-                         "held-out blocks: ") +
-      "do not trust any of them there (" + found.verdict + ")";
+  const AutoFigures& laws = found.fuzzy_model ? found.regressors : found.linear;
+  if (best->fit > kTells && !(laws.fit > 0.0))
+    found.verdict += "; what control laws take is worse than the mean of the record in " +
+                     runWords(found) + " (fit " + shortText(laws.fit) + " %)";
+  if (found.hold > 0.0 && !(best->free_run < kBetterThanHold * found.hold))
+    found.verdict = "no model predicts " + std::to_string(found.reach) +
+                    " samples better than the last measured value does (" +
+                    shortText(best->free_run) + " beside " + shortText(found.hold) +
+                    "): do not trust any of them there (" + found.verdict + ")";
+  if (best->fit > kTells || found.hold > 0.0) return;
+  found.verdict = (best->fit > 0.0 ? "no model says much more than the mean of the record in " +
+                                         runWords(found) + " over held-out blocks (fit " +
+                                         shortText(best->fit) + " %): "
+                                   : "no model says more than the mean of the record in " +
+                                         runWords(found) + " over held-out blocks: ") +
+                  "do not trust any of them there (" + found.verdict + ")";
 }
 
 }  // namespace fpc

@@ -77,10 +77,14 @@ class Doubt {
     std::vector<char> dropped(statements_.size(), 0);
     const AutoFigures bound = bestWithout(dropped);
     free_ = bestWithout(std::vector<char>(statements_.size(), 1));
-    if (!(free_.fit > kContradicts) || !isWorse(bound)) return "";
+    if (!(free_.fit > kContradicts) || !isWorse(bound, free_)) return "";
+    if (onlySigns(data_.known) && std::isfinite(bound.mean) &&
+        !isWorse(bestWithout(dropped, true),
+                 bestWithout(std::vector<char>(dropped.size(), 1), true)))
+      return "";  // rules may bend against a sign that the process as a whole has
     AutoFigures now = bound;
     std::vector<std::string> blamed;
-    while (isWorse(now) && blamed.size() < statements_.size()) {
+    while (isWorse(now, free_) && blamed.size() < statements_.size()) {
       const std::size_t next = dropNext(dropped, now);
       if (next == statements_.size()) return "";  // stopped
       blamed.push_back(statements_[next].words);
@@ -108,21 +112,25 @@ class Doubt {
   }
 
   /// Figures of the best of all candidates; an infinite mean: none ran.
-  AutoFigures bestWithout(const std::vector<char>& dropped) {
+  AutoFigures bestWithout(const std::vector<char>& dropped, bool lines = false) {
     AutoData data = data_;
     data.known = without(data_.known, statements_, dropped);
     AutoFigures best;
     best.mean = kInfinity;
     for (const auto& j : judgeCandidates(data, candidates_, limits_)) {
+      if (lines && j.candidate.rules > 1) continue;
       if (!std::isfinite(j.score) || !(meanBlockError(data, j.free_run) < best.mean)) continue;
       best = figuresOf(data, j.free_run, j.one_step);
     }
     return best;
   }
 
-  bool isWorse(const AutoFigures& bound) const {
+  static bool isWorse(const AutoFigures& bound, const AutoFigures& free) {
     if (!std::isfinite(bound.mean)) return true;
-    return bound.mean > kMuchWorse * free_.mean && beyondSpread(free_, bound);
+    return bound.mean > kMuchWorse * free.mean && beyondSpread(free, bound);
+  }
+  static bool onlySigns(const PriorKnowledge& known) {
+    return !(known.max_pole > 0.0) && known.steady.empty();
   }
 
   /// Drops the statement without which models run best; `now` becomes what they reach.
@@ -139,14 +147,10 @@ class Doubt {
       next = i;
       best = f;
     }
-    if (next == statements_.size() || isStopped()) return statements_.size();
+    if (next == statements_.size() || limits_.isOver()) return statements_.size();
     dropped[next] = 1;
     now = best;
     return next;
-  }
-
-  bool isStopped() const {
-    return Clock::now() > limits_.deadline || (limits_.proceed && !limits_.proceed());
   }
 
   const AutoData& data_;
@@ -187,7 +191,6 @@ std::string contradiction(const DataSet& given, int output,
   AutoData prepared = prepareAuto(data, output, kBlocks, kMostRows, kMostRows);
   prepared.known = known;
   SearchLimits limits;
-  limits.deadline = Clock::time_point::max();
   return contradiction(prepared, {delay}, limits);
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.hpp"
 #include "identification/joint_run.hpp"
 
 namespace fpc {
@@ -14,6 +13,7 @@ using Eigen::Index;
 constexpr double kCoupledOneStepShare = 0.15;  // of a score, as in the search of one output
 constexpr double kLess = 1e-6;                 // of the objective: what counts as a fall
 constexpr int kMostPasses = 3;
+constexpr double kPerStep = 100.0;  // multiply-adds of a step of a joint run beside its parameters
 
 /// Other outputs act on this one: where one of their values is missing within a record, the last
 /// known one stands.
@@ -37,20 +37,18 @@ CoupledOptions::CoupledOptions(const std::vector<SearchedOutput>& alone, const S
     measured_.col(static_cast<Index>(i)) = alone[i].data.scaled.col(static_cast<Index>(i));
 }
 
-bool CoupledOptions::isOver() const {
-  return Clock::now() > limits_.deadline || (limits_.proceed && !limits_.proceed());
-}
+bool CoupledOptions::isOver() const { return limits_.isOver(); }
 
 std::vector<std::size_t> CoupledOptions::add(std::size_t output,
                                              const std::vector<Candidate>& candidates) {
   const AutoData& data = data_[output];
   const std::size_t blocks = data.windows.size();
   std::vector<Fitted> fits(candidates.size() * blocks);
-  parallelFor(fits.size(), limits_.threads, [&](std::size_t task) {
-    if (isOver()) return;
+  limitedFor(fits.size(), limits_, [&](std::size_t task) {
     const std::size_t b = task % blocks;
     fits[task] =
         fitCandidate(data, candidates[task / blocks], trainingStretches(data, static_cast<int>(b)));
+    return fits[task].work;
   });
   std::vector<std::size_t> places;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -78,17 +76,24 @@ std::vector<std::size_t> CoupledOptions::add(std::size_t output,
 std::vector<Vector> CoupledOptions::freeRuns(const CoupledChoice& choice) const {
   std::vector<Vector> free(outputs(), Vector::Constant(measured_.rows(), kNaN));
   const auto& windows = data_.front().windows;
+  double terms = 0.0;
+  for (std::size_t i = 0; i < outputs(); ++i)
+    terms += kPerStep + static_cast<double>(option(i, choice[i]).parameters);
+  limits_.spend(terms * static_cast<double>(rowsOf(windows)));
   for (std::size_t b = 0; b < windows.size(); ++b) {
     std::vector<JointMember> members;
     for (std::size_t i = 0; i < outputs(); ++i)
       members.push_back({&option(i, choice[i]).blocks[b], &option(i, choice[i]).record});
-    const Matrix run = jointFreeRun(members, measured_, windows[b]);
-    const Index first = std::min(windows[b].first + Index{limits_.window}, windows[b].last);
-    for (std::size_t i = 0; i < outputs(); ++i) {
-      const auto c = static_cast<Index>(i);
-      free[i].segment(first, windows[b].last - first) =
-          (data_[i].scale[c] * run.col(c).segment(first, windows[b].last - first)).array() +
-          data_[i].shift[c];
+    for (const Stretch& piece : runsOf(data_.front(), {windows[b]})) {
+      const Matrix run = jointFreeRun(members, measured_, piece);
+      const Index start = data_.front().reach > 0 ? kRunStart : Index{limits_.window};
+      const Index first = std::min(piece.first + start, piece.last);
+      for (std::size_t i = 0; i < outputs(); ++i) {
+        const auto c = static_cast<Index>(i);
+        free[i].segment(first, piece.last - first) =
+            (data_[i].scale[c] * run.col(c).segment(first, piece.last - first)).array() +
+            data_[i].shift[c];
+      }
     }
   }
   return free;

@@ -34,20 +34,20 @@ Vector scaled(VectorRef values) {
   return (values.array() - mean) / deviation;
 }
 
-/// RegressionRows of [u(k-1)..u(k-p), 1, y(k)..y(k-3)] and u(k), where all are known.
+/// RegressionRows of [u(k-1)..u(k-p), 1, y(k-d)..y(k-d-3)] and u(k), where all are known.
 struct RegressionRows {
   Matrix regressors;
   Vector target;
   bool mostly_moving{};
 };
 
-RegressionRows rowsOf(const Vector& u, const Vector& y, Index lags) {
+RegressionRows rowsOf(const Vector& u, const Vector& y, Index lags, Index delay) {
   std::vector<Index> known;
   double moves = 0.0;
-  const Index first = std::max(lags, kOutputLags);
+  const Index first = std::max(lags, kOutputLags + delay);
   for (Index k = first; k < u.size(); ++k) {
     if (!u.segment(k - lags, lags + 1).allFinite()) continue;
-    if (!y.segment(k - kOutputLags + 1, kOutputLags).allFinite()) continue;
+    if (!y.segment(k - delay - kOutputLags + 1, kOutputLags).allFinite()) continue;
     known.push_back(k);
     if (u[k] != u[k - 1]) moves += 1.0;
   }
@@ -58,7 +58,7 @@ RegressionRows rowsOf(const Vector& u, const Vector& y, Index lags) {
     const Index k = known[static_cast<std::size_t>(i)];
     rows.target[i] = u[k];
     rows.regressors.row(i) << u.segment(k - lags, lags).transpose(), 1.0,
-        y.segment(k - kOutputLags + 1, kOutputLags).transpose();
+        y.segment(k - delay - kOutputLags + 1, kOutputLags).transpose();
   }
   return rows;
 }
@@ -93,11 +93,11 @@ std::vector<Index> usual(const Vector& errors) {
 
 }  // namespace
 
-double feedbackShare(VectorRef u_all, VectorRef y_all) {
+double feedbackShare(VectorRef u_all, VectorRef y_all, int delay) {
   const Index n_all = std::min(u_all.size(), kMostCompared);
   const Vector u = scaled(u_all.head(n_all)), y = scaled(y_all.head(n_all));
   const Index lags = std::min(kMostLags, n_all / kRowsPerLag);
-  const RegressionRows rows = rowsOf(u, y, lags);
+  const RegressionRows rows = rowsOf(u, y, lags, delay);
   const Index own = lags + 1, all = own + kOutputLags;
   std::vector<Index> kept;
   for (Index i = 0; i < rows.target.size(); ++i) kept.push_back(i);

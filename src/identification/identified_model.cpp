@@ -29,14 +29,32 @@ ModelKind bestOf(const IdentifiedModel& model, std::size_t output) {
   return output < model.outputs.size() ? model.outputs[output].best : ModelKind::kRegressors;
 }
 
-/// The TsModel `steps` samples ahead of every row, from its measured past.
-Matrix stepsAhead(const TsModel& model, const DataSet& data, int steps) {
-  const auto n_y = static_cast<Index>(model.outputs.size());
-  Matrix predicted = Matrix::Constant(data.rows(), n_y, kNaN);
+Index longestLag(const TsModel& model) {
   Index longest = 0;
   for (const auto& s : model.submodels)
     for (const auto* list : {&s.antecedents, &s.regressors})
       for (const auto& r : *list) longest = std::max<Index>(longest, r.lag);
+  return longest;
+}
+
+/// Free runs of `reach` samples behind each other, each from measured ones.
+Matrix shortRuns(const TsModel& model, const DataSet& data, Index reach) {
+  const Index longest = longestLag(model);
+  Matrix predicted = Matrix::Constant(data.rows(), static_cast<Index>(model.outputs.size()), kNaN);
+  DataSet part = data;
+  for (Index k = longest; k + 1 < data.rows(); k += reach) {
+    const Index count = std::min(reach, data.rows() - 1 - k);
+    part.values = data.values.middleRows(k - longest, longest + 1 + count);
+    predicted.middleRows(k + 1, count) = predictFreeRun(model, part).bottomRows(count);
+  }
+  return predicted;
+}
+
+/// The TsModel `steps` samples ahead of every row, from its measured past.
+Matrix stepsAhead(const TsModel& model, const DataSet& data, int steps) {
+  const auto n_y = static_cast<Index>(model.outputs.size());
+  Matrix predicted = Matrix::Constant(data.rows(), n_y, kNaN);
+  const Index longest = longestLag(model);
   DataSet part = data;
   const Index stride = std::max<Index>(1, data.rows() / kMostStarts);
   for (Index k = longest; k + steps < data.rows(); k += stride) {
@@ -83,7 +101,8 @@ bool IdentifiedModel::has(ModelKind kind) const {
 }
 
 IdentifiedModel toIdentified(const AutoIdentification& found) {
-  IdentifiedModel m{found.model, found.linear.submodels, found.state, {}};
+  IdentifiedModel m{found.model, found.linear.submodels, found.state,
+                    {},          found.same_row,         found.reach};
   for (const auto& o : found.outputs) {
     const AutoFigures& f = o.fuzzy_model ? o.regressors : o.linear;
     m.outputs.push_back({o.best, o.sensor_lower, o.sensor_upper, f.width, f.one_step_width});
@@ -128,7 +147,7 @@ KindPrediction predictKind(const IdentifiedModel& model, ModelKind kind, const D
   } else {
     const TsModel ts = kind == ModelKind::kLinear ? model.linearModel() : model.model;
     p.one_step = predictOneStep(ts, data);
-    p.free_run = predictFreeRun(ts, data);
+    p.free_run = model.reach > 0 ? shortRuns(ts, data, model.reach) : predictFreeRun(ts, data);
     for (std::size_t i = 0; kind == ModelKind::kRegressors && i < model.outputs.size(); ++i) {
       p.one_step_width[static_cast<Index>(i)] = model.outputs[i].one_step_width;
       p.free_run_width[static_cast<Index>(i)] = model.outputs[i].free_run_width;
@@ -157,8 +176,10 @@ KindPrediction predictBest(const IdentifiedModel& model, const DataSet& data) {
   return best;
 }
 
-Matrix predictSteps(const IdentifiedModel& model, const DataSet& data, int steps) {
-  Matrix predicted = stepsAhead(model.model, data, steps);
+AheadPrediction predictSteps(const IdentifiedModel& model, const DataSet& data, int steps) {
+  AheadPrediction predicted;
+  predicted.laws = stepsAhead(model.model, data, steps);
+  predicted.best = predicted.laws;
   if (model.has(ModelKind::kState)) {
     const Matrix free_run = predictFreeRun(model.state, data);
     for (std::size_t i = 0; i < model.state.outputs.size(); ++i) {
@@ -167,10 +188,12 @@ Matrix predictSteps(const IdentifiedModel& model, const DataSet& data, int steps
       const auto c = static_cast<Index>(i);
       const Vector own = correctedAhead(data.values.col(c), free_run.col(c),
                                         model.state.outputs[i].correction, steps);
-      predicted.col(c) = best == ModelKind::kState ? own : Vector(0.5 * (predicted.col(c) + own));
+      auto column = predicted.best.col(c);
+      column = best == ModelKind::kState ? own : Vector(0.5 * (column + own));
     }
   }
-  clipToSensors(model, predicted);
+  clipToSensors(model, predicted.best);
+  clipToSensors(model, predicted.laws);
   return predicted;
 }
 

@@ -22,6 +22,9 @@ struct IdentifiedModel {
   std::vector<OutputModel> linear;  ///< one per output, or none
   StateModel state;
   std::vector<IdentifiedOutput> outputs;  ///< one per output, or none
+  /// Of inputs, then disturbances: the record's rows are read by asRead(); empty: as they are.
+  std::vector<bool> same_row;
+  Eigen::Index reach{};  ///< free runs start anew after so many samples; 0: never
 
   TsModel linearModel() const;     ///< with the names of `model`; only if there is one
   bool has(ModelKind kind) const;  ///< kBlend: of any output
@@ -39,7 +42,11 @@ KindPrediction predictKind(const IdentifiedModel& model, ModelKind kind, const D
 /// By the best kind of each output.
 KindPrediction predictBest(const IdentifiedModel& model, const DataSet& data);
 /// n samples ahead from measured pasts, from at most some 5000 of them; other rows are NaN.
-Matrix predictSteps(const IdentifiedModel& model, const DataSet& data, int steps);
+struct AheadPrediction {
+  Matrix best;  ///< by the best kind of each output
+  Matrix laws;  ///< by the model that control laws take
+};
+AheadPrediction predictSteps(const IdentifiedModel& model, const DataSet& data, int steps);
 
 /// Share [%] of measured values inside prediction +- width; NaN without width.
 double coverage(VectorRef measured, VectorRef predicted, double width);

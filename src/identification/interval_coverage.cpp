@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics.hpp"
+
 namespace fpc {
 namespace {
 
@@ -45,13 +47,9 @@ double independentCount(VectorRef errors) {
 double leastCoverage(double n, double stated) {
   const double count = std::floor(n), inside = stated / 100.0;
   if (!(count >= 1.0)) return 0.0;
-  double below = 0.0;  // probability of fewer than k
-  for (double k = 0.0; k < count; k += 1.0) {
-    below +=
-        std::exp(std::lgamma(count + 1.0) - std::lgamma(k + 1.0) - std::lgamma(count - k + 1.0) +
-                 k * std::log(inside) + (count - k) * std::log1p(-inside));
-    if (below >= kRare) return 100.0 * k / count;
-  }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+    if (binomialAtMost(k, static_cast<std::size_t>(count), inside) >= kRare)
+      return 100.0 * static_cast<double>(k) / count;
   return 100.0;
 }
 

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/order_statistics.hpp"
+#include "identification/record_faults.hpp"
 #include "identification/record_remarks.hpp"
 #include "identification/spike_influence.hpp"
 
@@ -30,7 +31,7 @@ double usualBend(const Eigen::Ref<const Vector>& y) {
     const double bend = bendAt(y, k);
     if (std::isfinite(bend) && bend != 0.0) bends.push_back(std::abs(bend));
   }
-  return 1.4826 * quantile(std::move(bends), 0.5);
+  return 1.4826 * sampleQuantile(std::move(bends), 0.5);
 }
 
 /// One sample far from both neighbours, where these agree.
@@ -53,7 +54,7 @@ std::vector<int> farSides(const Eigen::Ref<const Vector>& y) {
   std::vector<double> known;
   for (const double v : y)
     if (std::isfinite(v)) known.push_back(v);
-  const double low = quantile(known, kTail), high = quantile(known, 1.0 - kTail);
+  const double low = sampleQuantile(known, kTail), high = sampleQuantile(known, 1.0 - kTail);
   const double margin = kFar * (high - low);
   std::vector<int> sides;
   for (const double v : y) sides.push_back(v > high + margin ? 1 : v < low - margin ? -1 : 0);
@@ -104,9 +105,13 @@ std::vector<std::vector<Index>> outliersOf(const DataSet& data) {
   for (Index c = n_y; c < data.values.cols(); ++c) pulses.push_back(outliersOf(data.values.col(c)));
   for (Index c = 0; c < n_y; ++c) {
     std::vector<Index> rows = outliersOf(data.values.col(c));
-    rows.erase(
-        std::remove_if(rows.begin(), rows.end(), [&](Index row) { return caused(pulses, row); }),
-        rows.end());
+    const std::vector<Index> genuine = explained(data, c, rows);
+    rows.erase(std::remove_if(rows.begin(), rows.end(),
+                              [&](Index row) {
+                                return caused(pulses, row) ||
+                                       std::binary_search(genuine.begin(), genuine.end(), row);
+                              }),
+               rows.end());
     found.push_back(std::move(rows));
   }
   for (std::size_t j = 0; j < pulses.size(); ++j)
@@ -121,7 +126,13 @@ DataSet withoutOutliers(const DataSet& data) {
   for (std::size_t c = 0; c < found.size(); ++c) {
     auto column = clean.values.col(static_cast<Index>(c));
     for (const Index k : found[c]) column[k] = kNaN;
-    if (found[c].empty()) continue;
+    bool changed = !found[c].empty();
+    if (c < n_y)
+      for (const FaultyRows frozen : frozenRows(data, static_cast<Index>(c))) {
+        column.segment(frozen.first + 1, frozen.last - frozen.first - 1).setConstant(kNaN);
+        changed = true;
+      }
+    if (!changed) continue;
     if (c >= n_y) bridge(column, found[c]);
     setRange(clean, c);
   }

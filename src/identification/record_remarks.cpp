@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "identification/feedback_share.hpp"
+#include "identification/record_faults.hpp"
 
 #include "fmbpc/base/text.hpp"
 
@@ -168,13 +169,16 @@ void addFeedback(const DataSet& data, std::vector<std::string>& remarks) {
     const auto u = data.values.col(n_y + static_cast<Index>(j));
     if (movesOf(u) < kFewMoves) continue;
     for (Index i = 0; i < n_y; ++i) {
-      const double share = feedbackShare(u, data.values.col(i));
-      if (share > 0.0)
+      const auto y = data.values.col(i);
+      const std::string& name = data.outputs[static_cast<std::size_t>(i)].name;
+      const double before = feedbackShare(u, y, 1), within = feedbackShare(u, y);
+      if (before > 0.0 || within > 0.0)
         remarks.push_back(
-            data.inputs[j].name + " answers to " + data.outputs[static_cast<std::size_t>(i)].name +
-            ", which explains " + shortText(100.0 * share) +
-            " % of what its own past does not: closed-loop data, whose gains may be biased (or an "
-            "input that acts within the sample)");
+            data.inputs[j].name + " answers to " + name + ", which explains " +
+            shortText(100.0 * std::max(before, within)) + " % of what its own past does not: " +
+            (before > 0.0 ? "closed-loop data, whose gains may be biased"
+                          : "an input that acts within its sample (--input-row same), or a closed "
+                            "loop"));
     }
   }
 }
@@ -193,6 +197,7 @@ std::vector<std::string> recordRemarks(const DataSet& data, const TsModel* linea
                         (moves == 1 ? " move in " : " moves in ") + std::to_string(data.rows()) +
                         " rows");
   }
+  for (const auto& remark : faultRemarks(data)) remarks.push_back(remark);
   addOutliers(data, remarks);
   addFeedback(withoutOutliers(data), remarks);
   if (linear != nullptr) addSampleTime(data, *linear, remarks);

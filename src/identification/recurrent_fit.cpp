@@ -12,6 +12,7 @@ using Eigen::Index;
 constexpr double kFarthestFitState =
     30.0;  // deviations of the data: a run that leaves further has failed
 constexpr double kMostFitDamping = 1e8;
+constexpr double kPerRow = 40.0, kPerSet = 12.0;  // multiply-adds of a step, of a set in it
 
 /// Error of a prediction and its derivative to x1. A limit reached by both is no error; a limit
 /// reached by one is judged before clipping, so that the fit still feels it.
@@ -108,6 +109,9 @@ class Objective {
     return all;
   }
 
+  /// Multiply-adds of all calls so far, about.
+  double work() const { return work_; }
+
   double operator()(const Vector& p, Normal* normal) {
     double sum = (pull_.array() * (p - target_).array().square()).sum();
     if (normal != nullptr) {
@@ -131,6 +135,14 @@ class Objective {
     return true;
   }
 
+  void count(Index rows, bool derived) {
+    const auto n = static_cast<double>(shape_.states),
+               unknowns = static_cast<double>(shape_.parameterCount() + n_starts_);
+    const double step = kPerRow + static_cast<double>(shape_.linearCount()) +
+                        kPerSet * static_cast<double>(shape_.setCount());
+    const double derivative = n * n * unknowns + 0.5 * unknowns * unknowns + 2.0 * step;
+    work_ += static_cast<double>(rows) * (step + (derived ? derivative : 0.0));
+  }
   double free(const Vector& p, std::size_t s, Normal* normal);
   double oneStep(const Vector& p, const Stretch& stretch, Normal* normal);
 
@@ -141,6 +153,7 @@ class Objective {
   RecurrentStep step_;
   Vector target_, pull_;
   Index unknowns_{}, n_starts_{};
+  double work_{};
 };
 
 double Objective::free(const Vector& p, std::size_t s, Normal* normal) {
@@ -166,6 +179,7 @@ double Objective::free(const Vector& p, std::size_t s, Normal* normal) {
   };
   if (started) judge(stretches_[s].first);
   const auto theta = p.head(n_theta);
+  count(stretches_[s].last - stretches_[s].first, normal != nullptr);
   for (Index k = stretches_[s].first; k + 1 < stretches_[s].last; ++k) {
     if (!data_.v.col(k).allFinite()) {
       started = n_starts_ > 0;  // a hidden state stays where it is over a gap
@@ -192,6 +206,7 @@ double Objective::oneStep(const Vector& p, const Stretch& stretch, Normal* norma
   const auto theta = p.head(shape_.parameterCount());
   NormalRows rows(normal != nullptr ? row.size() : 0);
   double sum = 0.0;
+  count(stretch.last - stretch.first, normal != nullptr);
   for (Index k = stretch.first + shape_.states - 1; k + 1 < stretch.last; ++k) {
     if (!data_.v.col(k).allFinite() || !std::isfinite(data_.y[k + 1]) || !past(k, x)) continue;
     step_.predict(theta, x, data_.v.col(k), next);
@@ -238,6 +253,10 @@ RecurrentFitResult fitRecurrent(const RecurrentShape& shape, const RecurrentData
       damped.diagonal() *= 1.0 + damping;
       damped.diagonal().array() += 1e-9;
       trial = p + damped.selfadjointView<Eigen::Lower>().ldlt().solve(normal.gradient);
+      if (params.centre_lower.size() == shape.setCount()) {
+        auto centres = trial.segment(shape.linearCount(), shape.setCount());
+        centres = centres.cwiseMax(params.centre_lower).cwiseMin(params.centre_upper);
+      }
       const bool admissible = trial.allFinite() && (!params.admit || params.admit(damped, trial));
       const double reached = admissible ? objective(trial, nullptr) : kInfinity;
       improved = reached < best;
@@ -252,6 +271,7 @@ RecurrentFitResult fitRecurrent(const RecurrentShape& shape, const RecurrentData
     objective(p, &normal);
   }
   result.parameters = p.head(shape.parameterCount());
+  result.work = objective.work();
   result.objective = best;
   if (!shape.companion)
     result.starts = Eigen::Map<const Matrix>(p.data() + shape.parameterCount(), shape.states,

@@ -23,6 +23,7 @@ struct RecurrentFitParams {
   double step_unit{1.0};     ///< and one step ahead
   double start_ridge{0.1};   ///< hidden state: pull of a stretch's start towards its guess
   double settle{1e-4};       ///< relative fall of the objective below which the fit has settled
+  Vector centre_lower, centre_upper;  ///< bounds of the sets' centres, rule by rule; empty: none
   /// Moves unknowns (parameters, then starts) to the nearest that prior knowledge admits, in the
   /// metric of a Gauss-Newton matrix; false: there are none near. Empty: all are admitted.
   std::function<bool(const Matrix& metric, Vector& unknowns)> admit;
@@ -33,6 +34,7 @@ struct RecurrentFitResult {
   Matrix starts;  ///< states x stretches, hidden state only
   double objective{};
   int iterations{};
+  double work{};  ///< multiply-adds, see WorkMeter
   bool finite{false};
 };
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "base/order_statistics.hpp"
 
 namespace fpc {
 namespace {
@@ -107,6 +110,114 @@ class Judge {
 };
 
 }  // namespace
+
+namespace {
+
+constexpr Index kPeakLags = 6;      // samples of each input that may make a peak, the row's own too
+constexpr double kExplains = 0.25;  // of the squares that a straight line leaves
+constexpr int kPeakPasses = 3;
+constexpr double kPeakTrim = 8.0;      // median errors
+constexpr std::size_t kPeakFolds = 5;  // peaks are told by models that did not see them
+
+/// y(k) by y(k-1), y(k-2) and values and squares of all inputs of the rows k-5..k.
+class PeakModel {
+ public:
+  PeakModel(const DataSet& data, Index output) : values_(data.values), output_(output) {
+    n_y_ = static_cast<Index>(data.outputs.size());
+    for (Index c = n_y_; c < values_.cols(); ++c) {
+      double n = 0.0, sum = 0.0;
+      for (const double v : values_.col(c))
+        if (std::isfinite(v)) n += 1.0, sum += v;
+      values_.col(c).array() -= n > 0.0 ? sum / n : 0.0;
+    }
+  }
+
+  /// Fitted to all rows but those of `hidden` peaks, then without those that it errs most in.
+  bool fit(const std::vector<Group>& hidden) {
+    std::vector<Index> kept;
+    const Index last = std::min(values_.rows(), kMostSpikeRows);
+    for (Index k = kPeakLags; k < last; ++k) {
+      const bool near = std::any_of(hidden.begin(), hidden.end(), [k](const Group& g) {
+        return k >= g.first && k <= g.last + 2;
+      });
+      if (!near && std::isfinite(values_(k, output_)) && rowAt(values_.col(output_), k).allFinite())
+        kept.push_back(k);
+    }
+    for (int pass = 0; pass < kPeakPasses; ++pass) {
+      const auto n = static_cast<Index>(kept.size());
+      if (n < 3 * size()) return false;
+      Matrix a(n, size());
+      Vector b(n);
+      for (Index i = 0; i < n; ++i) {
+        a.row(i) = rowAt(values_.col(output_), kept[static_cast<std::size_t>(i)]).transpose();
+        b[i] = values_(kept[static_cast<std::size_t>(i)], output_);
+      }
+      theta_ = a.colPivHouseholderQr().solve(b);
+      const Vector sizes = (b - a * theta_).cwiseAbs();
+      const double most =
+          kPeakTrim * upperMedian(std::vector<double>(sizes.data(), sizes.data() + n));
+      if (!(most > 0.0)) return true;
+      std::vector<Index> usual;
+      for (Index i = 0; i < n; ++i)
+        if (sizes[i] < most) usual.push_back(kept[static_cast<std::size_t>(i)]);
+      kept = std::move(usual);
+    }
+    return true;
+  }
+
+  bool explains(const Group& g) const {
+    if (g.first < kPeakLags || g.last + 1 >= values_.rows()) return false;
+    Vector y = values_.col(output_), line = y;
+    std::vector<Index> rows;
+    for (Index k = g.first; k <= g.last; ++k) rows.push_back(k);
+    bridge(line, rows);
+    double own = 0.0, straight = 0.0;
+    for (const Index k : rows) {
+      const double measured = y[k];
+      y[k] = rowAt(y, k).dot(theta_);
+      own += (measured - y[k]) * (measured - y[k]);
+      straight += (measured - line[k]) * (measured - line[k]);
+    }
+    return own < kExplains * straight;
+  }
+
+ private:
+  Index size() const { return 3 + 2 * kPeakLags * (values_.cols() - n_y_); }
+  Vector rowAt(const Eigen::Ref<const Vector>& y, Index k) const {
+    Vector row(size());
+    row.head(3) << 1.0, y[k - 1], y[k - 2];
+    Index at = 3;
+    for (Index c = n_y_; c < values_.cols(); ++c)
+      for (Index lag = 0; lag < kPeakLags; ++lag) {
+        const double u = values_(k - lag, c);
+        row[at++] = u;
+        row[at++] = u * u;
+      }
+    return row;
+  }
+
+  Matrix values_;
+  Index n_y_{}, output_;
+  Vector theta_;
+};
+
+}  // namespace
+
+std::vector<Index> explained(const DataSet& data, Index output, const std::vector<Index>& rows) {
+  std::vector<Index> found;
+  if (rows.empty()) return found;
+  const std::vector<Group> peaks = groupsOf(rows);
+  PeakModel model(data, output);
+  for (std::size_t fold = 0; fold < std::min(kPeakFolds, peaks.size()); ++fold) {
+    std::vector<Group> hidden;
+    for (std::size_t i = fold; i < peaks.size(); i += kPeakFolds) hidden.push_back(peaks[i]);
+    if (!model.fit(hidden)) return {};
+    for (const Group& g : hidden)
+      for (Index k = g.first; model.explains(g) && k <= g.last; ++k) found.push_back(k);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
 
 std::vector<Index> unnoticed(const DataSet& data, Index column, const std::vector<Index>& rows,
                              const std::vector<std::vector<Index>>& outliers) {

@@ -3,23 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/statistics.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-/// Two-sided quantile of the normal distribution, by Newton steps on erfc; from 0 they come from
-/// the left for any confidence, because erfc is convex.
-double normalQuantile(double confidence) {
-  double z = 0.0;
-  for (int i = 0; i < 100; ++i) {
-    const double excess = std::erfc(z / std::sqrt(2.0)) - (1.0 - confidence);
-    z += excess / (std::sqrt(2.0 / 3.141592653589793) * std::exp(-0.5 * z * z));
-  }
-  return z;
-}
 
 /// Correlation of a(k) with b(k - lag) over the samples where both are known, each without its mean
 /// over these: within -1..1. Its deviation shrinks with the samples as that of lag 0: `known` is
@@ -61,7 +51,7 @@ ResidualCorrelation residualCorrelation(const DataSet& data,
   const Index n_lags = params.correlation_lags;
   const auto known = static_cast<double>(residual.array().isFinite().count());
   ResidualCorrelation result;
-  result.bound = known > 0.0 ? normalQuantile(params.confidence) / std::sqrt(known) : 0.0;
+  result.bound = known > 0.0 ? normalBound(params.confidence) / std::sqrt(known) : 0.0;
   result.autocorrelation = autocorrelation(residual, params);
   result.signals = causeNames(data);
   const auto n_causes = static_cast<Index>(result.signals.size());

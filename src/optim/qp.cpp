@@ -52,6 +52,14 @@ QpSolver::~QpSolver() = default;
 QpSolver::QpSolver(QpSolver&&) noexcept = default;
 QpSolver& QpSolver::operator=(QpSolver&&) noexcept = default;
 
+SolveStatus QpSolver::Workspace::solve(const QpProblem& p, bool warm) {
+  kkt.setHessian(p.H);
+  noise.reset();
+  const SolveStatus status = run(p, warm);
+  const bool failed = status == SolveStatus::kInfeasible || status == SolveStatus::kNumericalError;
+  return warm && failed ? run(p, false) : status;  // a working set that misled must not decide
+}
+
 void QpSolver::forget() { work_->remembered = false; }
 
 const QpResult& QpSolver::solve(const QpProblem& problem, bool warm) {
@@ -68,13 +76,11 @@ const QpResult& QpSolver::solve(const QpProblem& problem, bool warm) {
   }
   const Index n = problem.g.size(), m = problem.a_lower.size();
   if (result.x.size() != n || result.y_a.size() != m) w.resize(n, m);
-  w.kkt.setHessian(problem.H);
-  w.noise.reset();
-  warm = warm && w.remembered;
-  result.status = w.run(problem, warm);
-  if (warm && (result.status == SolveStatus::kInfeasible ||
-               result.status == SolveStatus::kNumericalError)) {
-    result.status = w.run(problem, false);  // a working set that misled must not decide
+  const bool scaled = w.scaled.scale(problem);
+  result.status = w.solve(scaled ? w.scaled.problem() : problem, warm && w.remembered);
+  if (scaled) {
+    result.x.array() *= w.scaled.size().array();
+    result.y_x.array() /= w.scaled.size().array();
   }
   // A solved problem has finite H x and A x, so only a failure can hide data that are not finite.
   if (result.status != SolveStatus::kSolved && !(problem.H.allFinite() && problem.A.allFinite())) {

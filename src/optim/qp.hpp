@@ -29,7 +29,7 @@ struct QpProblem {
 
 struct QpSettings {
   int max_iterations{10000};
-  double feasibility_tolerance{1e-10};  ///< relative to |limit| + sum_j |a_j| (1 + |x_j|)
+  double feasibility_tolerance{1e-10};  ///< relative to |limit| + sum_j |a_j| (s_j + |x_j|)
   void validate() const;                ///< @throws InputError naming the field
 };
 
@@ -47,8 +47,13 @@ struct QpResult {
   bool usable() const { return status == SolveStatus::kSolved; }
 };
 
+/// The size s_j of unknown j is that of its box, or the median of what each row and the cost say of
+/// it alone, |limit_i / a_ij| and |g_j / H_jj|, whichever is less: a power of two, 1 from 2^-12 on
+/// (never more: no tolerance grows by a guess). Residual, radius and tolerance are those of the
+/// problem in x_j / s_j.
+
 /// Scaled KKT residual of a point (independent of how it was found): stationarity relative to
-/// 1 + its largest term, feasibility to |limit| + sum_j |a_j| (1 + |x_j|), complementarity
+/// 1 + its largest term, feasibility to |limit| + sum_j |a_j| (s_j + |x_j|), complementarity
 /// min(multiplier, distance to the limit), both scaled. A violation within the rounding (1e-14) of
 /// the largest coefficient of A is none in a row that has no larger coefficients itself. Infinite
 /// if anything is not finite.
@@ -57,9 +62,9 @@ double kktResidual(const QpProblem& problem, VectorRef x, VectorRef y_x, VectorR
 
 /// How much a Farkas certificate proves. With y_x + A'y_a = 0 any x inside all limits would give
 /// 0 = y_x'x + y_a'Ax >= sum y+ lower + sum y- upper, so a positive right side proves that there is
-/// none. @return r such that no x with |x_j| <= r for all j is inside all limits, rounding counted
-/// against the certificate: right side / sum_j |y_x + A'y_a|_j; infinite if that is exactly zero, 0
-/// if nothing is proven
+/// none. @return r such that no x with |x_j| <= r s_j for all j is inside all limits, rounding
+/// counted against the certificate: right side / sum_j s_j |y_x + A'y_a|_j; infinite if that is
+/// exactly zero, 0 if nothing is proven
 /// @throws InputError if the sizes of y_x and y_a are not those of the problem
 double farkasRadius(const QpProblem& problem, VectorRef y_x, VectorRef y_a);
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
+#include "optim/qp_sizes.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc {
@@ -52,7 +53,10 @@ double radiusOf(const QpProblem& p, VectorRef y_x, VectorRef y_a) {
 double farkasRadius(const QpProblem& problem, VectorRef y_x, VectorRef y_a) {
   require(y_x.size() == problem.g.size() && y_a.size() == problem.a_lower.size(), "farkasRadius",
           "y_x of size n and y_a of size m");
-  return radiusOf(problem, y_x, y_a);
+  qp::ScaledProblem scaled;
+  scaled.resize(y_x.size(), y_a.size());
+  if (!scaled.scale(problem)) return radiusOf(problem, y_x, y_a);
+  return radiusOf(scaled.problem(), y_x.cwiseProduct(scaled.size()), y_a);
 }
 
 namespace qp {

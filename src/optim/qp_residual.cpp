@@ -7,6 +7,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "optim/qp_kernels.hpp"
+#include "optim/qp_sizes.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc {
@@ -118,14 +119,18 @@ double kktResidual(const QpProblem& problem, VectorRef x, VectorRef y_x, VectorR
   const Eigen::Index n = problem.g.size(), m = problem.a_lower.size();
   require(x.size() == n && y_x.size() == n && y_a.size() == m, "kktResidual",
           "x, y_x of size n and y_a of size m");
-  const Vector Hx = problem.H * x;
-  Vector Aty = Vector::Zero(n), Ax(m);
+  qp::ScaledProblem scaled;
+  scaled.resize(n, m);
+  const QpProblem& p = scaled.scale(problem) ? scaled.problem() : problem;
+  const Vector v = x.cwiseQuotient(scaled.size()), y_v = y_x.cwiseProduct(scaled.size());
+  const Vector Hv = p.H * v;
+  Vector Aty = Vector::Zero(n), Av(m);
   if (m > 0) {
-    Aty.noalias() = problem.A.transpose() * y_a;
-    Ax.noalias() = problem.A * x;
+    Aty.noalias() = p.A.transpose() * y_a;
+    Av.noalias() = p.A * v;
   }
   qp::RowNoise noise;
-  return qp::scaledResidual(problem, noise, x, y_x, y_a, Hx, Aty, Ax);
+  return qp::scaledResidual(p, noise, v, y_v, y_a, Hv, Aty, Av);
 }
 
 }  // namespace fpc

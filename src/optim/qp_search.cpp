@@ -24,6 +24,7 @@ void QpSolver::Workspace::resize(Index n, Index m) {
   kkt.resize(n, m);
   dual.resize(n, m);
   noise.resize(m);
+  scaled.resize(n, m);
   ax.setZero(m);
   center.setZero(n);
   gradient.setZero(n);

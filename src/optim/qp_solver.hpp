@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "optim/qp_sizes.hpp"
 #include "optim/qp_workspace.hpp"
 
 namespace fpc {
@@ -16,6 +17,7 @@ struct QpSolver::Workspace {
   }
 
   void resize(qp::Index n, qp::Index m);
+  SolveStatus solve(const QpProblem& p, bool warm);
   SolveStatus run(const QpProblem& p, bool warm);
   void begin(const QpProblem& p, bool warm);
   bool saysNothing(const QpProblem& p, qp::Index id);
@@ -37,6 +39,7 @@ struct QpSolver::Workspace {
   qp::KktSystem kkt;
   qp::DualActiveSet dual;
   qp::RowNoise noise;
+  qp::ScaledProblem scaled;
   Vector ax;
   Vector center, gradient;  // of the proximal-point iteration
   QpResult result;

@@ -104,6 +104,7 @@ const Measurement& Simulation::reset(std::uint64_t run_id) {
   state_.actuator_clips = 0;
   state_.input_missing = false;
   state_.trouble.clear();
+  failure_.clear();
   actuator_.reset();
   if (stepper_) stepper_->reset(params_.actuator.initial, params_.disturbance_nominal);
   noise_.seed(params_.noise_seed);
@@ -184,7 +185,8 @@ void Simulation::passLocalLoop() {
 void Simulation::movePlant() {
   const Vector& d = state_.disturbances;
   state_.trouble.clear();
-  std::string reason;
+  std::string& reason = failure_;
+  reason.clear();
   for (int i = 0; i < instruments_.steps() && reason.empty(); ++i) {
     const Vector& u = instruments_.drive(plant_input_);
     if (stepper_) {
@@ -249,6 +251,42 @@ void Simulation::measure() {
   measurement_.input_applied = actuator_.applied();
   measurement_.final = params_.samples > 0 && measurement_.header.step == params_.samples;
   state_.header = measurement_.header;
+  gatherEvents();
+}
+
+/// What people ask of the plant that it cannot do: of an input an override beyond the actuator's
+/// limits, or an offset wider than they are apart (one that an offset leads beyond them from where
+/// it is told to be is no slip); of a disturbance an offset out of its range.
+void Simulation::gatherEvents() {
+  events_.clear();
+  const auto say = [&](EventCode code, const std::string& signal, const std::string& text) {
+    events_.push_back(eventOf({code, text.c_str(), signal.c_str()}, measurement_.header.step));
+  };
+  if (!failure_.empty()) say(EventCode::kPlantFailed, "", failure_);
+  const std::vector<Quantity>& ranges = plant_->description().disturbances;
+  const std::vector<ActiveCommand>& active = commands_.active();
+  for (std::size_t i = 0; i < info_.inputs.size(); ++i) {
+    const ActiveCommand& asked = active[ranges.size() + i];
+    const SignalInfo& of = info_.inputs[i];
+    const bool offset = asked.mode == CommandMode::kOffset;
+    const bool fits = offset ? std::abs(asked.value) <= of.upper - of.lower
+                             : asked.value >= of.lower && asked.value <= of.upper;
+    const std::string& name = commands_.names()[ranges.size() + i];
+    if (asked.active && !fits)
+      say(EventCode::kInputClamped, name,
+          name + " was asked to be " + (offset ? "off by " : "") + exactText(asked.value) +
+              (offset ? ", more than its limits are apart, " : ", beyond its limits, ") +
+              rangeText(of.lower, of.upper, of.unit) + ", and clamped");
+  }
+  for (std::size_t i = 0; i < ranges.size() && !measurement_.final; ++i) {
+    const Quantity& of = ranges[i];
+    const double asked = scheduled_[static_cast<Eigen::Index>(i)] + active[i].value;
+    const bool offset = active[i].active && active[i].mode == CommandMode::kOffset;
+    if (offset && (asked < of.lower || asked > of.upper))
+      say(EventCode::kDisturbanceClamped, of.name,
+          "an offset of " + of.name + " was asked beyond its range, " +
+              rangeText(of.lower, of.upper, of.unit) + ", and clamped");
+  }
 }
 
 std::uint32_t Simulation::command(const Command& command) {

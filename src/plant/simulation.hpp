@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fmbpc/base/command_table.hpp"
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/base/sample_clock.hpp"
 #include "fmbpc/plant/plant.hpp"
@@ -93,6 +94,8 @@ class Simulation {
   /// record.
   const Vector& scheduledDisturbances() const { return scheduled_; }
 
+  /// What people ask in vain at the present sample, and a plant that was not moved to it.
+  const std::vector<Event>& events() const { return events_; }
   /// Last sample since the reset at which the plant could not be moved, with the reason; empty if
   /// none. The state was held over it, and state().trouble says so at the sample after it.
   const std::string& trouble() const { return trouble_; }
@@ -106,6 +109,7 @@ class Simulation {
   void updateDisturbances();
   void passLocalLoop();
   void measure();
+  void gatherEvents();
   void startInstruments();
   void lookAtPlant();
   const Measurement& integrate();
@@ -123,8 +127,9 @@ class Simulation {
   Measurement measurement_;
   PlantState state_;
   std::vector<CommandEffect> effects_;
+  std::vector<Event> events_;
   std::mt19937_64 noise_;
-  std::string trouble_;
+  std::string trouble_, failure_;        // failure_: over the sample before
   Vector scheduled_;                     // disturbances without commands
   Vector state_before_;                  // one sample ago
   Vector true_outputs_, true_measured_;  // what the sensors look at

@@ -5,38 +5,13 @@
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
 #include "runtime/factory.hpp"
+#include "runtime/run_events.hpp"
 
 namespace fpc {
 namespace {
 
 constexpr double kActionSilence = 1.0;  // [s] without a base action that is due
 constexpr char kController[] = "fmbpc_controller";
-
-const char* words(SolveStatus status) {
-  switch (status) {
-    case SolveStatus::kSolved:
-      return "solved";
-    case SolveStatus::kInfeasible:
-      return "infeasible: clipped";
-    case SolveStatus::kIterationLimit:
-      return "iteration limit: clipped";
-    case SolveStatus::kNumericalError:
-      return "numerical error: clipped";
-    case SolveStatus::kInvalidProblem:
-      return "invalid problem: clipped";
-    case SolveStatus::kNotRun:
-      return "passed through";
-    case SolveStatus::kBoundWins:
-      return "move limit and bound conflict: the bound was kept";
-    case SolveStatus::kInconsistent:
-      return "base action and prediction disagree: clipped";
-  }
-  return "unknown";
-}
-
-bool trouble(SolveStatus status) {
-  return status != SolveStatus::kSolved && status != SolveStatus::kNotRun;
-}
 
 }  // namespace
 
@@ -103,25 +78,39 @@ void ClpOptimizer::publish() {
   last_ = report.header;
   for (Eigen::Index i = 0; i < report.perturbation.size(); ++i)
     signals_.publish(static_cast<std::size_t>(i), report.header.time_ns, report.perturbation[i]);
-  if (trouble(report.status) && log_.pass())
-    ROS_WARN("clp_optimizer: sample %u: %s %s", report.header.step, words(report.status),
-             session_.trouble().c_str());
+  const Notice notice = noticeOf(report.status);
+  if (notice.code == EventCode::kNone) return;
+  health_.say({eventOf(notice, report.header.step)});
+  if (*session_.trouble().c_str() != '\0' && log_.pass())
+    ROS_WARN("clp_optimizer: sample %u: %s", report.header.step, session_.trouble().c_str());
 }
 
 // What it can see of the loop's life: base actions.
 Health ClpOptimizer::health(double now_s) const {
   const SolveStatus solve = session_.report().status;
-  if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
-  if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {"plant_simulator"}};
+  if (!plant_.problem().empty())
+    return {LoopMode::kFailed, EventCode::kPlantDiffers, plant_.problem(), {}};
+  if (!plant_.open())
+    return {
+        LoopMode::kStarting, EventCode::kWaiting, "waiting for plant_info", {"plant_simulator"}};
   if (session_.counts().accepted == 0)
-    return {LoopMode::kStarting, "waiting for the first base action", {controller_}};
+    return {LoopMode::kStarting,
+            EventCode::kWaiting,
+            "waiting for the first base action",
+            {controller_}};
   const double period_s = pace_ == Pace::kLockstep ? 0.0 : period_s_;
   if (const auto rest = summary_.rest()) return *rest;
   if (now_s - heard_s_ > period_s + kActionSilence)
     return {LoopMode::kStalled,
+            EventCode::kNoAction,
             "no base action since sample " + std::to_string(session_.report().header.step),
             {controller_}};
-  return {trouble(solve) ? LoopMode::kDegraded : LoopMode::kAutomatic, words(solve), {}};
+  const Notice notice = noticeOf(solve);
+  if (notice.code != EventCode::kNone) return {LoopMode::kDegraded, notice.code, notice.text, {}};
+  return {LoopMode::kAutomatic,
+          EventCode::kNone,
+          solve == SolveStatus::kNotRun ? "passed through" : "solved",
+          {}};
 }
 
 void ClpOptimizer::report(Diagnostics::Status& status) const {

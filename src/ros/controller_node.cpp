@@ -7,7 +7,6 @@
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
 #include "runtime/factory.hpp"
-#include "runtime/remark_lines.hpp"
 
 namespace fpc {
 namespace {
@@ -27,7 +26,6 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
     : Node(node, loop, private_node.getNamespace()),
       loop_(loop),
       session_(makeControllerSession(loop)),
-      remarks_(loop),
       inbox_(loop.has_identify && loop.ring.pace == Pace::kLockstep),
       desk_(node, loop, name(), session_, [this] { answerParked(); }),
       ready_(node, loop, name()),
@@ -135,7 +133,7 @@ void ControllerNode::useModels(const StepHeader& next) {
       model_problem_.clear();
       ROS_INFO("%s: model %s from the next sample on", name().c_str(), model_.c_str());
     } catch (const InputError& error) {
-      model_refused_ = error.what();
+      models_refused_.push_back(eventOf({EventCode::kModelRefused, error.what()}, next.step));
       refuseModel(error.what());
     }
   }
@@ -193,8 +191,7 @@ void ControllerNode::answer(const Measurement& measurement) {
     case Receipt::kAnswered:
       if (first) settings_.publish();  // those that were restored
       comeback_.answered(measurement.header, heard_s_);
-      remarks_.look(session_);
-      writeRemark();
+      gatherEvents();
       return publish(false);
     case Receipt::kRepeated:
       return publish(true);
@@ -204,12 +201,12 @@ void ControllerNode::answer(const Measurement& measurement) {
   }
 }
 
-void ControllerNode::writeRemark() {
-  if (!session_.isManual()) clamped_.clear();
-  const std::string models = joinedLines(inbox_.takeRemarks(session_.answer().tracking.header),
-                                         std::exchange(model_refused_, {}));
-  const std::string refused = joinedLines(takeRefusedCommands(), models);
-  remark_ = joinedLines(joinedLines(remarks_.lines(), clamped_), refused);
+void ControllerNode::gatherEvents() {
+  const StepHeader& now = session_.answer().tracking.header;
+  events_ = joined(session_.answer().events, inbox_.takeEvents(now));
+  events_ =
+      joined(joined(events_, std::exchange(models_refused_, {})), takeRefusedCommands(now.step));
+  health_.say(events_);
 }
 
 void ControllerNode::publish(bool repeated) {
@@ -226,23 +223,13 @@ void ControllerNode::publish(bool repeated) {
   publishSignals();
   if (!session_.resetReason().empty())
     ROS_INFO("%s: reset: %s", name().c_str(), session_.resetReason().c_str());
-  log();
 }
 
 void ControllerNode::publishTracking(bool repeated) {
   if (!tracking_.needed()) return;
   fmbpc::Tracking tracking = toMsg(session_.answer().tracking);
-  tracking.remark = remark_;
+  tracking.events = toMsg(events_);
   tracking_.publish(std::move(tracking), repeated);
-}
-
-// At once, or the latest of each second of wall time.
-void ControllerNode::log() {
-  const ControllerAnswer& answer = session_.answer();
-  const bool held = answer.has_action && answer.base.source == ActionSource::kHeld;
-  if (!remarks_.newlyClamped() && !((held || !remarks_.lines().empty()) && log_.pass())) return;
-  ROS_WARN("%s: sample %u: %s", name().c_str(), answer.tracking.header.step,
-           remarks_.sentence().c_str());
 }
 
 void ControllerNode::publishSignals() {

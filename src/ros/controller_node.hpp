@@ -34,7 +34,6 @@
 #include "ros/wall_throttle.hpp"
 #include "runtime/first_answers.hpp"
 #include "runtime/model_inbox.hpp"
-#include "runtime/sample_remarks.hpp"
 #include "runtime/session.hpp"
 
 namespace fpc {
@@ -71,12 +70,12 @@ class ControllerNode : public Node {
   void tell();  ///< what the operator asks has changed
   void publish(bool repeated);
   void refuseModel(const std::string& why);
-  void writeRemark();
+  void gatherEvents();
+  std::string said() const;  ///< of the present sample
   void publishTracking(bool repeated);
   Health whileControlling(double now_s) const;
   void advertiseSignals();
   void publishSignals();
-  void log();
   void report(Diagnostics::Status& status) const;
   Health health(double now_s) const;
   std::string plantName() const;
@@ -84,7 +83,6 @@ class ControllerNode : public Node {
 
   LoopFile loop_;
   ControllerSession session_;
-  SampleRemarks remarks_;
   ModelInbox inbox_;
   OperatorDesk desk_;
   Comeback comeback_;                        // before all that publishes
@@ -95,12 +93,10 @@ class ControllerNode : public Node {
   SignalPublishers signals_;
   PlantGate plant_;
   std::string model_, model_source_,
-      model_problem_;          // name of the one in use; why the latest was refused
-  double model_refused_s_{};   // when
-  std::string model_refused_;  // that could not be used, in words; until it is in a remark
-  std::string clamped_;        // the manual input that was asked beyond the limits, in words
-  std::string remark_;         // of the present answer
-  WallThrottle log_{1.0};
+      model_problem_;                  // name of the one in use; why the latest was refused
+  double model_refused_s_{};           // when
+  std::vector<Event> models_refused_;  // that could not be used; until they are in an answer
+  std::vector<Event> events_;          // of the present answer, and what came with it
 
   RingPublisher<fmbpc::ControlAction> base_;
   RingPublisher<fmbpc::PredictiveAction> prediction_;

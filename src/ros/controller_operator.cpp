@@ -5,24 +5,6 @@
 #include "ros/topics.hpp"
 
 namespace fpc {
-namespace {
-
-/// Empty if all is as it was asked.
-std::string clampedWords(const std::vector<double>& asked, const Vector& taken,
-                         const std::vector<SignalInfo>& inputs) {
-  std::string words;
-  for (std::size_t i = 0; i < asked.size(); ++i) {
-    const double now = taken[static_cast<Eigen::Index>(i)];
-    if (asked[i] == now) continue;
-    words += (words.empty() ? "the manual input of " : ", ") + inputs[i].name +
-             " was asked to be " + exactText(asked[i]) + " and clamped to " + exactText(now) +
-             (inputs[i].unit.empty() ? "" : " " + inputs[i].unit);
-  }
-  return words;
-}
-
-}  // namespace
-
 void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
   if (!commands_.pass(steadyNow())) return;
   const auto take = [&] {
@@ -41,7 +23,6 @@ void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
 bool ControllerNode::onManual(std_srvs::SetBool::Request& request,
                               std_srvs::SetBool::Response& response) {
   session_.manual(request.data != 0);
-  if (!session_.isManual()) clamped_.clear();
   tell();
   response.success = true;
   response.message = session_.isManual() ? "manual" : "auto";
@@ -63,9 +44,7 @@ bool ControllerNode::onManualInput(fmbpc::ManualInput::Request& request,
   try {
     session_.manualInput(Eigen::Map<const Vector>(request.input.data(),
                                                   static_cast<Eigen::Index>(request.input.size())));
-    clamped_ = clampedWords(request.input, session_.wishes().manual_input, loop_.plant_info.inputs);
-    response.message = clamped_;
-    if (!clamped_.empty()) ROS_WARN("%s: %s", name().c_str(), clamped_.c_str());
+    response.message = session_.manualClamped();
     tell();
     response.success = true;
   } catch (const InputError& error) {

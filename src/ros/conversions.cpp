@@ -220,6 +220,36 @@ SolverReport fromMsg(const fmbpc::SolverReport& msg) {
           msg.active_rows};
 }
 
+static_assert(fmbpc::Event::INFO == number(Severity::kInfo));
+static_assert(fmbpc::Event::WARNING == number(Severity::kWarning));
+static_assert(fmbpc::Event::ERROR == number(Severity::kError));
+
+fmbpc::Event toMsg(const Event& event) {
+  fmbpc::Event msg;
+  msg.code = kindOf(event.code).name;
+  msg.severity = number(event.severity());
+  msg.signal = event.signal;
+  msg.first = event.first;
+  msg.last = event.last;
+  msg.count = event.count;
+  msg.text = event.text;
+  return msg;
+}
+
+Event fromMsg(const fmbpc::Event& msg) {
+  Event event = eventOf(
+      {eventCodeOr(msg.code, EventCode::kNote), msg.text.c_str(), msg.signal.c_str()}, msg.first);
+  event.last = msg.last;
+  event.count = msg.count;
+  return event;
+}
+
+std::vector<fmbpc::Event> toMsg(const std::vector<Event>& events) {
+  return list<fmbpc::Event>(events);
+}
+
+std::vector<Event> fromMsg(const std::vector<fmbpc::Event>& msg) { return structs<Event>(msg); }
+
 fmbpc::Tracking toMsg(const Tracking& tracking) {
   fmbpc::Tracking msg;
   fillHeader(msg, tracking.header);

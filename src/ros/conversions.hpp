@@ -5,6 +5,7 @@
 #include <fmbpc/CommandEffect.h>
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/Disturbance.h>
+#include <fmbpc/Event.h>
 #include <fmbpc/FuzzyModel.h>
 #include <fmbpc/Identified.h>
 #include <fmbpc/Matrix.h>
@@ -40,6 +41,8 @@ fmbpc::Measurement toMsg(const Measurement& measurement);
 fmbpc::ControlAction toMsg(const ControlAction& action);
 fmbpc::PredictiveAction toMsg(const PredictiveAction& action);
 fmbpc::SolverReport toMsg(const SolverReport& report);
+fmbpc::Event toMsg(const Event& event);
+std::vector<fmbpc::Event> toMsg(const std::vector<Event>& events);
 fmbpc::Tracking toMsg(const Tracking& tracking);
 fmbpc::PlantState toMsg(const PlantState& state);
 fmbpc::CommandEffect toMsg(const CommandEffect& effect);
@@ -66,6 +69,9 @@ Measurement fromMsg(const fmbpc::Measurement& msg);
 ControlAction fromMsg(const fmbpc::ControlAction& msg);
 PredictiveAction fromMsg(const fmbpc::PredictiveAction& msg);
 SolverReport fromMsg(const fmbpc::SolverReport& msg);
+/// A code that is not known is a note.
+Event fromMsg(const fmbpc::Event& msg);
+std::vector<Event> fromMsg(const std::vector<fmbpc::Event>& msg);
 Tracking fromMsg(const fmbpc::Tracking& msg);
 PlantState fromMsg(const fmbpc::PlantState& msg);
 CommandEffect fromMsg(const fmbpc::CommandEffect& msg);

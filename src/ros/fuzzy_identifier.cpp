@@ -11,7 +11,6 @@
 #include "ros/identify_messages.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
-#include "runtime/remark_lines.hpp"
 
 namespace fpc {
 namespace {
@@ -128,11 +127,8 @@ void FuzzyIdentifier::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
     if (due.arrival == Arrival::kRepeat) return say(duty_.again());
     if (!isNew(due.arrival)) return;
     duty_.take(measurement.header, std::move(due.job));
-    if (!due.refusal.empty())
-      ROS_WARN("fuzzy_identifier: sample %u: no new model: %s", measurement.header.step,
-               due.refusal.c_str());
     if (due.model != nullptr) failure_.clear();
-    if (!due.refusal.empty()) hadNoModel(due.refusal, measurement.header);
+    if (!due.refusal.empty()) hadNoModel(due.refused, due.refusal, measurement.header);
     if (due.model != nullptr) publish(*due.model, measurement.header);
     if (auto job = duty_.next()) begin(std::move(*job), true);
     say(duty_.settle());
@@ -185,7 +181,7 @@ void FuzzyIdentifier::onGoal(Server::GoalHandle goal) {
     ROS_WARN("fuzzy_identifier: goal rejected: %s", error.what());
     StepHeader of = session_.present();
     if (of.run_id != plant_.runId()) of = {0, plant_.runId(), 0};  // nothing is collected
-    remark(std::string("command refused: ") + error.what(), of);
+    say({EventCode::kCommandRefused, error.what()}, of);
     goal.setRejected(result, error.what());
     return;
   }
@@ -237,7 +233,7 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   }
   if (!outcome.error.empty()) {
     result.message = outcome.error;
-    hadNoModel("identification: " + outcome.error, duty_.jobFrom());
+    hadNoModel(EventCode::kIdentificationFailed, outcome.error, duty_.jobFrom());
     return;
   }
   result = toResult(outcome.result);
@@ -253,21 +249,24 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
   } catch (const std::exception& error) {
     result.ok = 0;
     result.message = std::string("identified, but refused: ") + error.what();
-    hadNoModel(std::string("identification: ") + error.what(), duty_.jobFrom());
+    hadNoModel(EventCode::kIdentificationFailed, error.what(), duty_.jobFrom());
   }
 }
 
 // The loop goes on with the model it has: that is news for a while, no state.
-void FuzzyIdentifier::hadNoModel(const std::string& why, const StepHeader& made_from) {
-  failure_ = inOneLine(why);
+void FuzzyIdentifier::hadNoModel(EventCode code, const std::string& why,
+                                 const StepHeader& made_from) {
+  failure_ = why;
   failed_s_ = steadyNow();
-  remark(failure_, made_from);
+  say({code, why.c_str()}, made_from);
 }
 
 // The record tells it with the next sample that the controller answers. The one at which a job
 // began may be over by now.
-void FuzzyIdentifier::remark(const std::string& words, const StepHeader& of) {
-  identified_.publish(toMsg(IdentifierWord{of, false, inOneLine(words)}));
+void FuzzyIdentifier::say(const Notice& notice, const StepHeader& of) {
+  const std::vector<Event> events{eventOf(notice, of.step)};
+  identified_.publish(toMsg(IdentifierWord{of, false, events}));
+  health_.say(events);
 }
 
 }  // namespace fpc

@@ -52,8 +52,8 @@ class FuzzyIdentifier : public Node {
   void publish(const TsModel& matched, const StepHeader& made_from);
   void say(const IdentifierDuty::Words& words);
   void write(const TsModel& model) const;
-  void hadNoModel(const std::string& why, const StepHeader& made_from);
-  void remark(const std::string& words, const StepHeader& of);
+  void hadNoModel(EventCode code, const std::string& why, const StepHeader& made_from);
+  void say(const Notice& notice, const StepHeader& of);
   Health health(double now_s) const;
   void report(Diagnostics::Status& status) const;
 

@@ -75,11 +75,14 @@ int GatewayNode::finish() {
 
 Health GatewayNode::plantHealth() const {
   const std::string problem = gateway_.problem(), link = field_->problem();
-  if (problem.empty() && link.empty()) return {LoopMode::kAutomatic, "", {}};
+  if (problem.empty() && link.empty()) return {LoopMode::kAutomatic, EventCode::kNone, "", {}};
   const std::string words = problem.empty() ? link : link.empty() ? problem : problem + ": " + link;
-  if (gateway_.field() == FieldState::kLocal) return {LoopMode::kManual, words, {}};
-  return {
-      gateway_.field() == FieldState::kRunning ? LoopMode::kDegraded : LoopMode::kHeld, words, {}};
+  if (gateway_.field() == FieldState::kLocal)
+    return {LoopMode::kManual, EventCode::kPlantLocal, words, {}};
+  return {gateway_.field() == FieldState::kRunning ? LoopMode::kDegraded : LoopMode::kHeld,
+          EventCode::kLinkLost,
+          words,
+          {}};
 }
 
 void GatewayNode::addValues(Diagnostics::Status& status) const {

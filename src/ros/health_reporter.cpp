@@ -28,6 +28,7 @@ Health withNetwork(Health health, bool summary) {
   const bool its_own = summary || !network.here.empty();
   if (its_own && (health.mode == LoopMode::kAutomatic || health.mode == LoopMode::kManual))
     health.mode = LoopMode::kDegraded;
+  if (health.code == EventCode::kNone) health.code = EventCode::kNetworkProblem;
   if (health.words.find(problem) == std::string::npos) health.words += "; " + problem;
   return health;
 }
@@ -51,6 +52,18 @@ HealthReporter::HealthReporter(ros::NodeHandle node, const ros::NodeHandle& priv
         callGuarded([this] { look(); }, say, say);
       })) {}
 
+// A new one at once, or the latest of each second of wall time.
+void HealthReporter::say(const std::vector<Event>& events) {
+  if (events.empty()) return;
+  const std::uint64_t run_id = source_.sample().run_id;
+  if (std::exchange(run_id_, run_id) != run_id) events_.clear();
+  bool fresh = false;
+  for (const Event& event : events) fresh = events_.add(event) || fresh;
+  if (fresh || events_log_.pass())
+    ROS_WARN("%s: sample %u: %s: %s", name_.c_str(), events.front().last,
+             kindOf(worstOf(events).code).name, textOf(events).c_str());
+}
+
 void HealthReporter::look() {
   const double now_s = steadyNow();
   const Health before = shown_;
@@ -64,7 +77,7 @@ void HealthReporter::look() {
 
 void HealthReporter::sayLast(const std::string& words) {
   if (shown_.mode == LoopMode::kFinished || shown_.mode == LoopMode::kFailed) return;
-  shown_ = {LoopMode::kStalled, words, {}};
+  shown_ = {LoopMode::kStalled, EventCode::kShutDown, words, {}};
   publish();
 }
 
@@ -78,14 +91,21 @@ void HealthReporter::publish() {
   msg.summary = summary_;
   msg.mode = static_cast<std::uint8_t>(shown_.mode);
   msg.word = wordOf(shown_.mode);
+  msg.code = kindOf(shown_.code).name;
   msg.reason = shown_.words;
   msg.missing = shown_.missing;
+  msg.events = toMsg(events_.all());
   publisher_.publish(msg);
 }
 
 void HealthReporter::fill(Diagnostics::Status& status) const {
   status.summary(static_cast<unsigned char>(levelOf(shown_.mode)), shown_.words);
   status.add("mode", wordOf(shown_.mode));
+  status.add("code", kindOf(shown_.code).name);
+  for (const Event& event : events_.all())
+    status.add("event " + std::string(kindOf(event.code).name) +
+                   (event.signal.empty() ? "" : " of " + event.signal),
+               event.count);
   source_.values(status);
 }
 

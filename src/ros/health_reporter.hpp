@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "fmbpc/base/ring.hpp"
 #include "ros/diagnostics.hpp"
@@ -25,6 +26,8 @@ class HealthReporter {
   HealthReporter(ros::NodeHandle node, const ros::NodeHandle& private_node,
                  const std::string& title, const std::string& hardware_id, bool summary,
                  Source source);
+  /// Events of the sample that was answered last: kept for the run, and logged.
+  void say(const std::vector<Event>& events);
   /// Looks now instead of within a quarter of a second.
   void look();
   /// At once, before the process ends: nothing moves any more.
@@ -40,7 +43,9 @@ class HealthReporter {
   Health shown_;
   Hysteresis hysteresis_{1.0};
   double published_s_{-1e9};
-  WallThrottle log_{1.0};
+  EventList events_;
+  std::uint64_t run_id_{};
+  WallThrottle log_{1.0}, events_log_{1.0};
   ros::Publisher publisher_;
   Diagnostics diagnostics_;
   ros::SteadyTimer timer_;

@@ -13,14 +13,20 @@ constexpr double kModelNews =
 
 Health FuzzyIdentifier::health(double now_s) const {
   const std::string& problem = plant_.problem().empty() ? problem_ : plant_.problem();
-  if (!problem.empty()) return {LoopMode::kFailed, problem, {}};
-  if (!plant_.open()) return {LoopMode::kStarting, "waiting for plant_info", {"plant_simulator"}};
-  if (worker_.busy()) return {LoopMode::kAutomatic, "identifying: " + progress_, {}};
+  if (!problem.empty()) return {LoopMode::kFailed, EventCode::kModelRefused, problem, {}};
+  if (!plant_.open())
+    return {
+        LoopMode::kStarting, EventCode::kWaiting, "waiting for plant_info", {"plant_simulator"}};
+  if (worker_.busy())
+    return {LoopMode::kAutomatic, EventCode::kNone, "identifying: " + progress_, {}};
   std::string words =
       session_.published() == 0 ? "collecting, no model yet" : "published " + session_.model().name;
   if (!failure_.empty()) words += "; " + failure_;
   const bool news = !failure_.empty() && now_s - failed_s_ < kModelNews;
-  return {news ? LoopMode::kDegraded : LoopMode::kAutomatic, std::move(words), {}};
+  return {news ? LoopMode::kDegraded : LoopMode::kAutomatic,
+          news ? EventCode::kModelRefused : EventCode::kNone,
+          std::move(words),
+          {}};
 }
 
 void FuzzyIdentifier::report(Diagnostics::Status& status) const {

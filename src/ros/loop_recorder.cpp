@@ -196,11 +196,11 @@ void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg,
 }
 
 void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
-  record(topics::kPlantState, *msg, [&] { session_.receive(fromMsg(*msg), msg->remark); });
+  record(topics::kPlantState, *msg, [&] { session_.receive(fromMsg(*msg), fromMsg(msg->events)); });
 }
 
 void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
-  record(topics::kTracking, *msg, [&] { session_.receive(fromMsg(*msg), msg->remark); });
+  record(topics::kTracking, *msg, [&] { session_.receive(fromMsg(*msg), fromMsg(msg->events)); });
 }
 
 void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {

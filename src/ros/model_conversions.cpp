@@ -163,12 +163,12 @@ fmbpc::Identified toMsg(const IdentifierWord& word) {
   msg.run_id = word.header.run_id;
   msg.step = word.header.step;
   msg.model = word.model;
-  msg.remark = word.remark;
+  msg.events = toMsg(word.events);
   return msg;
 }
 
 IdentifierWord fromMsg(const fmbpc::Identified& msg) {
-  return {conversion::stepHeader(msg), msg.model != 0, msg.remark};
+  return {conversion::stepHeader(msg), msg.model != 0, fromMsg(msg.events)};
 }
 
 TsModel fromMsg(const fmbpc::FuzzyModel& msg) {

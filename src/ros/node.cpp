@@ -75,18 +75,20 @@ void Node::refuse(const char* topic, const std::string& why) {
   refusal_ = std::string(topic) + ": " + shortened(why);
   refusal_s_ = steadyNow();
   if (mayLog(topic)) ROS_WARN("%s: message dropped: %s", topic, shortened(why).c_str());
-  if (isCommand(topic)) noteCommand("command refused: " + shortened(why));
+  if (isCommand(topic)) noteCommand(shortened(why));
 }
 
-void Node::noteCommand(std::string line) {
-  std::replace(line.begin(), line.end(), '\n', ' ');
-  if (commands_seen_.size() >= kMostCommands && commands_seen_.count(line) == 0) return;
-  commands_seen_.insert(line);
-  if (commands_refused_.size() > kMostCommands * kMostLetters) return;  // nobody takes them
-  commands_refused_ += (commands_refused_.empty() ? "" : "\n") + line;
+void Node::noteCommand(const std::string& why) {
+  if (commands_seen_.size() >= kMostCommands && commands_seen_.count(why) == 0) return;
+  commands_seen_.insert(why);
+  if (commands_refused_.size() >= kMostCommands) return;  // nobody takes them
+  commands_refused_.push_back(eventOf({EventCode::kCommandRefused, why.c_str()}, 0));
 }
 
-std::string Node::takeRefusedCommands() { return std::exchange(commands_refused_, {}); }
+std::vector<Event> Node::takeRefusedCommands(std::uint32_t step) {
+  for (Event& event : commands_refused_) event.first = event.last = step;
+  return std::exchange(commands_refused_, {});
+}
 
 std::string Node::withRefusal(std::string words, double now_s) const {
   const std::string refusal = refusedLately(now_s);
@@ -115,6 +117,7 @@ class Failure {
     state_.node = ros::this_node::getName();
     state_.mode = static_cast<std::uint8_t>(LoopMode::kFailed);
     state_.word = wordOf(LoopMode::kFailed);
+    state_.code = kindOf(EventCode::kCannotStart).name;
     state_.reason = "cannot start: " + why;
     diagnostics_.status.resize(1);
     diagnostics_.status[0].name = state_.node.substr(1) + ": start";

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "config/loop_file.hpp"
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "ros/counted_vectors.hpp"
 #include "ros/guard.hpp"
@@ -78,9 +79,9 @@ class Node {
   std::string refusedLately(double now_s) const;
   /// "running" with what refusedLately() says.
   std::string withRefusal(std::string words, double now_s) const;
-  /// For the record: commands of people that were refused since it was asked last, one line each;
-  /// the first ten that differ, in all.
-  std::string takeRefusedCommands();
+  /// For the record, as of this sample: commands of people that were refused since it was asked
+  /// last; the first ten that differ, in all.
+  std::vector<Event> takeRefusedCommands(std::uint32_t step);
   /// False: the message says something of `node` but comes from another; it is dropped and counted.
   bool speaksFor(const char* topic, const std::string& publisher, const std::string& node);
   const std::map<std::string, std::uint64_t>& refused() const { return refused_; }
@@ -130,8 +131,8 @@ class Node {
   template <typename Request, typename Response, typename Class>
   ros::ServiceServer serve(ros::NodeHandle& private_node, const char* service,
                            bool (Class::*handler)(Request&, Response&), Class* object) {
-    using Event = ros::ServiceEvent<Request, Response>;
-    const boost::function<bool(Event&)> guard = [this, handler, object](Event& event) {
+    using Asked = ros::ServiceEvent<Request, Response>;
+    const boost::function<bool(Asked&)> guard = [this, handler, object](Asked& event) {
       if (mayPass(topics::kServices, event.getCallerName())) {
         Request request = event.getRequest();
         return (object->*handler)(request, event.getResponse());
@@ -144,7 +145,7 @@ class Node {
   }
 
  private:
-  void noteCommand(std::string line);
+  void noteCommand(const std::string& why);
   bool mayLog(const std::string& what);
   template <typename Msg, typename Handler>
   ros::Subscriber subscribeGuarded(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
@@ -163,7 +164,7 @@ class Node {
   std::map<std::string, std::uint64_t> refused_;
   std::map<std::string, WallThrottle> logs_;  // by topic and reason: one flood silences no other
   std::set<std::string> commands_seen_;       // refused, in words
-  std::string commands_refused_;              // lines that nobody has taken yet
+  std::vector<Event> commands_refused_;       // that nobody has taken yet
   std::string refusal_;                       // the latest
   double refusal_s_{};
 };

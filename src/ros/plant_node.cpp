@@ -153,7 +153,9 @@ void PlantNode::onRecorded(const fmbpc::Recorded::ConstPtr& msg) {
 void PlantNode::onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher) {
   if (!speaksFor(topics::kLoopState, publisher, msg->node)) return;
   keeper_.hear(*msg);
-  watch_.hear(msg->node, {static_cast<LoopMode>(msg->mode), msg->reason, msg->missing},
+  watch_.hear(msg->node,
+              {static_cast<LoopMode>(msg->mode), eventCodeOr(msg->code, EventCode::kNone),
+               msg->reason, msg->missing},
               steadyNow());
   const bool wrote = msg->mode == static_cast<std::uint8_t>(LoopMode::kFinished);
   if (wrote && msg->node == node_.resolveName(kRecorder)) recorded_ = true;
@@ -230,13 +232,14 @@ bool PlantNode::onReset(std_srvs::Trigger::Request&, std_srvs::Trigger::Response
 }
 
 Health PlantNode::health(double now_s) const {
-  if (!failure_.empty()) return {LoopMode::kFailed, failure_, missing_};
+  if (!failure_.empty()) return {LoopMode::kFailed, EventCode::kCannotStart, failure_, missing_};
   if (session_.phase() == PlantPhase::kWaiting)
-    return {LoopMode::kStarting, "waiting for " + ready_.named(missing_), missing_};
+    return {LoopMode::kStarting, EventCode::kWaiting, "waiting for " + ready_.named(missing_),
+            missing_};
   if (!session_.process().trouble().empty())
-    return {LoopMode::kFailed, session_.process().trouble(), {}};
+    return {LoopMode::kFailed, EventCode::kPlantFailed, session_.process().trouble(), {}};
   if (session_.phase() == PlantPhase::kFinished) return finishedHealth(now_s);
-  if (session_.paused()) return {LoopMode::kHeld, topics::kPausedReason, {}};
+  if (session_.paused()) return {LoopMode::kHeld, EventCode::kPaused, "paused", {}};
   return runningHealth(now_s);
 }
 
@@ -245,13 +248,15 @@ Health PlantNode::finishedHealth(double now_s) const {
   const std::vector<std::string> silent = watch_.silent(now_s);
   const std::string recorder = node_.resolveName(kRecorder);
   if (!recorded_ && std::find(silent.begin(), silent.end(), recorder) != silent.end())
-    return {LoopMode::kDegraded, "finished, not recorded yet: no word from " + recorder, silent};
+    return {LoopMode::kDegraded, EventCode::kNotRecorded,
+            "finished, not recorded yet: no word from " + recorder, silent};
   const Health others = watch_.worst(now_s);
   if (others.mode == LoopMode::kFailed)
-    return {LoopMode::kDegraded, "finished; " + others.words, others.missing};
-  if (session_.acknowledged()) return {LoopMode::kFinished, "finished", {}};
-  return {LoopMode::kFinished, "finished; the final sample is sent again until it is tracked",
-          silent};
+    return {LoopMode::kDegraded, EventCode::kNodeDegraded, "finished; " + others.words,
+            others.missing};
+  if (session_.acknowledged()) return {LoopMode::kFinished, EventCode::kNone, "finished", {}};
+  return {LoopMode::kFinished, EventCode::kNone,
+          "finished; the final sample is sent again until it is tracked", silent};
 }
 
 // Nothing that stands still is "running".
@@ -263,12 +268,13 @@ Health PlantNode::runningHealth(double now_s) const {
   const std::string step = std::to_string(session_.process().measurement().header.step);
   if (session_.unrecordedFor(now_s) > kActionPatience)
     return {LoopMode::kStalled,
+            EventCode::kNotRecorded,
             "sample " + step + " is not recorded" + who,
             {node_.resolveName(kRecorder)}};
   const Actuator& actuator = session_.process().actuator();
   if (actuator.missing()) {
     const bool fallback = actuator.fellBack();
-    return {fallback ? LoopMode::kFallback : LoopMode::kHeld,
+    return {fallback ? LoopMode::kFallback : LoopMode::kHeld, EventCode::kNoAction,
             std::string("no actions: the input is ") +
                 (fallback ? "the configured fallback" : "held") + " at sample " + step + who,
             silent};
@@ -279,15 +285,18 @@ Health PlantNode::runningHealth(double now_s) const {
       session_.unansweredFor(now_s) > kActionPatience && loop_.ring.pace != Pace::kRealtime;
   const LoopMode worst = late ? std::max(others.mode, LoopMode::kStalled) : others.mode;
   if (its_own_hand || (plant.mode != LoopMode::kAutomatic && plant.mode >= worst)) return plant;
-  if (late) return {LoopMode::kStalled, "no action for sample " + step + who, silent};
-  if (!silent.empty()) return {LoopMode::kDegraded, "no word from " + join(silent), silent};
+  if (late)
+    return {LoopMode::kStalled, EventCode::kNoAction, "no action for sample " + step + who, silent};
+  if (!silent.empty())
+    return {LoopMode::kDegraded, EventCode::kNodeSilent, "no word from " + join(silent), silent};
   const LoopMode stuck = session_.holdsAll() ? LoopMode::kHeld : LoopMode::kDegraded;
-  if (!session_.stuck().empty()) return {stuck, session_.stuck(), {}};
+  if (!session_.stuck().empty()) return {stuck, EventCode::kInputStuck, session_.stuck(), {}};
   if (others.mode == LoopMode::kAutomatic)
-    return {LoopMode::kAutomatic, withRefusal("running", now_s), {}};
-  if (others.mode == LoopMode::kManual) return {LoopMode::kManual, others.words, {}};
+    return {LoopMode::kAutomatic, EventCode::kNone, withRefusal("running", now_s), {}};
+  if (others.mode == LoopMode::kManual)
+    return {LoopMode::kManual, EventCode::kNone, others.words, {}};
   const bool as_it_is = others.mode == LoopMode::kHeld || others.mode == LoopMode::kFallback;
-  return {as_it_is ? others.mode : LoopMode::kDegraded, others.words, others.missing};
+  return {as_it_is ? others.mode : LoopMode::kDegraded, others.code, others.words, others.missing};
 }
 
 }  // namespace fpc

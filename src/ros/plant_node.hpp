@@ -59,10 +59,11 @@ class PlantNode : public Node {
   /// It is published again.
   virtual void afterResend() {}
   /// The plant's own trouble; automatic: none.
-  virtual Health plantHealth() const { return {LoopMode::kAutomatic, "", {}}; }
+  virtual Health plantHealth() const { return {LoopMode::kAutomatic, EventCode::kNone, "", {}}; }
   virtual void addValues(Diagnostics::Status&) const {}
 
   PlantSession& session() { return session_; }
+  HealthReporter& health() { return health_; }
   const PlantSession& session() const { return session_; }
   const LoopFile& loop() const { return loop_; }
   ros::NodeHandle& node() { return node_; }

@@ -9,8 +9,7 @@
 #include "ros/shared.hpp"
 #include "ros/topics.hpp"
 #include "runtime/factory.hpp"
-#include "runtime/late_lines.hpp"
-#include "runtime/remark_lines.hpp"
+#include "runtime/run_events.hpp"
 
 namespace fpc {
 namespace {
@@ -35,8 +34,6 @@ PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_nod
       simulation_(static_cast<SimulatedProcess&>(session().process()).simulation()),
       lines_(loop.tf.sample_lines),
       commands_(loop.ring.commands_per_s, kCommandBurst),
-      forced_(simulation_.info()),
-      cut_(simulation_.description().disturbances),
       state_(
           node.advertise<fmbpc::PlantState>(topics::kPlantState, queueOf(ListenerKind::kRecord))),
       effect_(node.advertise<fmbpc::CommandEffect>(topics::kDisturbanceEffect,
@@ -59,32 +56,26 @@ std::vector<std::string> PlantSimulator::plantMissing() {
 }
 
 void PlantSimulator::afterSample() {
-  const std::string before = clamped();
-  forced_.look(simulation_.measurement().header.step, simulation_.effects());
-  cut_.look(simulation_);
-  const bool first = simulation_.measurement().header.step == 0;
-  late_ = first ? lateLines(loop(), simulation_.outputDelays()) : "";
-  if (!late_.empty()) ROS_WARN("plant_simulator: %s", inOneLine(late_).c_str());
-  const std::string now = clamped();
-  if (!now.empty() && now != before) ROS_WARN("plant_simulator: %s", inOneLine(now).c_str());
   publishState();
   for (const CommandEffect& effect : simulation_.effects()) effect_.publish(toMsg(effect));
 }
 
-std::string PlantSimulator::clamped() const { return joinedLines(forced_.lines(), cut_.lines()); }
-
 void PlantSimulator::publishState() {
-  std::string remark = joinedLines(joinedLines(late_, clamped()), takeRefusedCommands());
+  const std::uint32_t step = simulation_.measurement().header.step;
+  const std::vector<Event> events =
+      joined(joined(simulation_.events(), delayEvents(loop(), simulation_.outputDelays(), step)),
+             takeRefusedCommands(step));
+  health().say(events);
   fmbpc::PlantState state = toMsg(simulation_.state());
-  state.remark = std::move(remark);
+  state.events = toMsg(events);
   last_ = shared(std::move(state));
   state_.publish(last_);
 }
 
 Health PlantSimulator::plantHealth() const {
-  const std::string words = clamped();
-  if (words.empty()) return PlantNode::plantHealth();
-  return {LoopMode::kDegraded, inOneLine(words), {}};
+  const std::vector<Event>& events = simulation_.events();
+  if (events.empty()) return PlantNode::plantHealth();
+  return {LoopMode::kDegraded, worstOf(events).code, textOf(events), {}};
 }
 
 void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
@@ -103,8 +94,6 @@ void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
 
 void PlantSimulator::addValues(Diagnostics::Status& status) const {
   status.add("commands dropped: too many", commands_.dropped());
-  status.add("samples with an input clamped", forced_.samples());
-  status.add("samples with an offset clamped", cut_.samples());
 }
 
 }  // namespace fpc

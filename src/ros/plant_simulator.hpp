@@ -11,8 +11,6 @@
 
 #include "plant/simulation.hpp"
 #include "ros/plant_node.hpp"
-#include "runtime/cut_offsets.hpp"
-#include "runtime/forced_inputs.hpp"
 
 namespace fpc {
 
@@ -28,7 +26,6 @@ class PlantSimulator : public PlantNode {
                  std::unique_ptr<SimulatedProcess> simulation);
   void onDisturbance(const fmbpc::Disturbance::ConstPtr& msg);
   void publishState();
-  std::string clamped() const;  ///< what people put where it cannot go, one a line
   std::vector<std::string> plantMissing() override;
   VectorRef shownDisturbances() const override { return simulation_.state().disturbances; }
   void afterSample() override;
@@ -40,9 +37,6 @@ class PlantSimulator : public PlantNode {
   Simulation& simulation_;  // the session's
   SampleLines lines_;
   RateLimit commands_;
-  ForcedInputs forced_;
-  CutOffsets cut_;
-  std::string late_;  // measurements later than the model knows, told at sample 0
   boost::shared_ptr<const fmbpc::PlantState> last_;
   ros::Publisher state_, effect_;
   ros::Subscriber disturbance_subscriber_;

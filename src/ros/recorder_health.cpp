@@ -4,15 +4,22 @@
 namespace fpc {
 
 Health LoopRecorder::health(double) const {
-  if (!plant_.problem().empty()) return {LoopMode::kFailed, plant_.problem(), {}};
-  if (!store_->problem().empty()) return {LoopMode::kFailed, store_->problem(), {}};
-  if (!problem_.empty()) return {LoopMode::kFailed, problem_, {}};
-  if (bag_ && !bag_->problem().empty()) return {LoopMode::kFailed, bag_->problem(), {}};
-  if (!ready_.announced()) return {LoopMode::kStarting, "waiting for publishers of the ring", {}};
-  if (written_) return {LoopMode::kFinished, "written", {}};
+  if (!plant_.problem().empty())
+    return {LoopMode::kFailed, EventCode::kPlantDiffers, plant_.problem(), {}};
+  if (!store_->problem().empty())
+    return {LoopMode::kFailed, EventCode::kRecordingFailed, store_->problem(), {}};
+  if (!problem_.empty()) return {LoopMode::kFailed, EventCode::kRecordingFailed, problem_, {}};
+  if (bag_ && !bag_->problem().empty())
+    return {LoopMode::kFailed, EventCode::kRecordingFailed, bag_->problem(), {}};
+  if (!ready_.announced())
+    return {LoopMode::kStarting, EventCode::kWaiting, "waiting for publishers of the ring", {}};
+  if (written_) return {LoopMode::kFinished, EventCode::kNone, "written", {}};
   if (session_.gapCount() > 0)
-    return {LoopMode::kDegraded, "recording, with gaps: " + session_.gaps(1).front(), {}};
-  return {LoopMode::kAutomatic, session_.running() ? "recording" : "waiting", {}};
+    return {LoopMode::kDegraded,
+            EventCode::kRecordGap,
+            "recording, with gaps: " + session_.gaps(1).front(),
+            {}};
+  return {LoopMode::kAutomatic, EventCode::kNone, session_.running() ? "recording" : "waiting", {}};
 }
 
 void LoopRecorder::report(Diagnostics::Status& status) const {

@@ -25,8 +25,9 @@ class SummaryListener : public Node {
 
   /// Why nothing is due: the run is finished or paused. Empty otherwise.
   std::optional<Health> rest() const {
-    if (mode_ == LoopMode::kFinished) return Health{LoopMode::kFinished, "finished", {}};
-    if (paused_) return Health{LoopMode::kHeld, "the plant is paused", {}};
+    if (mode_ == LoopMode::kFinished)
+      return Health{LoopMode::kFinished, EventCode::kNone, "finished", {}};
+    if (paused_) return Health{LoopMode::kHeld, EventCode::kPaused, "the plant is paused", {}};
     return {};
   }
 
@@ -35,7 +36,7 @@ class SummaryListener : public Node {
     if (!msg->summary || !isPlant(msg->node)) return;
     if (!speaksFor(topics::kLoopState, publisher, msg->node)) return;
     mode_ = static_cast<LoopMode>(msg->mode);
-    paused_ = mode_ == LoopMode::kHeld && msg->reason == topics::kPausedReason;
+    paused_ = mode_ == LoopMode::kHeld && msg->code == kindOf(EventCode::kPaused).name;
   }
 
   bool isPlant(const std::string& node) const {

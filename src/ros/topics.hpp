@@ -52,7 +52,4 @@ inline constexpr char kSettings[] = "settings";
 inline constexpr char kLoopText[] = "loop_text";
 inline constexpr char kLoopName[] = "loop_name";
 
-/// The reason in loop_state of a plant that is paused.
-inline constexpr char kPausedReason[] = "paused";
-
 }  // namespace fpc::topics

@@ -51,7 +51,7 @@ void CommandPlayer::advance(std::uint32_t step, const CommandTargets& targets) {
     try {
       std::visit(Doer{targets}, commands_[next_].what);
     } catch (const InputError& error) {
-      targets.refused(step, error.what());
+      targets.refused(error.what());
     }
   }
 }

@@ -19,7 +19,7 @@ struct CommandTargets {
   Simulation& simulation;
   ControllerSession& controller;
   std::function<void(int window)> identify;
-  std::function<void(std::uint32_t step, const std::string& words)> refused;
+  std::function<void(const std::string& why)> refused;
 };
 
 class CommandPlayer {

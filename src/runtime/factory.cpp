@@ -46,6 +46,7 @@ ControllerSession makeControllerSession(const LoopFile& loop) {
   ControllerSession session(makeController(loop), loop.setpoint, actuator.limits, actuator.initial,
                             loop.plant_info, loop.max_pole, loop.plausibility);
   if (loop.has_clp) session.leadsAnOptimizer();
+  session.withoutSetpoint(loop.report.without_setpoint);
   return session;
 }
 

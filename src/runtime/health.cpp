@@ -77,7 +77,7 @@ std::vector<std::string> RingWatch::silent(double now_s) const {
 }
 
 Health RingWatch::worst(double now_s) const {
-  Health worst{LoopMode::kAutomatic, "", {}};
+  Health worst{LoopMode::kAutomatic, EventCode::kNone, "", {}};
   for (const std::string& node : nodes_) {
     const auto beat = beats_.find(node);
     if (beat == beats_.end() || now_s - beat->second.at_s > kSilence) continue;
@@ -85,8 +85,9 @@ Health RingWatch::worst(double now_s) const {
     const bool starting = health.mode == LoopMode::kStarting;
     if (starting && now_s - begun_s_ <= kGrace) continue;
     if (gravity(health.mode) <= gravity(worst.mode) || health.mode == LoopMode::kFinished) continue;
-    worst = {health.mode,
-             node + ": " + (starting ? sentence({health.mode, health.words, {}}) : health.words),
+    worst = {health.mode, health.code == EventCode::kNone ? EventCode::kNodeDegraded : health.code,
+             node + ": " +
+                 (starting ? sentence({health.mode, health.code, health.words, {}}) : health.words),
              health.missing};
   }
   return worst;

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
+
 namespace fpc {
 
 /// Values are those of LoopState.msg; the larger, the worse, but for finished.
@@ -24,6 +26,7 @@ const char* wordOf(LoopMode mode);
 
 struct Health {
   LoopMode mode{LoopMode::kStarting};
+  EventCode code{EventCode::kNone};  ///< of the reason; kNone: all is well
   std::string words;                 ///< the reason
   std::vector<std::string> missing;  ///< nodes that are waited for
 };

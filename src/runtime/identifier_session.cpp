@@ -67,7 +67,8 @@ void IdentifierSession::identify(Due& due) {
   try {
     due.job = job(params_.structure, 0, params_.validation_share);
   } catch (const InputError& error) {
-    due.refusal = std::string("identification: ") + error.what();
+    due.refusal = error.what();
+    due.refused = EventCode::kIdentificationFailed;
   }
 }
 
@@ -75,9 +76,7 @@ void IdentifierSession::learn(Due& due) {
   try {
     due.model = &use(checked(learner_->model()));
   } catch (const InputError& error) {  // counted
-    due.refusal = refused_ <= kRefusalsInWords
-                      ? error.what()
-                      : "a model learned online is refused, as others before it";
+    due.refusal = error.what();
   }
 }
 

@@ -29,8 +29,7 @@ class IdentifierSession {
  public:
   explicit IdentifierSession(const LoopFile& loop);
 
-  static constexpr double kKeptPatience = 1.0;          ///< [s] for a plant that keeps models
-  static constexpr std::uint64_t kRefusalsInWords = 5;  ///< of learned models; later ones in short
+  static constexpr double kKeptPatience = 1.0;  ///< [s] for a plant that keeps models
 
   /// The plant has announced a run, at this time [s] of any steady clock.
   void announce(std::uint64_t run_id, double now_s = 0.0);
@@ -49,9 +48,10 @@ class IdentifierSession {
   /// What a sample asks for.
   struct Due {
     Arrival arrival{Arrival::kOld};
-    const TsModel* model{nullptr};           ///< learned online: to be handed over now
-    std::string refusal{};                   ///< why there is no model, or no job
-    std::optional<IdentificationJob> job{};  ///< model.identify.after: to be identified, once
+    const TsModel* model{nullptr};                ///< learned online: to be handed over now
+    std::string refusal{};                        ///< why there is no model, or no job
+    EventCode refused{EventCode::kModelRefused};  ///< of a refusal
+    std::optional<IdentificationJob> job{};       ///< model.identify.after: to be identified, once
   };
   /// @throws InputError naming a wrong size.
   Due take(const Measurement& measurement);

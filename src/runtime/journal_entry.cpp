@@ -1,16 +1,18 @@
 #include "runtime/journal_entry.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 namespace fpc {
 namespace {
 
 // Doubles whose bytes hold words.
-constexpr std::size_t kTrouble = 16, kRemark = (kMostRemark + 1) / sizeof(double);
+constexpr std::size_t kTrouble = 16, kEvents = (kMostOfEvents + 1) / sizeof(double);
 constexpr std::uint64_t kMostAbout = 1U << 26U;  // bytes
-constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '5'};
+constexpr char kMagic[8] = {'f', 'm', 'b', 'p', 'c', 'r', '0', '6'};
 
 /// Numbers one after the other; a whole number of 64 bits travels by its bits.
 class Packer {
@@ -68,6 +70,28 @@ class Unpacker {
   const double* at_;
 };
 
+/// "code<tab>signal<tab>text", as many whole lines as there is room for.
+std::string linesOf(const std::vector<Event>& events) {
+  std::string lines;
+  for (const Event& event : events) {
+    const std::string line =
+        std::string(kindOf(event.code).name) + '\t' + event.signal + '\t' + event.text + '\n';
+    if (lines.size() + line.size() > kMostOfEvents) break;
+    lines += line;
+  }
+  return lines;
+}
+
+std::vector<Event> eventsIn(const std::string& lines, std::uint32_t step) {
+  std::vector<Event> events;
+  std::istringstream stream(lines);
+  for (std::string code, signal, text; std::getline(stream, code, '\t') &&
+                                       std::getline(stream, signal, '\t') &&
+                                       std::getline(stream, text);)
+    events.push_back({eventCode(code), signal, text, step, step, 1});
+  return events;
+}
+
 std::uint64_t marksOf(const SampleRecord& s) {
   return std::uint64_t{s.has_measurement} | std::uint64_t{s.has_state} << 1 |
          std::uint64_t{s.has_tracking} << 2 | std::uint64_t{s.has_base} << 3 |
@@ -86,7 +110,13 @@ JournalSizes::JournalSizes(const RecordLayout& layout)
 
 std::size_t JournalSizes::entry() const {
   return 4 + n_y + n_d + n_u + 1 + n_x + n_y + n_true + 2 + 2 * n_y + 2 * n_u + 5 + n_u + kTrouble +
-         kRemark;
+         kEvents;
+}
+
+void keepWhatFits(std::vector<Event>& events) {
+  if (events.empty()) return;
+  const std::string lines = linesOf(events);
+  events.resize(static_cast<std::size_t>(std::count(lines.begin(), lines.end(), '\n')));
 }
 
 JournalHeader headerOf(const RecordLayout& layout, std::uint64_t run_id) {
@@ -147,7 +177,7 @@ std::vector<double> packEntry(const SampleRecord& s, const JournalSizes& n) {
   p.bits(s.report.active_rows);
   p.vector(s.report.perturbation, n.n_u);
   p.text(s.state.trouble, kTrouble);
-  p.text(s.remark, kRemark);
+  p.text(linesOf(s.events), kEvents);
   return p.take();
 }
 
@@ -190,7 +220,7 @@ SampleRecord unpackEntry(const double* at, const JournalSizes& n) {
   s.report.active_rows = static_cast<std::uint32_t>(u.bits());
   s.report.perturbation = u.vector(n.n_u);
   s.state.trouble = u.text(kTrouble);
-  s.remark = u.text(kRemark);
+  s.events = eventsIn(u.text(kEvents), header.step);
   return s;
 }
 

@@ -23,7 +23,9 @@ struct JournalHeader {
 };
 static_assert(sizeof(JournalHeader) == 80, "the header has no holes");
 
-constexpr std::size_t kMostRemark = 511;  ///< letters of a sample's remarks that an entry holds
+constexpr std::size_t kMostOfEvents = 511;  ///< letters that an entry holds
+/// Those for which an entry has room, so that a run on disk and one in memory say the same.
+void keepWhatFits(std::vector<Event>& events);
 
 struct JournalSizes {
   std::size_t n_y, n_d, n_u, n_x, n_true;

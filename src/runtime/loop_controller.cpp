@@ -4,7 +4,6 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/factory.hpp"
-#include "runtime/remark_lines.hpp"
 
 namespace fpc {
 
@@ -28,7 +27,7 @@ const ControlAction& LoopController::optimize() {
 void LoopController::learn(const Measurement& now) {
   if (!loop_.has_identify) return;
   const IdentifierSession::Due due = identifier_->take(now);
-  if (!due.refusal.empty()) fail(due.refusal);
+  if (!due.refusal.empty()) say(due.refused, due.refusal);
   use(due.model);
   if (due.job) run(*due.job);
 }
@@ -47,7 +46,7 @@ void LoopController::run(const IdentificationJob& job) {
     if (hooks_.identified) hooks_.identified(model);
     use(&model);
   } catch (const InputError& error) {
-    fail(std::string("identification: ") + error.what());
+    say(EventCode::kIdentificationFailed, error.what());
   }
 }
 
@@ -56,7 +55,7 @@ void LoopController::use(const TsModel* model) {
   try {
     session_.setModel(*model);
   } catch (const InputError& error) {
-    fail(error.what());
+    say(EventCode::kModelRefused, error.what());
   }
 }
 
@@ -70,13 +69,14 @@ void LoopController::begin(const TsModel* model) {
   }
 }
 
-/// Said at once, recorded with the next sample that is answered, from which on the model was to be
-/// used.
-void LoopController::fail(const std::string& words) {
-  failures_ = joinedLines(failures_, inOneLine(words));
-  if (hooks_.failed) hooks_.failed(words);
+void LoopController::say(EventCode code, const std::string& text) {
+  pending_.push_back(eventOf({code, text.c_str()}, step_));
+  if (hooks_.said) hooks_.said(pending_.back());
 }
 
-std::string LoopController::takeFailures() { return std::exchange(failures_, {}); }
+std::vector<Event> LoopController::takeEvents() {
+  for (Event& event : pending_) event.first = event.last = step_;
+  return std::exchange(pending_, {});
+}
 
 }  // namespace fpc

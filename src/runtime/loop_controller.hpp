@@ -6,8 +6,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/loop_file.hpp"
+#include "fmbpc/base/event.hpp"
 #include "runtime/identifier_session.hpp"
 #include "runtime/session.hpp"
 
@@ -16,8 +18,9 @@ namespace fpc {
 struct LoopControllerHooks {
   /// A model that was identified between two samples; may be empty.
   std::function<void(const TsModel& model)> identified;
-  /// A model that could not be had, or used, said at once; may be empty.
-  std::function<void(const std::string& words)> failed;
+  /// A model that could not be had or used, or what an operator asked in vain, said at once; may be
+  /// empty.
+  std::function<void(const Event& event)> said;
 };
 
 /// Sample k is answered and learned from; a model made from it is used from sample k + 1 on, as
@@ -41,8 +44,11 @@ class LoopController {
   /// An identification that an operator asks for, of the newest rows (0: all).
   /// @throws InputError in a loop without model.identify.
   void identify(int window);
-  /// What went wrong with models since the last call, a line each.
-  std::string takeFailures();
+  /// The sample that is answered next, or was just now: of what is said meanwhile.
+  void turnTo(std::uint32_t step) { step_ = step; }
+  void say(EventCode code, const std::string& text);
+  /// What was said since the last call, of the present sample: from it on it is in force.
+  std::vector<Event> takeEvents();
 
   ControllerSession& session() { return session_; }
   const ControllerSession& session() const { return session_; }
@@ -51,14 +57,14 @@ class LoopController {
   void begin(const TsModel* model);
   void run(const IdentificationJob& job);
   void use(const TsModel* model);
-  void fail(const std::string& words);
 
   const LoopFile& loop_;
   LoopControllerHooks hooks_;
   ControllerSession session_;
   std::optional<OptimizerSession> optimizer_;
   std::optional<IdentifierSession> identifier_;
-  std::string failures_;
+  std::vector<Event> pending_;
+  std::uint32_t step_{};
 };
 
 }  // namespace fpc

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "base/same_sample.hpp"
-#include "runtime/remark_lines.hpp"
 
 namespace fpc {
 
@@ -16,8 +15,8 @@ void ModelInbox::put(TsModel model, const StepHeader& made_from) {
 
 void ModelInbox::hear(const IdentifierWord& word) {
   if (word.header.run_id != run_id_) return;
-  if (!word.remark.empty()) {
-    if (remarks_.size() < kMostRemarks) remarks_.push_back(word);
+  if (!word.events.empty()) {
+    if (words_.size() < kMostEvents) words_.push_back(word);
     return;
   }
   word_ = word.header;
@@ -61,17 +60,20 @@ std::vector<TsModel> ModelInbox::take(const StepHeader& next) {
   return due;
 }
 
-std::string ModelInbox::takeRemarks(const StepHeader& next) {
-  std::string due;
+std::vector<Event> ModelInbox::takeEvents(const StepHeader& next) {
+  std::vector<Event> due;
   std::deque<IdentifierWord> later;
-  for (IdentifierWord& word : remarks_)
+  for (IdentifierWord& word : words_)
     if (word.header.run_id != next.run_id)
       continue;  // of a run that is over
     else if (belongsBefore(word.header, next))
-      due = joinedLines(due, word.remark);
+      for (Event& event : word.events) {
+        event.first = event.last = next.step;
+        due.push_back(std::move(event));
+      }
     else
       later.push_back(std::move(word));
-  remarks_ = std::move(later);
+  words_ = std::move(later);
   return due;
 }
 

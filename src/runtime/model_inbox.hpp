@@ -18,14 +18,13 @@ namespace fpc {
 struct IdentifierWord {
   StepHeader header;
   bool model{};  ///< it has handed over a model made from this sample
-  /// Not empty: this is no such word (one follows), but what went wrong at this sample, in one
-  /// line.
-  std::string remark{};
+  /// Not empty: this is no such word (one follows), but what went wrong at this sample.
+  std::vector<Event> events{};
 };
 
 class ModelInbox {
  public:
-  static constexpr std::size_t kMostRemarks = 20;  ///< that wait; later ones are dropped
+  static constexpr std::size_t kMostEvents = 20;  ///< that wait; later ones are dropped
 
   /// `in_step`: no sample is answered before the identifier has done with the one before it
   /// (lockstep, and the loop identifies). Otherwise models are used when they come.
@@ -42,8 +41,8 @@ class ModelInbox {
   /// Models to be used before `next` is answered, in their order. They are taken out; `next` of run
   /// 0 stands for a controller that has answered nothing yet.
   std::vector<TsModel> take(const StepHeader& next);
-  /// Remarks of the samples before `next`, one a line; taken out.
-  std::string takeRemarks(const StepHeader& next);
+  /// Events of the samples before `next`; taken out, and then of it.
+  std::vector<Event> takeEvents(const StepHeader& next);
 
  private:
   bool belongsBefore(const StepHeader& made_from, const StepHeader& next) const;
@@ -60,7 +59,7 @@ class ModelInbox {
   bool in_step_;
   std::uint64_t run_id_{};
   std::deque<Item> items_;
-  std::deque<IdentifierWord> remarks_;
+  std::deque<IdentifierWord> words_;
   std::optional<StepHeader> word_;  // the latest
   std::optional<Used> used_;        // the model taken last
   std::optional<StepHeader> owed_;  // a model that was announced and has not come

@@ -71,17 +71,13 @@ Summary summaryOf(const Json& json) {
   summary.move_violations = violations.at("move");
   summary.output_violations = violations.at("output");
   summary.actuator_clips = json.at("actuator_clips");
-  summary.repaired_cells = json.at("repaired_cells");
-  summary.implausible_cells = json.value("implausible_cells", std::uint64_t{0});
   summary.sources.assign(1, 0);
   if (json.contains("sources"))
     for (const auto& [name, count] : json.at("sources").items()) summary.sources.push_back(count);
-  if (json.contains("remarks"))
-    for (const Json& remark : json.at("remarks"))
-      summary.remarks.push_back({remark.at("words"), remark.at("samples"), remark.at("first")});
-  if (json.contains("locked"))
-    for (const Json& lock : json.at("locked"))
-      summary.locked.push_back({lock.at("input"), lock.at("limit") == "upper", lock.at("samples")});
+  if (json.contains("events"))
+    for (const Json& event : json.at("events"))
+      summary.events.push_back({eventCode(event.at("code")), event.at("signal"), event.at("text"),
+                                event.at("first"), event.at("last"), event.at("count")});
   summary.outside_model = json.value("outside_model", std::uint64_t{0});
   if (json.contains("clp")) readClp(json.at("clp"), summary);
   return summary;

@@ -51,7 +51,6 @@ void conclude(RunRecord& record, bool nothing_missing) {
   for (const SampleRecord& sample : record.samples) tally.add(sample);
   record.failed_samples = tally.failed_samples;
   record.trouble = tally.trouble;
-  record.remarks = tally.remarks;
   record.complete = nothing_missing && record.failed_samples == 0;
 }
 

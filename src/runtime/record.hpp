@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 
 namespace fpc {
@@ -19,16 +20,8 @@ struct SampleRecord {
   ControlAction base;
   ControlAction action;  ///< what the plant was told (equals base without an optimizer)
   SolverReport report;
-  std::string remark;  ///< what did not go as asked: the controller's (SampleRemarks), the plant's;
-                       ///< one a line
+  std::vector<Event> events;  ///< of the controller, then of the plant
   bool has_measurement{}, has_state{}, has_tracking{}, has_base{}, has_action{}, has_report{};
-};
-
-/// What a controller said of its own answers, and setpoints that were clamped (SampleRemarks).
-struct RunRemark {
-  std::string words;
-  std::uint32_t samples{};  ///< at which it was said; 0: of the whole run
-  std::uint32_t first{};    ///< of them
 };
 
 struct RunRecord {
@@ -41,10 +34,10 @@ struct RunRecord {
       false};  ///< the final sample came, nothing is missing, and the plant moved as asked
   std::uint32_t failed_samples{};  ///< samples over which the plant could not be moved and was held
   std::string trouble;             ///< of the first of them: "sample 17: REASON"
-  std::vector<RunRemark> remarks;  ///< of the controller, by words
+  std::vector<Event> events;       ///< besides those of the samples
 };
 
-/// Counts failed samples, gathers remarks, and says whether the run is complete: nothing missing,
+/// Counts failed samples, and says whether the run is complete: nothing missing,
 /// nothing failed.
 void conclude(RunRecord& record, bool nothing_missing);
 

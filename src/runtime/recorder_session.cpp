@@ -5,21 +5,12 @@
 
 #include "runtime/journal_entry.hpp"
 #include "runtime/missing_parts.hpp"
-#include "runtime/remark_lines.hpp"
 
 namespace fpc {
 namespace {
 
 constexpr std::size_t kMostGaps = 100;  // that are named
 constexpr std::uint32_t kBelieved = 5;  // measurements far ahead that follow each other
-
-/// The whole lines for which a journal has room, so that a run on disk and one in memory say the
-/// same.
-std::string kept(const std::string& remark) {
-  if (remark.size() <= kMostRemark) return remark;
-  const std::size_t end = remark.rfind('\n', kMostRemark);
-  return remark.substr(0, end == std::string::npos ? kMostRemark : end);
-}
 
 }  // namespace
 
@@ -126,18 +117,20 @@ void RecorderSession::receive(const Measurement& m) {
   });
 }
 
-// The controller's remarks before the plant's, whoever was heard first.
-void RecorderSession::receive(const PlantState& s, const std::string& remark) {
-  collect(s, &SampleRecord::has_state, [remark](SampleRecord& sample, const PlantState& item) {
+// The controller's events before the plant's, whoever was heard first.
+void RecorderSession::receive(const PlantState& s, const std::vector<Event>& events) {
+  collect(s, &SampleRecord::has_state, [events](SampleRecord& sample, const PlantState& item) {
     sample.state = item;
-    sample.remark = kept(joinedLines(sample.remark, remark));
+    sample.events.insert(sample.events.end(), events.begin(), events.end());
+    keepWhatFits(sample.events);
   });
 }
 
-void RecorderSession::receive(const Tracking& t, const std::string& remark) {
-  const auto place = [this, remark](SampleRecord& sample, const Tracking& item) {
+void RecorderSession::receive(const Tracking& t, const std::vector<Event>& events) {
+  const auto place = [this, events](SampleRecord& sample, const Tracking& item) {
     sample.tracking = item;
-    sample.remark = kept(joinedLines(remark, sample.remark));
+    sample.events.insert(sample.events.begin(), events.begin(), events.end());
+    keepWhatFits(sample.events);
     for (const Eigen::Index i : layout_.without_setpoint)
       sample.tracking.setpoint[i] = sample.tracking.reference[i] = kNaN;
   };

@@ -54,8 +54,8 @@ class RecorderSession {
   /// A run of which the samples before this one are recorded already (a recorder that comes back).
   void resume(std::uint64_t run_id, std::uint32_t next_step);
   void receive(const Measurement& m);
-  void receive(const PlantState& s, const std::string& remark = {});  ///< likewise
-  void receive(const Tracking& t, const std::string& remark = {});    ///< one remark a line
+  void receive(const PlantState& s, const std::vector<Event>& events = {});  ///< likewise
+  void receive(const Tracking& t, const std::vector<Event>& events = {});
   void receiveBase(const ControlAction& a);
   void receiveAction(const ControlAction& a);
   void receive(const SolverReport& r);

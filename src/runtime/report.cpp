@@ -82,14 +82,17 @@ Json limitsOf(const Summary& summary) {
   return {{"inputs", inputs}, {"outputs", outputs}};
 }
 
-/// The remarks of a record come first; what they say already is not said again.
-void mergeRemarks(const std::vector<RunRemark>& first, std::vector<RunRemark>& remarks) {
-  std::vector<RunRemark> merged = first;
-  for (RunRemark& remark : remarks)
-    if (std::none_of(first.begin(), first.end(),
-                     [&](const RunRemark& r) { return r.words == remark.words; }))
-      merged.push_back(std::move(remark));
-  remarks = std::move(merged);
+Json eventsOf(const std::vector<Event>& events) {
+  Json list = Json::array();
+  for (const Event& event : events)
+    list.push_back({{"code", kindOf(event.code).name},
+                    {"severity", nameOf(event.severity())},
+                    {"signal", event.signal},
+                    {"first", event.first},
+                    {"last", event.last},
+                    {"count", event.count},
+                    {"text", event.text}});
+  return list;
 }
 
 }  // namespace
@@ -120,18 +123,8 @@ std::string toJson(const Summary& summary) {
   json["sources"] = Json::object();
   for (std::size_t i = 1; i < summary.sources.size(); ++i)
     json["sources"][kSourceNames[i]] = summary.sources[i];
-  json["remarks"] = Json::array();
-  for (const RunRemark& remark : summary.remarks)
-    json["remarks"].push_back(
-        {{"words", remark.words}, {"samples", remark.samples}, {"first", remark.first}});
-  json["locked"] = Json::array();
-  for (const LockUp& lock : summary.locked)
-    json["locked"].push_back({{"input", lock.input},
-                              {"limit", lock.upper ? "upper" : "lower"},
-                              {"samples", lock.samples}});
+  json["events"] = eventsOf(summary.events);
   for (const auto& [name, value] : summary.consumption) json[name] = value;
-  json["repaired_cells"] = summary.repaired_cells;
-  json["implausible_cells"] = summary.implausible_cells;
   json["outside_model"] = summary.outside_model;
   json["limits"] = limitsOf(summary);
   return json.dump(2);
@@ -174,7 +167,7 @@ Summary summarize(const LoopFile& loop, const RunRecord& record, double wall_s) 
   summary.complete = record.complete;
   summary.failed_samples = record.failed_samples;
   summary.trouble = record.trouble;
-  mergeRemarks(record.remarks, summary.remarks);
+  summary.events.insert(summary.events.end(), record.events.begin(), record.events.end());
   return summary;
 }
 

@@ -21,13 +21,6 @@ struct WindowIndices {
   std::uint64_t samples{};
 };
 
-/// An input that stood at one of its limits from some sample to the end of the run.
-struct LockUp {
-  std::string input;
-  bool upper{};
-  std::uint32_t samples{};
-};
-
 struct Summary {
   std::string loop;
   std::string title;
@@ -50,14 +43,10 @@ struct Summary {
   std::uint64_t clp_failed{};  ///< solves without a usable result for another reason
   double clp_median_us{}, clp_p99_us{};
   std::vector<std::uint64_t> sources;  ///< count of actions per ActionSource (index = value)
-  std::uint64_t
-      repaired_cells{};  ///< missing cells of the influent record that were held or interpolated
-  std::uint64_t implausible_cells{};  ///< of that record, clipped or filled
-  std::uint32_t failed_samples{};     ///< samples over which the plant could not be moved
-  std::string trouble;                ///< of the first of them, with its number
-  std::vector<RunRemark> remarks;     ///< of the controller
-  std::vector<LockUp> locked;         ///< of at least a tenth of the run and ten samples
-  InputLimits limits;                 ///< of the inputs
+  std::uint32_t failed_samples{};      ///< samples over which the plant could not be moved
+  std::string trouble;                 ///< of the first of them, with its number
+  std::vector<Event> events;           ///< what went otherwise than asked
+  InputLimits limits;                  ///< of the inputs
   std::vector<double> output_lower, output_upper;  ///< limits behind output_violations
 };
 
@@ -72,9 +61,8 @@ Summary readSummary(const std::string& file);
 std::string troubleOf(const Summary& summary);
 /// True if every action was held or the fallback.
 bool neverControlled(const Summary& summary);
-/// Everything that did not go as asked, a line each, beginning with the loop's name: samples
-/// failed, held, on the fallback, clipped, locked, cells filled.
-std::vector<std::string> remarksOf(const Summary& summary);
+/// Its events, a line each, beginning with the loop's name.
+std::vector<std::string> eventLines(const Summary& summary);
 std::string toTable(const std::vector<Summary>& summaries);
 /// Of runs of one experiment: a line each with what its title adds to the others', the error of
 /// what all of them control, and the movement.

@@ -6,16 +6,11 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/command_player.hpp"
-#include "runtime/cut_offsets.hpp"
 #include "runtime/factory.hpp"
-#include "runtime/forced_inputs.hpp"
-#include "runtime/late_lines.hpp"
 #include "runtime/loop_controller.hpp"
-#include "runtime/operator_notes.hpp"
 #include "runtime/plant_session.hpp"
 #include "runtime/recorder_session.hpp"
-#include "runtime/remark_lines.hpp"
-#include "runtime/sample_remarks.hpp"
+#include "runtime/run_events.hpp"
 
 namespace fpc {
 namespace {
@@ -31,18 +26,15 @@ class Ring {
         made_(std::make_unique<SimulatedProcess>(makeSimulation(loop))),
         simulation_(made_->simulation()),
         plant_(std::move(made_), lockstepPolicy(loop)),
-        controller_(loop, {options.identified,
-                           [this](const std::string& words) { tell(present_, words); }}),
+        controller_(loop, {options.identified, options.said}),
         player_(options.commands, simulation_.clock()),
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
-        remarks_(loop),
-        forced_(simulation_.info()),
-        cut_(simulation_.description().disturbances),
-        targets_{simulation_, controller_.session(),
-                 [this](int window) { controller_.identify(window); },
-                 [this](std::uint32_t step, const std::string& words) { refuse(step, words); }} {
+        targets_{
+            simulation_, controller_.session(),
+            [this](int window) { controller_.identify(window); },
+            [this](const std::string& why) { controller_.say(EventCode::kCommandRefused, why); }} {
     plant_.begin(kRunId);
     recorder_.announce(kRunId);
     player_.begin(targets_);
@@ -53,16 +45,15 @@ class Ring {
   bool step() {
     const Measurement now = simulation_.measurement();
     present_ = now.header.step;
+    controller_.turnTo(present_);
     player_.advance(present_, targets_);
     recorder_.receive(now);
-    forced_.look(now.header.step, simulation_.effects());
-    cut_.look(simulation_);
     recorder_.receive(simulation_.state(),
-                      joinedLines(late(), joinedLines(forced_.lines(), cut_.lines())));
+                      joined(simulation_.events(),
+                             delayEvents(loop_, loop_.simulation.output_delay_s, present_)));
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
-    recorder_.receive(answer.tracking, joinedLines(remarks_.look(controller_.session()),
-                                                   controller_.takeFailures()));
+    recorder_.receive(answer.tracking, joined(answer.events, controller_.takeEvents()));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
       plant_.receive(optimize());
@@ -75,19 +66,14 @@ class Ring {
   RunRecord take() {
     recorder_.close();
     conclude(record_, recorder_.complete());
-    const std::string missed = controller_.takeFailures();
-    if (!missed.empty()) notes_.failed(present_, inOneLine(missed));  // at the very end
-    for (RunRemark& note : notes_.remarks()) record_.remarks.push_back(std::move(note));
+    record_.events = controller_.takeEvents();  // of the very end
     const std::string unplayed = player_.unplayed();
-    if (!unplayed.empty()) record_.remarks.push_back({unplayed, 0, 0});
+    if (!unplayed.empty())
+      record_.events.push_back(eventOf(EventCode::kCommandsUnplayed, unplayed));
     return std::move(record_);
   }
 
  private:
-  std::string late() const {
-    return present_ == 0 ? lateLines(loop_, loop_.simulation.output_delay_s) : "";
-  }
-
   const ControlAction& optimize() {
     const ControlAction& action = controller_.optimize();
     if (controller_.hasOptimizer()) {
@@ -95,20 +81,6 @@ class Ring {
       recorder_.receive(controller_.report());
     }
     return action;
-  }
-
-  void tell(std::uint32_t step, const std::string& words) const {
-    remark("sample " + std::to_string(step) + ": " + words);
-  }
-
-  /// What an operator asked in vain is told at once and kept.
-  void refuse(std::uint32_t step, const std::string& words) {
-    notes_.refused(step, words);
-    tell(step, words);
-  }
-
-  void remark(const std::string& words) const {
-    if (options_.remark) options_.remark(words);
   }
 
   const LoopFile& loop_;
@@ -121,10 +93,6 @@ class Ring {
   CommandPlayer player_;
   RunRecord record_;
   RecorderSession recorder_;
-  SampleRemarks remarks_;
-  ForcedInputs forced_;
-  CutOffsets cut_;
-  OperatorNotes notes_;
   CommandTargets targets_;
 };
 

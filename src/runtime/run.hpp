@@ -16,9 +16,9 @@ struct RunOptions {
   std::function<void(std::uint32_t step, std::uint32_t samples)> progress;  ///< may be empty
   std::function<bool()> stop;  ///< true ends the run early; may be empty
   std::vector<TimedCommand> commands;
-  /// A model that was identified in the run, and what was refused; may be empty.
+  /// A model that was identified in the run, and what was refused or failed; may be empty.
   std::function<void(const TsModel& model)> identified;
-  std::function<void(const std::string& words)> remark;
+  std::function<void(const Event& event)> said;
 };
 
 /// Sample k is answered, recorded and learned from; a model made from it (model.identify, online

@@ -6,34 +6,13 @@
 namespace fpc {
 namespace {
 
-constexpr std::size_t kMostRemarks = 20;
 constexpr double kSmallest = 1e-4, kPerDecade = 1000.0;
 constexpr std::size_t kBins = 14000;  // fourteen decades
 
 }  // namespace
 
-void RunTally::keep(const std::string& words) {
-  const auto known = std::find_if(remarks.begin(), remarks.end(),
-                                  [&](const RunRemark& remark) { return remark.words == words; });
-  if (known != remarks.end())
-    ++known->samples;
-  else if (remarks.size() < kMostRemarks)
-    remarks.push_back({words, 1, step_});
-  else if (remarks.size() == kMostRemarks)
-    remarks.push_back({"more remarks, not listed", 1, step_});
-  else
-    ++remarks.back().samples;
-}
-
 void RunTally::add(const SampleRecord& sample) {
-  const std::string& lines = sample.remark;
-  for (std::size_t from = 0; from < lines.size();) {
-    const std::size_t to = std::min(lines.find('\n', from), lines.size());
-    keep(lines.substr(from, to - from));
-    from = to + 1;
-  }
   if (!sample.state.trouble.empty() && failed_samples++ == 0) trouble = sample.state.trouble;
-  ++step_;
 }
 
 LogHistogram::LogHistogram() : bins_(kBins) {}

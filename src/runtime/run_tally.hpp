@@ -1,4 +1,4 @@
-// What is gathered of a run sample by sample: remarks, and samples over which the plant was held.
+// What is gathered of a run sample by sample: samples over which the plant was held, solve times.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,8 @@ class RunTally {
  public:
   void add(const SampleRecord& sample);
 
-  std::vector<RunRemark> remarks;  ///< the first twenty, by words
   std::uint32_t failed_samples{};
   std::string trouble;  ///< of the first of them
-
- private:
-  void keep(const std::string& words);
-
-  std::uint32_t step_{};
 };
 
 /// How the values of a run are spread, to a thousandth of a decade: quantiles without the values.

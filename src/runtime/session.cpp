@@ -5,6 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
+#include "fmbpc/base/text.hpp"
 #include "fmbpc/model/model_match.hpp"
 #include "model/gain_sign.hpp"
 #include "model/model_check.hpp"
@@ -33,6 +34,20 @@ std::string missingSamples(std::uint32_t first, std::uint32_t last) {
   return "samples " + std::to_string(first) + ".." + std::to_string(last) + " missing";
 }
 
+/// By output; empty without limits.
+std::vector<std::string> setpointTexts(const SetpointParams& setpoint, const PlantInfo& plant) {
+  std::vector<std::string> texts(plant.outputs.size());
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double lower = k < setpoint.lower.size() ? setpoint.lower[k] : -kInfinity;
+    const double upper = k < setpoint.upper.size() ? setpoint.upper[k] : kInfinity;
+    if (std::isfinite(lower) || std::isfinite(upper))
+      texts[i] = "a setpoint of " + plant.outputs[i].name + " was asked beyond its limits, " +
+                 rangeText(lower, upper, plant.outputs[i].unit) + ", and clamped";
+  }
+  return texts;
+}
+
 }  // namespace
 
 ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
@@ -40,6 +55,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
                                      Vector initial_input, PlantInfo plant, double max_pole,
                                      PlausibilityParams plausibility)
     : controller_(std::move(controller)),
+      setpoint_texts_(setpointTexts(setpoint, plant)),
       setpoint_(std::move(setpoint), plant, clockOf(plant)),
       limits_(std::move(limits)),
       plant_(std::move(plant)),
@@ -54,6 +70,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
   limits_.validate(n_u);
   require(last_input_.size() == n_u && last_input_.allFinite(), "actuator.initial",
           std::to_string(n_u) + " finite numbers");
+  manual_texts_.resize(plant_.inputs.size());
   manual_input_ = last_input_;
   seen_.outputs = Vector::Zero(countOf(plant_.outputs));
   seen_.disturbances = Vector::Zero(countOf(plant_.disturbances));
@@ -114,7 +131,10 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   if (arrival == Arrival::kResync)
     arrival_reason_ = "back to sample " + std::to_string(step) + ", where the plant is";
   if (arrival == Arrival::kNewRun) beginAnew();
-  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) setpoint_.anchor(m.header);
+  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) {
+    setpoint_.anchor(m.header);
+    begun_ = step > 0;
+  }
 
   answer_.base.header = answer_.tracking.header = m.header;
   answer_.has_action = !m.final;
@@ -128,6 +148,7 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
 
 void ControllerSession::process(const Measurement& m) {
   fell_back_ = false;
+  output_.events.clear();
   if (needsReset(arrival_)) forgetSamples();
   lookAtMoves(m);
   const Verdict verdict =
@@ -141,41 +162,35 @@ void ControllerSession::process(const Measurement& m) {
   else
     interrupt();
   if (unreleased_) {
-    hold(m, "joined a run without knowing what its operator asked: held until ~manual is called");
+    hold(m, {EventCode::kOperatorUnknown});
     interruption_ = "released";
   } else if (manual_ && m.input_applied.allFinite()) {
     sendManual(accepted);
     interruption_ = "back from manual";
   } else if (!takes_actions_) {
-    hold(m,
-         "the plant takes no actions: its own hand has the input, its link is lost, or no input "
-         "follows its command");
+    hold(m, {EventCode::kPlantLocal});
     interruption_ = "the plant takes actions again";
   } else if (!m.input_applied.allFinite()) {
-    hold(m, "the applied input is not finite: input held");
+    hold(m, {EventCode::kSignalMissing, "the applied input is not finite: input held"});
     interruption_ = kNotFinite;
-  } else if (const std::string* bad = imposing(DoubtAction::kFallback)) {
-    fallBack(m, bad->c_str());
+  } else if (const Notice bad = imposing(DoubtAction::kFallback); bad.code != EventCode::kNone) {
+    fallBack(m, bad);
     interruption_ = kDoubted;
   } else if (verdict == Verdict::kFallback) {
-    fallBack(m, plausibility_.words());
+    fallBack(m, plausibility_.notice());
     interruption_ = kDoubted;
-  } else if (const std::string* doubt = imposing(DoubtAction::kHold)) {
-    hold(m, doubt->c_str());
+  } else if (const Notice doubt = imposing(DoubtAction::kHold); doubt.code != EventCode::kNone) {
+    hold(m, doubt);
     interruption_ = kDoubted;
   } else if (!usable) {
-    hold(m, plausibility_.words());
+    hold(m, plausibility_.notice());
     interruption_ = finite ? kDoubted : kNotFinite;
   } else {
     runLaw(seen(accepted));
-    if (verdict == Verdict::kRepaired) output_.remark = plausibility_.words();
+    if (verdict == Verdict::kRepaired) output_.events.add(plausibility_.notice());
   }
   if (interruption_ != nullptr && usable) controller_->lookOn(accepted);
-  if (remark_due_ && *output_.remark == '\0') {
-    output_.remark = model_remark_.c_str();
-    remark_due_ = false;
-  }
-  if (*output_.remark == '\0') output_.remark = reaction().c_str();
+  gatherEvents();
   answered();
 }
 
@@ -205,16 +220,39 @@ bool ControllerSession::foresee(const Measurement& m, Eigen::Ref<Vector> outputs
 
 void ControllerSession::doubtPlant(const std::string& difference) { plant_doubt_ = difference; }
 
-const std::string& ControllerSession::reaction() const {
-  static const std::string nothing;
-  return reaction_ ? reaction_->words() : nothing;
+Notice ControllerSession::reaction() const { return reaction_ ? reaction_->notice() : Notice(); }
+
+/// Why the loop file wants this done now; kNone if it does not.
+Notice ControllerSession::imposing(DoubtAction action) const {
+  const PlausibilityParams& params = plausibility_.params();
+  if (params.plant_bounds == action && !plant_doubt_.empty())
+    return {EventCode::kPlantDiffers, plant_doubt_.c_str()};
+  return params.reaction == action ? reaction() : Notice();
 }
 
-/// Why the loop file wants this done now; none if it does not.
-const std::string* ControllerSession::imposing(DoubtAction action) const {
-  const PlausibilityParams& params = plausibility_.params();
-  if (params.plant_bounds == action && !plant_doubt_.empty()) return &plant_doubt_;
-  return params.reaction == action && !reaction().empty() ? &reaction() : nullptr;
+/// What is said of this sample; nothing of the final one, which has no action.
+void ControllerSession::gatherEvents() {
+  std::vector<Event>& events = answer_.events;
+  events.clear();
+  if (!answer_.has_action) return;
+  Notices& said = output_.events;
+  if (const EventCode code = std::exchange(model_event_, EventCode::kNone);
+      code != EventCode::kNone)
+    said.add({code, model_text_.c_str()});
+  if (const Notice away = reaction(); away.code != EventCode::kNone && !said.has(away.code))
+    said.add(away);
+  for (std::size_t i = 0; i < manual_texts_.size(); ++i)
+    if (manual_ && !manual_texts_[i].empty())
+      said.add({EventCode::kInputClamped, manual_texts_[i].c_str(), plant_.inputs[i].name.c_str()});
+  for (std::size_t i = 0; controller_->followsSetpoint() && i < setpoint_texts_.size(); ++i)
+    if (!setpoint_texts_[i].empty() && setpoint_.isClamped(static_cast<Eigen::Index>(i)))
+      said.add({EventCode::kSetpointClamped, setpoint_texts_[i].c_str(),
+                plant_.outputs[i].name.c_str()});
+  for (const Notice& notice : said) events.push_back(eventOf(notice, answer_.tracking.header.step));
+}
+
+void ControllerSession::withoutSetpoint(const std::vector<Eigen::Index>& outputs) {
+  for (const Eigen::Index i : outputs) setpoint_texts_[static_cast<std::size_t>(i)].clear();
 }
 
 void ControllerSession::watchReaction(const Measurement& m) {
@@ -228,7 +266,7 @@ void ControllerSession::runLaw(const Measurement& m) {
       if (!reset_reason_.empty()) reset_reason_ += "; ";
       reset_reason_ += interruption_;
     }
-    controller_->reset(m);
+    start(m);
     transfer_.reset(other_hand_ || transfer_.active());
     other_hand_ = false;
     interruption_ = nullptr;
@@ -238,9 +276,9 @@ void ControllerSession::runLaw(const Measurement& m) {
   output_.begin();
   controller_->step(m, setpoint_, output_);
   if (output_.reference.size() == m.outputs.size()) answer_.tracking.reference = output_.reference;
-  if (!output_.ok) return hold(m, output_.remark);
+  if (!output_.ok) return hold(m, {});
   if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
-    return hold(m, "the law gave no finite input: input held");
+    return hold(m, {EventCode::kLawFailed});
   answer_.base.input = output_.input;
   handOver(m);
   limit(m);
@@ -251,12 +289,21 @@ void ControllerSession::runLaw(const Measurement& m) {
   answer_.prediction.header = m.header;
 }
 
+/// Samples that were lost before anybody had moved an input are no part of the law's run.
+void ControllerSession::start(const Measurement& m) {
+  if (begun_) return controller_->reset(m);
+  controller_->forget();
+  Measurement first = m;
+  first.header.step = 0;
+  controller_->reset(first);
+}
+
 /// Of the first model, at the first sample.
 void ControllerSession::lookAtGains(const Measurement& m) {
   const std::string weak = weakDirection(model_, m);
   if (weak.empty()) return;
-  model_remark_ = weak;
-  remark_due_ = true;
+  model_text_ = weak;
+  model_event_ = EventCode::kWeakDirection;
 }
 
 void ControllerSession::setModel(const TsModel& model) {
@@ -269,8 +316,8 @@ void ControllerSession::setModel(const TsModel& model) {
       requireFewTurned(turned, matched);
       requireForeseen(turned, matched, recent_.errorsOf(model_), recent_.errorsOf(matched));
     }
-    model_remark_ = wordsOf(turned, matched);
-    remark_due_ = !model_remark_.empty();
+    model_text_ = wordsOf(turned, matched);
+    model_event_ = model_text_.empty() ? EventCode::kNone : EventCode::kModelGainTurned;
   }
   controller_->setModel(model);
   model_ = std::move(matched);

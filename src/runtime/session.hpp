@@ -29,6 +29,7 @@ struct ControllerAnswer {
   bool has_prediction{false};
   PredictiveAction prediction;
   std::vector<CommandEffect> effects;  ///< setpoint commands that took effect with this sample
+  std::vector<Event> events;           ///< what is to be known of this sample
 };
 
 /// What an operator has asked of a controller, apart from its model: kept by others for one that
@@ -63,14 +64,15 @@ enum class Receipt {
 ///   instead; for longer than hold_samples with the fallback. The same if the plant, or how its
 ///   outputs react, is doubted and the loop file asks for it (DoubtAction). The controller is
 ///   reset, bumplessly, at the next sample that it gets;
-/// - first sample, gap, new run: the controller is reset; otherwise it just steps.
+/// - first sample, gap, new run: the controller is reset; otherwise it just steps. A run begins for
+///   the law with the first sample that it gets, whatever was lost before.
 /// Move limits count from the applied input, but for one with an offset, which the law, a person
 /// and a fallback move on from the last command (MoveOrigin): they see that one as applied.
 /// After another hand had the inputs the plant gets in the first sample what it gets already, and
 /// what the law asks for otherwise comes in as the bias between them dies out (BumplessTransfer);
 /// not from an experiment, nor where the law may send some inputs only.
 /// Setpoints advance with every sample. No allocation in receive() after the first answer, but for
-/// the words of a reset and for setpoint commands that take effect.
+/// the words of a reset, setpoint commands that take effect and events.
 class ControllerSession {
  public:
   /// @throws InputError naming the field: sizes of limits, setpoint and initial_input (n_u, u(-1)).
@@ -98,10 +100,10 @@ class ControllerSession {
   /// no better one.
   void setModel(const TsModel& model);
   std::uint64_t models() const { return models_; }  ///< taken so far
-  /// What is to be known of the model in use, in words: gains whose sign it turned when it came, or
-  /// a direction of the inputs in which the first one is weak.
-  /// Said once among the law's remarks as well. Empty if there is nothing.
-  const std::string& modelRemark() const { return model_remark_; }
+  /// What is to be known of the model in use: gains whose sign it turned when it came, or a
+  /// direction of the inputs in which the first one is weak. Said at one sample; empty if there is
+  /// nothing.
+  const std::string& modelText() const { return model_text_; }
   /// See SetpointSource: a command of a person, and one that was in force before this object was
   /// made.
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
@@ -138,8 +140,12 @@ class ControllerSession {
   /// In what the plant that announced itself differs from the loop file, in words; empty: in
   /// nothing. What is done about it is plausibility.plant_bounds.
   void doubtPlant(const std::string& difference);
-  /// The input that the outputs do not react to as the model says, in words; see ReactionWatch.
-  const std::string& reaction() const;
+  /// The input that the outputs do not react to as the model says; see ReactionWatch.
+  Notice reaction() const;
+  /// Of these outputs it is not said that their setpoint was clamped.
+  void withoutSetpoint(const std::vector<Eigen::Index>& outputs);
+  /// Which manual inputs were asked beyond their limits, in words; empty in auto, and if none was.
+  std::string manualClamped() const;
   /// The last answer is the fallback, because of what is not accepted.
   bool fellBack() const { return fell_back_; }
   const Plausibility& plausibility() const { return plausibility_; }
@@ -157,9 +163,11 @@ class ControllerSession {
   void answered();
   void limit(const Measurement& m);
   void runLaw(const Measurement& m);
-  void hold(const Measurement& m, const char* remark);
-  void fallBack(const Measurement& m, const char* remark);
-  const std::string* imposing(DoubtAction action) const;
+  void hold(const Measurement& m, const Notice& why);
+  void fallBack(const Measurement& m, const Notice& why);
+  Notice imposing(DoubtAction action) const;
+  void gatherEvents();
+  void start(const Measurement& m);
   void watchReaction(const Measurement& m);
   void forgetSamples();
   void handOver(const Measurement& m);
@@ -173,6 +181,7 @@ class ControllerSession {
   void beginAnew();
 
   std::unique_ptr<Controller> controller_;
+  std::vector<std::string> setpoint_texts_;  // by output; empty: that it is clamped is not said
   SetpointSource setpoint_;
   InputLimits limits_;
   PlantInfo plant_;
@@ -191,12 +200,14 @@ class ControllerSession {
   TsModel model_;        // in use, matched to the plant; of a law that needs one
   Measurement present_;  // the last that was accepted; empty before the first
   RecentSamples recent_;
-  std::string model_remark_, plant_doubt_;
+  std::string model_text_, plant_doubt_;
+  EventCode model_event_{EventCode::kNone};  // that has not been said yet
+  std::vector<std::string> manual_texts_;    // by input; empty: not clamped
   std::unique_ptr<ReactionWatch> reaction_;  // of a law with a model, if it is asked for
-  bool remark_due_{false};                   // it has not been said yet
   bool gains_due_{false};                    // nor have the gains been looked at
   double max_pole_{1.0};
   std::uint64_t models_{};
+  bool begun_{false};  // in this run somebody had the inputs, or it began before this object
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
   bool takes_actions_{true}, leads_an_optimizer_{false}, other_hand_{false};
   bool manual_asked_{false}, recipe_asked_{false}, carries_{false};

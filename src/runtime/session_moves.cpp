@@ -44,31 +44,32 @@ void ControllerSession::answered() {
                       source == ActionSource::kGuarded;
   other_hand_ = other_hand_ || source == ActionSource::kManual || fell_back_ || unreleased_ ||
                 !takes_actions_;
+  begun_ = begun_ || of_law || other_hand_;
   if ((leads_an_optimizer_ && of_law) || unreleased_ || !takes_actions_)
     moves_.restart();  // the plant is told something else
   else
     moves_.sent(last_input_);
 }
 
-void ControllerSession::fallBack(const Measurement& m, const char* remark) {
+void ControllerSession::fallBack(const Measurement& m, const Notice& why) {
   Vector& input = answer_.base.input;
   input = plausibility_.params().fallback;
   limits_.clip(input, m.input_applied.allFinite() ? moves_.proven() : m.input_applied);
   controller_->makeSendable(input);
   answer_.base.source = output_.source = ActionSource::kFallback;
   output_.ok = output_.predictive = false;
-  output_.remark = remark;
+  output_.events.add(why);
   fell_back_ = true;
 }
 
-void ControllerSession::hold(const Measurement& m, const char* remark) {
+void ControllerSession::hold(const Measurement& m, const Notice& why) {
   Vector& input = answer_.base.input;
   input = m.input_applied.allFinite() ? moves_.proven() : last_input_;
   limits_.clip(input, input);
   controller_->makeSendable(input);
   answer_.base.source = output_.source = ActionSource::kHeld;
   output_.ok = output_.predictive = false;
-  output_.remark = remark;
+  if (why.code != EventCode::kNone) output_.events.add(why);
 }
 
 void ControllerSession::sendManual(const Measurement& m) {
@@ -81,7 +82,6 @@ void ControllerSession::sendManual(const Measurement& m) {
   if (controller_->followsSetpoint()) answer_.tracking.reference = m.outputs;
   output_.ok = true;
   output_.predictive = false;
-  output_.remark = "";
 }
 
 }  // namespace fpc

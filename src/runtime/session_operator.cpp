@@ -4,13 +4,17 @@
 #include <utility>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "runtime/session.hpp"
 #include "supervision/reaction_watch.hpp"
 
 namespace fpc {
 
 void ControllerSession::manual(bool on) {
-  if (on && !manual_) manual_given_ = false;
+  if (on && !manual_) {
+    manual_given_ = false;
+    manual_texts_.assign(manual_texts_.size(), "");
+  }
   if (!on && manual_ && reaction_) reaction_->reset();  // a person has seen to it
   manual_ = on;
   manual_asked_ = true;
@@ -29,7 +33,24 @@ void ControllerSession::manualInput(VectorRef input) {
   require(input.allFinite(), "manual input", "finite numbers");
   require(controller_->mayBeSent(input), "manual input", "an input that the controller may send");
   manual_input_ = input.cwiseMax(limits_.lower).cwiseMin(limits_.upper);
+  for (std::size_t i = 0; i < manual_texts_.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const SignalInfo& of = plant_.inputs[i];
+    manual_texts_[i] = manual_input_[k] == input[k]
+                           ? ""
+                           : of.name + " was asked by hand to be " + exactText(input[k]) +
+                                 ", beyond its limits, " +
+                                 rangeText(limits_.lower[k], limits_.upper[k], of.unit) +
+                                 ", and clamped";
+  }
   manual_given_ = true;
+}
+
+std::string ControllerSession::manualClamped() const {
+  std::vector<std::string> texts;
+  for (const std::string& text : manual_texts_)
+    if (manual_ && !text.empty()) texts.push_back(text);
+  return join(texts, "; ");
 }
 
 bool ControllerSession::adapt(bool on) {

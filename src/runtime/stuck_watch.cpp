@@ -32,7 +32,8 @@ void StuckWatch::look(VectorRef commanded, VectorRef before, VectorRef position)
     if (follows) followed_[i] = expected_[i];
     away_[k] = follows ? 0 : std::min(away_[k] + 1, params_.samples);
     if (away_[k] < params_.samples || !words_.empty()) continue;
-    words_ = "input " + names_[k] +
+    input_ = names_[k];
+    words_ = "input " + input_ +
              (std::isnan(position[i]) ? " is not read back" : " does not follow its command");
   }
 }

@@ -26,6 +26,7 @@ class StuckWatch {
   bool all() const;  ///< no input is left that follows
   /// "input q_r does not follow its command", empty if all do.
   const std::string& words() const { return words_; }
+  const std::string& input() const { return input_; }  ///< of words()
 
  private:
   StuckParams params_;
@@ -33,7 +34,7 @@ class StuckWatch {
   std::vector<std::string> names_;
   std::vector<int> away_;  // samples in a row
   Vector expected_, followed_;
-  std::string words_;
+  std::string words_, input_;
 };
 
 }  // namespace fpc

@@ -7,14 +7,11 @@
 #include <vector>
 
 #include "analysis/running_indices.hpp"
-#include "runtime/disturbance_remarks.hpp"
 #include "runtime/factory.hpp"
 #include "runtime/model_use.hpp"
-#include "runtime/overruled.hpp"
-#include "runtime/record_remarks.hpp"
+#include "runtime/run_events.hpp"
 #include "runtime/run_summary.hpp"
 #include "runtime/run_tally.hpp"
-#include "runtime/unplayed.hpp"
 
 namespace fpc {
 namespace {
@@ -31,11 +28,6 @@ double toleranceOf(const InputLimits& limits, Index i) {
 bool isOfLaw(ActionSource source) {
   return source == ActionSource::kBase || source == ActionSource::kConstrained ||
          source == ActionSource::kClipped || source == ActionSource::kGuarded;
-}
-
-void addUnplayed(const LoopFile& loop, Summary& summary) {
-  for (RunRemark& remark : unplayedIn(loop)) summary.remarks.push_back(std::move(remark));
-  for (RunRemark& remark : overruledIn(loop)) summary.remarks.push_back(std::move(remark));
 }
 
 /// What stands in a summary before the first sample.
@@ -74,15 +66,10 @@ struct RunSummary::Sums {
   explicit Sums(const LoopFile& of, std::uint32_t first_step)
       : loop(of),
         sample_time_h(of.plant_info.sample_time_s / 3600.0),
-        has_domain(hasDomain(of)),
         summary(blank(of)),
         outputs(of.plant_info.outputs.size(), RunningOutput(sample_time_h)),
-        at_lower(of.plant_info.inputs.size()),
-        at_upper(at_lower),
-        moved(movedInputs(of)),
         rejected(of),
-        rejections(outputs.size()),
-        of_record(of),
+        events(of, first_step),
         step(first_step) {
     summary.first_step = first_step;
   }
@@ -95,22 +82,16 @@ struct RunSummary::Sums {
   double moveOf(const SampleRecord& sample, Index i, double tolerance) const;
   void countState(const SampleRecord& sample);
   void countSolve(const SampleRecord& sample);
-  void findLockUps(Summary& result) const;
-  void sayRejected(Summary& result) const;
 
   LoopFile loop;
   double sample_time_h;
-  bool has_domain;
   Summary summary;
   std::vector<RunningOutput> outputs;
-  std::vector<RunningInput> inputs;               // from sample 0 on
-  std::vector<std::uint32_t> at_lower, at_upper;  // last actions in a row at a limit
-  std::vector<bool> moved;                        // the others stand where they stand
-  Rejections rejected;                            // by the controller
-  std::vector<RunRemark> rejections;              // by output
+  std::vector<RunningInput> inputs;  // from sample 0 on
+  Rejections rejected;               // by the controller
   LogHistogram solve_us;
   RunTally tally;
-  RecordRemarks of_record;
+  RunEvents events;
   ControlAction last;  // of the sample before, without an input if there was none
   std::uint32_t step{};
 };
@@ -127,7 +108,6 @@ void RunSummary::Sums::followOutputs(const SampleRecord& sample) {
   if (!sample.has_measurement || !sample.has_tracking) return;
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const auto k = static_cast<Index>(i);
-    if (rejected.of(i) && rejections[i].samples++ == 0) rejections[i].first = step;
     if (const auto y = scored(sample, i))
       outputs[i].add(*y, sample.tracking.setpoint[k], sample.tracking.reference[k]);
     else
@@ -178,11 +158,8 @@ void RunSummary::Sums::countAction(const SampleRecord& sample) {
   ++summary.sources[static_cast<std::size_t>(sample.action.source)];
   for (Index i = 0; i < sample.action.input.size(); ++i) {
     const double u = sample.action.input[i], tolerance = toleranceOf(limits, i);
-    const auto k = static_cast<std::size_t>(i);
     const bool inside = u >= limits.lower[i] - tolerance && u <= limits.upper[i] + tolerance;
     summary.input_violations += !inside;
-    at_lower[k] = std::abs(u - limits.lower[i]) <= tolerance ? at_lower[k] + 1 : 0;
-    at_upper[k] = std::abs(u - limits.upper[i]) <= tolerance ? at_upper[k] + 1 : 0;
     if (!sample.has_measurement) continue;
     summary.move_violations += !(moveOf(sample, i, tolerance) <= limits.move[i] + tolerance);
   }
@@ -219,31 +196,10 @@ void RunSummary::Sums::countSolve(const SampleRecord& sample) {
     ++summary.clp_failed;
 }
 
-void RunSummary::Sums::findLockUps(Summary& result) const {
-  const std::uint32_t least = std::max<std::uint32_t>(10, result.steps / 10);
-  for (std::size_t i = 0; i < at_lower.size(); ++i)
-    for (const bool upper : {false, true}) {
-      const std::uint32_t samples = upper ? at_upper[i] : at_lower[i];
-      if (moved[i] && samples >= least)
-        result.locked.push_back({result.input_names[i], upper, samples});
-    }
-}
-
 RunSummary::RunSummary(const LoopFile& loop, std::uint32_t first_step)
     : sums_(std::make_unique<Sums>(loop, first_step)) {}
 RunSummary::RunSummary(RunSummary&&) noexcept = default;
 RunSummary::~RunSummary() = default;
-
-/// Scores without them would be silent of them.
-void RunSummary::Sums::sayRejected(Summary& result) const {
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    result.outputs[i].rejected = rejections[i].samples;
-    if (rejections[i].samples == 0) continue;
-    result.remarks.push_back(rejections[i]);
-    result.remarks.back().words =
-        result.output_names[i] + ": a measurement was rejected: it is not in the scores";
-  }
-}
 
 void RunSummary::add(const SampleRecord& sample) {
   sums_->rejected.look(sample);
@@ -252,10 +208,8 @@ void RunSummary::add(const SampleRecord& sample) {
   sums_->countState(sample);
   sums_->countAction(sample);
   sums_->countSolve(sample);
-  if (sums_->has_domain)
-    sums_->summary.outside_model += isOutsideModel(sums_->loop, sample, sums_->rejected);
   sums_->tally.add(sample);
-  sums_->of_record.add(sample);
+  sums_->events.add(sample, sums_->rejected);
   sums_->last = sample.has_action ? sample.action : ControlAction();
   ++sums_->step;
 }
@@ -265,14 +219,13 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
   result.wall_s = wall_s;
   result.failed_samples = sums_->tally.failed_samples;
   result.trouble = sums_->tally.trouble;
-  result.remarks = sums_->tally.remarks;
-  for (RunRemark& remark : sums_->of_record.remarks()) result.remarks.push_back(std::move(remark));
-  for (RunRemark& remark : result.remarks) remark.first += result.first_step;
-  addUnplayed(sums_->loop, result);
-  addDisturbances(sums_->loop, result);
+  result.outside_model = sums_->events.outsideModel();
   result.complete = nothing_missing && result.failed_samples == 0;
+  EventList events = sums_->events.finish();
+  if (!nothing_missing) events.add(eventOf(EventCode::kRunIncomplete));
+  addFileEvents(sums_->loop, events);
+  result.events = events.all();
   for (const RunningOutput& output : sums_->outputs) result.outputs.push_back(output.indices());
-  sums_->sayRejected(result);
   for (const RunningInput& input : sums_->inputs) result.inputs.push_back(input.indices());
   result.inputs.resize(result.input_names.size());  // of a run without samples
   for (WindowIndices& window : result.windows) {
@@ -280,7 +233,6 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
     window.rmse = std::sqrt(window.rmse / n);
     window.mean_error /= n;
   }
-  sums_->findLockUps(result);
   result.clp_solves = sums_->solve_us.count();
   result.clp_median_us = sums_->solve_us.quantile(0.5);
   result.clp_p99_us = sums_->solve_us.quantile(0.99);

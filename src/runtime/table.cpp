@@ -100,6 +100,31 @@ void addWindowRows(const Summary& s, std::vector<Row>& rows) {
 
 }  // namespace
 
+std::string troubleOf(const Summary& summary) {
+  if (summary.failed_samples == 0) return "";
+  return summary.loop + ": the plant could not be moved over " +
+         std::to_string(summary.failed_samples) + " of " + std::to_string(summary.steps) +
+         " samples and was held; first " + summary.trouble;
+}
+
+bool neverControlled(const Summary& summary) {
+  return contains(summary.events, EventCode::kNeverControlled);
+}
+
+std::vector<std::string> eventLines(const Summary& summary) {
+  std::vector<std::string> lines;
+  for (const Event& event : summary.events) {
+    std::string line = summary.loop + ": " + kindOf(event.code).name + ": " + event.text;
+    if (!event.signal.empty() && event.text.find(event.signal) == std::string::npos)
+      line += " (" + event.signal + ")";
+    if (event.count > 0)
+      line += ", " + std::to_string(event.count) + " of " + std::to_string(summary.steps) +
+              " samples from " + std::to_string(event.first) + " on";
+    lines.push_back(line);
+  }
+  return lines;
+}
+
 std::string toTable(const std::vector<Summary>& summaries) {
   std::vector<Row> outputs{
       {"loop", "output", "ISE", "IAE", "ITAE", "ITSE", "rmse", "ISE ref", "beyond"}};
@@ -129,11 +154,11 @@ std::string toTable(const std::vector<Summary>& summaries) {
   for (const auto& summary : summaries)
     for (const auto& [name, value] : summary.consumption)
       text += summary.loop + ": " + name + " " + shortText(value) + "\n";
-  std::string remarks;
+  std::string events;
   for (const auto& summary : summaries)
-    for (const auto& remark : remarksOf(summary)) remarks += remark + "\n";
+    for (const auto& line : eventLines(summary)) events += line + "\n";
   text += std::string("\n") + kLegend;
-  return text + (remarks.empty() ? "" : "\n" + remarks);
+  return text + (events.empty() ? "" : "\n" + events);
 }
 
 }  // namespace fpc

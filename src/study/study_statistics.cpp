@@ -4,18 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/statistics.hpp"
+
 namespace fpc {
 namespace {
-
-/// z with P(|N(0,1)| < z) = confidence, by bisection of erf.
-double normalBound(double confidence) {
-  double low = 0.0, high = 10.0;
-  for (int i = 0; i < 100; ++i) {
-    const double middle = 0.5 * (low + high);
-    (std::erf(middle / std::sqrt(2.0)) < confidence ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
 
 std::vector<double> sorted(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -49,11 +41,10 @@ LoopStatistics statisticsOfLoop(const StudyPlan& plan, const StudyResult& result
     if (any) s.failing_cases.push_back(plan.cases()[c].name);
     if (s.trouble.empty()) s.trouble = run->trouble;
   }
-  costs = sorted(std::move(costs));
-  s.median = quantileOf(costs, 0.5);
-  s.lower_quartile = quantileOf(costs, 0.25);
-  s.upper_quartile = quantileOf(costs, 0.75);
-  s.median_move = quantileOf(sorted(std::move(moves)), 0.5);
+  s.median = median(costs);
+  s.lower_quartile = quantile(costs, 0.25);
+  s.upper_quartile = quantile(costs, 0.75);
+  s.median_move = median(std::move(moves));
   return s;
 }
 
@@ -79,7 +70,7 @@ PairStatistics statisticsOfPair(const StudyPlan& plan, const StudyResult& result
   p.lower = share.lower;
   p.upper = share.upper;
   ratios = sorted(std::move(ratios));
-  p.median_ratio = quantileOf(ratios, 0.5);
+  p.median_ratio = median(ratios);
   const Interval ratio = medianInterval(ratios, confidence);
   p.ratio_lower = ratio.lower;
   p.ratio_upper = ratio.upper;
@@ -91,16 +82,6 @@ PairStatistics statisticsOfPair(const StudyPlan& plan, const StudyResult& result
 bool noneSucceeded(const LoopStatistics& loop) {
   return loop.runs > 0 &&
          loop.failures[static_cast<std::size_t>(RunFailure::kDiverged)] == loop.runs;
-}
-
-double quantileOf(const std::vector<double>& sorted, double p) {
-  if (sorted.empty()) return kNaN;
-  const double place = p * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  const double share = place - static_cast<double>(below);
-  if (share == 0.0 || sorted[below] == sorted[above]) return sorted[below];
-  return sorted[below] + share * (sorted[above] - sorted[below]);
 }
 
 Interval wilsonInterval(double wins, std::size_t n, double confidence) {
@@ -119,17 +100,9 @@ std::size_t casesForMedianInterval(double confidence) {
 Interval medianInterval(const std::vector<double>& sorted, double confidence) {
   const std::size_t n = sorted.size();
   if (n < casesForMedianInterval(confidence)) return {kNaN, kNaN};
-  // Largest j with P(B < j) <= (1 - confidence) / 2, B binomial(n, 1/2), in logarithms.
-  const double count = static_cast<double>(n);
-  double below = 0.0;
+  // Largest j with P(B < j) <= (1 - confidence) / 2, B binomial(n, 1/2).
   std::size_t j = 0;
-  while (j < n / 2) {
-    const double i = static_cast<double>(j);
-    below += std::exp(std::lgamma(count + 1.0) - std::lgamma(i + 1.0) -
-                      std::lgamma(count - i + 1.0) - count * std::log(2.0));
-    if (below > 0.5 * (1.0 - confidence)) break;
-    ++j;
-  }
+  while (j < n / 2 && binomialAtMost(j, n, 0.5) <= 0.5 * (1.0 - confidence)) ++j;
   const std::size_t low = j > 0 ? j - 1 : 0;
   return {sorted[low], sorted[n - 1 - low]};
 }

@@ -42,8 +42,6 @@ struct StudyStatistics {
 
 StudyStatistics statisticsOf(const StudyPlan& plan, const StudyResult& result);
 
-/// Quantile p of sorted values, linear between them (type 7 of hyndman1996).
-double quantileOf(const std::vector<double>& sorted, double p);
 struct Interval {
   double lower{}, upper{};
 };

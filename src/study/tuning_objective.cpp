@@ -7,6 +7,7 @@
 
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
+#include "base/statistics.hpp"
 #include "base/text_hash.hpp"
 #include "config/extending_loop.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -45,12 +46,6 @@ FitnessParams fitnessIn(FitnessParams fitness, const std::string& scenario) {
                              }),
               terms.end());
   return fitness;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 }  // namespace

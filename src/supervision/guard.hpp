@@ -87,7 +87,7 @@ class LockUpWatch {
 ///   model knows the input: others stand where the plant has them;
 /// - an input that the law throws from end to end of its range (see SwingWatch) moves less;
 /// - so the guard narrows the limits of u(k): the law's input is put inside them (source `guarded`,
-///   and remark says why), and the prediction hands them to an optimizer; where the PI acts the
+///   and an event says why), and the prediction hands them to an optimizer; where the PI acts the
 ///   source is `fallback` and there is no prediction.
 /// Inside its model's data the law's answers pass untouched, bit for bit. signals(): the law's,
 /// then model_trust, model_trust_ahead (the least over the horizon), model_trust_steps (samples
@@ -113,6 +113,7 @@ class GuardedController final : public ControllerAround {
   double trustForMoves(const Measurement& now);
   void shrink(double trust);
   void calm(const Measurement& now);
+  void handOver(const Measurement& now);
   void narrow(const Vector& before);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
   void lookAhead(const Measurement& now, const ControllerOutput& output);
@@ -131,7 +132,9 @@ class GuardedController final : public ControllerAround {
   TsModel model_;
   bool known_{false};  // the model says where its data were
   bool fallback_{false};
-  int above_{};  // samples in a row above trust_high
+  EventCode why_{EventCode::kNone};  // why the fallback acts, besides outside_model
+  int above_{};          // samples in a row above trust_high
+  int patience_{1};      // times return_samples before the law is back
   Vector point_, proposed_;
   HorizonTrust ahead_;
   GuardView view_;

@@ -53,6 +53,28 @@ std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
   return "";
 }
 
+EventCode codeOf(Doubt doubt) {
+  switch (doubt) {
+    case Doubt::kNoNumber:
+    case Doubt::kStale:
+    case Doubt::kMissing:
+      return EventCode::kSignalMissing;
+    case Doubt::kRange:
+      return EventCode::kSignalOutOfRange;
+    case Doubt::kRate:
+      return EventCode::kSignalTooFast;
+    case Doubt::kJump:
+      return EventCode::kSignalJumped;
+    case Doubt::kFrozen:
+      return EventCode::kSignalFrozen;
+    case Doubt::kRepeated:
+      return EventCode::kSignalNotRenewed;
+    case Doubt::kNone:
+      break;
+  }
+  return EventCode::kNone;
+}
+
 Doubt doubtOf(NoValue why) {
   if (why == NoValue::kStale) return Doubt::kStale;
   return why == NoValue::kMissing ? Doubt::kMissing : Doubt::kNoNumber;
@@ -103,17 +125,17 @@ Plausibility::Plausibility(PlausibilityParams params, const PlantInfo& plant)
   for (std::size_t i = 0; i < n_y_; ++i)
     output_range_[static_cast<Eigen::Index>(i)] = plant.outputs[i].upper - plant.outputs[i].lower;
   expected_ = Vector::Zero(static_cast<Eigen::Index>(n_y_));
-  writeWords(plant);
+  writeTexts(plant);
 }
 
-void Plausibility::writeWords(const PlantInfo& plant) {
+void Plausibility::writeTexts(const PlantInfo& plant) {
   texts_.resize(signals_.size());
   for (std::size_t i = 0; i < signals_.size(); ++i) {
-    const std::string& name = i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name;
+    names_.push_back(i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name);
     for (std::size_t doubt = 0; doubt < kDoubts; ++doubt)
       for (const char* action : kActionWords)
-        texts_[i].push_back(name + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) + ": " +
-                            action);
+        texts_[i].push_back(names_[i] + " " + reasonOf(static_cast<Doubt>(doubt), asked_[i]) +
+                            ": " + action);
   }
 }
 
@@ -223,7 +245,7 @@ Verdict Plausibility::look(const Measurement& now, const Foresee& foresee) {
 }
 
 void Plausibility::say(Verdict verdict) {
-  words_ = "";
+  notice_ = {};
   const bool needed_only = verdict == Verdict::kHold || verdict == Verdict::kFallback;
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     if (signals_[i].doubt == Doubt::kNone || (needed_only && !needed_[i])) continue;
@@ -231,7 +253,9 @@ void Plausibility::say(Verdict verdict) {
                                : verdict == Verdict::kHold   ? 2
                                : signals_[i].foreseen        ? 1
                                                              : 0;
-    words_ = texts_[i][static_cast<std::size_t>(signals_[i].doubt) * kActions + action].c_str();
+    const auto doubt = static_cast<std::size_t>(signals_[i].doubt);
+    notice_ = {codeOf(signals_[i].doubt), texts_[i][doubt * kActions + action].c_str(),
+               names_[i].c_str()};
     return;
   }
 }

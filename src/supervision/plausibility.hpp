@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "supervision/flat_line.hpp"
 #include "supervision/forced_response.hpp"
@@ -59,7 +60,7 @@ class Plausibility {
   const Measurement& accepted() const { return accepted_; }
   Doubt doubt(std::size_t signal) const { return signals_[signal].doubt; }
   /// Of the first doubted signal, with what is done about it; lives as long as this object.
-  const char* words() const { return words_; }
+  const Notice& notice() const { return notice_; }
   const PlausibilityParams& params() const { return params_; }
 
  private:
@@ -84,7 +85,7 @@ class Plausibility {
   bool expectsFrom(const Foresee& foresee);
   bool replace(std::size_t signal, const Foresee& foresee);
   void say(Verdict verdict);
-  void writeWords(const PlantInfo& plant);
+  void writeTexts(const PlantInfo& plant);
 
   PlausibilityParams params_;
   std::size_t n_y_;
@@ -94,7 +95,8 @@ class Plausibility {
   std::vector<Memory> signals_;
   std::vector<bool> needed_;
   std::vector<std::vector<std::string>> texts_;  // by signal; by doubt and action
-  const char* words_{""};
+  std::vector<std::string> names_;               // by signal
+  Notice notice_;
   Measurement accepted_;
   Vector expected_;
   bool asked_law_{false}, has_expected_{false};  // at this sample

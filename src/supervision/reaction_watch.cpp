@@ -66,6 +66,8 @@ ReactionWatch::ReactionWatch(const TsModel& model, int samples)
   errors_ = Matrix::Zero(n_y, samples);
   phi_ = Matrix::Zero(n_y * n_u, samples);
   share_ = Vector::Zero(n_u);
+  for (const std::string& name : names_)
+    texts_.push_back("the outputs do not react to input " + name + " as the model says");
   reset();
 }
 
@@ -75,7 +77,7 @@ void ReactionWatch::reset() {
   share_.setConstant(kNaN);
   away_.assign(names_.size(), 0);
   dead_.assign(names_.size(), false);
-  words_.clear();
+  notice_ = {};
 }
 
 void ReactionWatch::look(const Measurement& now) {
@@ -138,7 +140,7 @@ void ReactionWatch::estimate(Index output, Index input, double& share, double& e
 }
 
 void ReactionWatch::judge() {
-  words_.clear();
+  notice_ = {};
   const int patience = std::max(3, static_cast<int>(errors_.cols() / 4));
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const auto k = static_cast<Index>(i);
@@ -156,8 +158,8 @@ void ReactionWatch::judge() {
     away_[i] = away ? std::min(away_[i] + 1, patience) : 0;
     if (away_[i] == patience) dead_[i] = true;
     if (sure && share - 2.0 * least > kLeast) dead_[i] = false;
-    if (dead_[i] && words_.empty())
-      words_ = "the outputs do not react to input " + names_[i] + " as the model says";
+    if (dead_[i] && notice_.code == EventCode::kNone)
+      notice_ = {EventCode::kActuatorIneffective, texts_[i].c_str(), names_[i].c_str()};
   }
 }
 

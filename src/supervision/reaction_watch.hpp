@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/model/local_model.hpp"
 
@@ -32,8 +33,8 @@ class ReactionWatch {
   void interrupt() { known_ = false; }
   /// Sample k; its input_applied is what was told, or what was read back. No allocation.
   void look(const Measurement& now);
-  /// "the outputs do not react to input q_r as the model says"; empty if they do, or nobody knows.
-  const std::string& words() const { return words_; }
+  /// "the outputs do not react to input q_r as the model says"; kNone if they do, or nobody knows.
+  const Notice& notice() const { return notice_; }
   double share(Eigen::Index input) const { return share_[input]; }  ///< c; NaN: not known
 
  private:
@@ -53,7 +54,8 @@ class ReactionWatch {
   std::vector<bool> dead_;
   Eigen::Index filled_{}, place_{};
   bool known_{false}, started_{false};
-  std::string words_;
+  std::vector<std::string> texts_;  // by input
+  Notice notice_;
 };
 
 }  // namespace fpc

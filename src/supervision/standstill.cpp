@@ -57,8 +57,8 @@ StandstillWatch::StandstillWatch(std::unique_ptr<Controller> inside, StandstillP
                          std::max(params_.window_samples, params_.noise_window_samples));
   plan_ = AffineLaw(params_.fallback_plan, n_u, plant.sample_time_s / 3600.0);
   for (const WatchedSignal& signal : params_.signals)
-    remarks_.push_back(signal.name + (signal.is_output ? " stands still: the fallback acts"
-                                                       : " stands still: its usual value is used"));
+    texts_.push_back(signal.name + (signal.is_output ? " stands still: the fallback acts"
+                                                     : " stands still: its usual value is used"));
 }
 
 void StandstillWatch::reset(const Measurement& start) {
@@ -174,13 +174,11 @@ void StandstillWatch::step(const Measurement& now, const SetpointSource& setpoin
                            ControllerOutput& output) {
   seen_ = now;
   watch(now);
-  const std::string* remark = nullptr;
   bool blind = false;
   for (std::size_t i = 0; i < still_.size(); ++i) {
     if (!still_[i]) continue;
     const WatchedSignal& signal = params_.signals[i];
     if (!signal.is_output) seen_.disturbances[signal.place] = params_.usual[signal.place];
-    if (!remark || signal.is_output) remark = &remarks_[i];
     blind = blind || signal.is_output;
   }
   if (away_ && !blind) inside_->reset(seen_);
@@ -189,7 +187,10 @@ void StandstillWatch::step(const Measurement& now, const SetpointSource& setpoin
     fallBack(now, setpoint, output);
   else
     inside_->step(seen_, setpoint, output);
-  if (remark && (blind || *output.remark == '\0')) output.remark = remark->c_str();
+  for (std::size_t i = 0; i < still_.size(); ++i)
+    if (still_[i])
+      output.events.add(
+          {EventCode::kSignalFrozen, texts_[i].c_str(), params_.signals[i].name.c_str()});
 }
 
 }  // namespace fpc

@@ -26,7 +26,7 @@ namespace fpc {
 /// - a disturbance has its usual value for the law, which goes on;
 /// - an output makes the fallback act (source fallback, no prediction) inside the limits; the law
 ///   is reset, bumplessly, when the output is back.
-/// remark says which signal. Otherwise the law's answers pass untouched.
+/// signal_frozen says which signal. Otherwise the law's answers pass untouched.
 class StandstillWatch final : public ControllerAround {
  public:
   /// @throws InputError naming the field.
@@ -60,7 +60,7 @@ class StandstillWatch final : public ControllerAround {
   std::vector<double> allowed_;          // ... and how far from it is still there
   std::vector<double> least_, largest_;  // so far
   std::vector<bool> under_noise_;        // it was found by its noise
-  std::vector<std::string> remarks_;     // by watched signal
+  std::vector<std::string> texts_;       // by watched signal
   bool away_{false};                     // the fallback acted at the last sample
 };
 

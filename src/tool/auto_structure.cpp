@@ -35,13 +35,9 @@ void setSampleTime(const CsvTable& table, const AutoColumns& columns, Structure&
     return;
   }
   const TimeColumn time = timeColumn(table, columns.time, used);
-  if (time.name.empty()) {
-    structure.sample_time_s = 1.0;
-    remarks.push_back(
-        "no time column found (time, t, t_s, time_..): sample time taken as 1 s (--time, "
-        "--sample-time)");
-    return;
-  }
+  require(!time.name.empty(), table.file,
+          "a column of times (t, time, timestamp, date, time (s), t_min, ..), or --time COLUMN, or "
+          "--sample-time S");
   if (time.unit.empty()) remarks.push_back("'" + time.name + "' is taken to be in seconds");
   structure.time_column = time.name;  // rows that it lacks keep the pasts on both sides apart
   structure.time_unit = time.unit.empty() ? "s" : time.unit;

@@ -15,8 +15,8 @@ struct AutoColumns {
   double sample_time_s{};                                  ///< 0: from the time column
 };
 
-/// Signals by column, missing cells stepped over, inputs that never move allowed. A remark tells a
-/// sample time that was assumed. @throws InputError naming file and column.
+/// Signals by column, missing cells stepped over, inputs that never move allowed. @throws
+/// InputError naming file and column, or if neither a column of times nor a sample time is there.
 Structure autoStructure(const CsvTable& table, const AutoColumns& columns,
                         std::vector<std::string>& remarks);
 

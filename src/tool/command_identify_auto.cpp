@@ -16,6 +16,7 @@
 #include "tool/identify_auto.hpp"
 #include "tool/identify_verdict.hpp"
 #include "tool/judgement.hpp"
+#include "tool/model_points.hpp"
 #include "tool/progress_bar.hpp"
 #include "tool/read_record.hpp"
 #include "tool/record_files.hpp"
@@ -43,7 +44,7 @@ AutoRecords recordsOf(const IdentifyArguments& a, const IdentifyTables& tables) 
   const Structure structure = autoStructure(first, columns, r.remarks);
   if (!a.known.empty()) r.known = readKnown(a.known, structure);
   const auto take = [&](const CsvTable& table, const std::string& rows) {
-    return makeData(withEvenTimes(table, structure.time_column, r.remarks), structure, rows);
+    return makeJoinedData(table, structure, rows, r.remarks);
   };
   for (const CsvTable& table : tables.data) r.each.push_back(take(table, a.rows));
   r.joined = joinRecords(r.each);
@@ -64,12 +65,17 @@ std::optional<ModelKind> kindOf(const std::string& word) {
 AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records,
                           const AutoCallback& progress) {
   AutoParams params;
+  params.work = a.work;
   params.budget_s = a.budget_s;
   params.blocks = a.blocks;
   params.window = a.window;
+  params.reach = a.reach;
   params.seed = a.seed;
   params.known = records.known;
   params.longest_delay = a.longest_delay;
+  params.rows = a.input_row == "next"   ? RowReading::kNext
+                : a.input_row == "same" ? RowReading::kSame
+                                        : RowReading::kFound;
   params.keep_still = a.keep_inputs;
   const std::optional<ModelKind> kind = kindOf(a.kind);
   params.states = !kind || kind == ModelKind::kState;
@@ -155,6 +161,7 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
     else
       json["records"][part.title] = toJson(part);
   }
+  json["reach"] = found.reach;
   json["search"] = Json::array();
   for (const auto& t : found.trials)
     json["search"].push_back({{"output", t.output},
@@ -164,8 +171,10 @@ Json toJson(const AutoIdentification& found, const std::vector<RecordJudgement>&
                               {"free_run", numberOrNull(t.free_run)},
                               {"spread", numberOrNull(t.spread)},
                               {"chosen", t.chosen}});
+  json["points"] = pointsJson(found.model);
   json["warnings"] = firstWords(parts);
   json["remarks"] = remarks;
+  json["work"] = found.work;
   json["seconds"] = seconds;
   return json;
 }
@@ -201,9 +210,10 @@ Row remarksOf(const AutoRecords& records, const AutoIdentification& found,
   if (found.cancelled) remarks.push_back("stopped: the best found so far is kept");
   add("", found.remarks);
   const TsModel linear = model.linearModel();
-  add("", recordRemarks(records.joined, &linear));
+  add("", recordRemarks(asRead(records.joined, model.same_row), &linear));
   for (const auto& part : parts) add(part.title + ": ", part.remarks);
-  if (records.validation) add("validation: ", recordRemarks(*records.validation, nullptr));
+  if (records.validation)
+    add("validation: ", recordRemarks(asRead(*records.validation, model.same_row), nullptr));
   return remarks;
 }
 
@@ -218,10 +228,11 @@ void checkArguments(const IdentifyArguments& a) {
 
 IdentifyTables readTables(const IdentifyArguments& a, const CsvFormat& format) {
   IdentifyTables tables;
-  for (const auto& file : a.data) tables.data.push_back(readRecord(file, format));
+  for (const auto& file : a.data)
+    tables.data.push_back(readRecord(file, format, !a.format.no_header));
   std::error_code ignored;  // a file that is not there is told by its reader
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  if (!same) tables.validation = readRecord(a.validate, format);
+  if (!same) tables.validation = readRecord(a.validate, format, !a.format.no_header);
   if (same && !a.validate.empty() && a.validate_rows.empty()) tables.validate_all = true;
   return tables;
 }
@@ -269,8 +280,10 @@ int identifyAuto(const IdentifyArguments& a) {
   std::cout << "\n"
             << crossTable(report.found) << "\n"
             << searchTable(report.found) << "\n"
-            << toTable(report.parts) << "\n";
-  std::cout << "searched " << report.source << " in " << shortText(report.seconds) << " s\n";
+            << toTable(report.parts) << "\n"
+            << pointsTable(report.model.model) << "\n";
+  std::cout << "searched " << report.source << " in " << shortText(report.seconds) << " s, "
+            << shortText(report.found.work) << " of work\n";
   if (!a.out.empty()) std::cout << "written: " << a.out << "\n";
   return 0;
 }

@@ -9,6 +9,8 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "tool/commands.hpp"
+#include "tool/model_plots.hpp"
+#include "tool/model_points.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -25,6 +27,8 @@ void print(const TsModel& model, const std::vector<RuleRemark>& remarks) {
               << model.submodels[i].regressors.size() << " regressors\n";
   for (const auto& remark : remarks)
     std::cout << "  " << remark.output << " rule " << remark.rule << ": " << remark.text << "\n";
+  const std::string points = pointsTable(model);
+  if (!points.empty()) std::cout << "\n" << points;
 }
 
 }  // namespace
@@ -47,11 +51,13 @@ std::string requireModel(const std::string& name) {
                    nearNames(name, known, "there are " + join(known)));
 }
 
-int model(const std::string& file, bool json) {
+int model(const std::string& file, bool json, const std::string& plots) {
   const TsModel model = readModel(requireModel(file));
   const auto remarks = reportModel(model);
+  if (!plots.empty()) plotModel(model, plots);
   if (!json) {
     print(model, remarks);
+    if (!plots.empty()) std::cout << "written: " << plots << "\n";
     return 0;
   }
   Json report{
@@ -60,6 +66,7 @@ int model(const std::string& file, bool json) {
   for (const auto& remark : remarks)
     report["remarks"].push_back(
         {{"output", remark.output}, {"rule", remark.rule}, {"text", remark.text}});
+  report["points"] = pointsJson(model);
   std::cout << report.dump(2) << "\n";
   return 0;
 }

@@ -1,152 +1,21 @@
-// fmbpc reproduce [NAME...]: the papers' tables and figures, paper | here | verdict.
-#include <unistd.h>
+// `fmbpc reproduce`: becomes the program fmbpc_papers, which is built apart.
+#include <filesystem>
 
-#include <algorithm>
-#include <cctype>
-#include <cstdio>
-#include <iostream>
-#include <set>
-
-#include "base/files.hpp"
-#include "base/near_names.hpp"
-#include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "papers/picture.hpp"
-#include "papers/report.hpp"
-#include "papers/runs.hpp"
-#include "runtime/plot.hpp"
+#include "tool/become.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {
-namespace {
 
-using Json = OrderedJson;
-
-/// `word` in `text` with neither letter, digit nor underscore beside it.
-bool containsWord(const std::string& text, const std::string& word) {
-  const auto part = [&](std::size_t i) {
-    return i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_');
-  };
-  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
-    if (!(at > 0 && part(at - 1)) && !part(at + word.size())) return true;
-  return false;
-}
-
-/// A paper's key, an experiment's name or its beginning, or a loop behind it.
-bool isNamed(const Experiment& e, const std::string& name) {
-  return e.paper == name || e.name.rfind(name, 0) == 0 || containsWord(e.behind, name);
-}
-
-/// Papers and experiments, each once.
-std::vector<std::string> experimentNames(const std::vector<Experiment>& all) {
-  std::set<std::string> names;
-  for (const auto& e : all) names.insert({e.paper, e.name});
-  return {names.begin(), names.end()};
-}
-
-std::vector<Experiment> chosen(const std::vector<std::string>& names) {
-  const auto all = experiments();
-  if (names.empty()) return all;
-  std::vector<Experiment> some;
-  for (const auto& name : names)
-    require(!name.empty() && std::any_of(all.begin(), all.end(),
-                                         [&](const Experiment& e) { return isNamed(e, name); }),
-            name,
-            "a paper, an experiment or a loop behind one" +
-                nearNames(name, experimentNames(all), "`fmbpc reproduce --list` lists them"));
-  std::copy_if(all.begin(), all.end(), std::back_inserter(some), [&](const Experiment& e) {
-    return std::any_of(names.begin(), names.end(),
-                       [&](const std::string& name) { return isNamed(e, name); });
-  });
-  return some;
-}
-
-int list(const std::vector<Experiment>& all, bool json) {
-  Json names = Json::array();
-  for (const auto& e : all) {
-    names.push_back({{"name", e.name},
-                     {"paper", e.paper},
-                     {"item", e.item},
-                     {"shows", e.shows},
-                     {"printed", e.printed},
-                     {"behind", e.behind}});
-    if (!json)
-      std::printf("%-22s %-13s %-18s %s (%s)\n", e.name.c_str(), e.paper.c_str(), e.item.c_str(),
-                  e.shows.c_str(), e.printed.c_str());
-  }
-  if (json) std::cout << names.dump(2) << "\n";
-  return 0;
-}
-
-/// One line that changes on a terminal; else a line for every paper that begins, so that a log
-/// shows that something is done.
-void tellProgress(const std::vector<Experiment>& some, std::size_t i, bool terminal) {
-  const Experiment& now = some[i];
-  if (terminal)
-    std::fprintf(stderr, "\r\033[K%zu of %zu: %s ...", i + 1, some.size(), now.name.c_str());
-  else if (i == 0 || some[i - 1].paper != now.paper)
-    std::fprintf(stderr, "fmbpc: reproduce: %s, from %zu of %zu\n", now.paper.c_str(), i + 1,
-                 some.size());
-}
-
-std::vector<Outcome> outcomesOf(const std::vector<Experiment>& some) {
-  const bool shown = isatty(STDERR_FILENO) != 0;
-  std::vector<Outcome> outcomes;
-  for (const auto& experiment : some) {
-    tellProgress(some, outcomes.size(), shown);
-    outcomes.push_back({experiment, rowsOf(experiment)});
-  }
-  if (shown) std::fprintf(stderr, "\r\033[K");
-  return outcomes;
-}
-
-void draw(const std::vector<Outcome>& outcomes, const std::string& folder) {
-  makeFolder(folder);
-  bool any = false;
-  for (const auto& outcome : outcomes) {
-    const Experiment& e = outcome.experiment;
-    if (!hasPicture(e.name)) continue;
-    any = true;
-    Json json = toJson(pictureOf(e.name));
-    json["title"] = e.paper + ", " + e.item + ": " + e.shows;
-    json["rows"] = toJson(std::vector<Outcome>{outcome});
-    writeText(json.dump() + "\n", inFolder(folder, e.name + ".json"));
-  }
-  if (!any) return;  // tables and equations alone
-  const PlotResult plot = drawReproduction(folder);
-  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
-}
-
-void print(const std::vector<Outcome>& outcomes, const ReproduceArguments& arguments) {
-  if (arguments.json) {
-    std::cout << toJson(outcomes).dump(2) << "\n";
-  } else if (arguments.markdown) {
-    std::cout << markdown(outcomes);
-  } else {
-    if (arguments.details || !arguments.names.empty())
-      for (const auto& outcome : outcomes) std::cout << detailsText(outcome) << "\n";
-    std::cout << summaryText(outcomes);
-    if (!arguments.details && arguments.names.empty())
-      std::cout << "details: fmbpc reproduce --details, or the name of a paper in brackets\n";
-  }
-}
-
-/// Rows without a result and failed runs, on standard error.
-int failures(const std::vector<Outcome>& outcomes) {
-  const auto lines = failuresOf(outcomes, failedRuns());
-  for (const auto& line : lines) std::fprintf(stderr, "fmbpc: %s\n", line.c_str());
-  return lines.empty() ? 0 : 1;
-}
-
-}  // namespace
-
-int reproduce(const ReproduceArguments& arguments) {
-  const auto some = chosen(arguments.names);
-  if (arguments.list) return list(some, arguments.json);
-  const auto outcomes = outcomesOf(some);
-  print(outcomes, arguments);
-  if (!arguments.plots.empty()) draw(outcomes, arguments.plots);
-  return failures(outcomes);
+int reproduce(const std::vector<std::string>& words) {
+  std::error_code error;
+  const auto program =
+      std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / "fmbpc_papers";
+  require(std::filesystem::exists(program), "reproduce",
+          "the program fmbpc_papers beside this one: `scripts/build fmbpc_papers` makes it");
+  std::vector<std::string> line{program.string()};
+  line.insert(line.end(), words.begin(), words.end());
+  become(line);
 }
 
 }  // namespace fpc::tool

@@ -44,8 +44,9 @@ Summary runOne(const LoopFile& loop, const std::string& folder, const std::strin
     identified = true;
     writeModelFile(model, folder);
   };
-  options.remark = [&loop](const std::string& words) {
-    std::fprintf(stderr, "fmbpc: %s: %s\n", loop.name.c_str(), words.c_str());
+  options.said = [&loop](const Event& event) {
+    std::fprintf(stderr, "fmbpc: %s: sample %u: %s: %s\n", loop.name.c_str(), event.first,
+                 kindOf(event.code).name, event.text.c_str());
   };
   const auto start = std::chrono::steady_clock::now();
   const RunRecord record = runLoop(loop, options);

@@ -110,19 +110,19 @@ std::vector<std::string> firstWords(const RecordJudgement& part) {
 
 }  // namespace
 
-ValidationReport validateOn(CsvTable table, const IdentifiedModel& model,
+ValidationReport validateOn(const CsvTable& table, const IdentifiedModel& model,
                             const ValidateArguments& a) {
   const auto columns = columnsOf(a.columns);
   requireSignals(columns, model.model);
   Structure structure = structureOf(model.model, table, columns);
   std::vector<std::string> remarks;
   if (!a.no_time) setTimes(table, structure, remarks);
-  table = withEvenTimes(std::move(table), structure.time_column, remarks);
-  const DataSet data = makeData(table, structure, a.rows);
+  const DataSet data = makeJoinedData(table, structure, a.rows, remarks);
   ValidationReport report{judgeRecord("validation", data, model, a.steps), {}, {}, {}};
   const RecordJudgement& part = report.part;
   remarks.insert(remarks.end(), data.repairs.begin(), data.repairs.end());
-  for (const auto& remark : recordRemarks(data, nullptr)) remarks.push_back(remark);
+  for (const auto& remark : recordRemarks(asRead(data, model.same_row), nullptr))
+    remarks.push_back(remark);
   remarks.insert(remarks.end(), part.remarks.begin(), part.remarks.end());
   Json json{{"name", model.model.name}, {"data", data.source}, {"validation", toJson(part)}};
   const std::vector<std::string> first = firstWords(part);
@@ -136,7 +136,8 @@ ValidationReport validateOn(CsvTable table, const IdentifiedModel& model,
 
 int validate(const ValidateArguments& a) {
   const IdentifiedModel model = readIdentified(requireModel(a.model));
-  const ValidationReport report = validateOn(readRecord(a.data, csvFormat(a.format)), model, a);
+  const ValidationReport report =
+      validateOn(readRecord(a.data, csvFormat(a.format), !a.format.no_header), model, a);
   if (!a.plots.empty()) plotJudgements(model, {report.part}, report.json, a.plots);
   if (a.json) {
     std::cout << report.json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";

@@ -35,6 +35,7 @@ struct LoopsArguments {
 struct RecordFormat {
   std::string separator{"comma"}, decimal{"point"};
   std::vector<std::string> missing;
+  bool no_header{false};
 };
 
 struct IdentifyArguments {
@@ -50,13 +51,15 @@ struct IdentifyArguments {
   std::vector<std::string> inputs, outputs, disturbances;  ///< columns
   std::string time;                                        ///< column, empty: found
   RecordFormat format;
-  double sample_time_s{};    ///< 0: from the time column
-  std::string kind{"best"};  ///< best, linear, regressors, state
-  double budget_s{45.0};
+  double sample_time_s{};         ///< 0: from the time column
+  std::string kind{"best"};       ///< best, linear, regressors, state
+  double work{45.0}, budget_s{};  ///< limits of the search; 0 s: no limit of time
   int blocks{4}, window{5};
-  int longest_delay{};      ///< [samples], 0: by the length of the record
-  bool keep_inputs{false};  ///< those that hardly moved too
-  std::string known;        ///< of the outputs: file or text, empty: nothing
+  int reach{-1};                  ///< samples of the runs that judge, 0: free ones, -1: by the data
+  int longest_delay{};            ///< [samples], 0: by the length of the record
+  std::string input_row{"auto"};  ///< auto, next, same: see RowReading
+  bool keep_inputs{false};        ///< those that hardly moved too
+  std::string known;              ///< of the outputs: file or text, empty: nothing
   std::uint64_t seed{1};
 };
 
@@ -80,15 +83,6 @@ struct StabilityArguments {
   int settling{0};
   bool json{false};
   bool no_plot{false};
-};
-
-struct ReproduceArguments {
-  std::vector<std::string> names;
-  std::string plots;  ///< folder, empty: none
-  bool list{false};
-  bool details{false};
-  bool markdown{false};
-  bool json{false};
 };
 
 struct TuneArguments {
@@ -156,16 +150,17 @@ int resolve(const std::string& loop, const std::vector<std::string>& set, const 
 /// What the plugins of all loops that are found register, so that lists show it.
 void loadPluginsOfLoops();
 int plants(bool json);
+/// Codes, or docs/events.md if none is named. @throws InputError for one that is none.
+int events(const std::vector<std::string>& codes);
 int controllers(bool json);
 /// Names, titles, plants and controllers of the loops that contain all words (in any of these).
 int loops(const std::vector<std::string>& words, bool names_only, bool json);
-int model(const std::string& file, bool json);
+int model(const std::string& file, bool json, const std::string& plots);
 /// A path, or a name below config/model; what it was given if there is neither.
 std::string findModel(const std::string& name);
 /// The same. @throws InputError with the nearest names.
 std::string requireModel(const std::string& name);
 int stability(const StabilityArguments& arguments);
-int reproduce(const ReproduceArguments& arguments);
 int tune(const TuneArguments& arguments);
 int study(const StudyArguments& arguments);
 /// `brief`: only what all of them control, and the movement.
@@ -174,7 +169,8 @@ int table(const std::vector<std::string>& folders, bool brief);
 void printVerdict(const std::vector<Summary>& summaries);
 int replay(const ReplayArguments& arguments);
 int recover(const RecoverArguments& arguments);
-/// Becomes another program: returns only by throwing.
+/// These become other programs: they return only by throwing.
 int watch(const std::vector<std::string>& words);
+int reproduce(const std::vector<std::string>& words);
 
 }  // namespace fpc::tool

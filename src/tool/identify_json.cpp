@@ -3,6 +3,7 @@
 #include "base/ordered_json.hpp"
 #include "tool/figures_json.hpp"
 #include "tool/identify_report.hpp"
+#include "tool/model_points.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -89,6 +90,7 @@ std::string toJson(const IdentifyReport& report) {
     json["rule_details"][found.output] = rulesOf(found, dynamics);
     if (!found.trials.empty()) json["trials"][found.output] = trialsOf(found);
   }
+  json["points"] = pointsJson(report.found.model);
   json["remarks"] = report.remarks;
   json["seconds"] = report.seconds;
   return json.dump(2, ' ', false, Json::error_handler_t::replace);

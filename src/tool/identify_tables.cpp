@@ -3,6 +3,7 @@
 
 #include "fmbpc/base/text.hpp"
 #include "tool/identify_report.hpp"
+#include "tool/model_points.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -128,6 +129,8 @@ std::string toTables(const IdentifyReport& report) {
                 "--validate holds some out)\n\n";
   text += figuresTable(report) + trialsTable(report.found) + residualTable(report) +
           rulesTable(report.found);
+  const std::string points = pointsTable(report.found.model);
+  if (!points.empty()) text += "\n" + points;
   if (!report.remarks.empty()) text += "\n";
   for (const auto& remark : report.remarks) text += "remark: " + remark + "\n";
   return text;

@@ -9,9 +9,8 @@ namespace fpc::tool {
 namespace {
 
 const FitFigures* freeRunOf(const OutputJudgement& o, ModelKind kind) {
-  for (const auto& f : o.kinds)
-    if (f.kind == kind && f.free_run.samples > 0) return &f.free_run;
-  return nullptr;
+  const KindFigures* f = figuresOf(o, kind);
+  return f != nullptr && f->free_run.samples > 0 ? &f->free_run : nullptr;
 }
 
 /// Free runs of a kind, over those of the linear model; 0: one of the two is not there.
@@ -76,13 +75,18 @@ std::vector<std::string> warnings(const RecordJudgement& part) {
       if ((kind == o.best || kind == ModelKind::kRegressors) && ratioToLinear(o, kind) > kWorse)
         add("the fuzzy model '" + name(kind) + "' is worse than the linear one (" +
             besideText(o, kind) + "): take the linear model of the file");
-    const FitFigures* best = freeRunOf(o, o.best);
-    if (best != nullptr && best->fit < 0.0)
-      add("the free run is worse than the mean of these rows (fit " + shortText(best->fit) + " %)");
-    if (best != nullptr && o.ahead.samples > 0 && o.ahead.fit < 0.0)
-      add(std::to_string(part.steps) +
-          " steps ahead the model is worse than the mean of these rows (RMSE " +
-          shortText(o.ahead.rmse) + "): not for control");
+    const auto addPoor = [&](ModelKind kind, const FitFigures& ahead, const std::string& who) {
+      const FitFigures* free = freeRunOf(o, kind);
+      if (free != nullptr && free->fit < 0.0)
+        add("the free run of " + who + " is worse than the mean of these rows (fit " +
+            shortText(free->fit) + " %)");
+      if (free != nullptr && ahead.samples > 0 && ahead.fit < 0.0)
+        add(std::to_string(part.steps) + " steps ahead " + who +
+            " is worse than the mean of these rows (RMSE " + shortText(ahead.rmse) +
+            "): not for control");
+    };
+    addPoor(o.best, o.ahead, "the model");
+    if (o.laws != o.best) addPoor(o.laws, o.laws_ahead, "what control laws take");
     if (!text.empty()) words.push_back(o.output + ": " + text);
   }
   return words;

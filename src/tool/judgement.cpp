@@ -66,14 +66,17 @@ Json intervalJson(const KindFigures& f) {
 
 Row rowOf(const OutputJudgement& o, const KindFigures& f, const std::string& label,
           const std::string& title) {
-  Row row{label, title, name(f.kind) + (f.kind == o.best ? " *" : "")};
+  Row row{label, title,
+          name(f.kind) + (f.kind == o.best ? " *" : "") + (f.kind == o.laws ? " (laws)" : "")};
   for (const auto* figures : {&f.one_step, &f.free_run}) {
     const bool any = figures->samples > 0;
     row.push_back(any ? fixed(figures->vaf) : "-");
     row.push_back(any ? fixed(figures->fit) : "-");
     row.push_back(any ? shortText(figures->rmse) : "-");
   }
-  row.push_back(f.kind == o.best && o.ahead.samples > 0 ? shortText(o.ahead.rmse) : "-");
+  const FitFigures& ahead = f.kind == o.best ? o.ahead : o.laws_ahead;
+  const bool has_ahead = (f.kind == o.best || f.kind == o.laws) && ahead.samples > 0;
+  row.push_back(has_ahead ? shortText(ahead.rmse) : "-");
   row.push_back(fixed(f.free_run_coverage));
   row.push_back(std::to_string(f.free_run.samples));
   return row;
@@ -81,10 +84,15 @@ Row rowOf(const OutputJudgement& o, const KindFigures& f, const std::string& lab
 
 }  // namespace
 
-const KindFigures& bestFigures(const OutputJudgement& o) {
+const KindFigures* figuresOf(const OutputJudgement& o, ModelKind kind) {
   for (const auto& f : o.kinds)
-    if (f.kind == o.best) return f;
-  return o.kinds.front();
+    if (f.kind == kind) return &f;
+  return nullptr;
+}
+
+const KindFigures& bestFigures(const OutputJudgement& o) {
+  const KindFigures* best = figuresOf(o, o.best);
+  return best != nullptr ? *best : o.kinds.front();
 }
 
 RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
@@ -92,13 +100,19 @@ RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
                             const ValidationParams& params) {
   RecordJudgement part;
   part.title = title;
-  part.data = withoutOutliers(data);
+  part.data = withoutOutliers(asRead(data, model.same_row));
   part.steps = steps;
+  part.reach = model.reach;
   part.best = predictBest(model, part.data);
-  const Matrix ahead = predictSteps(model, part.data, steps);
+  part.laws = predictKind(model, ModelKind::kRegressors, part.data);
+  const AheadPrediction ahead = predictSteps(model, part.data, steps);
   for (std::size_t i = 0; i < model.model.outputs.size(); ++i) {
     const SignalInfo& y = model.model.outputs[i];
-    part.outputs.push_back({y.name, y.unit, bestOf(model, i), {}, {}, {}});
+    OutputJudgement& o = part.outputs.emplace_back();
+    o.output = y.name;
+    o.unit = y.unit;
+    o.best = bestOf(model, i);
+    o.laws = isLinear(model, i) ? ModelKind::kLinear : ModelKind::kRegressors;
   }
   for (const auto kind :
        {ModelKind::kBlend, ModelKind::kState, ModelKind::kRegressors, ModelKind::kLinear}) {
@@ -118,7 +132,8 @@ RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
   for (std::size_t i = 0; i < part.outputs.size(); ++i) {
     const auto c = static_cast<Index>(i);
     const Vector measured = part.data.values.col(c);
-    part.outputs[i].ahead = fitFigures(measured, ahead.col(c));
+    part.outputs[i].ahead = fitFigures(measured, ahead.best.col(c));
+    part.outputs[i].laws_ahead = fitFigures(measured, ahead.laws.col(c));
     part.outputs[i].residual =
         residualCorrelation(part.data, measured - part.best.one_step.col(c), params);
   }
@@ -144,9 +159,13 @@ std::string toTable(const std::vector<RecordJudgement>& parts) {
         title.clear();
       }
     }
-  std::string text = alignedTable(rows) +
-                     "(RMSE in the unit of the output; * chosen; free runs start from the first "
-                     "samples)\n\n";
+  std::string text =
+      alignedTable(rows) +
+      "(RMSE in the unit of the output; * chosen; laws: what control laws take; free runs "
+      "start from the first samples" +
+      (parts.front().reach > 0 ? " and anew after every " + std::to_string(parts.front().reach)
+                               : "") +
+      ")\n\n";
   std::vector<Row> residuals{{"residuals of", "rows", "correlations outside %", "bound"}};
   for (const auto& part : parts)
     for (const auto& o : part.outputs)
@@ -163,6 +182,8 @@ Json toJson(const RecordJudgement& part) {
     output["best"] = name(o.best);
     output["ahead"] = figuresJson(o.ahead);
     output["ahead"]["steps"] = part.steps;
+    output["laws"] = {{"kind", name(o.laws)}, {"ahead", figuresJson(o.laws_ahead)}};
+    if (const KindFigures* laws = figuresOf(o, o.laws)) output["laws"].update(toJson(*laws));
     for (const auto& f : o.kinds) {
       output[name(f.kind)] = toJson(f);
       if (f.kind == ModelKind::kLinear) linear[o.output] = toJson(f);

@@ -26,6 +26,8 @@ struct OutputJudgement {
   /// No `regressors` where these are the linear model; `blend` where there is one.
   std::vector<KindFigures> kinds;
   FitFigures ahead;  ///< of the best kind, `steps` samples ahead
+  ModelKind laws{};  ///< the kind that control laws take: regressors, or linear
+  FitFigures laws_ahead;
   ResidualCorrelation residual;
 };
 
@@ -34,13 +36,17 @@ struct RecordJudgement {
   std::string title;  ///< "identification", "validation"
   DataSet data;       ///< without outliers
   int steps{};
+  Eigen::Index reach{};  ///< of the free runs, see IdentifiedModel
   std::vector<OutputJudgement> outputs;
-  KindPrediction best;
+  KindPrediction best, laws;  ///< laws: of the model that control laws take
   std::vector<std::string> remarks;
 };
+/// Of one kind; null: it was not judged.
+const KindFigures* figuresOf(const OutputJudgement& o, ModelKind kind);
 /// Of the best kind, or of what stands for it.
 const KindFigures& bestFigures(const OutputJudgement& o);
-/// Outliers of `data` are left out, see withoutOutliers().
+/// `data` as the record has it: its rows are read as the model says (asRead()), its outliers left
+/// out (withoutOutliers()).
 RecordJudgement judgeRecord(const std::string& title, const DataSet& data,
                             const IdentifiedModel& model, int steps,
                             const ValidationParams& params = {});
@@ -60,7 +66,7 @@ struct ValidationReport {
 };
 /// A model on another record; `arguments` say rows, columns and steps.
 /// @throws InputError naming record and column.
-ValidationReport validateOn(CsvTable table, const IdentifiedModel& model,
+ValidationReport validateOn(const CsvTable& table, const IdentifiedModel& model,
                             const ValidateArguments& arguments);
 
 }  // namespace fpc::tool

@@ -39,20 +39,24 @@ CsvTable predictionsOf(const IdentifiedModel& model, const RecordJudgement& part
   CsvTable table;
   table.names = {"time"};
   table.units = {"s"};
-  table.values.resize(data.rows(), 1 + 4 * n_y);
+  const Index each = 5;
+  table.values.resize(data.rows(), 1 + each * n_y);
   table.values.col(0) = Vector::LinSpaced(
       data.rows(), 0.0, static_cast<double>(data.rows() - 1) * data.sample_time_s);
   for (Index i = 0; i < n_y; ++i) {
     const SignalInfo& y = data.outputs[static_cast<std::size_t>(i)];
-    for (const char* what : {"", "_one_step", "_free_run", "_linear_free_run"}) {
+    for (const char* what : {"", "_one_step", "_free_run", "_linear_free_run", "_laws_free_run"}) {
       table.names.push_back(y.name + what);
       table.units.push_back(y.unit);
     }
-    table.values.col(1 + 4 * i) = data.values.col(i);
-    table.values.col(2 + 4 * i) = part.best.one_step.col(i);
-    table.values.col(3 + 4 * i) = part.best.free_run.col(i);
-    table.values.col(4 + 4 * i) = line.col(i);
+    const Index at = 1 + each * i;
+    table.values.col(at) = data.values.col(i);
+    table.values.col(at + 1) = part.best.one_step.col(i);
+    table.values.col(at + 2) = part.best.free_run.col(i);
+    table.values.col(at + 3) = line.col(i);
+    table.values.col(at + 4) = part.laws.free_run.col(i);
   }
+  addCauses(data, table);
   return table;
 }
 
@@ -62,7 +66,7 @@ void plotJudgements(const IdentifiedModel& model, const std::vector<RecordJudgem
                     Json json, const std::string& folder) {
   makeFolder(folder);
   const fs::path path(folder);
-  json["memberships"] = membershipsJson(model.model);
+  addModelJson(model.model, json);
   std::error_code error;
   for (const char* title : {"identification", "validation"})
     fs::remove(path / (std::string(title) + ".csv"), error);  // of an earlier run

@@ -51,6 +51,7 @@ void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
   command.add_option("--decimal", f.decimal, "point or comma")->capture_default_str();
   command.add_option("--missing", f.missing, "cells that mean missing beside empty ones and nan")
       ->delimiter(',');
+  command.add_flag("--no-header", f.no_header, "the first line holds values; columns are 1, 2, ..");
 }
 
 void addEvaluate(CLI::App& app, fpc::tool::EvaluateArguments& a) {
@@ -95,8 +96,14 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
   identify->add_option("--kind", a.kind, "best, linear, regressors or state")
       ->capture_default_str()
       ->check(CLI::IsMember({"best", "linear", "regressors", "state"}));
-  identify->add_option("--budget", a.budget_s, "[s] of the search")
+  identify
+      ->add_option("--work", a.work,
+                   "of the search, counted alike on every machine; 1 is about a second of one core")
       ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  identify
+      ->add_option("--budget", a.budget_s,
+                   "[s] that end the search earlier; the model then depends on the machine")
       ->check(CLI::PositiveNumber);
   identify->add_option("--blocks", a.blocks, "held out in turn")
       ->capture_default_str()
@@ -105,9 +112,20 @@ void addIdentify(CLI::App& app, fpc::tool::IdentifyArguments& a) {
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   identify
+      ->add_option("--reach", a.reach,
+                   "[samples] after which runs start anew from measured ones, 0 for free runs "
+                   "(default: free, 10 to 30 where the process integrates or is unstable)")
+      ->check(CLI::Range(0, 100000));
+  identify
       ->add_option("--longest-delay", a.longest_delay,
                    "[samples] (default: a tenth of the rows, at most 100)")
       ->check(CLI::PositiveNumber);
+  identify
+      ->add_option("--input-row", a.input_row,
+                   "what the inputs of a row do: next (act from then on), same (were in force when "
+                   "its outputs were measured) or auto")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "next", "same"}));
   identify->add_flag("--keep-inputs", a.keep_inputs, "inputs that hardly moved too");
   identify->add_option("--known", a.known,
                        "what is known of the outputs: a file, or text like "
@@ -160,12 +178,20 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
   controllers->add_flag("--json", a.json, "print one JSON object and nothing else");
   controllers->footer("Example: fmbpc controllers\n");
   controllers->callback([&a] { chosen = [&a] { return fpc::tool::controllers(a.json); }; });
-  CLI::App* model =
-      app.add_subcommand("model", "Reports what to know of a model file before trusting it");
+  CLI::App* events = app.add_subcommand(
+      "events", "Lists what a loop may say of itself: causes, consequences, remedies");
+  events->add_option("CODES", a.loops, "only these (default: docs/events.md)");
+  events->footer("Example: fmbpc events signal_frozen\n");
+  events->callback([&a] { chosen = [&a] { return fpc::tool::events(a.loops); }; });
+  CLI::App* model = app.add_subcommand(
+      "model",
+      "Reports gains, time constants, poles and dead times of a model, and what not to trust");
   model->add_option("FILE", a.loops, "name of config/model, or path")->required()->expected(1);
   model->add_flag("--json", a.json, "print one JSON object and nothing else");
-  model->footer("Example: fmbpc model fm_1\n");
-  model->callback([&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json); }; });
+  model->add_option("--plots", a.out, "folder for pictures of its sets and step responses");
+  model->footer("Example: fmbpc model fm_1 --plots results/fm_1\n");
+  model->callback(
+      [&a] { chosen = [&a] { return fpc::tool::model(a.loops.front(), a.json, a.out); }; });
   CLI::App* table =
       app.add_subcommand("table", "Prints one table of runs that were written before");
   table->add_option("DIR", a.loops, "folders with a summary.json")->required();
@@ -192,22 +218,6 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
   stability->callback([&a] { chosen = [&a] { return fpc::tool::stability(a); }; });
 }
 
-void addReproduce(CLI::App& app, fpc::tool::ReproduceArguments& a) {
-  CLI::App* reproduce =
-      app.add_subcommand("reproduce", "Tables and figures of the papers: paper | here | verdict");
-  reproduce->add_option("NAME", a.names,
-                        "papers, experiments (or how their names begin), loops behind them; all of "
-                        "them if none is named");
-  reproduce->add_flag("--list", a.list, "only list them: what each shows and prints");
-  reproduce->add_flag("--details", a.details,
-                      "every row of every paper; a paper that is named shows its rows anyway");
-  reproduce->add_option("--plots", a.plots, "folder for a picture of every figure");
-  reproduce->add_flag("--markdown", a.markdown, "the page docs/results.md");
-  reproduce->add_flag("--json", a.json, "print one JSON array and nothing else");
-  reproduce->footer("Example: fmbpc reproduce blazic2007 --plots figures\n");
-  reproduce->callback([&a] { chosen = [&a] { return fpc::tool::reproduce(a); }; });
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -230,8 +240,7 @@ int main(int argc, char** argv) {
   addLists(app, arguments);
   fpc::tool::StabilityArguments stability;
   addStability(app, stability);
-  fpc::tool::ReproduceArguments reproduce;
-  addReproduce(app, reproduce);
+  fpc::tool::addReproduce(app);
   fpc::tool::TuneArguments tune;
   fpc::tool::addTune(app, tune, chosen);
   fpc::tool::StudyArguments study;
@@ -244,7 +253,7 @@ int main(int argc, char** argv) {
   fpc::tool::addWatch(app);
   fpc::tool::refuseEmptyNames(app);
   try {
-    if (const auto words = fpc::tool::wordsForWatch(argc, argv)) return fpc::tool::watch(*words);
+    if (const int code = fpc::tool::runOther(argc, argv); code >= 0) return code;
     const std::string unknown = fpc::tool::unknownCommand(app, argc, argv);
     if (!unknown.empty()) throw std::invalid_argument(unknown);  // before its --help is answered
     app.parse(argc, argv);

@@ -9,6 +9,7 @@
 #include "base/list_of.hpp"
 #include "base/ordered_json.hpp"
 #include "runtime/plot.hpp"
+#include "tool/model_points.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -90,7 +91,14 @@ CsvTable predictions(const Identification& found, const DataSet& data) {
     addColumn(table, y.name + "_free_run", y.unit, free_run.col(i));
     addColumn(table, y.name + "_linear_free_run", y.unit, linear.col(i));
   }
+  addCauses(data, table);
   return table;
+}
+
+/// Draws what stands in a folder.
+void draw(const std::string& folder) {
+  const PlotResult plot = drawModelPlots(folder);
+  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
 }
 
 }  // namespace
@@ -110,7 +118,7 @@ void writeModelPlots(const IdentifyReport& report, const std::string& folder) {
   const fs::path path(folder);
   Json json = Json::parse(toJson(report));
   const TsModel& model = report.found.model;
-  json["memberships"] = membershipsJson(model);
+  addModelJson(model, json);
   std::error_code error;
   fs::remove(path / "validation.csv", error);  // of an earlier run
   for (const auto* judged :
@@ -121,8 +129,40 @@ void writeModelPlots(const IdentifyReport& report, const std::string& folder) {
   }
   writeText(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
             inFolder(folder, "report.json"));
-  const PlotResult plot = drawModelPlots(folder);
-  if (!plot.warning.empty()) std::fprintf(stderr, "fmbpc: warning: %s\n", plot.warning.c_str());
+  draw(folder);
+}
+
+void addModelJson(const TsModel& model, Json& json) {
+  json["memberships"] = membershipsJson(model);
+  json["points"] = pointsJson(model);
+  json["sample_time_s"] = model.sample_time_s;
+  json["causes"] = Json::array();
+  for (const auto* signals : {&model.inputs, &model.disturbances})
+    for (const auto& signal : *signals) json["causes"].push_back(signal.name);
+}
+
+void addCauses(const DataSet& data, CsvTable& table) {
+  const auto n_y = static_cast<Index>(data.outputs.size()), before = table.values.cols();
+  table.values.conservativeResize(Eigen::NoChange, before + data.values.cols() - n_y);
+  table.values.rightCols(data.values.cols() - n_y) =
+      data.values.rightCols(data.values.cols() - n_y);
+  for (const auto* signals : {&data.inputs, &data.disturbances})
+    for (const auto& signal : *signals) {
+      table.names.push_back(signal.name);
+      table.units.push_back(signal.unit);
+    }
+}
+
+void plotModel(const TsModel& model, const std::string& folder) {
+  makeFolder(folder);
+  Json json{{"name", model.name}};
+  addModelJson(model, json);
+  std::error_code error;
+  for (const char* name : {"identification.csv", "validation.csv"})
+    fs::remove(fs::path(folder) / name, error);  // of an earlier run
+  writeText(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n",
+            inFolder(folder, "report.json"));
+  draw(folder);
 }
 
 }  // namespace fpc::tool

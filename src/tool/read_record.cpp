@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/csv_header.hpp"
 #include "config/public_record.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/bag_reader.hpp"
@@ -22,13 +23,14 @@ bool isBag(const std::string& file) {
 
 }  // namespace
 
-CsvTable readRecord(const std::string& file, const CsvFormat& format) {
+CsvTable readRecord(const std::string& file, const CsvFormat& format, bool header) {
   if (!std::filesystem::is_regular_file(file)) {
     const std::string record = whereToGet(file);
     throw InputError(file + ": expected an existing CSV or bag" +
                      (record.empty() ? "" : ": " + record));
   }
-  return isBag(file) ? readBag(file) : readCsv(file, format);
+  if (isBag(file)) return readBag(file);
+  return header ? readCsv(file, format) : readCsvWithoutHeader(file, format);
 }
 
 }  // namespace fpc::tool

@@ -9,6 +9,6 @@ namespace fpc::tool {
 
 /// Bags are told by their content, whatever their name.
 /// @throws InputError naming the file.
-CsvTable readRecord(const std::string& file, const CsvFormat& format);
+CsvTable readRecord(const std::string& file, const CsvFormat& format, bool header = true);
 
 }  // namespace fpc::tool

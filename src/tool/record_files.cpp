@@ -1,8 +1,12 @@
 #include "tool/record_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "fmbpc/base/input_error.hpp"
+#include "identification/auto_identify.hpp"
+#include "tool/time_column.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -24,6 +28,29 @@ DataSet makeData(const CsvTable& table, const Structure& structure, const std::s
   const std::string name = fs::path(table.file).filename().string();
   data.source.replace(0, table.file.size(), name);
   return data;
+}
+
+DataSet makeJoinedData(const CsvTable& table, const Structure& structure, const std::string& rows,
+                       std::vector<std::string>& remarks) {
+  std::vector<CsvTable> pieces = piecesOf(table, structure.time_column, remarks);
+  if (pieces.size() == 1)
+    return makeData(withEvenTimes(std::move(pieces.front()), structure.time_column, remarks),
+                    structure, rows);
+  const RowRange asked = parseRows(rowsText(rows));
+  std::vector<DataSet> parts;
+  Eigen::Index before = 0;
+  for (auto& piece : pieces) {
+    const Eigen::Index count = piece.rows(),
+                       first = std::max(asked.first - before, Eigen::Index{1});
+    const Eigen::Index last = asked.last == 0 ? count : std::min(asked.last - before, count);
+    before += count;
+    if (first > last) continue;
+    parts.push_back(makeData(withEvenTimes(std::move(piece), structure.time_column, remarks),
+                             structure, std::to_string(first) + ":" + std::to_string(last)));
+    parts.back().source += " of piece " + std::to_string(parts.size());
+  }
+  require(!parts.empty(), table.file, "rows within 1:" + std::to_string(before) + ", got " + rows);
+  return joinRecords(parts);
 }
 
 void checkTarget(const std::string& file) {

@@ -160,7 +160,7 @@ void writeRuns(const StudyPlan& plan, const StudyResult& result, const std::stri
     if (!result.runs[i]) continue;
     const RunJudgement& run = *result.runs[i];
     const StudyCase& one = plan.cases()[plan.caseOf(i)];
-    stream << plan.study().loops[plan.loopOf(i)].name << ",\"" << one.name << "\"";
+    stream << "\"" << plan.study().loops[plan.loopOf(i)].name << "\",\"" << one.name << "\"";
     for (const double value : {run.cost, run.move, run.least, run.largest_move})
       stream << "," << exactText(value);
     for (const auto count : run.failures) stream << "," << count;

@@ -3,7 +3,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kWatch[] = "watch";
+constexpr char kWatch[] = "watch", kReproduce[] = "reproduce";
 
 }  // namespace
 
@@ -34,9 +34,16 @@ void addWatch(CLI::App& app) {
   app.add_subcommand(kWatch, "Shows a running loop from its topics: in the terminal, or --window");
 }
 
-std::optional<std::vector<std::string>> wordsForWatch(int argc, char** argv) {
-  if (argc < 2 || std::string(argv[1]) != kWatch) return std::nullopt;
-  return std::vector<std::string>(argv + 2, argv + argc);
+void addReproduce(CLI::App& app) {
+  app.add_subcommand(kReproduce, "Tables and figures of the papers: paper | here | verdict");
+}
+
+int runOther(int argc, char** argv) {
+  if (argc < 2) return -1;
+  const std::string command = argv[1];
+  const std::vector<std::string> words(argv + 2, argv + argc);
+  if (command == kWatch) return watch(words);
+  return command == kReproduce ? reproduce(words) : -1;
 }
 
 void refuseEmptyNames(CLI::App& app) {

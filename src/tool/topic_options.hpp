@@ -18,10 +18,12 @@ void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen
 /// set, disturb, manual, auto, release.
 void addOperate(CLI::App& app, std::function<int()>& chosen);
 
-/// `watch` for the list of commands only: its words are those of a script.
+/// `watch` and `reproduce` for the list of commands only: their words are those of other programs.
 void addWatch(CLI::App& app);
-/// What stands behind `fmbpc watch`, whatever it is, --help too; nothing of another command.
-std::optional<std::vector<std::string>> wordsForWatch(int argc, char** argv);
+void addReproduce(CLI::App& app);
+/// Becomes the other program if one of them is asked for, whatever stands behind it, --help too.
+/// @return -1 for any other command
+int runOther(int argc, char** argv);
 
 /// An empty text where a file or folder is named is a script's variable that nobody has set: no
 /// command of the app takes one. Call it when all are there.

@@ -4,6 +4,7 @@
 
 #include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
+#include "base/statistics.hpp"
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "tool/progress_bar.hpp"
@@ -20,11 +21,6 @@ std::vector<double> sorted(const Json& list) {
   for (const Json& value : list) values.push_back(numberOrInfinity(value));
   std::sort(values.begin(), values.end());
   return values;
-}
-
-double median(const std::vector<double>& values) {
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 Json curveOf(const TuneResult& result) {

@@ -17,16 +17,16 @@ constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 TEST(OrderStatistics, MediansOnPaper) {
   EXPECT_EQ(upperMedian({3.0, 1.0, 2.0}), 2.0);
   EXPECT_EQ(upperMedian({4.0, 1.0, 3.0, 2.0}), 3.0);
-  EXPECT_EQ(quantile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.0);
-  EXPECT_EQ(quantile({4.0, 1.0, 3.0, 2.0, 0.0}, 0.25), 1.0);
-  EXPECT_EQ(quantile({4.0, 1.0, 3.0}, 0.0), 1.0);
-  EXPECT_EQ(quantile({4.0, 1.0, 3.0}, 1.0), 4.0);
+  EXPECT_EQ(sampleQuantile({4.0, 1.0, 3.0, 2.0}, 0.5), 2.0);
+  EXPECT_EQ(sampleQuantile({4.0, 1.0, 3.0, 2.0, 0.0}, 0.25), 1.0);
+  EXPECT_EQ(sampleQuantile({4.0, 1.0, 3.0}, 0.0), 1.0);
+  EXPECT_EQ(sampleQuantile({4.0, 1.0, 3.0}, 1.0), 4.0);
   EXPECT_EQ(upperMedian({7.0}), 7.0);
 }
 
 TEST(OrderStatistics, NothingIsNotANumber) {
   EXPECT_TRUE(std::isnan(upperMedian({})));
-  EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
+  EXPECT_TRUE(std::isnan(sampleQuantile({}, 0.5)));
   EXPECT_TRUE(std::isnan(orderStatistic({1.0, 2.0}, 2)));
 }
 

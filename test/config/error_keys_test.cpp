@@ -52,6 +52,20 @@ TEST_F(ErrorKeys, WhatNobodyMeasuresIsNamedWithWhatItNeeds) {
   expect("controller.realisation=parallel", "controller.realisation: expected observer where");
 }
 
+/// The model is five samples late.
+TEST_F(ErrorKeys, APlanThatEndsWithinTheDeadTimeIsRefused) {
+  const auto with = [](const char* horizon, const char* delay) {
+    return errorOf([&] {
+      readLoop("cstr_tracking_robust",
+               {{"controller.horizon_steps", horizon}, {"controller.delay_steps", delay}});
+    });
+  };
+  expectWords(with("5", "0"),
+              {"controller.horizon_steps: expected more samples than the dead time of CA"});
+  EXPECT_EQ(with("6", "0"), "");
+  EXPECT_EQ(with("1", "5"), "");
+}
+
 TEST_F(ErrorKeys, ChecksOfAMatrixNameItsItems) {
   expectWords(errorOfOverride("plant.matrix.outputs.0.name=Q"),
               {"plant.matrix.elements[0].output: expected one of the matrix's outputs"});

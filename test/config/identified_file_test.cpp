@@ -63,6 +63,20 @@ TEST(IdentifiedFile, IsLossless) {
   EXPECT_EQ(back.state.outputs.front().members.front().shape.upper, 1.0 / 3.0);
 }
 
+TEST(IdentifiedFile, KeepsHowRowsAreReadAndHowFarRunsGo) {
+  IdentifiedModel m = example();
+  EXPECT_EQ(writeIdentified(m).find("same_row"), std::string::npos);
+  m.same_row = {true};
+  m.reach = 12;
+  const std::string text = writeIdentified(m);
+  const IdentifiedModel back = parseIdentified(text, "memory");
+  EXPECT_EQ(back.same_row, m.same_row);
+  EXPECT_EQ(back.reach, 12);
+  std::string other = text;
+  other.replace(other.find("same_row: [u") + 11, 1, "w");
+  EXPECT_THROW(parseIdentified(other, "memory"), InputError);
+}
+
 TEST(IdentifiedFile, KeepsABlendAndRefusesOneWithoutItsParts) {
   IdentifiedModel m = example();
   m.outputs.front().best = ModelKind::kBlend;
@@ -92,11 +106,11 @@ TEST(IdentifiedFile, ABlendIsHalfOfTheRegressorsAndHalfOfTheState) {
     data.values.row(k) << 0.2 + 0.01 * k, k % 7 < 3 ? 0.5 : -0.5;
   const KindPrediction past = predictKind(m, ModelKind::kRegressors, data),
                        own = predictKind(m, ModelKind::kState, data), best = predictBest(m, data);
-  const Matrix ahead = predictSteps(m, data, 2);
+  const Matrix ahead = predictSteps(m, data, 2).best;
   m.outputs.front().best = ModelKind::kRegressors;
-  const Matrix past_ahead = predictSteps(m, data, 2);
+  const Matrix past_ahead = predictSteps(m, data, 2).best;
   m.outputs.front().best = ModelKind::kState;
-  const Matrix own_ahead = predictSteps(m, data, 2);
+  const Matrix own_ahead = predictSteps(m, data, 2).best;
   for (Eigen::Index k = 10; k < 20; ++k) {
     ASSERT_NE(past.free_run(k, 0), own.free_run(k, 0));
     EXPECT_EQ(best.free_run(k, 0), 0.5 * (past.free_run(k, 0) + own.free_run(k, 0)));

@@ -21,7 +21,7 @@ TEST_F(ControllerSessionHold, SampleThatIsNotFiniteIsAnsweredWithTheAppliedInput
     EXPECT_TRUE(session->answer().has_action);
     EXPECT_FALSE(session->answer().has_prediction);
     EXPECT_FALSE(session->output().ok);
-    EXPECT_STRNE(session->output().remark, "");
+    EXPECT_TRUE(session->output().events.has(EventCode::kSignalMissing));
     EXPECT_TRUE(session->answer().tracking.reference.allFinite());
     m = sample(2);
     m.disturbances[0] = bad;
@@ -82,14 +82,14 @@ TEST_F(ControllerSessionHold, LawInTroubleHoldsAndTellsWhy) {
   session->receive(sample(0));
   law->spoil = [](ControllerOutput& o) {
     o.ok = false;
-    o.remark = "no effect";
+    o.events.add({EventCode::kInputWithoutEffect});
     o.input[0] = 1234.0;
   };
   session->receive(sample(1, 1, 640.0));
   EXPECT_EQ(input(), 640.0);
   EXPECT_EQ(source(), ActionSource::kHeld);
   EXPECT_FALSE(session->answer().has_prediction);
-  EXPECT_STREQ(session->output().remark, "no effect");
+  EXPECT_TRUE(session->output().events.has(EventCode::kInputWithoutEffect));
 }
 
 TEST_F(ControllerSessionHold, BrokenLawNeverReachesTheActuator) {

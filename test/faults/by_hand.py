@@ -44,7 +44,7 @@ def input_is_kept(loop):
 
 def in_control(state):
     """The law has the inputs; where manual left the plant its model may have no data, which degrades it."""
-    return state.summary and (state.word == "automatic" or state.word == "degraded" and "the model" in state.reason)
+    return state.summary and (state.word == "automatic" or state.word == "degraded" and state.code == "outside_model")
 
 
 def in_manual(name, *victims):

@@ -197,7 +197,7 @@ def main():
     rows, broken = violations(arguments.out)
     with open(summary, encoding="utf-8") as file:
         said = json.load(file)
-    complete, gaps = said["complete"], [r for r in said["remarks"] if "in the record" in r["words"]]
+    complete, gaps = said["complete"], [e for e in said["events"] if e["code"] == "record_gap"]
     grown = growth(soak.rows)
     seconds = soak.finished
     result = {"samples": rows - 1, "lost": arguments.samples + 1 - rows, "complete": complete, "gaps": gaps, "violations": broken,

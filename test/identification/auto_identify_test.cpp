@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -127,6 +128,59 @@ TEST(AutoIdentify, SaysFirstThatNoiseCannotBePredicted) {
   const AutoIdentification found = autoIdentify(simulate(noise, 240, 0.0, 0, 4), quick(false));
   EXPECT_EQ(found.outputs[0].verdict.rfind("no model says ", 0), 0U) << found.outputs[0].verdict;
   EXPECT_FALSE(found.outputs[0].beats_linear);
+}
+
+TEST(AutoIdentify, WorkIsCountedSoThatThreadsAndTimeChangeNothing) {
+  const DataSet data = simulate(bentLaw, 240, 0.05, 0, 6);
+  AutoParams params = quick(true);
+  params.work = 0.5;  // ends in the middle of the search
+  params.threads = 1;
+  const AutoIdentification one = autoIdentify(data, params);
+  params.threads = 3;
+  const AutoIdentification three = autoIdentify(data, params);
+  EXPECT_EQ(one.work, three.work);
+  EXPECT_EQ(one.remarks, three.remarks);
+  ASSERT_EQ(one.trials.size(), three.trials.size());
+  for (std::size_t i = 0; i < one.trials.size(); ++i) {
+    EXPECT_EQ(one.trials[i].structure, three.trials[i].structure);
+    EXPECT_EQ(one.trials[i].free_run, three.trials[i].free_run);
+  }
+  const auto isLeftOut = [](const AutoIdentification& found) {
+    return std::any_of(found.remarks.begin(), found.remarks.end(), [](const std::string& r) {
+      return r.find("limit of work left out") != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(isLeftOut(one));
+  params.work = 45.0;
+  const AutoIdentification whole = autoIdentify(data, params);
+  EXPECT_FALSE(isLeftOut(whole));
+  EXPECT_GT(whole.work, one.work);
+}
+
+TEST(AutoIdentify, ARuleCountsTheRowsInWhichItFiresMostAndItsCentresLieInTheData) {
+  const DataSet data = simulate(bentLaw, 300, 0.01, 0, 2);
+  const AutoIdentification found = autoIdentify(data, quick(false));
+  const OutputModel& model = found.model.submodels[0];
+  ASSERT_GT(model.rules.size(), 1U);
+  const Regression rows = makeRegression(data, model.regressors, model.antecedents, 0);
+  std::vector<std::uint64_t> counts(model.rules.size(), 0);
+  FiringResult firing;
+  for (Index k = 0; k < rows.rows(); ++k) {
+    firingWeights(model, rows.antecedents.row(k).transpose(), firing);
+    Index most = 0;
+    firing.weights.maxCoeff(&most);
+    ++counts[static_cast<std::size_t>(most)];
+  }
+  for (std::size_t r = 0; r < counts.size(); ++r) {
+    EXPECT_EQ(model.rules[r].data_count, counts[r]);
+    for (std::size_t j = 0; j < model.antecedents.size(); ++j) {
+      const auto column =
+          data.values.col(data.column(model.antecedents[j].kind, model.antecedents[j].index));
+      const double centre = model.rules[r].antecedents[j].parameters[0];
+      EXPECT_GE(centre, column.minCoeff() - 1e-9);
+      EXPECT_LE(centre, column.maxCoeff() + 1e-9);
+    }
+  }
 }
 
 TEST(AutoIdentify, OffersTheBestLinearModelOfItsTable) {

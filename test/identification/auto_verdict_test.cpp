@@ -56,5 +56,19 @@ TEST(AutoVerdict, AMeanThatDoesNotBeatLinearIsNotChosen) {
   EXPECT_EQ(chosen(1.2, 1.3, 0.98, false), ModelKind::kLinear);
 }
 
+TEST(AutoVerdict, ALinearModelThatBecameBetterTakesTheVerdictBack) {
+  AutoOutput found;
+  found.linear = figures(1.0, 0.1);
+  found.regressors = figures(0.8, 0.1);
+  found.fuzzy_model = true;
+  decide(found);
+  ASSERT_TRUE(found.beats_linear);
+  found.linear = figures(0.56, 0.1);  // with other outputs among its regressors
+  decide(found);
+  EXPECT_FALSE(found.beats_linear);
+  EXPECT_FALSE(found.fuzzy_model);
+  EXPECT_EQ(found.best, ModelKind::kLinear);
+}
+
 }  // namespace fuzzy_auto_verdict_test
 }  // namespace fpc

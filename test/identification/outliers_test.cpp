@@ -113,5 +113,20 @@ TEST(Outliers, ThatFollowAPulseOfAnInputAreItsEffect) {
   EXPECT_TRUE(found[1].empty());
 }
 
+TEST(Outliers, PeaksThatTheInputsExplainAreKept) {
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    DataSet data = recordOf(0.0, 400, seed);  // an output that answers to changes of u alone
+    std::mt19937_64 random(seed);
+    double before = 0.0;
+    for (Index k = 0; k + 1 < 400; ++k) {
+      data.values(k + 1, 0) = 3.0 * (data.values(k, 1) - before) + 0.02 * standardNormal(random);
+      before = data.values(k, 1);
+    }
+    EXPECT_TRUE(outliersOf(data)[0].empty()) << "seed " << seed;
+    data.values(200, 0) += 25.0;
+    EXPECT_EQ(outliersOf(data)[0], Rows{200}) << "seed " << seed;
+  }
+}
+
 }  // namespace fuzzy_outliers_test
 }  // namespace fpc

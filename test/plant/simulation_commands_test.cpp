@@ -187,5 +187,55 @@ TEST(SimulationCommands, OffsetsNeverTakeADisturbanceOutOfItsRange) {
   EXPECT_EQ(simulation.trouble(), "");
 }
 
+/// What was asked in vain at the present sample, by signal.
+std::vector<std::string> clamped(const Simulation& simulation) {
+  std::vector<std::string> signals;
+  for (const Event& event : simulation.events()) signals.push_back(event.signal);
+  return signals;
+}
+
+TEST(SimulationCommands, AnInputAskedBeyondItsLimitsIsSaidUntilItIsReleased) {
+  using Names = std::vector<std::string>;
+  Simulation simulation(sludgeParams());
+  const InputLimits& limits = simulation.actuator().params().limits;
+  const double range = limits.upper[0] - limits.lower[0];
+  const auto after = [&](const Command& command) {
+    simulation.command(command);
+    simulation.advance(kU);
+    return clamped(simulation);
+  };
+  EXPECT_EQ(after(command("input/q_r", limits.upper[0])), Names{});
+  EXPECT_EQ(after(command("input/q_r", -range, CommandMode::kOffset)), Names{});
+  EXPECT_EQ(after(command("output/x", 1e300)), Names{});
+  EXPECT_EQ(after(command("input/q_r", 1e300)), Names{"input/q_r"});
+  EXPECT_EQ(simulation.events()[0].code, EventCode::kInputClamped);
+  simulation.advance(kU);
+  EXPECT_EQ(clamped(simulation), Names{"input/q_r"});
+  EXPECT_EQ(after(command("input/q_r", 1.1 * range, CommandMode::kOffset)), Names{"input/q_r"});
+  EXPECT_EQ(after({0, {"input/q_r"}, {}, CommandMode::kRelease}), Names{});
+  EXPECT_EQ(after(command("input/q_r", 1e300)), Names{"input/q_r"});
+  simulation.reset(2);
+  EXPECT_EQ(clamped(simulation), Names{});
+}
+
+TEST(SimulationCommands, AnOffsetOutOfTheRangeOfADisturbanceIsSaidWhileItActs) {
+  using Names = std::vector<std::string>;
+  SimulationParams params = sludgeParams(4);
+  Simulation simulation(params);
+  const double room =
+      simulation.state().disturbances[0] - simulation.description().disturbances[0].lower;
+  const auto after = [&](const Command& command) {
+    simulation.command(command);
+    simulation.advance(kU);
+    return clamped(simulation);
+  };
+  EXPECT_EQ(after(command("q_i", -room, CommandMode::kOffset)), Names{}) << "on the bound";
+  EXPECT_EQ(after(command("q_i", -room - 0.5, CommandMode::kOffset)), Names{"q_i"});
+  EXPECT_EQ(simulation.events()[0].code, EventCode::kDisturbanceClamped);
+  EXPECT_EQ(after(command("q_i", 1500.0)), Names{}) << "an override takes its place";
+  EXPECT_EQ(after(command("q_i", -room - 0.5, CommandMode::kOffset)), Names{})
+      << "nothing acts on the final sample";
+}
+
 }  // namespace plant_simulation_commands_test
 }  // namespace fpc

@@ -16,7 +16,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 RECORD = TOP / "examples/reactor_record.csv"
 TOOL = os.environ["FMBPC_TOOL"]
 SIGNALS = {"inputs": ["q_c"], "outputs": ["CA"]}
-QUICK = {**SIGNALS, "budget_s": 60, "kind": "linear", "blocks": 2}
+QUICK = {**SIGNALS, "work": 5, "kind": "linear", "blocks": 2}
 
 
 class Models(unittest.TestCase):
@@ -41,7 +41,7 @@ class Models(unittest.TestCase):
     def test_the_tool_finds_the_same_model(self):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "model.yaml")
-            subprocess.run([TOOL, "identify", str(RECORD), "--auto", "--inputs", "q_c", "--outputs", "CA", "--budget", "60", "--kind", "linear",
+            subprocess.run([TOOL, "identify", str(RECORD), "--auto", "--inputs", "q_c", "--outputs", "CA", "--work", "5", "--kind", "linear",
                             "--blocks", "2", "--out", file], capture_output=True, check=True)
             self.assertEqual(self.rules(fmbpc.Model(file)), self.rules(self.model))
             self.model.save(file)

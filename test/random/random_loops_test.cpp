@@ -251,7 +251,9 @@ TEST_F(RandomLoops, DoNotDependOnWhereAnOutputHasItsZero) {
     ASSERT_NEAR(here.outputs[0].ise, there.outputs[0].ise, 1e-4 * (1.0 + here.outputs[0].ise))
         << other.told();
     EXPECT_EQ(lockedSamples(loop, plain, 4), lockedSamples(moved, shifted, 4)) << other.told();
-    EXPECT_EQ(here.locked.size(), there.locked.size()) << other.told();
+    EXPECT_EQ(contains(here.events, EventCode::kInputAtLimit),
+              contains(there.events, EventCode::kInputAtLimit))
+        << other.told();
   }
 }
 

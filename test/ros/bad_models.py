@@ -56,16 +56,16 @@ class BadModels(unittest.TestCase):
             publisher.publish(model)
             # Counters are of now, the words change with hysteresis: both must come to this model.
             said = status.wait(lambda s, n=count, w=words: ring.values(s).get("refused: fuzzy_model") == str(n) and
-                               "controlling; refused: " in s.message and w in s.message)
+                               ring.values(s)["code"] == "model_refused" and w in s.message)
             self.assertEqual(DiagnosticStatus.WARN, said.level)
             self.assertEqual(("FM_1", "1"), (ring.values(said)["model"], ring.values(said)["models taken"]))
         folder = recorded.wait().data
         self.assertEqual({"input": 0, "move": 0, "output": 0}, ring.summary(folder)["violations"])
         with tempfile.TemporaryDirectory() as reference:
             ring.run_in_process(loop, reference, sets)
-            ring.assert_same_run(self, folder, reference, beyond="model 'unstable': ")
-        said = [r["words"] for r in ring.summary(folder)["remarks"]]
-        self.assertTrue(any(words.startswith("model 'unstable': expected a model that is stable") for words in said), said)
+            ring.assert_same_run(self, folder, reference, beyond="model_refused")
+        said = ring.summary(folder)["events"]
+        self.assertIn("model_refused", [e["code"] for e in said], said)
 
 
 if __name__ == "__main__":

@@ -86,7 +86,8 @@ class Records(unittest.TestCase):
         states = ring.Listener("useless/loop_state", LoopState, connected=False)
         state = states.wait(lambda s: s.mode == LoopState.FAILED)
         self.assertEqual("/useless/loop_recorder", state.node)
-        self.assertIn("cannot record: /dev/null/x", state.reason)
+        self.assertEqual("recording_failed", state.code)
+        self.assertIn("/dev/null/x", state.reason)
 
     def test_a_node_that_cannot_read_its_loop_says_so_on_loop_state(self):
         rospy.set_param("garbage/loop_text", "plant: [")
@@ -96,7 +97,7 @@ class Records(unittest.TestCase):
         self.addCleanup(ring.killed, controller)
         state = states.wait(lambda s: s.mode == LoopState.FAILED)
         self.assertEqual("/garbage/fmbpc_controller", state.node)
-        self.assertIn("cannot start: ", state.reason)
+        self.assertEqual("cannot_start", state.code)
         self.assertEqual(1, controller.wait(ring.PATIENCE))
 
     def test_a_recorder_that_dies_ends_the_launch_with_the_files_of_what_it_had(self):
@@ -144,7 +145,7 @@ class Records(unittest.TestCase):
             states.wait(lambda s: s.node == "/useless/plant_simulator")
             end()
             self.assertEqual(0, plant.wait(ring.PATIENCE))
-            last = states.wait(lambda s: "is shut down at sample 0" in s.reason)
+            last = states.wait(lambda s: s.code == "shut_down")
             self.assertEqual((LoopState.STALLED, True), (last.mode, last.summary))
 
     def test_a_recorder_that_hangs_is_killed_when_the_run_is_over(self):
@@ -169,7 +170,7 @@ class Records(unittest.TestCase):
         self.addCleanup(controller.stderr.close)
         self.addCleanup(ring.killed, controller)
         for _ in range(8):  # for longer than one that ends would be heard
-            self.assertEqual(LoopState.FAILED, states.wait(lambda s: "cannot start: " in s.reason).mode)
+            self.assertEqual(LoopState.FAILED, states.wait(lambda s: s.code == "cannot_start").mode)
             states.clear()
         self.assertIsNone(controller.poll())
         rospy.set_param("stays/loop_text", "plant: [[")

@@ -63,7 +63,7 @@ class BrokenWire {
   double mostUnburnt() const { return most_; }
   int refused() const { return refused_; }
   ActionSource source() const { return session_.answer().base.source; }
-  std::string remark() const { return session_.output().remark; }
+  std::string remark() const { return textOf(session_.answer().events); }
 
  private:
   PlantGateway::Rounding rounding() const {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "config/command_file.hpp"
+#include "events.hpp"
 #include "fmbpc/base/text.hpp"
 #include "runtime/loop_fixture.hpp"
 #include "runtime/report.hpp"
@@ -24,10 +25,10 @@ class Commands : public LoopFolder {
   RunRecord run(const LoopFile& loop, const std::string& entries) {
     RunOptions options;
     options.commands = commands(entries, loop);
-    options.remark = [this](const std::string& words) { remarks_.push_back(words); };
+    options.said = [this](const Event& event) { said_.push_back(event); };
     return runLoop(loop, options);
   }
-  std::vector<std::string> remarks_;
+  std::vector<Event> said_;
 };
 
 void expectSameBits(const RunRecord& a, const RunRecord& b) {
@@ -70,7 +71,7 @@ TEST_F(Commands, ManualActsFromItsSampleOnAndReturnsWithoutABump) {
   for (std::size_t k = 60; k < 100; ++k) EXPECT_EQ(applied(k), 650.0) << k;
   EXPECT_EQ(record.samples[100].action.source, ActionSource::kBase);
   EXPECT_NEAR(applied(100), 650.0, 1e-6);
-  EXPECT_TRUE(remarks_.empty());
+  EXPECT_TRUE(said_.empty());
 }
 
 TEST_F(Commands, WhatIsRefusedIsToldAndTheRunGoesOn) {
@@ -79,13 +80,11 @@ TEST_F(Commands, WhatIsRefusedIsToldAndTheRunGoesOn) {
                                "- {time_h: 2, adapt: true}\n"
                                "- {time_h: 3, settings: {horizon_steps: 3}}\n");
   EXPECT_TRUE(record.complete);
-  ASSERT_EQ(remarks_.size(), 3U);
-  expectWords(remarks_[0], {"sample 5", "manual mode"});
-  expectWords(remarks_[1], {"sample 10", "adapts"});
-  expectWords(remarks_[2], {"sample 15", "a setting that may change"});
-  ASSERT_EQ(record.remarks.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(record.remarks[i].first, 5 * (i + 1));
-  expectWords(record.remarks[1].words, {"command refused", "adapts"});
+  const std::vector<std::string> refused{"command_refused  5..5 (1)", "command_refused  10..10 (1)",
+                                         "command_refused  15..15 (1)"};
+  EXPECT_EQ(test::shown(said_), refused);
+  EXPECT_EQ(test::shown(test::eventsOf(record)), refused);
+  expectWords(said_[1].text, {"adapts"});
 }
 
 TEST_F(Commands, AnIdentificationWithoutItsSectionIsRefused) {
@@ -93,8 +92,9 @@ TEST_F(Commands, AnIdentificationWithoutItsSectionIsRefused) {
     const RunRecord record =
         run(readLoop(name, {{"sampling.duration_h", "2"}}), "- {time_h: 1, identify: 10}\n");
     EXPECT_TRUE(record.complete) << name;
-    ASSERT_EQ(record.remarks.size(), 1U) << name;
-    expectWords(record.remarks[0].words, {"command refused: identify", "model.identify"});
+    EXPECT_EQ(test::codesOf(test::eventsOf(record)),
+              std::vector<EventCode>{EventCode::kCommandRefused})
+        << name;
   }
 }
 
@@ -122,7 +122,7 @@ TEST_F(Commands, ActAtTheSampleAtWhichAScheduleWould) {
   }
 }
 
-TEST_F(Commands, AClampedSetpointIsRemarked) {
+TEST_F(Commands, AClampedSetpointIsSaid) {
   const LoopFile tank = readLoop("heated_tank", {{"setpoint.upper.T", "60"}});
   const RunRecord record = run(tank,
                                "- {time_h: 1, setpoint: {T: 15}, mode: offset}\n"
@@ -130,20 +130,16 @@ TEST_F(Commands, AClampedSetpointIsRemarked) {
                                "- {time_h: 2, setpoint: {T: 61}}\n"
                                "- {time_h: 2.5, setpoint: [T], mode: release}\n");
   EXPECT_EQ(record.samples[130].tracking.setpoint[0], 60.0);  // 50 + 15
-  ASSERT_EQ(record.remarks.size(), 1U);
-  EXPECT_EQ(record.remarks[0].first, 120U);
-  EXPECT_EQ(record.remarks[0].samples, 120U);  // 1 to 1.5 h and 2 to 2.5 h
-  expectWords(record.remarks[0].words, {"setpoint of T", "0..60", "degC", "clamped"});
+  EXPECT_EQ(test::shown(test::eventsOf(record)),              // 1 to 1.5 h and 2 to 2.5 h
+            std::vector<std::string>{"setpoint_clamped T 120..299 (120)"});
 }
 
-TEST_F(Commands, AScheduleBeyondTheLimitsOfTheFileIsRemarkedAsWell) {
+TEST_F(Commands, AScheduleBeyondTheLimitsOfTheFileIsSaidAsWell) {
   const LoopFile tank = readLoop("heated_tank", {{"setpoint.upper.T", "45"}});
   const RunRecord record = runLoop(tank);
   EXPECT_EQ(record.samples[40].tracking.setpoint[0], 45.0);
-  ASSERT_EQ(record.remarks.size(), 1U);
-  EXPECT_EQ(record.remarks[0].first, 30U);  // 50 from 0.25 h on
-  EXPECT_EQ(record.remarks[0].samples, 330U);
-  expectWords(record.remarks[0].words, {"setpoint of T", "0..45", "clamped"});
+  EXPECT_EQ(test::shown(test::eventsOf(record)),  // 50 from 0.25 h on
+            std::vector<std::string>{"setpoint_clamped T 30..359 (330)"});
 }
 
 TEST_F(Commands, WhatLiesBeyondTheRunIsTold) {
@@ -151,20 +147,18 @@ TEST_F(Commands, WhatLiesBeyondTheRunIsTold) {
                                "- {time_h: 5, setpoint: {x: 1900}}\n"
                                "- {time_h: 40.1, setpoint: {x: 1950}}\n"
                                "- {time_h: 50, manual: true}\n");
-  ASSERT_EQ(record.remarks.size(), 1U);
-  EXPECT_EQ(record.remarks[0].samples, 0U);
-  expectWords(record.remarks[0].words, {"2 commands", "never played", "40.1 h"});
-  const auto remarks = remarksOf(summarize(loop("asp_case1"), record, 0.0));
-  ASSERT_EQ(remarks.size(), 2U);
-  EXPECT_EQ(remarks[0], "asp_case1: " + record.remarks[0].words);
-  expectWords(remarks[1], {"1 of 2 entries", "schedule", "80 h", "ends at 40 h"});
+  const std::vector<Event> events = summarize(loop("asp_case1"), record, 0.0).events;
+  EXPECT_EQ(test::codesOf(events),
+            (std::vector<EventCode>{EventCode::kBeyondRun, EventCode::kCommandsUnplayed}));
+  expectWords(events[0].text, {"1 of 2", "80 h", "40 h"});
+  expectWords(events[1].text, {"2 ", "40.1 h"});
 }
 
 TEST_F(Commands, SettingsAndHoldReachTheController) {
   const LoopFile tuned = readLoop("surge_tank_steps", {{"sampling.duration_h", "0.01"}});
   const RunRecord plain = runLoop(tuned);
   const RunRecord record = run(tuned, "- {time_h: 0.001, settings: {weight_move: '1e6'}}\n");
-  EXPECT_TRUE(remarks_.empty()) << remarks_.front();
+  EXPECT_TRUE(said_.empty()) << textOf(said_);
   bool differs = false;
   for (std::size_t k = 0; k + 1 < record.samples.size(); ++k)
     differs = differs || record.samples[k].action.input != plain.samples[k].action.input;

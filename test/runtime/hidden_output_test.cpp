@@ -83,7 +83,7 @@ TEST(HiddenOutput, WhatIsMeasuredOfItIsNotLookedAt) {
     const double x_r = now.outputs[1];
     now.outputs[1] = std::nan("");
     ASSERT_EQ(blind.receive(now), Receipt::kAnswered);
-    ASSERT_NE(blind.answer().base.source, ActionSource::kHeld) << k << blind.output().remark;
+    ASSERT_NE(blind.answer().base.source, ActionSource::kHeld) << k;
     ASSERT_EQ(blind.answer().base.input, seeing.answer().base.input) << k;
     ASSERT_EQ(blind.controller().signals().back().first, "x_r_estimate");
     const double estimate = blind.controller().signals().back().second;

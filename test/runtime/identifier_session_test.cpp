@@ -1,4 +1,5 @@
 #include "runtime/identifier_session.hpp"
+#include "events.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ namespace loop_identifier_session_test {
 /// What a run told of models.
 struct Told {
   std::vector<TsModel> models;
-  std::vector<std::string> remarks;
+  std::vector<Event> events;
   RunRecord record;
 };
 
@@ -21,7 +22,7 @@ Told run(const LoopFile& loop) {
   Told told;
   RunOptions options;
   options.identified = [&](const TsModel& model) { told.models.push_back(model); };
-  options.remark = [&](const std::string& words) { told.remarks.push_back(words); };
+  options.said = [&](const Event& event) { told.events.push_back(event); };
   told.record = runLoop(loop, options);
   return told;
 }
@@ -50,20 +51,24 @@ TEST(IdentifierSession, AJobThatCannotBeMadeIsToldAndTheRunGoesOn) {
                                                {"model.identify.after", "5"}}));
   EXPECT_EQ(told.record.samples.size(), 21U);
   EXPECT_TRUE(told.models.empty());
-  ASSERT_EQ(told.record.remarks.size(), 1U);
-  expectWords(told.record.remarks[0].words, {"identification: ", "sample_time_s", "720"});
+  EXPECT_EQ(test::shown(test::eventsOf(told.record)),
+            std::vector<std::string>{"identification_failed  5..5 (1)"});
 }
 
-TEST(IdentifierSession, WhatIsLearnedInVainDoesNotDrownOtherRemarks) {
+TEST(IdentifierSession, WhatIsLearnedInVainDoesNotDrownOtherEvents) {
   const RunRecord record = run(readLoop("asp_case1", {{"sampling.duration_h", "24"},
                                                       {"model.identify.structure", "asp_d.yaml"},
                                                       {"model.identify.online.every", "1"},
                                                       {"model.max_pole", "0.9"}}))
                                .record;
-  ASSERT_EQ(record.remarks.size(), 8U);  // five refusals in full, 61 in short, two of the law
-  EXPECT_EQ(record.remarks[5].words, "a model learned online is refused, as others before it");
-  EXPECT_EQ(record.remarks[5].samples, 61U);
-  EXPECT_EQ(record.remarks[6].words, "what the law expects leaves the model");
+  std::size_t entries = 0, refusals = 0;
+  for (const Event& event : test::eventsOf(record)) {
+    if (event.code != EventCode::kModelRefused) continue;
+    ++entries;
+    refusals += event.count;
+  }
+  EXPECT_EQ(entries, EventList::kMostTexts);  // later ones count into the last of them
+  EXPECT_EQ(refusals, 66U);
 }
 
 TEST(IdentifierSession, AModelThatIsUnstableWhereThePlantIsIsRefusedAndTheOldOneStays) {
@@ -158,7 +163,7 @@ TEST(Run, IdentifiesByItselfAndHandsTheModelOver) {
   const LoopFile loop =
       readLoop("asp_identify", {{"sampling.duration_h", "90"}, {"model.identify.after", "400"}});
   const Told told = run(loop);
-  ASSERT_EQ(told.models.size(), 1U) << (told.remarks.empty() ? "" : told.remarks.front());
+  ASSERT_EQ(told.models.size(), 1U) << textOf(told.events);
   expectWords(told.models[0].source, {"samples up to 399"});
 }
 

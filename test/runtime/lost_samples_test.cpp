@@ -37,11 +37,11 @@ TEST(LostSamples, WhatALawExpectsIsWhatALateAnalyserWouldHaveShown) {
 }
 
 /// In the file of the loop: 0.00170 and 0.00183 without a loss. Seed 1 loses sample 0 at 10 %,
-/// before which nothing can be expected: the law begins a sample later, 0.0052.
+/// before which nothing can be expected: the law begins a sample later.
 TEST(LostSamples, ALateReactorUnderAFastLawHardlySeesThem) {
   for (const char* name : {"cstr_tracking_lags", "cstr_tracking_rate"}) {
     const double whole = iseOf(name, "0", "1");
-    for (const char* seed : {"2", "3", "4", "5"}) {
+    for (const char* seed : {"1", "2", "3", "4", "5"}) {
       EXPECT_LT(iseOf(name, "0.05", seed), 1.1 * whole) << name << seed;
       EXPECT_LT(iseOf(name, "0.1", seed), 1.3 * whole) << name << seed;
     }

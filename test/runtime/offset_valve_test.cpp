@@ -2,6 +2,7 @@
 // not run away, and the summary says what a person must know.
 #include <cmath>
 
+#include "events.hpp"
 #include "fmbpc/base/text.hpp"
 #include "runtime/loop_fixture.hpp"
 #include "runtime/report.hpp"
@@ -31,12 +32,6 @@ double largestMove(const LoopFile& loop, const RunRecord& record) {
   return largest;
 }
 
-const RunRemark* remarkWith(const Summary& summary, const std::string& words) {
-  for (const RunRemark& remark : summary.remarks)
-    if (remark.words.find(words) != std::string::npos) return &remark;
-  return nullptr;
-}
-
 TEST(OffsetValve, CommandsKeepTheMoveLimitAndTheSetpointIsKept) {
   for (const double offset : {-5.0, 0.5, 1.9, 2.0, 2.5, 5.0}) {
     const LoopFile loop = with("heated_tank", "heat", 0.5, offset, "offset");
@@ -44,10 +39,10 @@ TEST(OffsetValve, CommandsKeepTheMoveLimitAndTheSetpointIsKept) {
     const Summary summary = summarize(loop, record, 0.0);
     EXPECT_LE(largestMove(loop, record), 1.0 + 1e-8) << offset;
     EXPECT_EQ(summary.move_violations, 0U) << offset;
-    EXPECT_TRUE(summary.locked.empty()) << offset;
+    EXPECT_FALSE(contains(summary.events, EventCode::kInputAtLimit)) << offset;
     const SampleRecord& last = record.samples.back();
     EXPECT_NEAR(last.state.outputs[0], last.tracking.setpoint[0], 1.0) << offset;
-    const RunRemark* told = remarkWith(summary, "input heat does not follow its command");
+    const Event* told = test::find(summary.events, EventCode::kInputStuck, "heat");
     EXPECT_EQ(told != nullptr, std::abs(offset) > 0.4 + 1e-9) << offset;
   }
 }
@@ -60,9 +55,9 @@ TEST(OffsetValve, PlansOfThePredictiveLawsKeepItAsWell) {
       const Summary summary = summarize(loop, record, 0.0);
       EXPECT_LE(largestMove(loop, record), 1.0 + 1e-8) << name << offset;
       EXPECT_EQ(summary.move_violations, 0U) << name << offset;
-      for (const LockUp& lock : summary.locked)
-        EXPECT_FALSE(offset > 0.0 && lock.input == "R" && lock.upper)
-            << name << offset << ": an offset upwards asks for less";
+      const Event* locked = test::find(summary.events, EventCode::kInputAtLimit, "R");
+      EXPECT_FALSE(offset > 0.0 && locked && locked->text.find("upper") != std::string::npos)
+          << name << offset << ": an offset upwards asks for less";
     }
 }
 
@@ -70,15 +65,14 @@ TEST(OffsetValve, AStuckValveIsInTheSummaryAndNothingWindsUpAgainstIt) {
   const LoopFile loop = with("heated_tank", "heat", 0.2, 5.0, "override");
   const RunRecord record = runLoop(loop);
   const Summary summary = summarize(loop, record, 0.0);
-  const RunRemark* told = remarkWith(summary, "input heat does not follow its command");
+  const Event* told = test::find(summary.events, EventCode::kInputStuck, "heat");
   ASSERT_NE(told, nullptr);
-  EXPECT_GT(told->samples, 100U);
+  EXPECT_GT(told->count, 100U);
   EXPECT_GT(told->first, 24U);  // 0.2 h
   EXPECT_LE(largestMove(loop, record), 1.0 + 1e-8);
   EXPECT_LE(record.samples[record.samples.size() - 2].action.input[0], 7.0 + 1e-9);
-  EXPECT_EQ(remarkWith(summarize(readLoop("heated_tank"), runLoop(readLoop("heated_tank")), 0.0),
-                       "does not follow"),
-            nullptr);
+  const LoopFile plain = readLoop("heated_tank");
+  EXPECT_FALSE(contains(summarize(plain, runLoop(plain), 0.0).events, EventCode::kInputStuck));
 }
 
 TEST(OffsetValve, AJumpOfTheCommandIsCountedThoughItIsNearWhatIsRead) {
@@ -94,17 +88,17 @@ TEST(OffsetValve, AJumpOfTheCommandIsCountedThoughItIsNearWhatIsRead) {
 TEST(OffsetValve, SoftLimitsThatAreMissedAndOffsetsThatAreCutAreTold) {
   const LoopFile soft = readLoop(
       "methanol_clp", {{"clp.output_lower", "{T_17: 3}"}, {"clp.output_upper", "{T_17: 3}"}});
-  const RunRemark* below =
-      remarkWith(summarize(soft, runLoop(soft), 0.0), "T_17 below its soft limit, 3");
-  EXPECT_NE(below, nullptr);
+  EXPECT_NE(
+      test::find(summarize(soft, runLoop(soft), 0.0).events, EventCode::kSoftLimitExceeded, "T_17"),
+      nullptr);
   const LoopFile cut =
       readLoop("heated_tank",
                {{"disturbance.commands", "[{time_h: 0.5, name: T_in, value: -20, mode: offset}]"}});
   const Summary summary = summarize(cut, runLoop(cut), 0.0);
-  const RunRemark* told = remarkWith(summary, "offset of T_in was asked beyond its range, ");
+  const Event* told = test::find(summary.events, EventCode::kDisturbanceClamped, "T_in");
   ASSERT_NE(told, nullptr);
   EXPECT_EQ(told->first, 60U);
-  EXPECT_EQ(told->samples, 300U);
+  EXPECT_EQ(told->count, 300U);
 }
 
 TEST(OffsetValve, AnIdentificationThatFailsOrNeverBeginsIsTold) {
@@ -112,14 +106,13 @@ TEST(OffsetValve, AnIdentificationThatFailsOrNeverBeginsIsTold) {
       readLoop("asp_identify", {{"sampling.duration_h", "4"}, {"model.identify.after", "10"}});
   const RunRecord record = runLoop(few);
   const Summary summary = summarize(few, record, 0.0);
-  const RunRemark* told = remarkWith(summary, "identification: ");
+  const Event* told = test::find(summary.events, EventCode::kIdentificationFailed);
   ASSERT_NE(told, nullptr);
   EXPECT_EQ(told->first, 10U);  // from sample 9; its model was to be used from the next one on
-  EXPECT_EQ(told->samples, 1U);
+  EXPECT_EQ(told->count, 1U);
   const LoopFile never =
       readLoop("asp_identify", {{"sampling.duration_h", "4"}, {"model.identify.after", "22"}});
-  EXPECT_NE(remarkWith(summarize(never, runLoop(never), 0.0), "22 samples, the run has 21"),
-            nullptr);
+  EXPECT_TRUE(contains(summarize(never, runLoop(never), 0.0).events, EventCode::kBeyondRun));
 }
 
 TEST(OffsetValve, AModelThatTheControllerRefusesIsTheOnlyThingThatIsSaid) {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 
+#include "events.hpp"
 #include "fmbpc/base/text.hpp"
 #include "runtime/factory.hpp"
 #include "runtime/identifier_session.hpp"
@@ -32,10 +33,8 @@ ActionSource sourceAt(const RunRecord& record, double time_h) {
   return record.samples[static_cast<std::size_t>(std::lround(time_h * 5.0))].base.source;
 }
 
-bool remarks(const RunRecord& record, const std::string& words) {
-  for (const RunRemark& remark : record.remarks)
-    if (remark.words.find(words) != std::string::npos) return true;
-  return false;
+bool says(const RunRecord& record, EventCode code, const std::string& signal) {
+  return test::find(test::eventsOf(record), code, signal) != nullptr;
 }
 
 TEST(PlausibleSession, ALyingSensorHoldsTheInputThenFallsBackAndReturnsWithoutABump) {
@@ -47,11 +46,11 @@ TEST(PlausibleSession, ALyingSensorHoldsTheInputThenFallsBackAndReturnsWithoutAB
   EXPECT_EQ(sourceAt(record, 6.6), ActionSource::kHeld);
   EXPECT_EQ(sourceAt(record, 6.8), ActionSource::kFallback);
   EXPECT_EQ(record.samples[35].base.input[0], 300.0);
-  EXPECT_TRUE(remarks(record, "x is outside"));
+  EXPECT_TRUE(says(record, EventCode::kSignalOutOfRange, "x"));
   const std::size_t back = 40;  // 8 h
   EXPECT_NE(record.samples[back].base.source, ActionSource::kFallback);
   const RunRecord calm = runLoop(loopWith({}));
-  EXPECT_FALSE(remarks(calm, "x is outside"));
+  EXPECT_FALSE(says(calm, EventCode::kSignalOutOfRange, "x"));
   const double bump = std::abs(record.samples[back].base.input[0] - 300.0);
   EXPECT_LT(bump, 160.0);  // a tenth of the range
 }
@@ -61,7 +60,7 @@ TEST(PlausibleSession, TheModelsValueKeepsTheLoopClosed) {
   overrides.emplace_back("plausibility.signals.x.substitute", "model");
   const RunRecord record = runLoop(loopWith(overrides));
   EXPECT_EQ(sourceAt(record, 6.0), ActionSource::kBase);
-  EXPECT_TRUE(remarks(record, "the model's value is used"));
+  EXPECT_TRUE(says(record, EventCode::kSignalOutOfRange, "x"));
   const RunRecord calm = runLoop(loopWith({}));
   for (std::size_t k = 30; k < 34; ++k)
     EXPECT_NEAR(record.samples[k].base.input[0], calm.samples[k].base.input[0], 80.0) << k;
@@ -69,9 +68,8 @@ TEST(PlausibleSession, TheModelsValueKeepsTheLoopClosed) {
 
 TEST(PlausibleSession, AStuckActuatorIsSaid) {
   const auto said = [](const LoopFile& loop) {
-    std::string all;
-    for (const RunRemark& remark : summarize(loop, runLoop(loop), 0.0).remarks) all += remark.words;
-    return all.find("input q_r does not follow its command") != std::string::npos;
+    const Summary summary = summarize(loop, runLoop(loop), 0.0);
+    return test::find(summary.events, EventCode::kInputStuck, "q_r") != nullptr;
   };
   EXPECT_FALSE(said(loopWith({})));
   EXPECT_TRUE(said(loopWith(fault("input/q_r", 900.0, 12.0))));
@@ -109,26 +107,26 @@ TEST(PlausibleSession, AModelWithNegatedGainsIsRefusedInTheRun) {
               {"gain", "q_r", "gain_sign"});
   EXPECT_EQ(session.models(), 1U);
   EXPECT_NO_THROW(session.setModel(loop.model));
-  EXPECT_EQ(session.modelRemark(), "");
+  EXPECT_EQ(session.modelText(), "");
 }
 
 TEST(PlausibleSession, ATurnedModelThatIsTakenIsSaidOnce) {
   const LoopFile loop = loopWith({{"plausibility.gain_sign", "false"}});
   Measurement m;
   ControllerSession session = started(loop, m);
-  EXPECT_STREQ(session.output().remark, "");
+  EXPECT_TRUE(session.output().events.empty());
   session.setModel(negated(loop.model, {1}));
   EXPECT_EQ(session.models(), 2U);
-  expectWords(session.modelRemark(), {"turns the sign of the gain from", "q_r to x"});
+  expectWords(session.modelText(), {"turns the sign of the gain from", "q_r to x"});
   for (const bool said : {true, false}) {
     ++m.header.step;
     m.header.time_ns += 720'000'000'000;
     m.input_applied = session.answer().base.input;
     ASSERT_EQ(session.receive(m), Receipt::kAnswered);
-    EXPECT_EQ(session.output().remark == session.modelRemark(), said);
+    EXPECT_EQ(session.output().events.has(EventCode::kModelGainTurned), said);
   }
   session.setModel(negated(loop.model, {1}));  // the same again turns nothing
-  EXPECT_EQ(session.modelRemark(), "");
+  EXPECT_EQ(session.modelText(), "");
 }
 
 TEST(PlausibleSession, WithoutTheRuleATurnedModelIsTakenAndStillSaid) {
@@ -136,7 +134,7 @@ TEST(PlausibleSession, WithoutTheRuleATurnedModelIsTakenAndStillSaid) {
   Measurement m;
   ControllerSession session = started(loop, m);
   session.setModel(negated(loop.model, {0, 1}));
-  expectWords(session.modelRemark(), {"q_r to s", "q_r to x"});
+  expectWords(session.modelText(), {"q_r to s", "q_r to x"});
 }
 
 /// A loop that runs with a model whose second output pushes the wrong way gets one that was learned
@@ -150,18 +148,19 @@ TEST(PlausibleSession, ALearnedModelThatTurnsAGainIsTakenAndSaid) {
   identifier.start();
   ControllerSession session = makeControllerSession(loop);
   session.setModel(negated(loop.model, {1}));
-  std::string said, of_model;
+  bool said = false;
+  std::string of_model;
   for (const SampleRecord& sample : record.samples) {
     session.receive(sample.measurement);
-    said += session.output().remark;
+    said = said || session.output().events.has(EventCode::kModelGainTurned);
     const auto due = identifier.take(sample.measurement);
     if (due.model == nullptr || session.models() > 1) continue;
     session.setModel(*due.model);
-    of_model = session.modelRemark();
+    of_model = session.modelText();
   }
   EXPECT_EQ(session.models(), 2U);
   expectWords(of_model, {"turns the sign of the gain from", "q_r to x"});
-  EXPECT_NE(said.find(of_model), std::string::npos) << said;
+  EXPECT_TRUE(said);
 }
 
 /// All coefficients of one output of two turned round: one gain turns, and what came is missed by
@@ -191,9 +190,12 @@ TEST(PlausibleSession, NoShippedLoopIsDoubted) {
     const RunRecord record = runLoop(
         all ? loop
             : readLoop(name, {{"sampling.duration_h", hours}, {"report.record_from_h", "0"}}));
-    for (const char* words :
-         {"input held", "configured fallback", "value is used", "does not follow its command"})
-      EXPECT_FALSE(remarks(record, words)) << name << ": " << words;
+    const std::vector<Event> events = summarize(loop, record, 0.0).events;
+    for (const EventCode code :
+         {EventCode::kSignalMissing, EventCode::kSignalOutOfRange, EventCode::kSignalTooFast,
+          EventCode::kSignalJumped, EventCode::kSignalFrozen, EventCode::kSignalNotRenewed,
+          EventCode::kInputHeld, EventCode::kInputStuck, EventCode::kMeasurementRejected})
+      EXPECT_FALSE(contains(events, code)) << name << ": " << kindOf(code).name;
     ++seen;
   }
   EXPECT_GT(seen, 30U);

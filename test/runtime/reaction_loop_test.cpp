@@ -29,7 +29,7 @@ class BlindValve {
       told_ = session_.answer().base.input;
       if (stuck) told_where_ = told_where_.size() == 0 ? plant_.actuator().applied() : told_where_;
       plant_.advance(stuck ? told_where_ : told_);
-      if (!session_.reaction().empty()) return k + 1;
+      if (session_.reaction().code != EventCode::kNone) return k + 1;
     }
     return samples;
   }
@@ -50,13 +50,14 @@ class BlindValve {
 TEST(Reaction, TheStirredTankIsNotDoubtedAndItsStuckValveIsFound) {
   BlindValve calm(Overrides{});
   EXPECT_EQ(calm.live(399, false), 399);
-  EXPECT_EQ(calm.session().reaction(), "");
+  EXPECT_EQ(calm.session().reaction().code, EventCode::kNone);
   BlindValve stuck(Overrides{});
   EXPECT_EQ(stuck.live(95, false), 95);
   const int after = stuck.live(150, true);
   EXPECT_LT(after, 120);
-  expectWords(stuck.session().reaction(), {"do not react to input q_c"});
-  EXPECT_STRNE(stuck.session().output().remark, "");  // this one, or the guard's
+  EXPECT_EQ(stuck.session().reaction().code, EventCode::kActuatorIneffective);
+  EXPECT_STREQ(stuck.session().reaction().signal, "q_c");
+  EXPECT_TRUE(stuck.session().output().events.has(EventCode::kActuatorIneffective));
 }
 
 TEST(Reaction, TheLoopFileSaysWhatIsDone) {
@@ -66,10 +67,10 @@ TEST(Reaction, TheLoopFileSaysWhatIsDone) {
     valve.live(95, false);
     valve.live(150, true);
     EXPECT_EQ(valve.session().answer().base.source, source) << word;
-    expectWords(valve.session().output().remark, {"do not react"});
+    EXPECT_TRUE(valve.session().output().events.has(EventCode::kActuatorIneffective));
     valve.session().manual(true);
     valve.session().manual(false);
-    EXPECT_EQ(valve.session().reaction(), "");
+    EXPECT_EQ(valve.session().reaction().code, EventCode::kNone);
   }
 }
 

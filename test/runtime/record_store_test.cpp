@@ -61,7 +61,7 @@ TEST_F(RecordStoreTest, AlsoWithHolesWindowsAndALateStart) {
   RunRecord record = runLoop(loop);
   for (const std::size_t hole : {5, 20, 21}) record.samples[hole] = SampleRecord();
   record.samples[7].has_tracking = record.samples[9].has_action = false;
-  record.samples[11].remark = "a word";
+  record.samples[11].events = {eventOf({EventCode::kNote, "a word", "x"}, 11)};
   expectSameFiles(loop, record, false);
 }
 

@@ -1,4 +1,5 @@
 #include "runtime/recorder_session.hpp"
+#include "events.hpp"
 
 #include <gtest/gtest.h>
 
@@ -187,69 +188,40 @@ TEST_F(RecorderSessionTest, ARecorderThatWasAwayForLongGoesOn) {
   EXPECT_GT(r.gapCount(), RecorderSession::kWindow);
 }
 
-TEST_F(RecorderSessionTest, RemarksOfTheLawBelongToTheirSamples) {
-  RecorderSession r = recorder();
-  r.announce(7);
-  r.receive(tracking(0), "outside the data of the model");
-  r.receive(measurement(0));
-  r.receiveBase(action(0));
-  addSample(r, 1, true);
-  RunRecord record;
-  record.samples = passed_;
-  conclude(record, true);
-  ASSERT_EQ(record.remarks.size(), 1U);
-  EXPECT_EQ(record.remarks[0].words, "outside the data of the model");
-  EXPECT_EQ(record.remarks[0].samples, 1U);
-  EXPECT_EQ(record.remarks[0].first, 0U);
+Event event(EventCode code, const std::string& text, std::uint32_t step) {
+  return eventOf({code, text.c_str()}, step);
 }
 
-TEST_F(RecorderSessionTest, RemarksOfASampleAreCountedLineByLine) {
-  RecorderSession r = recorder();
-  r.announce(7);
-  for (const std::uint32_t step : {0U, 1U}) {
-    r.receive(tracking(step), step == 0 ? "clamped" : "held\nclamped");
-    r.receive(measurement(step));
-    r.receiveBase(action(step));
-  }
-  addSample(r, 2, true);
-  RunRecord record;
-  record.samples = passed_;
-  conclude(record, true);
-  ASSERT_EQ(record.remarks.size(), 2U);
-  EXPECT_EQ(record.remarks[0].words, "clamped");
-  EXPECT_EQ(record.remarks[0].samples, 2U);
-  EXPECT_EQ(record.remarks[1].words, "held");
-  EXPECT_EQ(record.remarks[1].first, 1U);
-}
-
-TEST_F(RecorderSessionTest, RemarksOfThePlantFollowThoseOfTheControllerWhoeverIsHeardFirst) {
+TEST_F(RecorderSessionTest, EventsOfControllerAndPlantBelongToTheirSamples) {
   RecorderSession r = recorder(false, true);
   r.announce(7);
   for (const bool plant_first : {true, false}) {
     const std::uint32_t step = plant_first ? 0 : 1;
-    if (plant_first) r.receive(state(step), "clamped");
-    r.receive(tracking(step), "held");
-    if (!plant_first) r.receive(state(step), "clamped");
+    const std::vector<Event> of_plant{event(EventCode::kInputClamped, "clamped", step)};
+    const std::vector<Event> of_controller{event(EventCode::kLawFailed, "held", step)};
+    if (plant_first) r.receive(state(step), of_plant);
+    r.receive(tracking(step), of_controller);
+    if (!plant_first) r.receive(state(step), of_plant);
     r.receive(measurement(step));
     r.receiveBase(action(step));
   }
-  ASSERT_EQ(passed_.size(), 2U);
-  EXPECT_EQ(passed_[0].remark, "held\nclamped");
-  EXPECT_EQ(passed_[1].remark, "held\nclamped");
+  RunRecord record;
+  record.samples = passed_;
+  EXPECT_EQ(test::shown(test::eventsOf(record)),
+            (std::vector<std::string>{"law_failed  0..1 (2)", "input_clamped  0..1 (2)"}));
 }
 
-TEST_F(RecorderSessionTest, OfTooManyRemarksTheWholeLinesAreKeptThatAJournalHolds) {
+TEST_F(RecorderSessionTest, OfTooManyEventsThoseAreKeptThatAJournalHolds) {
   RecorderSession r = recorder();
   r.announce(7);
-  const std::string line(200, 'a');
-  r.receive(tracking(0), line + "\n" + line + "\n" + line);
+  std::vector<Event> many;
+  for (const char letter : {'a', 'b', 'c'})
+    many.push_back(event(EventCode::kNote, std::string(200, letter), 0));
+  r.receive(tracking(0), many);
   r.receive(measurement(0));
   r.receiveBase(action(0));
-  r.receive(tracking(1), std::string(600, 'b'));
-  r.receive(measurement(1, true));
-  ASSERT_EQ(passed_.size(), 2U);
-  EXPECT_EQ(passed_[0].remark, line + "\n" + line);
-  EXPECT_EQ(passed_[1].remark, std::string(511, 'b'));
+  ASSERT_EQ(passed_.size(), 1U);
+  EXPECT_EQ(passed_[0].events.size(), 2U);
 }
 
 TEST_F(RecorderSessionTest, WhatIsMissingForLongIsGivenUpAndNamed) {

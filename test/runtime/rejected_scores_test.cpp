@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "events.hpp"
 #include "runtime/loop_fixture.hpp"
 #include "runtime/recorder_session.hpp"
 #include "runtime/report.hpp"
@@ -44,9 +45,11 @@ TEST(RejectedScores, OfASimulatedPlantAreThoseOfWhatWasTrue) {
     EXPECT_EQ(summary.windows[kX].rmse, well.windows[kX].rmse);
     EXPECT_EQ(summary.outputs[kX].rejected, 3U);
     EXPECT_EQ(summary.outputs[0].rejected, 0U);
-    EXPECT_EQ(summary.remarks.back().words.rfind("x: a measurement was rejected", 0), 0U);
-    EXPECT_EQ(summary.remarks.back().samples, 3U);
-    EXPECT_EQ(summary.remarks.back().first, 10U);
+    const Event* rejected = test::find(summary.events, EventCode::kMeasurementRejected);
+    ASSERT_NE(rejected, nullptr);
+    EXPECT_EQ(rejected->signal, "x");
+    EXPECT_EQ(rejected->count, 3U);
+    EXPECT_EQ(rejected->first, 10U);
     EXPECT_NE(toJson(summary).find("\"rejected\": 3"), std::string::npos);
   }
 }

@@ -1,4 +1,5 @@
 #include "runtime/report.hpp"
+#include "events.hpp"
 
 #include <gtest/gtest.h>
 
@@ -121,8 +122,10 @@ TEST_F(Report, SummaryHasTheKeysThatScriptsRead) {
 TEST_F(Report, MissingCellsOfTheInfluentAreCounted) {
   const LoopFile loop = readLoop("asp_influent_csv");
   const Summary summary = summarize(loop, runLoop(loop), 0.0);
-  EXPECT_EQ(summary.repaired_cells, 3U);
-  EXPECT_NE(toTable({summary}).find("3 missing cells"), std::string::npos);
+  const Event* filled = test::find(summary.events, EventCode::kCellsFilled);
+  ASSERT_NE(filled, nullptr);
+  expectWords(filled->text, {"3 "});
+  EXPECT_NE(toTable({summary}).find(filled->text), std::string::npos);
 }
 
 TEST_F(Report, APlantThatCannotBeMovedIsTold) {
@@ -138,7 +141,7 @@ TEST_F(Report, APlantThatCannotBeMovedIsTold) {
   EXPECT_NE(toTable({readSummary(path("failed/summary.json"))}).find(words), std::string::npos);
 }
 
-TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
+TEST_F(Report, HeldFallbackAndLockedSamplesAreEventsOfSummaryAndTable) {
   const LoopFile loop = shortLoop(
       "asp_case1_pi_s", {{"actuator.input_upper", "{q_r: 800}"}, {"setpoint.schedule", kInRun}});
   RunRecord record = runLoop(loop);
@@ -147,9 +150,8 @@ TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
     record.samples[k].action.source = ActionSource::kBase;
     record.samples[k + 1].measurement.input_applied = record.samples[k].action.input;
   }
-  EXPECT_EQ(remarksOf(summarize(loop, record, 0.0)),
-            std::vector<std::string>{
-                "asp_case1_pi_s: q_r locked at its upper limit over the last 30 of 200 samples"});
+  EXPECT_EQ(test::shown(summarize(loop, record, 0.0).events),
+            std::vector<std::string>{"input_at_limit q_r 170..199 (30)"});
   record.samples[199].action.input << 799.0;  // it came back
   record.samples[200].measurement.input_applied << 799.0;
   record.samples[3].action.source = record.samples[4].action.source = ActionSource::kHeld;
@@ -157,12 +159,12 @@ TEST_F(Report, TheTableTellsHeldFallbackClippedAndLockedSamples) {
   record.samples[6].action.source = ActionSource::kClipped;
   const Summary summary = summarize(loop, record, 0.0);
   const std::string table = toTable({summary});
-  for (const char* words :
-       {"2 of 200 samples held", "1 of 200 samples on the fallback", "1 of 200 samples clipped"})
-    EXPECT_NE(table.find(words), std::string::npos) << words << table;
-  EXPECT_EQ(table.find("locked"), std::string::npos) << table;
+  for (const char* code : {"input_held", "fallback_acts"})
+    EXPECT_NE(table.find(code), std::string::npos) << code << table;
+  EXPECT_EQ(test::shown(summary.events),
+            (std::vector<std::string>{"input_held  3..4 (2)", "fallback_acts  5..5 (1)"}));
   writeRun(loop, record, summary, path("told"));
-  EXPECT_EQ(remarksOf(readSummary(path("told/summary.json"))), remarksOf(summary));
+  EXPECT_EQ(eventLines(readSummary(path("told/summary.json"))), eventLines(summary));
   EXPECT_FALSE(neverControlled(summary));
 }
 
@@ -176,7 +178,8 @@ std::vector<std::string> lockedAtTheLowerLimits(const LoopFile& loop) {
     sample.action.input = loop.simulation.actuator.limits.lower;
   }
   std::vector<std::string> names;
-  for (const LockUp& lock : summarize(loop, record, 0.0).locked) names.push_back(lock.input);
+  for (const Event& event : summarize(loop, record, 0.0).events)
+    if (event.code == EventCode::kInputAtLimit) names.push_back(event.signal);
   return names;
 }
 
@@ -204,7 +207,8 @@ TEST_F(Report, WhatTheLoopFileAsksAfterTheEndIsTold) {
     const LoopFile loop = readLoop("heated_tank", overrides);
     const RunRecord record = recordLayout(loop).emptyRecord();
     std::string all;
-    for (const RunRemark& remark : summarize(loop, record, 0.0).remarks) all += remark.words + "|";
+    for (const Event& event : summarize(loop, record, 0.0).events)
+      if (event.code == EventCode::kBeyondRun) all += event.text + "|";
     return all;
   };
   EXPECT_EQ(told({}), "");
@@ -239,18 +243,12 @@ TEST_F(Report, AValveThatIsStuckBeyondTheActuatorsLimitsIsToldWhereItIs) {
   const LoopFile beyond = stuck(15.0, "0.2");
   const RunRecord record = runLoop(beyond);
   EXPECT_EQ(record.samples.back().measurement.input_applied[0], 10.0);
-  const auto told = [](const RunRecord& run) {
-    std::vector<RunRemark> remarks;
-    for (const RunRemark& remark : run.remarks)
-      if (remark.words.find("input/heat") != std::string::npos) remarks.push_back(remark);
-    return remarks;
-  };
-  const auto remarks = told(record);
-  ASSERT_EQ(remarks.size(), 1U);
-  expectWords(remarks[0].words, {"input/heat was asked to be 15", "0..10 [kW]", "clamped"});
-  EXPECT_EQ(remarks[0].first, beyond.simulation.samples / 2);
-  EXPECT_EQ(remarks[0].samples, beyond.simulation.samples / 2 + 1) << "from there to the end";
-  EXPECT_TRUE(told(runLoop(stuck(10.0, "0.2"))).empty());
+  const std::vector<Event> events = test::eventsOf(record);
+  const Event* clamped = test::find(events, EventCode::kInputClamped, "input/heat");
+  ASSERT_NE(clamped, nullptr);
+  EXPECT_EQ(clamped->first, beyond.simulation.samples / 2);
+  EXPECT_EQ(clamped->count, beyond.simulation.samples / 2 + 1) << "from there to the end";
+  EXPECT_FALSE(contains(test::eventsOf(runLoop(stuck(10.0, "0.2"))), EventCode::kInputClamped));
 }
 
 TEST_F(Report, TrajectoryHasTheColumnsOfAMatrixOfTheLoopFile) {

@@ -67,7 +67,6 @@ struct FakeLaw : Controller {
     output.predictive = true;
     output.prediction.state = now.outputs;
     output.ok = true;
-    output.remark = "";
     if (spoil) spoil(output);
   }
   void lookOn(const Measurement& now) override {

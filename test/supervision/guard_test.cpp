@@ -21,7 +21,6 @@ struct Wish final : Controller {
     output.predictive = true;
     output.prediction = resting(now.outputs);
     output.ok = true;
-    output.remark = "";
     seen = now.input_applied[0];
   }
   /// Nothing moves, whatever the input.
@@ -89,7 +88,7 @@ TEST_F(Guard, InsideTheDataTheLawPassesUntouched) {
   EXPECT_TRUE(out.predictive);
   EXPECT_EQ(out.prediction.input_lower[0], 0.0);
   EXPECT_EQ(out.prediction.input_upper[0], 1600.0);
-  EXPECT_STREQ(out.remark, "");
+  EXPECT_TRUE(out.events.empty());
   EXPECT_EQ(guard->view().trust, 1.0);
   EXPECT_EQ(guard->signals().front().first, "model_trust");
   EXPECT_EQ(guard->signals().front().second, 1.0);
@@ -103,18 +102,18 @@ TEST_F(Guard, OutsideMovesShrinkToTheLeast) {
   ASSERT_TRUE(out.predictive);  // an optimizer stays in charge of the limits of outputs
   EXPECT_DOUBLE_EQ(out.prediction.input_lower[0], 570.0 - 0.02 * 1600.0);
   EXPECT_DOUBLE_EQ(out.prediction.input_upper[0], 570.0 + 0.02 * 1600.0);
-  EXPECT_NE(std::string(out.remark).find("outside the model"), std::string::npos);
+  EXPECT_TRUE(out.events.has(EventCode::kOutsideModel));
   EXPECT_TRUE(guard->view().outside);
   EXPECT_EQ(guard->signals().front().second, 0.0);
 }
 
-TEST_F(Guard, AWishOutsideTheDataIsSaidAndGranted) {
+TEST_F(Guard, AWishOutsideTheDataIsSeenAndGranted) {
   make(params());
   law->wish = 1400.0;  // two thirds of the range beyond
   EXPECT_DOUBLE_EQ(step(0, 2000.0, 990.0), 1400.0);
   EXPECT_EQ(guard->view().trust, 0.0);
   EXPECT_TRUE(guard->view().outside);
-  EXPECT_STREQ(out.remark, "outside the model");
+  EXPECT_TRUE(out.events.empty()) << "the process is inside";
   EXPECT_EQ(out.source, ActionSource::kBase);
 }
 
@@ -178,7 +177,7 @@ TEST_F(Guard, WhatSwingsFromEndToEndMovesLess) {
     const double next = step(k, 1800.0, applied);
     if (k > 20) {
       largest = std::max(largest, std::abs(next - applied));
-      EXPECT_STREQ(out.remark, "swings from end to end: moves shrink");
+      EXPECT_TRUE(out.events.has(EventCode::kOscillation));
     }
     applied = next;
   }
@@ -188,6 +187,28 @@ TEST_F(Guard, WhatSwingsFromEndToEndMovesLess) {
   make(p);
   law->wish = limits().upper[0];
   EXPECT_EQ(step(1, 1800.0, 0.0), limits().upper[0]);
+}
+
+/// The fallback acts from the third turn on; the law is back, and swings again, after twice as
+/// long.
+TEST_F(Guard, WhatSwingsIsHandedToTheFallbackForLongerEachTime) {
+  GuardParams p = params(true);
+  p.swing_move = 0.25;
+  make(p);
+  std::vector<std::uint32_t> taken;
+  bool before = false;
+  double applied = 700.0;
+  for (std::uint32_t k = 1; k < 120; ++k) {
+    law->wish = k % 2 == 0 ? limits().lower[0] : limits().upper[0];
+    applied = step(k, 1800.0, applied);
+    const bool now = out.source == ActionSource::kFallback;
+    if (now && !before) taken.push_back(k);
+    before = now;
+  }
+  ASSERT_GE(taken.size(), 3U);
+  EXPECT_LE(taken[0], 5U);
+  EXPECT_GT(taken[2] - taken[1], taken[1] - taken[0]);
+  EXPECT_GT(law->resets.size(), 2U);
 }
 
 TEST_F(Guard, MistakesNameTheirKey) {

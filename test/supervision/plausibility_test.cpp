@@ -50,26 +50,31 @@ TEST(Plausibility, AsksNothingByItselfButNumbers) {
   EXPECT_EQ(watch.look(1e9), Verdict::kClean);
   EXPECT_EQ(watch.look(-1e9), Verdict::kClean);
   EXPECT_EQ(watch.look(kNaN), Verdict::kHold);
-  EXPECT_STREQ(watch.judge.words(), "x is no number: input held");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalMissing);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
 }
 
 TEST(Plausibility, AValueThatIsMissingForAReasonIsCalledByIt) {
   Watch watch(params());
   EXPECT_EQ(watch.look(noValue(NoValue::kStale)), Verdict::kHold);
-  EXPECT_STREQ(watch.judge.words(), "x is stale: input held");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalMissing);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
   EXPECT_EQ(watch.look(noValue(NoValue::kMissing)), Verdict::kHold);
-  EXPECT_STREQ(watch.judge.words(), "x has not come: input held");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalMissing);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
 }
 
 TEST(Plausibility, RangeHoldsThenFallsBackAndReturnsAtOnce) {
   Watch watch(params([](SignalPlausibility& s) { s.upper = 110.0; }));
   EXPECT_EQ(watch.look(110.0), Verdict::kClean);
   for (int k = 0; k < 3; ++k) EXPECT_EQ(watch.look(110.1), Verdict::kHold);
-  EXPECT_STREQ(watch.judge.words(), "x is outside [-inf, 110]: input held");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalOutOfRange);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
   EXPECT_EQ(watch.look(110.1), Verdict::kFallback);
-  EXPECT_STREQ(watch.judge.words(), "x is outside [-inf, 110]: the configured fallback");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalOutOfRange);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
   EXPECT_EQ(watch.look(100.0), Verdict::kClean);
-  EXPECT_STREQ(watch.judge.words(), "");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kNone);
 }
 
 TEST(Plausibility, ASignalThatTheLawDoesNotNeedHoldsNothing) {
@@ -78,7 +83,8 @@ TEST(Plausibility, ASignalThatTheLawDoesNotNeedHoldsNothing) {
   EXPECT_EQ(watch.look(1.0, 1.0, 7.0), Verdict::kClean);
   for (int k = 0; k < 10; ++k) EXPECT_EQ(watch.look(1.0, 1.0, kNaN), Verdict::kRepaired);
   EXPECT_EQ(watch.judge.accepted().disturbances[0], 7.0);
-  EXPECT_STREQ(watch.judge.words(), "q is no number: its last good value is used");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalMissing);
+  EXPECT_STREQ(watch.judge.notice().signal, "q");
 }
 
 TEST(Plausibility, TheRateIsMeasuredFromTheLastAcceptedValue) {
@@ -129,7 +135,8 @@ TEST(Plausibility, AShortGapIsBridgedByWhatTheLawExpects) {
   EXPECT_EQ(watch.judge.accepted().outputs[0], 50.0);
   EXPECT_EQ(watch.look(kNaN), Verdict::kRepaired);  // nothing is expected
   EXPECT_EQ(watch.judge.accepted().outputs[0], 50.0);
-  EXPECT_STREQ(watch.judge.words(), "x is no number: its last good value is used");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalMissing);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
   EXPECT_EQ(watch.look(kNaN, 1.0, kNaN, expecting(8.0)), Verdict::kRepaired);
   EXPECT_EQ(watch.judge.accepted().outputs[0], 8.0);
   EXPECT_EQ(watch.judge.accepted().disturbances[0], 2.0);
@@ -145,7 +152,8 @@ TEST(Plausibility, TheLastGoodValueOrTheModelsTakesItsPlace) {
   good.look(50.0);
   EXPECT_EQ(good.look(1000.0), Verdict::kRepaired);
   EXPECT_EQ(good.judge.accepted().outputs[0], 50.0);
-  EXPECT_STREQ(good.judge.words(), "x is outside [-inf, 100]: its last good value is used");
+  EXPECT_EQ(good.judge.notice().code, EventCode::kSignalOutOfRange);
+  EXPECT_STREQ(good.judge.notice().signal, "x");
 
   Watch model(params([](SignalPlausibility& s) {
     s.upper = 100.0;
@@ -154,7 +162,8 @@ TEST(Plausibility, TheLastGoodValueOrTheModelsTakesItsPlace) {
   model.look(50.0);
   EXPECT_EQ(model.look(1000.0, 1.0, 2.0, expecting(58.0)), Verdict::kRepaired);
   EXPECT_EQ(model.judge.accepted().outputs[0], 58.0);
-  EXPECT_STREQ(model.judge.words(), "x is outside [-inf, 100]: the model's value is used");
+  EXPECT_EQ(model.judge.notice().code, EventCode::kSignalOutOfRange);
+  EXPECT_STREQ(model.judge.notice().signal, "x");
   for (int k = 0; k < 2; ++k) EXPECT_EQ(model.look(1000.0), Verdict::kRepaired);
   EXPECT_EQ(model.look(1000.0), Verdict::kFallback);  // nor for ever
 }
@@ -201,7 +210,8 @@ TEST(Plausibility, AnOutputWithoutItsNoiseIsFrozenAndTheModelsValueIsUsed) {
   EXPECT_LE(after, 8);
   EXPECT_EQ(watch.judge.doubt(0), Doubt::kFrozen);
   EXPECT_EQ(watch.judge.accepted().outputs[0], 7.0);
-  EXPECT_STREQ(watch.judge.words(), "x is frozen: the model's value is used");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalFrozen);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
   EXPECT_EQ(watch.look(50.5, 1.0, 5.0), Verdict::kHold) << "nothing was foreseen";
   EXPECT_EQ(watch.look(50.4, 1.0, 5.1), Verdict::kClean) << "it moves again";
 }
@@ -214,7 +224,8 @@ TEST(Plausibility, ADisturbanceWithoutItsNoiseIsSaidAndTheLawGoesOn) {
   for (int k = 0; k < 30; ++k) watch.look(50.0 + noise(engine), 1.0, 5.0);
   EXPECT_EQ(watch.judge.doubt(1), Doubt::kFrozen);
   EXPECT_EQ(watch.look(50.0 + noise(engine), 1.0, 5.0), Verdict::kRepaired) << "for ever";
-  EXPECT_STREQ(watch.judge.words(), "q is frozen: its last good value is used");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalFrozen);
+  EXPECT_STREQ(watch.judge.notice().signal, "q");
 }
 
 TEST(Plausibility, AReadingThatComesTwiceInMotionIsBridged) {
@@ -225,7 +236,8 @@ TEST(Plausibility, AReadingThatComesTwiceInMotionIsBridged) {
   for (int k = 0; k < 130; ++k) EXPECT_EQ(watch.look(motion(k)), Verdict::kClean) << k;
   EXPECT_EQ(watch.look(motion(129), 1.0, 2.0, expecting(51.0)), Verdict::kRepaired);
   EXPECT_EQ(watch.judge.accepted().outputs[0], 51.0);
-  EXPECT_STREQ(watch.judge.words(), "x was not read anew: the model's value is used");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalNotRenewed);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
   EXPECT_EQ(watch.look(motion(131)), Verdict::kClean);
 }
 
@@ -265,7 +277,8 @@ TEST(Plausibility, AValueOutsideItsRangeMovesNothingUnlessAFallbackIsAskedFor) {
   Watch watch(p);
   watch.look(100.0);
   for (int k = 0; k < 30; ++k) EXPECT_EQ(watch.look(111.0), Verdict::kHold);
-  EXPECT_STREQ(watch.judge.words(), "x is outside [-inf, 110]: input held");
+  EXPECT_EQ(watch.judge.notice().code, EventCode::kSignalOutOfRange);
+  EXPECT_STREQ(watch.judge.notice().signal, "x");
   for (int k = 0; k < 3; ++k) watch.look(kNaN);
   EXPECT_EQ(watch.look(kNaN), Verdict::kFallback) << "what is not measured at all";
 }

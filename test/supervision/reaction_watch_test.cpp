@@ -53,7 +53,7 @@ TEST(ReactionWatch, SeesTheWholeReactionOfAProcessThatIsItsModel) {
   process.live(watch, kWindow + 1);
   EXPECT_NEAR(watch.share(0), 1.0, 1e-9);
   EXPECT_NEAR(watch.share(1), 1.0, 1e-9);
-  EXPECT_EQ(watch.words(), "");
+  EXPECT_EQ(watch.notice().code, EventCode::kNone);
 }
 
 TEST(ReactionWatch, NamesTheInputThatStandsStillAndForgetsItWhenItMoves) {
@@ -63,14 +63,14 @@ TEST(ReactionWatch, NamesTheInputThatStandsStillAndForgetsItWhenItMoves) {
     process.dice = Dice(seed);
     process.noise = 0.02;
     process.live(watch, 2 * kWindow);
-    EXPECT_EQ(watch.words(), "") << "seed " << seed;
+    EXPECT_EQ(watch.notice().code, EventCode::kNone) << "seed " << seed;
     process.part1 = 0.0;
     process.live(watch, 2 * kWindow);
-    EXPECT_EQ(watch.words(), "the outputs do not react to input u1 as the model says") << seed;
+    EXPECT_STREQ(watch.notice().signal, "u1") << seed;
     EXPECT_NEAR(watch.share(0), 0.0, 0.2) << seed;
     process.part1 = 1.0;
     process.live(watch, 2 * kWindow);
-    EXPECT_EQ(watch.words(), "") << "seed " << seed;
+    EXPECT_EQ(watch.notice().code, EventCode::kNone) << "seed " << seed;
   }
 }
 
@@ -80,7 +80,7 @@ TEST(ReactionWatch, AnInputThatPushesTheOtherWayIsNamedToo) {
   process.part2 = -1.0;
   process.live(watch, 2 * kWindow);
   EXPECT_LT(watch.share(1), -0.5);
-  EXPECT_NE(watch.words().find("u2"), std::string::npos);
+  EXPECT_STREQ(watch.notice().signal, "u2");
 }
 
 TEST(ReactionWatch, AGainThatIsOffByAThirdOrDoubleIsNoFault) {
@@ -90,7 +90,7 @@ TEST(ReactionWatch, AGainThatIsOffByAThirdOrDoubleIsNoFault) {
     process.part1 = process.part2 = part;
     process.noise = 0.02;
     process.live(watch, 4 * kWindow);
-    EXPECT_EQ(watch.words(), "") << part;
+    EXPECT_EQ(watch.notice().code, EventCode::kNone) << part;
   }
 }
 
@@ -100,11 +100,11 @@ TEST(ReactionWatch, NothingIsSaidWithoutMovesNorInNoise) {
   process.part1 = process.part2 = 0.0;
   process.noise = 0.1;
   for (int k = 0; k < 3 * kWindow; ++k) watch.look(process.step(0.3, -0.2));
-  EXPECT_EQ(watch.words(), "");
+  EXPECT_EQ(watch.notice().code, EventCode::kNone);
   EXPECT_TRUE(std::isnan(watch.share(0)));
   process.noise = 20.0;
   process.live(watch, 3 * kWindow);
-  EXPECT_EQ(watch.words(), "");
+  EXPECT_EQ(watch.notice().code, EventCode::kNone);
 }
 
 TEST(ReactionWatch, ASteadyDisturbanceIsNoFault) {
@@ -114,7 +114,7 @@ TEST(ReactionWatch, ASteadyDisturbanceIsNoFault) {
   process.live(watch, kWindow);
   process.bias = 0.5;
   process.live(watch, 2 * kWindow);
-  EXPECT_EQ(watch.words(), "");
+  EXPECT_EQ(watch.notice().code, EventCode::kNone);
 }
 
 TEST(ReactionWatch, AWindowOfFewSamplesIsRefused) {

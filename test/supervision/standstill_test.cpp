@@ -41,7 +41,10 @@ class Standstill : public testing::Test {
     applied = output.input[0];
     return output;
   }
-  std::string remark() const { return output.remark; }
+  bool frozen(const std::string& signal) const {
+    return output.events.has(EventCode::kSignalFrozen) && output.events.begin()->signal == signal;
+  }
+  bool silent() const { return output.events.empty(); }
 
   FakeLaw* law{};
   std::unique_ptr<StandstillWatch> watch;
@@ -56,7 +59,7 @@ TEST_F(Standstill, WhatMovesPassesUntouched) {
     see(56.0 + 3.0 * std::sin(0.5 * k), 1300.0 + 200.0 * std::sin(0.3 * k));
     EXPECT_EQ(output.input[0], before + 1.0);
     EXPECT_TRUE(output.predictive);
-    EXPECT_EQ(remark(), "");
+    EXPECT_TRUE(silent());
   }
 }
 
@@ -64,7 +67,7 @@ TEST_F(Standstill, APlantAtRestIsNoFault) {
   for (int k = 0; k < 40; ++k)
     see(56.0 + 20.0 * std::exp(-k), 1300.0);  // a start under constant load
   EXPECT_EQ(law->steps.size(), 40U);
-  EXPECT_EQ(remark(), "");
+  EXPECT_TRUE(silent());
 }
 
 TEST_F(Standstill, AnOutputThatStandsWhileTheLoadMovesBringsTheFallback) {
@@ -73,7 +76,7 @@ TEST_F(Standstill, AnOutputThatStandsWhileTheLoadMovesBringsTheFallback) {
   EXPECT_EQ(output.source, ActionSource::kFallback);
   EXPECT_EQ(output.input[0], 800.0);
   EXPECT_FALSE(output.predictive);
-  EXPECT_EQ(remark(), "s stands still: the fallback acts");
+  EXPECT_TRUE(frozen("s"));
   const std::size_t steps = law->steps.size();
   for (int k = 0; k < 100; ++k) see(58.0, 1300.0);  // nothing moves: no reason to trust it again
   EXPECT_EQ(law->steps.size(), steps);
@@ -81,7 +84,7 @@ TEST_F(Standstill, AnOutputThatStandsWhileTheLoadMovesBringsTheFallback) {
   EXPECT_EQ(output.source, ActionSource::kBase);
   EXPECT_EQ(output.input[0], 801.0) << "goes on from the applied input";
   EXPECT_EQ(law->resets.back(), step - 1);
-  EXPECT_EQ(remark(), "");
+  EXPECT_TRUE(silent());
 }
 
 TEST_F(Standstill, ADisturbanceThatStandsIsReplacedByItsUsualValue) {
@@ -90,7 +93,7 @@ TEST_F(Standstill, ADisturbanceThatStandsIsReplacedByItsUsualValue) {
   for (int k = 0; k < 20; ++k) see(56.0 + 10.0 * std::sin(k), 0.0, 40.0 + 10.0 * std::sin(k));
   EXPECT_EQ(seen, 20.0) << "the law goes on";
   EXPECT_EQ(output.source, ActionSource::kBase);
-  EXPECT_EQ(remark(), "q_i stands still: its usual value is used");
+  EXPECT_TRUE(frozen("q_i"));
 }
 
 TEST_F(Standstill, TheFallbackKeepsLimitsAndFollowsItsPlan) {
@@ -129,14 +132,13 @@ TEST_F(Standstill, NoiseDoesNotHideASensorThatStands) {
     const auto load = [](int k) { return 1300.0 + 400.0 * std::sin(0.2 * k); };
     for (int k = 0; k < 40; ++k) {
       see(56.0 + 3.0 * std::sin(0.2 * k - 1.0) + noise(engine), load(k));
-      ASSERT_EQ(remark(), "") << "seed " << seed << " sample " << k;
+      ASSERT_TRUE(silent()) << "seed " << seed << " sample " << k;
     }
     int first = -1;
     for (int k = 0; k < 200; ++k) {
       see(57.0 + noise(engine), load(k));
       if (first < 0 && output.source == ActionSource::kFallback) first = k;
-      const std::string told = first < 0 ? "" : "s stands still: the fallback acts";
-      ASSERT_EQ(remark(), told) << "seed " << seed;
+      ASSERT_EQ(frozen("s"), first >= 0) << "seed " << seed;
     }
     EXPECT_GE(first, 8) << "seed " << seed;
     EXPECT_LE(first, 40) << "seed " << seed;
@@ -149,7 +151,7 @@ TEST_F(Standstill, LessNoiseThanDeclaredIsNoSignOfLife) {
   make(noisy(params(), 0.3, 0.0));
   for (int k = 0; k < 40; ++k)
     see(57.0 + 0.01 * std::cos(3.0 * k), 1300.0 + 400.0 * std::sin(0.2 * k));
-  EXPECT_EQ(remark(), "s stands still: the fallback acts");
+  EXPECT_TRUE(frozen("s"));
 }
 
 TEST_F(Standstill, NoiseOnAPlantAtRestIsNoFault) {
@@ -160,7 +162,7 @@ TEST_F(Standstill, NoiseOnAPlantAtRestIsNoFault) {
     law->spoil = [&](ControllerOutput& out) { out.input[0] = 570.0 + 200.0 * noise(engine); };
     for (int k = 0; k < 300; ++k) {
       see(56.0 + 0.3 * noise(engine), 1300.0 + 200.0 * noise(engine), 40.0);
-      ASSERT_EQ(remark(), "") << "seed " << seed << " sample " << k;
+      ASSERT_TRUE(silent()) << "seed " << seed << " sample " << k;
     }
   }
 }
@@ -173,7 +175,7 @@ TEST_F(Standstill, AnInputThatMovesIsNoEvidenceUnderNoise) {
   law->spoil = [&](ControllerOutput& out) { out.input[0] = 800.0 + 500.0 * std::sin(0.1 * step); };
   for (int k = 0; k < 300; ++k) {
     see(56.0 + 0.3 * noise(engine), 1300.0 + 20.0 * noise(engine), 40.0);
-    ASSERT_EQ(remark(), "") << k;
+    ASSERT_TRUE(silent()) << k;
   }
 }
 
@@ -184,7 +186,7 @@ TEST_F(Standstill, ANoisyDisturbanceThatStandsIsReplaced) {
   for (int k = 0; k < 80; ++k)
     see(56.0 + 10.0 * std::sin(0.2 * k), 900.0 + 20.0 * noise(engine),
         40.0 + 20.0 * std::sin(0.2 * k));
-  EXPECT_EQ(remark(), "q_i stands still: its usual value is used");
+  EXPECT_TRUE(frozen("q_i"));
   EXPECT_EQ(output.source, ActionSource::kBase);
 }
 
@@ -195,10 +197,10 @@ TEST_F(Standstill, AFlowAtItsLimitIsNoFault) {
     see(56.0 + 3.0 * std::sin(k), std::min(1300.0 + 400.0 * std::sin(0.05 * k), 1600.0), load(k));
   for (int k = 100; k < 200; ++k) {
     see(56.0 + 3.0 * std::sin(k), 1600.0, load(k));
-    ASSERT_EQ(remark(), "") << k;
+    ASSERT_TRUE(silent()) << k;
   }
   for (int k = 0; k < 2 * kWindow; ++k) see(56.0 + 3.0 * std::sin(k), 900.0, load(k));
-  EXPECT_EQ(remark(), "q_i stands still: its usual value is used");
+  EXPECT_TRUE(frozen("q_i"));
 }
 
 // A healthy signal that was quiet for a window, and whose day is smaller than five standard
@@ -210,7 +212,7 @@ TEST_F(Standstill, ASmallMotionUnderNoiseIsSeenAgain) {
     make(noisy(params(), 0.3, 0.0));
     const auto load = [](int k) { return 1300.0 + 400.0 * std::sin(0.2 * k); };
     for (int k = 0; k < 60; ++k) see(57.0 + noise(engine), load(k));
-    ASSERT_EQ(remark(), "s stands still: the fallback acts") << seed;
+    ASSERT_TRUE(frozen("s")) << seed;
     int back = -1;
     for (int k = 60; k < 160; ++k) {
       see(57.6 + noise(engine), load(k));

@@ -129,9 +129,9 @@ TEST_F(AutoTool, TimesThatDoNotRiseOrHaveAnotherSpacingAreRefused) {
   const std::string slow = writeRecord("slow.csv", table);
   expectWords(refusal("validate " + model + " " + slow), {"slow.csv", "apart"});
   EXPECT_EQ(tool("validate " + model + " " + slow + " --no-time").code, 0);
-  table.units[0] = "ms";
+  table.units[0] = "us";
   const std::string fast = writeRecord("fast.csv", table);
-  expectWords(refusal("identify " + fast + by_name), {"fast.csv", "[ms]"});
+  expectWords(refusal("identify " + fast + by_name), {"fast.csv", "[us]"});
   for (Eigen::Index k = 0; k < table.rows(); k += 2) table.values(k, 0) += 0.3;
   table.units[0] = "s";
   const std::string uneven = writeRecord("uneven.csv", table);
@@ -154,6 +154,97 @@ TEST_F(AutoTool, TimesThatJitterAreTakenAtTheirMeanAndSaid) {
   const Outcome judged = tool("validate " + model + " " + jittered + " --json");
   ASSERT_EQ(judged.code, 0);
   EXPECT_NE(judged.printed.find("jitter"), std::string::npos);
+}
+
+TEST_F(AutoTool, ASampleTimeIsNeverAssumed) {
+  const std::string by_name = " --auto --inputs u --outputs y --kind linear --work 0.1";
+  CsvTable table = record();
+  table.names[0] = "k";
+  table.units[0] = "";
+  const std::string counted = writeRecord("counted.csv", table), model = path("timed.yaml");
+  expectWords(refusal("identify " + counted + by_name), {"counted.csv", "--sample-time S"});
+  EXPECT_EQ(tool("identify " + counted + by_name + " --sample-time 4").code, 0);
+  const auto sampleTime = [&](const std::string& name, double step) {
+    CsvTable named = table;
+    named.names[0] = name;
+    named.values.col(0) *= step;
+    const std::string file = writeRecord("named.csv", named);
+    EXPECT_EQ(tool("identify " + file + by_name + " --out " + model).code, 0) << name;
+    return readIdentified(model).model.sample_time_s;
+  };
+  for (const std::string name : {"timestamp", "datetime", "T", "sec", "time (s)", "t_s", "Time"})
+    EXPECT_EQ(sampleTime(name, 2.0), 2.0) << name;
+  EXPECT_EQ(sampleTime("time_ms", 100.0), 0.1);
+  EXPECT_EQ(sampleTime("Time (min)", 0.5), 30.0);
+  EXPECT_EQ(sampleTime("hours", 1.0), 3600.0);
+  table.names[0] = "t_10s";
+  expectWords(refusal("identify " + writeRecord("tens.csv", table) + by_name),
+              {"tens.csv", "'t_10s'", "--sample-time", "[10s]"});
+  table.names[0] = "T";  // of the process, not the time
+  table.values.col(0) = table.values.col(1);
+  expectWords(refusal("identify " + writeRecord("warm.csv", table) + by_name), {"--sample-time S"});
+}
+
+TEST_F(AutoTool, DatesOfADayMonthAndYearAreTimes) {
+  const CsvTable table = record(120);
+  std::string text = "date,y,u\n";
+  for (Eigen::Index k = 0; k < table.rows(); ++k) {
+    char cell[32];
+    std::snprintf(cell, sizeof cell, "%02d.%02d.2024 %02d:%02d", 28 + static_cast<int>(k / 48) % 3,
+                  2, static_cast<int>(k % 48) / 2, static_cast<int>(k % 2) * 30);
+    if (k >= 96)
+      std::snprintf(cell, sizeof cell, "1.3.2024 %02d:%02d", static_cast<int>(k % 48) / 2,
+                    static_cast<int>(k % 2) * 30);
+    text += std::string(cell) + "," + std::to_string(table.values(k, 1)) + "," +
+            std::to_string(table.values(k, 2)) + "\n";
+  }
+  const std::string file = write("dated.csv", text), model = path("dated.yaml");
+  ASSERT_EQ(tool("identify " + file + " --auto --inputs u --outputs y --kind linear --work 0.1 " +
+                 "--out " + model)
+                .code,
+            0);
+  EXPECT_EQ(readIdentified(model).model.sample_time_s, 1800.0);
+}
+
+TEST_F(AutoTool, AFileWithoutHeaderIsRefusedUnlessToldSo) {
+  CsvTable table = record(120);
+  table.names = {"1.5", "2.5", "3.5"};
+  table.units = {"", "", ""};
+  const std::string file = writeRecord("bare.csv", table);
+  expectWords(refusal("identify " + file + " --auto --inputs 3 --outputs 2"),
+              {"bare.csv:1", "--no-header"});
+  const Outcome found = tool("identify " + file + " --no-header --auto --inputs 3 --outputs 2 " +
+                             "--sample-time 1 --kind linear --work 0.1 --json");
+  ASSERT_EQ(found.code, 0);
+  EXPECT_NE(parsed(found.printed).at("source").get<std::string>().find("rows 1:121"),
+            std::string::npos);
+}
+
+TEST_F(AutoTool, APieceWhoseTimesJumpBackIsARecordOfItsOwn) {
+  CsvTable table = record();
+  table.values.col(0).tail(120).array() -= 150.0;
+  const std::string file = writeRecord("twice.csv", table), model = path("pieces.yaml");
+  const Outcome found = tool("identify " + file + " --auto --inputs u --outputs y --kind linear " +
+                             "--work 0.1 --json --out " + model);
+  ASSERT_EQ(found.code, 0);
+  EXPECT_NE(found.printed.find("jump back at"), std::string::npos);
+  EXPECT_GT(parsed(found.printed).at("identification").at("y").at("one_step").at("vaf").get<double>(), 90.0);
+  EXPECT_EQ(tool("validate " + model + " " + file).code, 0);
+}
+
+TEST_F(AutoTool, TheModelThatControlLawsTakeIsJudgedBesideTheStarredOne) {
+  const Outcome outcome =
+      tool("identify " + data_ + " --auto --inputs u --outputs y --rows 1:200 " +
+           "--work 2 --plots " + path("plots") + " --json");
+  ASSERT_EQ(outcome.code, 0);
+  const auto y = parsed(outcome.printed).at("identification").at("y");
+  const std::string laws = y.at("laws").at("kind");
+  EXPECT_TRUE(laws == "regressors" || laws == "linear") << laws;
+  EXPECT_EQ(y.at("laws").at("free_run"), y.at(laws).at("free_run"));
+  EXPECT_GT(y.at("laws").at("ahead").at("rmse").get<double>(), 0.0);
+  const CsvTable plotted = readCsv(path("plots") + "/identification.csv");
+  EXPECT_NO_THROW(plotted.column("y_laws_free_run"));
+  EXPECT_NO_THROW(plotted.column("u"));
 }
 
 TEST_F(AutoTool, TimesThatFallOrJumpAreNeverCalledAbsent) {

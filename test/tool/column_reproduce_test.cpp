@@ -6,14 +6,14 @@
 #include "papers/experiment.hpp"
 #include "papers/report.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace tool_column_reproduce_test {
 
 TEST(ColumnReproduction, ReachesEveryFigureButThoseOfThePrintedLoopTwo) {
   std::size_t count = 0, fits = 0;
   for (const Experiment& experiment : experiments()) {
     if (experiment.name < "column_table_3" || experiment.name > "column_table_5") continue;
-    for (const ReproduceRow& row : rowsOf(experiment)) {
+    for (const Row& row : rowsOf(experiment)) {
       std::printf("%-14s %-28s %10.4g %10.4g %-14s %-16s %s\n", experiment.name.c_str(),
                   row.quantity.c_str(), row.paper, row.here.median(), row.unit.c_str(),
                   name(row.verdict()), row.note.c_str());
@@ -33,4 +33,4 @@ TEST(ColumnReproduction, ReachesEveryFigureButThoseOfThePrintedLoopTwo) {
 }
 
 }  // namespace tool_column_reproduce_test
-}  // namespace fpc::tool
+}  // namespace fpc::papers

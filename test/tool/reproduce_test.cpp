@@ -9,13 +9,15 @@
 #include <tuple>
 
 #include "fmbpc/base/input_error.hpp"
+#include "papers/expression.hpp"
+#include "papers/perturbations.hpp"
 #include "papers/picture.hpp"
 #include "papers/report.hpp"
 #include "papers/runs.hpp"
 #include "papers/sludge_printed.hpp"
-#include "papers/taieb_steps.hpp"
+#include "tool/rows.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace tool_reproduce_test {
 
 std::vector<std::string> figures(int from, int to) {
@@ -77,7 +79,7 @@ TEST(Experiments, SayWhatTheyShowAndWhatIsBehindThem) {
 
 TEST(Experiments, OfFiguresHaveAPicture) {
   for (const auto& e : experiments())
-    if (e.item.rfind("figure", 0) == 0) EXPECT_TRUE(hasPicture(e.name)) << e.name;
+    if (e.item.rfind("figure", 0) == 0) EXPECT_TRUE(hasPicture(e)) << e.name;
 }
 
 TEST(Experiments, AreInTheOrderOfThePapersAndTheirNumbers) {
@@ -87,32 +89,113 @@ TEST(Experiments, AreInTheOrderOfThePapersAndTheirNumbers) {
   EXPECT_EQ(items, figures(4, 10));
 }
 
-TEST(Experiments, ThatThrowHaveOneRowWithoutAResultThatSaysWhy) {
-  Experiment broken;
-  broken.name = "broken";
-  broken.behind = "nothing";
-  broken.rows = []() -> Rows { throw InputError("a loop: expected luck"); };
-  const Rows rows = rowsOf(broken);
-  ASSERT_EQ(rows.size(), 1U);
-  EXPECT_EQ(rows[0].verdict(), Verdict::kNoResult);
-  EXPECT_NE(rows[0].note.find("expected luck"), std::string::npos);
-  EXPECT_EQ(rows[0].behind, "nothing");
+const char kPaper[] = R"(
+title: a paper
+experiments:
+  - name: one
+    item: table 1
+    shows: something
+    printed: 2 numbers
+    behind: nothing
+    each: {unit: m}
+    rows:
+      - over: {n: [1, 2], printed: [4, 0.5 * 10]}
+        rows:
+          - {of: "height {n}", paper: "{printed}", here: "2 * {n} + 2", note: "half is {}", note_value: "{n} + 1"}
+      - {of: deviation, at_most: 25, here: deviation, unit: "%"}
+)";
+
+TEST(PaperFile, RowsAreWrittenOnceForListsOfWords) {
+  const auto all = experimentsIn(kPaper, "paper");
+  ASSERT_EQ(all.size(), 1U);
+  const Rows rows = rowsOf(all[0]);
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].quantity, "height 1");
+  EXPECT_EQ(rows[0].verdict(), Verdict::kReproduced);
+  EXPECT_EQ(rows[1].paper, 5.0);
+  EXPECT_EQ(rows[1].here.median(), 6.0);
+  EXPECT_EQ(rows[1].note, "half is 3");
+  EXPECT_EQ(rows[1].unit, "m");
+  EXPECT_EQ(rows[1].behind, "nothing");
+  EXPECT_NEAR(rows[2].here.median(), 10.0, 1e-12) << "of 0 and 20 %";
 }
 
-TEST(Runs, ThatFailLeaveNothingInTheCache) {
+/// The file with one text in place of another is refused with these words.
+void expectRefused(const std::string& what, const std::string& by, const std::string& words) {
+  std::string text = kPaper;
+  const auto at = text.find(what);
+  ASSERT_NE(at, std::string::npos);
+  text.replace(at, what.size(), by);
+  try {
+    experimentsIn(text, "paper.yaml");
+    ADD_FAILURE() << by;
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find(words), std::string::npos) << e.what();
+  }
+}
+
+TEST(PaperFile, MistakesAreNamed) {
+  expectRefused("printed: [4, 0.5 * 10]", "printed: [4]", "one.over.printed");
+  expectRefused("at_most: 25", "verdict: holds", "verdict");
+  expectRefused("at_most: 25, ", "", "paper");
+  expectRefused("here: deviation", "here: unheard", "unheard");
+  expectRefused("here: deviation", "here: \"ise(asp_case1)\"", "2 arguments");
+  expectRefused("here: deviation", "here: \"1 +\"", "a number, a name");
+  expectRefused("here: deviation, ", "", "here");
+  expectRefused("at_most: 25", "paper: 25, observed: true", "observed");
+}
+
+TEST(PaperFile, WhatCannotBeComputedIsARowWithoutAResultThatSaysWhy) {
+  std::string text = kPaper;
+  text.replace(text.find("here: deviation"), 15, "here: \"ise(no_such_loop, x)\"");
+  const Rows rows = rowsOf(experimentsIn(text, "paper")[0]);
+  EXPECT_EQ(rows[1].verdict(), Verdict::kNotReproduced);
+  EXPECT_EQ(rows[2].verdict(), Verdict::kNoResult);
+  EXPECT_NE(rows[2].note.find("no_such_loop"), std::string::npos) << rows[2].note;
+}
+
+TEST(Expression, GoesWithValuesOfSeveralRunsRunByRun) {
+  registerComputation("pair", 2, [](const Words& w) {
+    return Values(std::vector<double>{std::stod(w[0]), std::stod(w[1])});
+  });
+  EXPECT_EQ(evaluate("1 + 2 * 3 - 4 / 2").median(), 5.0);
+  EXPECT_EQ(evaluate("-(1 - 1.5e1)").median(), 14.0);
+  EXPECT_EQ(evaluate("pair(1, 5) - pair(2, 3)").all(), (std::vector<double>{-1.0, 2.0}));
+  EXPECT_EQ(evaluate("100 * (1 - pair(1, 5))").all(), (std::vector<double>{0.0, -400.0}));
+  EXPECT_EQ(evaluate("mean(pair(1, 5))").all(), (std::vector<double>{3.0}));
+  EXPECT_EQ(evaluate("highest(abs(pair(-7, 5)))").median(), 7.0);
+  EXPECT_EQ(evaluate("distance(pair(2, 3), 5)").median(), 2.0);
+  EXPECT_EQ(evaluate("distance(pair(2, 3), 2.5)").median(), 0.0);
+  EXPECT_EQ(evaluate("max(pair(1, 5), 3)").all(), (std::vector<double>{3.0, 5.0}));
+  for (const char* wrong : {"", "1 1", "2 *", "(1", "f(2)", "pair(1)", "x", "abs(1, 2)", "1 +* 2"})
+    EXPECT_THROW(evaluate(wrong), InputError) << wrong;
+}
+
+TEST(Runs, ThatFailThrowEachTimeAndNameWhatIsUnknown) {
   const Overrides wrong{{"sampling.sample_time_s", "-1"}};
-  for (int i = 0; i < 2; ++i) EXPECT_THROW(summaryOf("linear_2x2", wrong), InputError) << i;
   for (int i = 0; i < 2; ++i) EXPECT_THROW(recordOf("linear_2x2", wrong), InputError) << i;
   const Overrides frozen{{"plant.integrator.max_steps", "1"}, {"sampling.duration_h", "2"}};
-  for (int i = 0; i < 2; ++i) EXPECT_THROW(summaryOf("asp_case1_pi_x", frozen), InputError) << i;
+  for (int i = 0; i < 2; ++i) EXPECT_THROW(recordOf("asp_case1_pi_x", frozen), InputError) << i;
+  EXPECT_THROW(recordOf("linear_2x2+no_setting"), InputError);
+  EXPECT_THROW(recordOf("batch_fuzzy_eq44+starts"), InputError) << "four runs, not one";
+  EXPECT_THROW(evaluate("steps(linear_2x2, no_output, rise, 1)"), InputError);
 }
 
-TEST(Steps, NoneAreNotFollowedButAnError) {
-  EXPECT_THROW(stepsOf("linear_2x2", 0, 1.0,
-                       {{"plant.initial_state", "{x11: 0, x12: 0, x21: 0, x22: 0}"},
-                        {"setpoint", "{initial: {y1: 0, y2: 0}, schedule: []}"}}),
-               InputError);
-  EXPECT_THROW(meanOf({}), InputError);
+TEST(Perturbations, ChangeTheLoopsThatTheyName) {
+  const std::vector<std::string> names = perturbationNames();
+  ASSERT_GE(names.size(), 4U);
+  EXPECT_THROW(perturb("nothing"), InputError);
+  const auto rate = [] {
+    const auto loop = loopOf("cstr_tracking");
+    const auto at = loop.simulation.parameters.find("rate_constant");
+    return at == loop.simulation.parameters.end() ? 7.2e10 : at->second;
+  };
+  const double before = rate();
+  perturb("plant");
+  const double after = rate();
+  perturbEachLoop({});
+  EXPECT_DOUBLE_EQ(after, 1.1 * before);
+  EXPECT_EQ(rate(), before);
 }
 
 TEST(Report, CountsFiguresAndStatementsApart) {
@@ -144,6 +227,12 @@ TEST(Report, NamesFailedRunsEvenWhereNoRowIsJudged) {
   EXPECT_EQ(failuresOf(lost, {}), std::vector<std::string>{"1 rows without a result"});
 }
 
+Experiment named(const std::string& name) {
+  for (const Experiment& e : experiments())
+    if (e.name == name) return e;
+  throw InputError(name + ": expected an experiment");
+}
+
 TEST(Pictures, CloseUpsShowTheirPartOnly) {
   const Panel panel =
       closeUp({"T", {{"a", {0.0, 1.0, 2.0, 3.0}, {5.0, 6.0, 7.0, 8.0}}}}, {1.0, 2.5});
@@ -158,12 +247,12 @@ TEST(Pictures, CloseUpsShowTheirPartOnly) {
 TEST(Pictures, OfTheThreeTemperaturesAreOfThreeParts) {
   std::set<double> from;
   for (const char* figure : {"batch_figure_12", "batch_figure_13", "batch_figure_14"})
-    from.insert(pictureOf(figure).panels.at(1).span.from);
+    from.insert(pictureOf(named(figure)).panels.at(1).span.from);
   EXPECT_EQ(from.size(), 3U);
 }
 
 TEST(Pictures, OfTheColumnShowTheChangedGains) {
-  const Picture picture = pictureOf("column_figure_8");
+  const Picture picture = pictureOf(named("column_figure_8"));
   const auto& curves = picture.panels.at(1).curves;  // setpoint, reference, three gains
   ASSERT_EQ(curves.size(), 5U);
   for (const std::size_t i : {3U, 4U}) {
@@ -212,4 +301,4 @@ TEST(Report, MarkdownHasARowForEachAndKeepsItsColumns) {
 }
 
 }  // namespace tool_reproduce_test
-}  // namespace fpc::tool
+}  // namespace fpc::papers

@@ -11,10 +11,11 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "papers/experiment.hpp"
-#include "papers/runs.hpp"
+#include "papers/expression.hpp"
 #include "paths.hpp"
+#include "tool/rows.hpp"
 
-namespace fpc::tool {
+namespace fpc::papers {
 namespace tool_verdict_test {
 
 Claim figureOf(double paper, double here, Direction better = Direction::kEqual,
@@ -88,7 +89,7 @@ TEST(Verdict, GetsNoWorseAsAFigureComesNearer) {
 }
 
 TEST(Row, OverSeedsIsJudgedByItsMedianAndCountsWhoAgrees) {
-  const ReproduceRow row =
+  const Row row =
       check("ratio", std::vector<double>{0.5, 0.7, 0.9, 1.2}, Direction::kLower, 1.0, "-", "");
   EXPECT_DOUBLE_EQ(row.here.median(), 0.8);
   EXPECT_EQ(row.verdict(), Verdict::kHolds);
@@ -96,7 +97,7 @@ TEST(Row, OverSeedsIsJudgedByItsMedianAndCountsWhoAgrees) {
 }
 
 TEST(Row, WithOneFailedRunHasNoResult) {
-  const ReproduceRow row =
+  const Row row =
       check("ratio", std::vector<double>{0.5, std::nan(""), 0.9}, Direction::kLower, 1.0, "-", "");
   EXPECT_EQ(row.verdict(), Verdict::kNoResult);
 }
@@ -111,16 +112,16 @@ TEST(Row, WithOneFailedRunHasNoRangeEither) {
   EXPECT_DOUBLE_EQ(Values(std::vector<double>{0.5, -1.0}).highest(), 0.5);
 }
 
-TEST(Row, OfADifferenceIsPairedSeedBySeed) {
-  const Values a(std::vector<double>{1.0, 5.0, 9.0}), b(std::vector<double>{2.0, 3.0, 11.0});
-  EXPECT_EQ(difference(a, b).all(), (std::vector<double>{-1.0, 2.0, -2.0}));
-  EXPECT_DOUBLE_EQ(difference(a, b).median(), -1.0);  // that of the medians is 2
-  EXPECT_THROW(difference(a, Values(1.0)), InputError);
+TEST(Row, ThatIsOnlyObservedIsNotJudged) {
+  Row row = check("ratio", 0.5, Direction::kLower, 1.0, "-", "");
+  row.observed = true;
+  EXPECT_EQ(row.verdict(), Verdict::kObserved);
+  row.here = std::nan("");
+  EXPECT_EQ(row.verdict(), Verdict::kNoResult) << "a run that failed is said all the same";
 }
 
-TEST(Row, ThatCannotBeComparedSaysWhy) {
+TEST(Row, ThatCannotBeComparedIsNotJudged) {
   EXPECT_EQ(incomparable("ISE", 1.0, 2.0, "-", "other data").verdict(), Verdict::kNotComparable);
-  EXPECT_THROW(incomparable("ISE", 1.0, 2.0, "-", ""), InputError);
 }
 
 // Verdicts may be asked for, never written down: beside verdict.cpp the word only follows == or !=.
@@ -128,8 +129,10 @@ TEST(Verdict, IsNoConstantAnywhere) {
   namespace fs = std::filesystem;
   const std::regex asked(R"([=!]=\s*Verdict::k)");
   std::size_t files = 0;
-  for (const auto& entry : fs::directory_iterator(sourceDir() + "/src/tool/reproduce")) {
+  for (const auto& entry : fs::directory_iterator(sourceDir() + "/papers")) {
     if (entry.path().filename().string().rfind("verdict.", 0) == 0) continue;
+    if (entry.path().extension() == ".yaml")
+      continue;  // has no verdicts: the reader refuses the key
     std::ifstream stream(entry.path());
     std::string line;
     for (int n = 1; std::getline(stream, line); ++n) {
@@ -143,4 +146,4 @@ TEST(Verdict, IsNoConstantAnywhere) {
 }
 
 }  // namespace tool_verdict_test
-}  // namespace fpc::tool
+}  // namespace fpc::papers

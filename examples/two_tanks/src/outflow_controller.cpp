@@ -56,7 +56,6 @@ class OutflowController final : public fpc::Controller {
     output.source = clipped == 0.0 ? fpc::ActionSource::kBase : fpc::ActionSource::kClipped;
     output.predictive = false;
     output.ok = true;
-    output.remark = "";
     last_error_ = error;
   }
 

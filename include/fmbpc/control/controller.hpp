@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/input_limits.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
@@ -23,15 +24,15 @@ struct ControllerOutput {
     source = ActionSource::kBase;
     predictive = false;
     ok = true;
-    remark = "";
+    events.clear();
   }
   Vector input;  ///< n_u, inside bounds and move limit
   ActionSource source{ActionSource::kHeld};
   Vector reference;        ///< n_y, y_r(k)
   bool predictive{false};  ///< `prediction` is valid
   PredictiveAction prediction;
-  bool ok{true};           ///< false: no rule fired, nothing finite came out, ... (see remark)
-  const char* remark{""};  ///< words for diagnostics, also when ok; lives as long as the controller
+  bool ok{true};   ///< false: nothing finite came out, ...; `events` say why
+  Notices events;  ///< what is to be known of this sample, also when ok
 };
 
 class Controller {
@@ -71,7 +72,7 @@ class Controller {
   /// What may be changed while it runs, as it is now. Default: nothing.
   virtual Settings settings() const;
   /// Takes these from the next sample on, without a bump; others stay. Returns false if there is
-  /// nothing to change. @throws InputError, then nothing is taken.
+  /// nothing to change. @throws InputError; nothing is taken.
   virtual bool retune(const Settings& settings);
   /// Signals for plotting, "NAME" -> value, refreshed by step(). Default: none.
   virtual const std::vector<std::pair<std::string, double>>& signals() const;

@@ -30,8 +30,8 @@ struct LawSample {
 
 /// What a law makes of a sample.
 struct Proposal {
-  const char* trouble{nullptr};  ///< why the input is not to be used
-  const char* remark{""};        ///< for diagnostics
+  EventCode trouble{EventCode::kNone};  ///< why the input is not to be used
+  Notice notice{};                      ///< what is to be known of it
 };
 
 /// The part of a law whose size depends on model and tuning: where the process stands, and the
@@ -85,7 +85,7 @@ void readPredictiveLaw(YamlSection& section, const ControllerContext& loop,
                        PredictiveLawParams& params);
 
 /// After an upset the reference goes on from within reference_holdback of the outputs: a law that
-/// was made for errors of that size is not asked for more, and the remark says so. What is
+/// was made for errors of that size is not asked for more, and an event says so. What is
 /// published is the reference that nothing holds back. A start in the middle of a run adds a bias
 /// to u that makes it the applied input and dies out (BumplessTransfer). A new core or tuning takes
 /// over in the next step: the old one still says what u(k) would have been, and the new one starts
@@ -132,7 +132,7 @@ class PredictiveLaw : public Controller, public PlanView {
   void handOver(const LawSample& sample, bool& fired, Proposal& proposal);
   void adopt();
   void act(const LawSample& sample, ControllerOutput& output);
-  void hold(const Measurement& now, const char* reason, ControllerOutput& output);
+  void hold(const Measurement& now, const Notice& why, ControllerOutput& output);
   bool holdBack(const Measurement& now);
   void refreshSignals();
   void predict(const LawSample& sample, PredictiveAction& prediction) const;

@@ -59,6 +59,10 @@ class SetpointSource {
   /// increasing; over skipped steps everything catches up. The first value is not rate-limited.
   const Vector& advance(std::uint32_t step);
   const Vector& present() const { return present_; }
+  /// What is asked of output i at the present step lies beyond the params' limits.
+  bool isClamped(Eigen::Index i) const {
+    return unclamped_[i] < params_.lower[i] || unclamped_[i] > params_.upper[i];
+  }
   /// Preview: what the schedule (and the commands now in force) will ask at `step`, clamped; no
   /// memory touched, no allocation.
   void scheduled(std::uint32_t step, Eigen::Ref<Vector> value) const;
@@ -106,7 +110,7 @@ class SetpointSource {
   std::vector<Command> waiting_;  // people's commands before the first sample: its step is unknown
   std::ptrdiff_t restored_{};     // of them: those at the front
   std::vector<CommandEffect> effects_;
-  Vector present_, asked_;
+  Vector present_, asked_, unclamped_;  // asked_: unclamped_ inside the limits
   std::int64_t clock_shift_ns_{};
   std::uint32_t next_step_{};
   bool started_{false}, fresh_{true};

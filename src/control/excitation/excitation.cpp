@@ -203,13 +203,11 @@ void ExcitationController::step(const Measurement& now, const SetpointSource& se
   unclipped_ = signal_;
   for (const ExcitationFeedback& f : feedback_)
     unclipped_[f.input] += f.gain * (setpoint.present()[f.output] - now.outputs[f.output]);
+  output.begin();
   output.input = unclipped_;
   limits_.clip(output.input, now.input_applied);
   output.source = output.input == unclipped_ ? ActionSource::kBase : ActionSource::kClipped;
   output.reference = feedback_.empty() ? no_reference_ : setpoint.present();
-  output.predictive = false;
-  output.ok = true;
-  output.remark = "";
 }
 
 }  // namespace fpc

@@ -1,5 +1,7 @@
 // Controller type fmbpc: its section of a loop file.
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "control/fmbpc/law.hpp"
 #include "control/read_observer.hpp"
@@ -79,7 +81,25 @@ SignalUse usedByFmbpc(const FmbpcParams& params, const ControllerContext& loop) 
   return use;
 }
 
+/// A plan that ends before any input has moved an output cannot steer it; it counts without
+/// delay_steps.
+void requireReach(const FmbpcParams& params, const TsModel& model) {
+  if (params.law != FmbpcForm::kIterated) return;
+  for (std::size_t o = 0; o < model.submodels.size(); ++o) {
+    if (params.weight_output[static_cast<Eigen::Index>(o)] == 0.0) continue;
+    int soonest = std::numeric_limits<int>::max();
+    for (const Regressor& regressor : model.submodels[o].regressors)
+      if (regressor.kind == SignalKind::kInput) soonest = std::min(soonest, regressor.lag);
+    if (soonest == std::numeric_limits<int>::max()) continue;
+    const int dead_time = soonest - params.delay_steps;
+    require(params.horizon_steps > dead_time, "controller.horizon_steps",
+            "more samples than the dead time of " + model.outputs[o].name + " in the model, " +
+                std::to_string(dead_time));
+  }
+}
+
 void checkFmbpc(const FmbpcParams& params, const TsModel& model, const ControllerContext&) {
+  requireReach(params, model);
   if (params.realisation == FmbpcRealisation::kObserver)
     ModelObserver(LocalModel(model), params.observer, 0);
 }

@@ -44,7 +44,7 @@ Proposal CoincidenceLaw::propose(InternalModel& model, const LawSample& sample,
   shortfall_.noalias() -= gains_.free() * model.state();
   input.noalias() = gains_.gain() * shortfall_;
   input.noalias() += gains_.moveGain() * sample.now.input_applied;
-  return {solvable ? nullptr : "the input has no effect at the horizon", remark()};
+  return {solvable ? EventCode::kNone : EventCode::kInputWithoutEffect, notice()};
 }
 
 /// With A, B, g and y - y_m frozen, the law at k+i is affine in x(k+i): K = F P - V E, where E
@@ -83,11 +83,11 @@ bool GeneralLaw::computeGains(const AffineModel& model) {
 }
 
 /// A weight of its moves makes an input solvable that cannot do anything.
-const char* GeneralLaw::remark() const {
+Notice GeneralLaw::notice() const {
   for (std::size_t j = 0; j < idle_words_.size(); ++j)
     if (!idle_words_[j].empty() && gains_.isIdle(static_cast<Eigen::Index>(j)))
-      return idle_words_[j].c_str();
-  return "";
+      return {EventCode::kInputWithoutEffect, idle_words_[j].c_str()};
+  return {};
 }
 
 void GeneralLaw::predict(const InternalModel& model, const Matrix& future,

@@ -47,7 +47,7 @@ class CoincidenceLaw : public InputLaw {
 
  protected:
   virtual bool computeGains(const AffineModel& model) = 0;
-  virtual const char* remark() const { return ""; }
+  virtual Notice notice() const { return {}; }
 
   CoincidenceGains gains_;
   int coincidence_steps_;
@@ -79,7 +79,7 @@ class GeneralLaw final : public CoincidenceLaw {
 
  private:
   bool computeGains(const AffineModel& model) override;
-  const char* remark() const override;
+  Notice notice() const override;
 
   Vector weight_output_, weight_move_;
   std::vector<std::string> idle_words_;  ///< by input; empty: no rule knows it

@@ -53,7 +53,7 @@ Proposal IteratedLaw::propose(InternalModel& model, const LawSample& sample, con
   solver_.countErrors(trustedSteps(model, expected));
   if (!solver_.plan(model.state(), model.correction(), model.offsetOutput(), expected, aimed_,
                     sample.now.input_applied))
-    return {"the law gave no finite input"};
+    return {EventCode::kLawFailed};
   input = solver_.inputs().col(0);
   model.replan(input, sample.disturbances);
   return {};

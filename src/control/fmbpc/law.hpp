@@ -69,7 +69,7 @@ const SettingsTable<FmbpcParams>& fmbpcSettings();  ///< what may change in a ru
 /// without a bump (PredictiveLaw). If two models have the same lags, the measured past is handed
 /// over as well, and the own state if only consequents differ; otherwise (and always with a delay
 /// taken out, or literal) the new one starts at rest. If no rule fires the nearest one is used,
-/// with a remark. If the gains are singular or anything is not finite the last applied input is
+/// with an event. If the gains are singular or anything is not finite the last applied input is
 /// held. signals(): NAME_model (y_m), NAME_correction (y - y_m, or w_hat) of each output and, with
 /// a delay, NAME_undelayed (what the output will be delay_steps later); NAME_unclipped of each
 /// input; NAME_estimate of each disturbance in observer.estimated.

@@ -9,9 +9,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr const char* kShortSighted =
-    "controller.horizon_steps is too short: an input hardly acts within it";
-
 /// How a constant d_g moves the input: through every step of the recursion, or once on every
 /// output.
 Matrix correctionOf(const QuadraticLaw& law, const LocalModel& model, bool inside) {
@@ -73,11 +70,13 @@ void FuzzyOptimalCore::rest(const LawSample& sample) {
   local_.restState(now.outputs, now.input_applied, sample.disturbances, state_);
   before_ = state_;
   begun_ = false;
+  warns_ = short_sighted_;
   if (observer_) observer_->rest(now.outputs, now.input_applied, sample.disturbances);
 }
 
 void FuzzyOptimalCore::advance(const LawSample& sample) {
   const Measurement& now = sample.now;
+  warns_ = false;
   if (observer_) {
     observer_->advance(now.outputs, now.input_applied, sample.past_disturbances);
     before_ = observer_->before();
@@ -175,7 +174,7 @@ Proposal FuzzyOptimalCore::propose(const LawSample& sample, Vector& input) {
   sample.reference.predict(sample.setpoint, sample.now.header.step, future_);
   forward(0, input);
   input.noalias() -= K_ * state_;
-  return {nullptr, short_sighted_ ? kShortSighted : ""};
+  return {EventCode::kNone, {warns_ ? EventCode::kHorizonTooShort : EventCode::kNone}};
 }
 
 void FuzzyOptimalCore::predict(PredictiveAction& prediction) const {

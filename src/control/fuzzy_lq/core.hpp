@@ -53,6 +53,7 @@ class FuzzyOptimalCore final : public LawCore {
   std::vector<FuzzyOptimalRule> rules_;
   std::optional<ModelObserver> observer_;  ///< without: the measurements count as they are
   bool short_sighted_{false};              ///< some rule's horizon is too short for some input
+  bool warns_{false};                      ///< of that, at a start
   bool begun_{false};                      ///< the d_g have been estimated since rest()
   Vector state_, before_;                  ///< x(k), x(k-1): measured, or as observed
   Vector predicted_;                       ///< of one rule

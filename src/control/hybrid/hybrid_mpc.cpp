@@ -85,7 +85,7 @@ HybridMpc::HybridMpc(HybridMpcParams params, InputLimits limits, PlantInfo plant
   reference_ = Matrix::Zero(n_y, static_cast<Index>(params_.hold_samples) * params_.horizon_blocks);
   past_disturbances_ = Vector::Zero(static_cast<Index>(plant_.disturbances.size()));
   for (const SignalInfo& input : plant_.inputs)
-    stuck_.push_back(input.name + " is not where it was sent: a stuck valve or another fault");
+    stuck_.push_back(input.name + " is not where it was sent");
   signals_ = {{"choice", 0.0}, {"search_cost", 0.0}, {"search_nodes", 0.0}};
   if (params_.time_budget_s > 0.0)
     stop_ = [this] { return std::chrono::steady_clock::now() > deadline_; };
@@ -170,14 +170,6 @@ const char* HybridMpc::faultOf(const Measurement& now) const {
   return nullptr;
 }
 
-const char* HybridMpc::remarkOnSearch() const {
-  if (decision_.status == TreeStatus::kBudget)
-    return "the search reached its budget: the best sequence so far was taken";
-  if (decision_.status == TreeStatus::kImpossible)
-    return "no sequence of inputs is allowed: the nearest allowed input was taken";
-  return "";
-}
-
 void HybridMpc::step(const Measurement& now, const SetpointSource& setpoint,
                      ControllerOutput& output) {
   const ChoiceModel& model = evolution_->model();
@@ -190,12 +182,12 @@ void HybridMpc::step(const Measurement& now, const SetpointSource& setpoint,
   const char* fault = faultOf(now);
   if (samples_left_ == 0) startBlock(now, setpoint);
   --samples_left_;
+  output.begin();
   output.input = params_.choices.col(choice_);
-  output.source = ActionSource::kBase;
   output.reference = setpoint.present();
-  output.predictive = false;
-  output.ok = true;
-  output.remark = fault != nullptr ? fault : remarkOnSearch();
+  if (fault != nullptr) output.events.add({EventCode::kInputStuck, fault});
+  if (decision_.status == TreeStatus::kBudget) output.events.add({EventCode::kSolverLimit});
+  if (decision_.status == TreeStatus::kImpossible) output.events.add({EventCode::kNoAllowedInput});
   sent_before_ = true;
 }
 

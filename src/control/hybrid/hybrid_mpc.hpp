@@ -103,7 +103,6 @@ class HybridMpc final : public Controller {
   void startBlock(const Measurement& now, const SetpointSource& setpoint);
   const TreeResult& search(VectorRef input_before, VectorRef disturbances);
   const char* faultOf(const Measurement& now) const;  // null if there is none
-  const char* remarkOnSearch() const;
 
   HybridMpcParams params_;
   InputLimits limits_;

@@ -14,8 +14,6 @@ using Eigen::Index;
 
 constexpr double kDifference = 1e-5;  // relative, of finite differences
 constexpr double kTrial = 1e-3;       // of an input's range: a move whose effect is looked for
-constexpr const char* kShortSighted =
-    "controller.horizon_steps is too short: an input hardly acts within it";
 
 }  // namespace
 
@@ -227,8 +225,8 @@ bool HorizonMpc::estimate(const Measurement& now) {
 
 void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
                       ControllerOutput& output) {
+  output.begin();
   output.reference = reference_.present();
-  output.predictive = false;
   reference_.predict(setpoint, now.header.step, future_);
   reference_.advance(setpoint, now.header.step);
   const Index rest = plan_.size() - n_u_;
@@ -252,20 +250,20 @@ void HorizonMpc::step(const Measurement& now, const SetpointSource& setpoint,
   output.input = plan_.head(n_u_);
   output.source = found.usable ? ActionSource::kBase : ActionSource::kClipped;
   output.ok = found.usable;
-  if (anew_) lookAhead(now);
+  if (found.event != EventCode::kNone) output.events.add({found.event});
+  if (anew_ && isShortSighted(now)) output.events.add({EventCode::kHorizonTooShort});
   anew_ = false;
-  output.remark = *found.remark == '\0' && short_sighted_ ? kShortSighted : found.remark;
   if (!state_.allFinite()) fresh_ = true;
   refreshSignals(found);
 }
 
 /// Moves each input into its range; one whose bounds coincide never acts.
-void HorizonMpc::lookAhead(const Measurement& now) {
+bool HorizonMpc::isShortSighted(const Measurement& now) {
   for (Index a = 0; a < n_u_; ++a) {
     const double step = limits_.upper[a] > limits_.lower[a] ? kTrial * range_[a] : 0.0;
     trial_[a] = now.input_applied[a] + step <= limits_.upper[a] ? step : -step;
   }
-  short_sighted_ = cost_->isShortSighted(trial_);
+  return cost_->isShortSighted(trial_);
 }
 
 void HorizonMpc::refreshSignals(const PlanFound& found) {

@@ -18,10 +18,10 @@ class ShiftedModel;
 
 /// What a search made of a sample.
 struct PlanFound {
-  bool usable{false};      ///< the plan is finite and inside the limits
-  double cost{};           ///< J
-  int effort{};            ///< iterations or evaluations
-  const char* remark{""};  ///< words, also when usable
+  bool usable{false};                 ///< the plan is finite and inside the limits
+  double cost{};                      ///< J
+  int effort{};                       ///< iterations or evaluations
+  EventCode event{EventCode::kNone};  ///< also when usable
 };
 
 /// Each sample: the model moves on with u(k-1), the measured outputs take the place of the
@@ -35,8 +35,8 @@ struct PlanFound {
 /// it fails that plan's input is sent, ok is false and the source `clipped`. Hard limits on inputs
 /// and moves. signals(): NAME_correction of each output, NAME_disturbance of each input if it has
 /// one, plan_cost, plan_effort. A horizon at whose end an input has hardly begun to act is
-/// remarked, as seen where plans begin anew. While somebody else has the inputs the state moves on
-/// (lookOn()); reset() at the next sample keeps it, and plans anew.
+/// said where plans begin anew (horizon_too_short). While somebody else has the inputs the state
+/// moves on (lookOn()); reset() at the next sample keeps it, and plans anew.
 class HorizonMpc : public Controller {
  public:
   void reset(const Measurement& start) override;
@@ -64,7 +64,7 @@ class HorizonMpc : public Controller {
   bool goesOn(const StepHeader& header) const;
   bool estimate(const Measurement& now);
   void restPlan(const Measurement& now);
-  void lookAhead(const Measurement& now);
+  bool isShortSighted(const Measurement& now);
   bool observe(const Measurement& now);
   bool linearise();
   bool takeColumn(Eigen::Ref<Vector> column, double h);
@@ -94,7 +94,6 @@ class HorizonMpc : public Controller {
   StepHeader seen_;   // of the last sample
   bool fresh_{true};  // the state is to be taken from the next measurement
   bool anew_{true};   // the plan as well
-  bool short_sighted_{false};
   std::vector<std::pair<std::string, double>> signals_;
 };
 

@@ -89,11 +89,11 @@ PlanFound Nmpc::search(const Measurement& now, Vector& plan) {
   const GaussNewtonResult& found = solve(now.input_applied);
   for (Index j = 0; j < plan.size() && found.usable(); ++j)
     plan[j] = limits().lower[j % n_u] + range()[j % n_u] * found.x[j];
-  const char* remark = "";
-  if (found.status == SolveStatus::kIterationLimit)
-    remark = "the solver reached its iterations: the best plan so far was taken";
-  if (!found.usable()) remark = "the solver failed: the plan of the sample before goes on";
-  return {found.usable(), found.cost, found.iterations, remark};
+  const bool limited = found.status == SolveStatus::kIterationLimit;
+  const EventCode event = !found.usable() ? EventCode::kPlanNotFound
+                          : limited       ? EventCode::kSolverLimit
+                                          : EventCode::kNone;
+  return {found.usable(), found.cost, found.iterations, event};
 }
 
 }  // namespace fpc

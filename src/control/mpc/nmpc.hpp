@@ -16,7 +16,7 @@ struct NmpcParams {
 
 /// The least J (see PlanCost) inside the limits, by sequential quadratic programming in inputs
 /// scaled to their bounds. Deterministic, no allocation per sample. Where the solver reaches its
-/// iterations the best plan so far is taken, with a remark.
+/// iterations the best plan so far is taken, with an event.
 class Nmpc final : public HorizonMpc {
  public:
   /// @throws InputError naming the field.

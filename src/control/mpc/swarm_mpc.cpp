@@ -52,9 +52,8 @@ PlanFound SwarmMpc::search(const Measurement& now, Vector& plan) {
   const SwarmResult& found = swarm_.result();
   const bool usable = std::isfinite(found.cost);
   if (usable) plan = found.best;
-  const char* remark =
-      usable ? "" : "no plan has a finite cost: the plan of the sample before goes on";
-  return {usable, found.cost, found.evaluations, remark};
+  return {usable, found.cost, found.evaluations,
+          usable ? EventCode::kNone : EventCode::kPlanNotFound};
 }
 
 }  // namespace fpc

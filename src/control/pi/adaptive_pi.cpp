@@ -239,10 +239,10 @@ void AdaptivePi::propose(const Measurement& now, const SetpointSource& setpoint)
 
 void AdaptivePi::send(const Measurement& now, ControllerOutput& output) {
   State& s = *state_;
+  output.begin();
   output.input = now.input_applied;
-  output.predictive = false;
   output.ok = std::isfinite(s.unclipped[0]) && std::isfinite(s.unclipped[1]);
-  output.remark = output.ok ? "" : "the control law overflowed: input held";
+  if (!output.ok) output.events.add({EventCode::kLawFailed});
   for (const std::size_t i : kLoops)
     if (std::isfinite(s.unclipped[i])) output.input[s.params.loops[i].input] = s.unclipped[i];
   s.limits.clip(output.input, now.input_applied);

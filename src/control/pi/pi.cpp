@@ -182,11 +182,9 @@ void PiController::integrate(const PiLoop& loop, const Measurement& now, double 
 
 void PiController::step(const Measurement& now, const SetpointSource& setpoint,
                         ControllerOutput& output) {
+  output.begin();
   output.input = now.input_applied;
   refer(setpoint, now.header.step, output.reference);
-  output.predictive = false;
-  output.ok = true;
-  output.remark = "";
   for (std::size_t i = 0; i < states_.size(); ++i) {
     LoopState& state = states_[i];
     const Eigen::Index followed = params_.loops[i].output;
@@ -215,7 +213,7 @@ void PiController::step(const Measurement& now, const SetpointSource& setpoint,
   }
   if (output.ok) return;
   output.source = ActionSource::kHeld;
-  output.remark = "the control law overflowed: input held";
+  output.events.add({EventCode::kLawFailed});
 }
 
 }  // namespace fpc

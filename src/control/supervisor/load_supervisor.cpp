@@ -70,12 +70,9 @@ double LoadSupervisor::ahead(const Measurement& now, double error) const {
 
 void LoadSupervisor::step(const Measurement& now, const SetpointSource& setpoint,
                           ControllerOutput& output) {
+  output.begin();
   output.input = now.input_applied;
   output.reference = setpoint.present();
-  output.predictive = false;
-  output.ok = true;
-  output.remark = "";
-  output.source = ActionSource::kBase;
   const double error = now.outputs[params_.output] - setpoint.present()[params_.output];
   const double before = ahead(now, error);
   params_ = next_params_;
@@ -89,7 +86,7 @@ void LoadSupervisor::step(const Measurement& now, const SetpointSource& setpoint
   if (!std::isfinite(unclipped)) {
     output.ok = false;
     output.source = ActionSource::kHeld;
-    output.remark = "the control law overflowed: input held";
+    output.events.add({EventCode::kLawFailed});
     limits_.clip(output.input, now.input_applied);
     return;
   }

@@ -125,15 +125,13 @@ TEST(FmbpcLaw, AnInputThatActsAfterTheHorizonIsNamedBesideOneThatActs) {
     law.setModel(model);
     test::start(law, plant, setpoint, 10, [&](const Measurement&, const ControllerOutput& o) {
       EXPECT_TRUE(o.ok);
-      EXPECT_STREQ(o.remark, horizon == 20 ? ""
-                                           : "input late has no effect at "
-                                             "controller.coincidence_steps and rests");
+      EXPECT_EQ(o.events.has(EventCode::kInputWithoutEffect), horizon == 5);
       if (horizon == 5) EXPECT_EQ(o.input[1], 0.0);
     });
   }
 }
 
-TEST(FmbpcLaw, AnInputThatNoRuleKnowsIsNoRemark) {
+TEST(FmbpcLaw, AnInputThatNoRuleKnowsIsNoEvent) {
   TsModel model = test::firstOrder(0.9, 0.1, 0.0);
   model.inputs = {test::signal("early"), test::signal("unknown")};
   const PlantInfo info = test::infoOf(model);
@@ -141,8 +139,9 @@ TEST(FmbpcLaw, AnInputThatNoRuleKnowsIsNoRemark) {
   test::ModelPlant plant(model, one(0.0), Vector::Zero(2), Vector());
   SetpointSource setpoint = test::setpointOf(info, one(2.0));
   law.setModel(model);
-  test::start(law, plant, setpoint, 10,
-              [&](const Measurement&, const ControllerOutput& o) { EXPECT_STREQ(o.remark, ""); });
+  test::start(law, plant, setpoint, 10, [&](const Measurement&, const ControllerOutput& o) {
+    EXPECT_TRUE(o.events.empty());
+  });
 }
 
 TEST(FmbpcLaw, AWeightOfMovesDoesNotHideThatNoInputActs) {
@@ -151,7 +150,7 @@ TEST(FmbpcLaw, AWeightOfMovesDoesNotHideThatNoInputActs) {
   test::run(loop.law, loop.plant, loop.setpoint, 40, 43,
             [&](const Measurement&, const ControllerOutput& output) {
               EXPECT_FALSE(output.ok);
-              EXPECT_STREQ(output.remark, "the input has no effect at the horizon");
+              EXPECT_TRUE(output.events.has(EventCode::kInputWithoutEffect));
             });
 }
 
@@ -165,7 +164,7 @@ TEST(FmbpcLaw, AnInputWithoutEffectIsHeldAndSaidSo) {
               EXPECT_FALSE(output.predictive);
               EXPECT_EQ(output.source, ActionSource::kHeld);
               EXPECT_EQ(output.input[0], before);
-              EXPECT_STREQ(output.remark, "the input has no effect at the horizon");
+              EXPECT_TRUE(output.events.has(EventCode::kInputWithoutEffect));
             });
 }
 
@@ -211,7 +210,7 @@ TEST(FmbpcLaw, NaNMeasurementsAreHeldAndForgotten) {
             });
 }
 
-TEST(FmbpcLaw, NoRuleFiringIsARemarkNotAFailure) {
+TEST(FmbpcLaw, NoRuleFiringIsAnEventNotAFailure) {
   TsModel crisp = test::firstOrder(0.85, 0.12, 0.0);
   crisp.submodels[0].antecedents = {{SignalKind::kOutput, 0, 0}};
   crisp.submodels[0].rules[0].antecedents = {{MembershipShape::kTriangular, {-1.0, 0.0, 1.0}}};
@@ -220,7 +219,7 @@ TEST(FmbpcLaw, NoRuleFiringIsARemarkNotAFailure) {
   test::run(loop.law, loop.plant, loop.setpoint, 40, 41,
             [](const Measurement&, const ControllerOutput& output) {
               EXPECT_TRUE(output.ok);
-              EXPECT_STREQ(output.remark, "no rule fired: the nearest one was used");
+              EXPECT_TRUE(output.events.has(EventCode::kNoRuleFired));
             });
 }
 

@@ -22,7 +22,7 @@ double finalError(FmbpcParams params, const TsModel& model, const TsModel& truth
   double error = 0.0;
   test::start(law, plant, setpoint, 600,
               [&](const Measurement& now, const ControllerOutput& output) {
-                EXPECT_TRUE(output.ok) << output.remark;
+                EXPECT_TRUE(output.ok);
                 error = (now.outputs - target).cwiseAbs().maxCoeff();
               });
   return error;

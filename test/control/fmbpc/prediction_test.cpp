@@ -97,7 +97,7 @@ TEST(Prediction, BaseLawOfALinearModelComesTrueInClosedLoop) {
     std::vector<Vector> promise;
     test::run(law, plant, setpoint, k, k + 12,
               [&](const Measurement& now, const ControllerOutput& output) {
-                ASSERT_TRUE(output.predictive) << output.remark;
+                ASSERT_TRUE(output.predictive);
                 if (promise.empty()) promise = foretold(output.prediction);
                 const Vector& u = promise[now.header.step - k];
                 EXPECT_LT(relativeGap(output.prediction.input_base_unclipped, u), 1e-9)
@@ -121,7 +121,7 @@ TEST(Prediction, FirstInputIsTheBaseActionForNonlinearModels) {
     law.setModel(model);
     test::start(
         law, plant, setpoint, 60, [&](const Measurement& now, const ControllerOutput& output) {
-          ASSERT_TRUE(output.predictive) << output.remark;
+          ASSERT_TRUE(output.predictive);
           const PredictiveAction& p = output.prediction;
           EXPECT_LT(relativeGap(p.input_base_unclipped, -p.K * p.state + p.feedforward.col(0)),
                     1e-9);
