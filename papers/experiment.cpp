@@ -9,9 +9,9 @@
 
 #include "base/yaml_node.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "papers/expression.hpp"
 #include "papers/paper_file.hpp"
-#include "papers/report.hpp"
 #include "papers/settings.hpp"
 
 namespace fpc::papers {
@@ -40,7 +40,7 @@ Values deviation(const Rows& rows, bool of_medians) {
 
 std::string filled(std::string text, double number) {
   const auto at = text.find("{}");
-  return at == std::string::npos ? text : text.replace(at, 2, figureText(number));
+  return at == std::string::npos ? text : text.replace(at, 2, shortText(number));
 }
 
 Row computed(const PlannedRow& planned, const Rows& before) {

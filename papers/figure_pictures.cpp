@@ -2,9 +2,9 @@
 // curve that they belong to.
 #include <cmath>
 
+#include "fmbpc/base/text.hpp"
 #include "papers/expression.hpp"
 #include "papers/picture.hpp"
-#include "papers/report.hpp"
 #include "papers/runs.hpp"
 
 namespace fpc::papers {
@@ -12,7 +12,7 @@ namespace {
 
 std::string scored(const std::string& loop, double printed) {
   const Values sum = evaluate("ise_reference(" + loop + ", CA)");
-  return loop + ": sum " + figureText(sum.median()) + ", printed " + figureText(printed);
+  return loop + ": sum " + shortText(sum.median()) + ", printed " + shortText(printed);
 }
 
 /// Figures 2 and 3 (blazic2007): the printed sums in the legend.

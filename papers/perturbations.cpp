@@ -34,25 +34,22 @@ Factors factorsOf(const std::string& name) {
   return factors;
 }
 
-/// What the loop has there: of a plant's parameter that it does not name, the plant's own.
+/// What the loop has there, NaN if nothing: of a plant's parameter that it does not name, the
+/// plant's own.
 double numberAt(const LoopFile& loop, const YAML::Node& text, const std::string& path) {
   YAML::Node node = YAML::Clone(text);
-  std::string last;
   for (const std::string& key : split(path, '.')) {
-    last = key;
-    if (node.IsSequence()) {
-      node.reset(node[std::stoul(key)]);
-      continue;
+    const bool list = node.IsSequence() && std::stoul(key) < node.size();
+    if (!list && !(node.IsMap() && node[key])) {
+      node.reset();
+      break;
     }
-    if (!node.IsMap() || !node[key]) {
-      const PlantDescription plant = makePlant(loop.simulation.plant)->description();
-      for (const auto& quantity : plant.parameters)
-        if (quantity.name == last) return quantity.nominal;
-      return kNotPrinted;
-    }
-    node.reset(node[key]);
+    node.reset(list ? node[std::stoul(key)] : node[key]);
   }
-  return parseNumber(node.Scalar()).value_or(kNotPrinted);
+  if (node.IsScalar()) return parseNumber(node.Scalar()).value_or(kNotPrinted);
+  for (const auto& quantity : makePlant(loop.simulation.plant)->description().parameters)
+    if (path == "plant.parameters." + quantity.name) return quantity.nominal;
+  return kNotPrinted;
 }
 
 }  // namespace

@@ -22,17 +22,17 @@ std::string format(const char* pattern, double value) {
 /// What the paper prints, or the statement: "<= 1".
 std::string paperCell(const Row& row) {
   if (std::isnan(row.paper)) return "-";
-  if (!row.statement) return figureText(row.paper);
+  if (!row.statement) return shortText(row.paper);
   const char* sign = row.direction == Direction::kLower    ? "<= "
                      : row.direction == Direction::kHigher ? ">= "
                                                            : "= ";
-  return sign + figureText(row.paper);
+  return sign + shortText(row.paper);
 }
 
 std::string spreadOf(const Row& row) {
   if (row.here.count() == 1) return "";
   std::string text = "median of " + std::to_string(row.here.count()) + ", " +
-                     figureText(row.here.lowest()) + " .. " + figureText(row.here.highest());
+                     shortText(row.here.lowest()) + " .. " + shortText(row.here.highest());
   if (row.incomparable.empty())
     text += ", " +
             std::to_string(std::lround(row.agreeing() * static_cast<double>(row.here.count()))) +
@@ -102,17 +102,11 @@ Json holds(Row row) {
 
 }  // namespace
 
-std::string figureText(double value) {
-  if (!std::isfinite(value)) return "-";
-  const std::string text = format("%.4g", value == 0.0 ? 0.0 : value);
-  return text == "-0" ? "0" : text;
-}
-
 std::string hereText(const Row& row) {
   const double here = row.here.median();
-  std::string text = figureText(here);
+  std::string text = shortText(here);
   if (row.verdict() != Verdict::kFails) return text;
-  const std::string limit = figureText(row.paper);
+  const std::string limit = shortText(row.paper);
   for (int digits = 5; text == limit && digits <= 17; ++digits)
     text = format(("%." + std::to_string(digits) + "g").c_str(), here);
   return text;

@@ -16,8 +16,6 @@ struct Outcome {
   Rows rows;
 };
 
-/// Four significant digits; "-" if not finite.
-std::string figureText(double value);
 using Counts = std::map<Verdict, std::size_t>;
 Counts countsOf(const Rows& rows);
 /// "3 reproduced, 1 close; 2 hold, 1 fails": figures, then statements, then rows without a result.
@@ -27,7 +25,7 @@ std::string remarkOf(const Row& row);
 /// Of the row that says most about what is not reached; empty if all is.
 std::string reasonOf(const Rows& rows);
 
-/// As figureText(), but of a statement that fails with as many digits as tell it from its limit:
+/// As shortText(), but of a statement that fails with as many digits as tell it from its limit:
 /// "1.00001" where "1" would hide why.
 std::string hereText(const Row& row);
 /// One line for each failed run and one that counts the rows without a result; empty: none.

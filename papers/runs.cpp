@@ -28,14 +28,6 @@ std::size_t& seedCount() {
   return count;
 }
 
-LoopFile perturbedLoop(const std::string& name, const Overrides& overrides) {
-  LoopFile loop = readLoop(name, overrides);
-  if (!perturbation()) return loop;
-  Overrides all = overrides;
-  for (auto& change : perturbation()(loop)) all.push_back(std::move(change));
-  return all.size() == overrides.size() ? loop : readLoop(name, all);
-}
-
 /// @throws InputError unless the run went as asked.
 void requireSound(const Summary& summary) {
   require(summary.complete, summary.loop, "a run to the end (" + troubleOf(summary) + ")");
@@ -43,7 +35,7 @@ void requireSound(const Summary& summary) {
 }
 
 Done run(const std::string& loop, const Overrides& overrides) {
-  const LoopFile file = perturbedLoop(loop, overrides);
+  const LoopFile file = loopOf(loop, overrides);
   Done done{runLoop(file), {}};
   done.summary = summarize(file, done.record, 0.0);
   requireSound(done.summary);
@@ -146,10 +138,18 @@ const RunRecord& recordOf(const std::string& loop, const Overrides& overrides) {
   return done(loop, overrides).record;
 }
 
+LoopFile loopOf(const std::string& name, const Overrides& overrides) {
+  LoopFile loop = readLoop(name, overrides);
+  if (!perturbation()) return loop;
+  Overrides all = overrides;
+  for (auto& change : perturbation()(loop)) all.push_back(std::move(change));
+  return all.size() == overrides.size() ? loop : readLoop(name, all);
+}
+
 LoopFile loopOf(const std::string& run) {
   const Named names = named(run);
   require(names.sets.size() == 1, run, "one run");
-  return perturbedLoop(names.loop, names.sets[0]);
+  return loopOf(names.loop, names.sets[0]);
 }
 
 Summary freshSummaryOf(const std::string& loop, const Overrides& overrides) {

@@ -30,6 +30,7 @@ using OfRun = std::function<double(const RunFigures&)>;
 const RunRecord& recordOf(const std::string& run);
 const RunRecord& recordOf(const std::string& loop, const Overrides& overrides);
 LoopFile loopOf(const std::string& run);  ///< as it would be run
+LoopFile loopOf(const std::string& loop, const Overrides& overrides);
 /// Run anew and not kept: for searches.
 Summary freshSummaryOf(const std::string& loop, const Overrides& overrides);
 /// One figure of each run, of several on all cores: NaN where one failed. @throws as recordOf() of

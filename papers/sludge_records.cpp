@@ -16,7 +16,7 @@ DataSet excited(const std::string& loop, const Structure& structure, int seed,
   const std::string n = std::to_string(seed);
   Overrides set{{"disturbance.pattern.seed", n}, {"controller.seed", n}};
   set.insert(set.end(), overrides.begin(), overrides.end());
-  return dataOf(runLoop(readLoop(loop, set)), structure);
+  return dataOf(runLoop(loopOf(loop, set)), structure);
 }
 
 const std::vector<TsModel>& modelsOver(const std::string& structure) {

@@ -6,12 +6,12 @@
 
 #include "base/parallel.hpp"
 #include "config/structure_file.hpp"
+#include "fmbpc/base/text.hpp"
 #include "identification/identify.hpp"
 #include "identification/prediction.hpp"
 #include "identification/validation.hpp"
 #include "papers/expression.hpp"
 #include "papers/picture.hpp"
-#include "papers/report.hpp"
 #include "papers/runs.hpp"
 #include "papers/sludge_records.hpp"
 #include "papers/words.hpp"
@@ -87,8 +87,8 @@ Picture validationPicture(const Case& c) {
     }
     predicted.x = measured.x;
     predicted.label = "model, free run: VAF " +
-                      figureText(fitFigures(judge.values.col(i), free_run.col(i)).vaf) +
-                      " %, printed " + figureText(c.printed[i]) + " %";
+                      shortText(fitFigures(judge.values.col(i), free_run.col(i)).vaf) +
+                      " %, printed " + shortText(c.printed[i]) + " %";
     picture.panels.push_back({i == 0 ? "s [mg/l]" : "x [mg/l]", {measured, predicted}});
   }
   return picture;

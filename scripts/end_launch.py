@@ -3,7 +3,7 @@
 a master of its own never ends by itself, and a node that is `required` is announced in red as having died. Where the
 recorder is gone, it makes the run's files of the journal (`fmbpc recover`) in the folder ~out, and ends the launch when
 the plant has finished and the recorder has been gone for ~patience seconds (5). Where roslaunch itself was killed, it says so and asks
-the nodes of the loop one by one to end when the run is over (not tested: `rosnode kill` otherwise). One that has not answered for ~hanging
+the nodes of the loop one by one to end when the run is over. One that has not answered for ~hanging
 seconds (20) when the plant has finished hangs for ever: it is killed first."""
 import os
 import queue

@@ -103,6 +103,26 @@ class ExamplePackage(unittest.TestCase):
         link = (ws / "build" / "two_tanks" / "CMakeFiles" / "two_tanks.dir" / "link.txt").read_text()
         self.assertIn("libfmbpc_core.so", link)
 
+    def test_plant_and_controller_keep_what_every_one_promises(self):
+        text = self.tool("check", "two_tanks")
+        for subject in ("plant two_tanks", "controller outflow"):
+            self.assertIn(subject, text)
+        self.assertNotIn("BROKEN", text)
+        self.assertNotEqual(0, subprocess.run([self.fmbpc / "lib" / "fmbpc" / "fmbpc_tool", "check", "nowhere"],
+                                              capture_output=True, check=False).returncode)
+
+    def test_new_packages_build_and_their_tests_pass(self):
+        for kind in ("plant", "controller"):
+            name = f"my_{kind}"
+            self.tool("new", kind, name, "--out", self.folder)
+            build = self.folder / f"{name}_build"
+            run("cmake", "-S", self.folder / name, "-B", build, f"-DCMAKE_PREFIX_PATH={self.fmbpc}",
+                f"-DCATKIN_DEVEL_PREFIX={build}/devel", "-DPYTHON_EXECUTABLE=/usr/bin/python3",
+                "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
+            run("cmake", "--build", build)
+            tested = run("cmake", "-E", "chdir", build, "ctest", "--output-on-failure", CMAKE_PREFIX_PATH="")
+            self.assertIn("100% tests passed, 0 tests failed out of 2", tested)
+
     def test_lists_hold_what_it_brings(self):
         self.assertIn("outflow", self.tool("controllers"))
         self.assertIn("two_tanks", self.tool("plants"))

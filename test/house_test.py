@@ -8,7 +8,7 @@ TOP = pathlib.Path(__file__).resolve().parent.parent
 ROS_INCLUDE = re.compile(r'#include *[<"](ros/\w+\.h[>"]|tf2|std_msgs|std_srvs|rosgraph|geometry_msgs|diagnostic|actionlib|dynamic_reconfigure|fmbpc/[A-Z])')
 ROS_CLOCK = re.compile(r"ros::Time::now|createTimer|ros::Timer\b|ros::Rate|ros::Duration\([^)]*\)\.sleep|rospy\.(Rate|sleep|Timer|get_rostime|Time\.now)")
 RANKS = {"base": 0, "optim": 1, "model": 2, "plant": 3, "estimation": 3, "identification": 3, "control": 4, "supervision": 5, "analysis": 5, "config": 6, "runtime": 7,
-         "study": 8, "ros": 8}
+         "study": 8, "export": 8, "ros": 8}
 FORBIDDEN = {("plant", "optim"), ("supervision", "plant"), ("control", "plant"), ("control", "identification"), ("analysis", "plant")}
 
 

@@ -4,8 +4,10 @@
 #include "fmbpc/control/registry.hpp"
 #include "model_handle.hpp"
 #include "own_plant.hpp"
+#include "runtime/contract.hpp"
 #include "stepped_controller.hpp"
 #include "stepped_plant.hpp"
+#include "watch.hpp"
 
 namespace fpc::python {
 namespace {
@@ -94,6 +96,28 @@ void bindPlants(py::module_& m) {
 
 }  // namespace
 
+py::list brokenOf(const std::vector<Promise>& promises) {
+  py::list list;
+  for (const Promise& p : promises)
+    if (!p.broken.empty()) list.append(p.name + ": " + p.broken);
+  return list;
+}
+
+/// What a computation without the GIL gives, or what Python code in it has thrown.
+template <typename Compute>
+py::list promisesOf(Compute compute) {
+  Watch watch{py::none()};
+  std::vector<Promise> promises;
+  try {
+    const py::gil_scoped_release release;
+    promises = compute();
+  } catch (...) {
+    watch.rethrow();
+    throw;
+  }
+  return brokenOf(promises);
+}
+
 py::dict dictOf(const PlantDescription& plant) {
   py::dict about;
   about["name"] = plant.name;
@@ -115,6 +139,12 @@ void bindControl(py::module_& m) {
         [](const std::string& name) { return dictOf(makePlant(name)->description()); });
   m.def("controller_names", &controllerNames);
   m.def("controller_type", &typeOf);
+  m.def("check_plant", [](const std::string& name) {
+    return promisesOf([&] { return plantPromises(*makePlant(name), name); });
+  });
+  m.def("check_controller", [](const std::shared_ptr<LoopFile>& loop) {
+    return promisesOf([&] { return controllerPromises(*loop); });
+  });
   m.def("register_plant", &registerOwnPlant);
   m.def("register_controller", &registerOwnController);
 }

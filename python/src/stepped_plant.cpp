@@ -1,5 +1,6 @@
 #include "stepped_plant.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -109,12 +110,14 @@ Array SteppedPlant::derivatives(py::handle state, py::handle input, py::handle d
 }
 
 Array SteppedPlant::outputs() const {
-  const Names& names = description().outputs;
-  Vector y(countOf(names));
-  for (std::size_t i = 0; i < names.size(); ++i)
-    for (std::size_t j = 0; j < states_.size(); ++j)
-      if (states_[j] == names[i])
-        y[static_cast<Eigen::Index>(i)] = x_[static_cast<Eigen::Index>(j)];
+  const PlantDescription& about = description();
+  const Names known = namesOf(measurable(about));
+  Vector all(countOf(known)), y(countOf(about.outputs));
+  all.head(x_.size()) = x_;
+  plant_->algebraic(x_, u_, d_, all.tail(all.size() - x_.size()));
+  for (Eigen::Index i = 0; i < y.size(); ++i)
+    y[i] = all[std::find(known.begin(), known.end(), about.outputs[static_cast<std::size_t>(i)]) -
+               known.begin()];
   return toArray(y);
 }
 

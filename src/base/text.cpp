@@ -75,7 +75,7 @@ std::optional<double> numberOf(const std::string& text) {
 std::string shortText(double value) {
   if (std::isnan(value)) return "-";
   std::array<char, 32> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.4g", value);
+  std::snprintf(buffer.data(), buffer.size(), "%.4g", value == 0.0 ? 0.0 : value);  // no -0
   return buffer.data();
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "identification/identified_model.hpp"
+#include "plant/model_plant.hpp"
 
 namespace fpc {
 
@@ -14,5 +15,7 @@ namespace fpc {
 IdentifiedModel readIdentified(const std::string& file);
 IdentifiedModel parseIdentified(const std::string& text, const std::string& name);
 std::string writeIdentified(const IdentifiedModel& model);
+/// Of the model that loops take, from the intervals of its file; empty where they are not known.
+ModelErrors modelErrorsOf(const IdentifiedModel& model);
 
 }  // namespace fpc

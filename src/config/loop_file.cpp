@@ -138,8 +138,8 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readGuard(root, loop, names);
   readEstimator(root, loop);
   readGateway(root, loop);
-  readPlausibility(root, loop);
   readStandstill(root, loop);
+  readPlausibility(root, loop);
   readModelSection(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);

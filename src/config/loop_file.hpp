@@ -147,6 +147,7 @@ ControllerContext controllerContext(const LoopFile& loop);
 /// matchToPlant() with what the loop's controller estimates.
 TsModel matchToLoop(const TsModel& model, const LoopFile& loop);
 
+/// "--set plant.type=model" over another type puts the loop's model into the place of its plant.
 /// "--set controller.coincidence_steps=3": dotted path (list items by number) -> YAML text.
 using Overrides = std::vector<std::pair<std::string, std::string>>;
 /// @throws InputError unless the text is "path=value".

@@ -45,7 +45,11 @@ class PlantSampleModel final : public SampleModel {
             "a plant whose states say everything: this one has dead times or other memory");
     delay_ = delayOf(params, where);
     step_ = params.sample_time_s / about.time_unit_s / integration_steps;
-    for (const auto& name : params.outputs) outputs_.push_back(indexOf(about.states, name));
+    for (const auto& name : params.outputs) {
+      outputs_.push_back(indexOf(about.states, name));
+      require(outputs_.back() < static_cast<Index>(about.states.size()), where,
+              "measured states: " + name + " is an algebraic output");
+    }
     for (const auto& name : params.measured_disturbances)
       measured_.push_back(indexOf(about.disturbances, name));
     for (std::size_t i = 0; i < about.states.size(); ++i)

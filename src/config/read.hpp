@@ -22,8 +22,6 @@ struct LoopNames {
 LoopFile readSections(YamlSection& root, const std::string& name);
 
 void readPlant(YamlSection& root, LoopFile& loop, LoopNames& names);
-/// Key plant.matrix: the elements of a plant that is a transfer matrix, over its own.
-void readMatrix(YamlSection& plant, SimulationParams& simulation);
 void readSampling(YamlSection& root, LoopFile& loop);
 void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names);
 /// Key actuator.lag.

@@ -17,6 +17,9 @@ namespace {
 Vector defaultSetpoint(const LoopFile& loop, const LoopNames& names) {
   Vector value = Vector::Constant(countOf(names.outputs), std::nan(""));
   for (std::size_t i = 0; i < names.outputs.size(); ++i)
+    for (const Quantity& q : names.plant.algebraic)
+      if (q.name == names.outputs[i]) value[static_cast<Eigen::Index>(i)] = q.nominal;
+  for (std::size_t i = 0; i < names.outputs.size(); ++i)
     for (std::size_t s = 0; s < names.plant.states.size(); ++s)
       if (names.plant.states[s].name == names.outputs[i])
         value[static_cast<Eigen::Index>(i)] =

@@ -50,6 +50,16 @@ void readPattern(YamlSection& section, PatternParams& params,
   section.finish();
 }
 
+/// The plant's own noise of these signals.
+Vector usualNoise(const std::vector<std::string>& signals, const LoopNames& names) {
+  Vector std = Vector::Zero(countOf(signals));
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    const auto known = names.plant.noise_std.find(signals[i]);
+    if (known != names.plant.noise_std.end()) std[static_cast<Eigen::Index>(i)] = known->second;
+  }
+  return std;
+}
+
 /// Names that a disturbance command may use: disturbances, stuck valves, sensor faults.
 std::vector<std::string> commandNames(const LoopNames& names) {
   std::vector<std::string> all = names.disturbances;
@@ -99,7 +109,7 @@ void readActuator(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 
 void readNoise(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("noise");
-  loop.simulation.noise_std = Vector::Zero(countOf(names.outputs));
+  loop.simulation.noise_std = usualNoise(names.outputs, names);
   section.seed("seed", loop.simulation.noise_seed);
   section.byName("std", loop.simulation.noise_std, names.outputs, kFiniteNotNegative);
   section.finish();
@@ -113,6 +123,9 @@ void readDisturbance(YamlSection& root, LoopFile& loop, const LoopNames& names) 
   for (std::size_t i = 0; i < names.plant.disturbances.size(); ++i)
     nominal[static_cast<Eigen::Index>(i)] = names.plant.disturbances[i].nominal;
   section.byName("nominal", nominal, names.disturbances, kFinite);
+  loop.simulation.disturbance_noise_std = usualNoise(names.disturbances, names);
+  section.byName("noise_std", loop.simulation.disturbance_noise_std, names.disturbances,
+                 kFiniteNotNegative);
   readOption(section, "source", params.source);
   for (const char* unused : {"csv", "pattern"})  // forgotten, not overridden
     if (!section.has("source") && section.has(unused) && section.raw(unused).size() > 0)

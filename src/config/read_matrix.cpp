@@ -1,4 +1,4 @@
-// Key `plant.matrix`: any matrix of lags with dead times in place of the Wood-Berry column.
+// Plant type `transfer_matrix`: plant.matrix holds lags with dead times.
 #include "config/read.hpp"
 #include "plant/transfer_matrix.hpp"
 
@@ -35,12 +35,11 @@ TransferElement readElement(YamlSection& item) {
   return e;
 }
 
-}  // namespace
-
-void readMatrix(YamlSection& plant, SimulationParams& simulation) {
+PlantFactory readMatrixPlant(YamlSection& plant) {
+  need(plant, "matrix", "outputs, inputs and elements");
   YamlSection section = plant.section("matrix");
   TransferMatrix matrix;
-  matrix.name = simulation.plant;
+  matrix.name = "transfer_matrix";
   matrix.title = "Matrix of lags with dead times, of the loop file";
   section.text("title", matrix.title);
   matrix.outputs = readQuantities(section, "outputs");
@@ -48,12 +47,17 @@ void readMatrix(YamlSection& plant, SimulationParams& simulation) {
   matrix.disturbances = readQuantities(section, "disturbances");
   for (auto& item : section.list("elements")) matrix.elements.push_back(readElement(item));
   section.finish();
-  if (!plant.has("matrix")) return;
-  if (simulation.plant != woodBerry().name)
-    plant.fail("matrix", "plant.type " + woodBerry().name + " with it");
   if (matrix.empty()) section.fail("elements", "at least one element");
   checked(section, [&] { matrix.validate(); });
-  simulation.matrix = std::move(matrix);
+  return [matrix](const PlantParameters& none) {
+    auto made = std::make_unique<TransferMatrixPlant>(matrix);
+    parameterValues(made->description(), none);  // has none: refuses every name
+    return made;
+  };
 }
 
+const bool kTransferMatrixReaderRegistered = registerPlantReader(
+    "transfer_matrix", "Any matrix of lags with dead times: plant.matrix", &readMatrixPlant);
+
+}  // namespace
 }  // namespace fpc

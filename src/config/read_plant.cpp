@@ -52,14 +52,14 @@ void readInitialState(YamlSection& plant, const PlantDescription& description, V
 
 void readSimulated(YamlSection& plant, LoopFile& loop, LoopNames& names) {
   SimulationParams& sim = loop.simulation;
-  readMatrix(plant, sim);
+  sim.factory = plantFactory(sim.plant, plant);
   names.plant = makePlant(sim)->description();
   readParameters(plant, names.plant, sim.parameters);
   readInitialState(plant, names.plant, sim.initial_state);
   names.inputs = namesOf(names.plant.inputs);
   names.disturbances = namesOf(names.plant.disturbances);
   sim.outputs = names.plant.outputs;
-  plant.subset("outputs", sim.outputs, namesOf(names.plant.states));
+  plant.subset("outputs", sim.outputs, namesOf(measurable(names.plant)));
   if (sim.outputs.empty()) plant.fail("outputs", "at least one name");
   for (const auto& name : names.disturbances)
     if (std::count(names.plant.hidden_disturbances.begin(), names.plant.hidden_disturbances.end(),
@@ -116,7 +116,8 @@ void readExternal(YamlSection& plant, LoopFile& loop, LoopNames& names) {
 
 void readPlant(YamlSection& root, LoopFile& loop, LoopNames& names) {
   YamlSection plant = root.section("plant");
-  std::vector<std::string> types = plantNames();
+  std::vector<std::string> types;
+  for (const auto& entry : plantTypes()) types.push_back(entry.first);
   types.emplace_back(kExternal);
   need(plant, "type", "one of " + join(types));
   plant.oneOf("type", loop.simulation.plant, types);

@@ -13,7 +13,7 @@ namespace {
 constexpr double kJumpOfRange = 0.5;
 constexpr int kBridged = 3;
 
-/// What is known of the instrument: where its scale ends, and how late it is.
+/// What is known of the instrument: where its scale ends.
 void describeInstrument(const LoopFile& loop, const SignalInfo& signal, SignalPlausibility& asked) {
   asked.scale_lower = signal.lower;
   asked.scale_upper = signal.upper;
@@ -23,9 +23,6 @@ void describeInstrument(const LoopFile& loop, const SignalInfo& signal, SignalPl
   const SensorParams& sensor = found->second;
   asked.scale_lower = std::max(asked.scale_lower, sensor.lower);
   asked.scale_upper = std::min(asked.scale_upper, sensor.upper);
-  const double late_s = sensor.lags * sensor.lag_s + sensor.delay_s + sensor.interval_s;
-  asked.late_samples =
-      static_cast<int>(std::min(1e6, std::ceil(late_s / loop.plant_info.sample_time_s)));
 }
 
 /// The plant's range, wider by a part of itself; an endless one asks nothing.
@@ -46,7 +43,8 @@ void readSignal(YamlSection& section, SignalPlausibility& asked) {
   section.number("rate_per_h", asked.rate_per_h, {0.0, kInfinity, true});
   section.number("jump", asked.jump, {0.0, kInfinity, true});
   section.integer("jump_samples", asked.jump_samples, 1);
-  section.integer("frozen_samples", asked.frozen_samples, -1);
+  section.boolean("frozen", asked.frozen);
+  section.boolean("repeated", asked.repeated);
   readOption(section, "substitute", asked.substitute);
   section.finish();
 }
@@ -56,6 +54,9 @@ void readSignals(YamlSection& signals, const LoopFile& loop, const std::vector<S
   for (const SignalInfo& info : infos) {
     SignalPlausibility asked = defaultsOf(info, margin, may_step);
     describeInstrument(loop, info, asked);
+    const auto& watched = loop.standstill.signals;  // by a section made for it
+    asked.frozen = std::none_of(watched.begin(), watched.end(),
+                                [&](const WatchedSignal& w) { return w.name == info.name; });
     YamlSection section = signals.section(info.name);
     readSignal(section, asked);
     list.push_back(asked);
@@ -82,7 +83,6 @@ void readPlausibility(YamlSection& root, LoopFile& loop) {
   section.integer("hold_samples", params.hold_samples, -1);
   section.integer("bridge_samples", params.bridge_samples, 0);
   section.number("margin", margin, kFiniteNotNegative);
-  section.number("frozen_input", params.frozen_input, kFiniteNotNegative);
   section.boolean("gain_sign", params.gain_sign);
   section.integer("reaction_samples", params.reaction_samples, 0, 100000);
   readOption(section, "reaction", params.reaction);

@@ -1,22 +1,30 @@
 // From a loop's name to the one text that tool and nodes read: merged, checked, with names of files
 // that other machines can find too.
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 #include "base/yaml_load.hpp"
 #include "config/disturbance_source.hpp"
 #include "config/merge.hpp"
+#include "config/model_file.hpp"
+#include "config/model_file_parts.hpp"
 #include "config/plugins.hpp"
 #include "config/public_record.hpp"
 #include "config/read.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/option.hpp"
+#include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
+#include "plant/model_plant.hpp"
 
 namespace fpc {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr char kOnModel[] = "model";
 
 /// The scalar at a path of keys; undefined if it is not there.
 YAML::Node scalarAt(const YAML::Node& root, const std::vector<std::string>& keys) {
@@ -91,6 +99,7 @@ void makePluginsAbsolute(MergedLoop& loop) {
 template <typename Use>
 void eachFile(const MergedLoop& loop, Use use) {
   use({"model", "file"}, "model");
+  use({"plant", "model"}, "model");
   use({"model", "identify", "structure"}, "structure");
   const YAML::Node source = scalarAt(loop.root, {"disturbance", "source"});
   const std::string csv = wordOf(DisturbanceSource::kCsv);
@@ -176,6 +185,81 @@ void validate(const MergedLoop& merged, const std::string& file) {
   }
 }
 
+/// [lower, upper] of a signal that the model has too.
+void addRanges(YAML::Node ranges, const std::vector<SignalInfo>& known,
+               const std::vector<SignalInfo>& of_model) {
+  for (const SignalInfo& signal : known)
+    for (const SignalInfo& m : of_model)
+      if (m.name == signal.name && std::isfinite(signal.lower) && std::isfinite(signal.upper) &&
+          signal.lower < signal.upper)
+        for (const double end : {signal.lower, signal.upper})
+          ranges[signal.name].push_back(yamlNumber(end));
+}
+
+/// The model at rest under the loop's first input; nothing where it does not rest.
+void startAtRest(YAML::Node plant, const LoopFile& loop, const TsModel& model) {
+  Vector u(countOf(model.inputs)), d(countOf(model.disturbances));
+  const auto take = [](const std::vector<SignalInfo>& to, const std::vector<SignalInfo>& from,
+                       const Vector& values, Vector& result) {
+    result.setConstant(std::nan(""));
+    for (std::size_t i = 0; i < to.size(); ++i)
+      for (std::size_t j = 0; j < from.size(); ++j)
+        if (to[i].name == from[j].name)
+          result[static_cast<Eigen::Index>(i)] = values[static_cast<Eigen::Index>(j)];
+  };
+  take(model.inputs, loop.plant_info.inputs, loop.simulation.actuator.initial, u);
+  take(model.disturbances, loop.plant_info.disturbances, loop.disturbance_nominal, d);
+  if (!u.allFinite() || !d.allFinite()) return;
+  const std::optional<Vector> rest = restOf(model, u, d);
+  for (std::size_t i = 0; rest && i < model.outputs.size(); ++i)
+    plant["initial_state"][model.outputs[i].name] =
+        yamlNumber((*rest)[static_cast<Eigen::Index>(i)]);
+}
+
+/// The loop's model in the place of its plant, with the plant's ranges; instruments that are part
+/// of the model, and the way to a real plant, are left out.
+void rehearse(MergedLoop& merged, const std::string& file, void (*find)(MergedLoop&)) {
+  MergedLoop whole = merged;
+  whole.root = YAML::Clone(merged.root);
+  find(whole);
+  YamlSection root(whole.root, file, "", whole.trace());
+  const LoopFile loop = readSections(root, fs::path(file).stem().string());
+  require(loop.has_model, file + ": model.file",
+          "the model on which the loop is to run (plant.type model)");
+  const TsModel model = readModel(loop.model_file);
+  YAML::Node plant(YAML::NodeType::Map);
+  plant["type"] = "model";
+  plant["model"] = merged.root["model"]["file"].Scalar();
+  for (const auto& output : loop.plant_info.outputs) plant["outputs"].push_back(output.name);
+  YAML::Node ranges(YAML::NodeType::Map);
+  addRanges(ranges, loop.plant_info.outputs, model.outputs);
+  addRanges(ranges, loop.plant_info.inputs, model.inputs);
+  addRanges(ranges, loop.plant_info.disturbances, model.disturbances);
+  plant["ranges"] = ranges;
+  startAtRest(plant, loop, model);
+  merged.root["plant"] = plant;
+  for (const char* section : {"gateway", "tf"}) merged.root.remove(section);
+  if (merged.root["model"]["instruments"].as<std::string>("included") == "included") {
+    merged.root.remove("sensors");
+    if (merged.root["actuator"].IsMap()) merged.root["actuator"].remove("lag");
+  }
+  if (const auto origin = merged.origins.find("model.file"); origin != merged.origins.end())
+    merged.origins["plant.model"] = Origin(origin->second);
+}
+
+/// Overrides in their order; plant.type=model over another type rehearses.
+void applyInOrder(MergedLoop& merged, const std::string& file, const Overrides& overrides,
+                  void (*find)(MergedLoop&)) {
+  for (const auto& [path, value] : overrides) {
+    const YAML::Node type = scalarAt(merged.root, {"plant", "type"});
+    const bool other = type.IsDefined() && type.IsScalar() && type.Scalar() != value;
+    if (path == "plant.type" && value == kOnModel && other)
+      rehearse(merged, file, find);
+    else
+      applyOverrides(merged, {{path, value}});
+  }
+}
+
 }  // namespace
 
 std::pair<std::string, std::string> parseOverride(const std::string& text) {
@@ -199,7 +283,7 @@ LoopFile parseLoop(const std::string& text, const std::string& name) {
 LoopFile parseLoop(const std::string& text, const std::string& name, const Overrides& overrides) {
   MergedLoop merged;
   merged.root = detached(loadYaml(text, name));
-  applyOverrides(merged, overrides);
+  applyInOrder(merged, name, overrides, &findFilesHere);
   const std::string resolved = textOf(merged.root);
   findFilesHere(merged);
   YamlSection root(merged.root, name, "", merged.trace());
@@ -211,7 +295,7 @@ LoopFile parseLoop(const std::string& text, const std::string& name, const Overr
 std::string resolveLoop(const std::string& name_or_path, const Overrides& overrides) {
   const std::string file = findLoop(name_or_path);
   MergedLoop merged = mergeLoop(file);
-  applyOverrides(merged, overrides);
+  applyInOrder(merged, file, overrides, &makeFilesAbsolute);
   makeFilesAbsolute(merged);
   validate(merged, file);
   makeFilesPortable(merged);

@@ -30,7 +30,7 @@ std::vector<int> places(const std::string& where, const std::vector<SignalInfo>&
         place >= 0, where + "." + signal.name,
         "a signal of the plant, which has " + (plant.empty() ? "nothing" : join(namesOf(plant))));
     const std::string& unit = plant[static_cast<std::size_t>(place)].unit;
-    require(signal.unit == unit, where + "." + signal.name,
+    require(signal.unit.empty() || signal.unit == unit, where + "." + signal.name,
             "the plant's unit '" + unit + "', got '" + signal.unit + "'");
     to.push_back(place);
   }

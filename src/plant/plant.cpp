@@ -20,6 +20,16 @@ std::map<std::string, PlantFactory>& registry() {
   return plants;
 }
 
+struct ReadPlant {
+  std::string title;
+  PlantReader reader;
+};
+
+std::map<std::string, ReadPlant>& readers() {
+  static std::map<std::string, ReadPlant> plants;
+  return plants;
+}
+
 std::vector<std::string>& refused() {
   static std::vector<std::string> names;
   return names;
@@ -40,9 +50,32 @@ void requireSameLayout<PlantLayout>() {}
 
 bool addPlant(const std::string& name, PlantFactory factory) {
   const std::unique_lock lock(registryMutex());
-  const bool is_new = registry().emplace(name, std::move(factory)).second;
+  const bool is_new =
+      readers().count(name) == 0 && registry().emplace(name, std::move(factory)).second;
   if (!is_new) refused().push_back(name);
   return is_new;
+}
+
+bool registerPlantReader(const std::string& name, const std::string& title, PlantReader reader) {
+  const std::unique_lock lock(registryMutex());
+  const bool is_new = registry().count(name) == 0 &&
+                      readers().emplace(name, ReadPlant{title, std::move(reader)}).second;
+  if (!is_new) refused().push_back(name);
+  return is_new;
+}
+
+std::map<std::string, std::string> plantTypes() {
+  std::map<std::string, std::string> types;
+  for (const std::string& name : plantNames()) types[name] = makePlant(name)->description().title;
+  const std::shared_lock lock(registryMutex());
+  for (const auto& [name, read] : readers()) types[name] = read.title;
+  return types;
+}
+
+PlantFactory plantFactory(const std::string& type, YamlSection& plant) {
+  const auto read = readers().find(type);
+  if (read != readers().end()) return read->second.reader(plant);
+  return [type](const PlantParameters& parameters) { return makePlant(type, parameters); };
 }
 
 std::vector<std::string> refusedPlants() { return refused(); }
@@ -68,8 +101,11 @@ std::vector<std::string> plantNames() {
 std::vector<const void*> plantCode() {
   std::vector<const void*> code;
   for (const auto& entry : registry()) code.push_back(codeAddress(entry.second));
+  for (const auto& entry : readers()) code.push_back(codeAddress(entry.second.reader));
   return code;
 }
+
+void Plant::algebraic(VectorRef, VectorRef, VectorRef, Eigen::Ref<Vector>) const {}
 
 void Plant::localLoop(VectorRef, VectorRef, Eigen::Ref<Vector>) const {}
 

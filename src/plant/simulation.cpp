@@ -33,6 +33,8 @@ std::string troubleOf(const PlantStepper& stepper, const Vector& state) {
   return stepper.failure();
 }
 
+constexpr std::uint64_t kDisturbanceStream = 1;  // of the noise's seed
+
 bool justSet(const std::vector<CommandEffect>& effects, const std::string& name) {
   for (const CommandEffect& effect : effects)
     if (std::find(effect.command.name.begin(), effect.command.name.end(), name) !=
@@ -81,7 +83,12 @@ Simulation::Simulation(SimulationParams params)
   const PlantDescription& plant = plant_->description();
   require(instruments_.steps() == 1 || !stepper_ || stepper_->divisible(), "sensors.step_s",
           "the sample time: plant " + plant.name + " moves from sample to sample only");
-  for (const auto& name : params_.outputs) output_state_.push_back(indexOf(plant.states, name));
+  const auto n_x = static_cast<Eigen::Index>(plant.states.size());
+  for (const auto& name : params_.outputs) {
+    const Eigen::Index state = indexOf(plant.states, name);
+    output_index_.push_back(state < n_x ? state : n_x + indexOf(plant.algebraic, name));
+  }
+  algebraic_ = Vector::Zero(static_cast<Eigen::Index>(plant.algebraic.size()));
   for (const auto& name : params_.measured_disturbances)
     measured_disturbance_.push_back(indexOf(plant.disturbances, name));
   for (const double seconds : params_.output_delay_s)
@@ -108,10 +115,13 @@ const Measurement& Simulation::reset(std::uint64_t run_id) {
   actuator_.reset();
   if (stepper_) stepper_->reset(params_.actuator.initial, params_.disturbance_nominal);
   noise_.seed(params_.noise_seed);
+  disturbance_noise_ = seededEngine(params_.noise_seed, {kDisturbanceStream});
   trouble_.clear();
-  for (std::size_t i = 0; i < delays_.size(); ++i) delays_[i].reset(state_.state[output_state_[i]]);
+  held_input_ = params_.actuator.initial;
+  disturbance_error_ = Vector::Zero(params_.disturbance_nominal.size());
   schedule();
   startInstruments();
+  for (std::size_t i = 0; i < delays_.size(); ++i) delays_[i].reset(outputOf(i));
   measure();
   return measurement_;
 }
@@ -188,7 +198,7 @@ void Simulation::movePlant() {
   std::string& reason = failure_;
   reason.clear();
   for (int i = 0; i < instruments_.steps() && reason.empty(); ++i) {
-    const Vector& u = instruments_.drive(plant_input_);
+    const Vector& u = held_input_ = instruments_.drive(plant_input_);
     if (stepper_) {
       stepper_->advance(state_.state, u, d);
       reason = troubleOf(*stepper_, state_.state);
@@ -204,9 +214,16 @@ void Simulation::movePlant() {
   trouble_ = state_.trouble;
 }
 
+double Simulation::outputOf(std::size_t i) const {
+  const Eigen::Index n_x = state_.state.size(), at = output_index_[i];
+  return at < n_x ? state_.state[at] : algebraic_[at - n_x];
+}
+
 void Simulation::lookAtPlant() {
-  for (std::size_t i = 0; i < output_state_.size(); ++i)
-    true_outputs_[static_cast<Eigen::Index>(i)] = state_.state[output_state_[i]];
+  if (algebraic_.size() > 0)
+    plant_->algebraic(state_.state, held_input_, state_.disturbances, algebraic_);
+  for (std::size_t i = 0; i < output_index_.size(); ++i)
+    true_outputs_[static_cast<Eigen::Index>(i)] = outputOf(i);
   for (std::size_t i = 0; i < measured_disturbance_.size(); ++i)
     true_measured_[static_cast<Eigen::Index>(i)] = state_.disturbances[measured_disturbance_[i]];
 }
@@ -226,7 +243,8 @@ void Simulation::updateDisturbances() {
     const auto name = static_cast<std::size_t>(i);
     if (record.size() > 0) scheduled_[i] = record(i, std::min(step, record.cols() - 1));
     state_.disturbances[i] =
-        std::clamp(commands_.apply(name, scheduled_[i]), ranges[name].lower, ranges[name].upper);
+        std::clamp(commands_.apply(name, scheduled_[i]) + disturbance_error_[i], ranges[name].lower,
+                   ranges[name].upper);
   }
 }
 
@@ -234,16 +252,19 @@ void Simulation::measure() {
   effects_.clear();
   for (const auto& command : commands_.advance(measurement_.header.step))
     effects_.push_back({measurement_.header, command});
+  for (Eigen::Index i = 0; i < disturbance_error_.size(); ++i)
+    if (params_.disturbance_noise_std[i] > 0.0)
+      disturbance_error_[i] = params_.disturbance_noise_std[i] * standardNormal(disturbance_noise_);
   updateDisturbances();
   lookAtPlant();
   measurement_.disturbances = true_measured_;
   instruments_.read(true_outputs_, measurement_.disturbances);
-  const std::size_t first_output = commands_.names().size() - output_state_.size();
-  for (std::size_t i = 0; i < output_state_.size(); ++i) {
+  const std::size_t first_output = commands_.names().size() - output_index_.size();
+  for (std::size_t i = 0; i < output_index_.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const bool sensed = instruments_.hasSensor(row);
     const double shown = delays_[i].pass(true_outputs_[row]);
-    state_.outputs[row] = sensed ? state_.state[output_state_[i]] : shown;
+    state_.outputs[row] = sensed ? outputOf(i) : shown;
     const double noise = params_.noise_std[row] * standardNormal(noise_);
     measurement_.outputs[row] = commands_.apply(first_output + i, shown + noise);
   }
@@ -302,8 +323,8 @@ void Simulation::setOutputDelay(std::size_t output, double seconds) {
           "to be set before the first sample is answered");
   require(output < delays_.size(), "output delay", "an output of the plant");
   TransportDelay delay(seconds / params_.sample_time_s);
-  delay.reset(state_.state[output_state_[output]]);
-  delay.pass(state_.state[output_state_[output]]);
+  delay.reset(outputOf(output));
+  delay.pass(outputOf(output));
   delays_[output] = std::move(delay);
   params_.output_delay_s[output] = seconds;
 }

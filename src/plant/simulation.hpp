@@ -17,7 +17,6 @@
 #include "plant/disturbance.hpp"
 #include "plant/instruments.hpp"
 #include "plant/integrator.hpp"
-#include "plant/transfer_matrix.hpp"
 #include "plant/transport_delay.hpp"
 
 namespace fpc {
@@ -33,9 +32,9 @@ struct ScheduledCommand {
 struct SimulationParams {
   std::string plant;
   PlantParameters parameters;
-  TransferMatrix matrix;             ///< if not empty it is the plant, and `plant` its name
-  Vector initial_state;              ///< n_states
-  std::vector<std::string> outputs;  ///< measured states, in this order; empty: the plant's default
+  PlantFactory factory;                ///< of the loop file; empty: makePlant() by name
+  Vector initial_state;                ///< n_states
+  std::vector<std::string> outputs;    ///< measured ones, in this order; empty: the plant's default
   std::vector<double> output_delay_s;  ///< transport delay of each measured output; empty: none
   std::vector<std::string> measured_disturbances;  ///< subset of the plant's, in PlantInfo order
   IntegratorParams integrator;
@@ -43,6 +42,7 @@ struct SimulationParams {
   Vector disturbance_nominal;     ///< n_d
   DisturbanceRecord disturbance;  ///< empty: nominal for ever; an endless run keeps the last column
   std::vector<ScheduledCommand> disturbance_commands;
+  Vector disturbance_noise_std;  ///< n_d, of white noise on each disturbance; empty: none
   Vector noise_std;  ///< n_y, standard deviation of white measurement noise; empty: none
   std::uint64_t noise_seed{1};
   InstrumentParams instruments;  ///< sensors of outputs and measured disturbances
@@ -51,7 +51,9 @@ struct SimulationParams {
   std::uint32_t samples{};  ///< N; 0 is endless
 };
 
-/// The plant of these params. @throws InputError as makePlant() and TransferMatrix::validate().
+/// States and algebraic quantities, in this order.
+std::vector<Quantity> measurable(const PlantDescription& plant);
+/// The plant of these params. @throws InputError as makePlant() by name.
 std::unique_ptr<Plant> makePlant(const SimulationParams& params);
 
 /// Owns the state of a simulated plant. Deterministic: same params, commands and actions give the
@@ -111,6 +113,7 @@ class Simulation {
   void measure();
   void gatherEvents();
   void startInstruments();
+  double outputOf(std::size_t i) const;
   void lookAtPlant();
   const Measurement& integrate();
   void movePlant();
@@ -128,13 +131,15 @@ class Simulation {
   PlantState state_;
   std::vector<CommandEffect> effects_;
   std::vector<Event> events_;
-  std::mt19937_64 noise_;
+  std::mt19937_64 noise_, disturbance_noise_;
   std::string trouble_, failure_;        // failure_: over the sample before
   Vector scheduled_;                     // disturbances without commands
+  Vector disturbance_error_;             // of their noise, at this sample
   Vector state_before_;                  // one sample ago
   Vector true_outputs_, true_measured_;  // what the sensors look at
   Vector plant_input_;                   // the applied input as the plant's local loop passes it on
-  std::vector<Eigen::Index> output_state_;          // index of the state behind each output
+  std::vector<Eigen::Index> output_index_;  // of each output: among the states, then the algebraic
+  Vector held_input_, algebraic_;           // u until now, and what the plant makes of it
   std::vector<Eigen::Index> measured_disturbance_;  // index into the plant's disturbances
   std::vector<TransportDelay> delays_;              // of each output
 };

@@ -102,19 +102,31 @@ void checkSensors(SimulationParams& params) {
 
 }  // namespace
 
+std::vector<Quantity> measurable(const PlantDescription& plant) {
+  std::vector<Quantity> all = plant.states;
+  all.insert(all.end(), plant.algebraic.begin(), plant.algebraic.end());
+  return all;
+}
+
 std::unique_ptr<Plant> makePlant(const SimulationParams& params) {
-  if (params.matrix.empty()) return makePlant(params.plant, params.parameters);
-  return std::make_unique<TransferMatrixPlant>(params.matrix);
+  return params.factory ? params.factory(params.parameters)
+                        : makePlant(params.plant, params.parameters);
 }
 
 SimulationParams checked(SimulationParams params, const Plant& plant) {
   const PlantDescription& description = plant.description();
   if (params.outputs.empty()) params.outputs = description.outputs;
-  requireNames(params.outputs, description.states, "plant.outputs");
+  requireNames(params.outputs, measurable(description), "plant.outputs");
   requireNames(params.measured_disturbances, description.disturbances,
                "plant.measured_disturbances");
   requireInside(params.initial_state, description.states, "plant.initial_state");
   requireInside(params.disturbance_nominal, description.disturbances, "disturbance.nominal");
+  const Index n_d = count(description.disturbances);
+  if (params.disturbance_noise_std.size() == 0) params.disturbance_noise_std = Vector::Zero(n_d);
+  require(params.disturbance_noise_std.size() == n_d &&
+              (params.disturbance_noise_std.array() >= 0.0).all() &&
+              params.disturbance_noise_std.allFinite(),
+          "disturbance.noise_std", std::to_string(n_d) + " finite numbers >= 0");
   checkActuator(params.actuator, description);
   checkRecord(params, description);
   checkSensors(params);
@@ -132,8 +144,9 @@ PlantInfo makePlantInfo(const SimulationParams& params, const PlantDescription& 
   info.name = description.name;
   info.frame_id = description.frames.empty() ? description.name : description.frames.front().name;
   info.sample_time_s = params.sample_time_s;
+  const std::vector<Quantity> can_be_measured = measurable(description);
   for (const auto& name : params.outputs) {
-    const Quantity& q = find(description.states, name, "plant.outputs");
+    const Quantity& q = find(can_be_measured, name, "plant.outputs");
     info.outputs.push_back({q.name, q.unit, q.lower, q.upper});
     const auto frame = description.output_frames.find(name);
     info.output_frames.push_back(frame != description.output_frames.end() ? frame->second

@@ -3,6 +3,7 @@
 #include <std_msgs/String.h>
 
 #include <algorithm>
+#include <set>
 
 #include "fmbpc/base/text.hpp"
 #include "ros/conversions.hpp"
@@ -30,6 +31,16 @@ StepHeader sampleOf(const Msg& msg) {
 
 }  // namespace
 
+// What is said of a sample is in the bag before the sample counts as recorded.
+template <typename Msg>
+void LoopRecorder::listen(ros::NodeHandle& node, const char* topic, Handler<Msg> handler) {
+  ring_.push_back(subscribeGuarded<Msg>(
+      node, topic, queueOf(ListenerKind::kRecord), [=](const ros::MessageEvent<const Msg>& event) {
+        if (bag_) bag_->take(topic, event);
+        (this->*handler)(*event.getMessage(), event.getPublisherName());
+      }));
+}
+
 LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_node,
                            const LoopFile& loop)
     : Node(node, loop, private_node.getNamespace()),
@@ -51,21 +62,22 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       health_(node, private_node, "recorder", loop.name, false,
               {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },
                [this](Diagnostics::Status& status) { report(status); }}) {
-  const auto listen = [&](const char* topic, auto handler) {
-    ring_.push_back(subscribe(node, topic, queueOf(ListenerKind::kRecord), handler, this));
-  };
-  listen(topics::kPlantInfo, &LoopRecorder::onPlantInfo);
-  listen(topics::kMeasurement, &LoopRecorder::onMeasurement);
-  listen(topics::kTracking, &LoopRecorder::onTracking);
-  listen(topics::kControlAction, &LoopRecorder::onAction);
-  if (!loop.external_plant) listen(topics::kPlantState, &LoopRecorder::onState);
-  if (loop.has_clp) {
-    listen(topics::kBaseAction, &LoopRecorder::onBase);
-    listen(topics::kSolverReport, &LoopRecorder::onReport);
-  }
+  std::set<std::string> ring{topics::kPlantInfo, topics::kMeasurement, topics::kTracking,
+                             topics::kControlAction};
+  if (!loop.external_plant) ring.insert(topics::kPlantState);
+  if (loop.has_clp) ring.insert({topics::kBaseAction, topics::kSolverReport});
   const std::string bag = private_node.param<std::string>("bag", "");
   if (unusable_.empty() && !bag.empty())
-    bag_ = std::make_unique<BagWriter>(node, bag, loop.resolved);
+    bag_ = std::make_unique<BagWriter>(node, bag, loop.resolved, ring);
+  listen(node, topics::kPlantInfo, &LoopRecorder::onPlantInfo);
+  listen(node, topics::kMeasurement, &LoopRecorder::onMeasurement);
+  listen(node, topics::kTracking, &LoopRecorder::onTracking);
+  listen(node, topics::kControlAction, &LoopRecorder::onAction);
+  if (!loop.external_plant) listen(node, topics::kPlantState, &LoopRecorder::onState);
+  if (loop.has_clp) {
+    listen(node, topics::kBaseAction, &LoopRecorder::onBase);
+    listen(node, topics::kSolverReport, &LoopRecorder::onReport);
+  }
   if (unusable_.empty()) return;
   ROS_FATAL("%s: %s", name().c_str(), unusable_.c_str());
   problem_ = unusable_;
@@ -91,8 +103,9 @@ void LoopRecorder::poll() {
     bag_ready_ = bag_->look() || bag_ready_;
     looked_s_ = steadyNow();
   }
-  store_->flush();
+  if (store_->flush() && bag_) bag_->beginNextPart();
   store_->sync(steadyNow());
+  if (bag_) bag_->sync(steadyNow());
   if (written_) return;
   if (clock_.closed()) return conclude();  // the disk had no room
   if (!clock_.stragglersLost(steadyNow())) return;
@@ -129,11 +142,10 @@ void LoopRecorder::announceIfConnected() {
   ready_timer_.stop();
 }
 
-void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg,
-                               const std::string& publisher) {
+void LoopRecorder::onPlantInfo(const fmbpc::PlantInfo& msg, const std::string& publisher) {
   guarded(topics::kPlantInfo, [&] {
     const std::uint64_t before = plant_.runId();
-    if (!plant_.introduce(*msg) || plant_.runId() == before) return;
+    if (!plant_.introduce(msg) || plant_.runId() == before) return;
     announcer_ = publisher;
     beginRun(plant_.runId());
   });
@@ -149,7 +161,7 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
   if (!store_->problem().empty())
     ROS_ERROR("loop_recorder: %s (tried again)", store_->problem().c_str());
   if (!store_->remark().empty()) ROS_WARN("loop_recorder: %s", store_->remark().c_str());
-  goes_on_ = goes_on_ || here > 0;
+  if (bag_) bag_->begin(run_id);
   if (here > 0) {
     clock_.restart(std::min(store_->beganAt(), steadyNow()));
     session_.resume(run_id, here);
@@ -185,34 +197,33 @@ void LoopRecorder::acknowledge(const StepHeader& sample) {
 }
 
 // Where anyone may be the plant, only who announced the run says what it measured and when it ends.
-void LoopRecorder::onMeasurement(const fmbpc::Measurement::ConstPtr& msg,
-                                 const std::string& publisher) {
-  record(topics::kMeasurement, *msg, [&] {
-    require(msg->run_id != plant_.runId() || publisher == announcer_, "measurement of " + publisher,
+void LoopRecorder::onMeasurement(const fmbpc::Measurement& msg, const std::string& publisher) {
+  record(topics::kMeasurement, msg, [&] {
+    require(msg.run_id != plant_.runId() || publisher == announcer_, "measurement of " + publisher,
             "one of " + announcer_ + ", which announced the run");
-    session_.receive(fromMsg(*msg));
+    session_.receive(fromMsg(msg));
     clock_.seeFinal(session_.finalSeen(), steadyNow());
   });
 }
 
-void LoopRecorder::onState(const fmbpc::PlantState::ConstPtr& msg) {
-  record(topics::kPlantState, *msg, [&] { session_.receive(fromMsg(*msg), fromMsg(msg->events)); });
+void LoopRecorder::onState(const fmbpc::PlantState& msg, const std::string&) {
+  record(topics::kPlantState, msg, [&] { session_.receive(fromMsg(msg), fromMsg(msg.events)); });
 }
 
-void LoopRecorder::onTracking(const fmbpc::Tracking::ConstPtr& msg) {
-  record(topics::kTracking, *msg, [&] { session_.receive(fromMsg(*msg), fromMsg(msg->events)); });
+void LoopRecorder::onTracking(const fmbpc::Tracking& msg, const std::string&) {
+  record(topics::kTracking, msg, [&] { session_.receive(fromMsg(msg), fromMsg(msg.events)); });
 }
 
-void LoopRecorder::onBase(const fmbpc::ControlAction::ConstPtr& msg) {
-  record(topics::kBaseAction, *msg, [&] { session_.receiveBase(fromMsg(*msg)); });
+void LoopRecorder::onBase(const fmbpc::ControlAction& msg, const std::string&) {
+  record(topics::kBaseAction, msg, [&] { session_.receiveBase(fromMsg(msg)); });
 }
 
-void LoopRecorder::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
-  record(topics::kControlAction, *msg, [&] { session_.receiveAction(fromMsg(*msg)); });
+void LoopRecorder::onAction(const fmbpc::ControlAction& msg, const std::string&) {
+  record(topics::kControlAction, msg, [&] { session_.receiveAction(fromMsg(msg)); });
 }
 
-void LoopRecorder::onReport(const fmbpc::SolverReport::ConstPtr& msg) {
-  record(topics::kSolverReport, *msg, [&] { session_.receive(fromMsg(*msg)); });
+void LoopRecorder::onReport(const fmbpc::SolverReport& msg, const std::string&) {
+  record(topics::kSolverReport, msg, [&] { session_.receive(fromMsg(msg)); });
 }
 
 // Writes the files; a disk without room gets some time, the journal stays whatever happens.
@@ -235,7 +246,7 @@ void LoopRecorder::end() {
 
 // Everybody else who ends with the run hears it before this process goes.
 void LoopRecorder::sayEnd() {
-  if (bag_) bag_->close(goes_on_);
+  if (bag_) bag_->close();
   if (bag_ && problem_.empty()) problem_ = bag_->problem();
   said_end_ = true;
   ending_s_ = steadyNow();
@@ -272,7 +283,7 @@ bool LoopRecorder::tryWrite() {
 
 int LoopRecorder::finish() {
   const int code = writeRest();
-  if (bag_) bag_->close(goes_on_);
+  if (bag_) bag_->close();
   return bag_ && !bag_->problem().empty() ? 1 : code;
 }
 

@@ -43,13 +43,17 @@ class LoopRecorder : public Node {
   int finish() override;
 
  private:
-  void onPlantInfo(const fmbpc::PlantInfo::ConstPtr& msg, const std::string& publisher);
-  void onMeasurement(const fmbpc::Measurement::ConstPtr& msg, const std::string& publisher);
-  void onState(const fmbpc::PlantState::ConstPtr& msg);
-  void onTracking(const fmbpc::Tracking::ConstPtr& msg);
-  void onBase(const fmbpc::ControlAction::ConstPtr& msg);
-  void onAction(const fmbpc::ControlAction::ConstPtr& msg);
-  void onReport(const fmbpc::SolverReport::ConstPtr& msg);
+  template <typename Msg>
+  using Handler = void (LoopRecorder::*)(const Msg& msg, const std::string& publisher);
+  template <typename Msg>
+  void listen(ros::NodeHandle& node, const char* topic, Handler<Msg> handler);
+  void onPlantInfo(const fmbpc::PlantInfo& msg, const std::string& publisher);
+  void onMeasurement(const fmbpc::Measurement& msg, const std::string& publisher);
+  void onState(const fmbpc::PlantState& msg, const std::string& publisher);
+  void onTracking(const fmbpc::Tracking& msg, const std::string& publisher);
+  void onBase(const fmbpc::ControlAction& msg, const std::string& publisher);
+  void onAction(const fmbpc::ControlAction& msg, const std::string& publisher);
+  void onReport(const fmbpc::SolverReport& msg, const std::string& publisher);
 
   std::unique_ptr<RecordStore> openStore(const std::string& folder);
   void poll();
@@ -78,8 +82,8 @@ class LoopRecorder : public Node {
   PlantGate plant_;
   std::string announcer_;  // of the run: its measurements count
   std::unique_ptr<BagWriter> bag_;
-  double looked_s_{-1};                     // at the topics
-  bool bag_ready_{false}, goes_on_{false};  // with a run of an earlier process
+  double looked_s_{-1};  // at the topics
+  bool bag_ready_{false};
 
   RecorderClock clock_;
   double ending_s_{-1};

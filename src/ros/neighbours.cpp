@@ -8,14 +8,19 @@
 #include <poll.h>
 #include <ros/network.h>
 #include <ros/ros.h>
+#include <ros/xmlrpc_manager.h>
 #include <sys/socket.h>
 #include <unistd.h>
+#include <xmlrpcpp/XmlRpcClient.h>
+#include <xmlrpcpp/XmlRpcException.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <iterator>
 #include <memory>
+
+#include "ros/wall_throttle.hpp"
 
 namespace fpc {
 namespace {
@@ -68,7 +73,37 @@ bool connects(const addrinfo& to, double patience_s) {
   return done;
 }
 
+/// A call that says when nothing more will come of it.
+class Call : public XmlRpc::XmlRpcClient {
+ public:
+  using XmlRpcClient::XmlRpcClient;
+  unsigned handleEvent(unsigned event) override {
+    const unsigned awaited = XmlRpcClient::handleEvent(event);
+    over_ = awaited == 0;
+    return awaited;
+  }
+  bool over() const { return over_; }
+
+ private:
+  bool over_{false};
+};
+
 }  // namespace
+
+bool ask(const std::string& uri, const std::string& method, const XmlRpc::XmlRpcValue& arguments,
+         XmlRpc::XmlRpcValue& payload, double patience_s) {
+  constexpr double kTurn = 0.02;  // [s]
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(uri, host, port)) return false;
+  Call call(host.c_str(), static_cast<int>(port), "/");
+  XmlRpc::XmlRpcValue response;
+  if (!call.executeNonBlock(method.c_str(), arguments)) return false;
+  for (const double since_s = steadyNow(); !call.over(); call._disp.work(kTurn))
+    if (ros::isShuttingDown() || steadyNow() - since_s > patience_s) return false;
+  return call.executeCheckDone(response) &&
+         ros::XMLRPCManager::instance()->validateXmlrpcResponse(method, response, payload);
+}
 
 std::string addressOf(const std::string& host) {
   const Addresses found = resolve(host, "");
@@ -117,10 +152,10 @@ std::string descriptorProblem() {
 const std::string& NodeAddresses::of(const std::string& node) {
   const auto [at, is_new] = known_.emplace(node, "");
   if (!is_new) return at->second;
-  XmlRpc::XmlRpcValue request, response, uri;
+  XmlRpc::XmlRpcValue request, uri;
   request[0] = ros::this_node::getName();
   request[1] = node;
-  if (ros::master::execute("lookupNode", request, response, uri, false) &&
+  if (ask(ros::master::getURI(), "lookupNode", request, uri) &&
       uri.getType() == XmlRpc::XmlRpcValue::TypeString)
     at->second = std::string(uri);
   return at->second;

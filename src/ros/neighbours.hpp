@@ -2,6 +2,8 @@
 // by the node that has it, and by those who look for that node.
 #pragma once
 
+#include <xmlrpcpp/XmlRpcValue.h>
+
 #include <map>
 #include <set>
 #include <string>
@@ -10,6 +12,11 @@ namespace fpc {
 
 /// IPv4 address of a host by its name, in digits; empty: nobody knows one.
 std::string addressOf(const std::string& host);
+
+/// One call of the XMLRPC interface at "http://host:port/", given up after a while or once this
+/// process ends: who hangs there hangs nobody here. False: no answer, or one that is none.
+bool ask(const std::string& uri, const std::string& method, const XmlRpc::XmlRpcValue& arguments,
+         XmlRpc::XmlRpcValue& payload, double patience_s = 3.0);
 
 /// What is wrong with the name or address that this node gives to others, in words; empty: nothing.
 /// `master_host` as in ROS_MASTER_URI.

@@ -98,6 +98,17 @@ class Node {
                                    (object->*handler)(event.getMessage());
                                  });
   }
+  /// The same for a handler of the whole event.
+  template <typename Msg, typename Handler>
+  ros::Subscriber subscribeGuarded(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
+                                   Handler handler) {
+    const boost::function<void(const ros::MessageEvent<const Msg>&)> guard =
+        [this, topic, handler](const ros::MessageEvent<const Msg>& event) {
+          if (mayPass(topic, event.getPublisherName())) handler(event);
+        };
+    return node.subscribe<Msg>(topic, queue, guard, ros::VoidConstPtr(),
+                               ros::TransportHints().tcpNoDelay());
+  }
   /// For a law: in realtime its handler gets the newest of what waits (see queues.hpp).
   template <typename Msg, typename Class>
   ros::Subscriber subscribeLaw(ros::NodeHandle& node, const char* topic, Pace pace,
@@ -147,16 +158,6 @@ class Node {
  private:
   void noteCommand(const std::string& why);
   bool mayLog(const std::string& what);
-  template <typename Msg, typename Handler>
-  ros::Subscriber subscribeGuarded(ros::NodeHandle& node, const char* topic, std::uint32_t queue,
-                                   Handler handler) {
-    const boost::function<void(const ros::MessageEvent<const Msg>&)> guard =
-        [this, topic, handler](const ros::MessageEvent<const Msg>& event) {
-          if (mayPass(topic, event.getPublisherName())) handler(event);
-        };
-    return node.subscribe<Msg>(topic, queue, guard, ros::VoidConstPtr(),
-                               ros::TransportHints().tcpNoDelay());
-  }
 
   std::string name_;
   Authority authority_;

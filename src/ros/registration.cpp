@@ -21,7 +21,8 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-constexpr int kEachLook = 8;  // so often; then every so many, for one whom nothing helps
+constexpr int kEachLook = 8;   // so often; then every so many, for one whom nothing helps
+constexpr int kOnItsWay = 20;  // looks that a first registration may take
 
 XmlRpcValue request(const std::vector<std::string>& arguments) {
   XmlRpcValue all;
@@ -32,19 +33,13 @@ XmlRpcValue request(const std::vector<std::string>& arguments) {
 
 /// One call of the master's interface, the caller's name first.
 bool tell(const std::string& method, const std::vector<std::string>& arguments) {
-  XmlRpcValue response, payload;
-  return ros::master::execute(method, request(arguments), response, payload, false);
+  XmlRpcValue payload;
+  return ask(ros::master::getURI(), method, request(arguments), payload);
 }
 
 /// One call of this node's own interface: what roscpp keeps to itself it tells and does for others.
 bool askSelf(const char* method, const XmlRpcValue& arguments, XmlRpcValue& payload) {
-  std::string host;
-  std::uint32_t port = 0;
-  ros::network::splitURI(ros::XMLRPCManager::instance()->getServerURI(), host, port);
-  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
-  XmlRpcValue response;
-  return client.execute(method, arguments, response) &&
-         ros::XMLRPCManager::instance()->validateXmlrpcResponse(method, response, payload);
+  return ask(ros::XMLRPCManager::instance()->getServerURI(), method, arguments, payload);
 }
 
 /// [[topic, [node, ...]], ...]
@@ -130,11 +125,16 @@ bool Links::lacks(const std::string& what, const std::string& node) {
   return looks > 1 && (looks <= kEachLook || looks % kEachLook == 0);
 }
 
+bool Links::isForgotten(const std::string& what, bool known) {
+  if (known) known_.insert(what);
+  if (known || !lacks(what)) return false;
+  return known_.count(what) > 0 || missing_[what].looks > kOnItsWay;
+}
+
 Links::Master Links::look(const std::vector<std::string>& spaces, NodeAddresses& addresses) try {
   if (!ros::ok()) return Master::kAnswers;
-  XmlRpcValue response, state;
-  if (!ros::master::execute("getSystemState", request({}), response, state, false))
-    return Master::kSilent;
+  XmlRpcValue state;
+  if (!ask(ros::master::getURI(), "getSystemState", request({}), state)) return Master::kSilent;
   before_ = std::exchange(missing_, {});
   registered_ = 0;
   const std::string& known = addresses.of(ros::this_node::getName());
@@ -155,13 +155,13 @@ void Links::lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers) 
   std::vector<std::string> names;
   ros::TopicManager::instance()->getAdvertisedTopics(names);
   for (const std::string& topic : names)
-    if (!has(publishers, topic, me) && lacks("publishes " + topic))
+    if (isForgotten("publishes " + topic, has(publishers, topic, me)))
       if (const auto publication = ros::TopicManager::instance()->lookupPublication(topic))
         registered_ += tell("registerPublisher", {topic, publication->getDataType(), uri}) ? 1 : 0;
   names.clear();  // the next call appends
   ros::TopicManager::instance()->getSubscribedTopics(names);
   for (const std::string& topic : names)
-    if (!has(subscribers, topic, me) && lacks("subscribes " + topic))
+    if (isForgotten("subscribes " + topic, has(subscribers, topic, me)))
       registered_ += tell("registerSubscriber", {topic, "*", uri}) ? 1 : 0;
 }
 
@@ -172,9 +172,8 @@ void Links::lookAtServices(const ByTopic& services, const std::vector<std::strin
                              topics::kAdapt, topics::kManualInput, topics::kHold, "set_parameters",
                              "get_loggers", "set_logger_level"}) {
       const std::string service = space + "/" + name;
-      if (!has(services, service, ros::this_node::getName()) &&
-          ros::ServiceManager::instance()->lookupServicePublication(service) &&
-          lacks("serves " + service))
+      if (ros::ServiceManager::instance()->lookupServicePublication(service) &&
+          isForgotten("serves " + service, has(services, service, ros::this_node::getName())))
         registered_ += tell("registerService",
                             {service, services_at_, ros::XMLRPCManager::instance()->getServerURI()})
                            ? 1

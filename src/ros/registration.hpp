@@ -34,7 +34,9 @@ class Links {
   Links();  ///< of a node that has been started
   /// Compares what the master has of this process (services: in `spaces`, the names of its nodes)
   /// with what there is, and who publishes what it subscribes to with whom it is connected to. What
-  /// lacks in two looks running is made again. `addresses`: of this look.
+  /// lacks in two looks running is made again; a registration that the master has not had yet
+  /// is on its way (roscpp makes it until it has worked), unless that takes long. `addresses`: of
+  /// this look.
   /// @return kForgot: something was registered again.
   Master look(const std::vector<std::string>& spaces, NodeAddresses& addresses);
   /// Something lacked in the last look.
@@ -51,12 +53,14 @@ class Links {
     std::string node;  // the publisher that is not connected; empty: a registration
   };
   bool lacks(const std::string& what, const std::string& node = {});
+  bool isForgotten(const std::string& what, bool known);
   void lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers);
   void lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces);
   void lookAtPublishers(const ByTopic& publishers, NodeAddresses& addresses);
 
   const std::string services_at_;  // asked at the start: roscpp has no port any more when it ends
   std::map<std::string, Missing> missing_, before_;
+  Names known_;       // registrations that the master has had
   int registered_{};  // in this look
 };
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "fmbpc/model/domain.hpp"
-#include "fmbpc/model/model_match.hpp"
 #include "model/model_inputs.hpp"
 #include "model/process_trust.hpp"
 #include "runtime/report.hpp"
@@ -16,10 +15,7 @@ bool hasDomain(const LoopFile& loop) {
   return predicts && knowsDomain(loop.model);
 }
 
-Rejections::Rejections(const LoopFile& loop) : judge_(loop.plausibility, loop.plant_info) {
-  if (loop.has_model && loop.controller && loop.controllerType().needs_model)
-    judge_.setModel(matchToPlant(loop.model, loop.plant_info));
-}
+Rejections::Rejections(const LoopFile& loop) : judge_(loop.plausibility, loop.plant_info) {}
 
 // Where a sample is missing, rates and jumps are counted anew, as the controller does.
 void Rejections::look(const SampleRecord& sample) {

@@ -3,7 +3,7 @@
 
 #include "config/loop_file.hpp"
 #include "runtime/record.hpp"
-#include "supervision/plausibility.hpp"
+#include "supervision/signal_validator.hpp"
 
 namespace fpc {
 
@@ -20,7 +20,7 @@ class Rejections {
   bool any() const { return seen_ && verdict_ != Verdict::kClean; }
 
  private:
-  Plausibility judge_;
+  SignalValidator judge_;
   bool seen_{false};
   Verdict verdict_{Verdict::kClean};
 };

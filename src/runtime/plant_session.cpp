@@ -30,6 +30,8 @@ PlantSession::PlantSession(std::unique_ptr<Process> process, const PlantPolicy& 
     : process_(std::move(process)),
       policy_(policy),
       pacer_(policy.pace, policy.period_s),
+      action_wait_(policy.action_timeout_s),
+      record_wait_(policy.record_timeout_s),
       stuck_(policy.stuck, process_->actuator().params().limits, process_->info().inputs) {}
 
 PlantSession::PlantSession(Simulation simulation, const PlantPolicy& policy)
@@ -53,7 +55,8 @@ void PlantSession::start(double now_s) {
 void PlantSession::putOnTable(double now_s) {
   table_since_s_ = sent_s_ = now_s;
   have_action_ = recorded_ = false;
-  unrecorded_since_s_ = -1.0;
+  action_wait_.begin(now_s);
+  record_wait_.end();
 }
 
 bool PlantSession::recorded(const StepHeader& sample) {
@@ -61,17 +64,20 @@ bool PlantSession::recorded(const StepHeader& sample) {
   if (sample.run_id != now.run_id || sample.step != now.step) return false;
   recorded_ = recorder_keeps_up_ = true;
   const bool awaited = awaitsRecorder();
-  unrecorded_since_s_ = -1.0;
+  record_wait_.end();
   return awaited;
 }
 
 /// True as well if that is not waited for (any more).
 bool PlantSession::isRecorded(double now_s) {
   if (policy_.record_timeout_s <= 0.0 || recorded_ || !recorder_keeps_up_) return true;
-  if (!awaitsRecorder()) unrecorded_since_s_ = now_s;
-  if (now_s - unrecorded_since_s_ < policy_.record_timeout_s) return false;
+  if (!awaitsRecorder()) {
+    unrecorded_since_s_ = now_s;
+    record_wait_.begin(now_s);
+  }
+  if (!record_wait_.isOver(now_s)) return false;
   recorder_keeps_up_ = false;
-  unrecorded_since_s_ = -1.0;
+  record_wait_.end();
   return true;
 }
 
@@ -117,10 +123,10 @@ void PlantSession::countStray(const StepHeader& header) {
     ++counts_.old;
 }
 
-bool PlantSession::mayGoWithout(double now_s) const {
+bool PlantSession::mayGoWithout(double now_s) {
   if (paused_ || policy_.pace == Pace::kLockstep) return false;
   if (policy_.pace == Pace::kRealtime || starving_) return true;
-  return now_s - table_since_s_ >= policy_.action_timeout_s;
+  return action_wait_.isOver(now_s);
 }
 
 bool PlantSession::advance(double now_s) {
@@ -150,9 +156,9 @@ bool PlantSession::advance(double now_s) {
 
 double PlantSession::nextDue() const {
   if (phase_ != PlantPhase::kRunning || paused_ || !pacer_.timed()) return kNever;
-  if (awaitsRecorder()) return unrecorded_since_s_ + policy_.record_timeout_s;
+  if (awaitsRecorder()) return record_wait_.nextLook();
   if (have_action_ || starving_ || policy_.pace == Pace::kRealtime) return pacer_.deadline();
-  return std::max(pacer_.deadline(), table_since_s_ + policy_.action_timeout_s);
+  return std::max(pacer_.deadline(), action_wait_.nextLook());
 }
 
 bool PlantSession::mustResend(double now_s) {
@@ -173,6 +179,7 @@ void PlantSession::pause(bool on, double now_s) {
   if (on) return;
   pacer_.restart(now_s);
   table_since_s_ = now_s;
+  action_wait_.begin(now_s);
 }
 
 bool PlantSession::step() {

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "plant/process.hpp"
+#include "runtime/own_wait.hpp"
 #include "runtime/pacer.hpp"
 #include "runtime/stuck_watch.hpp"
 
@@ -15,9 +16,9 @@ namespace fpc {
 struct PlantPolicy {
   Pace pace{Pace::kLockstep};
   double period_s{};           ///< wall time per sample (paced, realtime)
-  double action_timeout_s{5};  ///< paced: wall time after which the plant goes on without an action
+  double action_timeout_s{5};  ///< paced: wall time (OwnWait) after which the plant goes on without
   double resend_s{0.05};       ///< an unanswered sample is sent again that often
-  /// Wall time that a sample waits for its recorder; 0: it does not.
+  /// Wall time (OwnWait) that a sample waits for its recorder; 0: it does not.
   double record_timeout_s{};
   StuckParams stuck;
 };
@@ -66,7 +67,7 @@ class PlantSession {
   void resent(double now_s);
   /// The recorder has all of this sample. True: it was waited for.
   bool recorded(const StepHeader& sample);
-  bool awaitsRecorder() const { return unrecorded_since_s_ >= 0.0; }
+  bool awaitsRecorder() const { return record_wait_.isOpen(); }
   /// How long nothing else has been waited for.
   double unrecordedFor(double now_s) const {
     return awaitsRecorder() ? now_s - unrecorded_since_s_ : 0.0;
@@ -98,7 +99,7 @@ class PlantSession {
 
  private:
   void countStray(const StepHeader& header);
-  bool mayGoWithout(double now_s) const;
+  bool mayGoWithout(double now_s);
   bool isRecorded(double now_s);
   void putOnTable(double now_s);
 
@@ -108,7 +109,8 @@ class PlantSession {
   PlantPhase phase_{PlantPhase::kWaiting};
   bool paused_{false}, have_action_{false}, starving_{false}, acknowledged_{false};
   bool recorded_{false}, recorder_keeps_up_{true};
-  double unrecorded_since_s_{-1};  // since when nothing else is waited for
+  OwnWait action_wait_, record_wait_;  // the latter: while nothing else is waited for
+  double unrecorded_since_s_{};
   std::uint32_t steps_allowed_{};
   Vector action_;  // u(k), waiting for its time
   Vector before_;  // where the inputs were when it came

@@ -75,23 +75,25 @@ void RecordStore::append(const SampleRecord& sample) {
   if (!folder_.empty()) journal_.append(sample);
 }
 
-void RecordStore::flush() {
+bool RecordStore::flush() {
   if (!problem_.empty() && begun_) tryOpen();
   journal_.flush();
   const double hours =
       static_cast<double>(journal_.samples()) * loop_.plant_info.sample_time_s / 3600.0;
   const bool full = hours >= part_h_ || static_cast<double>(journal_.bytes()) >= part_bytes_;
-  if (layout_.samples == 0 && full && journal_.isOpen() && journal_.unwritten() == 0)
-    beginNextPart();
+  return layout_.samples == 0 && full && journal_.isOpen() && journal_.unwritten() == 0 &&
+         beginNextPart();
 }
 
-void RecordStore::beginNextPart() {
+bool RecordStore::beginNextPart() {
   try {
     writeRecord(loop_, layout_, journalFile(), 0.0, folder_);
     journal_.beginNextPart();
     problem_.clear();
+    return true;
   } catch (const InputError& error) {
     problem_ = error.what();  // no room: this part grows meanwhile
+    return false;
   }
 }
 

@@ -25,7 +25,8 @@ class RecordStore {
   /// way (no room) is problem(), and tried again by each flush(); samples are kept meanwhile.
   std::uint32_t begin(std::uint64_t run_id);
   void append(const SampleRecord& sample);
-  void flush();
+  /// True: a part of an endless run has become files, and the next one begins.
+  bool flush();
   void sync(double now_s) { journal_.sync(now_s); }  ///< see RecordJournal
   /// The run is over: makes its files of the journal and removes that. @throws InputError if they
   /// cannot be written; the journal stays.
@@ -46,7 +47,7 @@ class RecordStore {
  private:
   std::uint32_t tryOpen();
   void setAside();
-  void beginNextPart();
+  bool beginNextPart();
   Summary write(double wall_s);
   std::string journalFile() const;
 

@@ -44,14 +44,6 @@ void move(const fs::path& from, const fs::path& to) {
   require(!error, to.string(), "a writable file: " + error.message());
 }
 
-/// On the disk itself.
-void sync(const fs::path& file) {
-  const int opened = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (opened < 0) return;
-  ::fsync(opened);
-  ::close(opened);
-}
-
 /// What stands in the folder and is not of this part of this run.
 void fileAway(const fs::path& folder, const Summary& now) {
   std::error_code error;
@@ -68,11 +60,11 @@ void moveIn(const fs::path& beside, const fs::path& folder) {
   std::error_code error;
   fs::remove(folder / "plot.png", error);  // of less of this run
   for (const char* name : kRecord) {
-    sync(beside / name);
+    syncFile((beside / name).string());
     move(beside / name, folder / name);
   }
   fs::remove_all(beside, error);
-  sync(folder);
+  syncFile(folder.string());
 }
 
 /// trajectory.csv and summary.json in the folder.
@@ -104,6 +96,13 @@ WrittenRecord convert(const std::string& journal, const std::string& folder) {
 }
 
 }  // namespace
+
+void syncFile(const std::string& file) {
+  const int opened = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (opened < 0) return;
+  ::fsync(opened);
+  ::close(opened);
+}
 
 std::string freshAside(const std::string& folder, std::uint64_t run_id) {
   const fs::path aside = fs::path(folder) / kHistory;

@@ -11,6 +11,9 @@
 
 namespace fpc {
 
+/// What was written to the file, or into the folder, is on the disk itself.
+void syncFile(const std::string& file);
+
 struct WrittenRecord {
   Summary summary;
   std::string folder;  ///< where trajectory.csv and summary.json are

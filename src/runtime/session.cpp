@@ -321,7 +321,6 @@ void ControllerSession::setModel(const TsModel& model) {
   }
   controller_->setModel(model);
   model_ = std::move(matched);
-  if (matters) plausibility_.setModel(model_);
   gains_due_ = matters && models_ == 0;
   const int window = plausibility_.params().reaction_samples;
   if (matters && window > 0) reaction_ = std::make_unique<ReactionWatch>(model_, window);

@@ -15,7 +15,7 @@
 #include "fmbpc/control/setpoint_source.hpp"
 #include "runtime/move_origin.hpp"
 #include "runtime/recent_samples.hpp"
-#include "supervision/plausibility.hpp"
+#include "supervision/signal_validator.hpp"
 
 namespace fpc {
 
@@ -59,7 +59,7 @@ enum class Receipt {
 ///   not run, and is reset when auto is back;
 /// - the plant takes no actions: its own input is sent back, source held, and the
 ///   controller is reset when it takes them again;
-/// - a signal that the law needs is not accepted (Plausibility: no number, out of range,
+/// - a signal that the law needs is not accepted (SignalValidator: no number, out of range,
 ///   ...): answered with the last applied input, source held, or from what is accepted
 ///   instead; for longer than hold_samples with the fallback. The same if the plant, or how its
 ///   outputs react, is doubted and the loop file asks for it (DoubtAction). The controller is
@@ -148,7 +148,7 @@ class ControllerSession {
   std::string manualClamped() const;
   /// The last answer is the fallback, because of what is not accepted.
   bool fellBack() const { return fell_back_; }
-  const Plausibility& plausibility() const { return plausibility_; }
+  const SignalValidator& plausibility() const { return plausibility_; }
 
   const ArrivalCounts& counts() const { return gate_.counts(); }
   const SetpointSource& setpoint() const { return setpoint_; }
@@ -196,7 +196,7 @@ class ControllerSession {
   BumplessTransfer transfer_;  // on what the plant gets; not where an optimizer follows
   MoveOrigin moves_;
   Measurement seen_;  // with the input from which the law moves on; sized once
-  Plausibility plausibility_;
+  SignalValidator plausibility_;
   TsModel model_;        // in use, matched to the plant; of a law that needs one
   Measurement present_;  // the last that was accepted; empty before the first
   RecentSamples recent_;

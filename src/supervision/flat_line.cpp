@@ -25,7 +25,7 @@ void FlatLine::push(double step) {
 void FlatLine::add(double value) {
   if (!started_) {
     started_ = true;
-    value_ = largest_ = value;
+    value_ = largest_ = smallest_ = value;
     return;
   }
   if (value == value_) {
@@ -44,6 +44,7 @@ void FlatLine::add(double value) {
   allowed_ = kNever;
   value_ = value;
   largest_ = std::max(largest_, value);
+  smallest_ = std::min(smallest_, value);
 }
 
 double FlatLine::resolution() const {

@@ -16,7 +16,7 @@ namespace fpc {
 /// The run is unlikely once p^repeats < kChance. A signal has noise if that product is between a
 /// quarter and three quarters of the mean square of the steps (white noise: a half, a signal that
 /// alternates: 1), and eight steps are of two resolutions or more (rounding alone makes none);
-/// without noise no run is unlikely. A reading at the largest value seen so far may
+/// without noise no run is unlikely. A reading at the largest or the smallest value seen so far may
 /// be at a limit, as a flow over a weir.
 /// A signal in motion (three quarters of the steps are not 0, the last two go on one way by far
 /// more than q) that shows a number once more was not read anew: the reading is repeated, for kLate
@@ -32,11 +32,11 @@ class FlatLine {
   int repeats() const { return repeats_; }  ///< readings in a row equal to the one before them
   bool isUnlikely() const { return repeats_ >= allowed_; }
   bool isRepeated() const { return moves_ && repeats_ >= 1 && repeats_ <= kLate; }
-  bool isAtLargest() const { return value_ >= largest_; }
-  double resolution() const;  ///< q; 0: unknown
+  bool isAtExtreme() const { return value_ >= largest_ || value_ <= smallest_; }  ///< so far
 
  private:
   void push(double step);
+  double resolution() const;  ///< q; 0: unknown
   double step(int k) const { return steps_[static_cast<std::size_t>((next_ + k) % kWindow)]; }
   int changes() const;
   int allowed() const;
@@ -45,7 +45,7 @@ class FlatLine {
   std::array<double, kWindow> steps_{};  // a ring
   int known_{}, next_{}, repeats_{}, allowed_{std::numeric_limits<int>::max()};
   bool started_{false}, moves_{false};  // moves_: before this run
-  double value_{}, largest_{};
+  double value_{}, largest_{}, smallest_{};
 };
 
 }  // namespace fpc

@@ -26,13 +26,11 @@ struct SignalPlausibility {
   double rate_per_h{std::numeric_limits<double>::infinity()};  ///< largest change, from the last
                                                                ///< value that was accepted
   double jump{std::numeric_limits<double>::infinity()};        ///< largest change at once ...
-  int jump_samples{3};  ///< ... unless the new level stays for so many samples
-  /// The same bits so often while an input moved; 0: never frozen; -1: judged by its own noise, and
-  /// an output by what the law's model says of the inputs.
-  int frozen_samples{0};
+  int jump_samples{3};   ///< ... unless the new level stays for so many samples
+  bool frozen{false};    ///< equal readings are doubted where its own noise would change them
+  bool repeated{false};  ///< and one that comes twice while the signal moves
   double scale_lower{-std::numeric_limits<double>::infinity()};  ///< ends of the instrument: what
   double scale_upper{std::numeric_limits<double>::infinity()};   ///< stands there may be cut off
-  int late_samples{0};                                           ///< how late the instrument is
   Substitute substitute{Substitute::kHold};
 };
 
@@ -45,9 +43,8 @@ struct PlausibilityParams {
   bool enabled{false};    ///< without: only what is no number is doubted
   int hold_samples{-1};   ///< so long a needed signal may be doubted, then `fallback`; -1: for ever
   int bridge_samples{0};  ///< so long a doubted signal is replaced as with Substitute::kModel
-  double frozen_input{0.1};  ///< an input has moved by more than this part of its range
-  bool gain_sign{false};     ///< a new model must have the gains' signs of the running one
-  int reaction_samples{0};   ///< window in which the outputs must react to the inputs; 0: not asked
+  bool gain_sign{false};  ///< a new model must have the gains' signs of the running one
+  int reaction_samples{0};  ///< window in which the outputs must react to the inputs; 0: not asked
   DoubtAction reaction{DoubtAction::kSay};      ///< of an input that the outputs do not react to
   DoubtAction plant_bounds{DoubtAction::kSay};  ///< of a plant that announces other bounds
   Vector fallback;                              ///< n_u; empty: none, the input is held for ever

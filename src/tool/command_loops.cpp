@@ -1,6 +1,7 @@
 // fmbpc loops [WORDS]: which loop files there are, what they show, with which plant and controller.
 #include <algorithm>
 #include <exception>
+#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <set>
@@ -67,6 +68,31 @@ bool containsAll(const Entry& entry, const std::vector<std::string>& words) {
   });
 }
 
+/// The loops to begin with: names of first.txt in the first config folder that has one.
+std::vector<std::string> firstNames() {
+  std::vector<std::string> names;
+  for (const std::string& folder : configFolders()) {
+    std::ifstream file(folder + "/loop/first.txt");
+    for (std::string line; std::getline(file, line);)
+      if (!line.empty() && line[0] != '#') names.push_back(line);
+    if (!names.empty()) break;
+  }
+  return names;
+}
+
+/// Those to begin with first, in their order; how many they are.
+std::ptrdiff_t putFirst(std::vector<Entry>& entries) {
+  auto end = entries.begin();
+  for (const std::string& name : firstNames()) {
+    const auto found =
+        std::find_if(end, entries.end(), [&](const Entry& e) { return e.name == name; });
+    if (found == entries.end()) continue;
+    std::rotate(end, found, found + 1);
+    ++end;
+  }
+  return end - entries.begin();
+}
+
 /// What may have been meant by the first word that no loop has.
 std::string meantBy(const std::vector<std::string>& words, const std::vector<Entry>& all) {
   std::set<std::string> known;
@@ -98,14 +124,19 @@ int loops(const std::vector<std::string>& words, bool names_only, bool json) {
     for (const auto& name : loopNames()) std::cout << name << "\n";
     return 0;
   }
-  const auto all = entries(words);
+  auto all = entries(words);
+  const std::ptrdiff_t first = putFirst(all);
   Json list = Json::array();
   std::vector<std::vector<std::string>> table{{"loop", "plant", "controller", "title"}};
+  if (first > 0) table.push_back({"to begin with:", "", "", ""});
   for (const auto& entry : all) {
+    const bool begins = &entry - all.data() < first;
+    if (first > 0 && &entry - all.data() == first) table.push_back({"further ones:", "", "", ""});
     list.push_back({{"name", entry.name},
                     {"title", entry.title},
                     {"plant", entry.plant},
                     {"controller", entry.controller},
+                    {"first", begins},
                     {"needs", entry.needs}});
     table.push_back({entry.name, entry.plant, entry.controller, titleOf(entry)});
   }

@@ -1,4 +1,5 @@
 // fmbpc plants: what can be simulated.
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 
@@ -15,6 +16,7 @@ using Groups = std::vector<std::pair<std::string, const std::vector<Quantity>*>>
 
 Groups groupsOf(const PlantDescription& plant) {
   return {{"states", &plant.states},
+          {"algebraic", &plant.algebraic},
           {"inputs", &plant.inputs},
           {"disturbances", &plant.disturbances},
           {"parameters", &plant.parameters}};
@@ -60,6 +62,14 @@ int plants(bool json) {
       all.push_back(toJson(description));
     else
       print(description);
+  }
+  for (const auto& [name, title] : plantTypes()) {
+    const auto known = plantNames();
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    if (json)
+      all.push_back({{"name", name}, {"title", title}});
+    else
+      std::cout << name << ": " << title << "\n";
   }
   if (json) std::cout << Json{{"plants", all}}.dump(2) << "\n";
   return 0;

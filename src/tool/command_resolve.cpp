@@ -6,8 +6,10 @@
 
 namespace fpc::tool {
 
-int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets) {
+int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets,
+            bool on_model) {
   Overrides overrides;
+  if (on_model) overrides.emplace_back("plant.type", "model");
   for (const auto& text : set) overrides.push_back(parseOverride(text));
   for (const auto& override : parseOverrides(sets)) overrides.push_back(override);
   std::cout << resolveLoop(loop, overrides);

@@ -62,6 +62,7 @@ Summary runOne(const LoopFile& loop, const std::string& folder, const std::strin
 
 std::vector<LoopFile> readAll(const RunArguments& arguments) {
   Overrides overrides;
+  if (arguments.on_model) overrides.emplace_back("plant.type", "model");
   for (const auto& text : arguments.set) overrides.push_back(parseOverride(text));
   std::vector<LoopFile> loops;
   std::set<std::string> names;

@@ -15,6 +15,7 @@
 #include "runtime/plant_continuation.hpp"
 #include "runtime/plot.hpp"
 #include "tool/commands.hpp"
+#include "tool/loop_margins.hpp"
 #include "tool/stability_report.hpp"
 #include "tool/stability_subject.hpp"
 
@@ -278,6 +279,10 @@ Json reportOf(const StabilitySubject& s, const StabilityArguments& a) {
     json["certificate"] = certificateOf(s, choices);
     if (a.noise_gain != 0.0 || a.settling != 0) json["advice"] = adviceOf(blended, s.law, a);
   }
+  const bool follows = s.loop && !s.loop->controllerType().open_loop;
+  if (follows && a.points > 0)
+    json["points"] = marginsOf(*s.loop, a.points,
+                               [&stage](const std::string& what) { stage.show(what.c_str()); });
   stage.show("steady states");
   if (s.plant) json["steady_states"] = branchesOf(s);
   return json;
@@ -286,7 +291,7 @@ Json reportOf(const StabilitySubject& s, const StabilityArguments& a) {
 }  // namespace
 
 Json stabilityReport(const StabilityArguments& arguments) {
-  return reportOf(readSubject(arguments.name, arguments.at), arguments);
+  return reportOf(readSubject(arguments.name, arguments.at, arguments.on_model), arguments);
 }
 
 int stability(const StabilityArguments& arguments) {

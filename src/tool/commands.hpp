@@ -19,6 +19,7 @@ struct RunArguments {
   std::vector<std::string> set;  ///< "path=value"
   std::string sets;              ///< several of them in one text
   std::string out;               ///< folder, empty: nothing is written
+  bool on_model{false};          ///< the loop's model in the place of its plant
   std::string commands;          ///< file of what an operator does, empty: nothing
   bool json{false};
   bool no_plot{false};
@@ -81,8 +82,16 @@ struct StabilityArguments {
   std::string out;
   double noise_gain{0.0};  ///< limits of the advisor; 0: no advice
   int settling{0};
+  int points{4};         ///< of the run at which a loop is linearised; 0: none
+  bool on_model{false};  ///< the loop's model in the place of its plant
   bool json{false};
   bool no_plot{false};
+};
+
+struct NewArguments {
+  std::string name, model;
+  std::string plant{"model"};  ///< of a loop: model, external, float64 or modbus
+  std::string out{"."};
 };
 
 struct TuneArguments {
@@ -146,7 +155,8 @@ int identify(const IdentifyArguments& arguments);
 int validate(const ValidateArguments& arguments);
 int run(const RunArguments& arguments);
 /// `sets`: more of them in one text, see parseOverrides().
-int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets);
+int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets,
+            bool on_model);
 /// What the plugins of all loops that are found register, so that lists show it.
 void loadPluginsOfLoops();
 int plants(bool json);
@@ -161,6 +171,10 @@ std::string findModel(const std::string& name);
 /// The same. @throws InputError with the nearest names.
 std::string requireModel(const std::string& name);
 int stability(const StabilityArguments& arguments);
+int newLoop(const NewArguments& arguments);
+/// `kind`: plant or controller.
+int newPackage(const NewArguments& arguments, const std::string& kind);
+int check(const std::string& package);
 int tune(const TuneArguments& arguments);
 int study(const StudyArguments& arguments);
 /// `brief`: only what all of them control, and the movement.

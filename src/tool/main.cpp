@@ -28,6 +28,8 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
                   "it each, with comparison.png (default: nothing is written)");
   run->add_option("--commands", a.commands,
                   "file of what an operator does at which time (docs/operation.md)");
+  run->add_flag("--on-model", a.on_model,
+                "the loop's model, with its noise, in the place of its plant: a rehearsal");
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
   run->add_flag("--no-plot", a.no_plot, "no plot.png");
   run->footer("Example: fmbpc run asp_best asp_case1_pi_x_best --out results\n");
@@ -39,10 +41,12 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
       "resolve", "Merges and checks a loop file and prints what nodes would read");
   resolve->add_option("LOOP", a.loops, "name or path")->required()->expected(1);
   resolve->add_option("--set", a.set, "KEY.PATH=VALUE, may be repeated")->allow_extra_args(false);
+  resolve->add_flag("--on-model", a.on_model, "with the loop's model in the place of its plant");
   resolve->add_option("--sets", a.sets, "several of them in one text, separated by spaces");
   resolve->footer("Example: fmbpc resolve asp_case1 --set controller.coincidence_steps=3\n");
-  resolve->callback(
-      [&a] { chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets); }; });
+  resolve->callback([&a] {
+    chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets, a.on_model); };
+  });
 }
 
 void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
@@ -201,8 +205,11 @@ void addLists(CLI::App& app, fpc::tool::RunArguments& a) {
 }
 
 void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
-  CLI::App* stability = app.add_subcommand(
-      "stability", "Steady states, eigenvalues over the horizon, zeros, a Lyapunov certificate");
+  CLI::App* stability =
+      app.add_subcommand("stability",
+                         "Of a loop: margins in gain and delay where its run leads it. Of a fuzzy "
+                         "law: eigenvalues over "
+                         "the horizon, a Lyapunov certificate. Steady states of the plant");
   stability->add_option("MODEL|LOOP", a.name, "model or loop, by name or path")->required();
   stability->add_option("--at", a.at,
                         "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
@@ -211,11 +218,57 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
   stability->add_option("--noise-gain", a.noise_gain,
                         "advise a horizon: largest std of the input per std of measurement noise");
   stability->add_option("--settling", a.settling, "advise a horizon: largest settling [samples]");
+  stability
+      ->add_option("--points", a.points,
+                   "of a loop: so many places of its run, each the farthest from the others, at "
+                   "which it is linearised; 0: none")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100));
+  stability->add_flag(
+      "--on-model", a.on_model,
+      "of a loop: its model in the place of its plant (of an external plant anyway)");
   stability->add_option("--out", a.out, "folder for stability.json and plots");
   stability->add_flag("--json", a.json, "print one JSON object and nothing else");
   stability->add_flag("--no-plot", a.no_plot, "no plots");
-  stability->footer("Example: fmbpc stability fm_1 --at q_r=570,q_i=1300,s_i=366.67\n");
+  stability->footer(
+      "Example: fmbpc stability cstr_tracking_pi --out results/stability\n"
+      "         fmbpc stability fm_1 --at q_r=570,q_i=1300,s_i=366.67\n");
   stability->callback([&a] { chosen = [&a] { return fpc::tool::stability(a); }; });
+}
+
+void addNew(CLI::App& app, fpc::tool::NewArguments& a) {
+  CLI::App* create = app.add_subcommand(
+      "new", "Writes a loop file for a model, or a package with a plant or controller of your own");
+  create->require_subcommand(1);
+  CLI::App* loop = create->add_subcommand(
+      "loop",
+      "A loop file that runs, with numbers from a model and its record, and a PI beside it");
+  loop->add_option("NAME", a.name, "of the loop (default: the model's, with _loop)");
+  loop->add_option("--model", a.model, "name of config/model, or path")->required();
+  loop->add_option("--plant", a.plant, "what is controlled")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"model", "external", "float64", "modbus"}));
+  loop->add_option("--out", a.out, "folder")->capture_default_str();
+  loop->footer("Example: fmbpc new loop tank --model tank_model.yaml --plant modbus\n");
+  loop->callback([&a] { chosen = [&a] { return fpc::tool::newLoop(a); }; });
+  for (const char* kind : {"plant", "controller"}) {
+    CLI::App* package = create->add_subcommand(
+        kind, std::string("A package with a ") + kind + " of your own: it builds, its tests pass");
+    package->add_option("NAME", a.name, "of package, library and type")->required();
+    package->add_option("--out", a.out, "folder in which the package's is made")
+        ->capture_default_str();
+    package->footer(std::string("Example: fmbpc new ") + kind + " my_" + kind + "\n");
+    package->callback(
+        [&a, kind] { chosen = [&a, kind] { return fpc::tool::newPackage(a, kind); }; });
+  }
+}
+
+void addCheck(CLI::App& app, fpc::tool::NewArguments& a) {
+  CLI::App* check = app.add_subcommand(
+      "check", "Asks the plants and controllers of a package for what every one promises");
+  check->add_option("PACKAGE", a.name, "a plugin's name, or the path of its library")->required();
+  check->footer("Example: fmbpc check two_tanks\n");
+  check->callback([&a] { chosen = [&a] { return fpc::tool::check(a.name); }; });
 }
 
 }  // namespace
@@ -240,7 +293,17 @@ int main(int argc, char** argv) {
   addLists(app, arguments);
   fpc::tool::StabilityArguments stability;
   addStability(app, stability);
+<<<<<<< HEAD
+  fpc::tool::NewArguments creation;
+  addNew(app, creation);
+  addCheck(app, creation);
   fpc::tool::addReproduce(app);
+=======
+  fpc::tool::addReproduce(app);
+  fpc::tool::NewArguments creation;
+  addNew(app, creation);
+  addCheck(app, creation);
+>>>>>>> integration
   fpc::tool::TuneArguments tune;
   fpc::tool::addTune(app, tune, chosen);
   fpc::tool::StudyArguments study;
@@ -250,6 +313,7 @@ int main(int argc, char** argv) {
   fpc::tool::RecoverArguments recover;
   fpc::tool::addRecover(app, recover, chosen);
   fpc::tool::addOperate(app, chosen);
+  fpc::tool::addExport(app, chosen);
   fpc::tool::addWatch(app);
   fpc::tool::refuseEmptyNames(app);
   try {

@@ -1,5 +1,7 @@
 #include "tool/stability_report.hpp"
 
+#include "tool/loop_margins.hpp"
+
 #include <cmath>
 #include <cstdio>
 
@@ -144,6 +146,7 @@ Json unitsOf(const StabilitySubject& s) {
 std::string stabilityTable(const Json& report) {
   std::string out = report["name"].get<std::string>() + "\n";
   if (report.contains("note")) out += "warning: " + report["note"].get<std::string>() + "\n";
+  if (report.contains("points")) out += marginsText(report["points"], report["units"]) + "\n";
   if (report.contains("model")) out += modelText(report) + certificateText(report["certificate"]);
   if (report.contains("advice")) {
     out += "\nadvice\n";

@@ -84,18 +84,19 @@ void settleOn(StabilitySubject& subject) {
   }
 }
 
-void takeLaw(StabilitySubject& subject, const LoopFile& loop, const FmbpcParams& law) {
-  if (loop.has_model) subject.model = withoutDelay(asIdentified(loop.model), law.delay_steps);
-  require(law.law != FmbpcForm::kIterated, loop.name + ": controller.law",
-          "published or general: no other law is linear around its model");
+/// False for a law that is not linear around its model.
+bool takeLaw(StabilitySubject& subject, const LoopFile& loop, const FmbpcParams& law) {
+  if (law.law == FmbpcForm::kIterated || !loop.has_model) return false;
+  subject.model = withoutDelay(asIdentified(loop.model), law.delay_steps);
   subject.law.coincidence_steps = law.coincidence_steps;
   subject.law.published = law.law == FmbpcForm::kPublished;
   subject.law.weight_output = law.weight_output;
   subject.law.weight_move = law.weight_move;
-  if (loop.has_model && law.realisation == FmbpcRealisation::kLiteral)
+  if (law.realisation == FmbpcRealisation::kLiteral)
     subject.note =
-        "controller.realisation is literal; what follows is of the input-output states (past "
-        "outputs and inputs), not of the printed state space, which adds one sample of delay";
+        "controller.realisation is literal; the tables of its model are of the input-output states "
+        "(past outputs and inputs), not of the printed state space, which adds one sample of delay";
+  return true;
 }
 
 /// Whether the loop file says a limit of the first input: by name, for all inputs, or in a list.
@@ -107,21 +108,23 @@ bool saysLimit(const LoopFile& loop, const std::string& key) {
   return false;
 }
 
-void readLoopInto(StabilitySubject& subject, const std::string& name) {
-  const LoopFile loop = readLoop(name);
+/// The loop, on its model where nothing else can be simulated.
+LoopFile readSimulated(const std::string& name, bool on_model) {
+  const Overrides rehearsal{{"plant.type", "model"}};
+  LoopFile loop = readLoop(name, on_model ? rehearsal : Overrides{});
+  if (!loop.external_plant) return loop;
+  require(loop.has_model, loop.name + ": model.file",
+          "a model: the plant is external, and without one there is nothing to look at");
+  return readLoop(name, rehearsal);
+}
+
+void readLoopInto(StabilitySubject& subject, const std::string& name, bool on_model) {
+  subject.loop = std::make_shared<LoopFile>(readSimulated(name, on_model));
+  const LoopFile& loop = *subject.loop;
   subject.name = loop.name;
   subject.sample_time_s = loop.plant_info.sample_time_s;
   const FmbpcParams* law = findParams<FmbpcParams>(*loop.controller);
-  subject.has_model = loop.has_model && law;
-  if (law) takeLaw(subject, loop, *law);
-  if (loop.has_model && !law)
-    subject.note = "the law of controller.type " + loop.controllerType().name +
-                   " is not analysed; name the model file instead of the loop for that of fmbpc";
-  require(subject.has_model || !loop.external_plant, loop.name,
-          "a plant that can be simulated, or a model with a law that is analysed: an external "
-          "plant under controller.type " +
-              loop.controllerType().name + " leaves nothing to look at");
-  if (loop.external_plant) return;
+  subject.has_model = law && takeLaw(subject, loop, *law);
   subject.plant = makePlant(loop.simulation);
   subject.input_lower = loop.simulation.actuator.limits.lower[0];
   subject.input_upper = loop.simulation.actuator.limits.upper[0];
@@ -131,10 +134,10 @@ void readLoopInto(StabilitySubject& subject, const std::string& name) {
 
 }  // namespace
 
-StabilitySubject readSubject(const std::string& name, const std::string& at) {
+StabilitySubject readSubject(const std::string& name, const std::string& at, bool on_model) {
   StabilitySubject subject;
   if (isLoop(name)) {
-    readLoopInto(subject, name);
+    readLoopInto(subject, name, on_model);
   } else {
     subject.model = readModel(findModel(name));
     subject.name = subject.model.name;

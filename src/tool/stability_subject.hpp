@@ -7,13 +7,15 @@
 
 #include "analysis/closed_loop.hpp"
 #include "analysis/fuzzy_equilibrium.hpp"
+#include "config/loop_file.hpp"
 #include "fmbpc/plant/plant.hpp"
 
 namespace fpc::tool {
 
 struct StabilitySubject {
   std::string name;
-  bool has_model{false};
+  std::shared_ptr<const LoopFile> loop;  ///< none for a model alone; never of an external plant
+  bool has_model{false};                 ///< with a law that is linear around it
   TsModel model;
   LoopLaw law;
   std::shared_ptr<const Plant> plant;  ///< none for a model alone
@@ -27,6 +29,6 @@ struct StabilitySubject {
 
 /// Loops go before models of the same name. `at` is "name=value,...": outputs given choose the
 /// nearest equilibrium. @throws InputError naming what was not understood.
-StabilitySubject readSubject(const std::string& name, const std::string& at);
+StabilitySubject readSubject(const std::string& name, const std::string& at, bool on_model);
 
 }  // namespace fpc::tool

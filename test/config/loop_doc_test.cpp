@@ -113,7 +113,7 @@ std::set<std::string> readerKeys() {
   const auto named = [&](const std::string& name) {
     return std::regex_replace(signal, std::regex("NAME"), name);
   };
-  const std::string column = "plant: {type: distillation_column, matrix: {outputs: " + named("a") +
+  const std::string column = "plant: {type: transfer_matrix, matrix: {outputs: " + named("a") +
                              ", inputs: " + named("b") + ", disturbances: " + named("c") +
                              ", elements: [{output: a, from: b, gain: 1, time_constant_min: 1}]}}\n"
                              "controller: {type: pi, loops: [{input: b, output: a, kp: 1}]}\n";

@@ -67,14 +67,27 @@ TEST(LoopSections, ASensorNeedsNoClass) {
 TEST(LoopSections, WhatSignalsMayBeIsKnownByDefault) {
   const LoopFile plain = readLoop("asp_case1_pi_x");
   for (const auto* group : {&plain.plausibility.outputs, &plain.plausibility.disturbances})
-    for (const SignalPlausibility& signal : *group) EXPECT_EQ(signal.frozen_samples, 0);
+    for (const SignalPlausibility& signal : *group) {
+      EXPECT_TRUE(signal.frozen);
+      EXPECT_FALSE(signal.repeated);
+    }
   EXPECT_EQ(plain.plausibility.outputs[1].scale_upper, plain.plant_info.outputs[1].upper);
   EXPECT_FALSE(plain.plausibility.range_falls) << "an initial input is no fallback";
   EXPECT_TRUE(
       readLoop("asp_case1_pi_x", {{"actuator.fallback.q_r", "800"}}).plausibility.range_falls);
-  const LoopFile slow = readLoop("asp_case1_pi_x", {{"sensors.x", "{upper: 3000, delay_s: 1500}"}});
+  const LoopFile slow = readLoop("asp_case1_pi_x", {{"sensors.x", "{upper: 3000}"}});
   EXPECT_EQ(slow.plausibility.outputs[1].scale_upper, 3000.0);
-  EXPECT_EQ(slow.plausibility.outputs[1].late_samples, 3);
+}
+
+TEST(LoopSections, WhatStandstillWatchesIsItsOwnBusiness) {
+  const auto frozen = [](const Overrides& more) {
+    Overrides all{{"standstill.signals.x", "3"}};
+    all.insert(all.end(), more.begin(), more.end());
+    return readLoop("asp_case1_pi_x", all).plausibility.outputs[1].frozen;
+  };
+  EXPECT_FALSE(frozen({}));
+  EXPECT_TRUE(frozen({{"standstill.enabled", "false"}}));
+  EXPECT_TRUE(frozen({{"plausibility.signals.x.frozen", "true"}}));
 }
 
 TEST(LoopSections, AResolutionIsNoiseAndBringsAnObserver) {

@@ -21,7 +21,7 @@ class SignalNames : public LoopFolder {
                   "sampling: {sample_time_s: 60, duration_h: 1}\ncontroller:\n  type: pi\n  loops: "
                   "[{input: " +
                       u + ", output: " + a + ", kp: 1, ki_per_h: 1}]\nplant:\n" +
-                      "  type: distillation_column\n  matrix:\n    outputs: [{name: " + a +
+                      "  type: transfer_matrix\n  matrix:\n    outputs: [{name: " + a +
                       "}, {name: " + b + "}]\n    inputs: [{name: " + u +
                       "}]\n    disturbances: [{name: " + d + "}]\n    elements:\n" + element(b, u) +
                       element(a, d) + element(a, u));

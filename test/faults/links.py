@@ -97,14 +97,26 @@ def cleaned(node):
                  lasts=3.0)
 
 
+def connections(process):
+    """Both ends of its TCP connections, by descriptor."""
+    with open("/proc/net/tcp", encoding="utf-8") as file:
+        ends = {f"socket:[{words[9]}]": (words[1], words[2]) for words in map(str.split, file)}
+    folder = f"/proc/{process}/fd"
+    links = {int(name): os.readlink(os.path.join(folder, name)) for name in os.listdir(folder)}
+    return {number: ends[link] for number, link in links.items() if link in ends}
+
+
 def use_up(loop, node):
-    """No file descriptor is left to a node; then somebody whom it hears is started again."""
+    """No file descriptor is left to a node, nor do those help that are free once somebody whom it hears has died, who is
+    started again."""
     remember(loop)
     loop.starved = loop.pid("/" + node)
     loop.descriptors = resource.prlimit(loop.starved, resource.RLIMIT_NOFILE)
     open_now = {int(name) for name in os.listdir(f"/proc/{loop.starved}/fd")}
     free = next(number for number in range(len(open_now) + 1) if number not in open_now)
-    resource.prlimit(loop.starved, resource.RLIMIT_NOFILE, (free, loop.descriptors[1]))
+    theirs = {(there, here) for here, there in connections(loop.pid("/" + CONTROLLER)).values()}
+    shared = [number for number, ends in connections(loop.starved).items() if ends in theirs]
+    resource.prlimit(loop.starved, resource.RLIMIT_NOFILE, (min([free, *shared]), loop.descriptors[1]))
     loop.kill(CONTROLLER)
 
 

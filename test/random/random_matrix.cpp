@@ -103,7 +103,7 @@ RandomLoop randomMatrixLoop(std::uint64_t seed, double output_unit, double input
   };
   const double step = sample_min / 60.0;
   loop.text = "title: Random matrix " + std::to_string(seed) +
-              "\nplant:\n  type: distillation_column\n  matrix:\n    outputs: " +
+              "\nplant:\n  type: transfer_matrix\n  matrix:\n    outputs: " +
               listOf(outputs, output_unit, output_zero) +
               "    inputs: " + listOf(inputs, input_unit, 0.0);
   if (n_d > 0) loop.text += "    disturbances: " + listOf(loads, 1.0, 0.0);

@@ -47,7 +47,7 @@ std::string doubts(Dice& dice, const Quantity& q, const RandomFrame& frame) {
   }
   if (dice.chance(0.3))
     keys.push_back("rate_per_h: " + Dice::rounded(widthOf(q) / frame.hours(dice.scale(1.0, 50.0))));
-  if (dice.chance(0.4)) keys.push_back("frozen_samples: " + std::to_string(dice.whole(2, 8)));
+  if (dice.chance(0.4)) keys.push_back(dice.pick<std::string>({"frozen: false", "repeated: true"}));
   return "    " + q.name + ": {" + join(keys) + "}\n";
 }
 

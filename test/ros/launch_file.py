@@ -10,6 +10,7 @@ import tempfile
 import unittest
 
 import rosbag
+import rosgraph
 import rostest
 
 import ring
@@ -22,6 +23,13 @@ def roslaunch(*arguments):
     done = subprocess.run(ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", *arguments]), env=environment,
                           text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=150, check=False)
     return done.returncode, re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)
+
+
+def known(master, *nodes):
+    try:
+        return all(master.lookupNode(node) for node in nodes)
+    except (OSError, rosgraph.MasterException):
+        return False
 
 
 class LaunchFile(unittest.TestCase):
@@ -107,6 +115,35 @@ class LaunchFile(unittest.TestCase):
         for loop in ("asp_case1", "asp_case2"):
             with open(os.path.join(self.out, loop, "summary.json"), encoding="utf-8") as file:
                 self.assertTrue(json.load(file)["complete"], loop)
+
+    def test_a_launcher_that_is_killed_is_said_and_its_nodes_end_with_the_run(self):
+        port = ring.free_port()
+        environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
+        core = subprocess.Popen(ring.tied(["roscore", "-p", port]), env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(ring.killed, core)
+        quiet = {"env": environment, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+        launch = subprocess.Popen(ring.tied(
+            ["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=asp_case1", "out:=" + self.out, "pace:=lockstep", "draw:=false",
+             "set:=sampling.duration_h=20 loop.ready_timeout_s=600 loop.wait_for=[loop_recorder,fmbpc_controller,launch_file]"]), **quiet)
+        self.addCleanup(ring.killed, launch)
+        master = rosgraph.Master("/launch_file", environment["ROS_MASTER_URI"])
+        nodes = ("/plant_simulator", "/fmbpc_controller", "/loop_recorder", "/end_launch")
+        ring.wait_until(lambda: known(master, *nodes), "the nodes")
+        processes = {node: ring.pid(node, master) for node in nodes}
+        launch.kill()
+        launch.wait()
+        with tempfile.TemporaryFile("w+") as said:
+            listener = subprocess.Popen(ring.tied(["rostopic", "echo", "/loop_state/reason"]), **{**quiet, "stdout": said})
+            self.addCleanup(ring.killed, listener)
+            ring.wait_until(lambda: "roslaunch that started this node was killed" in os.pread(said.fileno(), 1 << 20, 0).decode(),
+                            "the nodes to say it")
+        begins = subprocess.Popen(ring.tied(["rostopic", "pub", "/ready", "fmbpc/NodeReady", "{node: /launch_file}",
+                                             "__name:=launch_file"]), **quiet)  # the run itself, after all that
+        self.addCleanup(ring.killed, begins)
+        for node, process in processes.items():
+            ring.wait_until(lambda p=process: not ring.runs(p), node + " to end")
+        with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
+            self.assertTrue(json.load(file)["complete"])
 
     def test_a_bad_loop_starts_nothing(self):
         for arguments, words in ((["loop:=nobody"], "nobody"),

@@ -12,6 +12,7 @@ import sys
 import tempfile
 import unittest
 
+import rosbag
 import rosgraph
 import rosnode
 import rospy
@@ -116,25 +117,68 @@ class Records(unittest.TestCase):
         self.assertEqual(1, again.returncode)
         self.assertIn("expected a journal.bin", again.stderr)
 
-    def test_a_recorder_that_is_told_to_end_in_mid_run_and_comes_back_has_all_samples_in_the_record(self):
-        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=40", "speedup:=14400", "out:=" + self.out,
-                        "record:=true", "respawn:=true")
-        journal = os.path.join(self.out, "journal.bin")
-        for end in (lambda: subprocess.run(["rosnode", "kill", "/loop_recorder"], check=True, stdout=subprocess.DEVNULL,
-                                           env={**os.environ, "ROS_MASTER_URI": launch.uri}),
-                    lambda: os.kill(launch.pid("/loop_recorder"), signal.SIGINT)):
-            ring.wait_until(lambda: holds_samples(journal), "samples on disk")
-            before = launch.pid("/loop_recorder")
-            end()
-            ring.wait_until(lambda: not os.path.isdir(f"/proc/{before}"), "its end")
-            size = os.path.getsize(journal)
-            ring.wait_until(lambda: os.path.getsize(journal) > size, "samples of the one that came back")
-        text = launch.end()
+    def assert_whole(self, steps, text):
+        """Record and bag, in the one folder, of a run of so many samples."""
         summary = self.summary()
-        self.assertEqual((200, True), (summary["steps"], summary["complete"]), text)
+        self.assertEqual((steps, True), (summary["steps"], summary["complete"]), text)
         with open(os.path.join(self.out, "trajectory.csv"), encoding="utf-8") as file:
-            self.assertEqual(202, len(file.readlines()))
-        self.assertEqual([], [name for name in ("journal.bin", "history") if os.path.exists(os.path.join(self.out, name))])
+            self.assertEqual(steps + 2, len(file.readlines()))
+        self.assertEqual([], [name for name in ("journal.bin", "history", "loop.bag.active", "loop.bag.joined")
+                              if os.path.exists(os.path.join(self.out, name))])
+        done = ring.tool("replay", os.path.join(self.out, "loop.bag"), "--json", check=False)
+        replayed = json.loads(done.stdout)
+        self.assertEqual((0, True, True, 0, steps + 1), (done.returncode, replayed["equal"], replayed["ended"],
+                                                         replayed["missing_samples"], replayed["measurements"]), done.stdout)
+
+    def comes_back(self, launch, end):
+        """`end` ends the recorder, and another one goes on."""
+        journal = os.path.join(self.out, "journal.bin")
+        ring.wait_until(lambda: holds_samples(journal), "samples on disk")
+        before = launch.pid("/loop_recorder")
+        end()
+        ring.wait_until(lambda: not ring.runs(before), "its end")
+        size = os.path.getsize(journal)
+        ring.wait_until(lambda: os.path.getsize(journal) > size, "samples of the one that came back")
+
+    def test_a_recorder_that_is_told_to_end_in_mid_run_and_comes_back_has_all_samples_in_record_and_bag(self):
+        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=60", "speedup:=14400", "out:=" + self.out,
+                        "record:=true", "respawn:=true")
+        for _ in range(2):
+            self.comes_back(launch, lambda: subprocess.run(["rosnode", "kill", "/loop_recorder"], check=True, stdout=subprocess.DEVNULL,
+                                                           env={**os.environ, "ROS_MASTER_URI": launch.uri}))
+            self.comes_back(launch, lambda: os.kill(launch.pid("/loop_recorder"), signal.SIGINT))
+        self.assert_whole(300, launch.end())
+
+    def test_a_node_of_the_recorders_name_goes_on_with_record_and_bag(self):
+        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=40", "speedup:=14400", "out:=" + self.out, "record:=true")
+
+        def start():
+            other = subprocess.Popen(ring.tied([ring.program("loop_recorder"), "__name:=loop_recorder", "/clock:=clock"]),
+                                     env={**os.environ, "ROS_MASTER_URI": launch.uri}, stderr=subprocess.DEVNULL)
+            self.addCleanup(ring.killed, other)
+        self.comes_back(launch, start)
+        self.assert_whole(200, launch.end())
+
+    def test_an_endless_run_is_filed_in_parts_each_with_its_bag(self):
+        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=0", "speedup:=144000", "out:=" + self.out, "record:=true")
+        history = os.path.join(self.out, "history")
+        ring.wait_until(lambda: os.path.isdir(history) and os.listdir(history), "the third part of a day", 3 * ring.PATIENCE)
+        launch.process.send_signal(signal.SIGINT)
+        text = launch.end()
+        first = 0
+        run = str(self.summary()["run_id"])
+        parts = [os.path.join("history", run), *(os.path.join("history", f"{run}-{n}") for n in range(2, len(os.listdir(history)) + 1)), "."]
+        for part in parts:
+            with open(os.path.join(self.out, part, "trajectory.csv"), encoding="utf-8") as file:
+                rows = len(file.readlines()) - 1
+            with rosbag.Bag(os.path.join(self.out, part, "loop.bag")) as bag:
+                steps = {message.step for _, message, _ in bag.read_messages("/measurement")}
+                topics = bag.get_type_and_topic_info().topics
+            self.assertGreaterEqual(steps, set(range(first, first + rows)), f"{part}: {text}")
+            self.assertLess(max(steps), first + rows + 3, part)
+            self.assertLessEqual({"/loop_text", "/plant_info", "/fuzzy_model"}, set(topics), part)
+            first += rows
+        self.assertGreater(first, 240)
 
     def test_a_plant_that_is_told_to_end_says_so_last(self):
         states = ring.Listener("useless/loop_state", LoopState, connected=False)

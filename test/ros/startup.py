@@ -1,17 +1,39 @@
 #!/usr/bin/python3
 """Sample 0 waits for everybody. Nodes are started one by one here, the loop text is on the parameter server."""
+import os
+import socketserver
 import subprocess
 import sys
+import threading
 import time
 import unittest
+import xmlrpc.client
+import xmlrpc.server
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from fmbpc.msg import Measurement, NodeReady
+from fmbpc.msg import LoopState, Measurement, NodeReady
 from std_msgs.msg import String
 
 import ring
+
+
+class SlowMaster(socketserver.ThreadingMixIn, xmlrpc.server.SimpleXMLRPCServer):
+    """The master, who takes long for publishers of one topic."""
+    daemon_threads = True
+
+    def __init__(self, topic, seconds):
+        super().__init__(("localhost", 0), logRequests=False, allow_none=True)
+        self.topic, self.seconds, self.asked = topic, seconds, 0
+        self.uri = f"http://localhost:{self.server_address[1]}"
+        threading.Thread(target=self.serve_forever, daemon=True).start()
+
+    def _dispatch(self, method, parameters):
+        if method == "registerPublisher" and parameters[1] == self.topic:
+            self.asked += 1
+            time.sleep(self.seconds)
+        return getattr(xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"]), method)(*parameters)
 
 
 class Startup(unittest.TestCase):
@@ -102,6 +124,14 @@ class Startup(unittest.TestCase):
         self.assertEqual({"/fmbpc_controller", "/fuzzy_identifier", "/loop_recorder"}, {m.node for m in ready.messages})
         self.assertEqual(0, measurements.messages[0].step)
         self.assertEqual(10, measurements.messages[-1].step)
+
+    def test_a_registration_that_takes_long_is_not_taken_for_a_lost_one(self):
+        master = SlowMaster("/slow/loop_state", 4.0)
+        self.addCleanup(master.shutdown)
+        self.start("loop_recorder", "__ns:=slow", env={**os.environ, "ROS_MASTER_URI": master.uri}, stderr=subprocess.DEVNULL)
+        states = ring.Listener("slow/loop_state", LoopState, connected=False)
+        ring.wait_until(lambda: len(states.messages) > 8, "its states, two a second, which go on through two looks at the master")
+        self.assertEqual(1, master.asked)
 
     def test_nodes_that_the_loop_does_not_need_say_so_and_end(self):
         for name, reason in (("clp_optimizer", "has no section clp"),):

@@ -48,5 +48,29 @@ TEST(ModelInstruments, AFastLawBearsThoseThatTheFileNames) {
       EXPECT_LT(iseOf(name, more), iseOf("cstr_tracking_pi_best", more)) << name;
 }
 
+/// The law that weighs moves, with valve, analyser and gear that neither file nor model has.
+TEST(ModelInstruments, TheLawToBeginWithBearsThoseThatNobodyNames) {
+  for (Overrides more : {Overrides{{"actuator.lag.q_c.t90_s", "5"}, {"sensors.CA.t90_s", "6"}},
+                         Overrides{{"actuator.lag.q_c.t90_s", "10"}},
+                         Overrides{{"actuator.lag.q_c.backlash", "4"}}}) {
+    const double rival = iseOf("cstr_tracking_pi_best", more);
+    more.emplace_back("model.instruments", "included");
+    EXPECT_LT(iseOf("cstr_tracking_robust", more), rival) << more.front().first;
+  }
+}
+
+/// The first two pairs of setpoints.
+TEST(ModelInstruments, TheReactorWithTwoInputsCarriesItsValves) {
+  const auto costOf = [](const std::string& name, Overrides more) {
+    more.emplace_back("sampling.duration_h", "0.95");
+    const LoopFile loop = readLoop(name, more);
+    const Summary summary = summarize(loop, runLoop(loop), 0.0);
+    return summary.outputs[0].ise_reference + 5e-5 * summary.outputs[1].ise_reference;
+  };
+  const double rival = costOf("mimo_cstr_lags_pi", {});
+  EXPECT_LT(costOf("mimo_cstr_lags", {}), 1.1 * rival);
+  EXPECT_LT(costOf("mimo_cstr_lags", {{"clp.perturbation_steps", "20"}}), 1.1 * rival);
+}
+
 }  // namespace loop_instruments_loop_test
 }  // namespace fpc

@@ -73,6 +73,13 @@ TEST(PlantSession, CountsEveryActionThatItDoesNotTakeApart) {
   EXPECT_EQ(c.old, 1U);
 }
 
+/// Looks every half second; when the plant has moved on.
+double movesOn(PlantSession& plant, double from_s) {
+  for (double now_s = from_s; now_s < from_s + 100.0; now_s += 0.5)
+    if (plant.advance(now_s)) return now_s;
+  return kInfinity;
+}
+
 PlantSession recordedSession(Pace pace) {
   PlantPolicy policy;
   policy.pace = pace;
@@ -107,7 +114,7 @@ TEST(PlantSession, GoesOnWithoutARecorderThatStaysAwayUntilItIsBack) {
   ASSERT_TRUE(plant.receive(action(0)));
   EXPECT_FALSE(plant.advance(1.0));
   EXPECT_EQ(plant.unrecordedFor(3.0), 2.0);
-  EXPECT_TRUE(plant.advance(6.0));
+  EXPECT_EQ(movesOn(plant, 1.5), 6.0);
   ASSERT_TRUE(plant.receive(action(1)));
   EXPECT_TRUE(plant.advance(6.1));
   ASSERT_TRUE(plant.receive(action(2)));
@@ -119,8 +126,21 @@ TEST(PlantSession, GoesOnWithoutARecorderThatStaysAwayUntilItIsBack) {
 
 TEST(PlantSession, ASampleWithoutAnActionWaitsForNoRecorder) {
   PlantSession plant = recordedSession(Pace::kPaced);
-  EXPECT_FALSE(plant.advance(4.9));
-  EXPECT_TRUE(plant.advance(5.0));
+  EXPECT_EQ(movesOn(plant, 0.5), 5.0);
+}
+
+// A machine that stands still holds up whoever is waited for as well.
+TEST(PlantSession, TimeInWhichThePlantItselfStoodStillIsNoSilenceOfOthers) {
+  PlantSession controlled = session(Pace::kPaced);
+  controlled.start(0.0);
+  EXPECT_FALSE(controlled.advance(100.0));
+  EXPECT_EQ(movesOn(controlled, 100.5), 104.5);
+
+  PlantSession recorded = recordedSession(Pace::kPaced);
+  ASSERT_TRUE(recorded.receive(action(0)));
+  EXPECT_FALSE(recorded.advance(0.0));
+  EXPECT_FALSE(recorded.advance(100.0));
+  EXPECT_EQ(movesOn(recorded, 100.5), 104.5);
 }
 
 TEST(PlantSession, LockstepWaitsForEverAndSendsAgain) {
@@ -138,9 +158,8 @@ TEST(PlantSession, LockstepWaitsForEverAndSendsAgain) {
 TEST(PlantSession, PacedGoesOnWithoutAnActionAfterTheStatedTimeAndReturns) {
   PlantSession plant = session(Pace::kPaced);
   plant.start(0.0);
-  EXPECT_FALSE(plant.advance(4.99));
-  EXPECT_EQ(plant.nextDue(), 5.0);
-  EXPECT_TRUE(plant.advance(5.0));
+  EXPECT_EQ(plant.nextDue(), 0.5);
+  EXPECT_EQ(movesOn(plant, 0.5), 5.0);
   EXPECT_TRUE(plant.starving());
   EXPECT_EQ(plant.missingInputs(), 1U);
   EXPECT_FALSE(plant.advance(5.1));

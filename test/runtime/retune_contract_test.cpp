@@ -169,6 +169,10 @@ TEST(RetuneRegistry, AKeyThatTheLawDoesNotHeedIsRefusedAsInItsFile) {
     EXPECT_NE(words.find("controller.weight_move"), std::string::npos) << words;
     EXPECT_NE(words.find("law general or iterated"), std::string::npos) << words;
   }
+  for (const char* key : {"weight_input", "input_target", "iterations"}) {
+    const std::string words = refusal([&] { session.retune({{key, "9"}}); });
+    EXPECT_NE(words.find("law iterated"), std::string::npos) << key << ": " << words;
+  }
   EXPECT_TRUE(session.retune({{"weight_move", "q_c=0"}, {"coincidence_steps", "8"}}));
 }
 

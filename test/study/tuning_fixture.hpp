@@ -11,7 +11,7 @@ namespace fpc {
 /// One lag of 10 min under a PI; noise of 0.001; 60 samples.
 inline std::string lagLoop() {
   return "title: One lag\n"
-         "plant:\n  type: distillation_column\n  matrix:\n"
+         "plant:\n  type: transfer_matrix\n  matrix:\n"
          "    outputs: [{name: y, unit: g, nominal: 0, lower: -10, upper: 10}]\n"
          "    inputs: [{name: u, unit: g, nominal: 0, lower: -5, upper: 5}]\n"
          "    elements: [{output: y, from: u, gain: 2, time_constant_min: 10, dead_time_min: 1}]\n"

@@ -103,16 +103,18 @@ TEST(FlatLine, AReadingThatComesTwiceInMotionIsRepeated) {
   }
 }
 
-TEST(FlatLine, TheLargestValueSoFarMayBeALimit) {
+TEST(FlatLine, TheLargestAndTheSmallestValueSoFarMayBeLimits) {
   std::mt19937_64 engine(3);
   std::normal_distribution<double> noise(0.0, 1.0);
   FlatLine line;
   watch(line, 200, [&](int) { return std::min(10.0, 8.0 + noise(engine)); });
   watch(line, 100, [&](int) { return 10.0; });
   EXPECT_TRUE(line.isUnlikely());
-  EXPECT_TRUE(line.isAtLargest());
+  EXPECT_TRUE(line.isAtExtreme());
   line.add(9.0);
-  EXPECT_FALSE(line.isAtLargest());
+  EXPECT_FALSE(line.isAtExtreme());
+  line.add(-10.0);
+  EXPECT_TRUE(line.isAtExtreme());
 }
 
 TEST(FlatLine, ShiftAndScaleChangeNothing) {
@@ -146,7 +148,7 @@ TEST(FlatLine, NoSignalOfThePublicRecordsIsAccused) {
       for (const double value : table.values.col(static_cast<Eigen::Index>(column))) {
         if (!std::isfinite(value)) continue;
         line.add(value);
-        const bool at_end = line.isAtLargest() || value == 0.0;  // nothing settles
+        const bool at_end = line.isAtExtreme();
         accused += line.isUnlikely() && !at_end ? 1 : 0;
       }
       ++columns;

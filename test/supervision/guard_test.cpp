@@ -202,6 +202,7 @@ TEST_F(Guard, WhatSwingsIsHandedToTheFallbackForLongerEachTime) {
     law->wish = k % 2 == 0 ? limits().lower[0] : limits().upper[0];
     applied = step(k, 1800.0, applied);
     const bool now = out.source == ActionSource::kFallback;
+    EXPECT_TRUE(!now || out.events.has(EventCode::kOscillation)) << k;
     if (now && !before) taken.push_back(k);
     before = now;
   }

@@ -39,6 +39,22 @@ TEST_F(LoopsTool, ALoopWithoutItsDataStillShowsTitlePlantAndController) {
   EXPECT_GE(needing, 30);
 }
 
+TEST_F(LoopsTool, TenToBeginWithComeFirstInTheirOrder) {
+  const auto loops = listed(loopsWithoutRecords("--json"));
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    EXPECT_EQ(loops[i]["first"], i < 10) << loops[i]["name"];
+    if (i >= 10) others.push_back(loops[i]["name"]);
+  }
+  EXPECT_EQ(loops[0]["name"], "reactor_load");
+  EXPECT_EQ(loops[9]["name"], "example_external");
+  EXPECT_TRUE(std::is_sorted(others.begin(), others.end()));
+  for (std::size_t i = 0; i < 10; ++i) EXPECT_TRUE(loops[i]["needs"].empty()) << loops[i];
+  const std::string printed = loopsWithoutRecords("reactor_load").printed;
+  EXPECT_LT(printed.find("to begin with:"), printed.find("reactor_load_pi")) << printed;
+  EXPECT_LT(printed.find("reactor_load_pi"), printed.find("reactor_load_published")) << printed;
+}
+
 TEST_F(LoopsTool, WordsFindThemAndTheTableSaysWhatLacks) {
   const std::string printed = loopsWithoutRecords("load_supervisor").printed;
   std::istringstream lines(printed);

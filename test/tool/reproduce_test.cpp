@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/text.hpp"
 #include "papers/expression.hpp"
 #include "papers/perturbations.hpp"
 #include "papers/picture.hpp"
@@ -286,9 +287,9 @@ TEST(PrintedModels, AreHeldAgainstAFileNumberByNumber) {
 }
 
 TEST(Report, HasNoMinusZeroAndAMarkForNoNumber) {
-  EXPECT_EQ(figureText(-0.0), "0");
-  EXPECT_EQ(figureText(std::nan("")), "-");
-  EXPECT_EQ(figureText(-51653.6597), "-5.165e+04");
+  EXPECT_EQ(shortText(-0.0), "0");
+  EXPECT_EQ(shortText(std::nan("")), "-");
+  EXPECT_EQ(shortText(-51653.6597), "-5.165e+04");
 }
 
 TEST(Report, MarkdownHasARowForEachAndKeepsItsColumns) {

@@ -114,7 +114,7 @@ TEST_F(StabilityTool, NothingToLookAtIsAnError) {
 TEST_F(StabilityTool, WithoutLimitsOfTheLoopTheRestOfTheRangeIsNamed) {
   const std::string loop =
       write("free.yaml",
-            "plant:\n  type: distillation_column\n  matrix:\n"
+            "plant:\n  type: transfer_matrix\n  matrix:\n"
             "    outputs: [{name: T, unit: K, nominal: 40, lower: 0, upper: 100}]\n"
             "    inputs: [{name: heat, unit: kW, nominal: 5, lower: 0, upper: 20}]\n"
             "    elements: [{output: T, from: heat, gain: 2, time_constant_min: 9}]\n"

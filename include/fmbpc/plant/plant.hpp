@@ -38,11 +38,15 @@ struct PlantDescription {
   std::vector<Quantity> states;
   std::vector<Quantity> inputs;
   std::vector<Quantity> disturbances;
-  std::vector<std::string> outputs;    ///< default measured outputs: names of states
+  std::vector<Quantity> algebraic;     ///< what can be measured and is no state: y = h(x, u)
+  std::vector<std::string> outputs;    ///< default measured outputs: names of states or `algebraic`
   std::vector<Quantity> parameters;    ///< what a loop file may override under plant.parameters
   std::vector<EquipmentFrame> frames;  ///< the first one is the plant's own frame
   std::map<std::string, std::string> output_frames;  ///< state name -> frame of its analyser
   std::vector<std::string> hidden_disturbances;      ///< not measured unless a loop file says so
+  std::map<std::string, double>
+      noise_std;  ///< white noise per sample of an output's measurement, or
+                  ///< of a disturbance, unless a loop file says otherwise
 };
 
 /// Moves a plant that is no differential equation in its state (dead times, difference equations),
@@ -62,7 +66,7 @@ class PlantStepper {
   virtual std::string failure() const { return {}; }
 };
 
-/// dx/dt = f(x, u, d), measured outputs are states.
+/// dx/dt = f(x, u, d), y = h(x, u, d): measured outputs are states or `algebraic`.
 class Plant {
  public:
   virtual ~Plant() = default;
@@ -70,6 +74,9 @@ class Plant {
   /// dxdt [unit of the state per time unit]; must be finite for finite arguments inside the ranges.
   virtual void derivatives(VectorRef x, VectorRef u, VectorRef d,
                            Eigen::Ref<Vector> dxdt) const = 0;
+  /// The description's `algebraic` quantities at x and d, with u the input in force until then.
+  /// Without allocation. Default: there are none.
+  virtual void algebraic(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> y) const;
   /// What a local loop inside the plant, sampled with the ring, makes of the applied input: called
   /// once per sample before the integration, u is written over and then held. x: the state now,
   /// before: one sample ago (at the start the same). Controllers never see what it adds. Default:
@@ -83,6 +90,9 @@ class Plant {
 /// Parameter values by name; absent names keep the description's nominal values.
 using PlantParameters = std::map<std::string, double>;
 using PlantFactory = std::function<std::unique_ptr<Plant>(const PlantParameters&)>;
+class YamlSection;
+/// Reads what a type needs of section `plant` of a loop file to make the plant. @throws InputError.
+using PlantReader = std::function<PlantFactory(YamlSection& plant)>;
 
 using PlantLayout = LayoutOf<PlantDescription, Quantity, EquipmentFrame, Plant, PlantStepper>;
 template <>
@@ -94,9 +104,16 @@ inline bool registerPlant(const std::string& name, PlantFactory factory) {
   requireSameLayout<PlantLayout>();
   return addPlant(name, std::move(factory));
 }
+/// Called by the registration line of a type whose equations are in the loop file. `title`: one
+/// line for lists.
+bool registerPlantReader(const std::string& name, const std::string& title, PlantReader reader);
+/// All types with their titles: those of plantNames() and those whose equations are in a loop file.
+std::map<std::string, std::string> plantTypes();
+/// Of any type; `plant` is read by those that need it. @throws InputError.
+PlantFactory plantFactory(const std::string& type, YamlSection& plant);
 /// @throws InputError with the known names, or naming an unknown parameter.
 std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters = {});
-std::vector<std::string> plantNames();
+std::vector<std::string> plantNames();  ///< of plants that need nothing but parameters
 /// Names that were registered although they were taken, in the order in which that happened.
 std::vector<std::string> refusedPlants();
 

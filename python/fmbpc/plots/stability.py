@@ -1,6 +1,7 @@
 """Draws stability.json of `fmbpc stability --out DIR`.
 
 root_locus.png: closed-loop eigenvalues over the coincidence horizon against the unit circle, and their largest modulus.
+margins.png: loop gain of each input against -1 (Nyquist) and sensitivity, at points of the loop's run.
 bifurcation.png: steady states of the plant over its input, stable ones solid, unstable ones dashed, special points marked.
 """
 import argparse
@@ -81,11 +82,43 @@ def draw_bifurcation(report, folder):
     figure.savefig(os.path.join(folder, "bifurcation.png"), dpi=110)
 
 
+def curve_of(row):
+    gain = [complex(*v) if None not in v else complex("nan") for v in row["curve"]["loop_gain"]]
+    return row["curve"]["rad_s"], gain
+
+
+def draw_margins(report, folder):
+    rows = [(point, row) for point in report.get("points", []) for row in point.get("inputs", []) if "curve" in row]
+    if not rows:
+        return
+    figure, (plane, sensitivity) = plt.subplots(1, 2, figsize=(11, 5))
+    for point, row in rows:
+        omega, gain = curve_of(row)
+        label = "%.4g h, %s: %s" % (point["time_h"], row["input"], point["verdict"])
+        line, = plane.plot([g.real for g in gain], [g.imag for g in gain], linewidth=1.2)
+        sensitivity.loglog(omega, [1 / abs(1 + g) for g in gain], color=line.get_color(), linewidth=1.2, label=label)
+    plane.plot([-1], [0], "+", color="#c8452d", markersize=12)
+    plane.add_patch(plt.Circle((0, 0), 1, fill=False, color="0.7", linewidth=0.8))
+    plane.set_xlim(-2.5, 1.5)
+    plane.set_ylim(-2, 2)
+    plane.set_aspect("equal")
+    plane.set_xlabel("real part of the loop gain")
+    plane.set_ylabel("imaginary part")
+    plane.set_title("%s: Nyquist" % report["name"])
+    sensitivity.axhline(1.0, color="0.7", linewidth=0.8)
+    sensitivity.set_xlabel("frequency [rad/s]")
+    sensitivity.set_ylabel("sensitivity |1 / (1 + L)|")
+    figure.tight_layout(rect=(0, 0.05 + 0.035 * len(rows), 1, 1))
+    figure.legend(loc="lower center", fontsize="small", ncol=1)
+    figure.savefig(os.path.join(folder, "margins.png"), dpi=110)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder", metavar="DIR")
     folder = parser.parse_args().folder
     with open(os.path.join(folder, "stability.json"), encoding="utf-8") as stream:
         report = json.load(stream)
+    draw_margins(report, folder)
     draw_root_locus(report, folder)
     draw_bifurcation(report, folder)

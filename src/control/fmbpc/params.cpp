@@ -36,8 +36,9 @@ const char* lawsInsteadOf(FmbpcForm law, const std::string& key) {
   const auto among = [&](std::initializer_list<const char*> keys) {
     return std::find(keys.begin(), keys.end(), key) != keys.end();
   };
-  if (law != FmbpcForm::kIterated && among({"horizon_steps", "iterations", "forecast_period_h",
-                                            "forecast_pole", "forecast_memory_h"}))
+  if (law != FmbpcForm::kIterated &&
+      among({"horizon_steps", "iterations", "forecast_period_h", "forecast_pole",
+             "forecast_memory_h", "weight_input", "input_target"}))
     return "law iterated with it";
   if (law == FmbpcForm::kPublished && among({"weight_output", "weight_move"}))
     return "law general or iterated with it";

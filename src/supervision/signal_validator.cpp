@@ -1,4 +1,4 @@
-#include "supervision/plausibility.hpp"
+#include "supervision/signal_validator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,6 @@ void check(const SignalPlausibility& signal) {
   require(signal.rate_per_h > 0.0, "plausibility.signals: rate_per_h", "a number > 0");
   require(signal.jump > 0.0, "plausibility.signals: jump", "a number > 0");
   require(signal.jump_samples >= 1, "plausibility.signals: jump_samples", "an integer >= 1");
-  require(signal.frozen_samples >= -1, "plausibility.signals: frozen_samples", "an integer >= -1");
 }
 
 std::string reasonOf(Doubt doubt, const SignalPlausibility& asked) {
@@ -89,8 +88,6 @@ constexpr const char* kActionWords[kActions] = {"its last good value is used",
 void PlausibilityParams::validate(std::size_t n_y, std::size_t n_d, Eigen::Index n_u) const {
   require(hold_samples >= -1, "plausibility.hold_samples", "an integer >= -1");
   require(bridge_samples >= 0, "plausibility.bridge_samples", "an integer >= 0");
-  require(frozen_input >= 0.0 && std::isfinite(frozen_input), "plausibility.frozen_input",
-          "a number >= 0");
   require(fallback.size() == 0 || (fallback.size() == n_u && fallback.allFinite()),
           "plausibility: fallback", "a finite number per input");
   require(reaction_samples == 0 || reaction_samples >= 8, "plausibility.reaction_samples",
@@ -106,29 +103,19 @@ void PlausibilityParams::validate(std::size_t n_y, std::size_t n_d, Eigen::Index
     for (const SignalPlausibility& signal : *group) check(signal);
 }
 
-Plausibility::Plausibility(PlausibilityParams params, const PlantInfo& plant)
+SignalValidator::SignalValidator(PlausibilityParams params, const PlantInfo& plant)
     : params_(std::move(params)),
       n_y_(plant.outputs.size()),
       sample_time_h_(plant.sample_time_s / 3600.0),
-      input_range_(static_cast<Eigen::Index>(plant.inputs.size())),
-      output_range_(static_cast<Eigen::Index>(n_y_)),
       asked_(joined(params_, plant)),
       signals_(asked_.size()),
       needed_(asked_.size(), true) {
-  params_.validate(n_y_, plant.disturbances.size(), input_range_.size());
-  for (Eigen::Index i = 0; i < input_range_.size(); ++i) {
-    const SignalInfo& input = plant.inputs[static_cast<std::size_t>(i)];
-    input_range_[i] = input.upper - input.lower;
-  }
-  for (Memory& signal : signals_)
-    signal.input_low = signal.input_high = Vector::Zero(input_range_.size());
-  for (std::size_t i = 0; i < n_y_; ++i)
-    output_range_[static_cast<Eigen::Index>(i)] = plant.outputs[i].upper - plant.outputs[i].lower;
+  params_.validate(n_y_, plant.disturbances.size(), static_cast<Eigen::Index>(plant.inputs.size()));
   expected_ = Vector::Zero(static_cast<Eigen::Index>(n_y_));
   writeTexts(plant);
 }
 
-void Plausibility::writeTexts(const PlantInfo& plant) {
+void SignalValidator::writeTexts(const PlantInfo& plant) {
   texts_.resize(signals_.size());
   for (std::size_t i = 0; i < signals_.size(); ++i) {
     names_.push_back(i < n_y_ ? plant.outputs[i].name : plant.disturbances[i - n_y_].name);
@@ -139,17 +126,17 @@ void Plausibility::writeTexts(const PlantInfo& plant) {
   }
 }
 
-void Plausibility::reset() {
+void SignalValidator::reset() {
   for (Memory& signal : signals_) {
     signal.has_good = false;
-    signal.at_level = signal.against = 0;
+    signal.at_level = 0;
     signal.since_good = 0;
     signal.flat.reset();
   }
   doubted_ = 0;
 }
 
-bool Plausibility::jumped(Memory& signal, const SignalPlausibility& asked, double value) const {
+bool SignalValidator::jumped(Memory& signal, const SignalPlausibility& asked, double value) const {
   if (!signal.has_good || !(std::abs(value - signal.good) > asked.jump)) {
     signal.at_level = 0;
     return false;
@@ -160,12 +147,21 @@ bool Plausibility::jumped(Memory& signal, const SignalPlausibility& asked, doubl
   return signal.at_level < asked.jump_samples;
 }
 
-Doubt Plausibility::judge(std::size_t i, double value, const Measurement& now) {
+/// At a limit of its instrument, or at one of its own (a flow over a weir, a pump that rests), a
+/// signal may stand for long.
+bool SignalValidator::isFrozen(std::size_t i, double value) const {
+  const SignalPlausibility& asked = asked_[i];
+  const FlatLine& flat = signals_[i].flat;
+  return asked.frozen && flat.isUnlikely() && value > asked.scale_lower &&
+         value < asked.scale_upper && (i < n_y_ || !flat.isAtExtreme());
+}
+
+Doubt SignalValidator::judge(std::size_t i, double value) {
   Memory& signal = signals_[i];
   const SignalPlausibility& asked = asked_[i];
   if (!std::isfinite(value)) return doubtOf(whyNoValue(value));
   if (!params_.enabled) return Doubt::kNone;
-  const bool frozen = isFrozen(i, value, now);
+  signal.flat.add(value);
   const bool jump = jumped(signal, asked, value);
   if (value < asked.lower || value > asked.upper) return Doubt::kRange;
   const double hours = static_cast<double>(signal.since_good + 1) * sample_time_h_;
@@ -173,33 +169,31 @@ Doubt Plausibility::judge(std::size_t i, double value, const Measurement& now) {
       std::abs(value - signal.good) > asked.rate_per_h * hours * (1.0 + kRelativeRounding))
     return Doubt::kRate;
   if (jump) return Doubt::kJump;
-  if (frozen) return Doubt::kFrozen;
+  if (isFrozen(i, value)) return Doubt::kFrozen;
   const bool bridged = signal.since_good < static_cast<std::uint64_t>(params_.bridge_samples);
-  const bool repeated = i < n_y_ && asked.frozen_samples < 0 && bridged && signal.flat.isRepeated();
-  return repeated ? Doubt::kRepeated : Doubt::kNone;
+  return asked.repeated && bridged && signal.flat.isRepeated() ? Doubt::kRepeated : Doubt::kNone;
 }
 
-bool Plausibility::byDefault(std::size_t i) const {
-  return signals_[i].doubt == Doubt::kFrozen && asked_[i].frozen_samples < 0 &&
-         asked_[i].substitute == Substitute::kHold;
+bool SignalValidator::byDefault(std::size_t i) const {
+  return signals_[i].doubt == Doubt::kFrozen && asked_[i].substitute == Substitute::kHold;
 }
 
 /// A gap that is short is bridged, whatever is asked for a long one. What is frozen is replaced: an
 /// output by the model's value, and a disturbance stays what it was.
-Substitute Plausibility::substituteOf(std::size_t signal) const {
+Substitute SignalValidator::substituteOf(std::size_t signal) const {
   if (byDefault(signal)) return signal < n_y_ ? Substitute::kModel : Substitute::kLastGood;
   const auto bridged = static_cast<std::uint64_t>(params_.bridge_samples);
   return signals_[signal].since_good <= bridged ? Substitute::kModel : asked_[signal].substitute;
 }
 
-bool Plausibility::expectsFrom(const Foresee& foresee) {
+bool SignalValidator::expectsFrom(const Foresee& foresee) {
   if (!asked_law_) has_expected_ = foresee && foresee(expected_);
   asked_law_ = true;
   return has_expected_;
 }
 
 /// False if there is nothing to put in its place.
-bool Plausibility::replace(std::size_t signal, const Foresee& foresee) {
+bool SignalValidator::replace(std::size_t signal, const Foresee& foresee) {
   Memory& memory = signals_[signal];
   const auto row = static_cast<Eigen::Index>(signal);
   memory.foreseen = signal < n_y_ && substituteOf(signal) == Substitute::kModel &&
@@ -211,7 +205,7 @@ bool Plausibility::replace(std::size_t signal, const Foresee& foresee) {
   return memory.foreseen || (memory.has_good && !stands);
 }
 
-Verdict Plausibility::look(const Measurement& now, const Foresee& foresee) {
+Verdict SignalValidator::look(const Measurement& now, const Foresee& foresee) {
   bool any = false, doubted = false, repaired = true, may_end = false;
   accepted_ = now;
   asked_law_ = false;
@@ -220,7 +214,7 @@ Verdict Plausibility::look(const Measurement& now, const Foresee& foresee) {
     Memory& signal = signals_[i];
     const auto row = static_cast<Eigen::Index>(i);
     const double value = i < n_y_ ? now.outputs[row] : now.disturbances[row - first];
-    signal.doubt = judge(i, value, now);
+    signal.doubt = judge(i, value);
     if (signal.doubt == Doubt::kNone) {
       signal.good = value;
       signal.has_good = true;
@@ -244,7 +238,7 @@ Verdict Plausibility::look(const Measurement& now, const Foresee& foresee) {
   return verdict;
 }
 
-void Plausibility::say(Verdict verdict) {
+void SignalValidator::say(Verdict verdict) {
   notice_ = {};
   const bool needed_only = verdict == Verdict::kHold || verdict == Verdict::kFallback;
   for (std::size_t i = 0; i < signals_.size(); ++i) {

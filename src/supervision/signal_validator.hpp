@@ -1,18 +1,16 @@
 // Can this measurement be true? Each signal is judged by itself: range, rate, jump, freezing (by
-// its own noise; an output also by what the law's model says that the inputs have done). What its
-// instrument or its link does not vouch for has become NaN before (noValue).
+// its own noise and resolution). What its instrument or its link does not vouch for has become NaN
+// before (noValue).
 #pragma once
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "supervision/flat_line.hpp"
-#include "supervision/forced_response.hpp"
 #include "supervision/plausibility_params.hpp"
 
 namespace fpc {
@@ -43,16 +41,14 @@ enum class Verdict : std::uint8_t {
 using Foresee = std::function<bool(Eigen::Ref<Vector>)>;
 
 /// Signals are numbered: outputs, then disturbances. A signal that the law does not need is
-/// replaced by its last good value and never holds an input, nor does a disturbance that is frozen
-/// (frozen_samples -1). No allocation after the first sample.
-class Plausibility {
+/// replaced by its last good value and never holds an input, nor does a disturbance that is frozen.
+/// No allocation after the first sample.
+class SignalValidator {
  public:
   /// @throws InputError naming the field.
-  Plausibility(PlausibilityParams params, const PlantInfo& plant);
+  SignalValidator(PlausibilityParams params, const PlantInfo& plant);
   /// A new run, or samples were lost: rates and jumps are measured from the next sample on.
   void reset();
-  /// The law's, matched to the plant: it says what the inputs do to the outputs.
-  void setModel(const TsModel& model);
   void need(std::size_t signal, bool needed) { needed_[signal] = needed; }
   /// `foresee` is asked only for an output in whose place it is needed.
   Verdict look(const Measurement& now, const Foresee& foresee = {});
@@ -68,17 +64,13 @@ class Plausibility {
     Doubt doubt{Doubt::kNone};
     double good{}, level{};
     std::uint64_t since_good{};  // samples
-    int at_level{}, against{};   // against: samples in which the model says that it has moved
+    int at_level{};
     bool has_good{false}, foreseen{false};
     FlatLine flat;
-    std::optional<ForcedResponse> response;  // since the raw value changed
-    Vector input_low, input_high;            // since then
   };
-  Doubt judge(std::size_t i, double value, const Measurement& now);
-  bool isFrozen(std::size_t i, double value, const Measurement& now);
-  bool standsByItself(std::size_t i, double value, const Measurement& now);
-  bool inputMoved(const Memory& signal) const;
-  /// It is frozen, and nothing in the loop file says how that is judged and what is done.
+  Doubt judge(std::size_t i, double value);
+  bool isFrozen(std::size_t i, double value) const;
+  /// It is frozen, and the loop file does not say what is done.
   bool byDefault(std::size_t i) const;
   bool jumped(Memory& signal, const SignalPlausibility& asked, double value) const;
   Substitute substituteOf(std::size_t signal) const;
@@ -90,7 +82,6 @@ class Plausibility {
   PlausibilityParams params_;
   std::size_t n_y_;
   double sample_time_h_;
-  Vector input_range_, output_range_;
   std::vector<SignalPlausibility> asked_;  // outputs, then disturbances
   std::vector<Memory> signals_;
   std::vector<bool> needed_;

@@ -1,0 +1,288 @@
+#!/usr/bin/python3
+"""Builds and runs what `fmbpc export` wrote, with what this machine has, and says what it could not.
+
+    export_check.py FOLDER      (`fmbpc export --check FOLDER`)
+
+Every compiler must answer the vectors within their tolerance and give the same bits. Exit code 0: all that could run passed."""
+import csv
+import glob
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import structured_text  # noqa: E402
+
+WARNINGS = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-Wvla", "-Werror"]
+EXACT = ["-ffp-contract=off"]
+COMPARED_ERRORS = 1 + 4 + 8 + 32
+MASK = (1 << 64) - 1
+
+
+def run(words, **more):
+    return subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False, **more)
+
+
+def native(folder, name, compiler, level, into, vectors=None):
+    """What the test program says, as a dictionary; raises RuntimeError with the compiler's words."""
+    program = os.path.join(into, "test")
+    law = os.path.join(into, "law.o")
+    for words in ([compiler, *WARNINGS, *EXACT, level, "-c", f"{name}.c", "-o", law],
+                  [compiler, "-std=c99", *EXACT, level, f"{name}_test.c", law, "-o", program]):
+        built = run(words, cwd=folder)
+        if built.returncode != 0:
+            raise RuntimeError(built.stderr.strip())
+    played = run([program] + ([vectors] if vectors else []), cwd=folder)
+    return {**json.loads(played.stdout), "passed": played.returncode == 0}
+
+
+def fnv(value, data):
+    for byte in data:
+        value = ((value ^ byte) * 1099511628211) & MASK
+    return value
+
+
+def interpreted(folder, name, samples=None):
+    """The same of the block in Structured Text, by the interpreter: the same bits give the same hash."""
+    with open(os.path.join(folder, f"{name}.st"), encoding="utf-8") as file:
+        text = file.read()
+    block = structured_text.load(text)[f"fb_{name}"]()
+    single = "LREAL" not in text
+    flags, count, hashed = 0, 0, 14695981039346656037
+    number = structured_text.single if single else float
+    with open(os.path.join(folder, f"{name}_vectors.csv"), encoding="utf-8") as file:
+        rows = csv.reader(file)
+        names = next(rows)
+        first = next(i for i, n in enumerate(names) if n.startswith("rOut_"))
+        columns = [structured_text.Reader.name(n) for n in names]
+        for row in rows:
+            for i in range(first):
+                kind = names[i][0]
+                value = number(row[i]) if kind == "r" else int(float(row[i])) if kind == "i" else float(row[i]) != 0.0
+                setattr(block, columns[i], value)
+            block()
+            for i in range(first, len(names)):
+                answer = getattr(block, columns[i])
+                if names[i][0] == "r":
+                    hashed = fnv(hashed, struct.pack("<f" if single else "<d", answer))
+                else:
+                    hashed = fnv(hashed, struct.pack("<i", answer))
+                    seen = answer & COMPARED_ERRORS if names[i] == "iErrors" else answer
+                    flags += seen != int(float(row[i]))
+            count += 1
+            if count == samples:
+                break
+    return {"samples": count, "flags": flags, "hash": f"{hashed:016x}"}
+
+
+# Rules of MISRA C 2012 that a block breaks, with the reason (docs/export.md lists them).
+DEVIATIONS = {"misra-c2012-2.5": "identity macros are for the caller", "misra-c2012-8.9": "tables stand before the function, one below the other",
+              "misra-c2012-8.7": "the caller is another file", "unusedFunction": "the caller is another file",
+              "variableScope": "variables stand at the head, as in Structured Text"}
+BOARDS = {"cortex-m3": ("mps2-an385", ["-mfloat-abi=soft"]), "cortex-m4": ("mps2-an386", ["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]),
+          "cortex-m7": ("mps2-an500", ["-mfloat-abi=hard", "-mfpu=fpv5-d16"])}
+TICKS_PER_INSTRUCTION = 1.6  # of SysTick at 25 MHz, an instruction taking 64 ns (-icount shift=6)
+ON_BOARD = 200  # vectors
+LINK = """ENTRY(reset)
+MEMORY { code : ORIGIN = 0, LENGTH = 4M  data : ORIGIN = 0x20000000, LENGTH = 4M }
+SECTIONS { .text : { KEEP(*(.vectors)) *(.text*) *(.rodata*) } > code  .ARM.exidx : { *(.ARM.exidx*) } > code
+  .data : { *(.data*) *(.bss*) *(COMMON) } > data  end = .; }
+"""
+BOARD = """#include <stddef.h>
+#include <stdint.h>
+#include "NAME.h"
+static long call(int what, const void *with) {
+  register long r0 __asm__("r0") = what;
+  register const void *r1 __asm__("r1") = with;
+  __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
+  return r0;
+}
+void reset(void);
+__attribute__((section(".vectors"), used)) static const uint32_t vectors[2] = {0x20200000u, (uint32_t)reset};
+static uint64_t hash = 14695981039346656037ULL;
+static NAME_state_t state;
+static NAME_in_t in;
+static NAME_out_t out;
+static void add(const void *bytes, size_t count) {
+  const unsigned char *b = bytes;
+  for (size_t i = 0; i < count; i++) hash = (hash ^ b[i]) * 1099511628211ULL;
+}
+static void print(uint64_t value) {
+  char text[20];
+  for (int i = 0; i < 16; i++) text[i] = "0123456789abcdef"[(value >> (60 - 4 * i)) & 15];
+  text[16] = ' ';
+  text[17] = 0;
+  call(4, text);
+}
+VECTORS
+void reset(void) {
+  uint32_t most = 0, sum = 0;
+  *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* the floating-point unit, if there is one */
+  __asm__ volatile("dsb");
+  __asm__ volatile("isb");
+  *(volatile uint32_t *)0xE000E014 = 0xFFFFFF;
+  *(volatile uint32_t *)0xE000E010 = 5;
+  NAME_defaults(&in);
+  for (int k = 0; k < COUNT; k++) {
+GIVE
+    uint32_t before = *(volatile uint32_t *)0xE000E018;
+    NAME_step(&state, &in, &out);
+    uint32_t ticks = (before - *(volatile uint32_t *)0xE000E018) & 0xFFFFFF;
+    sum += ticks;
+    most = ticks > most ? ticks : most;
+TAKE
+  }
+  print(hash);
+  print(most);
+  print(sum);
+  call(0x18, (void *)0x20026);
+  for (;;) {}
+}
+"""
+
+
+def rows_of(folder, name, samples):
+    with open(os.path.join(folder, f"{name}_vectors.csv"), encoding="utf-8") as file:
+        lines = file.read().splitlines()[:samples + 1]
+    return lines, lines[0].split(","), [[float(cell) for cell in line.split(",")] for line in lines[1:]]
+
+
+def board_program(folder, name, samples):
+    """The test program of a board: the first vectors in its flash, what it says by semihosting."""
+    _, names, rows = rows_of(folder, name, samples)
+    first = next(i for i, n in enumerate(names) if n.startswith("rOut_"))
+    with open(os.path.join(folder, f"{name}.h"), encoding="utf-8") as file:
+        real = "double" if " double " in file.read() else "float"
+    cells = [", ".join("(0.0/0.0)" if v != v else repr(v) for v in row[:first]) for row in rows]
+    kinds = {"r": f"({real})", "i": "(int32_t)", "x": "0.0 != "}
+    give = "\n".join(f"    in.{n} = {kinds[n[0]]}v[k][{i}];" for i, n in enumerate(names[:first]))
+    take = "\n".join(f"    add(&out.{n}, sizeof out.{n});" for n in names[first:])
+    vectors = f"static const double v[{len(rows)}][{first}] = {{{{" + "},{".join(cells) + "}};"
+    text = BOARD.replace("NAME", name).replace("COUNT", str(len(rows)))
+    return text.replace("VECTORS", vectors).replace("GIVE", give).replace("TAKE", take)
+
+
+def emulated(folder, name, core, into, samples=ON_BOARD):
+    """Bits, sizes, stack and instructions on an emulated board; raises RuntimeError."""
+    board, floats = BOARDS[core]
+    for file, text in (("board.c", board_program(folder, name, samples)), ("board.ld", LINK)):
+        with open(os.path.join(into, file), "w", encoding="utf-8") as to:
+            to.write(text)
+    law, program = os.path.join(into, "law.o"), os.path.join(into, "board.elf")
+    options = ["-std=gnu99", "-O2", *EXACT, "-fno-tree-loop-distribute-patterns", "-mthumb", f"-mcpu={core}", *floats, f"-I{os.path.abspath(folder)}"]
+    for words in (["arm-none-eabi-gcc", *options, "-fstack-usage", "-c", os.path.join(os.path.abspath(folder), f"{name}.c"), "-o", law],
+                  ["arm-none-eabi-gcc", *options, "-nostartfiles", "-nostdlib", "-T", "board.ld", "board.c", law, "-o", program, "-lgcc"]):
+        built = run(words, cwd=into)
+        if built.returncode != 0:
+            raise RuntimeError(built.stderr.strip()[-600:])
+    size = run(["arm-none-eabi-size", law]).stdout.split("\n")[1].split()
+    stack = max(int(line.split("\t")[1]) for line in open(os.path.join(into, "law.su"), encoding="utf-8"))
+    said = run(["timeout", "60", "qemu-system-arm", "-M", board, "-nographic", "-monitor", "none", "-serial", "none", "-semihosting-config",
+                "enable=on,target=native", "-icount", "shift=6", "-kernel", program])
+    words = (said.stdout + said.stderr).split()
+    if len(words) < 3:
+        raise RuntimeError("the board said " + (said.stderr or said.stdout)[-200:])
+    return {"hash": words[0], "instructions": round(int(words[1], 16) / TICKS_PER_INSTRUCTION),
+            "mean": round(int(words[2], 16) / TICKS_PER_INSTRUCTION / samples), "code": int(size[0]), "stack": stack}
+
+
+class Check:
+    def __init__(self, folder):
+        self.folder, self.rows, self.failed, self.hashes = folder, [], False, {}
+        found = [os.path.basename(p)[:-len("_vectors.csv")] for p in glob.glob(os.path.join(folder, "*_vectors.csv"))]
+        if len(found) != 1:
+            sys.exit(f"export --check: expected one NAME_vectors.csv in {folder}, found {len(found)}")
+        self.name = found[0]
+
+    def say(self, what, words, failed=False):
+        self.failed = self.failed or failed
+        print(f"{what:<34}{'FAILED: ' if failed else ''}{words}", flush=True)
+
+    def has(self, suffix):
+        return os.path.exists(os.path.join(self.folder, self.name + suffix))
+
+    def verdict(self, what, result):
+        words = f"{result['samples']} samples"
+        if "difference" in result:
+            words += f", differs by {result['difference']:.2g} of the span"
+        self.say(what, f"{words}, {result['flags']} flags differ, bits {result['hash']}",
+                 not result.get("passed", True) or result["flags"] > 0)
+        self.hashes[what] = result["hash"]
+
+    def compilers(self):
+        for compiler in ("gcc", "clang"):
+            for level in ("-O0", "-O2"):
+                what = f"{compiler} {level}"
+                if not shutil.which(compiler):
+                    self.say(what, f"not run: no {compiler}")
+                    continue
+                with tempfile.TemporaryDirectory() as into:
+                    try:
+                        self.verdict(what, native(self.folder, self.name, compiler, level, into))
+                    except RuntimeError as wrong:
+                        self.say(what, str(wrong), True)
+
+    def boards(self):
+        missing = [p for p in ("arm-none-eabi-gcc", "qemu-system-arm") if not shutil.which(p)]
+        for core in BOARDS:
+            if missing:
+                self.say(core, f"not run: no {' and no '.join(missing)}")
+                continue
+            with tempfile.TemporaryDirectory() as into:
+                try:
+                    vectors = os.path.join(into, "vectors.csv")
+                    lines, _, rows = rows_of(self.folder, self.name, ON_BOARD)
+                    with open(vectors, "w", encoding="utf-8") as file:
+                        file.write("\n".join(lines) + "\n")
+                    here = native(self.folder, self.name, "gcc", "-O2", into, vectors)
+                    there = emulated(self.folder, self.name, core, into, len(rows))
+                except (RuntimeError, FileNotFoundError) as wrong:
+                    self.say(core, str(wrong), True)
+                    continue
+                self.say(core, f"{len(rows)} samples, {'same bits' if there['hash'] == here['hash'] else 'other bits'}, code and tables "
+                         f"{there['code']} bytes, stack {there['stack']}, instructions a step {there['instructions']} at most, "
+                         f"{there['mean']} on the average", there["hash"] != here["hash"])
+
+    def judges(self):
+        source = os.path.join(self.folder, f"{self.name}.c")
+        if shutil.which("cppcheck"):
+            said = run(["cppcheck", "--addon=misra", "--enable=all", "--std=c99", "--suppress=missingIncludeSystem", "--quiet",
+                        "--template={id}", source])
+            rules = sorted(set(line for line in said.stderr.split() if line))
+            others = [rule for rule in rules if rule not in DEVIATIONS]
+            self.say("cppcheck, MISRA C 2012", f"deviations {', '.join(r.replace('misra-c2012-', '') for r in rules) or 'none'}"
+                     + (f"; without a reason: {', '.join(others)}" if others else ""), bool(others))
+        else:
+            self.say("cppcheck, MISRA C 2012", "not run: no cppcheck")
+
+    def structured_text(self):
+        self.verdict("Structured Text, interpreter", interpreted(self.folder, self.name))
+        texts = [open(os.path.join(self.folder, self.name + s), encoding="utf-8").read() for s in (".st", "_test.st")]
+        test = structured_text.load(*texts)[f"fb_{self.name}_test"]()
+        samples = 0
+        while not test.v_xdone:
+            test()
+            samples += 1
+        self.say("Structured Text, self-test", f"{samples} vectors" if test.v_xpassed else f"differs at {test.v_ifailed}",
+                 not test.v_xpassed)
+
+    def run(self):
+        if self.has(".c"):
+            self.compilers()
+            self.boards()
+            self.judges()
+        if self.has(".st"):
+            self.structured_text()
+        if len(set(self.hashes.values())) > 1:
+            self.say("bits", "not the same everywhere", True)
+        return 1 if self.failed else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2 or sys.argv[1] in ("-h", "--help"):
+        sys.exit(__doc__)
+    sys.exit(Check(sys.argv[1]).run())

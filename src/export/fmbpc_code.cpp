@@ -1,0 +1,407 @@
+// Controller type fmbpc as code of a block: the published and the general law, the parallel and
+// the realigned model, a transport delay. See FmbpcLaw, CoincidenceGains.
+#include <cmath>
+#include <optional>
+
+#include "control/fmbpc/law.hpp"
+#include "export/math.hpp"
+#include "export/model_code.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/control/registry.hpp"
+#include "model/undelayed.hpp"
+
+namespace fpc {
+namespace {
+
+using ir::Kind;
+using ir::Value;
+
+constexpr double kSingularPivot = 1e-12;  // as CoincidenceGains
+
+class FmbpcCode final : public PredictiveCode {
+ public:
+  FmbpcCode(BlockParts& parts, const FmbpcParams& params)
+      : PredictiveCode(parts, params, parts.loop.model),
+        params_(params),
+        realigned_(params.realisation == FmbpcRealisation::kRealigned),
+        measured_(params.antecedent == FmbpcAntecedent::kMeasured),
+        model_(parts, withoutDelay(parts.loop.model, params.delay_steps), "m", "m"),
+        n_x_(model_.n_x()) {
+    requireExported();
+    if (params.delay_steps > 0)
+      delayed_.emplace(parts, withoutDelay(parts.loop.model, params.delay_steps), "s", "m");
+    for (int i = 0; i < b_.n_y; ++i)
+      if (weightOf(i) > 0.0) followed_.push_back(i);
+    declare();
+  }
+
+  void begin() override {
+    PredictiveCode::begin();
+    for (const Value& out : error_out_) p_.set(out, 0.0);
+    for (const auto& outs : weights_out_)
+      for (const Value& out : outs) p_.set(out, 0.0);
+  }
+
+  void foresee() override {
+    p_.set(b_.foreseen, !start_);
+    p_.when(b_.foreseen, [&] {
+      const bool late = delayed_.has_value();
+      for (int i = 0; i < b_.n_y; ++i) {
+        Value sum = (late ? late_base_ : base_)[i] + offset_[i];
+        for (int j = 0; j < b_.n_u; ++j)
+          sum = sum + (late ? late_B_ : B_)[i * b_.n_u + j] *
+                          (late ? past_inputs_[oldest_ * b_.n_u + j] : b_.applied[j]);
+        p_.set(b_.expected[i], sum);
+      }
+    });
+  }
+
+ private:
+  void requireExported() const {
+    const std::string where = b_.loop.name + ": controller.";
+    require(params_.law != FmbpcForm::kIterated, where + "law",
+            "published or general: the iterated law's work per sample is not fixed");
+    require(params_.realisation == FmbpcRealisation::kParallel || realigned_, where + "realisation",
+            "parallel or realigned: others are not exported");
+    require(params_.coincidence_steps <= 10000, where + "coincidence_steps",
+            "at most 10000 in an exported block");
+  }
+
+  double weightOf(int output) const {
+    if (params_.law == FmbpcForm::kPublished) return output == b_.n_y - 1 ? 1.0 : 0.0;
+    return params_.weight_output[output];
+  }
+
+  void declare() {
+    x_ = p_.states("x", Kind::kReal, n_x_);
+    base_ = p_.states("base", Kind::kReal, b_.n_y);
+    B_ = p_.states("gainB", Kind::kReal, b_.n_y * b_.n_u);
+    offset_ = p_.states("offset", Kind::kReal, b_.n_y);  // y - y_m, or w_hat
+    measured_x_ = measured_ && !realigned_ ? p_.states("measuredX", Kind::kReal, n_x_) : x_;
+    if (delayed_) {
+      const int n = params_.delay_steps;
+      late_x_ = p_.states("lateX", Kind::kReal, n_x_);
+      late_base_ = p_.states("lateBase", Kind::kReal, b_.n_y);
+      late_B_ = p_.states("lateGainB", Kind::kReal, b_.n_y * b_.n_u);
+      past_inputs_ = p_.states("pastInputs", Kind::kReal, n * b_.n_u);
+      oldest_ = p_.state("oldestInput", Kind::kInt);
+      oldest_d_ = p_.state("oldestD", Kind::kInt);
+      if (b_.n_d > 0) late_past_ = p_.states("latePastD", Kind::kReal, b_.n_d);
+      if (b_.n_d > 0) past_ds_ = p_.states("pastDs", Kind::kReal, n * b_.n_d);
+      late_d_ = p_.works("lateD", Kind::kReal, std::max(b_.n_d, 1));
+      late_u_ = p_.works("lateU", Kind::kReal, b_.n_u);
+    }
+    undelayed_ = p_.works("undelayed", Kind::kReal, b_.n_y);
+    const int n = static_cast<int>(followed_.size());
+    free_ = p_.works("freeP", Kind::kReal, n * n_x_);
+    next_ = p_.works("nextP", Kind::kReal, n_x_);
+    sum_ = p_.works("sumS", Kind::kReal, n * n_x_);
+    effect_ = p_.works("effect", Kind::kReal, n * b_.n_u);
+    size_ = p_.works("effectSize", Kind::kReal, n * b_.n_u);
+    lack_ = p_.works("lack", Kind::kReal, n);
+    a_ = p_.work("lawA");
+    c_ = p_.work("lawC");
+    some_ = p_.work("someEffect", Kind::kBool);
+    for (int i = 0; i < b_.n_y; ++i) {
+      const std::string& name = b_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name;
+      error_out_.push_back(p_.output("rModelError_" + plainName(name), Kind::kReal,
+                                     "measured less what the model says"));
+      const auto rules =
+          static_cast<int>(model_.weights[static_cast<std::size_t>(i)].node().variable->size);
+      weights_out_.emplace_back();
+      for (int r = 0; r < rules && rules > 1; ++r)
+        weights_out_.back().push_back(
+            p_.output("rWeight_" + plainName(name) + "_" + std::to_string(r + 1), Kind::kReal,
+                      "firing weight of rule " + std::to_string(r + 1)));
+    }
+  }
+
+  void startModel() override {
+    model_.rest(x_, b_.y, b_.applied, dm_);
+    if (measured_ && !realigned_) model_.rest(measured_x_, b_.y, b_.applied, dm_);
+    p_.loop(b_.n_y, [&](const Value& i) {
+      p_.set(undelayed_[i], b_.y[i]);
+      if (realigned_) p_.set(offset_[i], 0.0);
+    });
+    if (!delayed_) return;
+    model_.rest(late_x_, b_.y, b_.applied, dm_);
+    p_.loop(params_.delay_steps, [&](const Value& k) {
+      for (int j = 0; j < b_.n_u; ++j) p_.set(past_inputs_[k * b_.n_u + j], b_.applied[j]);
+      for (int j = 0; j < b_.n_d; ++j) p_.set(past_ds_[k * b_.n_d + j], dm_[j]);
+    });
+    p_.set(oldest_, 0);
+    p_.set(oldest_d_, 0);
+  }
+
+  /// undelayed_ := y_m(k) from what was kept, under the applied input.
+  void advanceModel() override {
+    p_.loop(b_.n_y, [&](const Value& i) {
+      p_.set(undelayed_[i], base_[i]);
+      p_.loop(b_.n_u, [&](const Value& j) {
+        p_.set(undelayed_[i], undelayed_[i] + B_[i * b_.n_u + j] * b_.applied[j]);
+      });
+    });
+    if (realigned_) {
+      p_.loop(b_.n_y, [&](const Value& i) {
+        p_.set(offset_[i],
+               offset_[i] + params_.offset_gain * (b_.y[i] - undelayed_[i] - offset_[i]));
+      });
+      model_.shift(x_, b_.y, b_.applied, past_);
+      return;
+    }
+    model_.shift(x_, undelayed_, b_.applied, past_);
+    if (measured_) model_.shift(measured_x_, b_.y, b_.applied, past_);
+    if (!delayed_) return;
+    p_.loop(b_.n_u,
+            [&](const Value& j) { p_.set(late_u_[j], past_inputs_[oldest_ * b_.n_u + j]); });
+    const Value late_y = p_.works("lateY", Kind::kReal, b_.n_y);
+    p_.loop(b_.n_y, [&](const Value& i) {
+      p_.set(late_y[i], late_base_[i]);
+      p_.loop(b_.n_u, [&](const Value& j) {
+        p_.set(late_y[i], late_y[i] + late_B_[i * b_.n_u + j] * late_u_[j]);
+      });
+    });
+    model_.shift(late_x_, late_y, late_u_, late_d_before());
+    p_.loop(b_.n_u,
+            [&](const Value& j) { p_.set(past_inputs_[oldest_ * b_.n_u + j], b_.applied[j]); });
+    p_.set(oldest_, oldest_ + 1);
+    p_.when(oldest_ >= params_.delay_steps, [&] { p_.set(oldest_, 0); });
+  }
+
+  /// d that the delayed model was blended with at k-1: the one before the oldest, in the ring.
+  Value late_d_before() const { return b_.n_d == 0 ? dm_ : late_past_; }
+
+  void propose() override {
+    model_.blend(measured_ && !realigned_ ? measured_x_ : x_, dm_);
+    if (delayed_) {
+      for (int j = 0; j < b_.n_d; ++j) {
+        p_.set(late_d_[j], past_ds_[oldest_d_ * b_.n_d + j]);
+        p_.set(past_ds_[oldest_d_ * b_.n_d + j], dm_[j]);
+      }
+      p_.set(oldest_d_, oldest_d_ + 1);
+      p_.when(oldest_d_ >= params_.delay_steps, [&] { p_.set(oldest_d_, 0); });
+      delayed_->blend(measured_ ? measured_x_ : late_x_, late_d_);
+      for (int j = 0; j < b_.n_d; ++j) p_.set(late_d_before()[j], late_d_[j]);
+    }
+    if (!realigned_)
+      for (int i = 0; i < b_.n_y; ++i)
+        p_.set(offset_[i], b_.y[i] - (delayed_ ? late_x_[model_.outputRow(i)] : undelayed_[i]));
+    for (int i = 0; i < b_.n_y; ++i) {
+      const auto o = static_cast<std::size_t>(i);
+      p_.set(error_out_[o], offset_[i]);
+      for (std::size_t r = 0; r < weights_out_[o].size(); ++r)
+        p_.set(weights_out_[o][r], model_.weights[o][static_cast<int>(r)]);
+    }
+    p_.words("free response and effect of a held input after the coincidence horizon");
+    for (std::size_t k = 0; k < followed_.size(); ++k) walk(static_cast<int>(k));
+    if (params_.law == FmbpcForm::kPublished)
+      published();
+    else
+      general();
+  }
+
+  /// Rows of P = C A^H, S = C (I + ... + A^(H-1)), S B for one output that is followed.
+  void walk(int k) {
+    const int row = k * n_x_, n_u = b_.n_u;
+    const LocalModel& at = model_.layout();
+    p_.loop(n_x_, [&](const Value& j) {
+      p_.set(free_[j + row], 0.0);
+      p_.set(sum_[j + row], 0.0);
+    });
+    p_.set(free_[row + model_.outputRow(followed_[static_cast<std::size_t>(k)])], 1.0);
+    for (int j = 0; j < n_u; ++j) p_.set(size_[k * n_u + j], 0.0);
+    const auto effectOf = [&](const Value& from, int j) {
+      Value effect = from[row + static_cast<int>(at.inputState(j, 1))];
+      for (int o = 0; o < b_.n_y; ++o)
+        effect = effect + from[row + model_.outputRow(o)] * model_.B[o * n_u + j];
+      return effect;
+    };
+    p_.loop(params_.coincidence_steps, [&](const Value&) {
+      p_.loop(n_x_, [&](const Value& j) { p_.set(sum_[j + row], sum_[j + row] + free_[j + row]); });
+      for (int j = 0; j < n_u; ++j) {
+        p_.setAbsolute(a_, effectOf(free_, j));
+        p_.set(size_[k * n_u + j], size_[k * n_u + j] + a_);
+      }
+      const Value shifts = shiftTable();
+      p_.loop(n_x_, [&](const Value& j) {  // row of A^(i+1) from that of A^i
+        p_.set(a_, 0.0);
+        p_.when(shifts[j], [&] { p_.set(a_, free_[j + (row + 1)]); });
+        for (int o = 0; o < b_.n_y; ++o)
+          p_.set(a_, a_ + free_[row + model_.outputRow(o)] * model_.A[j + o * n_x_]);
+        p_.set(next_[j], a_);
+      });
+      p_.loop(n_x_, [&](const Value& j) { p_.set(free_[j + row], next_[j]); });
+    });
+    for (int j = 0; j < n_u; ++j) {
+      p_.set(effect_[k * n_u + j], effectOf(sum_, j));
+      p_.setAbsolute(a_, effect_[k * n_u + j]);
+      p_.when(a_ <= kSingularPivot * size_[k * n_u + j],
+              [&] { p_.set(effect_[k * n_u + j], 0.0); });
+    }
+    const int output = followed_[static_cast<std::size_t>(k)];
+    p_.set(lack_[k], reference(output, static_cast<double>(params_.aimedColumn() + 1)));
+    if (!realigned_) p_.set(lack_[k], lack_[k] - offset_[output]);
+    for (int o = 0; o < b_.n_y; ++o) {
+      const Value own = realigned_ ? model_.g[o] + offset_[o] : model_.g[o];
+      p_.set(lack_[k], lack_[k] - sum_[row + model_.outputRow(o)] * own);
+    }
+    for (int d = 0; d < b_.n_d; ++d)
+      if (at.model().maxLag(SignalKind::kDisturbance, d) > 0)
+        p_.set(lack_[k],
+               lack_[k] - sum_[row + static_cast<int>(at.disturbanceState(d, 1))] * dm_[d]);
+    p_.loop(n_x_, [&](const Value& j) { p_.set(lack_[k], lack_[k] - free_[j + row] * x_[j]); });
+  }
+
+  /// Whether row j + 1 of the state is row j of one sample before.
+  Value shiftTable() {
+    for (const ir::Variable& v : p_.variables())
+      if (v.name == "shifts") return Value(v);
+    std::vector<double> shifts(static_cast<std::size_t>(n_x_), 0.0);
+    const LocalModel& at = model_.layout();
+    const TsModel& model = at.model();
+    const auto mark = [&](Eigen::Index first, int rows) {
+      for (Eigen::Index i = first; i + 1 < first + rows; ++i)
+        shifts[static_cast<std::size_t>(i)] = 1.0;
+    };
+    for (int i = 0; i < b_.n_y; ++i)
+      mark(at.outputState(i), std::max(model.maxLag(SignalKind::kOutput, i) + 1, 1));
+    for (int i = 0; i < b_.n_u; ++i)
+      mark(at.inputState(i, 1), std::max(model.maxLag(SignalKind::kInput, i), 1));
+    for (int i = 0; i < b_.n_d; ++i)
+      mark(at.disturbanceState(i, 1), std::max(model.maxLag(SignalKind::kDisturbance, i), 0));
+    return p_.table("shifts", shifts, Kind::kBool);
+  }
+
+  void published() {
+    p_.when(
+        effect_[0] == 0.0 || !ir::sane(effect_[0]),
+        [&] {
+          p_.set(b_.ok, false);
+          p_.set(b_.u[0], b_.applied[0]);
+        },
+        [&] { p_.set(b_.u[0], lack_[0] / effect_[0]); });
+  }
+
+  /// u = (M' W M + L)^-1 (M' W e + L u(k-1)), by Cholesky of the matrix with a unit diagonal.
+  void general() {
+    const int n = static_cast<int>(followed_.size()), m = b_.n_u;
+    const Value normal = p_.works("normal", Kind::kReal, m * m),
+                scale = p_.works("scale", Kind::kReal, m),
+                right = p_.works("rightSide", Kind::kReal, m);
+    std::vector<double> weight, moves;
+    for (const int i : followed_) weight.push_back(weightOf(i));
+    for (int j = 0; j < m; ++j) moves.push_back(params_.weight_move[j]);
+    const Value w = p_.table("weightOutput", weight), l = p_.table("weightMove", moves);
+    p_.set(some_, false);
+    p_.loop(n * m,
+            [&](const Value& i) { p_.when(effect_[i] != 0.0, [&] { p_.set(some_, true); }); });
+    p_.when(!some_, [&] { p_.set(b_.ok, false); });
+    p_.loop(m, [&](const Value& i) {
+      p_.set(right[i], l[i] * b_.applied[i]);
+      p_.loop(n, [&](const Value& k) {
+        p_.set(right[i], right[i] + w[k] * effect_[k * m + i] * lack_[k]);
+      });
+      p_.loop(m, [&](const Value& j) {
+        p_.set(a_, 0.0);
+        p_.loop(n, [&](const Value& k) {
+          p_.set(a_, a_ + w[k] * effect_[k * m + i] * effect_[k * m + j]);
+        });
+        p_.when(i == j, [&] { p_.set(a_, a_ + l[i]); });
+        p_.set(normal[i * m + j], a_);
+      });
+      p_.set(a_, normal[i * m + i]);
+      p_.set(scale[i], 0.0);
+      p_.when(
+          a_ > 0.0 && ir::sane(a_), [&] { p_.set(scale[i], 1.0 / ir::squareRoot(p_, a_)); },
+          [&] { p_.set(b_.ok, false); });
+    });
+    p_.when(
+        b_.ok, [&] { factor(normal, scale, right, m); },
+        [&] { p_.loop(m, [&](const Value& i) { p_.set(b_.u[i], b_.applied[i]); }); });
+  }
+
+  void factor(const Value& normal, const Value& scale, const Value& right, int m) {
+    p_.loop(m, [&](const Value& i) {
+      p_.set(right[i], right[i] * scale[i]);
+      p_.loop(m, [&](const Value& j) {
+        p_.set(normal[i * m + j], normal[i * m + j] * scale[i] * scale[j]);
+      });
+    });
+    const auto entry = [&](int i, int j) { return normal[i * m + j]; };
+    for (int j = 0; j < m; ++j) {
+      p_.set(a_, entry(j, j));
+      for (int k = 0; k < j; ++k) p_.set(a_, a_ - entry(j, k) * entry(j, k));
+      p_.when(
+          a_ > kSingularPivot, [&] { p_.set(c_, ir::squareRoot(p_, a_)); },
+          [&] {
+            p_.set(b_.ok, false);
+            p_.set(c_, 1.0);
+          });
+      p_.set(entry(j, j), c_);
+      for (int i = j + 1; i < m; ++i) {
+        p_.set(a_, entry(i, j));
+        for (int k = 0; k < j; ++k) p_.set(a_, a_ - entry(i, k) * entry(j, k));
+        p_.set(entry(i, j), a_ / c_);
+      }
+    }
+    for (int i = 0; i < m; ++i) {
+      p_.set(a_, right[i]);
+      for (int k = 0; k < i; ++k) p_.set(a_, a_ - entry(i, k) * right[k]);
+      p_.set(right[i], a_ / entry(i, i));
+    }
+    for (int i = m - 1; i >= 0; --i) {
+      p_.set(a_, right[i]);
+      for (int k = i + 1; k < m; ++k) p_.set(a_, a_ - entry(k, i) * right[k]);
+      p_.set(right[i], a_ / entry(i, i));
+    }
+    p_.loop(m, [&](const Value& i) { p_.set(b_.u[i], right[i] * scale[i]); });
+  }
+
+  /// y_m(k+1) but for the input.
+  void keep() override {
+    const auto keepOf = [&](const ModelCode& model, const Value& x, const Value& base,
+                            const Value& B) {
+      p_.loop(b_.n_y, [&](const Value& i) {
+        p_.set(base[i], model.g[i]);
+        p_.loop(n_x_,
+                [&](const Value& j) { p_.set(base[i], base[i] + model.A[i * n_x_ + j] * x[j]); });
+      });
+      p_.loop(b_.n_y * b_.n_u, [&](const Value& i) { p_.set(B[i], model.B[i]); });
+    };
+    keepOf(model_, x_, base_, B_);
+    if (delayed_) keepOf(*delayed_, late_x_, late_base_, late_B_);
+  }
+
+  Value healthy() override {
+    p_.set(some_, true);
+    p_.loop(n_x_,
+            [&](const Value& i) { p_.when(!ir::sane(x_[i]), [&] { p_.set(some_, false); }); });
+    p_.loop(b_.n_y,
+            [&](const Value& i) { p_.when(!ir::sane(base_[i]), [&] { p_.set(some_, false); }); });
+    return some_;
+  }
+
+  const FmbpcParams& params_;
+  bool realigned_, measured_;
+  ModelCode model_;
+  std::optional<ModelCode> delayed_;
+  int n_x_;
+  std::vector<int> followed_;
+  Value x_{0}, base_{0}, B_{0}, offset_{0}, measured_x_{0}, late_x_{0}, late_base_{0}, late_B_{0},
+      past_inputs_{0}, oldest_{0}, oldest_d_{0}, past_ds_{0}, late_d_{0}, late_u_{0}, late_past_{0},
+      undelayed_{0}, free_{0}, next_{0}, sum_{0}, effect_{0}, size_{0}, lack_{0}, a_{0}, c_{0},
+      some_{0};
+  std::vector<Value> error_out_;
+  std::vector<std::vector<Value>> weights_out_;
+};
+
+}  // namespace
+
+std::unique_ptr<LawCode> makeFmbpcCode(BlockParts& parts) {
+  const auto* params = findParams<FmbpcParams>(*parts.loop.controller);
+  if (params == nullptr) return nullptr;
+  require(parts.loop.has_model, parts.loop.name + ": model.file", "a model for the exported law");
+  return std::make_unique<FmbpcCode>(parts, *params);
+}
+
+}  // namespace fpc

@@ -1,0 +1,21 @@
+// Which laws are exported.
+#include "export/block.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+
+std::unique_ptr<LawCode> makeLawCode(BlockParts& parts) {
+  const LoopFile& loop = parts.loop;
+  require(!loop.has_clp, loop.name + ": clp",
+          "clp.enabled: false; the constraint optimizer is not exported, its law alone would be "
+          "another loop");
+  for (const auto make : {&makePiCode, &makeSupervisorCode, &makeFmbpcCode, &makeOptimalCode})
+    if (std::unique_ptr<LawCode> code = make(parts)) return code;
+  const std::string& type = loop.controllerType().name;
+  require(false, loop.name + ": controller.type",
+          "pi, load_supervisor, fmbpc or fuzzy_optimal; " + type +
+              " is not exported: its work per sample is not fixed, or it learns while it runs");
+  return nullptr;
+}
+
+}  // namespace fpc

@@ -1,0 +1,531 @@
+#include "export/model_code.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "export/math.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+
+using ir::Kind;
+using ir::Value;
+
+namespace {
+
+std::size_t place(int i) { return static_cast<std::size_t>(i); }
+
+bool isLinear(MembershipShape shape) {
+  return shape == MembershipShape::kTriangular || shape == MembershipShape::kTrapezoidal;
+}
+
+}  // namespace
+
+ModelCode::ModelCode(BlockParts& parts, const TsModel& model, const std::string& prefix,
+                     const std::string& tables)
+    : A(0),
+      B(0),
+      g(0),
+      b_(parts),
+      p_(parts.p),
+      layout_(model),
+      prefix_(prefix),
+      tables_(tables),
+      a_(0),
+      b1_(0),
+      c_(0),
+      n_(0) {
+  A = p_.works(prefix + "A", Kind::kReal, b_.n_y * n_x());
+  B = p_.works(prefix + "B", Kind::kReal, b_.n_y * b_.n_u);
+  g = p_.works(prefix + "g", Kind::kReal, b_.n_y);
+  a_ = p_.work(prefix + "t1");
+  b1_ = p_.work(prefix + "t2");
+  c_ = p_.work(prefix + "t3");
+  n_ = p_.work(prefix + "tn", Kind::kInt);
+  for (int o = 0; o < b_.n_y; ++o)
+    weights.push_back(p_.works(prefix + "w" + std::to_string(o), Kind::kReal,
+                               static_cast<int>(model.submodels[place(o)].rules.size())));
+}
+
+Value ModelCode::table(const std::string& name, const std::vector<double>& values) {
+  for (const ir::Variable& v : p_.variables())
+    if (v.name == tables_ + name) return Value(v);
+  return p_.table(tables_ + name, values);
+}
+
+Value ModelCode::placed(const Regressor& r, const Value& state, const Value& d) const {
+  switch (r.kind) {
+    case SignalKind::kOutput:
+      return state[static_cast<int>(layout_.outputState(r.index, r.lag))];
+    case SignalKind::kInput:
+      return state[static_cast<int>(layout_.inputState(r.index, std::max(r.lag, 1)))];
+    default:
+      if (r.lag == 0) return d[r.index];
+      return state[static_cast<int>(layout_.disturbanceState(r.index, r.lag))];
+  }
+}
+
+/// Feet and shoulders of each rule's set.
+std::vector<double> ModelCode::corner(int output, std::size_t antecedent, int which) const {
+  std::vector<double> all;
+  for (const Rule& rule : layout_.model().submodels[place(output)].rules) {
+    const Membership& m = rule.antecedents[antecedent];
+    const std::vector<double>& p = m.parameters;
+    if (m.shape == MembershipShape::kGaussian)
+      all.push_back(which == 0 ? p[0] - 3.0 * p[1] : which == 3 ? p[0] + 3.0 * p[1] : p[0]);
+    else if (m.shape == MembershipShape::kTriangular)
+      all.push_back(p[static_cast<std::size_t>(which == 0 ? 0 : which == 3 ? 2 : 1)]);
+    else
+      all.push_back(p[static_cast<std::size_t>(which)]);
+  }
+  return all;
+}
+
+/// Adds the logarithm of this antecedent's degree to the weights; linear flanks multiply `product`.
+void ModelCode::degrees(int output, std::size_t antecedent, const Value& z, const Value& alive,
+                        const Value& product) {
+  const OutputModel& submodel = layout_.model().submodels[place(output)];
+  const MembershipShape shape = submodel.rules.front().antecedents[antecedent].shape;
+  for (const Rule& rule : submodel.rules)
+    require(rule.antecedents[antecedent].shape == shape ||
+                (isLinear(shape) && isLinear(rule.antecedents[antecedent].shape)),
+            "export: model " + layout_.model().name, "sets of one shape on each antecedent");
+  const std::string name = "O" + std::to_string(output) + "Z" + std::to_string(antecedent);
+  const int n = static_cast<int>(submodel.rules.size());
+  const Value& w = weights[place(output)];
+  if (shape == MembershipShape::kGaussian) {
+    std::vector<double> centre, width;
+    for (const Rule& rule : submodel.rules) {
+      centre.push_back(rule.antecedents[antecedent].parameters[0]);
+      width.push_back(rule.antecedents[antecedent].parameters[1]);
+    }
+    const Value centres = table(name + "Centre", centre), widths = table(name + "Width", width);
+    p_.loop(n, [&](const Value& r) {
+      p_.set(a_, (z - centres[r]) / widths[r]);
+      p_.set(w[r], w[r] - 0.5 * a_ * a_);
+    });
+    return;
+  }
+  const Value c0 = table(name + "C0", corner(output, antecedent, 0)),
+              c1 = table(name + "C1", corner(output, antecedent, 1)),
+              c2 = table(name + "C2", corner(output, antecedent, 2)),
+              c3 = table(name + "C3", corner(output, antecedent, 3));
+  p_.loop(n, [&](const Value& r) {
+    p_.set(a_, z - c2[r]);
+    p_.set(b1_, c3[r] - c2[r]);
+    p_.when(z < c1[r], [&] {
+      p_.set(a_, c1[r] - z);
+      p_.set(b1_, c1[r] - c0[r]);
+    });
+    p_.when(a_ > 0.0, [&] {
+      if (isLinear(shape)) {
+        p_.when(
+            a_ < b1_, [&] { p_.set(product[r], product[r] * (1.0 - a_ / b1_)); },
+            [&] { p_.set(alive[r], false); });
+      } else {
+        p_.when(
+            b1_ > 0.0,
+            [&] {
+              p_.set(c_, a_ / b1_);
+              p_.set(w[r], w[r] - 7.0 * c_ * c_);
+            },
+            [&] { p_.set(alive[r], false); });
+      }
+    });
+  });
+}
+
+/// Where no rule fires the nearest one has all the weight.
+void ModelCode::nearest(int output, const std::vector<Value>& z) {
+  const int n = static_cast<int>(layout_.model().submodels[place(output)].rules.size());
+  const Value& w = weights[place(output)];
+  const Value far = p_.works(prefix_ + "far" + std::to_string(output), Kind::kReal, n);
+  p_.loop(n, [&](const Value& r) { p_.set(far[r], 0.0); });
+  for (std::size_t i = 0; i < z.size(); ++i) {
+    const std::string name = "O" + std::to_string(output) + "Z" + std::to_string(i);
+    const Value c0 = table(name + "C0", corner(output, i, 0)),
+                c3 = table(name + "C3", corner(output, i, 3));
+    p_.loop(n, [&](const Value& r) {
+      p_.set(a_, 0.0);
+      p_.when(z[i] < c0[r], [&] { p_.set(a_, c0[r] - z[i]); });
+      p_.when(z[i] > c3[r], [&] { p_.set(a_, z[i] - c3[r]); });
+      p_.set(b1_, c3[r] - c0[r]);
+      p_.when(b1_ > 0.0, [&] { p_.set(a_, a_ / b1_); });
+      p_.set(far[r], far[r] + a_);
+    });
+  }
+  p_.set(n_, 0);
+  p_.loop(n, [&](const Value& r) { p_.when(far[r] < far[n_], [&] { p_.set(n_, r); }); });
+  p_.loop(n, [&](const Value& r) { p_.set(w[r], 0.0); });
+  p_.set(w[n_], 1.0);
+}
+
+void ModelCode::fire(int output, const Value& state, const Value& d) {
+  const OutputModel& submodel = layout_.model().submodels[place(output)];
+  const int n = static_cast<int>(submodel.rules.size());
+  const Value& w = weights[place(output)];
+  if (n == 1) return p_.set(w[0], 1.0);
+  require(!submodel.rules.front().multivariate, "export: model " + layout_.model().name,
+          "sets on one variable each: multivariate sets are not exported");
+  const auto crisp = [&](const Membership& m) {
+    return isLinear(m.shape) ||
+           (m.shape == MembershipShape::kExponential &&
+            (m.parameters[0] == m.parameters[1] || m.parameters[2] == m.parameters[3]));
+  };
+  bool may_miss = false, linear = false;
+  for (const Rule& rule : submodel.rules)
+    for (const Membership& m : rule.antecedents) {
+      may_miss = may_miss || crisp(m);
+      linear = linear || isLinear(m.shape);
+    }
+  const std::string name = std::to_string(output);
+  const Value alive = p_.works(prefix_ + "alive" + name, Kind::kBool, n),
+              product = p_.works(prefix_ + "product" + name, Kind::kReal, n);
+  p_.loop(n, [&](const Value& r) {
+    p_.set(w[r], 0.0);
+    p_.set(alive[r], true);
+    p_.set(product[r], 1.0);
+  });
+  std::vector<Value> z;
+  for (std::size_t i = 0; i < submodel.antecedents.size(); ++i) {
+    z.push_back(p_.work(prefix_ + "z" + name + "v" + std::to_string(i)));
+    p_.set(z.back(), placed(submodel.antecedents[i], state, d));
+    degrees(output, i, z.back(), alive, product);
+  }
+  p_.set(c_, -1e30);
+  p_.loop(n, [&](const Value& r) {
+    p_.when(may_miss ? alive[r] && w[r] > c_ : w[r] > c_, [&] { p_.set(c_, w[r]); });
+  });
+  p_.set(b1_, 0.0);
+  p_.loop(n, [&](const Value& r) {
+    p_.set(a_, ir::exponential(p_, w[r] - c_));
+    if (linear) p_.set(a_, a_ * product[r]);
+    if (may_miss) p_.when(!alive[r], [&] { p_.set(a_, 0.0); });
+    p_.set(w[r], a_);
+    p_.set(b1_, b1_ + a_);
+  });
+  const auto normalise = [&] { p_.loop(n, [&](const Value& r) { p_.set(w[r], w[r] / b1_); }); };
+  if (may_miss)
+    p_.when(b1_ > 0.0, normalise, [&] { nearest(output, z); });
+  else
+    normalise();
+}
+
+void ModelCode::blend(const Value& state, const Value& d) {
+  p_.loop(b_.n_y * n_x(), [&](const Value& i) { p_.set(A[i], 0.0); });
+  p_.loop(b_.n_y * b_.n_u, [&](const Value& i) { p_.set(B[i], 0.0); });
+  for (int o = 0; o < b_.n_y; ++o) {
+    const OutputModel& submodel = layout_.model().submodels[place(o)];
+    fire(o, state, d);
+    const int n = static_cast<int>(submodel.rules.size()),
+              m = static_cast<int>(submodel.regressors.size());
+    std::vector<double> coefficients, offsets, target;
+    for (const Rule& rule : submodel.rules) {
+      offsets.push_back(rule.offset);
+      for (Eigen::Index i = 0; i < rule.coefficients.size(); ++i)
+        coefficients.push_back(rule.coefficients[i]);
+    }
+    const std::string name = "O" + std::to_string(o);
+    const Value table_of = table(name + "Coefficients", coefficients),
+                offset = table(name + "Offsets", offsets);
+    const Value blended = p_.works(prefix_ + "k" + std::to_string(o), Kind::kReal, m);
+    const Value& w = weights[place(o)];
+    p_.set(g[o], 0.0);
+    p_.loop(m, [&](const Value& i) { p_.set(blended[i], 0.0); });
+    p_.loop(n, [&](const Value& r) {
+      p_.set(g[o], g[o] + w[r] * offset[r]);
+      p_.loop(m,
+              [&](const Value& i) { p_.set(blended[i], blended[i] + w[r] * table_of[r * m + i]); });
+    });
+    for (int i = 0; i < m; ++i) {
+      const Regressor& r = submodel.regressors[place(i)];
+      if (r.kind == SignalKind::kInput && r.lag == 0)
+        p_.set(B[o * b_.n_u + r.index], blended[i]);
+      else if (r.kind == SignalKind::kDisturbance && r.lag == 0)
+        p_.set(g[o], g[o] + blended[i] * d[r.index]);
+      else
+        p_.set(A[o * n_x() + static_cast<int>(placed(r, A, d).node().of[0]->number)], blended[i]);
+    }
+  }
+}
+
+namespace {
+
+/// Calls for the first row and the number of rows of each signal of the kind.
+template <typename Visit>
+void eachSignal(const LocalModel& layout, SignalKind kind, const Visit& visit) {
+  const TsModel& model = layout.model();
+  const bool output = kind == SignalKind::kOutput;
+  const int least = kind == SignalKind::kDisturbance ? 0 : 1;
+  for (std::size_t i = 0; i < model.signals(kind).size(); ++i) {
+    const int index = static_cast<int>(i);
+    const int rows = std::max(model.maxLag(kind, index) + (output ? 1 : 0), least);
+    const Eigen::Index first = output                       ? layout.outputState(index)
+                               : kind == SignalKind::kInput ? layout.inputState(index, 1)
+                                                            : layout.disturbanceState(index, 1);
+    visit(index, static_cast<int>(first), rows);
+  }
+}
+
+}  // namespace
+
+void ModelCode::rest(const Value& state, const Value& y, const Value& u, const Value& d) {
+  const auto fill = [&](SignalKind kind, const Value& from) {
+    eachSignal(layout_, kind, [&](int index, int first, int rows) {
+      p_.loop(rows, [&](const Value& i) { p_.set(state[i + first], from[index]); });
+    });
+  };
+  fill(SignalKind::kOutput, y);
+  fill(SignalKind::kInput, u);
+  fill(SignalKind::kDisturbance, d);
+}
+
+void ModelCode::shift(const Value& state, const Value& y, const Value& u, const Value& d) {
+  const auto push = [&](SignalKind kind, const Value& newest) {
+    eachSignal(layout_, kind, [&](int index, int first, int rows) {
+      if (rows == 0) return;
+      p_.loop(rows - 1, [&](const Value& i) {
+        p_.set(state[Value(first + rows - 1) - i], state[Value(first + rows - 2) - i]);
+      });
+      p_.set(state[first], newest[index]);
+    });
+  };
+  push(SignalKind::kOutput, y);
+  push(SignalKind::kInput, u);
+  push(SignalKind::kDisturbance, d);
+}
+
+GuardCode::GuardCode(BlockParts& parts, const TsModel& model)
+    : b_(parts),
+      p_(parts.p),
+      model_(model),
+      known_(knowsDomain(model)),
+      trust_(0),
+      square_(0),
+      nearest_(0),
+      a_(0),
+      move_(0),
+      lower_(0),
+      upper_(0),
+      acting_(0),
+      trust_out_(0) {
+  const GuardParams& guard = parts.loop.guard;
+  const std::string where = parts.loop.name + ": guard.";
+  if (guard.enabled) {
+    require(!guard.pi, where + "pi",
+            "no fallback: the exported block has none but its substitutes");
+    require(guard.lock_samples == 0, where + "lock_samples",
+            "0: locks are not looked for in the exported block");
+    require(guard.swing_move == 0.0, where + "swing_move",
+            "0: swings are not looked for in the exported block");
+  }
+  trust_ = p_.work("trust");
+  square_ = p_.work("square");
+  nearest_ = p_.work("nearest");
+  a_ = p_.work("guardA");
+  move_ = p_.work("guardMove");
+  lower_ = p_.work("guardLower");
+  upper_ = p_.work("guardUpper");
+  acting_ = p_.work("acting", Kind::kBool);
+  trust_out_ = p_.output("rTrust", Kind::kReal, "1 inside the data of the model, 0 far from them");
+}
+
+/// trust_ := processTrustOf() the outputs and disturbances.
+void GuardCode::distance() {
+  const int n = b_.n_y + b_.n_d;
+  const auto row = [&](int i) { return Eigen::Index{i < b_.n_y ? i : i + b_.n_u}; };
+  const auto value = [&](int i) { return i < b_.n_y ? b_.y[i] : b_.d[i - b_.n_y]; };
+  double from = 0.0, width = kRangeFade;
+  if (model_.domain.empty()) {
+    p_.set(nearest_, 0.0);
+    for (int i = 0; i < n; ++i) {
+      const SignalInfo& s =
+          i < b_.n_y ? model_.outputs[place(i)] : model_.disturbances[place(i - b_.n_y)];
+      const double range = s.upper - s.lower;
+      if (!std::isfinite(range) || range <= 0.0) continue;
+      p_.set(a_, 0.0);
+      p_.when(value(i) < s.lower, [&] { p_.set(a_, (s.lower - value(i)) / range); });
+      p_.when(value(i) > s.upper, [&] { p_.set(a_, (value(i) - s.upper) / range); });
+      p_.set(nearest_, nearest_ + a_ * a_);
+    }
+  } else {
+    const ModelDomain& domain = model_.domain;
+    from = domain.radius;
+    width = std::max(kDomainFade * domain.radius, kRangeFade);
+    std::vector<int> counted;
+    for (int i = 0; i < n; ++i)
+      if (std::isfinite(domain.scale[row(i)])) counted.push_back(i);
+    std::vector<double> centres, inverse;
+    for (Eigen::Index c = 0; c < domain.centres.cols(); ++c)
+      for (const int i : counted) centres.push_back(domain.centres(row(i), c));
+    const int m = static_cast<int>(counted.size());
+    for (const int i : counted) inverse.push_back(1.0 / domain.scale[row(i)]);
+    p_.set(nearest_, 1e24);
+    if (m > 0) {
+      const Value centre = p_.table("centres", centres), scale = p_.table("centreScale", inverse);
+      const Value point = p_.works("point", Kind::kReal, m);
+      for (int i = 0; i < m; ++i) p_.set(point[i], value(counted[place(i)]));
+      p_.loop(static_cast<int>(domain.centres.cols()), [&](const Value& c) {
+        p_.set(square_, 0.0);
+        p_.loop(m, [&](const Value& j) {
+          p_.set(a_, (point[j] - centre[c * m + j]) * scale[j]);
+          p_.set(square_, square_ + a_ * a_);
+        });
+        p_.when(square_ < nearest_, [&] { p_.set(nearest_, square_); });
+      });
+    } else {
+      p_.set(nearest_, 0.0);
+    }
+  }
+  p_.set(trust_, 1.0);
+  p_.when(nearest_ > from * from, [&] {
+    p_.set(a_, (ir::squareRoot(p_, nearest_) - from) / width);
+    p_.when(
+        a_ >= 1.0, [&] { p_.set(trust_, 0.0); },
+        [&] {
+          p_.when(a_ > 0.0, [&] {
+            p_.set(trust_, 0.5 * (1.0 + ir::cosine(p_, 3.14159265358979323846 * a_)));
+          });
+        });
+  });
+}
+
+void GuardCode::step() {
+  const GuardParams& guard = b_.loop.guard;
+  if (!known_) return;
+  p_.words("how far the model is trusted here, and how far the input may move");
+  distance();
+  p_.set(trust_out_, trust_);
+  if (!guard.enabled) return;
+  const double width = guard.trust_high - guard.trust_low;
+  const double first = std::max(0.5, guard.least_move);
+  p_.set(acting_, false);
+  p_.when(b_.ok && trust_ < guard.trust_high, [&] {
+    p_.set(a_, 0.0);
+    if (width > 0.0) {
+      p_.set(a_, (trust_ - guard.trust_low) / width);
+      p_.clamp(a_, 0.0, 1.0);
+    }
+    p_.set(a_, guard.least_move + (first - guard.least_move) * a_);
+    p_.loop(b_.n_u, [&](const Value& i) {
+      p_.set(move_, b_.move[i]);
+      p_.when(a_ * (b_.upper[i] - b_.lower[i]) < move_,
+              [&] { p_.set(move_, a_ * (b_.upper[i] - b_.lower[i])); });
+      const auto end = [&](const Value& to, const Value& limit) {
+        p_.set(to, limit);
+        p_.clamp(to, b_.applied[i] - move_, b_.applied[i] + move_);
+        p_.clamp(to, b_.lower[i], b_.upper[i]);
+      };
+      end(lower_, b_.lower[i]);
+      end(upper_, b_.upper[i]);
+      p_.when(b_.u[i] < lower_, [&] {
+        p_.set(b_.u[i], lower_);
+        p_.set(acting_, true);
+      });
+      p_.when(b_.u[i] > upper_, [&] {
+        p_.set(b_.u[i], upper_);
+        p_.set(acting_, true);
+      });
+    });
+  });
+  p_.when(acting_, [&] { p_.set(b_.source, static_cast<int>(ActionSource::kGuarded)); });
+}
+
+void GuardCode::begin() { p_.set(trust_out_, 1.0); }
+
+PredictiveCode::PredictiveCode(BlockParts& parts, const PredictiveLawParams& params,
+                               const TsModel& model)
+    : b_(parts),
+      p_(parts.p),
+      law_(params),
+      reference_(0),
+      start_(0),
+      dm_(0),
+      past_(0),
+      guard_(parts, model),
+      pending_(0),
+      bias_(0),
+      clipped_(0) {
+  require(!params.preview, parts.loop.name + ": controller.preview",
+          "false: a block gets setpoints as they come and cannot look ahead");
+  require(params.disturbance_feedforward || params.disturbance_nominal.size() == parts.n_d,
+          parts.loop.name + ": controller.disturbance_nominal", "a number for each disturbance");
+  require(model.unmeasured.empty(), parts.loop.name + ": controller.observer.estimated",
+          "nothing: the exported block estimates no disturbance");
+  reference_ = p_.states("reference", Kind::kReal, b_.n_y);
+  start_ = p_.state("startPending", Kind::kBool, 1);
+  pending_ = p_.state("lawPending", Kind::kBool);
+  bias_ = p_.states("lawBias", Kind::kReal, b_.n_u);
+  past_ = b_.n_d > 0 ? p_.states("pastD", Kind::kReal, b_.n_d) : Value(0.0);
+  dm_ = p_.works("modelD", Kind::kReal, std::max(b_.n_d, 1));
+  clipped_ = p_.work("clipped", Kind::kBool);
+}
+
+void PredictiveCode::reset() {
+  p_.loop(b_.n_y, [&](const Value& i) { p_.set(reference_[i], b_.y[i]); });
+  p_.loop(b_.n_u, [&](const Value& i) { p_.set(bias_[i], 0.0); });
+  p_.set(pending_, true);
+  p_.set(start_, true);
+}
+
+Value PredictiveCode::reference(int output, double samples) const {
+  const double power = std::pow(law_.reference_pole[output], samples);
+  return power * reference_[output] + (1.0 - power) * b_.setpoint[output];
+}
+
+void PredictiveCode::step() {
+  for (int i = 0; i < b_.n_y && law_.reference_holdback.size() > 0; ++i)
+    if (std::isfinite(law_.reference_holdback[i]))
+      p_.clamp(reference_[i], b_.y[i] - law_.reference_holdback[i],
+               b_.y[i] + law_.reference_holdback[i]);
+  for (int i = 0; i < b_.n_d; ++i)
+    p_.set(dm_[i], law_.disturbance_feedforward ? b_.d[i] : Value(law_.disturbance_nominal[i]));
+  p_.when(
+      start_,
+      [&] {
+        for (int i = 0; i < b_.n_d; ++i) p_.set(past_[i], dm_[i]);
+        startModel();
+      },
+      [&] { advanceModel(); });
+  p_.set(start_, false);
+  propose();
+  p_.loop(b_.n_u,
+          [&](const Value& i) { p_.when(!ir::sane(b_.u[i]), [&] { p_.set(b_.ok, false); }); });
+  p_.set(clipped_, false);
+  p_.when(
+      b_.ok,
+      [&] {
+        const Value asked = p_.works("proposal", Kind::kReal, b_.n_u);
+        p_.loop(b_.n_u, [&](const Value& i) {
+          p_.when(
+              pending_,
+              [&] {
+                p_.set(bias_[i], b_.applied[i] - b_.u[i]);
+                p_.set(b_.u[i], b_.applied[i]);
+              },
+              [&] { p_.set(b_.u[i], b_.u[i] + bias_[i]); });
+          p_.set(asked[i], b_.u[i]);
+          p_.set(bias_[i], bias_[i] * law_.transfer_decay);
+        });
+        p_.set(pending_, false);
+        clipInputs(b_, b_.u, b_.applied);
+        p_.loop(b_.n_u, [&](const Value& i) {
+          p_.when(b_.u[i] != asked[i], [&] { p_.set(clipped_, true); });
+        });
+      },
+      [&] {
+        p_.set(pending_, true);
+        p_.loop(b_.n_u, [&](const Value& i) { p_.set(bias_[i], 0.0); });
+      });
+  p_.when(clipped_, [&] { p_.set(b_.source, static_cast<int>(ActionSource::kClipped)); });
+  guard_.step();
+  keep();
+  for (int i = 0; i < b_.n_d; ++i) p_.set(past_[i], dm_[i]);
+  p_.when(!healthy(), [&] { p_.set(start_, true); });
+  for (int i = 0; i < b_.n_y; ++i)
+    p_.set(reference_[i], law_.reference_pole[i] * reference_[i] +
+                              (1.0 - law_.reference_pole[i]) * b_.setpoint[i]);
+}
+
+}  // namespace fpc

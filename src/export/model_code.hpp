@@ -1,0 +1,97 @@
+// A Takagi-Sugeno model, how far it is trusted, and the references, as code of a block. Private to
+// the room.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "export/block.hpp"
+#include "fmbpc/control/predictive_law.hpp"
+#include "fmbpc/model/local_model.hpp"
+
+namespace fpc {
+
+/// LocalModel: blend() makes y(k+1) = A x + B u + g at the given antecedents; only the rows of the
+/// outputs are stored, the others shift.
+class ModelCode {
+ public:
+  /// `model` is matched to the plant. Names of variables begin with `prefix`; tables with `tables`,
+  /// which two copies of a model share.
+  ModelCode(BlockParts& parts, const TsModel& model, const std::string& prefix,
+            const std::string& tables);
+  const LocalModel& layout() const { return layout_; }
+  int n_x() const { return static_cast<int>(layout_.stateSize()); }
+  int outputRow(int output) const { return static_cast<int>(layout_.outputState(output)); }
+
+  /// Firing weights and rows at this state (u(k) replaced by u(k-1)) and d(k).
+  void blend(const ir::Value& state, const ir::Value& d);
+  /// All of a state at rest.
+  void rest(const ir::Value& state, const ir::Value& y, const ir::Value& u, const ir::Value& d);
+  /// A state one sample on: `y` enters, `u` and `d` become the newest past ones.
+  void shift(const ir::Value& state, const ir::Value& y, const ir::Value& u, const ir::Value& d);
+
+  ir::Value A, B, g;               ///< n_y n_x, n_y n_u, n_y
+  std::vector<ir::Value> weights;  ///< of each output
+
+ private:
+  void fire(int output, const ir::Value& state, const ir::Value& d);
+  void degrees(int output, std::size_t antecedent, const ir::Value& z, const ir::Value& alive,
+               const ir::Value& product);
+  void nearest(int output, const std::vector<ir::Value>& z);
+  ir::Value placed(const Regressor& r, const ir::Value& state, const ir::Value& d) const;
+  std::vector<double> corner(int output, std::size_t antecedent, int which) const;
+  ir::Value table(const std::string& name, const std::vector<double>& values);
+
+  BlockParts& b_;
+  ir::Program& p_;
+  LocalModel layout_;
+  std::string prefix_, tables_;
+  ir::Value a_, b1_, c_, n_;
+};
+
+/// u(k) inside what the guard leaves of the moves: see GuardedController without fallback, locks
+/// and swings. @throws InputError for those.
+class GuardCode {
+ public:
+  GuardCode(BlockParts& parts, const TsModel& model);
+  void begin();
+  void step();  ///< after the law, whose answer it narrows
+
+ private:
+  void distance();
+
+  BlockParts& b_;
+  ir::Program& p_;
+  const TsModel& model_;
+  bool known_;
+  ir::Value trust_, square_, nearest_, a_, move_, lower_, upper_, acting_, trust_out_;
+};
+
+/// What PredictiveLaw is to every law with a model: references, hand-over, holding.
+class PredictiveCode : public LawCode {
+ public:
+  void begin() override { guard_.begin(); }
+  void reset() override;
+  void step() override;
+
+ protected:
+  PredictiveCode(BlockParts& parts, const PredictiveLawParams& params, const TsModel& model);
+  virtual void startModel() = 0;    ///< at rest at this sample
+  virtual void advanceModel() = 0;  ///< from k-1
+  virtual void propose() = 0;       ///< b_.u before transfer and limits; may take b_.ok away
+  virtual void keep() {}            ///< for the next sample
+  virtual ir::Value healthy() = 0;  ///< whether the states can be used
+  /// y_r(k + n) of one output, n constant.
+  ir::Value reference(int output, double samples) const;
+
+  BlockParts& b_;
+  ir::Program& p_;
+  const PredictiveLawParams& law_;
+  ir::Value reference_, start_, dm_, past_;
+
+ private:
+  GuardCode guard_;
+  ir::Value pending_, bias_, clipped_;
+};
+
+}  // namespace fpc

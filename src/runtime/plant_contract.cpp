@@ -1,0 +1,159 @@
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "analysis/steady_state.hpp"
+#include "base/random.hpp"
+#include "fmbpc/base/text.hpp"
+#include "plant/integrator.hpp"
+#include "runtime/contract.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr std::uint64_t kDrawSeed = 5;
+constexpr int kDraws = 2000;
+constexpr double kSameRest = 1e-4, kSameState = 1e-6;  // relative to 1 + the state
+
+Vector nominalValues(const std::vector<Quantity>& quantities) {
+  Vector values(static_cast<Index>(quantities.size()));
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    values[static_cast<Index>(i)] = quantities[i].nominal;
+  return values;
+}
+
+/// Anywhere in the ranges, corners included.
+Vector drawnValues(const std::vector<Quantity>& quantities, std::mt19937_64& engine) {
+  Vector values(static_cast<Index>(quantities.size()));
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const Quantity& q = quantities[i];
+    const double part = std::clamp(1.4 * uniform(engine) - 0.2, 0.0, 1.0);
+    values[static_cast<Index>(i)] = q.lower + part * (q.upper - q.lower);
+  }
+  return values;
+}
+
+std::vector<const std::vector<Quantity>*> groupsOf(const PlantDescription& p) {
+  return {&p.states, &p.algebraic, &p.inputs, &p.disturbances, &p.parameters};
+}
+
+std::string wrongNames(const PlantDescription& p, const std::string& type) {
+  std::set<std::string> seen;
+  for (const auto* group : groupsOf(p))
+    for (const Quantity& q : *group) {
+      if (q.name.empty()) return "a quantity without a name";
+      if (q.unit.empty()) return q.name + " has no unit ('-' for none)";
+      if (!seen.insert(q.name).second) return q.name + " is there twice";
+    }
+  if (p.name != type) return "it calls itself '" + p.name + "'";
+  if (p.title.empty()) return "it has no title";
+  return p.time_unit_s > 0.0 ? "" : "its time unit is not > 0";
+}
+
+std::string wrongRanges(const PlantDescription& p) {
+  for (const auto* group : groupsOf(p))
+    for (const Quantity& q : *group)
+      if (!(q.lower < q.upper && q.nominal >= q.lower && q.nominal <= q.upper))
+        return q.name + ": " + exactText(q.nominal) + " in " + exactText(q.lower) + " to " +
+               exactText(q.upper);
+  return p.inputs.empty() ? "it has no input" : "";
+}
+
+std::string wrongOutputs(const PlantDescription& p) {
+  std::set<std::string> known, frames;
+  for (const auto* group : {&p.states, &p.algebraic})
+    for (const Quantity& q : *group) known.insert(q.name);
+  if (p.outputs.empty()) return "it has no outputs";
+  for (const std::string& name : p.outputs)
+    if (known.count(name) == 0) return "output " + name + " is neither a state nor algebraic";
+  for (const EquipmentFrame& frame : p.frames) {
+    if (!frames.empty() && frames.count(frame.parent) == 0)
+      return "frame " + frame.name + " has no parent before it";
+    if (!frames.insert(frame.name).second) return "frame " + frame.name + " is there twice";
+  }
+  for (const auto& [output, frame] : p.output_frames)
+    if (known.count(output) == 0 || frames.count(frame) == 0)
+      return "output_frames: " + output + ", " + frame;
+  return "";
+}
+
+/// Equations and algebraic outputs.
+std::string notFinite(const Plant& plant) {
+  const PlantDescription& p = plant.description();
+  std::mt19937_64 engine = seededEngine(kDrawSeed, {});
+  Vector dxdt(static_cast<Index>(p.states.size())), y(static_cast<Index>(p.algebraic.size()));
+  y.setZero();
+  for (int i = 0; i < kDraws; ++i) {
+    const Vector x = drawnValues(p.states, engine), u = drawnValues(p.inputs, engine),
+                 d = drawnValues(p.disturbances, engine);
+    plant.derivatives(x, u, d, dxdt);
+    plant.algebraic(x, u, d, y);
+    if (dxdt.allFinite() && y.allFinite()) continue;
+    std::string at;
+    for (const Vector* part : {&x, &u, &d})
+      for (const double value : *part) at += " " + exactText(value);
+    return "not finite at x, u, d =" + at;
+  }
+  return "";
+}
+
+std::string notAtRest(const Plant& plant) {
+  const PlantDescription& p = plant.description();
+  const Vector x = nominalValues(p.states);
+  const auto f = [&](VectorRef state, VectorRef input, VectorRef disturbance,
+                     Eigen::Ref<Vector> dxdt) {
+    plant.derivatives(state, input, disturbance, dxdt);
+  };
+  const SteadyState rest =
+      findSteadyState(f, x, nominalValues(p.inputs), nominalValues(p.disturbances));
+  if (!rest.ok()) return "no steady state was found near the nominal values";
+  for (Index i = 0; i < x.size(); ++i)
+    if (!(std::abs(rest.x[i] - x[i]) <= kSameRest * (1.0 + std::abs(x[i]))))
+      return p.states[static_cast<std::size_t>(i)].name + " rests at " + exactText(rest.x[i]) +
+             ", not at " + exactText(x[i]);
+  return "";
+}
+
+/// Near the nominal point, as the integrator sees it.
+std::string dependsOnTheSplit(const Plant& plant) {
+  const PlantDescription& p = plant.description();
+  std::mt19937_64 engine = seededEngine(kDrawSeed, {1});
+  Integrator integrator(plant, {});
+  const Vector x = nominalValues(p.states), u = nominalValues(p.inputs),
+               d = nominalValues(p.disturbances);
+  const int trials = x.size() > 50 ? 3 : 50;  // a large plant takes its time
+  const double hold_s = std::min(0.2 * p.time_unit_s, 720.0);
+  for (int i = 0; i < trials; ++i) {
+    const auto around = [&](const Vector& v) {
+      return Vector(v.unaryExpr([&](double a) { return a * (0.8 + 0.4 * uniform(engine)); }));
+    };
+    Vector once = around(x);
+    const Vector input = around(u), disturbance = around(d);
+    Vector half = once;
+    for (const auto& [state, seconds] :
+         {std::pair{&once, hold_s}, {&half, 0.5 * hold_s}, {&half, 0.5 * hold_s}}) {
+      const IntegrationResult done = integrator.advance(*state, input, disturbance, seconds);
+      if (!done.ok()) return "the integrator fails: " + done.reason;
+    }
+    if (!((once - half).norm() < kSameState * (1.0 + once.norm())))
+      return "off by " + exactText((once - half).norm());
+  }
+  return "";
+}
+
+}  // namespace
+
+std::vector<Promise> plantPromises(const Plant& plant, const std::string& type) {
+  const PlantDescription& p = plant.description();
+  return {{"names are unique, units are given", wrongNames(p, type)},
+          {"nominal values lie inside their ranges", wrongRanges(p)},
+          {"outputs and frames are there", wrongOutputs(p)},
+          {"finite anywhere in the ranges", notFinite(plant)},
+          {"the nominal point is a steady state", notAtRest(plant)},
+          {"splitting a hold changes nothing", dependsOnTheSplit(plant)}};
+}
+
+}  // namespace fpc

@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+"""Exported blocks against the law in process: C99 by this machine's compiler, Structured Text by the interpreter of scripts/."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+TOP = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOP / "scripts"))
+import export_check  # noqa: E402
+import structured_text  # noqa: E402
+
+TOOL = os.environ.get("FMBPC_TOOL", str(TOP / "devel/lib/fmbpc/fmbpc_tool"))
+LOOPS = ["asp_case1_pi_x", "cstr_tracking_gspi", "cstr_tracking_pi_best", "bsm1_own_supervisor", "asp_case1", "asp_case1_general", "cstr_tracking",
+         "cstr_modbus", "column_clip", "surge_tank_steps", "mimo_cstr_steps"]
+
+
+def export(folder, loop, *more):
+    return subprocess.run([TOOL, "export", loop, "--out", str(folder), *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          check=False)
+
+
+class Export(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = pathlib.Path(self.scratch.name) / "block"
+        self.into = self.scratch.name
+
+    def exported(self, loop, *more):
+        done = export(self.folder, loop, *more)
+        self.assertEqual(0, done.returncode, done.stderr)
+
+    def test_both_languages_answer_as_the_process_does_and_with_the_same_bits(self):
+        for loop in LOOPS:
+            with self.subTest(loop=loop):
+                self.exported(loop, "--samples", "250")
+                said = export_check.native(self.folder, "law", "gcc", "-O0", self.into)
+                self.assertTrue(said["passed"], said)
+                self.assertEqual((250, 0), (said["samples"], said["flags"]))
+                self.assertLessEqual(said["difference"], 1e-9)
+                text = export_check.interpreted(self.folder, "law")
+                self.assertEqual((250, 0, said["hash"]), (text["samples"], text["flags"], text["hash"]))
+
+    def test_the_vectors_hold_everything_that_happens_to_a_block(self):
+        self.exported("asp_case1_pi_x")
+        rows = (self.folder / "law_vectors.csv").read_text().splitlines()
+        names = rows[0].split(",")
+        self.assertEqual(1001, len(rows))
+        seen = {name: {row.split(",")[names.index(name)] for row in rows[1:]} for name in ("iSource", "iState", "iErrors", "xReset", "xTrack")}
+        self.assertLessEqual({"1", "3", "4", "5"}, seen["iSource"])
+        self.assertLessEqual({"0", "1", "2", "3", "4"}, seen["iState"])
+        self.assertLessEqual({"0", "1", "4", "8", "32"}, seen["iErrors"])
+        self.assertEqual(({"0", "1"}, {"0", "1"}), (seen["xReset"], seen["xTrack"]))
+
+    def test_another_law_fails_the_vectors(self):
+        self.exported("asp_case1_pi_x", "--samples", "300")
+        law = self.folder / "law.c"
+        wrong = law.read_text().replace("1.0 * error", "1.0001 * error")
+        self.assertNotEqual(wrong, law.read_text())
+        law.write_text(wrong)
+        said = export_check.native(self.folder, "law", "gcc", "-O0", self.into)
+        self.assertFalse(said["passed"], said)
+
+    def test_the_self_test_of_structured_text_passes_and_can_fail(self):
+        self.exported("asp_case1_pi_x", "--to", "st")
+        law, test = ((self.folder / name).read_text() for name in ("law.st", "law_test.st"))
+        self.assertFalse((self.folder / "law.c").exists())
+        for text, passes in ((law, True), (law.replace("1.0 * error", "1.01 * error"), False)):
+            block = structured_text.load(text, test)["fb_law_test"]()
+            while not block.v_xdone:
+                block()
+            self.assertEqual(passes, block.v_xpassed)
+
+    def test_a_changed_hash_starts_the_block_anew(self):
+        self.exported("asp_case1_pi_x", "--to", "st")
+        kind = structured_text.load((self.folder / "law.st").read_text())["fb_law"]
+        old, new = kind(), kind()
+        for block, samples in ((old, 40), (new, 1)):
+            block.v_hash += 1 if block is old else 0
+            for _ in range(samples):
+                block.v_rvalue_x, block.v_rvalue_s, block.v_rvalue_q_i, block.v_rvalue_s_i = 1500.0, 50.0, 1300.0, 400.0
+                block.v_ractuator_q_r = 500.0
+                block()
+        self.assertNotEqual(old.v_rout_q_r, new.v_rout_q_r)
+        old.v_hash += 1
+        old()
+        self.assertEqual((500.0, 500.0), (old.v_rout_q_r, new.v_rout_q_r))
+
+    def test_single_precision_is_exported_where_the_law_allows_it(self):
+        self.exported("asp_case1", "--real", "--samples", "250")
+        said = export_check.native(self.folder, "law", "gcc", "-O0", self.into)
+        self.assertTrue(said["passed"], said)
+        self.assertLess(1e-9, said["difference"])
+        self.assertEqual(said["hash"], export_check.interpreted(self.folder, "law")["hash"])
+        shutil.rmtree(self.folder)
+        done = export(self.folder, "column_clip", "--real", "--samples", "500")
+        self.assertEqual(1, done.returncode)
+        self.assertIn("--real", done.stderr)
+        self.assertFalse(self.folder.exists())
+
+    def test_what_is_not_exported_is_refused_by_name_and_nothing_is_written(self):
+        for loop, words in (("cstr_tracking_nmpc", ("controller.type", "nmpc")),
+                            ("asp_case1_pi_x --set controller.loops.0.preview_h=1", ("preview_h",)),
+                            ("asp_case1_clp", ("clp",)),
+                            ("cstr_tracking_observer", ("controller.realisation",)),
+                            ("column_linear", ("controller.law",)),
+                            ("asp_case1_pi_x --name Law-1", ("--name",))):
+            done = export(self.folder, *loop.split())
+            self.assertEqual(1, done.returncode, loop)
+            for word in words:
+                self.assertIn(word, done.stderr)
+            self.assertFalse(self.folder.exists(), loop)
+
+
+if __name__ == "__main__":
+    unittest.main()
