@@ -96,7 +96,7 @@ def main():
     parser.add_argument("kinds", nargs="*", metavar="KIND", help=", ".join(KINDS))
     parser.add_argument("--seeds", type=int, default=1, help="records of each kind")
     parser.add_argument("--first", type=int, default=1, help="first seed")
-    parser.add_argument("--work", type=float, default=45.0, help="per record")
+    parser.add_argument("--work", type=float, default=90.0, help="per record")
     parser.add_argument("--tool", default=str(TOOL), help="the tool fmbpc")
     arguments = parser.parse_args()
     unknown = [kind for kind in arguments.kinds if kind not in KINDS]

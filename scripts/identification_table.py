@@ -172,7 +172,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(RECORDS))
     parser.add_argument("--section", action="append", choices=["records", *SECTIONS], help="all, if none is named")
-    parser.add_argument("--work", type=float, default=45.0, help="per record")
+    parser.add_argument("--work", type=float, default=120.0, help="per record")
     parser.add_argument("--write", action="store_true", help="into docs/identification.md as well")
     arguments = parser.parse_args()
     wrong = refused(arguments)

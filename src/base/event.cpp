@@ -51,7 +51,7 @@ constexpr EventKind kKinds[] = {
     {C::kNeverControlled, "never_controlled", kE, "every input was held or the fallback", "the run says nothing of the controller", "see input_held"},
     {C::kInputAtLimit, "input_at_limit", kW, "an input stood at one of its limits from some sample to the end of the run", "the loop was not closed over these samples", "look at sizing, setpoint and lock_up"},
     {C::kSoftLimitExceeded, "soft_limit_exceeded", kI, "an output is beyond clp.output_lower or clp.output_upper", "the optimizer brings it back as fast as the inputs allow", "none, or wider limits"},
-    {C::kInputStuck, "input_stuck", kW, "an input does not follow its command, or is not read back", "the command is held there if actuator.stuck asks for it", "look at the actuator"},
+    {C::kInputStuck, "input_stuck", kW, "an input does not follow its command, or is not read back", "the command is held there if plausibility.stuck asks for it", "look at the actuator"},
     {C::kActuatorIneffective, "actuator_ineffective", kW, "the outputs do not react to an input as the model says", "as plausibility.reaction says: none, hold or fallback", "look at the actuator behind its position signal"},
     {C::kPlantFailed, "plant_failed", kE, "the simulated plant could not be moved over a sample", "its state is held; the run is not complete", "look at parameters, inputs and integrator"},
     {C::kPlantLocal, "plant_local", kW, "the plant takes no actions: its own hand has the input, its link is lost, or no input follows", "its own input is sent back; the controller begins anew later", "give the plant back"},

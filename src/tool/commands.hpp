@@ -54,7 +54,7 @@ struct IdentifyArguments {
   RecordFormat format;
   double sample_time_s{};         ///< 0: from the time column
   std::string kind{"best"};       ///< best, linear, regressors, state
-  double work{45.0}, budget_s{};  ///< limits of the search; 0 s: no limit of time
+  double work{90.0}, budget_s{};  ///< limits of the search; 0 s: no limit of time
   int blocks{4}, window{5};
   int reach{-1};                  ///< samples of the runs that judge, 0: free ones, -1: by the data
   int longest_delay{};            ///< [samples], 0: by the length of the record

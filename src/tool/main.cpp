@@ -293,17 +293,10 @@ int main(int argc, char** argv) {
   addLists(app, arguments);
   fpc::tool::StabilityArguments stability;
   addStability(app, stability);
-<<<<<<< HEAD
-  fpc::tool::NewArguments creation;
-  addNew(app, creation);
-  addCheck(app, creation);
-  fpc::tool::addReproduce(app);
-=======
   fpc::tool::addReproduce(app);
   fpc::tool::NewArguments creation;
   addNew(app, creation);
   addCheck(app, creation);
->>>>>>> integration
   fpc::tool::TuneArguments tune;
   fpc::tool::addTune(app, tune, chosen);
   fpc::tool::StudyArguments study;

@@ -53,9 +53,9 @@ TEST(ModelInstruments, TheLawToBeginWithBearsThoseThatNobodyNames) {
   for (Overrides more : {Overrides{{"actuator.lag.q_c.t90_s", "5"}, {"sensors.CA.t90_s", "6"}},
                          Overrides{{"actuator.lag.q_c.t90_s", "10"}},
                          Overrides{{"actuator.lag.q_c.backlash", "4"}}}) {
-    const double rival = iseOf("cstr_tracking_pi_best", more);
+    const double baseline = iseOf("cstr_tracking_pi_best", more);
     more.emplace_back("model.instruments", "included");
-    EXPECT_LT(iseOf("cstr_tracking_robust", more), rival) << more.front().first;
+    EXPECT_LT(iseOf("cstr_tracking_robust", more), baseline) << more.front().first;
   }
 }
 
@@ -67,9 +67,9 @@ TEST(ModelInstruments, TheReactorWithTwoInputsCarriesItsValves) {
     const Summary summary = summarize(loop, runLoop(loop), 0.0);
     return summary.outputs[0].ise_reference + 5e-5 * summary.outputs[1].ise_reference;
   };
-  const double rival = costOf("mimo_cstr_lags_pi", {});
-  EXPECT_LT(costOf("mimo_cstr_lags", {}), 1.1 * rival);
-  EXPECT_LT(costOf("mimo_cstr_lags", {{"clp.perturbation_steps", "20"}}), 1.1 * rival);
+  const double baseline = costOf("mimo_cstr_lags_pi", {});
+  EXPECT_LT(costOf("mimo_cstr_lags", {}), 1.1 * baseline);
+  EXPECT_LT(costOf("mimo_cstr_lags", {{"clp.perturbation_steps", "20"}}), 1.1 * baseline);
 }
 
 }  // namespace loop_instruments_loop_test

@@ -228,7 +228,9 @@ TEST_F(AutoTool, APieceWhoseTimesJumpBackIsARecordOfItsOwn) {
                              "--work 0.1 --json --out " + model);
   ASSERT_EQ(found.code, 0);
   EXPECT_NE(found.printed.find("jump back at"), std::string::npos);
-  EXPECT_GT(parsed(found.printed).at("identification").at("y").at("one_step").at("vaf").get<double>(), 90.0);
+  EXPECT_GT(
+      parsed(found.printed).at("identification").at("y").at("one_step").at("vaf").get<double>(),
+      90.0);
   EXPECT_EQ(tool("validate " + model + " " + file).code, 0);
 }
 
