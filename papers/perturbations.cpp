@@ -47,7 +47,8 @@ double numberAt(const LoopFile& loop, const YAML::Node& text, const std::string&
     node.reset(list ? node[std::stoul(key)] : node[key]);
   }
   if (node.IsScalar()) return parseNumber(node.Scalar()).value_or(kNotPrinted);
-  for (const auto& quantity : makePlant(loop.simulation.plant)->description().parameters)
+  const auto plant = makePlant(loop.simulation);
+  for (const auto& quantity : plant->description().parameters)
     if (path == "plant.parameters." + quantity.name) return quantity.nominal;
   return kNotPrinted;
 }

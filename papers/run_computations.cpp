@@ -64,7 +64,10 @@ const bool kSummaries =
     ofInput("energy", [](const InputIndices& u) { return u.energy; }) &&
     ofRun("consumption", [](const RunFigures& r) { return r.summary.consumption.at(0).second; }) &&
     ofRun("active", [](const RunFigures& r) { return r.active; }) &&
-    ofRun("locked", [](const RunFigures& r) { return contains(r.summary.events, EventCode::kInputAtLimit) ? 1.0 : 0.0; }) &&
+    ofRun("locked",
+          [](const RunFigures& r) {
+            return contains(r.summary.events, EventCode::kInputAtLimit) ? 1.0 : 0.0;
+          }) &&
     ofRun("broken",
           [](const RunFigures& r) {
             const Summary& s = r.summary;

@@ -8,6 +8,7 @@ import csv
 import glob
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -82,6 +83,8 @@ def interpreted(folder, name, samples=None):
 # Rules of MISRA C 2012 that a block breaks, with the reason (docs/export.md lists them).
 DEVIATIONS = {"misra-c2012-2.5": "identity macros are for the caller", "misra-c2012-8.9": "tables stand before the function, one below the other",
               "misra-c2012-8.7": "the caller is another file", "unusedFunction": "the caller is another file",
+              "knownConditionTrueFalse": "the text is the same for every number of signals",
+              "duplicateExpression": "the text is the same for every number of signals",
               "variableScope": "variables stand at the head, as in Structured Text"}
 BOARDS = {"cortex-m3": ("mps2-an385", ["-mfloat-abi=soft"]), "cortex-m4": ("mps2-an386", ["-mfloat-abi=hard", "-mfpu=fpv4-sp-d16"]),
           "cortex-m7": ("mps2-an500", ["-mfloat-abi=hard", "-mfpu=fpv5-d16"])}
@@ -190,6 +193,38 @@ def emulated(folder, name, core, into, samples=ON_BOARD):
             "mean": round(int(words[2], 16) / TICKS_PER_INSTRUCTION / samples), "code": int(size[0]), "stack": stack}
 
 
+def analysed(folder, name, into):
+    """Alarms of Frama-C EVA over any sequence of samples, every number within 1e15; raises RuntimeError."""
+    with open(os.path.join(folder, f"{name}.h"), encoding="utf-8") as file:
+        text = file.read()
+    body = text[text.index("typedef struct {"):text.index(f"}} {name}_in_t;")]
+    draws = {"double": "Frama_C_double_interval(-1e15, 1e15)", "float": "Frama_C_float_interval(-1e15f, 1e15f)",
+             "int32_t": "Frama_C_interval(-2147483647, 2147483647)", "bool": "Frama_C_interval(0, 1)"}
+    given = "\n".join(f"    in.{member} = {draws[kind]};" for kind, member in re.findall(r"^  (\w+) (\w+);", body, re.M))
+    with open(os.path.join(into, "main.c"), "w", encoding="utf-8") as file:
+        file.write(f"""#include "{name}.h"
+#include "__fc_builtin.h"
+static {name}_state_t s;
+static {name}_in_t in;
+static {name}_out_t out;
+int main(void) {{
+  {name}_defaults(&in);
+  while (Frama_C_interval(0, 1)) {{
+{given}
+    {name}_step(&s, &in, &out);
+  }}
+  return 0;
+}}
+""")
+    source = os.path.abspath(folder)
+    said = run(["frama-c", "-eva", "-eva-precision", "1", "-warn-special-float", "non-finite", f"-cpp-extra-args=-I{source}", os.path.join(into, "main.c"),
+                os.path.join(source, f"{name}.c")], cwd=into)
+    found = re.search(r"(\d+) alarms? generated", said.stdout)
+    if not found:
+        raise RuntimeError((said.stderr or said.stdout)[-300:])
+    return int(found[1])
+
+
 class Check:
     def __init__(self, folder):
         self.folder, self.rows, self.failed, self.hashes = folder, [], False, {}
@@ -258,6 +293,14 @@ class Check:
                      + (f"; without a reason: {', '.join(others)}" if others else ""), bool(others))
         else:
             self.say("cppcheck, MISRA C 2012", "not run: no cppcheck")
+        if not shutil.which("frama-c"):
+            self.say("Frama-C EVA", "not run: no frama-c")
+            return
+        with tempfile.TemporaryDirectory() as into:
+            try:
+                self.say("Frama-C EVA", f"{analysed(self.folder, self.name, into)} alarms, numbers within 1e15")
+            except RuntimeError as wrong:
+                self.say("Frama-C EVA", str(wrong), True)
 
     def structured_text(self):
         self.verdict("Structured Text, interpreter", interpreted(self.folder, self.name))
@@ -283,6 +326,8 @@ class Check:
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2 or sys.argv[1] in ("-h", "--help"):
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        sys.exit(print(__doc__))
+    if len(sys.argv) != 2:
         sys.exit(__doc__)
     sys.exit(Check(sys.argv[1]).run())

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A PLC in software: the stirred-tank reactor of config/loop/cstr behind Modbus/TCP, for demonstrations and tests.
 
-    soft_plc.py [--port 1502] [--speedup 60] [--log FILE]
+    soft_plc.py [--port 1502] [--speedup 60] [--log FILE] [--law FOLDER]
 
 Input registers 0-1: CA [mol/l], float32. Holding registers: 10 coolant flow asked [0.01 l/min], 12 coolant flow in force,
 20 heartbeat of the PLC, 21 heartbeat of the gateway, 22 the word of the master that leads. Coils: 0 the gateway wants the
@@ -11,7 +11,11 @@ It trusts nobody: when the gateway's heartbeat stands still for a second, coil 0
 itself, moves it to its safe flow and puts what is in force into register 10, so that whoever comes back starts there. It
 counts every write to register 10 that is out of bounds or moves too far at once, and does not follow it. Whoever writes a
 word into register 22 while it is 0 leads until it writes 0 there or its heartbeat stands still; the words of others are
-undone and counted meanwhile."""
+undone and counted meanwhile.
+
+With --law the valve belongs to a law that `fmbpc export cstr_modbus --to c99 --out FOLDER` wrote: it runs here, every 6 s of
+process time. Whoever leads gives setpoints only, in register 30 [0.0001 mol/l]; 31 is the one in force, 32 and 33 are the
+block's iState and iErrors. When nobody leads the law goes on with the last setpoint."""
 import argparse
 import inspect
 import json
@@ -27,6 +31,8 @@ import time
 LOWER, UPPER, MOVE, SAFE = 0.0, 200.0, 4.0, 103.41  # l/min
 SCAN_S, PATIENCE_S, SETTLE_S = 0.02, 1.0, 0.3  # of wall time
 SAMPLE_S, DELAY_S = 6.0, 30.0  # of process time: the compensator's sample, the analyser's line
+SET_LOWER, SET_UPPER, SET_SCALE = 0.02, 0.2, 10000.0  # mol/l; registers per mol/l
+SET_ASKED, SET_IN_FORCE, LAW_STATE, LAW_ERRORS = 30, 31, 32, 33
 ASKED, IN_FORCE, BEAT_OUT, BEAT_IN, OWNER, SIZE = 10, 12, 20, 21, 22, 64
 COILS, INPUTS, HOLDING = 1, 4, 3  # function codes that stand for a table
 SCALE = 100.0  # registers per l/min
@@ -118,8 +124,7 @@ class Plc:
             if not self.remote and asked and now - self.calm > SETTLE_S:
                 self.note("the gateway has the valve")
             self.remote = bool(asked and (self.remote or now - self.calm > SETTLE_S))
-            if not self.remote:
-                self.flow += min(max(SAFE - self.flow, -MOVE * seconds / SAMPLE_S), MOVE * seconds / SAMPLE_S)
+            self.drive(seconds)
             self.left += seconds
             slice_s = SAMPLE_S / 30
             while self.left >= slice_s:
@@ -127,6 +132,11 @@ class Plc:
                 self.left -= slice_s
             self.scans += 1
             self.publish()
+
+    def drive(self, seconds):
+        """What the PLC itself does with the valve."""
+        if not self.remote:
+            self.flow += min(max(SAFE - self.flow, -MOVE * seconds / SAMPLE_S), MOVE * seconds / SAMPLE_S)
 
     def note(self, event):
         if self.log:
@@ -145,6 +155,49 @@ class Plc:
         return (f"soft_plc: {self.writes} writes, {self.refused} of them out of bounds or too far at once; the PLC took the "
                 f"valve {self.takeovers} times and refused other masters {self.strangers} times; CA is "
                 f"{self.reactor.concentration:.4f} mol/l")
+
+
+class LawPlc(Plc):
+    """The same with an exported law that has the valve."""
+
+    def __init__(self, table, speedup, log, law):
+        self.law, self.setpoint, self.waited = law, 0.12, SAMPLE_S
+        super().__init__(table, speedup, log)
+
+    def written(self, raw):
+        """The gateway has written register 30."""
+        with self.lock:
+            asked, self.writes = raw / SET_SCALE, self.writes + 1
+            allowed = SET_LOWER <= asked <= SET_UPPER
+            self.refused += not allowed and self.remote
+            if self.remote and allowed:
+                self.setpoint = asked
+
+    def drive(self, seconds):
+        self.waited += seconds
+        if self.waited < SAMPLE_S:
+            return
+        self.waited -= SAMPLE_S
+        given = self.law.given
+        given.iMode = 3 if self.remote else 2
+        given.rSetpoint_CA = given.rCascade_CA = self.setpoint
+        given.rValue_CA = self.reactor.measured()
+        given.rActuator_q_c = self.flow
+        self.law.step()
+        moved = abs(self.law.answer.rOut_q_c - self.flow)
+        self.flow = self.law.answer.rOut_q_c
+        if self.log:
+            print(json.dumps({"t": time.monotonic(), "flow": self.flow, "moved": moved, "CA": given.rValue_CA, "setpoint": self.setpoint,
+                              "state": self.law.answer.iState, "source": self.law.answer.iSource}), file=self.log, flush=True)
+
+    def publish(self):
+        raw = int(round(self.setpoint * SET_SCALE))
+        if not self.remote:
+            self.table.put(HOLDING, SET_ASKED, [raw])
+        self.table.put(HOLDING, SET_IN_FORCE, [raw])
+        self.table.put(HOLDING, LAW_STATE, [self.law.answer.iState])
+        self.table.put(HOLDING, LAW_ERRORS, [self.law.answer.iErrors])
+        super().publish()
 
 
 def server_parts():
@@ -211,12 +264,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--port", type=int, default=1502)
     parser.add_argument("--speedup", type=float, default=60.0)
+    parser.add_argument("--law", help="folder of `fmbpc export`: its law has the valve, the gateway gives setpoints")
     parser.add_argument("--log", help="one JSON object a line, added to it: every write to register 10, every change of hands")
     options = parser.parse_known_args()[0]  # roslaunch adds some
     with open(options.log or os.devnull, "a", encoding="utf-8") as log:  # of a PLC before this one, too
         table = made_table()
-        plc = Plc(table, options.speedup, log if options.log else None)
-        table.heard = {ASKED: plc.written, OWNER: plc.claimed}
+        if options.law:
+            from exported_law import ExportedLaw
+            plc = LawPlc(table, options.speedup, log if options.log else None, ExportedLaw(options.law))
+        else:
+            plc = Plc(table, options.speedup, log if options.log else None)
+        table.heard = {SET_ASKED if options.law else ASKED: plc.written, OWNER: plc.claimed}
         threading.Thread(target=serve, args=(table, options.port), daemon=True).start()
         ended = threading.Event()
         for number in (signal.SIGINT, signal.SIGTERM):

@@ -61,7 +61,7 @@ class ExamplePackage(unittest.TestCase):
     def test_the_public_headers_are_installed_and_enough(self):
         """They compile with Eigen and nothing of the source tree."""
         include = self.fmbpc / "include"
-        listed = (TOP / "cmake" / "public_headers.cmake").read_text().split("HEADERS\n", 1)[1].split(")", 1)[0].split()
+        listed = [str(p.relative_to(TOP / "include/fmbpc")) for p in (TOP / "include/fmbpc").rglob("*.hpp")]
         found = sorted(str(p.relative_to(include / "fmbpc")) for p in (include / "fmbpc").rglob("*.hpp"))
         self.assertEqual(sorted(listed), found)
         unit = self.folder / "all.cpp"

@@ -105,6 +105,7 @@ class Export(unittest.TestCase):
     def test_what_is_not_exported_is_refused_by_name_and_nothing_is_written(self):
         for loop, words in (("cstr_tracking_nmpc", ("controller.type", "nmpc")),
                             ("asp_case1_pi_x --set controller.loops.0.preview_h=1", ("preview_h",)),
+                            ("asp_case1_pi_x --set plausibility.signals.x.repeated=true", ("repeated",)),
                             ("asp_case1_clp", ("clp",)),
                             ("cstr_tracking_observer", ("controller.realisation",)),
                             ("column_linear", ("controller.law",)),

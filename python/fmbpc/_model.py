@@ -127,17 +127,7 @@ class Model:
 
     def simulate(self, u, d=None, *, y0: Values) -> numpy.ndarray:
         """Outputs n_samples x n_y when the process has rested at y0, u[0], d[0] before; row 0 is y0."""
-        u, d = self._matrix(u, self.inputs), self._matrix(d, self.disturbances)
-        start = numpy.array([y0[s[0]] for s in self.outputs] if isinstance(y0, Mapping) else numpy.atleast_1d(y0), dtype=float)
-        if u is None or len(u) == 0:
-            raise _core.InputError("u: expected rows")
-        rest = self._core.longest_lag + 10
-
-        def after_rest(rows):
-            return None if rows is None else numpy.concatenate([numpy.repeat(rows[:1], rest, axis=0), rows])
-        y = numpy.full((rest + len(u), len(start)), numpy.nan)
-        y[:rest + 1] = start
-        return self._core.free_run(y, after_rest(u), after_rest(d))[rest:]
+        return self._core.simulate(y0, self._matrix(u, self.inputs), self._matrix(d, self.disturbances))
 
     def validate(self, data, *, rows: str = "", columns: Mapping[str, str] | None = None, steps: int = 10) -> dict[str, Any]:
         """Judges it on another record (as identify() takes it), as `fmbpc validate --json`.
@@ -166,19 +156,25 @@ class Model:
 
 def identify(data, *, outputs: Sequence[str] = (), inputs: Sequence[str] = (), disturbances: Sequence[str] = (), auto: bool = True,
              structure: str | os.PathLike | None = None, validation=None, rows: str = "", validation_rows: str = "",
-             time: str = "", sample_time_s: float = 0.0, known: str | os.PathLike | Mapping | None = None, name: str = "",
-             kind: str = "best", work: float = 45.0, budget_s: float = 0.0, blocks: int = 4, window: int = 5, longest_delay: int = 0, keep_inputs: bool = False,
-             seed: int = 1, progress: bool | Callable[[float, str], None] | None = None) -> Model:
+             time: str = "", sample_time_s: float | None = None, known: str | os.PathLike | Mapping | None = None, name: str | None = None,
+             kind: str | None = None, work: float | None = None, budget_s: float | None = None, blocks: int | None = None, window: int | None = None,
+             reach: int | None = None, longest_delay: int | None = None, input_row: str | None = None, keep_inputs: bool | None = None,
+             seed: int | None = None, progress: bool | Callable[[float, str], None] | None = None) -> Model:
     """Identifies a model from a record: columns `outputs` from columns `inputs` and `disturbances`.
 
     data: a DataFrame, a dict of vectors, a Run, or the path of a CSV; a list of them are records one after the other.
         A column is a name, or "x[mg/l]" with its unit; NaN is a missing cell. A CSV and a frame of it give the same model.
     structure: name of config/structure, or path; else (auto) orders, delays, sets and rules are searched
     validation: another record to judge on; validation_rows: "FIRST:LAST" of it, or of the first record
-    time: column of times, else found by its name; sample_time_s: instead of one
+    time: column of times, else found by its name
     known: what is known of the outputs, a file, a text or {"y": {"gain": {"u": "positive"}}}
-    kind: best, linear, regressors or state; work: where the search ends, whatever the machine; budget_s: [s] of it, 0 no limit; the rest as `fmbpc identify --help` says
-    Ctrl-C keeps the best that the search found. Raises InputError naming record and column.
+    The rest are the options of `fmbpc identify --auto`; what is left out is as there:
+    work: where the search ends, counted alike on every machine; 1 is about a second of one core
+    budget_s: [s] that end it earlier; the model then depends on the machine
+    kind: best, linear, regressors or state; seed: of the starts of all fits; name: of the model
+    sample_time_s: instead of a column of times; input_row: auto, next or same; keep_inputs: True: those that hardly moved too
+    blocks: held out in turn; window, reach, longest_delay: [samples] (docs/identification.md)
+    Ctrl-C keeps the best that the search found. Raises InputError naming record and column, or the option.
     """
     records = data if isinstance(data, (list, tuple)) else [data]
     if structure is None and not auto:
@@ -188,11 +184,11 @@ def identify(data, *, outputs: Sequence[str] = (), inputs: Sequence[str] = (), d
     if structure is None and not (inputs or disturbances):
         raise _core.InputError("inputs: expected the columns that act on the outputs")
     known_text = "" if known is None else ", ".join(f"{k}: {_text._flow(v)}" for k, v in known.items()) if isinstance(known, Mapping) else os.fspath(known)
-    options = {"outputs": _names(outputs), "inputs": _names(inputs), "disturbances": _names(disturbances), "rows": rows,
-               "validate_rows": validation_rows, "time": time, "sample_time_s": float(sample_time_s), "known": known_text, "kind": kind,
-               "work": float(work), "budget_s": float(budget_s), "blocks": int(blocks), "window": int(window), "longest_delay": int(longest_delay),
-               "keep_inputs": bool(keep_inputs), "seed": int(seed), "name": name,
-               "structure": "" if structure is None else os.fspath(structure)}
+    search = {"sample_time_s": sample_time_s, "name": name, "kind": kind, "work": work, "budget_s": budget_s, "blocks": blocks, "window": window,
+              "reach": reach, "longest_delay": longest_delay, "input_row": input_row, "keep_inputs": keep_inputs, "seed": seed}
+    options = {"outputs": _names(outputs), "inputs": _names(inputs), "disturbances": _names(disturbances), "rows": rows, "validate_rows": validation_rows,
+               "time": time, "known": known_text, "structure": "" if structure is None else os.fspath(structure),
+               **{key: value for key, value in search.items() if value is not None}}
     with _progress.bar("identify", progress) as bar:
         return Model(_core.identify([_record(r) for r in records], None if validation is None else _record(validation, "validation"), options, bar))
 

@@ -115,6 +115,7 @@ py::list promisesOf(Compute compute) {
     watch.rethrow();
     throw;
   }
+  watch.rethrow();
   return brokenOf(promises);
 }
 

@@ -1,4 +1,5 @@
 // Models: identified, read, simulated, judged.
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -6,10 +7,12 @@
 #include "analysis/rule_models.hpp"
 #include "base/csv.hpp"
 #include "bind.hpp"
+#include "config/loop_file.hpp"
 #include "config/structure_file.hpp"
 #include "convert.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
+#include "identification/row_reading.hpp"
 #include "model_handle.hpp"
 #include "tool/commands.hpp"
 #include "tool/identify_auto.hpp"
@@ -38,49 +41,46 @@ CsvTable tableFrom(py::handle record, const CsvFormat& format) {
   return table;
 }
 
-/// Fields of the arguments by the names of the options.
+/// Sets a field from a value of Python.
+using Setter = std::function<void(IdentifyArguments&, py::handle)>;
+
+template <typename T>
+Setter into(T IdentifyArguments::*field) {
+  return [field](IdentifyArguments& a, py::handle value) { a.*field = value.cast<T>(); };
+}
+
+/// Fields of the arguments by the names of the options; what is left out is as the tool has it.
 void setArguments(const py::dict& options, IdentifyArguments& a) {
-  for (const auto& item : options) {
-    const auto key = item.first.cast<std::string>();
-    const py::handle value = item.second;
-    if (key == "structure")
-      a.structure = value.cast<std::string>();
-    else if (key == "rows")
-      a.rows = value.cast<std::string>();
-    else if (key == "validate_rows")
-      a.validate_rows = value.cast<std::string>();
-    else if (key == "inputs")
-      a.inputs = value.cast<Names>();
-    else if (key == "outputs")
-      a.outputs = value.cast<Names>();
-    else if (key == "disturbances")
-      a.disturbances = value.cast<Names>();
-    else if (key == "time")
-      a.time = value.cast<std::string>();
-    else if (key == "sample_time_s")
-      a.sample_time_s = value.cast<double>();
-    else if (key == "kind")
-      a.kind = value.cast<std::string>();
-    else if (key == "work")
-      a.work = value.cast<double>();
-    else if (key == "budget_s")
-      a.budget_s = value.cast<double>();
-    else if (key == "blocks")
-      a.blocks = value.cast<int>();
-    else if (key == "window")
-      a.window = value.cast<int>();
-    else if (key == "longest_delay")
-      a.longest_delay = value.cast<int>();
-    else if (key == "keep_inputs")
-      a.keep_inputs = value.cast<bool>();
-    else if (key == "known")
-      a.known = value.cast<std::string>();
-    else if (key == "seed")
-      a.seed = value.cast<std::uint64_t>();
-    else if (key == "name")
-      a.out = value.cast<std::string>();
-    else
-      throw InputError("identify: unknown option '" + key + "'");
+  static const std::map<std::string, Setter> fields{
+      {"structure", into(&IdentifyArguments::structure)},
+      {"rows", into(&IdentifyArguments::rows)},
+      {"validate_rows", into(&IdentifyArguments::validate_rows)},
+      {"inputs", into(&IdentifyArguments::inputs)},
+      {"outputs", into(&IdentifyArguments::outputs)},
+      {"disturbances", into(&IdentifyArguments::disturbances)},
+      {"time", into(&IdentifyArguments::time)},
+      {"sample_time_s", into(&IdentifyArguments::sample_time_s)},
+      {"kind", into(&IdentifyArguments::kind)},
+      {"work", into(&IdentifyArguments::work)},
+      {"budget_s", into(&IdentifyArguments::budget_s)},
+      {"blocks", into(&IdentifyArguments::blocks)},
+      {"window", into(&IdentifyArguments::window)},
+      {"reach", into(&IdentifyArguments::reach)},
+      {"longest_delay", into(&IdentifyArguments::longest_delay)},
+      {"input_row", into(&IdentifyArguments::input_row)},
+      {"keep_inputs", into(&IdentifyArguments::keep_inputs)},
+      {"known", into(&IdentifyArguments::known)},
+      {"seed", into(&IdentifyArguments::seed)},
+      {"name", into(&IdentifyArguments::out)}};
+  for (const auto& [key, value] : options) {
+    const auto name = key.cast<std::string>();
+    const auto field = fields.find(name);
+    require(field != fields.end(), "identify", "an option, not '" + name + "'");
+    try {
+      field->second(a, value);
+    } catch (const py::cast_error&) {
+      throw InputError(name + ": expected another type of value");
+    }
   }
 }
 
@@ -109,8 +109,8 @@ ModelPtr identifyFrom(const py::list& records, const py::object& validation,
         return watch.goOn(p.share, p.output + ": " + p.stage);
       });
       cancelled = report.found.cancelled;
-      model->identified.model = std::move(report.found.model);
       if (!cancelled) model->report = tool::toJson(report);
+      model->identified.model = std::move(report.found.model);
     }
   }
   watch.rethrow();
@@ -121,18 +121,27 @@ ModelPtr identifyFrom(const py::list& records, const py::object& validation,
   return model;
 }
 
-/// y, u and d of the model, a row a sample.
-DataSet dataOf(const TsModel& model, py::handle y, py::handle u, py::handle d) {
+/// Rows of the model's signals, outputs first, all missing.
+DataSet emptyData(const TsModel& model, Eigen::Index rows) {
   DataSet data;
   data.source = "arrays";
   data.sample_time_s = model.sample_time_s;
   data.outputs = model.outputs;
   data.inputs = model.inputs;
   data.disturbances = model.disturbances;
+  data.values.setConstant(
+      rows, countOf(model.outputs) + countOf(model.inputs) + countOf(model.disturbances), kNaN);
+  data.constant.assign(static_cast<std::size_t>(data.values.cols()), false);
+  return data;
+}
+
+/// y, u and d of the model, a row a sample, as it reads them.
+DataSet dataOf(const IdentifiedModel& identified, py::handle y, py::handle u, py::handle d) {
+  const TsModel& model = identified.model;
   const Eigen::Index n_y = countOf(model.outputs), n_u = countOf(model.inputs),
                      n_d = countOf(model.disturbances);
   const Matrix outputs = readMatrix(y, n_y, "y");
-  data.values.resize(outputs.rows(), n_y + n_u + n_d);
+  DataSet data = emptyData(model, outputs.rows());
   data.values.leftCols(n_y) = outputs;
   const auto fill = [&](py::handle given, Eigen::Index first, Eigen::Index n, const char* what) {
     if (n == 0 && given.is_none()) return;
@@ -142,16 +151,61 @@ DataSet dataOf(const TsModel& model, py::handle y, py::handle u, py::handle d) {
   };
   fill(u, n_y, n_u, "u");
   fill(d, n_y + n_u, n_d, "d");
-  data.constant.assign(static_cast<std::size_t>(data.values.cols()), false);
-  return data;
+  return asRead(data, identified.same_row);
 }
 
-int longestLag(const TsModel& model) {
-  int lag = 0;
-  for (const SignalKind kind : {SignalKind::kOutput, SignalKind::kInput, SignalKind::kDisturbance})
-    for (std::size_t i = 0; i < model.signals(kind).size(); ++i)
-      lag = std::max(lag, model.maxLag(kind, static_cast<int>(i)));
-  return lag;
+Eigen::Index longestLag(const TsModel& model) {
+  Eigen::Index longest = 0;
+  for (const OutputModel& s : model.submodels)
+    for (const auto* list : {&s.antecedents, &s.regressors})
+      for (const Regressor& r : *list) longest = std::max<Eigen::Index>(longest, r.lag);
+  return longest;
+}
+
+/// Outputs from a rest at y0 and the first rows of u and d on; row 0 is y0. Models of the outputs'
+/// past begin with y0 in all of it, those with a state of their own with the state that a longer
+/// rest gives.
+Matrix simulated(const ModelHandle& handle, py::handle y0, py::handle u, py::handle d) {
+  IdentifiedModel m = handle.identified;
+  m.reach = 0;
+  const auto n_y = countOf(m.model.outputs);
+  Vector start = Vector::Constant(n_y, kNaN);
+  readSignals(y0, namesOf(m.model.outputs), "y0", start);
+  require(start.allFinite(), "y0", "a number for every output");
+  const Matrix input = readMatrix(u, countOf(m.model.inputs), "u");
+  require(input.rows() > 0, "u", "rows");
+  const auto from = [&](Eigen::Index rest) {
+    const Matrix disturbances =
+        d.is_none() ? Matrix(input.rows(), 0) : readMatrix(d, countOf(m.model.disturbances), "d");
+    require(
+        disturbances.cols() == countOf(m.model.disturbances) && disturbances.rows() == input.rows(),
+        "d", std::to_string(input.rows()) + " rows, as u");
+    DataSet data = emptyData(m.model, rest + input.rows());
+    data.values.topRows(rest + 1).leftCols(n_y).rowwise() = start.transpose();
+    Matrix acting(input.rows(), input.cols() + disturbances.cols());
+    acting << input, disturbances;
+    data.values.rightCols(acting.cols()).topRows(rest).rowwise() = acting.row(0);
+    data.values.rightCols(acting.cols()).bottomRows(acting.rows()) = acting;
+    return asRead(data, m.same_row);
+  };
+  const auto run = [&](ModelKind kind, Eigen::Index rest) {
+    return Matrix(predictKind(m, kind, from(rest)).free_run.bottomRows(input.rows()));
+  };
+  const auto byPast = [&](ModelKind kind) {
+    return run(kind, longestLag(kind == ModelKind::kLinear ? m.linearModel() : m.model));
+  };
+  constexpr Eigen::Index kRest = 200;  // of a state of its own, beyond any delay
+  Matrix y(input.rows(), n_y);
+  for (std::size_t i = 0; i < m.model.outputs.size(); ++i) {
+    const auto c = static_cast<Eigen::Index>(i);
+    const ModelKind kind = i < m.outputs.size() ? m.outputs[i].best : ModelKind::kRegressors;
+    if (kind == ModelKind::kBlend)
+      y.col(c) = 0.5 * (byPast(ModelKind::kRegressors) + run(ModelKind::kState, kRest)).col(c);
+    else
+      y.col(c) = (kind == ModelKind::kState ? run(kind, kRest) : byPast(kind)).col(c);
+  }
+  y.row(0) = start.transpose();
+  return y;
 }
 
 py::dict linearised(const ModelHandle& handle, py::handle y, py::handle u, py::handle d) {
@@ -203,8 +257,6 @@ void bindModel(py::module_& m) {
                                      model.submodels[i].rules.size();
                                return rules;
                              })
-      .def_property_readonly("longest_lag",
-                             [](const ModelHandle& h) { return longestLag(h.identified.model); })
       .def_readonly("report", &ModelHandle::report)
       .def_property_readonly("text",
                              [](const ModelHandle& h) { return writeIdentified(h.identified); })
@@ -215,15 +267,12 @@ void bindModel(py::module_& m) {
                                  list.append(py::make_tuple(r.output, r.rule, r.text));
                                return list;
                              })
-      .def("free_run",
-           [](const ModelHandle& h, py::handle y, py::handle u, py::handle d) {
-             const DataSet data = dataOf(h.identified.model, y, u, d);
-             return toArray(predictBest(h.identified, data).free_run);
-           })
+      .def("simulate", [](const ModelHandle& h, py::handle y0, py::handle u,
+                          py::handle d) { return toArray(simulated(h, y0, u, d)); })
       .def("predict",
            [](const ModelHandle& h, py::handle y, py::handle u, py::handle d, int steps) {
              require(steps >= 1, "steps", "an integer >= 1");
-             const DataSet data = dataOf(h.identified.model, y, u, d);
+             const DataSet data = dataOf(h.identified, y, u, d);
              if (steps == 1) return toArray(predictBest(h.identified, data).one_step);
              return toArray(predictSteps(h.identified, data, steps).best);
            })

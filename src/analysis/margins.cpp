@@ -129,7 +129,6 @@ LoopMargins PulseResponse::margins(Index input) const {
   }
   takeReal(0.0);  // there, and at the end, L is real
   takeReal(omega_.back());
-  if (std::abs(before) > 1.0) takeUnit(omega_.back());
   return found;
 }
 

@@ -1,6 +1,7 @@
 #include "fmbpc/base/event.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
 #include <utility>
 
@@ -43,7 +44,7 @@ constexpr EventKind kKinds[] = {
     {C::kNoAllowedInput, "no_allowed_input", kW, "no sequence of inputs is allowed", "the nearest allowed input is sent", "look at controller.forbidden and the input's position"},
     {C::kReferenceHeldBack, "reference_held_back", kI, "an output is farther from its reference than controller.reference_holdback", "the law aims at a nearer reference", "none, after an upset; else raise reference_holdback"},
     {C::kLockUp, "lock_up", kW, "an input stands at a bound while the error stays, and goes on with less of it", "its bound is drawn in (guard.lock_step)", "the gain's sign differs from the model's there"},
-    {C::kOscillation, "oscillation", kW, "the law throws an input from end to end of its range", "its moves shrink (guard.swing_move), or guard.pi acts", "weigh the moves, or lengthen the horizon"},
+    {C::kOscillation, "oscillation", kW, "the law throws an input from end to end of its range", "its moves shrink (guard.swing_move)", "weigh the moves, or lengthen the horizon"},
     {C::kQpNotSolved, "qp_not_solved", kW, "the constraint optimizer has no solution for this sample", "the base action is clipped and sent", "read the text: limits that cannot all hold, or an iteration limit"},
     {C::kBoundsConflict, "bounds_conflict", kW, "move limit and bound of an input conflict", "the bound wins", "look at where the input was before"},
     {C::kInputHeld, "input_held", kW, "the controller had no usable answer", "the last applied input stays", "see the event of the same samples that says why"},
@@ -149,15 +150,42 @@ bool Notices::has(EventCode code) const {
   return std::any_of(begin(), end(), [&](const Notice& notice) { return notice.code == code; });
 }
 
-Event eventOf(const Notice& notice, std::uint32_t step) {
+namespace {
+
+void put(const Notice& notice, std::uint32_t step, Event& event) {
   const char* text = *notice.text == '\0' ? kindOf(notice.code).cause : notice.text;
-  Event event{notice.code, notice.signal, text, step, step, 1};
-  for (std::string* words : {&event.signal, &event.text}) {
-    if (words->size() > kMostOfText) words->resize(kMostOfText);
+  event.code = notice.code;
+  event.signal.assign(notice.signal, strnlen(notice.signal, kMostOfText));
+  event.text.assign(text, strnlen(text, kMostOfText));
+  event.first = event.last = step;
+  event.count = 1;
+  for (std::string* words : {&event.signal, &event.text})
     std::replace_if(
         words->begin(), words->end(), [](char c) { return c == '\n' || c == '\t'; }, ' ');
-  }
+}
+
+}  // namespace
+
+Event eventOf(const Notice& notice, std::uint32_t step) {
+  Event event;
+  put(notice, step, event);
   return event;
+}
+
+EventWriter::EventWriter() : spare_(Notices::kMost) {
+  for (Event& event : spare_) {
+    event.signal.reserve(kMostOfText);
+    event.text.reserve(kMostOfText);
+  }
+}
+
+void EventWriter::write(const Notices& said, std::uint32_t step, std::vector<Event>& events) {
+  for (; !events.empty(); events.pop_back()) spare_.push_back(std::move(events.back()));
+  for (const Notice& notice : said) {
+    put(notice, step, spare_.back());
+    events.push_back(std::move(spare_.back()));
+    spare_.pop_back();
+  }
 }
 
 Event eventOf(EventCode code, const std::string& text, const std::string& signal) {

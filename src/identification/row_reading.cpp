@@ -121,7 +121,8 @@ DataSet asRead(DataSet data, const std::vector<bool>& same) {
   for (std::size_t j = 0; j < same.size(); ++j) {
     auto column = data.values.col(n_y + static_cast<Index>(j));
     for (Index k = 0; same[j] && k + 1 < rows; ++k)
-      if (!gap[static_cast<std::size_t>(k) + 1]) column[k] = column[k + 1];
+      if (!gap[static_cast<std::size_t>(k)] && !gap[static_cast<std::size_t>(k) + 1])
+        column[k] = column[k + 1];
   }
   return data;
 }

@@ -90,7 +90,7 @@ void LocalModel::shiftState(VectorRef outputs, VectorRef input, VectorRef distur
     pushNewest(state, input_offset_[i], input_lags_[i], input[static_cast<Eigen::Index>(i)]);
   for (std::size_t i = 0; i < disturbance_lags_.size(); ++i)
     pushNewest(state, disturbance_offset_[i], disturbance_lags_[i],
-         disturbances[static_cast<Eigen::Index>(i)]);
+               disturbances[static_cast<Eigen::Index>(i)]);
   for (std::size_t i = 0; i < unmeasured_lags_.size(); ++i)
     pushNewest(state, unmeasured_offset_[i], unmeasured_lags_[i], state[unmeasured_offset_[i]]);
 }

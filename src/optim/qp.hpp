@@ -48,7 +48,7 @@ struct QpResult {
 };
 
 /// The size s_j of unknown j is that of its box, or the median of what each row and the cost say of
-/// it alone, |limit_i / a_ij| and |g_j / H_jj|, whichever is less: a power of two, 1 from 2^-12 on
+/// it alone, |limit_i / a_ij| and |g_j / H_jj|, whichever is less: a power of two, 1 from 2^-7 on
 /// (never more: no tolerance grows by a guess). Residual, radius and tolerance are those of the
 /// problem in x_j / s_j.
 

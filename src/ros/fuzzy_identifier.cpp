@@ -257,6 +257,7 @@ void FuzzyIdentifier::conclude(const IdentificationWorker::Outcome& outcome,
 void FuzzyIdentifier::hadNoModel(EventCode code, const std::string& why,
                                  const StepHeader& made_from) {
   failure_ = why;
+  failure_code_ = code;
   failed_s_ = steadyNow();
   say({code, why.c_str()}, made_from);
 }

@@ -68,6 +68,7 @@ class FuzzyIdentifier : public Node {
   std::string problem_, last_identification_{"none"};
   std::string failure_;  // of the latest model that was to be had
   double failed_s_{};
+  EventCode failure_code_{EventCode::kNone};
 
   IdentificationWorker worker_;
   Server::GoalHandle goal_;  // of the job at work, if a client asked for it

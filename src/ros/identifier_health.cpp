@@ -24,7 +24,7 @@ Health FuzzyIdentifier::health(double now_s) const {
   if (!failure_.empty()) words += "; " + failure_;
   const bool news = !failure_.empty() && now_s - failed_s_ < kModelNews;
   return {news ? LoopMode::kDegraded : LoopMode::kAutomatic,
-          news ? EventCode::kModelRefused : EventCode::kNone,
+          news ? failure_code_ : EventCode::kNone,
           std::move(words),
           {}};
 }

@@ -27,7 +27,8 @@ class SummaryListener : public Node {
   std::optional<Health> rest() const {
     if (mode_ == LoopMode::kFinished)
       return Health{LoopMode::kFinished, EventCode::kNone, "finished", {}};
-    if (paused_) return Health{LoopMode::kHeld, EventCode::kPaused, "the plant is paused", {}};
+    // The event is the plant's: said by others too, it would come back to them in its summary.
+    if (paused_) return Health{LoopMode::kHeld, EventCode::kNone, "the plant is paused", {}};
     return {};
   }
 

@@ -343,6 +343,7 @@ LoopFile LoopCourse::stayingAt(const LoopFile& loop, const CoursePoint& point) c
   const Index last = point.step, first = std::max<Index>(0, last - kApproach);
   sim.samples = 0;
   sim.noise_std.setZero();
+  sim.disturbance_noise_std.setZero();
   sim.disturbance_commands.clear();
   for (DriveParams& drive : sim.actuator.drives) drive.backlash = 0.0;
   for (auto& entry : sim.instruments.sensors) {

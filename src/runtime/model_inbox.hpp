@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
 #include "fmbpc/model/ts_model.hpp"
 

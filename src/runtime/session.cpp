@@ -66,6 +66,7 @@ ControllerSession::ControllerSession(std::unique_ptr<Controller> controller,
       recent_(plant_),
       max_pole_(max_pole) {
   require(controller_ != nullptr, "controller", "a controller");
+  answer_.events.reserve(Notices::kMost);
   const auto n_u = static_cast<Eigen::Index>(plant_.inputs.size());
   limits_.validate(n_u);
   require(last_input_.size() == n_u && last_input_.allFinite(), "actuator.initial",
@@ -131,10 +132,7 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   if (arrival == Arrival::kResync)
     arrival_reason_ = "back to sample " + std::to_string(step) + ", where the plant is";
   if (arrival == Arrival::kNewRun) beginAnew();
-  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) {
-    setpoint_.anchor(m.header);
-    begun_ = step > 0;
-  }
+  if (arrival == Arrival::kFirst || arrival == Arrival::kNewRun) setpoint_.anchor(m.header);
 
   answer_.base.header = answer_.tracking.header = m.header;
   answer_.has_action = !m.final;
@@ -232,9 +230,7 @@ Notice ControllerSession::imposing(DoubtAction action) const {
 
 /// What is said of this sample; nothing of the final one, which has no action.
 void ControllerSession::gatherEvents() {
-  std::vector<Event>& events = answer_.events;
-  events.clear();
-  if (!answer_.has_action) return;
+  if (!answer_.has_action) return written_.write({}, 0, answer_.events);
   Notices& said = output_.events;
   if (const EventCode code = std::exchange(model_event_, EventCode::kNone);
       code != EventCode::kNone)
@@ -248,7 +244,7 @@ void ControllerSession::gatherEvents() {
     if (!setpoint_texts_[i].empty() && setpoint_.isClamped(static_cast<Eigen::Index>(i)))
       said.add({EventCode::kSetpointClamped, setpoint_texts_[i].c_str(),
                 plant_.outputs[i].name.c_str()});
-  for (const Notice& notice : said) events.push_back(eventOf(notice, answer_.tracking.header.step));
+  written_.write(said, answer_.tracking.header.step, answer_.events);
 }
 
 void ControllerSession::withoutSetpoint(const std::vector<Eigen::Index>& outputs) {
@@ -266,7 +262,7 @@ void ControllerSession::runLaw(const Measurement& m) {
       if (!reset_reason_.empty()) reset_reason_ += "; ";
       reset_reason_ += interruption_;
     }
-    start(m);
+    controller_->reset(m);
     transfer_.reset(other_hand_ || transfer_.active());
     other_hand_ = false;
     interruption_ = nullptr;
@@ -287,15 +283,6 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (!answer_.has_prediction) return;
   answer_.prediction = output_.prediction;
   answer_.prediction.header = m.header;
-}
-
-/// Samples that were lost before anybody had moved an input are no part of the law's run.
-void ControllerSession::start(const Measurement& m) {
-  if (begun_) return controller_->reset(m);
-  controller_->forget();
-  Measurement first = m;
-  first.header.step = 0;
-  controller_->reset(first);
 }
 
 /// Of the first model, at the first sample.

@@ -64,8 +64,7 @@ enum class Receipt {
 ///   instead; for longer than hold_samples with the fallback. The same if the plant, or how its
 ///   outputs react, is doubted and the loop file asks for it (DoubtAction). The controller is
 ///   reset, bumplessly, at the next sample that it gets;
-/// - first sample, gap, new run: the controller is reset; otherwise it just steps. A run begins for
-///   the law with the first sample that it gets, whatever was lost before.
+/// - first sample, gap, new run: the controller is reset; otherwise it just steps.
 /// Move limits count from the applied input, but for one with an offset, which the law, a person
 /// and a fallback move on from the last command (MoveOrigin): they see that one as applied.
 /// After another hand had the inputs the plant gets in the first sample what it gets already, and
@@ -167,7 +166,6 @@ class ControllerSession {
   void fallBack(const Measurement& m, const Notice& why);
   Notice imposing(DoubtAction action) const;
   void gatherEvents();
-  void start(const Measurement& m);
   void watchReaction(const Measurement& m);
   void forgetSamples();
   void handOver(const Measurement& m);
@@ -201,13 +199,13 @@ class ControllerSession {
   Measurement present_;  // the last that was accepted; empty before the first
   RecentSamples recent_;
   std::string model_text_, plant_doubt_;
+  EventWriter written_;
   EventCode model_event_{EventCode::kNone};  // that has not been said yet
   std::vector<std::string> manual_texts_;    // by input; empty: not clamped
   std::unique_ptr<ReactionWatch> reaction_;  // of a law with a model, if it is asked for
   bool gains_due_{false};                    // nor have the gains been looked at
   double max_pole_{1.0};
   std::uint64_t models_{};
-  bool begun_{false};  // in this run somebody had the inputs, or it began before this object
   bool manual_{false}, manual_given_{false}, unreleased_{false}, fell_back_{false};
   bool takes_actions_{true}, leads_an_optimizer_{false}, other_hand_{false};
   bool manual_asked_{false}, recipe_asked_{false}, carries_{false};

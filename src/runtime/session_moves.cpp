@@ -44,7 +44,6 @@ void ControllerSession::answered() {
                       source == ActionSource::kGuarded;
   other_hand_ = other_hand_ || source == ActionSource::kManual || fell_back_ || unreleased_ ||
                 !takes_actions_;
-  begun_ = begun_ || of_law || other_hand_;
   if ((leads_an_optimizer_ && of_law) || unreleased_ || !takes_actions_)
     moves_.restart();  // the plant is told something else
   else

@@ -226,6 +226,10 @@ Summary RunSummary::finish(double wall_s, bool nothing_missing) const {
   addFileEvents(sums_->loop, events);
   result.events = events.all();
   for (const RunningOutput& output : sums_->outputs) result.outputs.push_back(output.indices());
+  for (const Event& event : result.events)
+    for (std::size_t i = 0; i < result.outputs.size(); ++i)
+      if (event.code == EventCode::kMeasurementRejected && event.signal == result.output_names[i])
+        result.outputs[i].rejected += event.count;
   for (const RunningInput& input : sums_->inputs) result.inputs.push_back(input.indices());
   result.inputs.resize(result.input_names.size());  // of a run without samples
   for (WindowIndices& window : result.windows) {

@@ -9,7 +9,7 @@ namespace {
 constexpr double kRounding = 1e-6;  // of the value: numbers of 32 bits tremble by less
 constexpr double kBits = 1e-9;      // of the value: differences of equal steps
 constexpr double kFar = 16.0;       // resolutions
-constexpr double kLeastWhite = 0.25, kMostWhite = 0.75;
+constexpr double kLeastWhite = 0.45, kMostWhite = 0.85;
 constexpr double kSurely = 0.5;  // of the variance that a window shows
 constexpr int kLarge = 8;        // steps of two resolutions: rounding alone makes none
 constexpr int kNever = std::numeric_limits<int>::max();
@@ -76,12 +76,17 @@ int FlatLine::allowed() const {
   const double q = resolution();
   double products = 0.0, squares = 0.0;
   int large = 0;
+  double before = 0.0;
   for (int k = 0; k < kWindow; ++k) {
-    squares += step(k) * step(k);
-    if (k > 0) products += step(k) * step(k - 1);
     large += std::abs(step(k)) > 1.5 * q ? 1 : 0;
+    if (k == 0) continue;
+    const double turn = step(k) - step(k - 1);
+    squares += turn * turn;
+    products += turn * before;
+    before = turn;
   }
-  const double white = -products / squares, noise = -kSurely * products / (kWindow - 1);
+  const double white = -products / squares;
+  const double noise = -kSurely * products / (4 * (kWindow - 1));
   const bool trembles = white > kLeastWhite && white < kMostWhite && large >= kLarge;
   if (!trembles || !(noise > std::pow(kRounding * value_, 2))) return kNever;
   const double by_noise = std::erf(q / std::sqrt(8.0 * noise));

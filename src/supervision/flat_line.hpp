@@ -9,12 +9,12 @@ namespace fpc {
 
 /// Of the last kWindow steps before a run of equal readings:
 ///   q        the smallest step, or difference of consecutive ones, that is not 0: the resolution
-///   sigma^2  minus the mean product of consecutive ones, halved since it is an estimate; motion
-///            gives 0 or less
+///   sigma^2  a quarter of minus the mean product of consecutive differences of steps (motion, of
+///            which only the bend is left, gives 0 or less), halved since it is an estimate
 ///   p        erf(q / (2 sqrt(2) sigma)): noise of sigma behind q shows the same number again with
 ///            at most this probability; or the share of zeros among the steps, if that is larger
-/// The run is unlikely once p^repeats < kChance. A signal has noise if that product is between a
-/// quarter and three quarters of the mean square of the steps (white noise: a half, a signal that
+/// The run is unlikely once p^repeats < kChance. A signal has noise if that product is between 0.45
+/// and 0.85 of the mean square of these differences (white noise: two thirds, a signal that
 /// alternates: 1), and eight steps are of two resolutions or more (rounding alone makes none);
 /// without noise no run is unlikely. A reading at the largest or the smallest value seen so far may
 /// be at a limit, as a flow over a weir.

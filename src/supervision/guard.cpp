@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "control/pi/pi.hpp"
+#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/model/model_match.hpp"
 #include "model/model_inputs.hpp"
@@ -14,8 +15,6 @@ namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-constexpr int kMostPatient = 1 << 10;  // times return_samples
 
 /// Outputs, an input and disturbances, as models have them.
 void place(const Measurement& now, VectorRef input, Vector& point) {
@@ -32,6 +31,25 @@ bool isLaws(ActionSource source) {
 }
 
 }  // namespace
+
+void GuardParams::validate(Index n_y, Index n_u, Index n_d) const {
+  require(trust_low >= 0.0 && trust_low <= 1.0, "guard.trust_low", "a number from 0 to 1");
+  require(trust_high >= trust_low && trust_high <= 1.0, "guard.trust_high",
+          "a number from trust_low to 1");
+  require(least_move > 0.0 && least_move <= 1.0, "guard.least_move", "a number > 0 and <= 1");
+  require(look_ahead >= 0, "guard.look_ahead", "an integer >= 0");
+  require(horizon_least >= 0, "guard.horizon_least", "an integer >= 0");
+  require(return_samples >= 1, "guard.return_samples", "an integer >= 1");
+  require(lock_samples >= 0, "guard.lock_samples", "an integer >= 0");
+  require(lock_error > 0.0 && std::isfinite(lock_error), "guard.lock_error", "a number > 0");
+  require(lock_step > 0.0 && lock_step <= 1.0, "guard.lock_step", "a number > 0 and <= 1");
+  require(swing_move >= 0.0 && swing_move <= 1.0, "guard.swing_move", "a number from 0 to 1");
+  require(swing_release >= 1, "guard.swing_release", "an integer >= 1");
+  require(lock_release >= 1, "guard.lock_release", "an integer >= 1");
+  for (const Index i : lock_outputs)
+    require(i >= 0 && i < n_y, "guard.lock_outputs", "outputs of the plant");
+  if (pi) pi->validate(n_y, n_u, n_d);
+}
 
 GuardedController::GuardedController(std::unique_ptr<Controller> inside, GuardParams params,
                                      InputLimits limits, PlantInfo plant)
@@ -75,7 +93,6 @@ void GuardedController::reset(const Measurement& start) {
   for (SwingWatch& swing : swings_) swing.reset();
   fallback_ = false;
   above_ = 0;
-  patience_ = 1;
   ahead_.reset();
   view_ = {};
 }
@@ -103,9 +120,8 @@ void GuardedController::lookAhead(const Measurement& now, const ControllerOutput
 /// of the process where its model knows nothing is forgotten.
 void GuardedController::comeBack(const Measurement& now, double trust) {
   above_ = trust >= params_.trust_high ? above_ + 1 : 0;
-  if (!fallback_ || above_ / patience_ < params_.return_samples) return;
+  if (!fallback_ || above_ < params_.return_samples) return;
   fallback_ = false;
-  for (SwingWatch& swing : swings_) swing.reset();
   inside_->forget();
   inside_->reset(now);
 }
@@ -152,16 +168,6 @@ void GuardedController::shrink(double trust) {
   }
 }
 
-/// The law has the process swing: the fallback has it, and after every further swing twice as long.
-void GuardedController::handOver(const Measurement& now) {
-  if (!pi_ || fallback_ || !view_.swinging) return;
-  fallback_ = true;
-  why_ = EventCode::kOscillation;
-  above_ = 0;
-  patience_ = std::min(2 * patience_, kMostPatient);
-  pi_->reset(now);
-}
-
 /// What is thrown from end to end moves less.
 void GuardedController::calm(const Measurement& now) {
   for (Index i = 0; i < shrunk_.move.size(); ++i) {
@@ -195,17 +201,15 @@ double GuardedController::trustForMoves(const Measurement& now) {
 
 void GuardedController::act(const Measurement& now, const SetpointSource& setpoint,
                             ControllerOutput& output) {
+  if (fallback_) {
+    pi_->step(now, setpoint, pi_output_);
+    output.input = pi_output_.input;
+  }
   const double trust = trustForMoves(now);
   shrink(std::min(trust, fallback_ ? 1.0 : view_.near));
   bool drawn = false;
   proposed_ = output.input;
-  if (!fallback_) calm(now);
-  handOver(now);
-  if (fallback_) {
-    pi_->step(now, setpoint, pi_output_);
-    proposed_ = output.input = pi_output_.input;
-    shrunk_.move = limits_.move;
-  }
+  calm(now);
   narrow(now.input_applied);
   for (Index i = 0; i < output.input.size(); ++i) {
     const double proposed = proposed_[i];
@@ -225,7 +229,6 @@ void GuardedController::act(const Measurement& now, const SetpointSource& setpoi
   if (fallback_) {
     output.source = ActionSource::kFallback;
     output.predictive = false;
-    if (why_ != EventCode::kNone) output.events.add({why_});
     view_.acting = true;
   }
   if (!view_.acting || fallback_) return;
@@ -248,7 +251,6 @@ void GuardedController::step(const Measurement& now, const SetpointSource& setpo
     view_.trust = std::min(present, trustAt(now, output.input));
     if (pi_ && !fallback_ && process < params_.trust_low) {
       fallback_ = true;
-      why_ = EventCode::kNone;
       pi_->reset(now);
     }
     view_.outside = view_.trust < params_.trust_low;

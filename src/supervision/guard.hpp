@@ -113,7 +113,6 @@ class GuardedController final : public ControllerAround {
   double trustForMoves(const Measurement& now);
   void shrink(double trust);
   void calm(const Measurement& now);
-  void handOver(const Measurement& now);
   void narrow(const Vector& before);
   void act(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);
   void lookAhead(const Measurement& now, const ControllerOutput& output);
@@ -132,9 +131,7 @@ class GuardedController final : public ControllerAround {
   TsModel model_;
   bool known_{false};  // the model says where its data were
   bool fallback_{false};
-  EventCode why_{EventCode::kNone};  // why the fallback acts, besides outside_model
-  int above_{};          // samples in a row above trust_high
-  int patience_{1};      // times return_samples before the law is back
+  int above_{};  // samples in a row above trust_high
   Vector point_, proposed_;
   HorizonTrust ahead_;
   GuardView view_;

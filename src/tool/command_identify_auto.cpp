@@ -1,4 +1,5 @@
 // fmbpc identify DATA.. --auto: the structure is searched; the verdict comes first.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -224,6 +225,24 @@ void checkArguments(const IdentifyArguments& a) {
   checkTarget(a.out);
 }
 
+/// What callers other than the command line may have set otherwise.
+void checkSearch(const IdentifyArguments& a) {
+  const auto oneOf = [](const std::string& word, const char* name, const Row& known) {
+    require(std::find(known.begin(), known.end(), word) != known.end(), name,
+            join(known) + ", got '" + word + "'");
+  };
+  oneOf(a.kind, "kind", {"best", "linear", "regressors", "state"});
+  oneOf(a.input_row, "input_row", {"auto", "next", "same"});
+  require(a.work > 0.0 && std::isfinite(a.work), "work", "a number > 0");
+  require(a.budget_s >= 0.0 && std::isfinite(a.budget_s), "budget_s", "seconds, or 0");
+  require(a.sample_time_s >= 0.0 && std::isfinite(a.sample_time_s), "sample_time_s",
+          "seconds, or 0");
+  require(a.blocks >= 2 && a.blocks <= 20, "blocks", "2..20");
+  require(a.window >= 1 && a.window <= 1000, "window", "1..1000");
+  require(a.reach >= -1 && a.reach <= 100000, "reach", "-1..100000");
+  require(a.longest_delay >= 0, "longest_delay", "samples, or 0");
+}
+
 }  // namespace
 
 IdentifyTables readTables(const IdentifyArguments& a, const CsvFormat& format) {
@@ -239,6 +258,7 @@ IdentifyTables readTables(const IdentifyArguments& a, const CsvFormat& format) {
 
 AutoReport searchModel(IdentifyArguments a, const IdentifyTables& tables,
                        const AutoCallback& progress) {
+  checkSearch(a);
   if (tables.validate_all) a.validate_rows = ":";
   const AutoRecords records = recordsOf(a, tables);
   const auto start = std::chrono::steady_clock::now();

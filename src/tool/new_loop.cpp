@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 #include <sstream>
 
 #include "base/files.hpp"
@@ -291,8 +292,7 @@ class LoopWriter {
       steps_.gain.row(i).cwiseAbs().maxCoeff(&j);
       const double asked = std::max({0.5 * steps_.time(i, j), steps_.dead_time(i, j), sample_});
       pole[i] = std::exp(-sample_ / asked);
-      noise[i] = known_noise_ ? std::max(noise_.measurement[i],
-                                         1e-3 * (noise_.measurement[i] + noise_.load[i]))
+      noise[i] = known_noise_ ? std::max(noise_.measurement[i], noise_.load[i])
                               : kNoNoise * steps_.y_range[i];
       walk[i] = known_noise_ ? std::max(noise_.load[i], 0.02 * noise[i]) : noise[i];
     }
@@ -307,8 +307,8 @@ class LoopWriter {
         << "  # half the lag, or the dead time\n"
         << "  weight_output: " << mapping(model_.outputs, y_weight) << "  # 1 / range^2\n"
         << "  weight_move: " << mapping(model_.inputs, u_weight) << "  # " << digits(move_weight)
-        << " / range^2: the least of five whose sensitivity peak on the model is below "
-        << digits(kPeak) << "\n"
+        << " / range^2: of five the least with a sensitivity peak below " << digits(kPeak)
+        << " on the model, or the one with the lowest peak\n"
         << "  realisation: observer\n"
         << "  observer:"
         << (known_noise_ ? "                        # of the model's errors on its record\n"
@@ -363,12 +363,16 @@ int newLoop(const NewArguments& a) {
   for (const std::string& t : {target, pi_target})
     require(!fs::exists(t), t, "a file that is not there yet");
   const LoopWriter writer(a, name, found, file);
-  double chosen = kWeights[std::size(kWeights) - 1];
-  for (const double weight : kWeights)
-    if (peakOf(writer.law(weight), name) < kPeak) {
-      chosen = weight;
-      break;
-    }
+  double chosen = kWeights[0], least = std::numeric_limits<double>::infinity();
+  for (const double weight : kWeights) {  // the first with a low peak, or that with the lowest
+    const double peak = peakOf(writer.law(weight), name);
+    if (!(peak < least)) continue;
+    chosen = weight;
+    least = peak;
+    if (peak < kPeak) break;
+  }
+  require(std::isfinite(least), "--model " + file,
+          "a model on which law iterated comes to rest with one of five weights of the moves");
   makeFolder(a.out);
   writeText(writer.law(chosen), target);
   writeText(writer.pi(), pi_target);

@@ -223,7 +223,10 @@ std::vector<CsvTable> piecesOf(const CsvTable& table, const std::string& name,
   const auto times = table.values.col(table.column(name));
   std::vector<Index> starts{0};
   for (Index k = 1; k < times.size(); ++k)
-    if (times[k] <= times[k - 1]) starts.push_back(k);
+    if (times[k] == times[k - 1])
+      return {table};  // a time that comes twice is refused where it is read
+    else if (times[k] < times[k - 1])
+      starts.push_back(k);
   starts.push_back(times.size());
   for (std::size_t i = 0; i + 1 < starts.size(); ++i)
     if (starts.size() > 2 && starts[i + 1] - starts[i] < kShortestPiece)

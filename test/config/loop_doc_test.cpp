@@ -154,7 +154,8 @@ std::set<std::string> readerKeys() {
     if (section.size() > 2 && section.substr(section.size() - 2) == "[]")
       keys.erase(section.substr(0, section.size() - 2));
   }
-  for (const char* either : {"plant.outputs", "guard.pi"}) keys.insert(either);  // or a mapping
+  for (const char* either : {"plant.outputs", "guard.pi", "plant.model", "plant.ranges.NAME"})
+    keys.insert(either);  // or a mapping
   for (const char* other : {"clp", "disturbance.pattern.channels", "disturbance.csv.channels"})
     keys.erase(other);
   return keys;

@@ -1,6 +1,6 @@
 // What was asked of a controller before its first sample, and what becomes of it when the plant's
 // end of the ring comes back.
-#include "session_fixture.hpp"
+#include "runtime/session_fixture.hpp"
 
 namespace fpc {
 namespace control_session_wishes_test {

@@ -3,6 +3,8 @@
 
 #include <string>
 
+#include "fmbpc/base/types.hpp"
+
 namespace fpc::fuzz {
 
 class Bytes {

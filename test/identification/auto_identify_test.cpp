@@ -132,8 +132,8 @@ TEST(AutoIdentify, SaysFirstThatNoiseCannotBePredicted) {
 
 TEST(AutoIdentify, WorkIsCountedSoThatThreadsAndTimeChangeNothing) {
   const DataSet data = simulate(bentLaw, 240, 0.05, 0, 6);
-  AutoParams params = quick(true);
-  params.work = 0.5;  // ends in the middle of the search
+  AutoParams params = quick(false);
+  params.work = 0.1;  // ends in the middle of the search
   params.threads = 1;
   const AutoIdentification one = autoIdentify(data, params);
   params.threads = 3;

@@ -7,26 +7,13 @@
 #include "base/random.hpp"
 #include "identification/auto_data.hpp"
 #include "identification/auto_identify.hpp"
+#include "identification/pair_data.hpp"
 #include "identification/validation.hpp"
 
 namespace fpc {
 namespace identification_auto_reach_test {
 
 using Eigen::Index;
-
-DataSet dataOf(const Matrix& values) {
-  DataSet data;
-  data.source = "made up";
-  data.sample_time_s = 1.0;
-  data.values = values;
-  const auto info = [&](const char* name, Index c) {
-    return SignalInfo{name, "", values.col(c).minCoeff(), values.col(c).maxCoeff()};
-  };
-  data.outputs = {info("y", 0)};
-  data.inputs = {info("u", 1)};
-  data.constant.assign(2, false);
-  return data;
-}
 
 Index reach(const DataSet& data) { return reachOf(prepareAuto(data, 0, 4, 2000, 8000)); }
 
@@ -40,7 +27,7 @@ DataSet stable(double pole, double noise, std::uint64_t seed) {
     values.row(k) << y + noise * standardNormal(random), u;
     y = pole * y + (1.0 - pole) * u;
   }
-  return dataOf(values);
+  return pairData(values);
 }
 
 /// Unstable by itself, held by a proportional law with a dither.
@@ -55,7 +42,7 @@ DataSet unstable(double pole, std::uint64_t seed) {
     values.row(k) << measured, u;
     y = pole * y + 0.5 * u + 0.02 * standardNormal(random);
   }
-  return dataOf(values);
+  return pairData(values);
 }
 
 /// A level that first swells: integral of u less a lag of it, about its rest by a weak law.
@@ -70,18 +57,18 @@ DataSet swell(std::uint64_t seed) {
     level += 0.1 * u;
     lag = 0.8 * lag + 0.2 * u;
   }
-  return dataOf(values);
+  return pairData(values);
 }
 
 TEST(AutoReach, OfAStableProcessRunsAreFree) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed)
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
     for (const double pole : {0.0, 0.5, 0.9, 0.98})
       for (const double noise : {0.001, 0.1})
         EXPECT_EQ(reach(stable(pole, noise, seed)), 0) << pole << ", " << noise << ", " << seed;
 }
 
 TEST(AutoReach, AProcessThatIntegratesOrIsUnstableIsJudgedByShortRuns) {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     EXPECT_EQ(reach(swell(seed)), 30) << seed;
     EXPECT_NEAR(static_cast<double>(reach(unstable(1.3, seed))), 11.0, 2.0) << seed;
   }
@@ -89,7 +76,7 @@ TEST(AutoReach, AProcessThatIntegratesOrIsUnstableIsJudgedByShortRuns) {
 
 AutoIdentification searched(const DataSet& data) {
   AutoParams params;
-  params.work = 10.0;
+  params.work = 1.5;
   return autoIdentify(data, params);
 }
 
@@ -98,7 +85,7 @@ double slowestPole(const TsModel& model) {
 }
 
 TEST(AutoReach, AnUnstablePoleIsFound) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const AutoIdentification found = searched(unstable(1.3, seed));
     EXPECT_GT(found.reach, 0);
     EXPECT_NEAR(slowestPole(found.linear), 1.3, 0.06) << seed;
@@ -108,7 +95,7 @@ TEST(AutoReach, AnUnstablePoleIsFound) {
 }
 
 TEST(AutoReach, AnInverseResponseIsNoDelay) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+  for (const std::uint64_t seed : {1U, 2U}) {
     const AutoIdentification found = searched(swell(seed));
     EXPECT_EQ(found.outputs[0].delay[0], 0) << seed;
     EXPECT_NEAR(slowestPole(found.linear), 1.0, 0.02) << seed;

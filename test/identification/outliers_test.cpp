@@ -114,10 +114,11 @@ TEST(Outliers, ThatFollowAPulseOfAnInputAreItsEffect) {
 }
 
 TEST(Outliers, PeaksThatTheInputsExplainAreKept) {
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     DataSet data = recordOf(0.0, 400, seed);  // an output that answers to changes of u alone
     std::mt19937_64 random(seed);
-    double before = 0.0;
+    data.values.col(1).head(9).setConstant(data.values(8, 1));  // the first rows have no past
+    double before = data.values(0, 1);
     for (Index k = 0; k + 1 < 400; ++k) {
       data.values(k + 1, 0) = 3.0 * (data.values(k, 1) - before) + 0.02 * standardNormal(random);
       before = data.values(k, 1);

@@ -6,6 +6,7 @@
 
 #include "base/random.hpp"
 #include "identification/auto_identify.hpp"
+#include "identification/pair_data.hpp"
 #include "identification/record_remarks.hpp"
 
 namespace fpc {
@@ -13,19 +14,7 @@ namespace fuzzy_remarks_test {
 
 using Eigen::Index;
 
-DataSet recordOf(const Matrix& values) {
-  DataSet data;
-  data.source = "made up";
-  data.sample_time_s = 2.0;
-  data.values = values;
-  const auto info = [&](const char* name, Index c) {
-    return SignalInfo{name, "", values.col(c).minCoeff(), values.col(c).maxCoeff()};
-  };
-  data.outputs = {info("y", 0)};
-  data.inputs = {info("u", 1)};
-  data.constant.assign(2, false);
-  return data;
-}
+DataSet recordOf(const Matrix& values) { return pairData(values, 2.0); }
 
 bool contains(const std::vector<std::string>& remarks, const std::string& words) {
   return std::any_of(remarks.begin(), remarks.end(),

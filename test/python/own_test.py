@@ -169,6 +169,21 @@ class Own(unittest.TestCase):
                 self.calls = getattr(self, "calls", 0) + 1
                 return [self.calls]
 
+        class Forgets(OwnCounter):
+            total = 0.0
+
+            def start(self):
+                pass
+
+            def step(self, u, d):
+                Forgets.total += u[0]
+                return [Forgets.total]
+
+        class Drifts(OwnCounter):
+            def step(self, u, d):
+                self.total += 0.1
+                return [self.total]
+
         class Infinite(OwnTank):
             def derivatives(self, x, u, d):
                 return [1e308 * 10.0 if x[0] > 2.0 else 0.0]
@@ -176,7 +191,8 @@ class Own(unittest.TestCase):
         class Random(OwnLaw):
             def step(self, y, setpoint):
                 return numpy.random.default_rng().uniform(0.0, 2.0)
-        self.assertTrue(fmbpc.check(Remembers))
+        for cls in (Remembers, Forgets, Drifts):
+            self.assertTrue(fmbpc.check(cls), cls)
         with self.assertRaises(fmbpc.InputError):
             fmbpc.check(Infinite)
         self.assertTrue(fmbpc.check(Random, loop=tank()))

@@ -101,7 +101,7 @@ class Identify(unittest.TestCase):
             got, result = self.finish_after(**goal)
             self.assertEqual((state, False), (got, result.ok), result.message)
             self.assertIn(words, result.message)
-        said = self.status.wait(lambda s: "identification: " in s.message)  # of the last one, the loop goes on
+        said = self.status.wait(lambda s: ring.values(s).get("code") == "identification_failed")  # of the last one, the loop goes on
         self.assertIn("rows", said.message)
 
     def test_diagnostics_say_what_was_collected(self):

@@ -16,6 +16,9 @@ import rostest
 import ring
 
 
+PATIENT = 3 * ring.PATIENCE  # end_launch gives way to all others (os.nice)
+
+
 def roslaunch(*arguments):
     port = ring.free_port()
     environment = {**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}
@@ -127,8 +130,8 @@ class LaunchFile(unittest.TestCase):
              "set:=sampling.duration_h=20 loop.ready_timeout_s=600 loop.wait_for=[loop_recorder,fmbpc_controller,launch_file]"]), **quiet)
         self.addCleanup(ring.killed, launch)
         master = rosgraph.Master("/launch_file", environment["ROS_MASTER_URI"])
-        nodes = ("/plant_simulator", "/fmbpc_controller", "/loop_recorder", "/end_launch")
-        ring.wait_until(lambda: known(master, *nodes), "the nodes")
+        nodes = ("/plant_simulator", "/fmbpc_controller", "/fuzzy_identifier", "/loop_recorder", "/end_launch")
+        ring.wait_until(lambda: known(master, *nodes), "the nodes", PATIENT)
         processes = {node: ring.pid(node, master) for node in nodes}
         launch.kill()
         launch.wait()
@@ -141,7 +144,7 @@ class LaunchFile(unittest.TestCase):
                                              "__name:=launch_file"]), **quiet)  # the run itself, after all that
         self.addCleanup(ring.killed, begins)
         for node, process in processes.items():
-            ring.wait_until(lambda p=process: not ring.runs(p), node + " to end")
+            ring.wait_until(lambda p=process: not ring.runs(p), node + " to end", PATIENT)
         with open(os.path.join(self.out, "summary.json"), encoding="utf-8") as file:
             self.assertTrue(json.load(file)["complete"])
 

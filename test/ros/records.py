@@ -160,7 +160,7 @@ class Records(unittest.TestCase):
         self.assert_whole(200, launch.end())
 
     def test_an_endless_run_is_filed_in_parts_each_with_its_bag(self):
-        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=0", "speedup:=144000", "out:=" + self.out, "record:=true")
+        launch = Launch(self, "loop:=asp_case1_clp", "set:=sampling.duration_h=0 disturbance.source=constant", "speedup:=144000", "out:=" + self.out, "record:=true")
         history = os.path.join(self.out, "history")
         ring.wait_until(lambda: os.path.isdir(history) and os.listdir(history), "the third part of a day", 3 * ring.PATIENCE)
         launch.process.send_signal(signal.SIGINT)

@@ -8,7 +8,9 @@ namespace fpc {
 namespace loop_health_test {
 
 const std::vector<std::string> kNobody;
-Health health(LoopMode mode, const std::string& words = "") { return {mode, words, {}}; }
+Health health(LoopMode mode, const std::string& words = "") {
+  return {mode, EventCode::kNone, words, {}};
+}
 
 TEST(Health, OnlyAutomaticAndFinishedAreInOrder) {
   for (int mode = 1; mode <= 9; ++mode) {
@@ -20,7 +22,10 @@ TEST(Health, OnlyAutomaticAndFinishedAreInOrder) {
 }
 
 TEST(Health, ASentenceNamesStateReasonAndWhoIsMissing) {
-  EXPECT_EQ(sentence({LoopMode::kStalled, "no action for sample 17", {"/clp_optimizer"}}),
+  EXPECT_EQ(sentence({LoopMode::kStalled,
+                      EventCode::kNoAction,
+                      "no action for sample 17",
+                      {"/clp_optimizer"}}),
             "stalled: no action for sample 17 (missing: /clp_optimizer)");
 }
 
@@ -53,7 +58,7 @@ TEST(RingWatch, SaysWhoIsWorstAndWhy) {
   RingWatch watch({"/a", "/b", "/c"});
   watch.hear("/a", health(LoopMode::kManual, "manual"), 0.0);
   EXPECT_EQ(watch.worst(0.1).mode, LoopMode::kManual);
-  watch.hear("/b", {LoopMode::kStalled, "no answer", {"/c"}}, 0.0);
+  watch.hear("/b", {LoopMode::kStalled, EventCode::kNoAction, "no answer", {"/c"}}, 0.0);
   watch.hear("/c", health(LoopMode::kFinished), 0.0);
   const Health worst = watch.worst(0.1);
   EXPECT_EQ(worst.words, "/b: no answer");
@@ -64,9 +69,15 @@ TEST(RingWatch, WhoIsStartingWhileTheRunGoesOnDoesNotDoItsPart) {
   RingWatch watch({"/a", "/b", "/c"});
   watch.begin(10.0);
   watch.hear("/a", health(LoopMode::kManual, "manual"), 11.6);
-  watch.hear("/b", {LoopMode::kStarting, "waiting for the first measurement", {"/plant"}}, 11.5);
+  watch.hear(
+      "/b",
+      {LoopMode::kStarting, EventCode::kWaiting, "waiting for the first measurement", {"/plant"}},
+      11.5);
   EXPECT_EQ(watch.worst(12.4).mode, LoopMode::kManual);  // it may not have said yet that it began
-  watch.hear("/b", {LoopMode::kStarting, "waiting for the first measurement", {"/plant"}}, 12.6);
+  watch.hear(
+      "/b",
+      {LoopMode::kStarting, EventCode::kWaiting, "waiting for the first measurement", {"/plant"}},
+      12.6);
   const Health worst = watch.worst(12.6);
   EXPECT_EQ(worst.mode, LoopMode::kStarting);
   EXPECT_EQ(worst.words, "/b: starting: waiting for the first measurement");

@@ -42,7 +42,7 @@ std::complex<double> loopGain(double kp, double ki_per_h, double turn) {
   const std::complex<double> z = std::polar(1.0, turn);
   const double a = std::exp(-kSample / kTau);
   const std::complex<double> plant = kGain * (1.0 - a) / (z - a) * std::pow(z, -2);
-  return plant * (kp + ki_per_h * kSample / 60.0 * z / (z - 1.0));
+  return plant * (kp + ki_per_h * kSample / 60.0 / (z - 1.0));
 }
 
 double root(double low, double high, const std::function<double(double)>& f) {
@@ -102,7 +102,11 @@ TEST_F(LoopProbeOf, AnInputAtItsLimitHasNoFeedback) {
 TEST_F(LoopProbeOf, NoiseIsLeftOut) {
   const auto still = probe(readLoop(write("a.yaml", tank(1.5, 10.0))), 1)[0];
   const auto noisy =
-      probe(readLoop(write("b.yaml", tank(1.5, 10.0, "noise: {std: {T: 0.5}}\n"))), 1)[0];
+      probe(readLoop(write(
+                "b.yaml",
+                tank(1.5, 10.0,
+                     "noise: {std: {T: 0.5}}\ndisturbance: {noise_std: {gain/T/heat: 0.2}}\n"))),
+            1)[0];
   ASSERT_TRUE(noisy.response);
   EXPECT_EQ(noisy.response->margins(0).gain_upper, still.response->margins(0).gain_upper);
 }

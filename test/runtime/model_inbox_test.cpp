@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "fmbpc/base/text.hpp"
+
 namespace fpc {
 namespace loop_model_inbox_test {
 
@@ -87,32 +89,45 @@ TEST(ModelInbox, AnIdentifierThatCameBackLaterDoesNotStallTheLoop) {
   EXPECT_TRUE(inbox.complete(header(10)));
 }
 
-TEST(ModelInbox, ARemarkIsOfTheNextSampleAndIsNoWordThatTheSampleIsDoneWith) {
+IdentifierWord saying(const StepHeader& header, const std::string& text) {
+  Event event;
+  event.code = EventCode::kIdentificationFailed;
+  event.text = text;
+  return {header, false, {event}};
+}
+
+std::string textsOf(const std::vector<Event>& events) {
+  std::vector<std::string> texts;
+  for (const Event& event : events) texts.push_back(event.text);
+  return join(texts, "\n");
+}
+
+TEST(ModelInbox, AnEventIsOfTheNextSampleAndIsNoWordThatTheSampleIsDoneWith) {
   ModelInbox inbox(true);
   inbox.announce(7);
-  inbox.hear({header(4), false, "one"});
-  inbox.hear({header(4), false, "two"});
+  inbox.hear(saying(header(4), "one"));
+  inbox.hear(saying(header(4), "two"));
   EXPECT_FALSE(inbox.complete(header(5)));
   inbox.hear({header(4), true});
   EXPECT_FALSE(inbox.complete(header(5)));  // a model is owed
   inbox.put(model("a"), header(4));
   EXPECT_TRUE(inbox.complete(header(5)));
-  inbox.hear({header(5), false, "later"});  // the identifier may be ahead
-  EXPECT_EQ(inbox.takeRemarks(header(4)), "");
-  EXPECT_EQ(inbox.takeRemarks(header(5)), "one\ntwo");
-  EXPECT_EQ(inbox.takeRemarks(header(5)), "");
-  EXPECT_EQ(inbox.takeRemarks(header(6)), "later");
+  inbox.hear(saying(header(5), "later"));  // the identifier may be ahead
+  EXPECT_EQ(textsOf(inbox.takeEvents(header(4))), "");
+  EXPECT_EQ(textsOf(inbox.takeEvents(header(5))), "one\ntwo");
+  EXPECT_EQ(textsOf(inbox.takeEvents(header(5))), "");
+  EXPECT_EQ(textsOf(inbox.takeEvents(header(6))), "later");
 }
 
-TEST(ModelInbox, RemarksOfOtherRunsAreNotToldAndOnlySoManyWait) {
+TEST(ModelInbox, EventsOfOtherRunsAreDroppedAndOnlySoManyWait) {
   ModelInbox inbox(false);
   inbox.announce(7);
-  inbox.hear({header(4, 6), false, "a stray"});
-  inbox.hear({header(4), false, "before the reset"});
+  inbox.hear(saying(header(4, 6), "a stray"));
+  inbox.hear(saying(header(4), "before the reset"));
   inbox.announce(8);
-  EXPECT_EQ(inbox.takeRemarks(header(0, 8)), "");
-  for (int k = 0; k < 100; ++k) inbox.hear({header(1, 8), false, "r"});
-  EXPECT_EQ(inbox.takeRemarks(header(1, 8)).size(), 2 * ModelInbox::kMostRemarks - 1);
+  EXPECT_EQ(textsOf(inbox.takeEvents(header(0, 8))), "");
+  for (int k = 0; k < 100; ++k) inbox.hear(saying(header(1, 8), "r"));
+  EXPECT_EQ(inbox.takeEvents(header(1, 8)).size(), ModelInbox::kMostEvents);
 }
 
 }  // namespace loop_model_inbox_test

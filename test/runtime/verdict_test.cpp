@@ -63,6 +63,7 @@ TEST(Verdict, NoneWhereRunsCannotBeCompared) {
   failed.complete = false;
   held.sources.assign(7, 0);
   held.sources[4] = 100;
+  held.events = {eventOf(EventCode::kNeverControlled)};
   for (const Summary& other : {shorter, others, failed, held})
     EXPECT_TRUE(says(verdictOf({good, other}), "Verdict: none"));
 }

@@ -189,29 +189,6 @@ TEST_F(Guard, WhatSwingsFromEndToEndMovesLess) {
   EXPECT_EQ(step(1, 1800.0, 0.0), limits().upper[0]);
 }
 
-/// The fallback acts from the third turn on; the law is back, and swings again, after twice as
-/// long.
-TEST_F(Guard, WhatSwingsIsHandedToTheFallbackForLongerEachTime) {
-  GuardParams p = params(true);
-  p.swing_move = 0.25;
-  make(p);
-  std::vector<std::uint32_t> taken;
-  bool before = false;
-  double applied = 700.0;
-  for (std::uint32_t k = 1; k < 120; ++k) {
-    law->wish = k % 2 == 0 ? limits().lower[0] : limits().upper[0];
-    applied = step(k, 1800.0, applied);
-    const bool now = out.source == ActionSource::kFallback;
-    EXPECT_TRUE(!now || out.events.has(EventCode::kOscillation)) << k;
-    if (now && !before) taken.push_back(k);
-    before = now;
-  }
-  ASSERT_GE(taken.size(), 3U);
-  EXPECT_LE(taken[0], 5U);
-  EXPECT_GT(taken[2] - taken[1], taken[1] - taken[0]);
-  EXPECT_GT(law->resets.size(), 2U);
-}
-
 TEST_F(Guard, MistakesNameTheirKey) {
   const auto errorWith = [](const std::function<void(GuardParams&)>& change) -> std::string {
     GuardParams p = params();

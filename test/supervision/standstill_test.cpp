@@ -37,6 +37,7 @@ class Standstill : public testing::Test {
     m.outputs[0] = s;
     m.disturbances = of({q_i, s_i});
     SetpointSource source(setpoints(), {"s", "x"}, SampleClock(720.0, 1234.5));
+    output.events.clear();
     watch->step(m, source, output);
     applied = output.input[0];
     return output;

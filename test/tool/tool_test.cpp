@@ -1,5 +1,6 @@
 // The tool as a person or a script calls it: what is printed, where, and the exit code.
 #include <gtest/gtest.h>
+#include <set>
 
 #include <array>
 #include <fstream>
@@ -95,7 +96,7 @@ bool showsDefault(const std::string& help, const std::string& word) {
 
 TEST_F(Tool, HelpShowsDefaults) {
   const std::string identify = tool("identify --help").printed;
-  for (const char* word : {"best", "45", "comma", "point", "1"})
+  for (const char* word : {"best", "90", "comma", "point", "1"})
     EXPECT_TRUE(showsDefault(identify, word)) << word << "\n" << identify;
   EXPECT_TRUE(showsDefault(tool("validate --help").printed, "10"));
   EXPECT_NE(tool("study --help").printed.find("(default: ise)"), std::string::npos);
@@ -104,7 +105,9 @@ TEST_F(Tool, HelpShowsDefaults) {
 TEST_F(Tool, LoopsAreListedByWords) {
   const auto json = nlohmann::json::parse(tool("loops column clp --json").printed);
   ASSERT_GE(json["loops"].size(), 4U);
-  for (const auto& loop : json["loops"]) EXPECT_EQ(loop["plant"], "distillation_column");
+  for (const auto& loop : json["loops"])
+    EXPECT_EQ(
+        std::set<std::string>({"distillation_column", "transfer_matrix"}).count(loop["plant"]), 1U);
   EXPECT_EQ(tool("loops zebra").code, 1);
   EXPECT_NE(tool("loops --names").printed.find("asp_case1\n"), std::string::npos);
 }
@@ -146,16 +149,14 @@ TEST_F(Tool, ARunThatIsHeldThroughoutFails) {
       "run column_clip --set controller.coincidence_steps=1 --set sampling.duration_h=1";
   const Outcome outcome = tool(held);
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_NE(outcome.printed.find("60 of 60 samples held"), std::string::npos) << outcome.printed;
+  EXPECT_NE(outcome.printed.find("never_controlled"), std::string::npos) << outcome.printed;
 }
 
 TEST_F(Tool, WhatALawSaysOfItselfStandsUnderTheTable) {
   const Outcome outcome =
       tool("run surge_tank_steps --set controller.horizon_steps=1 --set sampling.duration_h=0.005");
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_NE(outcome.printed.find("of 180 samples: controller.horizon_steps is too short"),
-            std::string::npos)
-      << outcome.printed;
+  EXPECT_NE(outcome.printed.find("horizon_too_short"), std::string::npos) << outcome.printed;
 }
 
 TEST_F(Tool, StabilityOfAMatrixOfTheLoopFileIsOfThatPlant) {

@@ -140,6 +140,17 @@ struct Event {
   Severity severity() const { return kindOf(code).severity; }
 };
 Event eventOf(const Notice& notice, std::uint32_t step);
+
+/// Turns what was said of a sample into events, without allocation: their texts are used again.
+class EventWriter {
+ public:
+  EventWriter();
+  /// `events`: what this writer wrote before, or empty with room for Notices::kMost.
+  void write(const Notices& said, std::uint32_t step, std::vector<Event>& events);
+
+ private:
+  std::vector<Event> spare_;
+};
 /// Of the run as a whole.
 Event eventOf(EventCode code, const std::string& text = "", const std::string& signal = "");
 std::vector<Event> joined(std::vector<Event> first, const std::vector<Event>& second);
