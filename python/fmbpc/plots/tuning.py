@@ -1,18 +1,14 @@
-#!/usr/bin/python3
 """Convergence of a tuning (history.csv) or of several methods (compare.json): cost of the best so far.
 
-    fmbpc tune LOOP TUNING --out DIR; plot_tuning.py DIR
+    fmbpc tune LOOP TUNING --out DIR
 """
 import argparse
 import csv
 import json
 import pathlib
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy  # noqa: E402
+import matplotlib.pyplot as plt
+import numpy
 
 COLOURS = {"apso": "#c8452d", "pso": "#e09a2b", "de": "#1f5fa8", "cmaes": "#3a8f4d", "random": "#777777"}
 
@@ -85,7 +81,3 @@ def main():
     axes[0][0].legend(fontsize=8)
     figure.tight_layout()
     figure.savefig(arguments.out or arguments.folders[0] / "convergence.png", dpi=110)
-
-
-if __name__ == "__main__":
-    main()

@@ -1,7 +1,4 @@
-#!/usr/bin/python3
-"""Draws a run, or several over each other, from trajectory.csv and summary.json.
-
-    plot_loop.py DIR [DIR ...] [--out FILE]
+"""Draws a run, or several over each other, from trajectory.csv and summary.json, or from fmbpc.Run.
 
 Outputs with setpoint and reference, inputs with their limits and the optimizer's perturbation, disturbances that change (gains
 of the plant in a panel of their own); time in hours, of long runs in days, of short ones in minutes or seconds. One folder: DIR/plot.png.
@@ -9,11 +6,11 @@ Several folders are compared in comparison.png of the current folder: the first 
 output that they control its course, its error and the squared error summed up, which ends at the ISE of the table.
 """
 import argparse
-import csv
 import json
 import os
-import sys
 import textwrap
+
+from fmbpc.plots.table import read_table
 
 LONG_H = 240.0  # days beyond
 FRONT = 3  # curves in colour
@@ -26,20 +23,19 @@ SUFFIXES = ("_setpoint", "_reference", "_true", "_commanded", "_base", "_perturb
 class Run:
     """One folder: columns by name, units by name, the summary."""
 
-    def __init__(self, folder):
-        self.folder = folder
-        with open(os.path.join(folder, "summary.json"), encoding="utf-8") as stream:
-            self.summary = json.load(stream)
-        with open(os.path.join(folder, "trajectory.csv"), newline="", encoding="utf-8") as stream:
-            rows = list(csv.reader(stream))
-        self.units, self.columns = {}, {}
-        for i, cell in enumerate(rows[0]):
-            name, _, unit = cell.partition("[")
-            self.units[name] = unit.rstrip("]")
-            self.columns[name] = [float(row[i]) if row[i] else float("nan") for row in rows[1:]]
+    def __init__(self, summary, columns, units):
+        self.summary, self.columns, self.units = summary, columns, units
         self.time = self.columns["time"]
         self.name = self.summary["loop"]
         self.title = self.summary.get("title") or self.name
+
+    @classmethod
+    def of(cls, run):
+        """A folder, or an fmbpc.Run."""
+        if hasattr(run, "summary"):
+            return cls(run.summary, {name: list(map(float, run[name])) for name in run.names}, run.units)
+        with open(os.path.join(run, "summary.json"), encoding="utf-8") as stream:
+            return cls(json.load(stream), *read_table(os.path.join(run, "trajectory.csv")))
 
     def outputs(self):
         return list(self.summary["outputs"])
@@ -241,9 +237,8 @@ def legend_of_runs(figure, runs, names):
                   frameon=False, borderaxespad=0.0)
 
 
-def draw(runs, file):
-    import matplotlib
-    matplotlib.use("Agg")
+def picture(runs):
+    """A figure; the times of the runs are in its unit afterwards."""
     import matplotlib.pyplot as plt
     first = runs[0]
     per_hour, unit = time_unit(runs)
@@ -269,8 +264,7 @@ def draw(runs, file):
     figure.tight_layout(rect=(0.0, 0.0, 1.0, 1.0 - head / tall), h_pad=0.5)
     if names:
         legend_of_runs(figure, runs, names)
-    figure.savefig(file, dpi=110)
-    plt.close(figure)
+    return figure
 
 
 def main():
@@ -280,16 +274,4 @@ def main():
     arguments = parser.parse_args()
     single = len(arguments.folders) == 1
     file = arguments.out or (os.path.join(arguments.folders[0], "plot.png") if single else "comparison.png")
-    try:
-        draw([Run(folder) for folder in arguments.folders], file)
-    except ImportError as error:
-        print("plot_loop.py: no picture, a python module is missing: %s" % error, file=sys.stderr)
-        return 3
-    except (OSError, ValueError, KeyError, IndexError) as error:
-        print("plot_loop.py: cannot read the run: %r" % error, file=sys.stderr)
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    picture([Run.of(folder) for folder in arguments.folders]).savefig(file, dpi=110)

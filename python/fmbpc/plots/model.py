@@ -1,34 +1,19 @@
-#!/usr/bin/python3
 """Draws what `fmbpc identify`, `validate` or `model --plots DIR` wrote: fuzzy sets, predictions against data beside the inputs, correlation
 of the residuals, step responses at several rests.
-
-    plot_model.py DIR
 
 Writes memberships.png, steps.png and, of a record, prediction.png, detail.png (the rows in which the free run errs most, of a long
 record) and residuals.png into DIR.
 """
 import argparse
-import csv
 import json
 import os
-import sys
+
+from fmbpc.plots.table import read_table
 
 COLOURS = ["#1f5fa8", "#c8452d", "#3a8a4d", "#8a56a8", "#c98a1b", "#4a4a4a", "#2aa5a0", "#b0508a"]
 PARTS = ("identification", "validation")
 BINS = 900  # of a long curve: the lowest and the highest value of each are drawn
 DETAIL = 400  # rows
-
-
-def read_table(file):
-    """Columns by name, units by name."""
-    with open(file, newline="", encoding="utf-8") as stream:
-        rows = list(csv.reader(stream))
-    columns, units = {}, {}
-    for i, cell in enumerate(rows[0]):
-        name, _, unit = cell.partition("[")
-        units[name] = unit.rstrip("]")
-        columns[name] = [float(row[i]) if row[i] else float("nan") for row in rows[1:]]
-    return columns, units
 
 
 def label(name, unit):
@@ -244,22 +229,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", metavar="DIR")
     folder = parser.parse_args().folder
-    try:
-        import matplotlib
-        matplotlib.use("Agg")
-        import matplotlib.pyplot as plt
-        with open(os.path.join(folder, "report.json"), encoding="utf-8") as stream:
-            report = json.load(stream)
-        for draw in (draw_memberships, draw_steps, draw_prediction, draw_residuals):
-            draw(plt, report, folder)
-    except ImportError as error:
-        print("plot_model.py: no picture, a python module is missing: %s" % error, file=sys.stderr)
-        return 3
-    except (OSError, ValueError, KeyError, IndexError) as error:
-        print("plot_model.py: cannot read the report: %r" % error, file=sys.stderr)
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    import matplotlib.pyplot as plt
+    with open(os.path.join(folder, "report.json"), encoding="utf-8") as stream:
+        report = json.load(stream)
+    for draw in (draw_memberships, draw_steps, draw_prediction, draw_residuals):
+        draw(plt, report, folder)

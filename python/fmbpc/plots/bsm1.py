@@ -1,17 +1,14 @@
-#!/usr/bin/python3
 """Draws runs of BSM1 as the field draws them, over each other.
-
-    plot_bsm1.py DIR [DIR ...] [--names NAME,..] [--from DAY] [--out FILE]
 
 DIR is a folder of `fmbpc run LOOP --out DIR`. Ammonium and total nitrogen of the effluent with their limits, aeration of tanks 3 to 5,
 internal recirculation, influent (of the first run, and of others if theirs is another); days on the axis, counted from the beginning of
 the test file (the last 14 days of the protocol), or of the run where it is shorter. Without --out: bsm1.png in the first folder.
 """
 import argparse
-import csv
 import json
 import os
-import sys
+
+from fmbpc.plots.table import read_table
 
 COLOURS = ["#8a8a8a", "#c98a1b", "#1f5fa8", "#c8452d", "#3a8a4d"]
 LIMITS = {"NH": 4.0, "TN": 18.0}
@@ -24,10 +21,7 @@ class Run:
     """The columns of one folder, by name without unit; what is measured as it really was."""
 
     def __init__(self, folder):
-        with open(os.path.join(folder, "trajectory.csv"), newline="", encoding="utf-8") as stream:
-            rows = list(csv.reader(stream))
-        names = [cell.partition("[")[0] for cell in rows[0]]
-        self.columns = {name: [float(row[i] or "nan") for row in rows[1:]] for i, name in enumerate(names)}
+        self.columns, _ = read_table(os.path.join(folder, "trajectory.csv"))
         with open(os.path.join(folder, "summary.json"), encoding="utf-8") as stream:
             self.name = json.load(stream)["loop"]
         end = self.columns["time"][-1]
@@ -85,8 +79,6 @@ def draw_other_influent(axis, run, first, day):
 
 
 def draw_all(runs, day, out):
-    import matplotlib
-    matplotlib.use("Agg")
     import matplotlib.pyplot as plt
     figure, axes = plt.subplots(5, 1, sharex=True, figsize=(10, 11), constrained_layout=True)
     for number, run in enumerate(runs):
@@ -112,14 +104,7 @@ def main():
     parser.add_argument("--from", dest="day", type=float, default=7.0, help="first day that is drawn (7)")
     parser.add_argument("--out", default="")
     options = parser.parse_args()
-    try:
-        runs = [Run(folder) for folder in options.folders]
-        for run, name in zip(runs, filter(None, options.names.split(","))):
-            run.name = name
-        draw_all(runs, options.day, options.out or os.path.join(options.folders[0], "bsm1.png"))
-    except (OSError, KeyError, TypeError, ValueError) as error:
-        sys.exit(f"plot_bsm1.py: {error}: expected folders of `fmbpc run` of a loop of BSM1")
-
-
-if __name__ == "__main__":
-    main()
+    runs = [Run(folder) for folder in options.folders]
+    for run, name in zip(runs, filter(None, options.names.split(","))):
+        run.name = name
+    draw_all(runs, options.day, options.out or os.path.join(options.folders[0], "bsm1.png"))

@@ -1,21 +1,15 @@
-#!/usr/bin/python3
 """Draws stability.json of `fmbpc stability --out DIR`.
-
-    plot_stability.py DIR
 
 root_locus.png: closed-loop eigenvalues over the coincidence horizon against the unit circle, and their largest modulus.
 margins.png: loop gain of each input against -1 (Nyquist) and sensitivity, at points of the loop's run.
 bifurcation.png: steady states of the plant over its input, stable ones solid, unstable ones dashed, special points marked.
 """
+import argparse
 import json
 import os
-import sys
 
-import matplotlib
 import matplotlib.colors
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 MARKS = {"fold": ("o", "#c8452d"), "hopf": ("s", "#8a56a8"), "flip": ("D", "#3a8a4d"), "turning point": ("^", "#c98a1b")}
 
@@ -120,17 +114,11 @@ def draw_margins(report, folder):
 
 
 def main():
-    if {"-h", "--help"} & set(sys.argv[1:]):
-        print(__doc__.strip())
-        return
-    if len(sys.argv) != 2:
-        sys.exit("usage: plot_stability.py DIR")
-    with open(os.path.join(sys.argv[1], "stability.json"), encoding="utf-8") as stream:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", metavar="DIR")
+    folder = parser.parse_args().folder
+    with open(os.path.join(folder, "stability.json"), encoding="utf-8") as stream:
         report = json.load(stream)
-    draw_margins(report, sys.argv[1])
-    draw_root_locus(report, sys.argv[1])
-    draw_bifurcation(report, sys.argv[1])
-
-
-if __name__ == "__main__":
-    main()
+    draw_margins(report, folder)
+    draw_root_locus(report, folder)
+    draw_bifurcation(report, folder)

@@ -1,17 +1,13 @@
-#!/usr/bin/python3
 """Distributions of a study: costs of each loop, and its ratio to the loop that it is paired with, case by case.
 
-    fmbpc study STUDY --out DIR; plot_study.py DIR
+    fmbpc study STUDY --out DIR
 """
 import argparse
 import json
 import pathlib
 
-import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
-import numpy  # noqa: E402
+import matplotlib.pyplot as plt
+import numpy
 
 
 def costs_of(study, name):
@@ -69,7 +65,3 @@ def main():
     figure.suptitle(study["title"] or study["study"], fontsize=10)
     figure.tight_layout()
     figure.savefig(folder / "distributions.png", dpi=110)
-
-
-if __name__ == "__main__":
-    main()
