@@ -32,13 +32,16 @@ class Ring {
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
                   [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
+        layer_(makeLayer(loop)),
         targets_{simulation_, controller_, [this](int window) { identifyAsked(window); },
-                 [this](const std::string& why) { say(EventCode::kCommandRefused, why); }} {
+                 [this](const std::string& why) { say(EventCode::kCommandRefused, why); },
+                 layer_.get()} {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
     plant_.begin(kRunId);
     recorder_.announce(kRunId);
     if (identifier_) begin(identifier_->start());
+    require(!layer_ || layer_->ready(), loop.name + ": model.file", "a model for section targets");
     require(controller_.ready(), loop.name + ": model.file",
             "a model for controller " + loop.controllerType().name);
     player_.begin(targets_);
@@ -54,6 +57,7 @@ class Ring {
     recorder_.receive(simulation_.state(),
                       joined(simulation_.events(),
                              delayEvents(loop_, loop_.simulation.output_delay_s, present_)));
+    aim(now);
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
     for (Event& event : pending_) event.first = event.last = present_;
@@ -78,6 +82,17 @@ class Ring {
   }
 
  private:
+  static std::unique_ptr<TargetSession> makeLayer(const LoopFile& loop) {
+    if (!loop.targets.enabled) return nullptr;
+    return std::make_unique<TargetSession>(makeTargetSession(loop));
+  }
+
+  void aim(const Measurement& now) {
+    if (!layer_ || layer_->receive(now) != Receipt::kAnswered) return;
+    controller_.aim(layer_->answer());
+    for (const Event& event : layer_->events()) pending_.push_back(event);
+  }
+
   const ControlAction& optimize(const ControllerAnswer& answer) {
     if (answer.has_prediction) optimizer_->receive(answer.prediction);
     optimizer_->receive(answer.base);
@@ -112,19 +127,26 @@ class Ring {
   }
 
   void use(const TsModel* model) {
-    if (model == nullptr || !controller_.controller().needsModel()) return;
+    if (model == nullptr || !needsModel()) return;
     try {
-      controller_.setModel(*model);
+      hand(*model);
     } catch (const InputError& error) {
       say(EventCode::kModelRefused, error.what());
     }
   }
 
+  bool needsModel() const { return layer_ || controller_.controller().needsModel(); }
+
+  void hand(const TsModel& model) {
+    if (controller_.controller().needsModel()) controller_.setModel(model);
+    if (layer_) layer_->setModel(model);
+  }
+
   /// Without the model that the loop file names there is no run.
   void begin(const TsModel* model) {
-    if (model == nullptr || !controller_.controller().needsModel()) return;
+    if (model == nullptr || !needsModel()) return;
     try {
-      controller_.setModel(*model);
+      hand(*model);
     } catch (const InputError& error) {
       throw InputError(loop_.name + ": controller: " + error.what());
     }
@@ -150,6 +172,7 @@ class Ring {
   CommandPlayer player_;
   RunRecord record_;
   RecorderSession recorder_;
+  std::unique_ptr<TargetSession> layer_;
   CommandTargets targets_;
 };
 
