@@ -9,11 +9,21 @@ namespace fpc {
 
 LoopController::LoopController(const LoopFile& loop, LoopControllerHooks hooks)
     : loop_(loop), hooks_(std::move(hooks)), session_(makeControllerSession(loop)) {
+  if (loop.targets.enabled) layer_ = std::make_unique<TargetSession>(makeTargetSession(loop));
   if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
   if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
   if (identifier_) begin(identifier_->start());
+  require(!layer_ || layer_->ready(), loop.name + ": model.file", "a model for section targets");
   require(session_.ready(), loop.name + ": model.file",
           "a model for controller " + loop.controllerType().name);
+}
+
+Receipt LoopController::receive(const Measurement& now) {
+  if (layer_ && layer_->receive(now) == Receipt::kAnswered) {
+    session_.aim(layer_->answer());
+    pending_.insert(pending_.end(), layer_->events().begin(), layer_->events().end());
+  }
+  return session_.receive(now);
 }
 
 const ControlAction& LoopController::optimize() {
@@ -51,19 +61,24 @@ void LoopController::run(const IdentificationJob& job) {
 }
 
 void LoopController::use(const TsModel* model) {
-  if (model == nullptr || !session_.controller().needsModel()) return;
+  if (model == nullptr || !needsModel()) return;
   try {
-    session_.setModel(*model);
+    hand(*model);
   } catch (const InputError& error) {
     say(EventCode::kModelRefused, error.what());
   }
 }
 
+void LoopController::hand(const TsModel& model) {
+  if (session_.controller().needsModel()) session_.setModel(model);
+  if (layer_) layer_->setModel(model);
+}
+
 /// Without the model that the loop file names there is no run.
 void LoopController::begin(const TsModel* model) {
-  if (model == nullptr || !session_.controller().needsModel()) return;
+  if (model == nullptr || !needsModel()) return;
   try {
-    session_.setModel(*model);
+    hand(*model);
   } catch (const InputError& error) {
     throw InputError(loop_.name + ": controller: " + error.what());
   }

@@ -1,9 +1,10 @@
-// What answers a plant: controller, optimizer and identifier of a loop, called in the order in
+// What answers a plant: controller, target layer, optimizer and identifier of a loop, called in the order in
 // which messages would travel. The run in one process is made of it, and a controller that is
 // stepped by somebody else's program.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "fmbpc/base/event.hpp"
 #include "runtime/identifier_session.hpp"
 #include "runtime/session.hpp"
+#include "runtime/target_session.hpp"
 
 namespace fpc {
 
@@ -32,7 +34,7 @@ class LoopController {
   explicit LoopController(const LoopFile& loop, LoopControllerHooks hooks = {});
 
   /// Answers a sample, see ControllerSession::receive(); then optimize() and learn() with it.
-  Receipt receive(const Measurement& now) { return session_.receive(now); }
+  Receipt receive(const Measurement& now);
   const ControllerAnswer& answer() const { return session_.answer(); }
   /// u(k) as it goes to the plant: the optimizer's where there is one.
   const ControlAction& optimize();
@@ -52,8 +54,11 @@ class LoopController {
 
   ControllerSession& session() { return session_; }
   const ControllerSession& session() const { return session_; }
+  TargetSession* layer() { return layer_.get(); }  ///< null without a section targets
 
  private:
+  bool needsModel() const { return layer_ || session_.controller().needsModel(); }
+  void hand(const TsModel& model);
   void begin(const TsModel* model);
   void run(const IdentificationJob& job);
   void use(const TsModel* model);
@@ -61,6 +66,7 @@ class LoopController {
   const LoopFile& loop_;
   LoopControllerHooks hooks_;
   ControllerSession session_;
+  std::unique_ptr<TargetSession> layer_;
   std::optional<OptimizerSession> optimizer_;
   std::optional<IdentifierSession> identifier_;
   std::vector<Event> pending_;

@@ -34,7 +34,8 @@ class Ring {
         targets_{
             simulation_, controller_.session(),
             [this](int window) { controller_.identify(window); },
-            [this](const std::string& why) { controller_.say(EventCode::kCommandRefused, why); }} {
+            [this](const std::string& why) { controller_.say(EventCode::kCommandRefused, why); },
+            controller_.layer()} {
     plant_.begin(kRunId);
     recorder_.announce(kRunId);
     player_.begin(targets_);
