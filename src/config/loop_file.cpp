@@ -41,7 +41,7 @@ const std::vector<std::string>& sections() {
       "actuator", "candidate",    "clp",     "controller", "disturbance", "estimator",
       "extends",  "gateway",      "guard",   "loop",       "model",       "noise",
       "plant",    "plausibility", "plugins", "report",     "sampling",    "sensors",
-      "setpoint", "standstill",   "tf",      "title"};
+      "setpoint", "standstill",   "targets", "tf",         "title"};
   return names;
 }
 
@@ -136,6 +136,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readSetpoint(root, loop, names);
   readClp(root, loop, names);
   readController(root, loop);
+  readTargets(root, loop);
   readGuard(root, loop, names);
   readEstimator(root, loop);
   readGateway(root, loop);

@@ -59,6 +59,12 @@ enum class EventCode : std::uint8_t {
   kCandidateOpen,
   kHandOver,
   kHandBack,
+  // the target layer
+  kTargetGivenUp,
+  kTargetNotFound,
+  kTargetUnbounded,
+  kTargetNotSettled,
+  kTargetsLate,
   // actuators and the plant
   kInputStuck,
   kActuatorIneffective,
