@@ -10,6 +10,7 @@ add_message_files(DIRECTORY msg FILES
   FuzzySet.msg
   FuzzySubmodel.msg
   Identified.msg
+  InputPlan.msg
   LoopState.msg
   Matrix.msg
   Measurement.msg

@@ -11,6 +11,7 @@ inline constexpr char kBaseAction[] = "base_action";
 inline constexpr char kControlAction[] = "control_action";
 inline constexpr char kPredictiveAction[] = "predictive_action";
 inline constexpr char kSolverReport[] = "solver_report";
+inline constexpr char kInputPlan[] = "input_plan";
 inline constexpr char kTracking[] = "tracking";
 inline constexpr char kFuzzyModel[] = "fuzzy_model";
 inline constexpr char kIdentified[] = "identified";

@@ -109,8 +109,11 @@ std::string notAtRest(const Plant& plant) {
                      Eigen::Ref<Vector> dxdt) {
     plant.derivatives(state, input, disturbance, dxdt);
   };
-  const SteadyState rest =
-      findSteadyState(f, x, nominalValues(p.inputs), nominalValues(p.disturbances));
+  const Vector u = nominalValues(p.inputs), d = nominalValues(p.disturbances);
+  Vector rate(x.size());
+  f(x, u, d, rate);
+  if (rate.isZero(0.0)) return "";  // also where an integrator leaves the place free
+  const SteadyState rest = findSteadyState(f, x, u, d);
   if (!rest.ok()) return "no steady state was found near the nominal values";
   for (Index i = 0; i < x.size(); ++i)
     if (!(std::abs(rest.x[i] - x[i]) <= kSameRest * (1.0 + std::abs(x[i]))))

@@ -232,6 +232,9 @@ class OptimizerSession {
   bool receive(const PredictiveAction& prediction);
   const ControlAction& action() const { return action_; }
   const SolverReport& report() const { return report_; }
+  /// n_u n_c, the inputs planned with the last answer, column i for k + i; empty: it passed through
+  /// or has no solution.
+  Matrix plan() const;
   const ArrivalCounts& counts() const { return gate_.counts(); }
   /// Why the last answer has status invalid problem, in words; otherwise empty.
   const std::string& trouble() const { return trouble_; }
