@@ -24,6 +24,7 @@ add_message_files(DIRECTORY msg FILES
   Signal.msg
   SignalInfo.msg
   SolverReport.msg
+  Targets.msg
   Tracking.msg
 )
 add_service_files(DIRECTORY srv FILES ManualInput.srv)

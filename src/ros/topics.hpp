@@ -13,6 +13,7 @@ inline constexpr char kPredictiveAction[] = "predictive_action";
 inline constexpr char kSolverReport[] = "solver_report";
 inline constexpr char kInputPlan[] = "input_plan";
 inline constexpr char kTracking[] = "tracking";
+inline constexpr char kTargets[] = "targets";
 inline constexpr char kFuzzyModel[] = "fuzzy_model";
 inline constexpr char kIdentified[] = "identified";
 inline constexpr char kSetpoint[] = "setpoint";
