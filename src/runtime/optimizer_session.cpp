@@ -149,6 +149,16 @@ void OptimizerSession::optimize() {
   moves_.sent(action_.input);
 }
 
+Matrix OptimizerSession::plan() const {
+  const bool solved =
+      report_.status == SolveStatus::kSolved || report_.status == SolveStatus::kBoundWins;
+  if (!optimizer_ || !solved) return {};
+  const Vector& scale = optimizer_->problem().input_scale;
+  const Vector& x = optimizer_->solution().x;  // the slacks come last
+  return scale.asDiagonal() *
+         Eigen::Map<const Matrix>(x.data(), scale.size(), params_.perturbation_steps);
+}
+
 /// The input is not the one that went out before: a person's, a fallback, the plant's own.
 bool OptimizerSession::isOtherHand() const {
   if (base_.source != ActionSource::kHeld) return !needsPrediction(base_.source);

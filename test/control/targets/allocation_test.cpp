@@ -56,8 +56,6 @@ void countSteps(double width) {
     ASSERT_TRUE(targets.found) << k;
   }
   std::sort(seconds.begin(), seconds.end());
-  RecordProperty("median_us", static_cast<int>(seconds[100] * 1e6));
-  RecordProperty("slowest_us", static_cast<int>(seconds.back() * 1e6));
   std::printf("width %g: median %.0f us, slowest %.0f us of processor\n", width, seconds[100] * 1e6,
               seconds.back() * 1e6);
   if (AllocationCounter::works()) EXPECT_EQ(allocations, 0U);
