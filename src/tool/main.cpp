@@ -306,6 +306,7 @@ int main(int argc, char** argv) {
   fpc::tool::RecoverArguments recover;
   fpc::tool::addRecover(app, recover, chosen);
   fpc::tool::addOperate(app, chosen);
+  fpc::tool::addShadow(app, chosen);
   fpc::tool::addExport(app, chosen);
   fpc::tool::addWatch(app);
   fpc::tool::addPage(app);

@@ -17,6 +17,7 @@ void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen
 
 /// set, disturb, manual, auto, release.
 void addOperate(CLI::App& app, std::function<int()>& chosen);
+void addShadow(CLI::App& app, std::function<int()>& chosen);
 
 /// `watch`, `page` and `reproduce` for the list of commands only: their words are those of other
 /// programs.
