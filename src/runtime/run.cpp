@@ -1,6 +1,7 @@
 #include "runtime/run.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -54,13 +55,17 @@ class Ring {
     recorder_.receive(simulation_.state(),
                       joined(simulation_.events(),
                              delayEvents(loop_, loop_.simulation.output_delay_s, present_)));
+    const auto asked = std::chrono::steady_clock::now();
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
     for (Event& event : pending_) event.first = event.last = present_;
     recorder_.receive(answer.tracking, joined(answer.events, std::exchange(pending_, {})));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
-      plant_.receive(optimizer_ ? optimize(answer) : answer.base);
+      const ControlAction& action = optimizer_ ? optimize(answer) : answer.base;
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - asked;
+      record_.slowest_step_s = std::max(record_.slowest_step_s, taken.count());
+      plant_.receive(action);
       plant_.advance(0.0);
     }
     if (loop_.has_identify) learn(now);
