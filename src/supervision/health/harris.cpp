@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "supervision/health/stretches.hpp"
+#include "supervision/health/finite_runs.hpp"
 #include "fmbpc/base/input_error.hpp"
 
 namespace fpc {
@@ -41,7 +41,7 @@ MinimumVariance minimumVariance(const std::vector<double>& error, int dead_time)
   require(dead_time >= 1, "dead time", "at least one sample");
   const auto usable = [&](int lags) {
     Eigen::Index sum = 0;
-    for (const Stretch& s : finiteStretches(error))
+    for (const FiniteRun& s : finiteRuns(error))
       sum += std::max<Eigen::Index>(0, s.count - dead_time - lags + 1);
     return sum;
   };
@@ -54,7 +54,7 @@ MinimumVariance minimumVariance(const std::vector<double>& error, int dead_time)
   const double mean = meanOf(x);
   for (double& value : x) value -= mean;
   Matrix products = Matrix::Zero(lags + 1, lags + 1);
-  for (const Stretch& s : finiteStretches(x))
+  for (const FiniteRun& s : finiteRuns(x))
     if (s.count >= dead_time + lags)
       addLagProducts(x.data() + s.first, s.count, dead_time, lags, products);
   Matrix normal = products.bottomRightCorner(lags, lags).selfadjointView<Eigen::Upper>();

@@ -5,7 +5,7 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "supervision/health/stretches.hpp"
+#include "supervision/health/finite_runs.hpp"
 #include "base/statistics.hpp"
 
 namespace fpc {

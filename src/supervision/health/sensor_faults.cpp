@@ -6,7 +6,7 @@
 
 #include "base/order_statistics.hpp"
 #include "supervision/flat_line.hpp"
-#include "supervision/health/stretches.hpp"
+#include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
 namespace {

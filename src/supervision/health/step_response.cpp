@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "supervision/health/stretches.hpp"
+#include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "supervision/health/stretches.hpp"
+#include "supervision/health/finite_runs.hpp"
 #include "base/order_statistics.hpp"
 
 namespace fpc {
