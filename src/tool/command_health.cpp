@@ -27,7 +27,8 @@ int health(const HealthArguments& a) {
   }
   std::cout << healthTable(records, loops);
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    std::cout << "\n" << records[i].name << ": " << nameOf(loops[i].cause) << ". "
+    std::cout << "\n"
+              << records[i].name << ": " << nameOf(loops[i].cause) << ". "
               << adviceOf(loops[i].cause) << ".\n";
     for (const std::string& remark : loops[i].remarks) std::cout << "  " << remark << ".\n";
   }

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<double> cells(const CsvTable& table, const std::string& name) {
+std::vector<double> cellsOf(const CsvTable& table, const std::string& name) {
   const auto column = table.values.col(table.column(name));
   return {column.begin(), column.end()};
 }
@@ -31,7 +31,7 @@ bool hasColumn(const CsvTable& table, const std::string& name) {
   return std::find(table.names.begin(), table.names.end(), name) != table.names.end();
 }
 
-std::string unitOf(const CsvTable& table, const std::string& name) {
+std::string columnUnit(const CsvTable& table, const std::string& name) {
   const auto at = static_cast<std::size_t>(table.column(name));
   return at < table.units.size() ? table.units[at] : "";
 }
@@ -47,22 +47,23 @@ CsvTable rowsOf(CsvTable table, const std::string& rows) {
   return table;
 }
 
-std::pair<double, double> rangeOf(const std::string& text) {
+std::pair<double, double> limitsOf(const std::string& text) {
   if (text.empty()) return {-kInfinity, kInfinity};
   const auto colon = text.find(':');
   const auto lower = numberOf(text.substr(0, colon));
   const auto upper = colon == std::string::npos ? lower : numberOf(text.substr(colon + 1));
-  require(colon != std::string::npos && lower && upper && *lower < *upper, "--limits '" + text + "'",
-          "LOWER:UPPER");
+  require(colon != std::string::npos && lower && upper && *lower < *upper,
+          "--limits '" + text + "'", "LOWER:UPPER");
   return {*lower, *upper};
 }
 
-double sampleTime(const CsvTable& table, const HealthArguments& a,
-                  const std::vector<std::string>& used, std::vector<std::string>& remarks) {
+double recordSampleTime(const CsvTable& table, const HealthArguments& a,
+                        const std::vector<std::string>& used, std::vector<std::string>& remarks) {
   if (a.sample_time_s > 0.0) return a.sample_time_s;
   const TimeColumn time = timeColumn(table, a.time, used);
   require(!time.name.empty(), table.file, "a column of times (--time) or --sample-time");
-  if (time.unit.empty()) remarks.push_back(table.file + ": '" + time.name + "' is taken to be in s");
+  if (time.unit.empty())
+    remarks.push_back(table.file + ": '" + time.name + "' is taken to be in s");
   return time.step_s;
 }
 
@@ -72,7 +73,7 @@ std::string closestInput(const CsvTable& table, const std::vector<double>& y,
   std::string best;
   double most = -1.0;
   for (const std::string& name : inputs) {
-    const std::vector<double> u = cells(table, name);
+    const std::vector<double> u = cellsOf(table, name);
     double product = 0.0, squares = 0.0, own = 0.0;
     const double mean_y = meanOf(y), mean_u = meanOf(u);
     for (std::size_t k = 0; k < y.size(); ++k) {
@@ -81,7 +82,8 @@ std::string closestInput(const CsvTable& table, const std::vector<double>& y,
       squares += (y[k] - mean_y) * (y[k] - mean_y);
       own += (u[k] - mean_u) * (u[k] - mean_u);
     }
-    const double fit = squares > 0.0 && own > 0.0 ? std::abs(product) / std::sqrt(squares * own) : 0.0;
+    const double fit =
+        squares > 0.0 && own > 0.0 ? std::abs(product) / std::sqrt(squares * own) : 0.0;
     if (fit > most) {
       most = fit;
       best = name;
@@ -90,7 +92,7 @@ std::string closestInput(const CsvTable& table, const std::vector<double>& y,
   return best;
 }
 
-StepResponse responseOf(const TsModel& model, const ControlRecord& r) {
+StepResponse modelResponse(const TsModel& model, const ControlRecord& r) {
   const auto index = [](const std::vector<SignalInfo>& signals, const std::string& name) {
     for (std::size_t i = 0; i < signals.size(); ++i)
       if (signals[i].name == name) return static_cast<Eigen::Index>(i);
@@ -102,20 +104,21 @@ StepResponse responseOf(const TsModel& model, const ControlRecord& r) {
   const OperatingPoint* nearest = nullptr;
   const std::vector<OperatingPoint> points = operatingPoints(model);
   for (const OperatingPoint& point : points)
-    if (nearest == nullptr || std::abs(point.inputs[u] - mean) < std::abs(nearest->inputs[u] - mean))
+    if (nearest == nullptr ||
+        std::abs(point.inputs[u] - mean) < std::abs(nearest->inputs[u] - mean))
       nearest = &point;
   if (nearest == nullptr) return {};
   const auto column = nearest->steps[static_cast<std::size_t>(u)].col(y);
   return {model.sample_time_s, {column.begin(), column.end()}, {}};
 }
 
-void addModel(const HealthArguments& a, std::vector<NamedRecord>& records,
-              std::vector<std::string>& remarks) {
+void addNamedModel(const HealthArguments& a, std::vector<NamedRecord>& records,
+                   std::vector<std::string>& remarks) {
   if (a.model.empty()) return;
   const TsModel model = readIdentified(requireModel(a.model)).model;
   bool used = false;
   for (NamedRecord& named : records) {
-    named.record.model = responseOf(model, named.record);
+    named.record.model = modelResponse(model, named.record);
     used = used || !named.record.model.empty();
   }
   if (!used)
@@ -132,7 +135,7 @@ void setDeadTimes(const HealthArguments& a, std::vector<NamedRecord>& records) {
     records[i].record.dead_time_s = a.dead_times_s[given == 1 ? 0 : i];
 }
 
-std::vector<LoopDuty> dutyOf(const CsvTable& table, const HealthArguments& a) {
+std::vector<LoopDuty> dutyColumn(const CsvTable& table, const HealthArguments& a) {
   if (a.mode.empty()) return {};
   const auto values = [](const std::vector<std::string>& words, const char* option) {
     std::vector<double> numbers;
@@ -150,7 +153,7 @@ std::vector<LoopDuty> dutyOf(const CsvTable& table, const HealthArguments& a) {
     return std::find(all.begin(), all.end(), value) != all.end();
   };
   std::vector<LoopDuty> duty;
-  for (const double mode : cells(table, a.mode))
+  for (const double mode : cellsOf(table, a.mode))
     duty.push_back(among(automatic, mode)  ? LoopDuty::kAutomatic
                    : among(manual, mode)   ? LoopDuty::kManual
                    : among(fallback, mode) ? LoopDuty::kFallback
@@ -158,8 +161,8 @@ std::vector<LoopDuty> dutyOf(const CsvTable& table, const HealthArguments& a) {
   return duty;
 }
 
-void addTable(const std::string& file, const HealthArguments& a, std::vector<NamedRecord>& records,
-              std::vector<std::string>& remarks) {
+void addHistorian(const std::string& file, const HealthArguments& a,
+                  std::vector<NamedRecord>& records, std::vector<std::string>& remarks) {
   require(!a.outputs.empty(), file, "--outputs: the columns of measured values of its loops");
   for (const auto* columns : {&a.setpoints, &a.inputs, &a.positions})
     require(columns->empty() || columns->size() == a.outputs.size(), file,
@@ -168,31 +171,31 @@ void addTable(const std::string& file, const HealthArguments& a, std::vector<Nam
   std::vector<std::string> used = a.outputs;
   for (const auto* columns : {&a.setpoints, &a.inputs, &a.positions})
     used.insert(used.end(), columns->begin(), columns->end());
-  const double sample_time_s = sampleTime(table, a, used, remarks);
-  const auto [lower, upper] = rangeOf(a.limits);
+  const double sample_time_s = recordSampleTime(table, a, used, remarks);
+  const auto [lower, upper] = limitsOf(a.limits);
   for (std::size_t i = 0; i < a.outputs.size(); ++i) {
     ControlRecord r;
     r.output = a.outputs[i];
-    r.unit = unitOf(table, r.output);
+    r.unit = columnUnit(table, r.output);
     r.sample_time_s = sample_time_s;
-    r.y = cells(table, r.output);
-    if (!a.setpoints.empty()) r.setpoint = cells(table, a.setpoints[i]);
+    r.y = cellsOf(table, r.output);
+    if (!a.setpoints.empty()) r.setpoint = cellsOf(table, a.setpoints[i]);
     if (!a.inputs.empty()) {
       r.input = a.inputs[i];
-      r.input_unit = unitOf(table, r.input);
-      r.u = cells(table, r.input);
+      r.input_unit = columnUnit(table, r.input);
+      r.u = cellsOf(table, r.input);
     }
-    if (!a.positions.empty()) r.position = cells(table, a.positions[i]);
+    if (!a.positions.empty()) r.position = cellsOf(table, a.positions[i]);
     r.u_lower = lower;
     r.u_upper = upper;
-    r.duty = dutyOf(table, a);
+    r.duty = dutyColumn(table, a);
     records.push_back({fs::path(file).stem().string() + "_" + r.output, std::move(r)});
   }
 }
 
 /// By the counts of the summary: which samples they were the files of a run do not say.
-void addRun(const std::string& folder, const HealthArguments& a, std::vector<NamedRecord>& records,
-            std::vector<std::string>& remarks) {
+void addRunFolder(const std::string& folder, const HealthArguments& a,
+                  std::vector<NamedRecord>& records, std::vector<std::string>& remarks) {
   const Summary summary = readSummary((fs::path(folder) / "summary.json").string());
   const CsvTable table = rowsOf(readCsv((fs::path(folder) / "trajectory.csv").string()), a.rows);
   std::vector<std::string> inputs;
@@ -205,16 +208,16 @@ void addRun(const std::string& folder, const HealthArguments& a, std::vector<Nam
     ControlRecord r;
     r.output = name;
     r.unit = summary.output_units[i];
-    r.y = cells(table, name);
-    r.setpoint = cells(table, name + "_setpoint");
+    r.y = cellsOf(table, name);
+    r.setpoint = cellsOf(table, name + "_setpoint");
     if (!std::isfinite(meanOf(r.setpoint))) continue;
-    r.sample_time_s = sampleTime(table, a, {name}, remarks);
+    r.sample_time_s = recordSampleTime(table, a, {name}, remarks);
     const std::string input = closestInput(table, r.y, inputs);
     for (std::size_t j = 0; j < summary.input_names.size(); ++j) {
       if (summary.input_names[j] + "_commanded" != input) continue;
       r.input = summary.input_names[j];
       r.input_unit = summary.input_units[j];
-      r.u = cells(table, input);
+      r.u = cellsOf(table, input);
       const auto at = static_cast<Eigen::Index>(j);
       if (at < summary.limits.lower.size()) {
         r.u_lower = summary.limits.lower[at];
@@ -223,7 +226,8 @@ void addRun(const std::string& folder, const HealthArguments& a, std::vector<Nam
     }
     const std::vector<std::uint64_t>& s = summary.sources;
     if (s.size() > 7) r.counts = {s[1] + s[2] + s[3] + s[7], s[5], s[6], s[4]};
-    records.push_back({fs::absolute(folder).lexically_normal().filename().string() + "_" + name, std::move(r)});
+    records.push_back(
+        {fs::absolute(folder).lexically_normal().filename().string() + "_" + name, std::move(r)});
   }
 }
 
@@ -239,7 +243,7 @@ std::vector<NamedRecord> healthRecords(const HealthArguments& a,
   std::vector<NamedRecord> records;
   for (const std::string& name : a.records) {
     if (!fs::is_directory(name)) {
-      addTable(name, a, records, remarks);
+      addHistorian(name, a, records, remarks);
       continue;
     }
     std::vector<std::string> runs;
@@ -249,11 +253,11 @@ std::vector<NamedRecord> healthRecords(const HealthArguments& a,
         if (isRun(entry.path())) runs.push_back(entry.path().string());
     std::sort(runs.begin(), runs.end());
     require(!runs.empty(), name, "a folder of a run (trajectory.csv and summary.json), or of runs");
-    for (const std::string& run : runs) addRun(run, a, records, remarks);
+    for (const std::string& run : runs) addRunFolder(run, a, records, remarks);
   }
   require(!records.empty(), a.records.front(), "a loop: an output with a setpoint");
   setDeadTimes(a, records);
-  addModel(a, records, remarks);
+  addNamedModel(a, records, remarks);
   return records;
 }
 

@@ -133,7 +133,8 @@ TEST(SensorFaultsOf, SpikesAndStandingValuesAreCounted) {
 }
 
 TEST(ModelAgeOf, AModelOfOtherGainIsOld) {
-  const StepResponse truth{1.0, {0.2, 0.5, 0.7, 0.85, 0.95, 1.0}, {0.01, 0.01, 0.01, 0.01, 0.01, 0.01}};
+  const StepResponse truth{
+      1.0, {0.2, 0.5, 0.7, 0.85, 0.95, 1.0}, {0.01, 0.01, 0.01, 0.01, 0.01, 0.01}};
   StepResponse old = truth;
   old.std.clear();
   EXPECT_FALSE(compareModel(old, truth).outdated);

@@ -11,12 +11,12 @@
 namespace fpc {
 namespace {
 
-constexpr double kFewestAutomatic = 200.0;  // samples, without which nothing is judged
+constexpr double kFewestAutomatic = 200.0;   // samples, without which nothing is judged
 constexpr std::size_t kMostForValve = 3000;  // means of samples
 constexpr double kFewestForValve = 1200.0;
-constexpr double kSettled = 0.2;             // of the error's autocorrelation
-constexpr double kSlow = 1.55;                // times the usual settling
-constexpr double kSlowDeadTimes = 14.0;       // where only these are given
+constexpr double kSettled = 0.2;         // of the error's autocorrelation
+constexpr double kSlow = 1.55;           // times the usual settling
+constexpr double kSlowDeadTimes = 14.0;  // where only these are given
 constexpr double kSlowIndex = 0.8;
 constexpr double kLongPeriod = 25.0;  // dead times
 constexpr double kDriven = 0.36;      // unrest of the envelope: below it driven, above it rings
@@ -171,7 +171,8 @@ void judgeDynamics(const ControlRecord& r, LoopHealth& h, double settling) {
   if (!r.model.empty() && !h.response.empty()) h.model = compareModel(r.model, h.response);
 }
 
-LoopCause oscillationCause(const ControlRecord& r, const LoopHealth& h, double lower, double upper) {
+LoopCause oscillationCause(const ControlRecord& r, const LoopHealth& h, double lower,
+                           double upper) {
   if (h.valve.sticks) return LoopCause::kStiction;
   if (h.valve.plays) return LoopCause::kBacklash;
   if (std::min(lower, upper) > 0.1) return LoopCause::kAggressiveTuning;
@@ -184,8 +185,8 @@ LoopCause oscillationCause(const ControlRecord& r, const LoopHealth& h, double l
   return slow ? LoopCause::kSluggishTuning : LoopCause::kAggressiveTuning;
 }
 
-/// Slower than a PI of one's own for this response would be (simc, skogestad2003), and by what could
-/// be foretold.
+/// Slower than a PI of one's own for this response would be (simc, skogestad2003), and by what
+/// could be foretold.
 bool isSluggish(const ControlRecord& r, const LoopHealth& h, const std::vector<double>& rest) {
   ReactionCurve curve = reactionCurve(h.response);
   if (!r.model.empty()) curve = reactionCurve(r.model);
@@ -303,10 +304,11 @@ LoopHealth judgeLoop(const ControlRecord& r) {
   h.error_mean = meanOf(error);
   double settling = settlingOf(error);
   if (!r.u.empty()) judgeDynamics(r, h, settling);
-  const double dead = std::isfinite(h.dead_time_s) ? std::max(1.0, std::round(h.dead_time_s / r.sample_time_s)) : 1.0;
+  const double dead = std::isfinite(h.dead_time_s)
+                          ? std::max(1.0, std::round(h.dead_time_s / r.sample_time_s))
+                          : 1.0;
   if (!std::isfinite(h.dead_time_s)) h.dead_time_s = dead * r.sample_time_s;
-  const std::vector<double> rest =
-      atRest(r, error, static_cast<std::size_t>(2.0 * dead) + 10);
+  const std::vector<double> rest = atRest(r, error, static_cast<std::size_t>(2.0 * dead) + 10);
   h.harris = minimumVariance(rest, static_cast<int>(dead));
   h.oscillation = findOscillation(rest);
   settling = settlingOf(rest);

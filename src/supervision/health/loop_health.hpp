@@ -66,13 +66,13 @@ struct LoopHealth {
   double at_limits{};                                ///< of the automatic ones
   double dead_time_s{kNaN};
   DeadTimeSource dead_time_source{};
-  MinimumVariance harris;     ///< of stretches whose setpoint rests; times as the record's
+  MinimumVariance harris;  ///< of stretches whose setpoint rests; times as the record's
   double error_std{kNaN}, error_mean{kNaN};
-  double settling_s{kNaN};    ///< until the error's autocorrelation is 0.2
-  Oscillation oscillation;    ///< of the error; period in samples
+  double settling_s{kNaN};  ///< until the error's autocorrelation is 0.2
+  Oscillation oscillation;  ///< of the error; period in samples
   ValveFit valve;
   SensorFaults sensor;
-  StepResponse response;      ///< as the record shows it; empty if it does not
+  StepResponse response;  ///< as the record shows it; empty if it does not
   ModelAge model;
   LoopCause cause{LoopCause::kUnknown};
   std::vector<std::string> remarks;  ///< sentences: why, and what else
