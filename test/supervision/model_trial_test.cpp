@@ -149,8 +149,8 @@ TEST(HorizonErrors, OfARampAreKnownOnPaper) {
   }
 }
 
-TEST(LoopPromise, IsBrokenBeyondTwiceTheAmplitudeAndScaledBySetpointChanges) {
-  LoopPromise promise(4, Vector::Zero(1));
+TEST(Promise, IsBrokenBeyondTwiceTheAmplitudeAndScaledBySetpointChanges) {
+  ErrorPromise promise(4, Vector::Zero(1));
   const auto add = [&](double square, double change, bool promises) {
     promise.add(Vector::Constant(1, square), change, promises);
   };
