@@ -38,9 +38,10 @@ void describePlant(YamlSection& root, LoopFile& loop) {
 
 const std::vector<std::string>& sections() {
   static const std::vector<std::string> names{
-      "actuator", "clp",      "controller", "disturbance", "estimator",  "extends",      "gateway",
-      "guard",    "loop",     "model",      "noise",       "plant",      "plausibility", "plugins",
-      "report",   "sampling", "sensors",    "setpoint",    "standstill", "tf",           "title"};
+      "actuator", "candidate",    "clp",     "controller", "disturbance", "estimator",
+      "extends",  "gateway",      "guard",   "loop",       "model",       "noise",
+      "plant",    "plausibility", "plugins", "report",     "sampling",    "sensors",
+      "setpoint", "standstill",   "targets", "tf",         "title"};
   return names;
 }
 
@@ -135,12 +136,14 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readSetpoint(root, loop, names);
   readClp(root, loop, names);
   readController(root, loop);
+  readTargets(root, loop);
   readGuard(root, loop, names);
   readEstimator(root, loop);
   readGateway(root, loop);
   readStandstill(root, loop);
   readPlausibility(root, loop);
   readModelSection(root, loop);
+  readCandidate(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);
   root.finish();

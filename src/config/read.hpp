@@ -33,6 +33,7 @@ void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readController(YamlSection& root, LoopFile& loop);
+void readTargets(YamlSection& root, LoopFile& loop);
 /// `recipe`: what a batch plant does one after the other, as entries of a schedule.
 std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
                                      const std::vector<std::string>& outputs);
@@ -48,6 +49,7 @@ void readModelSection(YamlSection& root, LoopFile& loop);
 /// dead times of the loop file. @throws InputError for one that lasts too many samples.
 TsModel withInstruments(TsModel model, const SimulationParams& plant);
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
+void readCandidate(YamlSection& root, LoopFile& loop);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);
 

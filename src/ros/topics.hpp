@@ -11,7 +11,9 @@ inline constexpr char kBaseAction[] = "base_action";
 inline constexpr char kControlAction[] = "control_action";
 inline constexpr char kPredictiveAction[] = "predictive_action";
 inline constexpr char kSolverReport[] = "solver_report";
+inline constexpr char kInputPlan[] = "input_plan";
 inline constexpr char kTracking[] = "tracking";
+inline constexpr char kTargets[] = "targets";
 inline constexpr char kFuzzyModel[] = "fuzzy_model";
 inline constexpr char kIdentified[] = "identified";
 inline constexpr char kSetpoint[] = "setpoint";
@@ -46,6 +48,7 @@ inline constexpr char kManual[] = "manual";
 inline constexpr char kAdapt[] = "adapt";
 inline constexpr char kManualInput[] = "manual_input";
 inline constexpr char kHold[] = "hold";
+inline constexpr char kCandidate[] = "candidate";
 inline constexpr char kSettings[] = "settings";
 
 // Parameters: the loop as text (`fmbpc resolve`), searched upwards from the node's namespace.

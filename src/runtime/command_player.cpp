@@ -2,6 +2,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "runtime/factory.hpp"
 
 namespace fpc {
 namespace {
@@ -23,6 +24,10 @@ struct Doer {
   }
   void operator()(const UseModel& c) const { targets.controller.setModel(c.model); }
   void operator()(const Identify& c) const { targets.identify(c.window); }
+  void operator()(const WatchCandidate& c) const {
+    targets.controller.watch(makeCandidate(*c.loop, c.params));
+  }
+  void operator()(const HandOver& c) const { targets.controller.handOver(c.on); }
 };
 
 }  // namespace
@@ -38,6 +43,7 @@ void CommandPlayer::begin(const CommandTargets& targets) {
       Command command = setpoint->command;
       command.time_ns = clock_.timeAt(stepOf(timed));
       targets.controller.command(command);
+      if (targets.layer) targets.layer->command(command);
     } else if (const auto* disturbance = std::get_if<DisturbanceCommand>(&timed.what)) {
       Command command = disturbance->command;
       command.time_ns = clock_.timeAt(stepOf(timed));

@@ -20,6 +20,8 @@
 namespace fpc {
 
 class ReactionWatch;
+class WatchedLaw;
+struct Candidate;
 
 /// What a controller sends back for one measurement.
 struct ControllerAnswer {
@@ -121,6 +123,14 @@ class ControllerSession {
   /// New settings of the law from the next sample on; see Controller::retune().
   bool retune(const Settings& settings);
 
+  /// Watches a candidate beside the law from the next sample on, in the place of another one; see
+  /// WatchedLaw, which is then the controller(). @throws InputError
+  void watch(Candidate candidate);
+  /// To the candidate from the next sample on, or back to the former law.
+  /// @throws InputError if there is none that has passed, or that is in charge.
+  void handOver(bool on);
+  const WatchedLaw* watched() const { return watched_; }
+
   OperatorWishes wishes() const;
   /// Before the first sample. What has been asked of this object itself is newer and stays.
   /// @throws InputError for what the controller refuses; the rest is taken.
@@ -134,6 +144,9 @@ class ControllerSession {
   bool unreleased() const { return unreleased_; }
   /// What its law answers goes to an optimizer, which knows what the plant was told.
   void leadsAnOptimizer() { leads_an_optimizer_ = true; }
+  /// What a target layer has decided: the law follows it from the sample to come on. Wrong sizes
+  /// are ignored.
+  void aim(const Targets& targets);
   /// Of the measurements to come: false while the plant's own hand has the inputs.
   void plantTakesActions(bool on) { takes_actions_ = on; }
   /// In what the plant that announced itself differs from the loop file, in words; empty: in
@@ -179,6 +192,7 @@ class ControllerSession {
   void beginAnew();
 
   std::unique_ptr<Controller> controller_;
+  WatchedLaw* watched_{nullptr};             // controller_, where there is a candidate
   std::vector<std::string> setpoint_texts_;  // by output; empty: that it is clamped is not said
   SetpointSource setpoint_;
   InputLimits limits_;
@@ -193,6 +207,7 @@ class ControllerSession {
   Vector last_input_, manual_input_, proposal_;
   BumplessTransfer transfer_;  // on what the plant gets; not where an optimizer follows
   MoveOrigin moves_;
+  Targets targets_;   // without outputs: there is no target layer
   Measurement seen_;  // with the input from which the law moves on; sized once
   SignalValidator plausibility_;
   TsModel model_;        // in use, matched to the plant; of a law that needs one
@@ -232,6 +247,9 @@ class OptimizerSession {
   bool receive(const PredictiveAction& prediction);
   const ControlAction& action() const { return action_; }
   const SolverReport& report() const { return report_; }
+  /// n_u n_c, the inputs planned with the last answer, column i for k + i; empty: it passed through
+  /// or has no solution.
+  Matrix plan() const;
   const ArrivalCounts& counts() const { return gate_.counts(); }
   /// Why the last answer has status invalid problem, in words; otherwise empty.
   const std::string& trouble() const { return trouble_; }

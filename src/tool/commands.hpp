@@ -185,6 +185,7 @@ int replay(const ReplayArguments& arguments);
 int recover(const RecoverArguments& arguments);
 /// These become other programs: they return only by throwing.
 int watch(const std::vector<std::string>& words);
+int page(std::vector<std::string> words);
 int reproduce(const std::vector<std::string>& words);
 
 }  // namespace fpc::tool

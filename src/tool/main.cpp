@@ -306,8 +306,10 @@ int main(int argc, char** argv) {
   fpc::tool::RecoverArguments recover;
   fpc::tool::addRecover(app, recover, chosen);
   fpc::tool::addOperate(app, chosen);
+  fpc::tool::addShadow(app, chosen);
   fpc::tool::addExport(app, chosen);
   fpc::tool::addWatch(app);
+  fpc::tool::addPage(app);
   fpc::tool::refuseEmptyNames(app);
   try {
     if (const int code = fpc::tool::runOther(argc, argv); code >= 0) return code;
