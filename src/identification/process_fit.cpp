@@ -17,7 +17,7 @@ using Eigen::Index;
 constexpr Index kFewestRows = 30;
 constexpr double kStartPole = 0.9;  // of the noise while starts are sought
 constexpr double kGridRatio = 1.7;  // of the lags that are tried first
-constexpr int kIterations = 40;
+constexpr int kFitIterations = 40;
 constexpr double kWorthwhile = 6.0;    // by which Schwarz's criterion must fall
 constexpr double kShortestLag = 0.15;  // of a sample
 constexpr double kConverged = 1e-7;    // of the cost, relative
@@ -426,7 +426,7 @@ class Fitter {
     double cost = e.squaredNorm(), damping = 1e-3;
     if (!std::isfinite(cost)) return false;
     const Index shape = shapeParameters(c), terms = c.noise.size();
-    for (int iteration = 0; iteration < kIterations; ++iteration) {
+    for (int iteration = 0; iteration < kFitIterations; ++iteration) {
       const Matrix J = jacobian(c, v);
       const Matrix H = J.transpose() * J;
       const Vector g = J.transpose() * e;
