@@ -150,7 +150,7 @@ TEST(HorizonErrors, OfARampAreKnownOnPaper) {
 }
 
 TEST(Promise, IsBrokenBeyondTwiceTheAmplitudeAndScaledBySetpointChanges) {
-  Promise promise(4, Vector::Zero(1));
+  ErrorPromise promise(4, Vector::Zero(1));
   const auto add = [&](double square, double change, bool promises) {
     promise.add(Vector::Constant(1, square), change, promises);
   };
