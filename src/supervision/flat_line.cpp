@@ -10,6 +10,7 @@ constexpr double kRounding = 1e-6;  // of the value: numbers of 32 bits tremble 
 constexpr double kBits = 1e-9;      // of the value: differences of equal steps
 constexpr double kFar = 16.0;       // resolutions
 constexpr double kLeastWhite = 0.45, kMostWhite = 0.85;
+constexpr double kPeak = 0.25;   // of the sum of squares, at most
 constexpr double kSurely = 0.5;  // of the variance that a window shows
 constexpr int kLarge = 8;        // steps of two resolutions: rounding alone makes none
 constexpr int kNever = std::numeric_limits<int>::max();
@@ -74,20 +75,21 @@ int FlatLine::changes() const {
 int FlatLine::allowed() const {
   if (known_ < kWindow || changes() < kFewest) return kNever;
   const double q = resolution();
-  double products = 0.0, squares = 0.0;
+  double products = 0.0, squares = 0.0, peak = 0.0, before = 0.0;
   int large = 0;
-  double before = 0.0;
   for (int k = 0; k < kWindow; ++k) {
     large += std::abs(step(k)) > 1.5 * q ? 1 : 0;
     if (k == 0) continue;
     const double turn = step(k) - step(k - 1);
     squares += turn * turn;
+    peak = std::max(peak, turn * turn);
     products += turn * before;
     before = turn;
   }
   const double white = -products / squares;
   const double noise = -kSurely * products / (4 * (kWindow - 1));
-  const bool trembles = white > kLeastWhite && white < kMostWhite && large >= kLarge;
+  const bool trembles =
+      white > kLeastWhite && white < kMostWhite && peak < kPeak * squares && large >= kLarge;
   if (!trembles || !(noise > std::pow(kRounding * value_, 2))) return kNever;
   const double by_noise = std::erf(q / std::sqrt(8.0 * noise));
   const double seen = (kWindow - changes() + 1.0) / (kWindow + 2.0);

@@ -80,6 +80,19 @@ TEST(FlatLine, MotionThatComesToRestIsNoFault) {
   }
 }
 
+/// An aggressive law turns a deviation from side to side until rounding is left, which then stops.
+TEST(FlatLine, AnOscillationThatDiesOutIsNoNoise) {
+  for (double ratio = 0.1; ratio < 0.96; ratio += 0.05)
+    for (const double rest : {0.05, 1.0, 300.0}) {
+      FlatLine line;
+      const auto course = [&](int k) {
+        if (k % 1000 < 200) return k % 5 < 2 ? rest : std::nextafter(rest, 1000.0);
+        return rest + 0.04 * rest * std::pow(-ratio, k % 1000 - 200);
+      };
+      EXPECT_EQ(watch(line, 5000, course).unlikely, 0) << ratio << " " << rest;
+    }
+}
+
 TEST(FlatLine, AReadingThatComesTwiceInMotionIsRepeated) {
   const auto motion = [](int k) { return 50.0 + 5.0 * std::sin(0.05 * k); };
   FlatLine line;
