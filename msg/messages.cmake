@@ -10,6 +10,7 @@ add_message_files(DIRECTORY msg FILES
   FuzzySet.msg
   FuzzySubmodel.msg
   Identified.msg
+  InputPlan.msg
   LoopState.msg
   Matrix.msg
   Measurement.msg
@@ -23,6 +24,7 @@ add_message_files(DIRECTORY msg FILES
   Signal.msg
   SignalInfo.msg
   SolverReport.msg
+  Targets.msg
   Tracking.msg
 )
 add_service_files(DIRECTORY srv FILES ManualInput.srv)

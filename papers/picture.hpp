@@ -1,5 +1,5 @@
 // The figures of the papers as ours: panels of curves, written as JSON for
-// scripts/plot_reproduce.py.
+// fmbpc.plots.
 #pragma once
 
 #include <functional>

@@ -93,7 +93,7 @@ class Impatient(xmlrpc.client.Transport):
 
 
 GONE, HANGS = "gone", "hangs"
-STARTED = ("plant_simulator", "plant_gateway", "fmbpc_controller", "clp_optimizer", "fuzzy_identifier", "loop_recorder", "plot_live")
+STARTED = ("plant_simulator", "plant_gateway", "fmbpc_controller", "clp_optimizer", "target_optimizer", "fuzzy_identifier", "loop_recorder", "plot_live")
 
 
 def ask(node):

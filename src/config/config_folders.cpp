@@ -7,6 +7,7 @@
 
 #include "base/near_names.hpp"
 #include "config/loop_file.hpp"
+#include "config/plugins.hpp"
 #include "config/study_file.hpp"
 #include "config/tuning_file.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -15,8 +16,8 @@
 #ifndef FMBPC_SOURCE_CONFIG
 #define FMBPC_SOURCE_CONFIG ""
 #endif
-#ifndef FMBPC_INSTALL_CONFIG
-#define FMBPC_INSTALL_CONFIG ""
+#ifndef FMBPC_LIBRARY_TO_CONFIG
+#define FMBPC_LIBRARY_TO_CONFIG ""
 #endif
 
 namespace fpc {
@@ -28,10 +29,11 @@ std::vector<std::string> configFolders() {
   std::stringstream listed(user ? user : "");
   for (std::string folder; std::getline(listed, folder, ':');)
     if (!folder.empty()) folders.push_back(folder);
-  for (const char* folder : {FMBPC_SOURCE_CONFIG, FMBPC_INSTALL_CONFIG}) {
-    std::error_code ignored;
-    if (*folder != '\0' && fs::is_directory(folder, ignored)) folders.emplace_back(folder);
-  }
+  // Where the library is installed, whatever the prefix, and else the source tree.
+  const fs::path beside = (libraryFolder() / fs::path(FMBPC_LIBRARY_TO_CONFIG)).lexically_normal();
+  std::error_code ignored;
+  for (const fs::path& folder : {beside, fs::path(FMBPC_SOURCE_CONFIG)})
+    if (fs::is_directory(folder / "loop", ignored)) folders.push_back(folder.string());
   return folders;
 }
 

@@ -38,9 +38,10 @@ void describePlant(YamlSection& root, LoopFile& loop) {
 
 const std::vector<std::string>& sections() {
   static const std::vector<std::string> names{
-      "actuator", "clp",      "controller", "disturbance", "estimator",  "extends",      "gateway",
-      "guard",    "loop",     "model",      "noise",       "plant",      "plausibility", "plugins",
-      "report",   "sampling", "sensors",    "setpoint",    "standstill", "tf",           "title"};
+      "actuator",     "clp",     "controller", "disturbance", "estimator", "extends",
+      "gateway",      "guard",   "loop",       "model",       "noise",     "plant",
+      "plausibility", "plugins", "report",     "sampling",    "sensors",   "setpoint",
+      "standstill",   "targets", "tf",         "title"};
   return names;
 }
 
@@ -135,6 +136,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readSetpoint(root, loop, names);
   readClp(root, loop, names);
   readController(root, loop);
+  readTargets(root, loop);
   readGuard(root, loop, names);
   readEstimator(root, loop);
   readGateway(root, loop);

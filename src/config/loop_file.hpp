@@ -8,6 +8,7 @@
 
 #include "config/gateway_params.hpp"
 #include "control/clp/closed_loop_paradigm.hpp"
+#include "control/targets/params.hpp"
 #include "estimation/estimator_params.hpp"
 #include "fmbpc/control/registry.hpp"
 #include "fmbpc/control/setpoint_source.hpp"
@@ -125,6 +126,7 @@ struct LoopFile {
   GatewayParams gateway;        ///< of an external plant
   bool has_clp{false};
   ClpParams clp;
+  TargetParams targets;
   RingParams ring;
   TfParams tf;
   ReportParams report;

@@ -31,14 +31,6 @@ std::vector<std::string> listedIn(const char* variable) {
   return parts;
 }
 
-/// The folder of the library that this code is in.
-fs::path ownFolder() {
-  Dl_info info{};
-  return dladdr(reinterpret_cast<void*>(&loadPlugin), &info) != 0 && info.dli_fname
-             ? fs::absolute(info.dli_fname).parent_path()
-             : fs::path();
-}
-
 /// "two_tanks", not "libtwo_tanks.so".
 void requireBareName(const std::string& name, const std::string& where) {
   require(!name.empty(), where, "a plugin's name, got ''");
@@ -132,13 +124,20 @@ std::string load(const std::string& path) {
 
 }  // namespace
 
+std::string libraryFolder() {
+  Dl_info info{};
+  return dladdr(reinterpret_cast<void*>(&loadPlugin), &info) != 0 && info.dli_fname
+             ? fs::absolute(info.dli_fname).parent_path().string()
+             : std::string();
+}
+
 std::vector<std::string> pluginFolders() {
   std::vector<std::string> folders = listedIn("FMBPC_PLUGIN_PATH");
   for (const auto& prefix : listedIn("CMAKE_PREFIX_PATH")) folders.push_back(prefix + "/lib");
   for (const auto& share : listedIn("ROS_PACKAGE_PATH"))
     if (fs::path(share).filename() == "share")
       folders.push_back((fs::path(share).parent_path() / "lib").string());
-  if (const fs::path own = ownFolder(); !own.empty()) folders.push_back(own.string());
+  if (const fs::path own = libraryFolder(); !own.empty()) folders.push_back(own.string());
   return folders;
 }
 

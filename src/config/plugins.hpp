@@ -7,6 +7,9 @@
 
 namespace fpc {
 
+/// The folder of libfmbpc_core itself; empty where that cannot be known.
+std::string libraryFolder();
+
 /// Folders in which a library is looked for by name, in this order: ${FMBPC_PLUGIN_PATH}, `lib` of
 /// every prefix of ${CMAKE_PREFIX_PATH} (a catkin workspace, an install prefix) and of every
 /// install space of ${ROS_PACKAGE_PATH}, and the folder of fmbpc itself.

@@ -33,6 +33,7 @@ void readTf(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names);
 void readController(YamlSection& root, LoopFile& loop);
+void readTargets(YamlSection& root, LoopFile& loop);
 /// `recipe`: what a batch plant does one after the other, as entries of a schedule.
 std::vector<SetpointStep> readRecipe(YamlSection& setpoint,
                                      const std::vector<std::string>& outputs);

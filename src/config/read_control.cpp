@@ -72,7 +72,8 @@ void defaultClp(ClpParams& clp, Eigen::Index n_y, Eigen::Index n_u) {
   clp.output_upper = Vector::Constant(n_y, kInfinity);
 }
 
-void readTargets(YamlSection& section, ClpParams& clp, const std::vector<std::string>& outputs) {
+void readTargetOutputs(YamlSection& section, ClpParams& clp,
+                       const std::vector<std::string>& outputs) {
   std::vector<std::string> targets;
   section.names("target_outputs", targets);
   for (const auto& target : targets) {
@@ -96,7 +97,7 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
   section.byName("increment_lower", clp.increment_lower, names.inputs);
   section.byName("increment_upper", clp.increment_upper, names.inputs);
   readOption(section, "action", clp.action);
-  readTargets(section, clp, names.outputs);
+  readTargetOutputs(section, clp, names.outputs);
   section.byName("output_lower", clp.output_lower, names.outputs);
   section.byName("output_upper", clp.output_upper, names.outputs);
   section.number("output_penalty", clp.output_penalty, kFinitePositive);
@@ -105,6 +106,25 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
   qp.number("feasibility_tolerance", clp.qp.feasibility_tolerance, kFinitePositive);
   checked(qp, [&] { clp.qp.validate(); });
   qp.finish();
+}
+
+/// Zones become soft limits of the optimizer, unless its section has others; a rank above another
+/// one weighs kRankWeight times as much there.
+void limitOptimizer(LoopFile& loop) {
+  constexpr double kRankWeight = 30.0;
+  constexpr int kMostSteps = 4;
+  const int last = loop.targets.lastRank();
+  loop.clp.output_weight = Vector::Ones(countOf(loop.targets.outputs));
+  for (std::size_t i = 0; i < loop.targets.outputs.size(); ++i) {
+    const TargetOutput& output = loop.targets.outputs[i];
+    const auto k = static_cast<Eigen::Index>(i);
+    if (!output.hasZone()) continue;
+    double& lower = loop.clp.output_lower[k];
+    double& upper = loop.clp.output_upper[k];
+    if (!std::isfinite(lower)) lower = output.lower;
+    if (!std::isfinite(upper)) upper = output.upper;
+    loop.clp.output_weight[k] = std::pow(kRankWeight, std::min(last - output.rank, kMostSteps));
+  }
 }
 
 }  // namespace
@@ -192,6 +212,22 @@ void readController(YamlSection& root, LoopFile& loop) {
     if (controllerType(name).predicts) predicting.push_back(name);
   section.fail("type", "a controller that predicts (" + join(predicting) +
                            ") for clp; clp.enabled: false switches the optimizer off");
+}
+
+void readTargets(YamlSection& root, LoopFile& loop) {
+  YamlSection section = root.section("targets");
+  const bool there = root.has("targets") && !root.raw("targets").IsNull();
+  bool enabled = there;
+  section.boolean("enabled", enabled);
+  const ControllerContext context = controllerContext(loop);
+  loop.targets = readTargetParams(section, context);
+  loop.targets.enabled = enabled;
+  section.finish();
+  if (!enabled) return;
+  if (loop.controllerType().open_loop)
+    section.fail("enabled", "false, or a controller that follows setpoints");
+  checked(section, [&] { loop.targets.validate(loop.plant_info, context.limits); });
+  limitOptimizer(loop);
 }
 
 }  // namespace fpc

@@ -16,8 +16,9 @@ namespace {
 
 std::vector<std::string> ringNodes(const LoopFile& loop) {
   std::vector<std::string> nodes{"loop_recorder", "fmbpc_controller"};
-  if (loop.controllerType().needs_model || loop.has_identify)
+  if (loop.controllerType().needs_model || loop.has_identify || loop.targets.enabled)
     nodes.emplace_back("fuzzy_identifier");
+  if (loop.targets.enabled) nodes.emplace_back("target_optimizer");
   if (loop.has_clp) nodes.emplace_back("clp_optimizer");
   return nodes;
 }
@@ -41,6 +42,7 @@ std::map<std::string, std::vector<std::string>> ringPublishers(const LoopFile& l
           {"predictive_action", law},
           {"control_action", answers},
           {"solver_report", answers},
+          {"targets", {"target_optimizer"}},
           {"fuzzy_model", model},
           {"identified", model},
           {"setpoint", {}},

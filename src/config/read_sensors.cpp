@@ -79,9 +79,10 @@ void readLag(YamlSection& actuator, ActuatorParams& params,
     if (!section.has(inputs[i])) continue;
     params.drives.resize(inputs.size());
     YamlSection lag = section.section(inputs[i]);
-    if (!lag.has("backlash")) need(lag, "t90_s", "a time >= 0");
+    if (!lag.has("backlash") && !lag.has("stiction")) need(lag, "t90_s", "a time >= 0");
     lag.number("t90_s", params.drives[i].t90_s, kFiniteNotNegative);
     lag.number("backlash", params.drives[i].backlash, kFiniteNotNegative);
+    lag.number("stiction", params.drives[i].stiction, kFiniteNotNegative);
     lag.integer("order", params.drives[i].order, 1, 20);
     lag.finish();
   }

@@ -1,6 +1,8 @@
 #include "fmbpc/control/registry.hpp"
 
 #include <map>
+#include <mutex>
+#include <shared_mutex>
 
 #include "base/code_address.hpp"
 #include "control/registered_code.hpp"
@@ -26,11 +28,21 @@ std::vector<std::string>& refused() {
   return names;
 }
 
+/// A class of Python may register while other threads read loops.
+std::shared_mutex& registryMutex() {
+  static std::shared_mutex mutex;
+  return mutex;
+}
+
 const Entry& entryOf(const std::string& name) {
-  const auto found = registry().find(name);
-  require(found != registry().end(), "controller.type '" + name + "'",
-          "one of " + join(controllerNames()));
-  return found->second;
+  const Entry* entry = nullptr;
+  {
+    const std::shared_lock lock(registryMutex());
+    const auto found = registry().find(name);
+    if (found != registry().end()) entry = &found->second;
+  }
+  require(entry != nullptr, "controller.type '" + name + "'", "one of " + join(controllerNames()));
+  return *entry;
 }
 
 }  // namespace
@@ -76,6 +88,7 @@ Eigen::Index ControllerContext::inputCount() const {
 }
 
 bool registerControllerReader(ControllerType type, ControllerReader read) {
+  const std::unique_lock lock(registryMutex());
   const std::string name = type.name;
   const bool is_new = registry().emplace(name, Entry{std::move(type), std::move(read)}).second;
   if (!is_new) refused().push_back(name);
@@ -91,6 +104,7 @@ std::vector<const void*> controllerCode() {
 }
 
 std::vector<std::string> controllerNames() {
+  const std::shared_lock lock(registryMutex());
   std::vector<std::string> names;
   for (const auto& entry : registry()) names.push_back(entry.first);
   return names;

@@ -59,7 +59,10 @@ Instruments::Instruments(const InstrumentParams& params, const std::vector<Drive
     require(std::isfinite(drive.t90_s) && drive.t90_s >= 0.0, "actuator.lag: t90_s", "a time >= 0");
     require(std::isfinite(drive.backlash) && drive.backlash >= 0.0, "actuator.lag: backlash",
             "a number >= 0");
+    require(std::isfinite(drive.stiction) && drive.stiction >= 0.0, "actuator.lag: stiction",
+            "a number >= 0");
     play_.push_back(0.5 * drive.backlash);
+    stick_.push_back(drive.stiction);
     drives_.emplace_back();
     if (drive.t90_s > 0.0)
       drives_.back().emplace(drive.order, drive.t90_s / lagsToNinety(drive.order));
@@ -81,14 +84,17 @@ void Instruments::reset(VectorRef y, VectorRef d, VectorRef u) {
   for (std::size_t i = 0; i < drives_.size(); ++i)
     if (drives_[i]) drives_[i]->reset(u[static_cast<Eigen::Index>(i)]);
   y_ = y;
-  gear_ = position_ = u;
+  stem_ = gear_ = position_ = u;
 }
 
 const Vector& Instruments::drive(VectorRef command) {
   position_ = command;
   for (std::size_t i = 0; i < drives_.size(); ++i) {
     double& u = position_[static_cast<Eigen::Index>(i)];
+    double& stem = stem_[static_cast<Eigen::Index>(i)];
     double& gear = gear_[static_cast<Eigen::Index>(i)];
+    if (std::abs(u - stem) > stick_[i]) stem = u;
+    u = stem;
     u = gear = std::clamp(gear, u - play_[i], u + play_[i]);
     if (drives_[i]) u = drives_[i]->advance(u, u, step_s_);
   }

@@ -19,11 +19,12 @@ struct InstrumentParams {
   std::uint64_t seed{1};
 };
 
-/// A drive of equal lags behind a gear with play. T90 0: follows at once.
+/// A drive of equal lags behind a stem that sticks and a gear with play. T90 0: follows at once.
 struct DriveParams {
   int order{2};
   double t90_s{0.0};
   double backlash{0.0};  ///< width of the play: so far a command turns before the drive follows
+  double stiction{0.0};  ///< the drive stands until the command is farther off, then slips to it
 };
 
 class Instruments {
@@ -55,8 +56,9 @@ class Instruments {
  private:
   std::vector<std::optional<Sensor>> outputs_, disturbances_;
   std::vector<std::optional<LagChain>> drives_;
-  std::vector<double> play_;    // to either side, one per drive
-  Vector y_, gear_, position_;  // gear_: behind the play
+  std::vector<double> play_;           // to either side, one per drive
+  std::vector<double> stick_;          // one per drive
+  Vector y_, stem_, gear_, position_;  // stem_: what sticks; gear_: behind the play
   int steps_{1};
   double step_s_{};
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <shared_mutex>
 
 #include "base/code_address.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -33,6 +35,12 @@ std::vector<std::string>& refused() {
   return names;
 }
 
+/// A class of Python may register while other threads make plants.
+std::shared_mutex& registryMutex() {
+  static std::shared_mutex mutex;
+  return mutex;
+}
+
 }  // namespace
 
 std::unique_ptr<PlantStepper> Plant::makeStepper(double) const { return nullptr; }
@@ -41,6 +49,7 @@ template <>
 void requireSameLayout<PlantLayout>() {}
 
 bool addPlant(const std::string& name, PlantFactory factory) {
+  const std::unique_lock lock(registryMutex());
   const bool is_new =
       readers().count(name) == 0 && registry().emplace(name, std::move(factory)).second;
   if (!is_new) refused().push_back(name);
@@ -48,6 +57,7 @@ bool addPlant(const std::string& name, PlantFactory factory) {
 }
 
 bool registerPlantReader(const std::string& name, const std::string& title, PlantReader reader) {
+  const std::unique_lock lock(registryMutex());
   const bool is_new = registry().count(name) == 0 &&
                       readers().emplace(name, ReadPlant{title, std::move(reader)}).second;
   if (!is_new) refused().push_back(name);
@@ -56,8 +66,9 @@ bool registerPlantReader(const std::string& name, const std::string& title, Plan
 
 std::map<std::string, std::string> plantTypes() {
   std::map<std::string, std::string> types;
+  for (const std::string& name : plantNames()) types[name] = makePlant(name)->description().title;
+  const std::shared_lock lock(registryMutex());
   for (const auto& [name, read] : readers()) types[name] = read.title;
-  for (const auto& [name, factory] : registry()) types[name] = factory({})->description().title;
   return types;
 }
 
@@ -70,12 +81,18 @@ PlantFactory plantFactory(const std::string& type, YamlSection& plant) {
 std::vector<std::string> refusedPlants() { return refused(); }
 
 std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters) {
-  const auto found = registry().find(name);
-  require(found != registry().end(), "plant.type '" + name + "'", "one of " + join(plantNames()));
-  return found->second(parameters);
+  PlantFactory make;
+  {
+    const std::shared_lock lock(registryMutex());
+    const auto found = registry().find(name);
+    if (found != registry().end()) make = found->second;
+  }
+  require(make != nullptr, "plant.type '" + name + "'", "one of " + join(plantNames()));
+  return make(parameters);
 }
 
 std::vector<std::string> plantNames() {
+  const std::shared_lock lock(registryMutex());
   std::vector<std::string> names;
   for (const auto& entry : registry()) names.push_back(entry.first);
   return names;

@@ -28,6 +28,7 @@ ClpOptimizer::ClpOptimizer(ros::NodeHandle node, const ros::NodeHandle& private_
       plant_(loop),
       action_(node, topics::kControlAction, comeback_, audienceOf(node, authority())),
       report_(node, topics::kSolverReport, comeback_, audienceOf(node, authority())),
+      plan_(node.advertise<fmbpc::InputPlan>(topics::kInputPlan, queueOf(ListenerKind::kViewer))),
       listeners_({action_.publisher(), report_.publisher()}),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ClpOptimizer::onPlantInfo, this)),
       base_subscriber_(
@@ -78,11 +79,23 @@ void ClpOptimizer::publish() {
   last_ = report.header;
   for (Eigen::Index i = 0; i < report.perturbation.size(); ++i)
     signals_.publish(static_cast<std::size_t>(i), report.header.time_ns, report.perturbation[i]);
+  publishPlan();
   const Notice notice = noticeOf(report.status);
   if (notice.code == EventCode::kNone) return;
   health_.say({eventOf(notice, report.header.step)});
   if (*session_.trouble().c_str() != '\0' && log_.pass())
     ROS_WARN("clp_optimizer: sample %u: %s", report.header.step, session_.trouble().c_str());
+}
+
+void ClpOptimizer::publishPlan() {
+  if (plan_.getNumSubscribers() == 0) return;
+  const StepHeader& sample = session_.report().header;
+  fmbpc::InputPlan msg;
+  msg.header.stamp = toStamp(sample.time_ns);
+  msg.run_id = sample.run_id;
+  msg.step = sample.step;
+  msg.input = toMsg(session_.plan());
+  plan_.publish(msg);
 }
 
 // What it can see of the loop's life: base actions.

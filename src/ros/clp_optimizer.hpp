@@ -3,6 +3,7 @@
 #pragma once
 
 #include <fmbpc/ControlAction.h>
+#include <fmbpc/InputPlan.h>
 #include <fmbpc/PlantInfo.h>
 #include <fmbpc/PredictiveAction.h>
 #include <fmbpc/SolverReport.h>
@@ -40,6 +41,7 @@ class ClpOptimizer : public Node {
   template <typename Item>
   void receive(const Item& item);
   void publish();
+  void publishPlan();
   void report(Diagnostics::Status& status) const;
   Health health(double now_s) const;
 
@@ -53,6 +55,7 @@ class ClpOptimizer : public Node {
   Comeback comeback_;
   RingPublisher<fmbpc::ControlAction> action_;
   RingPublisher<fmbpc::SolverReport> report_;
+  ros::Publisher plan_;
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, base_subscriber_, prediction_subscriber_;
   SummaryListener summary_;

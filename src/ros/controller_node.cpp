@@ -1,5 +1,6 @@
 #include "ros/controller_node.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "base/same_sample.hpp"
@@ -45,6 +46,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
                                        &ControllerNode::onIdentified, this)),
       setpoint_subscriber_(subscribe(node, topics::kSetpoint, queueOf(ListenerKind::kViewer),
                                      &ControllerNode::onSetpoint, this)),
+      targets_subscriber_(subscribe(node, topics::kTargets, queueOf(ListenerKind::kPeer),
+                                    &ControllerNode::onTargets, this)),
       manual_(serve(private_node, topics::kManual, &ControllerNode::onManual, this)),
       manual_input_(
           serve(private_node, topics::kManualInput, &ControllerNode::onManualInput, this)),
@@ -109,6 +112,33 @@ void ControllerNode::onModel(const fmbpc::FuzzyModel::ConstPtr& msg) {
   });
 }
 
+void ControllerNode::onTargets(const fmbpc::Targets::ConstPtr& msg) {
+  guarded(topics::kTargets, [&] {
+    const Targets targets = fromMsg(*msg);
+    if (!loop_.targets.enabled || isSameSample(targets.header, aimed_)) return;
+    if (plant_.open() && plant_.runId() != targets.header.run_id) return;
+    if (targets.header.run_id == aimed_.run_id && targets.header.step < aimed_.step) return;
+    session_.aim(targets);
+    aimed_ = targets.header;
+    target_events_ = fromMsg(msg->events);
+    answerParked();
+  });
+}
+
+// Lockstep waits for those of the sample; otherwise the law goes on with older ones when they stay
+// away, and says so.
+bool ControllerNode::hasTargets(const StepHeader& sample) {
+  if (!loop_.targets.enabled || isSameSample(sample, aimed_)) return true;
+  if (loop_.ring.pace == Pace::kLockstep || !parked_ || !isSameSample(parked_->header, sample))
+    return false;
+  double patience_s = loop_.ring.optimizer_timeout_s;
+  if (loop_.ring.pace == Pace::kRealtime)
+    patience_s = std::min(patience_s, 0.25 * loop_.plant_info.sample_time_s / loop_.ring.speedup);
+  if (steadyNow() - parked_since_s_ < patience_s) return false;
+  target_events_.assign(1, eventOf({EventCode::kTargetsLate}, sample.step));
+  return true;
+}
+
 // The one after the sample answered last; of no run before the first.
 StepHeader ControllerNode::nextSample() const {
   StepHeader next = session_.answer().tracking.header;
@@ -162,7 +192,8 @@ void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
 
 bool ControllerNode::mayAnswer(const Measurement& measurement) {
   return plant_.open() && plant_.runId() == measurement.header.run_id && session_.ready() &&
-         listeners_.open() && inbox_.complete(measurement.header) && desk_.mayStart(measurement);
+         listeners_.open() && inbox_.complete(measurement.header) && desk_.mayStart(measurement) &&
+         hasTargets(measurement.header);
 }
 
 // Kept, since the plant does not send a sample again that somebody has answered: a controller that
@@ -204,6 +235,7 @@ void ControllerNode::answer(const Measurement& measurement) {
 void ControllerNode::gatherEvents() {
   const StepHeader& now = session_.answer().tracking.header;
   events_ = joined(session_.answer().events, inbox_.takeEvents(now));
+  events_ = joined(events_, std::exchange(target_events_, {}));
   events_ =
       joined(joined(events_, std::exchange(models_refused_, {})), takeRefusedCommands(now.step));
   health_.say(events_);

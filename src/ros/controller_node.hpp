@@ -11,6 +11,7 @@
 #include <fmbpc/PlantInfo.h>
 #include <fmbpc/PredictiveAction.h>
 #include <fmbpc/Setpoint.h>
+#include <fmbpc/Targets.h>
 #include <fmbpc/Tracking.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
@@ -60,6 +61,8 @@ class ControllerNode : public Node {
   bool onManualInput(fmbpc::ManualInput::Request& request, fmbpc::ManualInput::Response& response);
   bool onHold(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onAdapt(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  void onTargets(const fmbpc::Targets::ConstPtr& msg);
+  bool hasTargets(const StepHeader& sample);
   void announceIfReady();
   void useModels(const StepHeader& next);
   StepHeader nextSample() const;
@@ -95,6 +98,8 @@ class ControllerNode : public Node {
   std::string model_, model_source_,
       model_problem_;                  // name of the one in use; why the latest was refused
   double model_refused_s_{};           // when
+  StepHeader aimed_;                   // the sample that the latest targets are of
+  std::vector<Event> target_events_;   // of them; until they are in an answer
   std::vector<Event> models_refused_;  // that could not be used; until they are in an answer
   std::vector<Event> events_;          // of the present answer, and what came with it
 
@@ -104,7 +109,7 @@ class ControllerNode : public Node {
   RingPublisher<fmbpc::CommandEffect> effect_;
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
-      identified_subscriber_, setpoint_subscriber_;
+      identified_subscriber_, setpoint_subscriber_, targets_subscriber_;
   ros::ServiceServer manual_, manual_input_, hold_, adapt_;
   ros::SteadyTimer parked_timer_;
   SettingsServer settings_;

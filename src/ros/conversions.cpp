@@ -177,6 +177,8 @@ fmbpc::PredictiveAction toMsg(const PredictiveAction& action) {
   msg.input_previous = numbers(action.input_previous);
   msg.input_lower = numbers(action.input_lower);
   msg.input_upper = numbers(action.input_upper);
+  msg.output_lower = numbers(action.output_lower);
+  msg.output_upper = numbers(action.output_upper);
   return msg;
 }
 
@@ -195,7 +197,31 @@ PredictiveAction fromMsg(const fmbpc::PredictiveAction& msg) {
           vector(msg.input_base_unclipped),
           vector(msg.input_previous),
           vector(msg.input_lower),
-          vector(msg.input_upper)};
+          vector(msg.input_upper),
+          vector(msg.output_lower),
+          vector(msg.output_upper)};
+}
+
+fmbpc::Targets toMsg(const Targets& targets) {
+  fmbpc::Targets msg;
+  fillHeader(msg, targets.header);
+  msg.outputs = numbers(targets.outputs);
+  msg.inputs = numbers(targets.inputs);
+  msg.output_lower = numbers(targets.output_lower);
+  msg.output_upper = numbers(targets.output_upper);
+  msg.cost = targets.cost;
+  msg.found = targets.found;
+  return msg;
+}
+
+Targets fromMsg(const fmbpc::Targets& msg) {
+  return {stepHeader(msg),
+          vector(msg.outputs),
+          vector(msg.inputs),
+          vector(msg.output_lower),
+          vector(msg.output_upper),
+          msg.cost,
+          msg.found != 0};
 }
 
 fmbpc::SolverReport toMsg(const SolverReport& report) {

@@ -16,6 +16,7 @@
 #include <fmbpc/Setpoint.h>
 #include <fmbpc/SignalInfo.h>
 #include <fmbpc/SolverReport.h>
+#include <fmbpc/Targets.h>
 #include <fmbpc/Tracking.h>
 #include <ros/time.h>
 
@@ -41,6 +42,7 @@ fmbpc::Measurement toMsg(const Measurement& measurement);
 fmbpc::ControlAction toMsg(const ControlAction& action);
 fmbpc::PredictiveAction toMsg(const PredictiveAction& action);
 fmbpc::SolverReport toMsg(const SolverReport& report);
+fmbpc::Targets toMsg(const Targets& targets);  ///< without events
 fmbpc::Event toMsg(const Event& event);
 std::vector<fmbpc::Event> toMsg(const std::vector<Event>& events);
 fmbpc::Tracking toMsg(const Tracking& tracking);
@@ -69,6 +71,7 @@ Measurement fromMsg(const fmbpc::Measurement& msg);
 ControlAction fromMsg(const fmbpc::ControlAction& msg);
 PredictiveAction fromMsg(const fmbpc::PredictiveAction& msg);
 SolverReport fromMsg(const fmbpc::SolverReport& msg);
+Targets fromMsg(const fmbpc::Targets& msg);
 /// A code that is not known is a note.
 Event fromMsg(const fmbpc::Event& msg);
 std::vector<Event> fromMsg(const std::vector<fmbpc::Event>& msg);

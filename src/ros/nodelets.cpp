@@ -14,6 +14,7 @@
 #include "ros/gateway_node.hpp"
 #include "ros/loop_recorder.hpp"
 #include "ros/plant_simulator.hpp"
+#include "ros/target_optimizer.hpp"
 
 namespace fpc {
 
@@ -56,6 +57,7 @@ class PlantGatewayNodelet : public Hosted<GatewayNode> {};
 class FuzzyIdentifierNodelet : public Hosted<FuzzyIdentifier> {};
 class ControllerNodelet : public Hosted<ControllerNode> {};
 class ClpOptimizerNodelet : public Hosted<ClpOptimizer> {};
+class TargetOptimizerNodelet : public Hosted<TargetOptimizer> {};
 class LoopRecorderNodelet : public Hosted<LoopRecorder> {};
 
 }  // namespace fpc
@@ -65,4 +67,5 @@ PLUGINLIB_EXPORT_CLASS(fpc::PlantGatewayNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(fpc::FuzzyIdentifierNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(fpc::ControllerNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(fpc::ClpOptimizerNodelet, nodelet::Nodelet)
+PLUGINLIB_EXPORT_CLASS(fpc::TargetOptimizerNodelet, nodelet::Nodelet)
 PLUGINLIB_EXPORT_CLASS(fpc::LoopRecorderNodelet, nodelet::Nodelet)

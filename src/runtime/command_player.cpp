@@ -38,6 +38,7 @@ void CommandPlayer::begin(const CommandTargets& targets) {
       Command command = setpoint->command;
       command.time_ns = clock_.timeAt(stepOf(timed));
       targets.controller.command(command);
+      if (targets.layer) targets.layer->command(command);
     } else if (const auto* disturbance = std::get_if<DisturbanceCommand>(&timed.what)) {
       Command command = disturbance->command;
       command.time_ns = clock_.timeAt(stepOf(timed));

@@ -11,6 +11,7 @@
 #include "plant/simulation.hpp"
 #include "runtime/identifier_session.hpp"
 #include "runtime/session.hpp"
+#include "runtime/target_session.hpp"
 
 namespace fpc {
 
@@ -20,6 +21,7 @@ struct CommandTargets {
   ControllerSession& controller;
   std::function<void(int window)> identify;
   std::function<void(const std::string& why)> refused;
+  TargetSession* layer{nullptr};  ///< hears setpoints, too
 };
 
 class CommandPlayer {

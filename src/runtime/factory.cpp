@@ -50,6 +50,11 @@ ControllerSession makeControllerSession(const LoopFile& loop) {
   return session;
 }
 
+TargetSession makeTargetSession(const LoopFile& loop) {
+  require(loop.targets.enabled, loop.name + ": targets", "a section targets that is enabled");
+  return {loop.targets, loop.setpoint, loop.simulation.actuator.limits, loop.plant_info};
+}
+
 OptimizerSession makeOptimizerSession(const LoopFile& loop) {
   require(loop.has_clp, loop.name + ": clp", "a section clp that is enabled");
   return {loop.clp, loop.simulation.actuator.limits, loop.plant_info};

@@ -6,12 +6,15 @@
 #include "config/loop_file.hpp"
 #include "plant/simulation.hpp"
 #include "runtime/session.hpp"
+#include "runtime/target_session.hpp"
 
 namespace fpc {
 
 Simulation makeSimulation(const LoopFile& loop);  ///< @throws InputError for an external plant
 ControllerSession makeControllerSession(
     const LoopFile& loop);  ///< without a model: send it by setModel()
+TargetSession makeTargetSession(
+    const LoopFile& loop);  ///< without a model. @throws InputError without a section targets
 OptimizerSession makeOptimizerSession(
     const LoopFile& loop);  ///< @throws InputError without a clp section
 

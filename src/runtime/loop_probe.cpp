@@ -345,7 +345,7 @@ LoopFile LoopCourse::stayingAt(const LoopFile& loop, const CoursePoint& point) c
   sim.noise_std.setZero();
   sim.disturbance_noise_std.setZero();
   sim.disturbance_commands.clear();
-  for (DriveParams& drive : sim.actuator.drives) drive.backlash = 0.0;
+  for (DriveParams& drive : sim.actuator.drives) drive.backlash = drive.stiction = 0.0;
   for (auto& entry : sim.instruments.sensors) {
     SensorParams& sensor = entry.second;
     sensor.noise_std = sensor.resolution = sensor.lost = 0.0;

@@ -15,7 +15,8 @@ bool allFinite(const PredictiveAction& p) {
          p.offset_state.allFinite() && p.offset_output.allFinite() && p.K.allFinite() &&
          p.feedforward.allFinite() && p.reference.allFinite() && p.setpoint.allFinite() &&
          p.input_base_unclipped.allFinite() && p.input_previous.allFinite() &&
-         p.input_lower.allFinite() && (p.input_lower.array() <= p.input_upper.array()).all();
+         p.input_lower.allFinite() && (p.input_lower.array() <= p.input_upper.array()).all() &&
+         (p.output_lower.array() <= p.output_upper.array()).all();
 }
 
 bool needsPrediction(ActionSource source) {
@@ -48,7 +49,9 @@ bool OptimizerSession::sizesFit(const PredictiveAction& p) const {
          hasSize(p.feedforward, n_u, n_c) && hasSize(p.reference, n_y, n_c) &&
          p.setpoint.size() == n_y && p.input_base_unclipped.size() == n_u &&
          p.input_previous.size() == n_u && p.input_lower.size() == p.input_upper.size() &&
-         (p.input_lower.size() == 0 || p.input_lower.size() == n_u);
+         (p.input_lower.size() == 0 || p.input_lower.size() == n_u) &&
+         p.output_lower.size() == p.output_upper.size() &&
+         (p.output_lower.size() == 0 || p.output_lower.size() == n_y);
 }
 
 // A sample is opened by whichever of its two messages comes first; its partner is not a repeat.
@@ -144,6 +147,16 @@ void OptimizerSession::optimize() {
     report_.perturbation = action_.input - prediction_.input_base_unclipped;
   }
   moves_.sent(action_.input);
+}
+
+Matrix OptimizerSession::plan() const {
+  const bool solved =
+      report_.status == SolveStatus::kSolved || report_.status == SolveStatus::kBoundWins;
+  if (!optimizer_ || !solved) return {};
+  const Vector& scale = optimizer_->problem().input_scale;
+  const Vector& x = optimizer_->solution().x;  // the slacks come last
+  return scale.asDiagonal() *
+         Eigen::Map<const Matrix>(x.data(), scale.size(), params_.perturbation_steps);
 }
 
 /// The input is not the one that went out before: a person's, a fallback, the plant's own.

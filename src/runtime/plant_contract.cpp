@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <set>
 
 #include "analysis/steady_state.hpp"
 #include "base/random.hpp"
+#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "plant/integrator.hpp"
 #include "runtime/contract.hpp"
@@ -107,8 +109,11 @@ std::string notAtRest(const Plant& plant) {
                      Eigen::Ref<Vector> dxdt) {
     plant.derivatives(state, input, disturbance, dxdt);
   };
-  const SteadyState rest =
-      findSteadyState(f, x, nominalValues(p.inputs), nominalValues(p.disturbances));
+  const Vector u = nominalValues(p.inputs), d = nominalValues(p.disturbances);
+  Vector rate(x.size());
+  f(x, u, d, rate);
+  if (rate.isZero(0.0)) return "";  // also where an integrator leaves the place free
+  const SteadyState rest = findSteadyState(f, x, u, d);
   if (!rest.ok()) return "no steady state was found near the nominal values";
   for (Index i = 0; i < x.size(); ++i)
     if (!(std::abs(rest.x[i] - x[i]) <= kSameRest * (1.0 + std::abs(x[i]))))
@@ -144,16 +149,97 @@ std::string dependsOnTheSplit(const Plant& plant) {
   return "";
 }
 
+/// Of a plant whose sample time is part of it: its stepper says everything. Two of them, from the
+/// nominal point, over the same inputs.
+class Steppers {
+ public:
+  explicit Steppers(const Plant& plant) : about_(plant.description()), plant_(plant) {}
+
+  std::string notAtRest() const {
+    const auto stepper = begun();
+    const Vector nominal = nominalValues(about_.states), u = nominalValues(about_.inputs),
+                 d = nominalValues(about_.disturbances);
+    Vector x = nominal;
+    for (int k = 0; k < kSteps; ++k) stepper->advance(x, u, d);
+    for (Index i = 0; i < x.size(); ++i)
+      if (!(std::abs(x[i] - nominal[i]) <= kSameRest * (1.0 + std::abs(nominal[i]))))
+        return about_.states[static_cast<std::size_t>(i)].name + " goes to " + exactText(x[i]) +
+               ", it does not stay at " + exactText(nominal[i]);
+    return "";
+  }
+  std::string notFinite() const {
+    std::string found;
+    move([&](const Vector& x, const Vector&, const std::string& failure) {
+      if (found.empty() && !(failure.empty() && x.allFinite()))
+        found = failure.empty() ? "the state after a step is not finite" : failure;
+    });
+    return found;
+  }
+  std::string otherwiseAgain() const {
+    bool same = true;
+    move([&](const Vector& x, const Vector& again, const std::string&) {
+      same = same && std::equal(x.data(), x.data() + x.size(), again.data());
+    });
+    return same ? "" : "two of them differ after the same inputs";
+  }
+
+ private:
+  static constexpr int kSteps = 50;
+
+  std::unique_ptr<PlantStepper> begun() const {
+    auto stepper = plant_.makeStepper(about_.time_unit_s);
+    stepper->reset(nominalValues(about_.inputs), nominalValues(about_.disturbances));
+    return stepper;
+  }
+  template <typename Look>
+  void move(Look look) const {
+    std::mt19937_64 engine = seededEngine(kDrawSeed, {2});
+    const auto first = begun(), second = begun();
+    Vector x = nominalValues(about_.states), again = x;
+    for (int k = 0; k < kSteps; ++k) {
+      const Vector u = drawnValues(about_.inputs, engine),
+                   d = drawnValues(about_.disturbances, engine);
+      first->advance(x, u, d);
+      second->advance(again, u, d);
+      look(x, again, first->failure());
+      if (!x.allFinite()) return;
+    }
+  }
+
+  const PlantDescription& about_;
+  const Plant& plant_;
+};
+
+/// Whether derivatives() do not say how it moves.
+bool movesBySteps(const Plant& plant) {
+  try {
+    const auto stepper = plant.makeStepper(plant.description().time_unit_s);
+    return stepper && !stepper->divisible();
+  } catch (const InputError&) {  // not at this sample time
+    return false;
+  }
+}
+
 }  // namespace
 
 std::vector<Promise> plantPromises(const Plant& plant, const std::string& type) {
   const PlantDescription& p = plant.description();
-  return {{"names are unique, units are given", wrongNames(p, type)},
-          {"nominal values lie inside their ranges", wrongRanges(p)},
-          {"outputs and frames are there", wrongOutputs(p)},
-          {"finite anywhere in the ranges", notFinite(plant)},
-          {"the nominal point is a steady state", notAtRest(plant)},
-          {"splitting a hold changes nothing", dependsOnTheSplit(plant)}};
+  std::vector<Promise> promises{{"names are unique, units are given", wrongNames(p, type)},
+                                {"nominal values lie inside their ranges", wrongRanges(p)},
+                                {"outputs and frames are there", wrongOutputs(p)}};
+  const std::string finite = "finite anywhere in the ranges",
+                    rest = "the nominal point is a steady state";
+  if (movesBySteps(plant)) {
+    const Steppers steppers(plant);
+    promises.push_back({finite, steppers.notFinite()});
+    promises.push_back({rest, steppers.notAtRest()});
+    promises.push_back({"the same inputs give the same states", steppers.otherwiseAgain()});
+  } else {
+    promises.push_back({finite, notFinite(plant)});
+    promises.push_back({rest, notAtRest(plant)});
+    promises.push_back({"splitting a hold changes nothing", dependsOnTheSplit(plant)});
+  }
+  return promises;
 }
 
 }  // namespace fpc

@@ -5,10 +5,15 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <filesystem>
 #include <utility>
 
 #include "config/loop_file.hpp"
+
+#ifndef FMBPC_CONFIG_TO_PYTHON
+#define FMBPC_CONFIG_TO_PYTHON "../python"
+#endif
 
 namespace fpc {
 namespace {
@@ -36,7 +41,7 @@ bool runScript(std::vector<std::string> words) {
   if (child < 0) return false;
   if (child == 0) {
     dup2(STDERR_FILENO, STDOUT_FILENO);
-    execv(kPython, arguments.data());
+    execv(arguments.front(), arguments.data());
     _exit(127);
   }
   int status = 0;
@@ -45,11 +50,25 @@ bool runScript(std::vector<std::string> words) {
   return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+/// The folder of the Python package `fmbpc`: of the source tree, or where it is installed.
+std::string pythonFolder() {
+  for (const auto& folder : configFolders())
+    for (const char* python : {"../python", FMBPC_CONFIG_TO_PYTHON}) {
+      const fs::path path = (fs::path(folder) / python).lexically_normal();
+      if (fs::is_regular_file(path / "fmbpc/plots/__main__.py")) return path.string();
+    }
+  return {};
+}
+
 /// A warning, or nothing. `words`: folders first.
-std::string drawWith(const std::string& name, const std::vector<std::string>& words) {
-  const std::string script = findScript(name);
-  if (script.empty()) return "no plot: scripts/" + name + " not found beside the config folders";
-  std::vector<std::string> line{kPython, script};
+std::string drawWith(const std::string& kind, const std::vector<std::string>& words) {
+  const std::string folder = pythonFolder();
+  if (folder.empty()) return "no plot: the Python package fmbpc.plots is not installed";
+  const char* others = std::getenv("PYTHONPATH");
+  std::vector<std::string> line{
+      "/usr/bin/env", "PYTHONPATH=" + folder + (others ? ":" + std::string(others) : ""),
+      kPython,        "-m",
+      "fmbpc.plots",  kind};
   line.insert(line.end(), words.begin(), words.end());
   return runScript(std::move(line)) ? "" : "no plot of " + words.front();
 }
@@ -57,7 +76,7 @@ std::string drawWith(const std::string& name, const std::vector<std::string>& wo
 }  // namespace
 
 PlotResult drawPlot(const std::string& folder) {
-  const std::string warning = drawWith("plot_loop.py", {folder});
+  const std::string warning = drawWith("run", {folder});
   if (!warning.empty()) return {"", warning};
   return {(fs::path(folder) / "plot.png").string(), ""};
 }
@@ -65,34 +84,32 @@ PlotResult drawPlot(const std::string& folder) {
 PlotResult drawComparison(const std::vector<std::string>& folders, const std::string& file) {
   std::vector<std::string> words = folders;
   words.insert(words.end(), {"--out", file});
-  const std::string warning = drawWith("plot_loop.py", words);
+  const std::string warning = drawWith("run", words);
   return {warning.empty() ? file : "", warning};
 }
 
-PlotResult drawModelPlots(const std::string& folder) {
-  return {"", drawWith("plot_model.py", {folder})};
-}
+PlotResult drawModelPlots(const std::string& folder) { return {"", drawWith("model", {folder})}; }
 
 PlotResult drawStability(const std::string& folder) {
-  const std::string warning = drawWith("plot_stability.py", {folder});
+  const std::string warning = drawWith("stability", {folder});
   if (!warning.empty()) return {"", warning};
   return {(fs::path(folder) / "root_locus.png").string(), ""};
 }
 
 PlotResult drawStudy(const std::string& folder) {
-  const std::string warning = drawWith("plot_study.py", {folder});
+  const std::string warning = drawWith("study", {folder});
   if (!warning.empty()) return {"", warning};
   return {(fs::path(folder) / "distributions.png").string(), ""};
 }
 
 PlotResult drawTuning(const std::string& folder) {
-  const std::string warning = drawWith("plot_tuning.py", {folder});
+  const std::string warning = drawWith("tuning", {folder});
   if (!warning.empty()) return {"", warning};
   return {(fs::path(folder) / "convergence.png").string(), ""};
 }
 
 PlotResult drawReproduction(const std::string& folder) {
-  return {"", drawWith("plot_reproduce.py", {folder})};
+  return {"", drawWith("reproduce", {folder})};
 }
 
 }  // namespace fpc

@@ -1,4 +1,4 @@
-// The picture of a run, drawn by scripts/plot_loop.py.
+// The picture of a run, drawn by the Python package fmbpc.plots.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ inline constexpr char kPython[] = "/usr/bin/python3";
 /// package. Empty if it is not there.
 std::string findScript(const std::string& name);
 
-/// Draws plot.png in a folder written by writeRun(). A missing script or matplotlib is a warning,
+/// Draws plot.png in a folder written by writeRun(). A missing package or matplotlib is a warning,
 /// never a failure.
 PlotResult drawPlot(const std::string& folder);
 /// Runs that were written to these folders, in one picture.
@@ -28,11 +28,11 @@ PlotResult drawTuning(const std::string& folder);
 /// distributions.png in a folder with a study.json.
 PlotResult drawStudy(const std::string& folder);
 
-/// The same by scripts/plot_model.py for a folder that `fmbpc identify --plots` fills; several
+/// The same for a folder that `fmbpc identify --plots` fills; several
 /// pictures, none is named.
 PlotResult drawModelPlots(const std::string& folder);
 
-/// The same by scripts/plot_reproduce.py for a folder that `fmbpc reproduce --plots` fills.
+/// The same for a folder that `fmbpc reproduce --plots` fills.
 PlotResult drawReproduction(const std::string& folder);
 
 }  // namespace fpc

@@ -138,10 +138,20 @@ void ControllerSession::begin(const Measurement& m, Arrival arrival, const StepH
   answer_.has_action = !m.final;
   answer_.has_prediction = false;
   answer_.tracking.setpoint = setpoint_.advance(step);
+  if (targets_.outputs.size() > 0)
+    answer_.tracking.setpoint = setpoint_.aim(targets_.outputs, targets_.inputs);
   if (!controller_->followsSetpoint()) answer_.tracking.setpoint.setConstant(std::nan(""));
   answer_.effects = setpoint_.effects();
   for (CommandEffect& effect : answer_.effects) effect.header = m.header;
   reset_reason_.clear();
+}
+
+void ControllerSession::aim(const Targets& targets) {
+  const auto n_y = countOf(plant_.outputs);
+  if (targets.outputs.size() != n_y || targets.inputs.size() != countOf(plant_.inputs) ||
+      targets.output_lower.size() != n_y || targets.output_upper.size() != n_y)
+    return;
+  targets_ = targets;
 }
 
 void ControllerSession::process(const Measurement& m) {
@@ -283,6 +293,8 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (!answer_.has_prediction) return;
   answer_.prediction = output_.prediction;
   answer_.prediction.header = m.header;
+  answer_.prediction.output_lower = targets_.output_lower;
+  answer_.prediction.output_upper = targets_.output_upper;
 }
 
 /// Of the first model, at the first sample.

@@ -134,6 +134,9 @@ class ControllerSession {
   bool unreleased() const { return unreleased_; }
   /// What its law answers goes to an optimizer, which knows what the plant was told.
   void leadsAnOptimizer() { leads_an_optimizer_ = true; }
+  /// What a target layer has decided: the law follows it from the sample to come on. Wrong sizes
+  /// are ignored.
+  void aim(const Targets& targets);
   /// Of the measurements to come: false while the plant's own hand has the inputs.
   void plantTakesActions(bool on) { takes_actions_ = on; }
   /// In what the plant that announced itself differs from the loop file, in words; empty: in
@@ -193,6 +196,7 @@ class ControllerSession {
   Vector last_input_, manual_input_, proposal_;
   BumplessTransfer transfer_;  // on what the plant gets; not where an optimizer follows
   MoveOrigin moves_;
+  Targets targets_;   // without outputs: there is no target layer
   Measurement seen_;  // with the input from which the law moves on; sized once
   SignalValidator plausibility_;
   TsModel model_;        // in use, matched to the plant; of a law that needs one
@@ -232,6 +236,9 @@ class OptimizerSession {
   bool receive(const PredictiveAction& prediction);
   const ControlAction& action() const { return action_; }
   const SolverReport& report() const { return report_; }
+  /// n_u n_c, the inputs planned with the last answer, column i for k + i; empty: it passed through
+  /// or has no solution.
+  Matrix plan() const;
   const ArrivalCounts& counts() const { return gate_.counts(); }
   /// Why the last answer has status invalid problem, in words; otherwise empty.
   const std::string& trouble() const { return trouble_; }

@@ -90,8 +90,8 @@ bool hasNoise(const StudyFile& study, const LoopFile& loop) {
   return std.any();
 }
 
-/// The keys of a loop that take a study's seed: of its influent's pattern, and of noise wherever it
-/// has any.
+}  // namespace
+
 std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy) {
   std::vector<std::string> keys;
   if (loop.disturbance.source == DisturbanceSource::kPattern)
@@ -108,8 +108,6 @@ std::vector<std::string> seededKeys(const LoopFile& loop, bool noisy) {
     keys.emplace_back("plant.parameters.local_noise_seed");
   return keys;
 }
-
-}  // namespace
 
 StudyPlan::StudyPlan(StudyFile study) : study_(std::move(study)) {
   study_.validate();

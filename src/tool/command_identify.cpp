@@ -28,29 +28,16 @@ struct Records {
   bool overlap{false};  ///< validation rows were identified from
 };
 
-Records readRecords(const IdentifyArguments& a, const Structure& structure) {
-  const CsvTable table = readRecord(a.data.front(), structure.csv, !a.format.no_header);
-  Records records{makeData(table, structure, a.rows), {}, false};
-  if (a.validate.empty() && a.validate_rows.empty()) return records;
+Records recordsOf(const IdentifyArguments& a, const IdentifyTables& tables,
+                  const Structure& structure) {
+  Records records{makeData(tables.data.front(), structure, a.rows), {}, false};
+  if (!tables.validation && a.validate_rows.empty() && !tables.validate_all) return records;
   Structure judging = structure;
   judging.repair.drop_constant = true;  // an input may rest while a model is judged
-  std::error_code ignored;              // a file that is not there is told by its reader
-  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  records.validation =
-      makeData(same ? table : readRecord(a.validate, structure.csv, !a.format.no_header), judging,
-               a.validate_rows);
-  records.overlap = same && rowsOverlap(a.rows, a.validate_rows);
+  records.validation = makeData(tables.validation ? *tables.validation : tables.data.front(),
+                                judging, a.validate_rows);
+  records.overlap = !tables.validation && rowsOverlap(a.rows, a.validate_rows);
   return records;
-}
-
-Identification identifyWithBar(const DataSet& data, const Structure& structure,
-                               const std::vector<PriorKnowledge>& known) {
-  ProgressBar bar(structure.name);
-  const auto show = [&bar](const IdentifyProgress& progress) {
-    bar.show(progress.share, progress.output + ": " + progress.stage);
-    return !interruption();
-  };
-  return identify(data, structure, show, known);
 }
 
 JudgedRecord judge(const std::string& title, DataSet data, const Identification& found,
@@ -74,25 +61,39 @@ void addRemarks(const Records& records, IdentifyReport& report) {
 
 }  // namespace
 
-int identifyStructure(const IdentifyArguments& a) {
+IdentifyReport identifyWith(const IdentifyArguments& a, const IdentifyTables& tables,
+                            const IdentifyCallback& progress) {
   std::vector<PriorKnowledge> known;
   const Structure structure = readStructure(findStructure(a.structure), &known);
   if (!a.known.empty()) known = readKnown(a.known, structure);
-  checkTarget(a.out);
-  const Records records = readRecords(a, structure);
-  catchInterrupts();
+  const Records records = recordsOf(a, tables, structure);
   const auto start = std::chrono::steady_clock::now();
   IdentifyReport report;
-  report.found = identifyWithBar(records.identification, structure, known);
+  report.found = identify(records.identification, structure, progress, known);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   report.seconds = wall.count();
-  if (!report.found.cancelled) {
-    report.identification =
-        judge("identification", records.identification, report.found, structure.validation);
-    if (records.validation)
-      report.validation =
-          judge("validation", *records.validation, report.found, structure.validation);
-    addRemarks(records, report);
+  if (report.found.cancelled) return report;
+  report.identification =
+      judge("identification", records.identification, report.found, structure.validation);
+  if (records.validation)
+    report.validation =
+        judge("validation", *records.validation, report.found, structure.validation);
+  addRemarks(records, report);
+  return report;
+}
+
+int identifyStructure(const IdentifyArguments& a) {
+  const Structure structure = readStructure(findStructure(a.structure));
+  checkTarget(a.out);
+  const IdentifyTables tables = readTables(a, structure.csv);
+  catchInterrupts();
+  IdentifyReport report;
+  {
+    ProgressBar bar(structure.name);
+    report = identifyWith(a, tables, [&bar](const IdentifyProgress& progress) {
+      bar.show(progress.share, progress.output + ": " + progress.stage);
+      return !interruption();
+    });
   }
   if (report.found.cancelled || interruption()) {
     std::fprintf(stderr, "fmbpc: interrupted, nothing is written\n");

@@ -1,4 +1,5 @@
 // fmbpc identify DATA.. --auto: the structure is searched; the verdict comes first.
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -37,26 +38,20 @@ struct AutoRecords {
   std::vector<std::string> remarks;
 };
 
-AutoRecords readAll(const IdentifyArguments& a) {
+AutoRecords recordsOf(const IdentifyArguments& a, const IdentifyTables& tables) {
   AutoRecords r;
-  const CsvTable first = readRecord(a.data.front(), csvFormat(a.format), !a.format.no_header);
+  const CsvTable& first = tables.data.front();
   const AutoColumns columns{a.outputs, a.inputs, a.disturbances, a.time, a.sample_time_s};
   const Structure structure = autoStructure(first, columns, r.remarks);
   if (!a.known.empty()) r.known = readKnown(a.known, structure);
   const auto take = [&](const CsvTable& table, const std::string& rows) {
     return makeJoinedData(table, structure, rows, r.remarks);
   };
-  r.each.push_back(take(first, a.rows));
-  for (std::size_t i = 1; i < a.data.size(); ++i)
-    r.each.push_back(take(readRecord(a.data[i], csvFormat(a.format), !a.format.no_header), a.rows));
+  for (const CsvTable& table : tables.data) r.each.push_back(take(table, a.rows));
   r.joined = joinRecords(r.each);
-  if (a.validate.empty() && a.validate_rows.empty()) return r;
-  std::error_code ignored;
-  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
-  r.validation =
-      take(same ? first : readRecord(a.validate, csvFormat(a.format), !a.format.no_header),
-           a.validate_rows);
-  if (same && rowsOverlap(a.rows, a.validate_rows))
+  if (!tables.validation && a.validate_rows.empty()) return r;
+  r.validation = take(tables.validation ? *tables.validation : first, a.validate_rows);
+  if (!tables.validation && rowsOverlap(a.rows, a.validate_rows))
     r.remarks.push_back("validation rows are among the identification rows: not held out");
   return r;
 }
@@ -68,7 +63,8 @@ std::optional<ModelKind> kindOf(const std::string& word) {
   return std::nullopt;
 }
 
-AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records) {
+AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records,
+                          const AutoCallback& progress) {
   AutoParams params;
   params.work = a.work;
   params.budget_s = a.budget_s;
@@ -84,12 +80,7 @@ AutoIdentification search(const IdentifyArguments& a, const AutoRecords& records
   params.keep_still = a.keep_inputs;
   const std::optional<ModelKind> kind = kindOf(a.kind);
   params.states = !kind || kind == ModelKind::kState;
-  ProgressBar bar("auto");
-  AutoIdentification found =
-      autoIdentify(records.joined, params, [&bar](const AutoProgress& progress) {
-        bar.show(progress.share, progress.stage);
-        return !interruption();
-      });
+  AutoIdentification found = autoIdentify(records.joined, params, progress);
   if (kind) chooseByKind(*kind, found);
   return found;
 }
@@ -234,37 +225,85 @@ void checkArguments(const IdentifyArguments& a) {
   checkTarget(a.out);
 }
 
+/// What callers other than the command line may have set otherwise.
+void checkSearch(const IdentifyArguments& a) {
+  const auto oneOf = [](const std::string& word, const char* name, const Row& known) {
+    require(std::find(known.begin(), known.end(), word) != known.end(), name,
+            join(known) + ", got '" + word + "'");
+  };
+  oneOf(a.kind, "kind", {"best", "linear", "regressors", "state"});
+  oneOf(a.input_row, "input_row", {"auto", "next", "same"});
+  require(a.work > 0.0 && std::isfinite(a.work), "work", "a number > 0");
+  require(a.budget_s >= 0.0 && std::isfinite(a.budget_s), "budget_s", "seconds, or 0");
+  require(a.sample_time_s >= 0.0 && std::isfinite(a.sample_time_s), "sample_time_s",
+          "seconds, or 0");
+  require(a.blocks >= 2 && a.blocks <= 20, "blocks", "2..20");
+  require(a.window >= 1 && a.window <= 1000, "window", "1..1000");
+  require(a.reach >= -1 && a.reach <= 100000, "reach", "-1..100000");
+  require(a.longest_delay >= 0, "longest_delay", "samples, or 0");
+}
+
 }  // namespace
+
+IdentifyTables readTables(const IdentifyArguments& a, const CsvFormat& format) {
+  IdentifyTables tables;
+  for (const auto& file : a.data)
+    tables.data.push_back(readRecord(file, format, !a.format.no_header));
+  std::error_code ignored;  // a file that is not there is told by its reader
+  const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
+  if (!same) tables.validation = readRecord(a.validate, format, !a.format.no_header);
+  if (same && !a.validate.empty() && a.validate_rows.empty()) tables.validate_all = true;
+  return tables;
+}
+
+AutoReport searchModel(IdentifyArguments a, const IdentifyTables& tables,
+                       const AutoCallback& progress) {
+  checkSearch(a);
+  if (tables.validate_all) a.validate_rows = ":";
+  const AutoRecords records = recordsOf(a, tables);
+  const auto start = std::chrono::steady_clock::now();
+  AutoReport report;
+  report.found = search(a, records, progress);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  report.seconds = wall.count();
+  report.source = records.joined.source;
+  if (!a.out.empty()) report.found.model.name = fs::path(a.out).stem().string();
+  report.model = settle(a, records, report.found);
+  report.parts = judgeAll(records, report.model);
+  if (records.validation) tellCoverage(report.parts.back(), report.found);
+  report.remarks = remarksOf(records, report.found, report.model, report.parts);
+  report.json = toJson(report.found, report.parts, report.remarks, report.seconds);
+  return report;
+}
 
 int identifyAuto(const IdentifyArguments& a) {
   checkArguments(a);
-  const AutoRecords records = readAll(a);
+  const IdentifyTables tables = readTables(a, csvFormat(a.format));
   catchInterrupts();
-  const auto start = std::chrono::steady_clock::now();
-  AutoIdentification found = search(a, records);
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  if (!a.out.empty()) found.model.name = fs::path(a.out).stem().string();
-  const IdentifiedModel model = settle(a, records, found);
-  if (!a.out.empty()) writeText(writeIdentified(model), a.out);
-  const auto parts = judgeAll(records, model);
-  if (records.validation) tellCoverage(parts.back(), found);
-  const Row remarks = remarksOf(records, found, model, parts);
-  const Json json = toJson(found, parts, remarks, wall.count());
-  if (!a.plots.empty()) plotJudgements(model, parts, json, a.plots);
+  AutoReport report;
+  {
+    ProgressBar bar("auto");
+    report = searchModel(a, tables, [&bar](const AutoProgress& progress) {
+      bar.show(progress.share, progress.stage);
+      return !interruption();
+    });
+  }
+  if (!a.out.empty()) writeText(writeIdentified(report.model), a.out);
+  if (!a.plots.empty()) plotJudgements(report.model, report.parts, report.json, a.plots);
   if (a.json) {
-    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    std::cout << report.json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     return 0;
   }
-  for (const auto& o : found.outputs) std::cout << o.output << ": " << o.verdict << "\n";
-  for (const auto& words : firstWords(parts)) std::cout << "warning: " << words << "\n";
-  for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
+  for (const auto& o : report.found.outputs) std::cout << o.output << ": " << o.verdict << "\n";
+  for (const auto& words : firstWords(report.parts)) std::cout << "warning: " << words << "\n";
+  for (const auto& remark : report.remarks) std::cout << "remark: " << remark << "\n";
   std::cout << "\n"
-            << crossTable(found) << "\n"
-            << searchTable(found) << "\n"
-            << toTable(parts) << "\n"
-            << pointsTable(model.model) << "\n";
-  std::cout << "searched " << records.joined.source << " in " << shortText(wall.count()) << " s, "
-            << shortText(found.work) << " of work\n";
+            << crossTable(report.found) << "\n"
+            << searchTable(report.found) << "\n"
+            << toTable(report.parts) << "\n"
+            << pointsTable(report.model.model) << "\n";
+  std::cout << "searched " << report.source << " in " << shortText(report.seconds) << " s, "
+            << shortText(report.found.work) << " of work\n";
   if (!a.out.empty()) std::cout << "written: " << a.out << "\n";
   return 0;
 }

@@ -290,9 +290,12 @@ Json reportOf(const StabilitySubject& s, const StabilityArguments& a) {
 
 }  // namespace
 
+Json stabilityReport(const StabilityArguments& arguments) {
+  return reportOf(readSubject(arguments.name, arguments.at, arguments.on_model), arguments);
+}
+
 int stability(const StabilityArguments& arguments) {
-  const Json report =
-      reportOf(readSubject(arguments.name, arguments.at, arguments.on_model), arguments);
+  const Json report = stabilityReport(arguments);
   std::cout << (arguments.json ? report.dump(2) + "\n" : stabilityTable(report));
   if (arguments.out.empty()) return 0;
   makeFolder(arguments.out);

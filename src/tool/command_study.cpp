@@ -115,14 +115,18 @@ bool reportTrouble(const StudyStatistics& statistics) {
 
 }  // namespace
 
-int study(const StudyArguments& arguments) {
+StudyFile studyOf(const StudyArguments& arguments) {
   const bool from_file = arguments.names.size() == 1 && isStudy(arguments.names.front());
   if (arguments.names.size() == 1 && !from_file) requireStudyOrLoop(arguments.names.front());
   require(!from_file || arguments.index.empty(), "--index", "no study file beside it");
-  require(!arguments.resume || !arguments.out.empty(), "--resume", "--out with a stopped study");
   StudyFile study = from_file ? readStudy(arguments.names.front()) : fromOptions(arguments);
   layOver(arguments, study);
-  const StudyPlan plan(std::move(study));
+  return study;
+}
+
+int study(const StudyArguments& arguments) {
+  require(!arguments.resume || !arguments.out.empty(), "--resume", "--out with a stopped study");
+  const StudyPlan plan(studyOf(arguments));
   const bool leads = !arguments.pool || arguments.pool->leads();
   if (leads && !arguments.out.empty()) makeFolder(arguments.out);
   catchInterrupts();

@@ -110,16 +110,16 @@ std::vector<std::string> firstWords(const RecordJudgement& part) {
 
 }  // namespace
 
-int validate(const ValidateArguments& a) {
-  const IdentifiedModel model = readIdentified(requireModel(a.model));
-  const CsvTable table = readRecord(a.data, csvFormat(a.format), !a.format.no_header);
+ValidationReport validateOn(const CsvTable& table, const IdentifiedModel& model,
+                            const ValidateArguments& a) {
   const auto columns = columnsOf(a.columns);
   requireSignals(columns, model.model);
   Structure structure = structureOf(model.model, table, columns);
   std::vector<std::string> remarks;
   if (!a.no_time) setTimes(table, structure, remarks);
   const DataSet data = makeJoinedData(table, structure, a.rows, remarks);
-  const RecordJudgement part = judgeRecord("validation", data, model, a.steps);
+  ValidationReport report{judgeRecord("validation", data, model, a.steps), {}, {}, {}};
+  const RecordJudgement& part = report.part;
   remarks.insert(remarks.end(), data.repairs.begin(), data.repairs.end());
   for (const auto& remark : recordRemarks(asRead(data, model.same_row), nullptr))
     remarks.push_back(remark);
@@ -128,14 +128,25 @@ int validate(const ValidateArguments& a) {
   const std::vector<std::string> first = firstWords(part);
   json["warnings"] = first;
   json["remarks"] = remarks;
-  if (!a.plots.empty()) plotJudgements(model, {part}, json, a.plots);
+  report.warnings = first;
+  report.remarks = std::move(remarks);
+  report.json = std::move(json);
+  return report;
+}
+
+int validate(const ValidateArguments& a) {
+  const IdentifiedModel model = readIdentified(requireModel(a.model));
+  const ValidationReport report =
+      validateOn(readRecord(a.data, csvFormat(a.format), !a.format.no_header), model, a);
+  if (!a.plots.empty()) plotJudgements(model, {report.part}, report.json, a.plots);
   if (a.json) {
-    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+    std::cout << report.json.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
     return 0;
   }
-  for (const auto& words : first) std::cout << "warning: " << words << "\n";
-  std::cout << model.model.name << " on " << data.source << "\n\n" << toTable({part}) << "\n";
-  for (const auto& remark : remarks) std::cout << "remark: " << remark << "\n";
+  for (const auto& words : report.warnings) std::cout << "warning: " << words << "\n";
+  std::cout << model.model.name << " on " << report.part.data.source << "\n\n"
+            << toTable({report.part}) << "\n";
+  for (const auto& remark : report.remarks) std::cout << "remark: " << remark << "\n";
   if (!a.plots.empty()) std::cout << "written: " << a.plots << "\n";
   return 0;
 }

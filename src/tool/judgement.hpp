@@ -58,4 +58,15 @@ OrderedJson toJson(const RecordJudgement& part);
 void plotJudgements(const IdentifiedModel& model, const std::vector<RecordJudgement>& parts,
                     OrderedJson json, const std::string& folder);
 
+struct ValidateArguments;
+struct ValidationReport {
+  RecordJudgement part;
+  std::vector<std::string> warnings, remarks;
+  OrderedJson json;
+};
+/// A model on another record; `arguments` say rows, columns and steps.
+/// @throws InputError naming record and column.
+ValidationReport validateOn(const CsvTable& table, const IdentifiedModel& model,
+                            const ValidateArguments& arguments);
+
 }  // namespace fpc::tool

@@ -1,4 +1,4 @@
-// The folder that scripts/plot_model.py draws from.
+// The folder that fmbpc.plots draws from.
 #pragma once
 
 #include <string>

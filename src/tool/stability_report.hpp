@@ -10,6 +10,9 @@ namespace fpc::tool {
 
 using Json = OrderedJson;
 
+struct StabilityArguments;
+/// What `fmbpc stability --json` prints. @throws InputError naming what was not understood.
+Json stabilityReport(const StabilityArguments& arguments);
 /// By name, of the model's signals and the plant's states and inputs.
 Json unitsOf(const StabilitySubject& subject);
 /// `report` with the key "units" of unitsOf().

@@ -8,6 +8,9 @@
 
 namespace fpc::tool {
 
+struct StudyArguments;
+/// The study that the arguments name, or the one that they describe. @throws InputError.
+StudyFile studyOf(const StudyArguments& arguments);
 OrderedJson toJson(const StudyPlan& plan, const StudyResult& result,
                    const StudyStatistics& statistics);
 std::string toTable(const StudyPlan& plan, const StudyResult& result,

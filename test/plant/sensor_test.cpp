@@ -1,14 +1,24 @@
-#include "plant/sensor.hpp"
+#include "plant/instruments.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "plant/sensor.hpp"
 #include "plant/simulation_fixture.hpp"
 
 namespace fpc {
 namespace plant_sensor_test {
+
+TEST(Drive, AStemThatSticksStandsUntilTheCommandIsFarOffAndThenSlipsToIt) {
+  Instruments valve({}, {{1, 0.0, 0.0, 1.0}}, {"y"}, {}, 10.0);
+  const auto at = [](double value) { return Vector(Vector::Constant(1, value)); };
+  valve.reset(at(0.0), Vector(), at(5.0));
+  const double commands[] = {5.4, 6.0, 6.1, 5.2, 5.0}, positions[] = {5.0, 5.0, 6.1, 6.1, 5.0};
+  for (int k = 0; k < 5; ++k) EXPECT_EQ(valve.drive(at(commands[k]))[0], positions[k]) << k;
+  EXPECT_THROW(Instruments({}, {{1, 0.0, 0.0, -1.0}}, {"y"}, {}, 10.0), InputError);
+}
 
 TEST(LagChain, OneLagFollowsAStepAsOnPaper) {
   LagChain lag(1, 100.0);

@@ -47,6 +47,23 @@ TEST(OptimizerSession, ClippedBaseIsOptimizedInsideTheBounds) {
   EXPECT_NEAR(session.report().perturbation[0], 1600.0 - 2804.0, 1e-6);
 }
 
+TEST(OptimizerSession, PlanBeginsWithWhatIsSentAndKeepsTheLimits) {
+  OptimizerSession session = make();
+  EXPECT_EQ(session.plan().size(), 0);
+  for (const double feedforward : {300.0, 2000.0}) {
+    const std::uint32_t step = feedforward < 1000.0 ? 0 : 1;
+    session.receive(base(header(step), 1600.0));
+    ASSERT_TRUE(session.receive(prediction(header(step), feedforward)));
+    const Matrix plan = session.plan();
+    ASSERT_EQ(plan.rows(), 1);
+    EXPECT_NEAR(plan(0, 0), session.action().input[0], 1e-6);
+    EXPECT_GE(plan.minCoeff(), -1e-6);
+    EXPECT_LE(plan.maxCoeff(), 1600.0 + 1e-6);
+  }
+  ASSERT_TRUE(session.receive(base(header(2), 123.0, ActionSource::kManual)));
+  EXPECT_EQ(session.plan().size(), 0);
+}
+
 TEST(OptimizerSession, HeldManualAndFallbackPassThrough) {
   OptimizerSession session = make();
   std::uint32_t step = 0;

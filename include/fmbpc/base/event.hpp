@@ -52,6 +52,12 @@ enum class EventCode : std::uint8_t {
   kNeverControlled,
   kInputAtLimit,
   kSoftLimitExceeded,
+  // the target layer
+  kTargetGivenUp,
+  kTargetNotFound,
+  kTargetUnbounded,
+  kTargetNotSettled,
+  kTargetsLate,
   // actuators and the plant
   kInputStuck,
   kActuatorIneffective,

@@ -70,20 +70,21 @@ struct ControlAction {
 ///   u_base(k+i) = -K x(k+i) + feedforward.col(i), absolute units.
 struct PredictiveAction {
   StepHeader header;
-  Vector state;                     ///< n_x, x(k)
-  Matrix A;                         ///< n_x n_x
-  Matrix B;                         ///< n_x n_u
-  Matrix C;                         ///< n_y n_x
-  Vector offset_state;              ///< n_x
-  Vector offset_output;             ///< n_y
-  Matrix K;                         ///< n_u n_x
-  Matrix feedforward;               ///< n_u n_c
-  Matrix reference;                 ///< n_y n_c, column i is y_r(k+1+i)
-  Vector setpoint;                  ///< n_y, what the references aim at
-  Vector input_base_unclipped;      ///< n_u, -K x(k) + feedforward.col(0)
-  Vector input_previous;            ///< n_u, u(k-1)
-  Vector input_lower, input_upper;  ///< n_u, what the guard leaves of the limits for u(k); empty:
-                                    ///< all of them
+  Vector state;                       ///< n_x, x(k)
+  Matrix A;                           ///< n_x n_x
+  Matrix B;                           ///< n_x n_u
+  Matrix C;                           ///< n_y n_x
+  Vector offset_state;                ///< n_x
+  Vector offset_output;               ///< n_y
+  Matrix K;                           ///< n_u n_x
+  Matrix feedforward;                 ///< n_u n_c
+  Matrix reference;                   ///< n_y n_c, column i is y_r(k+1+i)
+  Vector setpoint;                    ///< n_y, what the references aim at
+  Vector input_base_unclipped;        ///< n_u, -K x(k) + feedforward.col(0)
+  Vector input_previous;              ///< n_u, u(k-1)
+  Vector input_lower, input_upper;    ///< n_u, what the guard leaves of the limits for u(k); empty:
+                                      ///< all of them
+  Vector output_lower, output_upper;  ///< n_y, zones of a target layer; empty: there is none
 };
 
 /// Outcome of a constrained optimization.
@@ -107,6 +108,16 @@ struct SolverReport {
   double kkt_residual{};
   double seconds{};  ///< wall time of the solve; never used in a decision
   std::uint32_t active_rows{};
+};
+
+/// Where the plant is to rest, as decided at sample k; see section `targets`.
+struct Targets {
+  StepHeader header;
+  Vector outputs;                     ///< n_y, what the law's references aim at
+  Vector inputs;                      ///< n_u
+  Vector output_lower, output_upper;  ///< n_y, zones as far as they can be kept; infinite if absent
+  double cost{};                      ///< of the prices
+  bool found{};                       ///< false: it is an older one, or where the plant is
 };
 
 /// What a controller follows at sample k.

@@ -72,7 +72,7 @@ class Controller {
   /// What may be changed while it runs, as it is now. Default: nothing.
   virtual Settings settings() const;
   /// Takes these from the next sample on, without a bump; others stay. Returns false if there is
-  /// nothing to change. @throws InputError (nothing is taken).
+  /// nothing to change. @throws InputError and takes nothing then.
   virtual bool retune(const Settings& settings);
   /// Signals for plotting, "NAME" -> value, refreshed by step(). Default: none.
   virtual const std::vector<std::pair<std::string, double>>& signals() const;

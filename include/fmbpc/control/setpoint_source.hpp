@@ -59,6 +59,11 @@ class SetpointSource {
   /// increasing; over skipped steps everything catches up. The first value is not rate-limited.
   const Vector& advance(std::uint32_t step);
   const Vector& present() const { return present_; }
+  /// A target layer has decided what becomes of what is asked: these (n_y; inputs n_u), inside the
+  /// params' limits, are followed at the present step, and looked ahead to. Returns them.
+  const Vector& aim(VectorRef outputs, VectorRef inputs);
+  /// n_u, where a target layer wants the inputs to rest; empty: there is none.
+  const Vector& aimedInput() const { return aimed_input_; }
   /// What is asked of output i at the present step lies beyond the params' limits.
   bool isClamped(Eigen::Index i) const {
     return unclamped_[i] < params_.lower[i] || unclamped_[i] > params_.upper[i];
@@ -111,6 +116,7 @@ class SetpointSource {
   std::ptrdiff_t restored_{};     // of them: those at the front
   std::vector<CommandEffect> effects_;
   Vector present_, asked_, unclamped_;  // asked_: unclamped_ inside the limits
+  Vector aimed_input_;                  // not empty: present_ is a target
   std::int64_t clock_shift_ns_{};
   std::uint32_t next_step_{};
   bool started_{false}, fresh_{true};

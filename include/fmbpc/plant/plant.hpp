@@ -91,7 +91,7 @@ class Plant {
 using PlantParameters = std::map<std::string, double>;
 using PlantFactory = std::function<std::unique_ptr<Plant>(const PlantParameters&)>;
 class YamlSection;
-/// Reads what a type needs of section `plant` of a loop file. @throws InputError naming the key.
+/// Reads what a type needs of section `plant` of a loop file to make the plant. @throws InputError
 using PlantReader = std::function<PlantFactory(YamlSection& plant)>;
 
 using PlantLayout = LayoutOf<PlantDescription, Quantity, EquipmentFrame, Plant, PlantStepper>;
@@ -109,7 +109,7 @@ inline bool registerPlant(const std::string& name, PlantFactory factory) {
 bool registerPlantReader(const std::string& name, const std::string& title, PlantReader reader);
 /// All types with their titles: those of plantNames() and those whose equations are in a loop file.
 std::map<std::string, std::string> plantTypes();
-/// Of any type; `plant` is read by those that need it. @throws InputError naming the key.
+/// Of any type; `plant` is read by those that need it. @throws InputError
 PlantFactory plantFactory(const std::string& type, YamlSection& plant);
 /// @throws InputError with the known names, or naming an unknown parameter.
 std::unique_ptr<Plant> makePlant(const std::string& name, const PlantParameters& parameters = {});

@@ -36,7 +36,9 @@ struct ClpParams {
   ClpAction action{ClpAction::kEq26};
   std::vector<int> target_outputs;  ///< outputs that define the steady state (lq, incremental), as
                                     ///< many as inputs; default all of them where n_y = n_u
-  Vector output_lower, output_upper;  ///< n_y, soft; infinite if absent
+  Vector output_lower, output_upper;  ///< n_y, soft; infinite if absent. Finite ones give way to
+                                      ///< those of a target layer (PredictiveAction)
+  Vector output_weight;               ///< n_y, > 0, of output_penalty; default 1
   double output_penalty{1e4};         ///< weight of squared soft violations beside the scaled cost:
                                       ///< largest entry of H near 1, slacks over slack_scale
   QpSettings qp{500};

@@ -20,6 +20,9 @@ ClpLimits::ClpLimits(const ClpParams& params, const InputLimits& limits, const C
       limits_(limits),
       output_lower_(params.output_lower),
       output_upper_(params.output_upper),
+      stated_lower_(params.output_lower),
+      stated_upper_(params.output_upper),
+      output_weight_(params.output_weight),
       increment_lower_(params.increment_lower),
       increment_upper_(params.increment_upper),
       incremental_(params.bounds == ClpBounds::kIncremental),
@@ -59,6 +62,10 @@ void ClpLimits::prepare(ClpProblem& problem) const {
   QpProblem& qp = problem.qp;
   qp.x_lower.tail(n_slacks_).setZero();
   qp.H.diagonal().tail(n_slacks_).setConstant(penalty_);
+  for (std::size_t s = 0; s < limited_outputs_.size(); ++s) {
+    const auto slack = sizes_.inputs() + static_cast<Eigen::Index>(s);
+    qp.H(slack, slack) *= output_weight_[limited_outputs_[s]];
+  }
   Eigen::Index row = 0;
   for (const Eigen::Index a : limited_moves_) {
     for (Eigen::Index i = 1; i < sizes_.n_c; ++i, ++row) {
@@ -107,6 +114,15 @@ void ClpLimits::set(const PredictiveAction& now, VectorRef u_ss) {
     bound_wins_ = bound_wins_ || reach_lower > upper_[a] || reach_upper < lower_[a];
     first_lower_[a] = std::clamp(reach_lower, lower_[a], upper_[a]);
     first_upper_[a] = std::clamp(reach_upper, lower_[a], upper_[a]);
+  }
+  for (const Eigen::Index o : limited_outputs_) {
+    const bool told = now.output_lower.size() > 0;
+    output_lower_[o] = stated_lower_[o];
+    output_upper_[o] = stated_upper_[o];
+    if (told && std::isfinite(stated_lower_[o]) && std::isfinite(now.output_lower[o]))
+      output_lower_[o] = now.output_lower[o];
+    if (told && std::isfinite(stated_upper_[o]) && std::isfinite(now.output_upper[o]))
+      output_upper_[o] = now.output_upper[o];
   }
   for (Eigen::Index a = 0; a < now.input_lower.size(); ++a) {
     first_lower_[a] = std::clamp(now.input_lower[a], first_lower_[a], first_upper_[a]);

@@ -49,7 +49,9 @@ class ClpLimits {
 
   ClpSizes sizes_;
   InputLimits limits_;
-  Vector output_lower_, output_upper_, increment_lower_, increment_upper_;
+  Vector output_lower_, output_upper_;  ///< of this sample
+  Vector stated_lower_, stated_upper_;  ///< of the params
+  Vector output_weight_, increment_lower_, increment_upper_;
   bool incremental_;
   double penalty_;
   Eigen::Index mode2_steps_;

@@ -58,6 +58,7 @@ void ClpParams::validate(Eigen::Index n_y, Eigen::Index n_u) const {
   requireWeights(weight_tracking, n_y, false, "weight_tracking");
   requireWeights(weight_state_output, n_y, false, "weight_state_output");
   requireWeights(weight_input, n_u, true, "weight_input");
+  requireWeights(output_weight, n_y, true, "output_weight");
   requireLimits(increment_lower, increment_upper, n_u, "increment");
   requireLimits(output_lower, output_upper, n_y, "output");
   require(std::isfinite(output_penalty) && output_penalty > 0.0, "clp.output_penalty",
@@ -82,6 +83,7 @@ ClpParams filledIn(ClpParams params, Eigen::Index n_y, Eigen::Index n_u) {
   fillIfEmpty(params.weight_input, n_u, 1.0);
   fillIfEmpty(params.increment_lower, n_u, -kInfinity);
   fillIfEmpty(params.increment_upper, n_u, kInfinity);
+  fillIfEmpty(params.output_weight, n_y, 1.0);
   fillIfEmpty(params.output_lower, n_y, -kInfinity);
   fillIfEmpty(params.output_upper, n_y, kInfinity);
   if (params.target_outputs.empty() && needsTarget(params)) {

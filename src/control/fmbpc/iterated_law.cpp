@@ -49,6 +49,8 @@ Eigen::Index IteratedLaw::trustedSteps(const InternalModel& model, const Matrix&
 Proposal IteratedLaw::propose(InternalModel& model, const LawSample& sample, const Matrix& future,
                               Vector& input) {
   aimed_ = future.middleCols(lead_, aimed_.cols());
+  const Vector& rest = sample.setpoint.aimedInput();
+  if (rest.size() > 0) solver_.aimInputs(rest);
   const Matrix& expected = forecast_.predict();
   solver_.countErrors(trustedSteps(model, expected));
   if (!solver_.plan(model.state(), model.correction(), model.offsetOutput(), expected, aimed_,

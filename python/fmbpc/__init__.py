@@ -1,0 +1,32 @@
+"""Process control with fuzzy model-based predictive control, for Python users.
+
+    import fmbpc
+    run = fmbpc.Loop("reactor_load").run()      # a loop closed in this process
+    run.outputs["CA"], run.summary              # numpy arrays with time and unit
+    c = fmbpc.Loop("asp_case1").controller()    # the law before a plant of your own
+    u = c.step(y)
+
+Loops and what comes out of them: Loop, Run, loops(), Controller, Simulation.
+Plants and laws: Plant, plants(), controllers(), register(), check() for your own, env() for learning.
+Models: identify(), Model. Many runs and analyses: study(), tune(), stability(). Pictures: fmbpc.plots.
+Every computation gives the bits that the tool `fmbpc` and the nodes give. Times are hours unless a
+name says otherwise; errors of what you hand over are InputError (a ValueError).
+"""
+from importlib.util import find_spec as _find_spec
+
+if _find_spec("fmbpc._core") is not None:  # not where only the plots are there: docs/python.md
+    from fmbpc import _core
+    from fmbpc._control import Controller
+    from fmbpc._env import Env, VectorEnv, env
+    from fmbpc._loop import Loop, loops
+    from fmbpc._model import Model, identify
+    from fmbpc._own import Quantity, check, controllers, register
+    from fmbpc._plant import Plant, Simulation, plants
+    from fmbpc._run import Event, Run, Signal
+    from fmbpc._study import stability, study, tune
+
+    InputError = _core.InputError
+    __version__ = _core.version
+
+    __all__ = ["Controller", "Env", "Event", "InputError", "Loop", "Model", "Plant", "Quantity", "Run", "Signal", "Simulation", "VectorEnv",
+               "check", "controllers", "env", "identify", "loops", "plants", "register", "stability", "study", "tune"]

@@ -1,0 +1,84 @@
+"""Many runs on all cores, and analyses; the results are what the tool prints as JSON."""
+from __future__ import annotations
+
+import json
+import os
+import threading
+from typing import Any, Callable, Mapping, Sequence
+
+from fmbpc import _core, _progress, _text
+
+
+def _pairs(settings):
+    return [f"{key}={value}" for key, value in _text.overrides(settings)]
+
+
+def _interruptible(call, progress):
+    """In a thread of its own, so that Ctrl-C reaches this one; the computation hears of it by its progress."""
+    ended, found = threading.Event(), {}
+
+    def look(share, words):
+        if ended.is_set():
+            raise KeyboardInterrupt
+        if progress is not None:
+            progress(share, words)
+
+    def work():
+        try:
+            found["value"] = call(look)
+        except BaseException as error:  # handed over to the caller below
+            found["error"] = error
+    thread = threading.Thread(target=work)
+    thread.start()
+    try:
+        while thread.is_alive():
+            thread.join(0.1)
+    except KeyboardInterrupt:
+        ended.set()
+        thread.join()
+        raise
+    if "error" in found:
+        raise found["error"]
+    return json.loads(found["value"])
+
+
+def study(*loops: str, set: Mapping[str, Any] | None = None, seeds: str | int | Sequence[int] = "", vary: Mapping[str, str] | None = None,
+          noise: Mapping[str, float] | None = None, noise_percent: float | None = None, against: str = "", index: str = "", threads: int = 0,
+          progress: bool | Callable[[float, str], None] | None = None) -> dict[str, Any]:
+    """Compares loops in pairs over seeds, parameters and noise; or runs the one study file that is named (docs/study.md).
+
+    seeds: a number of them, a list, or "1:40"; vary: {"KEY": "0.7:1.3"} factors, "value:0.1:0.2" numbers
+    noise: {"OUTPUT": std}; noise_percent of the span of the setpoints; against: the loop to pair with, else the last
+    index: of docs/study.md, ise if left out; threads: 0 all cores, the answer does not depend on it
+    Returns `loops` with quantiles of the cost, `pairs`, and `runs`. Raises InputError; Ctrl-C KeyboardInterrupt.
+    """
+    text = f"1:{seeds}" if isinstance(seeds, int) else seeds if isinstance(seeds, str) else ",".join(map(str, seeds))
+    varied = [f"{key}={value}" for key, value in (vary or {}).items()]
+    noisy = [f"{key}={value!r}" for key, value in (noise or {}).items()]
+    with _progress.bar("study", progress) as bar:
+        return _interruptible(lambda look: _core.study([os.fspath(loop) for loop in loops], _pairs(set), varied, noisy,
+                                                       -1.0 if noise_percent is None else float(noise_percent), text, against, index, threads, look), bar)
+
+
+def tune(loop: str, tuning: str, *, set: Mapping[str, Any] | None = None, method: str = "", evaluations: int = 0, seed: int = -1, threads: int = 0,
+         progress: bool | Callable[[float, str], None] | None = None) -> dict[str, Any]:
+    """Searches numbers of a loop file, as a tuning file says (docs/tuning.md).
+
+    method, evaluations, seed: instead of what the file says
+    Returns the costs before and after and the values found, as tuning.json. Raises InputError; Ctrl-C KeyboardInterrupt.
+    """
+    with _progress.bar("tune", progress) as bar:
+        return _interruptible(lambda look: _core.tune(os.fspath(loop), os.fspath(tuning), _pairs(set), method, evaluations, seed, threads, look), bar)
+
+
+def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: range | str = "1..200", noise_gain: float = 0.0,
+              settling: int = 0) -> dict[str, Any]:
+    """Steady states, eigenvalues over the coincidence horizon, zeros and a Lyapunov certificate of a loop or a model.
+
+    at: the operating point, {"NAME": value} of inputs, disturbances, outputs; horizon: range(1, 201) or "1..200"
+    noise_gain and settling [samples]: largest ones of an advised horizon
+    Returns what `fmbpc stability --json` prints. Raises InputError.
+    """
+    text = f"{horizon.start}..{horizon.stop - 1}" if isinstance(horizon, range) else horizon
+    point = ",".join(f"{key}={value!r}" for key, value in (at or {}).items())
+    return json.loads(_core.stability(os.fspath(name), point, text, float(noise_gain), int(settling)))

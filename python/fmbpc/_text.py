@@ -1,0 +1,48 @@
+"""Values of Python as the text of a loop file."""
+import collections.abc
+import json
+import math
+import numbers
+
+import numpy
+
+
+def yaml_text(value):
+    """YAML in one line; a text is taken as it is, as the tool takes --set KEY=VALUE."""
+    return value if isinstance(value, str) else _flow(value)
+
+
+def _flow(value):
+    if value is None:
+        return "null"
+    if isinstance(value, (bool, numpy.bool_)):
+        return "true" if value else "false"
+    if isinstance(value, numbers.Integral):
+        return str(int(value))
+    if isinstance(value, numbers.Real):
+        number = float(value)
+        return repr(number) if math.isfinite(number) else ".nan" if math.isnan(number) else ".inf" if number > 0 else "-.inf"
+    if isinstance(value, str):
+        return json.dumps(value)
+    if isinstance(value, collections.abc.Mapping):
+        return "{" + ", ".join(f"{json.dumps(str(k))}: {_flow(v)}" for k, v in value.items()) + "}"
+    if isinstance(value, numpy.ndarray):
+        return _flow(value.tolist())
+    if isinstance(value, collections.abc.Iterable):
+        return "[" + ", ".join(_flow(v) for v in value) + "]"
+    raise TypeError(f"a loop holds numbers, texts, truth values, lists and dicts, not {type(value).__name__}")
+
+
+def overrides(settings):
+    """Pairs (path, text) of a dict {"sampling.duration_h": 48}, or of a list of "path=value"."""
+    if settings is None:
+        return []
+    if isinstance(settings, collections.abc.Mapping):
+        return [(str(key), yaml_text(value)) for key, value in settings.items()]
+    pairs = []
+    for text in [settings] if isinstance(settings, str) else settings:
+        key, equals, value = text.partition("=")
+        if not equals or not key:
+            raise ValueError(f"set: expected KEY=VALUE or a dict, got '{text}'")
+        pairs.append((key, value))
+    return pairs

@@ -1,0 +1,116 @@
+"""What a loop did, sample by sample, in bounded memory: rows are found by the number of their sample, so late ones find their place."""
+import math
+
+import numpy
+
+CHUNK = 4096  # rows
+
+
+class History:
+    """Numbers of one run by sample and column, not a number where nothing came; and the wall time of each sample."""
+
+    def __init__(self, columns, most_bytes=100e6):
+        self.columns, self.index = list(columns), {name: i for i, name in enumerate(columns)}
+        self.most = max(2, int(most_bytes / (CHUNK * (4 * len(self.columns) + 8))))  # chunks
+        self.chunks = {}       # number: (values, wall)
+        self.first = self.last = None
+
+    def _rows(self, step):
+        number = step // CHUNK
+        chunk = self.chunks.get(number)
+        if chunk is None:
+            chunk = (numpy.full((CHUNK, len(self.columns)), numpy.nan, dtype=numpy.float32), numpy.full(CHUNK, numpy.nan))
+            self.chunks[number] = chunk
+            while len(self.chunks) > self.most:
+                oldest = min(self.chunks)
+                del self.chunks[oldest]
+                if number == oldest:
+                    return None
+                self.first = max(self.first if self.first is not None else 0, min(self.chunks) * CHUNK)
+        return chunk
+
+    def put(self, step, values, wall=None):
+        """values: {column: number}; what is not named stays."""
+        if step < 0 or (self.last is not None and step < self.last - self.most * CHUNK):
+            return
+        chunk = self._rows(step)
+        if chunk is None:
+            return
+        row = chunk[0][step % CHUNK]
+        for name, value in values.items():
+            column = self.index.get(name)
+            if column is not None:
+                row[column] = value
+        if wall is not None and math.isnan(chunk[1][step % CHUNK]):
+            chunk[1][step % CHUNK] = wall
+        self.first = step if self.first is None else min(self.first, step)
+        self.last = step if self.last is None else max(self.last, step)
+
+    def get(self, step):
+        """(values, wall) of a sample, or None."""
+        chunk = self.chunks.get(step // CHUNK)
+        return None if chunk is None else (chunk[0][step % CHUNK], chunk[1][step % CHUNK])
+
+    def value(self, step, name):
+        row = self.get(step) if step >= 0 else None
+        return math.nan if row is None or name not in self.index else float(row[0][self.index[name]])
+
+    def rows(self, first, last):
+        """(steps, values, wall) of first..last, both included."""
+        if self.first is None:
+            return numpy.zeros(0, int), numpy.zeros((0, len(self.columns)), numpy.float32), numpy.zeros(0)
+        first, last = max(first, self.first), min(last, self.last)
+        values, wall = [], []
+        for number in range(first // CHUNK, last // CHUNK + 1):
+            begin, end = max(first - number * CHUNK, 0), min(last - number * CHUNK, CHUNK - 1) + 1
+            if end <= begin:
+                continue
+            chunk = self.chunks.get(number)
+            if chunk is None:
+                chunk = (numpy.full((CHUNK, len(self.columns)), numpy.nan, dtype=numpy.float32), numpy.full(CHUNK, numpy.nan))
+            values.append(chunk[0][begin:end])
+            wall.append(chunk[1][begin:end])
+        if not values:
+            return numpy.zeros(0, int), numpy.zeros((0, len(self.columns)), numpy.float32), numpy.zeros(0)
+        return numpy.arange(first, last + 1), numpy.concatenate(values), numpy.concatenate(wall)
+
+    def gaps(self, name):
+        """[(first, last)] of samples without a value in a column, inside what is kept."""
+        steps, values, _ = self.rows(0, 2 ** 62)
+        if not len(steps):
+            return []
+        missing = numpy.isnan(values[:, self.index[name]])
+        edges = numpy.flatnonzero(numpy.diff(numpy.concatenate(([False], missing, [False])).astype(numpy.int8)))
+        return [(int(steps[a]), int(steps[b - 1])) for a, b in zip(edges[::2], edges[1::2])]
+
+    def bytes(self):
+        return len(self.chunks) * CHUNK * (4 * len(self.columns) + 8)
+
+    def drawn(self, first, last, points):
+        """(steps, values, wall), at most about `points` rows: of each bucket the least and the most of every column, so that no peak is lost."""
+        steps, values, wall = self.rows(first, last)
+        if len(steps) <= max(points, 4):
+            return steps, values, wall
+        bucket = -(-2 * len(steps) // points)
+        whole = -(-len(steps) // bucket) * bucket
+        padded = numpy.full((whole, values.shape[1]), numpy.nan, dtype=numpy.float32)
+        padded[:len(steps)] = values
+        shaped = padded.reshape(-1, bucket, values.shape[1])
+        empty = numpy.isnan(shaped).all(axis=1)
+        low = numpy.where(numpy.isnan(shaped), numpy.inf, shaped).min(axis=1)
+        high = numpy.where(numpy.isnan(shaped), -numpy.inf, shaped).max(axis=1)
+        low[empty] = high[empty] = numpy.nan
+        falls = padded[::bucket] > numpy.nan_to_num(padded[numpy.minimum(numpy.arange(bucket - 1, whole, bucket), len(steps) - 1)], nan=-numpy.inf)
+        both = numpy.empty((2 * len(low), values.shape[1]), dtype=numpy.float32)
+        both[::2], both[1::2] = numpy.where(falls, high, low), numpy.where(falls, low, high)
+        starts = numpy.arange(0, whole, bucket)
+        at = numpy.empty(2 * len(low), int)
+        at[::2], at[1::2] = starts, numpy.minimum(starts + max(bucket // 2, 1), len(steps) - 1)
+        keep = at < len(steps)
+        # The newest sample as it is.
+        return (numpy.append(steps[at[keep]], steps[-1]), numpy.vstack([both[keep], values[-1:]]), numpy.append(wall[at[keep]], wall[-1]))
+
+
+def plain(array, digits=7):
+    """A list for JSON: None for what is no number, as many digits as a float32 has."""
+    return [None if not math.isfinite(v) else float(f"%.{digits}g" % v) for v in numpy.asarray(array, dtype=float).ravel()]

@@ -1,0 +1,532 @@
+"""Loops on a master, seen from outside: what they publish becomes tables, trends, plans and causes of alarms."""
+import collections
+import math
+import os
+import shutil
+import struct
+import subprocess
+import tempfile
+import threading
+import time
+
+import numpy
+import rospy
+import yaml
+from dynamic_reconfigure.msg import Config, ConfigDescription
+from fmbpc import msg as messages
+from std_msgs.msg import String
+
+from panel_server import predict, state, wire
+from panel_server.history import History
+
+SILENT = 1.5      # s of wall time without a word from the plant: the loop is stale
+MOST_WAITING = 20000  # raw messages of a topic between two looks
+PLAN_GRACE = 60.0 # s that plans are listened to after the last page that shows them
+
+# Who speaks where, as in the loop file (loop.publishers); () is anyone.
+SPEAKERS = {"plant_info": ("plant_simulator", "plant_gateway"), "measurement": ("plant_simulator", "plant_gateway"),
+            "tracking": ("fmbpc_controller",), "base_action": ("fmbpc_controller",), "predictive_action": ("fmbpc_controller",),
+            "control_action": ("clp_optimizer", "fmbpc_controller"), "input_plan": ("clp_optimizer",),
+            "operator_kept": ("plant_simulator", "plant_gateway"), "fuzzy_model": ("fuzzy_identifier",)}
+
+
+class Raw:
+    """A topic whose messages wait, unread, until somebody looks."""
+
+    def __init__(self, topic, keep=MOST_WAITING):
+        self.waiting = collections.deque(maxlen=keep)
+        self.subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._take, tcp_nodelay=True, buff_size=2 ** 20)
+
+    def _take(self, message):
+        self.waiting.append((message._connection_header.get("callerid", ""), message._buff, time.time()))
+
+    def drain(self):
+        taken = []
+        while self.waiting:
+            taken.append(self.waiting.popleft())
+        return taken
+
+    def close(self):
+        self.subscriber.unregister()
+
+
+def read(kind, buffer):
+    message = kind()
+    message.deserialize(buffer)
+    return message
+
+
+class Loop:
+    """One loop: `name` is its namespace, "/" or "/a"."""
+
+    def __init__(self, name, history_bytes, tool=None, executor=None):
+        self.name, self.history_bytes, self.tool, self.executor = name, history_bytes, tool, executor
+        self.prefix = name.rstrip("/") + "/"
+        self.info = self.run_id = self.history = self.errors = None
+        self.text, self.speakers = {}, dict(SPEAKERS)
+        self.states, self.heard_of, self.seen_events = {}, {}, {}
+        self.step = -1
+        self.quality, self.age, self.final, self.local = (), (), False, False
+        self.applied, self.action, self.source, self.action_step = (), (), 0, -1
+        self.base, self.base_step = (), -1
+        self.setpoint, self.reference = (), ()
+        self.plan = self.planned = None
+        self.prediction_law, self.guard_limits, self.prediction_step = (), None, -1
+        self.model = self.trust = None
+        self.kept, self.settings, self.settings_now = None, None, None
+        self.signals = {}          # name: latest value of signal/NAME
+        self.run_end = self.recorded = None
+        self.heard = self.sampled = None
+        self.damaged = self.strangers = 0
+        self.sent_from = 0         # the sample from which rows are new to the pages
+        self.restarted = 0         # counts runs
+        self.filled, self.fill_tried, self.filling = 0, -math.inf, False
+        self.plan_wanted = -math.inf
+        self.lock = threading.RLock()
+        self.raw = {topic: Raw(self.prefix + topic) for topic in ("plant_info", "measurement", "tracking", "control_action", "loop_state",
+                                                                   "operator_kept", "fuzzy_model")}
+        self.on_demand = {}
+        self.subscribers = [
+            rospy.Subscriber(self.prefix + "fmbpc_controller/parameter_descriptions", ConfigDescription, self._on_description),
+            rospy.Subscriber(self.prefix + "fmbpc_controller/parameter_updates", Config, self._on_config),
+            rospy.Subscriber(self.prefix + "run_end", String, lambda m: setattr(self, "run_end", m.data)),
+            rospy.Subscriber(self.prefix + "recorded", String, lambda m: setattr(self, "recorded", m.data))]
+        for signal in ("model_trust", "model_trust_ahead"):
+            self.subscribers.append(rospy.Subscriber(self.prefix + "signal/" + signal, messages.Signal,
+                                                     lambda m, s=signal: self.signals.__setitem__(s, m.data)))
+        self._read_text()
+
+    def close(self):
+        for item in list(self.raw.values()) + list(self.on_demand.values()):
+            item.close()
+        for item in self.subscribers:
+            item.unregister()
+
+    def _on_description(self, message):
+        self.settings = [(p.name, p.type, p.description) for g in message.groups for p in g.parameters]
+
+    def _on_config(self, message):
+        self.settings_now = {p.name: p.value for kind in (message.bools, message.ints, message.strs, message.doubles) for p in kind}
+
+    # What the loop file says.
+
+    def _read_text(self):
+        try:
+            self.text = yaml.safe_load(rospy.get_param(self.prefix + "loop_text")) or {}
+        except Exception:  # noqa: BLE001: no master, no parameter, or no YAML: then nothing is known of limits
+            self.text = {}
+        for topic, names in (self.get("loop", "publishers") or {}).items():
+            if topic in self.speakers and isinstance(names, list):
+                self.speakers[topic] = tuple(names)
+        if self.get("plant", "type") == "external" and not self.get("gateway"):
+            for topic in ("plant_info", "measurement", "operator_kept"):
+                self.speakers.setdefault(topic, ())
+                if topic not in (self.get("loop", "publishers") or {}):
+                    self.speakers[topic] = ()
+
+    def get(self, *keys):
+        value = self.text
+        for key in keys:
+            value = value.get(key) if isinstance(value, dict) else None
+        return value
+
+    def limits(self):
+        """As entered, in the order of the signals: {"input": [(lower, upper)], "move": [most], "output": [...], "setpoint": [...]}."""
+        inputs, outputs, inf = self.info.inputs, self.info.outputs, math.inf
+        of = state.of_limit
+        return {"input": [(of(self.get("actuator", "input_lower"), s.name, s.lower), of(self.get("actuator", "input_upper"), s.name, s.upper)) for s in inputs],
+                "move": [of(self.get("actuator", "move_upper"), s.name, inf) for s in inputs],
+                "output": [(of(self.get("clp", "output_lower"), s.name, -inf), of(self.get("clp", "output_upper"), s.name, inf)) for s in outputs],
+                "setpoint": [(of(self.get("setpoint", "lower"), s.name, s.lower), of(self.get("setpoint", "upper"), s.name, s.upper)) for s in outputs]}
+
+    # What came.
+
+    def _counts(self, topic, caller):
+        names = self.speakers.get(topic, ())
+        if not names or caller in [self.prefix + n for n in names] or caller == self.prefix + "loop_manager" or caller in names:
+            return True
+        self.strangers += 1
+        return False
+
+    def want_plan(self, now):
+        self.plan_wanted = now
+        if not self.on_demand:
+            kinds = ["predictive_action", "base_action", "input_plan"]
+            self.on_demand = {topic: Raw(self.prefix + topic, keep=200) for topic in kinds}
+
+    def look(self, now):
+        """Takes in what has come. now: of time.monotonic()."""
+        with self.lock:
+            if self.on_demand and now - self.plan_wanted > PLAN_GRACE:
+                for item in self.on_demand.values():
+                    item.close()
+                self.on_demand, self.plan, self.planned = {}, None, None
+            for topic, take in (("plant_info", self._on_info), ("measurement", self._on_measurement), ("tracking", self._on_tracking),
+                                ("control_action", self._on_action), ("base_action", self._on_base), ("input_plan", self._on_plan),
+                                ("predictive_action", self._on_prediction), ("fuzzy_model", self._on_model), ("operator_kept", self._on_kept),
+                                ("loop_state", self._on_state)):
+                raw = self.raw.get(topic) or self.on_demand.get(topic)
+                for caller, buffer, wall in raw.drain() if raw else ():
+                    if topic != "loop_state" and not self._counts(topic, caller):
+                        continue
+                    try:
+                        take(buffer, wall, now, caller)
+                    except Exception:  # noqa: BLE001: whatever a stranger sends must not end the panel; it is counted
+                        self.damaged += 1
+            self._fill(now)
+
+    def _on_info(self, buffer, _wall, now, _caller):
+        info = read(messages.PlantInfo, buffer)
+        if info.run_id == self.run_id:
+            return
+        self._read_text()
+        self.info, self.run_id, self.step = info, info.run_id, -1
+        names = [s.name for s in info.outputs]
+        columns = names + [n + "_setpoint" for n in names] + [n + "_reference" for n in names]
+        columns += [s.name for s in info.inputs] + [s.name + "_base" for s in info.inputs] + [s.name + "_applied" for s in info.inputs]
+        columns += [s.name for s in info.disturbances] + ["model_trust"]
+        self.history, self.errors = History(columns, self.history_bytes), predict.Errors(len(names))
+        self.setpoint = self.reference = self.action = self.base = self.applied = ()
+        self.action_step = self.base_step = self.prediction_step = -1
+        self.plan = self.planned = None
+        self.final, self.run_end, self.sent_from = False, None, 0
+        self.seen_events, self.states, self.fill_tried = {}, {}, -math.inf
+        self.filled = 0
+        self.restarted += 1
+        self.heard = now
+
+    def _ours(self, run_id):
+        return self.info is not None and run_id == self.run_id
+
+    def _on_measurement(self, buffer, wall, now, _caller):
+        run_id, step, outputs, disturbances, applied, final, quality, age, local = wire.measurement(buffer)
+        info = self.info
+        if not self._ours(run_id) or len(outputs) != len(info.outputs) or len(disturbances) != len(info.disturbances):
+            return
+        if step > self.step + 10 ** 6:
+            return
+        values = {s.name: v for s, v in zip(info.outputs, outputs)}
+        values.update({s.name: v for s, v in zip(info.disturbances, disturbances)})
+        values.update({s.name + "_applied": v for s, v in zip(info.inputs, applied)})
+        if "model_trust" in self.signals:
+            values["model_trust"] = self.signals["model_trust"]
+        self.history.put(step, values, wall)
+        self.errors.came(step, outputs)
+        self.sent_from = min(self.sent_from, step)
+        if step >= self.step:
+            if step > self.step:
+                self.sampled = now
+            self.step, self.quality, self.age, self.final, self.local, self.applied = step, quality, age, final, local, applied
+        self.heard = now
+
+    def _on_tracking(self, buffer, *_):
+        run_id, step, setpoint, reference = wire.tracking(buffer)
+        if not self._ours(run_id) or len(setpoint) != len(self.info.outputs) or len(reference) != len(setpoint):
+            return
+        names = [s.name for s in self.info.outputs]
+        self.history.put(step, {**{n + "_setpoint": v for n, v in zip(names, setpoint)}, **{n + "_reference": v for n, v in zip(names, reference)}})
+        self.sent_from = min(self.sent_from, step)
+        self.setpoint, self.reference = setpoint, reference
+
+    def _on_action(self, buffer, *_):
+        run_id, step, values, source = wire.action(buffer)
+        if not self._ours(run_id) or len(values) != len(self.info.inputs):
+            return
+        self.history.put(step, {s.name: v for s, v in zip(self.info.inputs, values)})
+        self.sent_from = min(self.sent_from, step)
+        if step >= self.action_step:
+            self.action, self.source, self.action_step = values, source, step
+
+    def _on_base(self, buffer, *_):
+        run_id, step, values, _ = wire.action(buffer)
+        if self._ours(run_id) and len(values) == len(self.info.inputs):
+            self.base, self.base_step = values, step
+            self.history.put(step, {s.name + "_base": v for s, v in zip(self.info.inputs, values)})
+            self.sent_from = min(self.sent_from, step)
+
+    def _on_plan(self, buffer, *_):
+        plan = read(messages.InputPlan, buffer)
+        if self._ours(plan.run_id):
+            self.planned = plan
+
+    def _on_prediction(self, buffer, *_):
+        action = read(messages.PredictiveAction, buffer)
+        if not self._ours(action.run_id) or action.C.rows != len(self.info.outputs) or action.B.cols != len(self.info.inputs):
+            return
+        limits = self.limits()
+        lower, upper = (numpy.array([pair[i] for pair in limits["input"]]) for i in (0, 1))
+        self.prediction_law, self.prediction_step = tuple(action.input_base_unclipped), action.step
+        self.guard_limits = list(zip(action.input_lower, action.input_upper)) if action.input_lower else None
+        planned = self.planned.input if self.planned is not None and self.planned.step == action.step and self.planned.input.data else None
+        plan = predict.Plan(action, lower, upper, numpy.array(limits["move"]), planned)
+        if plan.finite():
+            self.plan = plan
+            self.errors.add(plan)
+
+    def _on_model(self, buffer, *_):
+        self.model = read(messages.FuzzyModel, buffer)
+        self.trust = predict.Trust(self.model)
+
+    def _on_kept(self, buffer, *_):
+        self.kept = read(messages.OperatorState, buffer)
+
+    def _on_state(self, buffer, _wall, now, caller):
+        message = read(messages.LoopState, buffer)
+        if caller not in (message.node, self.prefix + "loop_manager"):
+            self.strangers += 1
+            return
+        before = self.states.get(message.node)
+        self.states[message.node] = message
+        self.heard_of[message.node] = now
+        if message.summary:
+            self.heard = now
+        if self.run_id is None or message.run_id not in (self.run_id, 0):
+            return
+        for event in message.events:
+            key = (message.node, event.code, event.signal)
+            said = (event.last, event.count)
+            if self.seen_events.get(key, (None,))[0] != said:
+                self.seen_events[key] = (said, event, now, message.step, before is None)
+
+    # What there was before the panel came, or while it was away: the recorder's own journal.
+
+    def _fill(self, now):
+        if self.history is None or self.history.last is None or self.filling or now - self.fill_tried < 5.0 or self.executor is None:
+            return
+        name = self.info.outputs[0].name if self.info.outputs else None
+        begun = self.history.first > 0 and not self.filled
+        # Not the newest samples: those are on their way.
+        if name is None or not (begun or any(b < self.step - 20 and a > self.filled for a, b in self.history.gaps(name))):
+            return
+        self.fill_tried, self.filling = now, True
+        self.executor.submit(self._fill_from, self.run_id)
+
+    def _fill_from(self, run_id):
+        try:
+            folder = rospy.get_param(self.prefix + "loop_recorder/out", "")
+            rows = recorded(folder, self.tool)
+            with self.lock:
+                if run_id == self.run_id and rows is not None:
+                    self._take_rows(*rows)
+        except Exception:  # noqa: BLE001: a record of another make leaves a gap, which the trend shows
+            self.damaged += 1
+        finally:
+            self.filling = False
+
+    def _take_rows(self, names, table):
+        hours = table[:, names.index("time")]
+        steps = numpy.rint(hours * 3600.0 / self.info.sample_time_s).astype(int)
+        wanted = {}
+        for i, name in enumerate(names):
+            target = {**{s.name: s.name + "_applied" for s in self.info.inputs}, **{s.name + "_commanded": s.name for s in self.info.inputs}}.get(name, name)
+            if target in self.history.index:
+                wanted[target] = i
+        same = self.history.get(self.step)
+        if same is not None and self.step in set(steps.tolist()):  # another run's record would differ
+            row = table[int(numpy.flatnonzero(steps == self.step)[0])]
+            first = self.info.outputs[0].name
+            if first in wanted and not math.isclose(float(same[0][self.history.index[first]]), row[wanted[first]], rel_tol=1e-4, abs_tol=1e-9):
+                return
+        for step, row in zip(steps, table):
+            if step > self.step:
+                break
+            self.history.put(int(step), {name: row[i] for name, i in wanted.items() if math.isnan(self.history.value(int(step), name))})
+        self.filled = max(self.filled, int(steps[-1]) if len(steps) else 0)
+        self.restarted += 1  # the pages fetch all again
+
+    # What it is.
+
+    def stale(self, now):
+        """s since the plant was heard, if that is too long; else 0."""
+        away = now - self.heard if self.heard is not None else math.inf
+        return away if away > SILENT else 0.0
+
+    def summary(self):
+        return next((s for s in self.states.values() if s.summary), None)
+
+    def current(self, now):
+        """{(code, signal): (severity, text)} of what is wrong now, and nodes that are away."""
+        found, severity = {}, self.severities
+        for (node, code, signal), (_, event, came, at_step, _) in self.seen_events.items():
+            here = self.states.get(node)
+            fresh = now - came < 0.6
+            going_on = here is not None and event.count > 0 and event.last + 2 >= here.step
+            if fresh or going_on:
+                found[(code, signal)] = (("info", "warning", "error")[min(event.severity, 2)], event.text)
+        codes = {code for code, _ in found}
+        for message in self.states.values():
+            if message.code and message.code not in codes and message.word not in ("finished",):
+                found[(message.code, "")] = (severity.get(message.code, "warning"), message.reason)
+        if self.heard is not None and self.stale(now) and not self.over():
+            found = {("node_silent", "plant"): ("warning", f"the plant has said nothing for {self.stale(now):.0f} s")}
+        return found
+
+    severities = {}  # by code, of `fmbpc events`
+
+    def over(self):
+        summary = self.summary()
+        return self.run_end is not None or (summary is not None and summary.word == "finished")
+
+    def seconds(self, step=None):
+        return (self.step if step is None else step) * self.info.sample_time_s if self.info else 0.0
+
+    def overridden(self):
+        """{output: value or offset} of what the operator asked."""
+        asked = {}
+        for setpoint in self.kept.setpoint if self.kept is not None and self.kept.run_id == self.run_id else ():
+            for name, value in zip(setpoint.name, setpoint.value):
+                asked[name] = (value, "offset" if setpoint.mode == 2 else "override")
+        return asked
+
+    def tables(self, now):
+        """The rows of outputs, inputs and disturbances, for JSON."""
+        if self.info is None or self.step < 0:
+            return {"outputs": [], "inputs": [], "disturbances": []}
+        limits, info = self.limits(), self.info
+        codes = collections.defaultdict(set)
+        for code, signal in self.current(now):
+            codes[signal].add(code)
+        plan = self.plan if self.plan is not None and self.plan.step >= self.step - 2 else None
+        asked, outputs, inputs = self.overridden(), [], []
+        steady = plan.steady_output() if plan is not None else None
+        for j, s in enumerate(info.outputs):
+            value = self.history.value(self.step, s.name)
+            quality = self.quality[j] if j < len(self.quality) else 0
+            low, high = limits["output"][j]
+            word, reason = state.output_status(s, value, quality, codes[s.name], low, high, "setpoint_clamped" in codes[s.name])
+            working = self.setpoint[j] if j < len(self.setpoint) else None
+            outputs.append({"name": s.name, "unit": s.unit, "value": finite(value), "quality": state.QUALITY[min(quality, 3)],
+                            "setpoint": finite(asked[s.name][0]) if asked.get(s.name, ("", ""))[1] == "override" else finite(working),
+                            "offset": finite(asked[s.name][0]) if asked.get(s.name, ("", ""))[1] == "offset" else None,
+                            "by_hand": s.name in asked, "working": finite(working),
+                            "reference": finite(self.reference[j]) if j < len(self.reference) else None,
+                            "lower": finite(low), "upper": finite(high), "range": [finite(s.lower), finite(s.upper)],
+                            "setpoint_limits": [finite(v) for v in limits["setpoint"][j]],
+                            "predicted": finite(plan.output[self.horizon(plan) - 1, j]) if plan is not None else None,
+                            "predicted_in": self.horizon(plan) if plan is not None else None,
+                            "steady": finite(steady[j]) if steady is not None else None, "status": word, "reason": reason})
+        why = state.first_limit(plan, info.outputs, info.inputs, limits) if plan is not None else None
+        manual = self.kept is not None and self.kept.run_id == self.run_id and self.kept.manual
+        for j, s in enumerate(info.inputs):
+            value = self.action[j] if j < len(self.action) else math.nan
+            before = self.history.value(self.action_step - 1, s.name)
+            low, high = limits["input"][j]
+            law = self.prediction_law[j] if self.prediction_step == self.action_step and j < len(self.prediction_law) else None
+            guard = self.guard_limits[j] if self.guard_limits and j < len(self.guard_limits) else None
+            word, reason, active = state.input_status(s, value, before, self.source, law, low, high, limits["move"][j], guard, codes[s.name] | codes[""] & {"input_stuck"},
+                                                      why[1] if why else "")
+            inputs.append({"name": s.name, "unit": s.unit, "value": finite(value), "applied": finite(self.applied[j]) if j < len(self.applied) else None,
+                           "law": finite(law), "lower": finite(low), "upper": finite(high), "move": finite(limits["move"][j]),
+                           "active_lower": finite(max(low, guard[0])) if guard else finite(low), "active_upper": finite(min(high, guard[1])) if guard else finite(high),
+                           "active": active, "target": "manual" if manual else "auto",
+                           "actual": state.SOURCES.get(self.source, "?"), "status": word, "reason": reason})
+        rows = []
+        for j, s in enumerate(info.disturbances):
+            value, quality = self.history.value(self.step, s.name), self.quality[len(info.outputs) + j] if len(info.outputs) + j < len(self.quality) else 0
+            word, reason = state.output_status(s, value, quality, codes[s.name], -math.inf, math.inf)
+            rows.append({"name": s.name, "unit": s.unit, "value": finite(value), "quality": state.QUALITY[min(quality, 3)],
+                         "range": [finite(s.lower), finite(s.upper)], "status": word, "reason": reason})
+        return {"outputs": outputs, "inputs": inputs, "disturbances": rows, "why": why[1] if why else ""}
+
+    def horizon(self, plan):
+        """Samples ahead at which the law wants to meet its reference; the whole plan where it says nothing of that."""
+        steps = (self.settings_now or {}).get("coincidence_steps") or self.get("controller", "coincidence_steps")
+        return min(int(steps), len(plan.output)) if isinstance(steps, (int, float)) and steps >= 1 else len(plan.output)
+
+    def ahead(self):
+        """The plan for JSON, None if there is none or it is old."""
+        plan = self.plan
+        if plan is None or plan.step < self.step - 2 or self.info is None:
+            return None
+        n = len(plan.output)
+        band, trust = self.errors.rms(n), None
+        if self.trust is not None and self.trust.known():
+            values = {s.name: plan.output[:, j] for j, s in enumerate(self.info.outputs)}
+            values.update({s.name: plan.input[:, j] for j, s in enumerate(self.info.inputs)})
+            values.update({s.name: numpy.full(n, self.history.value(self.step, s.name)) for s in self.info.disturbances})
+            points = numpy.column_stack([values.get(name, numpy.full(n, numpy.nan)) for name in self.trust.names])
+            missing = [i for i, name in enumerate(self.trust.names) if name not in values]
+            points[:, missing] = self.trust.centres[:, missing].mean(axis=0) if missing and len(self.trust.centres) else points[:, missing]
+            trust = [round(float(t), 3) for t in self.trust.of(points)]
+        return {"step": plan.step, "n": n, "constrained": plan.constrained, "trust": trust,
+                "outputs": [rounded(plan.output[:, j]) for j in range(plan.output.shape[1])],
+                "base_outputs": [rounded(plan.base_output[:, j]) for j in range(plan.output.shape[1])],
+                "band": None if band is None else [rounded(2.0 * band[:, j], 4) for j in range(band.shape[1])],
+                "inputs": [rounded(plan.input[:, j]) for j in range(plan.input.shape[1])],
+                "base_inputs": [rounded(plan.base_input[:, j]) for j in range(plan.input.shape[1])],
+                "reference": [rounded(plan.reference[j]) for j in range(len(plan.reference))]}
+
+    def model_view(self):
+        """Rules and where the process is among them, gains and poles here, errors of predictions; for JSON."""
+        if self.model is None or self.info is None:
+            return None
+
+        def value(name, lag):
+            step = self.step - lag
+            found = self.history.value(step, name)
+            return self.history.value(step - 1, name) if math.isnan(found) and lag == 0 else found
+
+        plan = self.plan
+        gains = plan.gains() if plan is not None else None
+        units = {s.name: s.unit for s in list(self.info.outputs) + list(self.info.inputs) + list(self.info.disturbances)}
+        return {"name": self.model.name, "source": self.model.source, "sample_time_s": self.model.sample_time_s, "units": units,
+                "rules": predict.rules_of(self.model, value),
+                "signals": [{"name": s.name, "unit": s.unit, "lower": finite(s.lower), "upper": finite(s.upper), "value": finite(self.history.value(self.step, s.name))}
+                            for s in list(self.model.outputs) + list(self.model.inputs) + list(self.model.disturbances)],
+                "trust": finite(self.signals.get("model_trust")), "trust_ahead": finite(self.signals.get("model_trust_ahead")),
+                "trust_here": self._trust_here(),
+                "poles": [] if plan is None else [[round(float(p.real), 6), round(float(p.imag), 6)] for p in plan.poles()],
+                "gains": None if gains is None else [rounded(row, 5) for row in gains],
+                "outputs": [s.name for s in self.info.outputs], "inputs": [s.name for s in self.info.inputs],
+                "errors": self.errors.latest() if self.errors else [], "rms": rms_table(self.errors, plan)}
+
+    def _trust_here(self):
+        if self.trust is None or not self.trust.known():
+            return None
+        point = [self.history.value(self.step, name) for name in self.trust.names]
+        return None if any(math.isnan(v) for v in point) else round(float(self.trust.of([point])[0]), 3)
+
+
+def rms_table(errors, plan):
+    if errors is None or plan is None:
+        return []
+    band = errors.rms(len(plan.output))
+    return [] if band is None else [{"ahead": a, "rms": rounded(band[a - 1], 4)} for a in (1, 2, 5, 10, 20, 40) if a <= len(band)]
+
+
+def finite(value):
+    return float(f"{float(value):.9g}") if value is not None and math.isfinite(value) else None
+
+
+def rounded(values, digits=6):
+    return [float(f"%.{digits}g" % v) if math.isfinite(v) else None for v in values]
+
+
+def read_csv(path):
+    """(names without units, table) of a trajectory.csv; a last line that is being written is left out."""
+    with open(path, encoding="utf-8") as stream:
+        names = [word.split("[")[0] for word in stream.readline().strip().split(",")]
+        rows = []
+        for line in stream:
+            cells = line.rstrip("\n").split(",")
+            if line.endswith("\n") and len(cells) == len(names):
+                try:
+                    rows.append([float(c) if c else math.nan for c in cells])
+                except ValueError:
+                    continue
+    return names, numpy.array(rows, dtype=float).reshape(-1, len(names))
+
+
+def recorded(folder, tool):
+    """What the recorder of a loop has on disk, of the run that goes on or of the one that has ended; None if that is elsewhere."""
+    if not folder or not os.path.isdir(folder):
+        return None
+    journal = os.path.join(folder, "journal.bin")
+    if os.path.exists(journal) and tool:
+        with tempfile.TemporaryDirectory(prefix="fmbpc_panel_") as work:
+            shutil.copy(journal, work)
+            subprocess.run([tool, "recover", "--no-plot", work], check=False, timeout=120, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            if os.path.exists(os.path.join(work, "trajectory.csv")):
+                return read_csv(os.path.join(work, "trajectory.csv"))
+    path = os.path.join(folder, "trajectory.csv")
+    return read_csv(path) if os.path.exists(path) else None

@@ -1,0 +1,257 @@
+#include "control/targets/target_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "optim/qp.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kKept = 1e-9;     // of a unit: so little given up is nothing
+constexpr double kMargin = 1e-10;  // of a unit: room that a rank leaves to those behind it
+constexpr double kRoom = 1e-10;    // of the cost's size: the same for the resting values
+constexpr double kPull = 1e-6;  // of the unknowns to where they are: each stage is strictly convex,
+constexpr int kPulls = 12;      // and pulls again from where it came until nothing moves
+constexpr double kStill = 1e-11;
+
+/// Rows that one stage gives up, and those of the stages before, which it keeps.
+struct Stage {
+  std::vector<Index> soft, hard;
+  QpProblem qp;  // in v / unit, then what is given up of each soft row over its unit
+  QpSolver solver;
+
+  Stage(Index n, std::vector<Index> soft_rows, std::vector<Index> hard_rows)
+      : soft(std::move(soft_rows)),
+        hard(std::move(hard_rows)),
+        qp(n + static_cast<Index>(soft.size()), static_cast<Index>(soft.size() + hard.size())),
+        solver(std::max<Index>(qp.g.size(), 1), qp.a_lower.size()) {
+    qp.H.diagonal().head(n).setConstant(kPull);
+    for (Index k = 0; k < static_cast<Index>(soft.size()); ++k) qp.A(k, n + k) = -1.0;
+  }
+};
+
+std::vector<Index> rowsBelow(const std::vector<int>& ranks, int rank) {
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < ranks.size(); ++i)
+    if (ranks[i] < rank) rows.push_back(static_cast<Index>(i));
+  return rows;
+}
+
+std::vector<Index> rowsOf(const std::vector<int>& ranks, int rank) {
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < ranks.size(); ++i)
+    if (ranks[i] == rank) rows.push_back(static_cast<Index>(i));
+  return rows;
+}
+
+std::vector<Index> allRows(std::size_t count) {
+  std::vector<Index> rows;
+  for (std::size_t i = 0; i < count; ++i) rows.push_back(static_cast<Index>(i));
+  return rows;
+}
+
+}  // namespace
+
+TargetProblem::TargetProblem(Index n, Index m)
+    : lower(Vector::Constant(n, -kInfinity)),
+      upper(Vector::Constant(n, kInfinity)),
+      unit(Vector::Ones(n)),
+      rows(Matrix::Zero(m, n)),
+      row_lower(Vector::Constant(m, -kInfinity)),
+      row_upper(Vector::Constant(m, kInfinity)),
+      row_unit(Vector::Ones(m)),
+      rank(static_cast<std::size_t>(m), 1),
+      price(Vector::Zero(n)),
+      rest(Vector::Zero(n)) {}
+
+struct TargetSolver::Workspace {
+  Index n, m;
+  std::vector<int> ranks;
+  Stage together;             // all rows at once: enough where all can be kept
+  std::vector<Stage> stages;  // by rank
+  Stage money, resting;       // resting: a last row for the cost
+  Matrix rows;                // in units
+  Vector lower, upper;        // of the rows in units, as far as they are kept
+  Vector price, x, level, level_x;
+  bool all_kept{true};
+  TargetSolution solution;
+
+  Workspace(Index count, std::vector<int> ranks_of_rows)
+      : n(count),
+        m(static_cast<Index>(ranks_of_rows.size())),
+        ranks(std::move(ranks_of_rows)),
+        together(n, allRows(ranks.size()), {}),
+        money(n, {}, allRows(ranks.size())),
+        resting(n, {}, allRows(ranks.size() + 1)),
+        rows(m, n),
+        lower(m),
+        upper(m),
+        price(n),
+        x(Vector::Zero(n)),
+        level(m),
+        level_x(n) {
+    std::vector<int> distinct = ranks;
+    std::sort(distinct.begin(), distinct.end());
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    for (const int rank : distinct)
+      stages.emplace_back(n, rowsOf(ranks, rank), rowsBelow(ranks, rank));
+    resting.qp.H.diagonal().setOnes();
+    solution.v = Vector::Zero(n);
+    solution.given_up = Vector::Zero(m);
+  }
+
+  static bool valid(const TargetProblem& p) {
+    return !p.lower.hasNaN() && !p.upper.hasNaN() && !p.row_lower.hasNaN() &&
+           !p.row_upper.hasNaN() && p.rows.allFinite() && p.price.allFinite() &&
+           p.rest.allFinite() && (p.lower.array() <= p.upper.array()).all() &&
+           (p.row_lower.array() <= p.row_upper.array()).all();
+  }
+
+  void put(const TargetProblem& p, Stage& stage) const {
+    QpProblem& qp = stage.qp;
+    qp.x_lower.head(n) = p.lower.cwiseQuotient(p.unit);
+    qp.x_upper.head(n) = p.upper.cwiseQuotient(p.unit);
+    Index at = 0;
+    for (const auto* list : {&stage.soft, &stage.hard})
+      for (const Index row : *list) {
+        if (row == m) continue;  // of the cost
+        qp.A.row(at).head(n) = rows.row(row);
+        qp.a_lower[at] = lower[row];
+        qp.a_upper[at++] = upper[row];
+      }
+  }
+
+  bool run(Stage& stage) {
+    const QpResult& result = stage.solver.solve(stage.qp);
+    solution.iterations += result.iterations;
+    solution.status = result.status;
+    if (!result.usable()) return false;
+    x = result.x.head(n);
+    return true;
+  }
+
+  /// Proximal points: exact after few, as the cost is linear or quadratic on a polyhedron.
+  bool pull(Stage& stage, const Vector* gradient) {
+    for (int i = 0; i < kPulls; ++i) {
+      stage.qp.g.head(n) = -kPull * x;
+      if (gradient) stage.qp.g.head(n) += *gradient;
+      level_x = x;
+      if (!run(stage)) return false;
+      if ((x - level_x).cwiseAbs().maxCoeff() <= kStill) break;
+    }
+    return true;
+  }
+
+  /// Keeps these rows as they are found at x, or within their limits.
+  void keep(const std::vector<Index>& which) {
+    for (const Index row : which) {
+      const double at = rows.row(row).dot(x);
+      lower[row] = std::min(lower[row], at - kMargin);
+      upper[row] = std::max(upper[row], at + kMargin);
+    }
+  }
+
+  /// The ranked limits; afterwards lower and upper can all be kept together.
+  bool rank(const TargetProblem& p) {
+    if (m == 0) {
+      x = p.rest.cwiseQuotient(p.unit);
+      return true;
+    }
+    if (all_kept) {
+      put(p, together);
+      if (!pull(together, nullptr)) return false;
+      all_kept = farthest(together.soft) <= kKept;
+      if (all_kept) {
+        keep(together.soft);
+        return true;
+      }
+    }
+    all_kept = true;
+    for (Stage& stage : stages) {
+      put(p, stage);
+      if (!pull(stage, nullptr)) return false;
+      all_kept = all_kept && farthest(stage.soft) <= kKept;
+      keep(stage.soft);
+    }
+    return true;
+  }
+
+  /// What is given up of these rows at x, in units, as the limits are now.
+  double farthest(const std::vector<Index>& which) const {
+    double most = 0.0;
+    for (const Index row : which) {
+      const double at = rows.row(row).dot(x);
+      most = std::max({most, lower[row] - at, at - upper[row]});
+    }
+    return most;
+  }
+
+  bool leastCost(const TargetProblem& p) {
+    price = p.price.cwiseProduct(p.unit);
+    const double size = price.size() > 0 ? price.cwiseAbs().maxCoeff() : 0.0;
+    if (size == 0.0) return true;
+    put(p, money);
+    price /= size;
+    const bool done = pull(money, &price);
+    price *= size;
+    return done;
+  }
+
+  bool rest(const TargetProblem& p) {
+    put(p, resting);
+    QpProblem& qp = resting.qp;
+    qp.g = -p.rest.cwiseQuotient(p.unit);
+    const double size = std::max(price.cwiseAbs().maxCoeff(), 0.0);
+    qp.a_lower[m] = -kInfinity;
+    qp.a_upper[m] = kInfinity;
+    qp.A.row(m).setZero();
+    if (size > 0.0) {
+      qp.A.row(m) = price.transpose() / size;
+      const double terms = 1.0 + (price / size).cwiseProduct(x).cwiseAbs().maxCoeff();
+      qp.a_upper[m] = price.dot(x) / size + p.band / size + kRoom * terms;
+    }
+    return run(resting);
+  }
+
+  void conclude(const TargetProblem& p) {
+    solution.v = x.cwiseProduct(p.unit).cwiseMax(p.lower).cwiseMin(p.upper);
+    solution.cost = p.price.dot(solution.v);
+    level.noalias() = p.rows * solution.v;
+    for (Index i = 0; i < m; ++i) {
+      const double kept = kKept * 10.0 * p.row_unit[i];
+      double& beyond = solution.given_up[i] = 0.0;
+      if (level[i] > p.row_upper[i] + kept) beyond = level[i] - p.row_upper[i];
+      if (level[i] < p.row_lower[i] - kept) beyond = level[i] - p.row_lower[i];
+    }
+  }
+};
+
+TargetSolver::TargetSolver(Index n, std::vector<int> ranks)
+    : work_(std::make_unique<Workspace>(n, std::move(ranks))) {}
+TargetSolver::~TargetSolver() = default;
+TargetSolver::TargetSolver(TargetSolver&&) noexcept = default;
+
+const TargetSolution& TargetSolver::solve(const TargetProblem& p) {
+  Workspace& w = *work_;
+  w.solution.iterations = 0;
+  w.solution.status = SolveStatus::kInvalidProblem;
+  if (!Workspace::valid(p)) return w.solution;
+  for (Index i = 0; i < w.m; ++i) {
+    w.rows.row(i) = p.rows.row(i).cwiseProduct(p.unit.transpose()) / p.row_unit[i];
+    w.lower[i] = p.row_lower[i] / p.row_unit[i];
+    w.upper[i] = p.row_upper[i] / p.row_unit[i];
+  }
+  if (!w.rank(p) || !w.leastCost(p)) return w.solution;
+  w.solution.least_cost = p.price.dot(w.x.cwiseProduct(p.unit));
+  const Vector& cheapest = w.x;
+  w.solution.v = cheapest;
+  if (!w.rest(p)) w.solution.status = SolveStatus::kSolved;  // x is still the cheapest
+  w.conclude(p);
+  return w.solution;
+}
+
+}  // namespace fpc

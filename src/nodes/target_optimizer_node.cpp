@@ -1,0 +1,5 @@
+#include "ros/target_optimizer.hpp"
+
+int main(int argc, char** argv) {
+  return fpc::runNode<fpc::TargetOptimizer>(argc, argv, "target_optimizer");
+}

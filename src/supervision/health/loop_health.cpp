@@ -1,0 +1,272 @@
+#include "supervision/health/loop_health.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.hpp"
+#include "base/order_statistics.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "supervision/health/stretches.hpp"
+
+namespace fpc {
+namespace {
+
+constexpr double kFewestAutomatic = 200.0;  // samples, without which nothing is judged
+constexpr std::size_t kMostForValve = 3000;  // means of samples
+constexpr double kFewestForValve = 1200.0;
+constexpr double kSettled = 0.2;             // of the error's autocorrelation
+constexpr double kSlow = 1.55;                // times the usual settling
+constexpr double kSlowDeadTimes = 14.0;       // where only these are given
+constexpr double kSlowIndex = 0.8;
+constexpr double kLongPeriod = 25.0;  // dead times
+constexpr double kDriven = 0.36;      // unrest of the envelope: below it driven, above it rings
+constexpr double kAtLimits = 0.3;     // share
+
+struct CauseWords {
+  const char* name;
+  const char* advice;
+};
+constexpr CauseWords kCauses[] = {
+    {"healthy", "Nothing is to be done"},
+    {"unknown", "Record more of it in automatic"},
+    {"sensor_frozen", "Look after the sensor and its transmission before anything else"},
+    {"sensor_spikes", "Look for loose contacts and interference; filter by the median"},
+    {"stiction", "Service the valve and its positioner; tuning does not mend it"},
+    {"backlash", "Service the valve's linkage; a smaller gain moves it less often"},
+    {"aggressive_tuning", "Lower the gain, or lengthen the horizon"},
+    {"oscillating_load", "Look for the source in loops and disturbances of the same period"},
+    {"at_limits", "The input has no room: look at its size and at the setpoint"},
+    {"sluggish_tuning", "Raise the gain, or shorten the integral time or the horizon"},
+    {"model_out_of_date", "Identify the model anew from a test"},
+};
+static_assert(std::size(kCauses) == static_cast<std::size_t>(LoopCause::kModelOutOfDate) + 1);
+
+/// y - setpoint while in automatic, NaN elsewhere and where the setpoint has just moved.
+std::vector<double> errorOf(const ControlRecord& r) {
+  std::vector<double> e(r.y.size(), kNaN);
+  const double mean = r.setpoint.empty() ? meanOf(r.y) : 0.0;
+  for (std::size_t k = 0; k < e.size(); ++k) {
+    if (!r.duty.empty() && r.duty[k] != LoopDuty::kAutomatic) continue;
+    e[k] = r.y[k] - (r.setpoint.empty() ? mean : r.setpoint[k]);
+  }
+  return e;
+}
+
+double medianSize(const std::vector<double>& values) {
+  std::vector<double> sizes;
+  for (const double v : values)
+    if (std::isfinite(v)) sizes.push_back(std::abs(v));
+  return upperMedian(std::move(sizes));
+}
+
+/// Takes out what follows a change of the setpoint, until the error has stayed within three usual
+/// ones for `calm` samples.
+std::vector<double> atRest(const ControlRecord& r, std::vector<double> e, std::size_t calm) {
+  if (r.setpoint.empty()) return e;
+  std::vector<double> known = e;
+  const double mean = meanOf(e);
+  for (double& v : known) v -= mean;
+  const double usual = 3.0 * 1.4826 * medianSize(known);
+  bool moving = false;
+  std::size_t quiet = 0;
+  for (std::size_t k = 1; k < e.size(); ++k) {
+    const double change = std::abs(r.setpoint[k] - r.setpoint[k - 1]);
+    if (!(change <= 1e-9 * (1.0 + std::abs(r.setpoint[k])))) {
+      moving = true;
+      quiet = 0;
+    }
+    if (!moving) continue;
+    quiet = std::abs(known[k]) <= usual ? quiet + 1 : 0;
+    if (quiet >= calm) moving = false;
+    e[k] = kNaN;
+  }
+  return e;
+}
+
+double settlingOf(const std::vector<double>& e) {
+  const auto n = static_cast<Eigen::Index>(e.size());
+  for (Eigen::Index factor = 1; n / factor >= 60; factor *= 4) {
+    const std::vector<double> c = autocorrelationOf(blockMeans(e, factor), 80);
+    for (std::size_t lag = 1; lag < c.size(); ++lag)
+      if (c[lag] < kSettled) return static_cast<double>(lag) * static_cast<double>(factor);
+  }
+  return static_cast<double>(n);
+}
+
+/// Least value of the error's autocorrelation within eight settlings.
+double undershootOf(const std::vector<double>& e, double settling) {
+  const auto factor = static_cast<Eigen::Index>(std::max(1.0, std::floor(settling / 10.0)));
+  const std::vector<double> c =
+      autocorrelationOf(blockMeans(e, factor), static_cast<Eigen::Index>(8.0 * settling) / factor);
+  return c.empty() ? kNaN : *std::min_element(c.begin(), c.end());
+}
+
+double shareOf(const std::vector<LoopDuty>& duty, LoopDuty which) {
+  if (duty.empty()) return which == LoopDuty::kAutomatic ? 1.0 : 0.0;
+  return static_cast<double>(std::count(duty.begin(), duty.end(), which)) /
+         static_cast<double>(duty.size());
+}
+
+bool isAutomatic(const ControlRecord& r, std::size_t k) {
+  return r.duty.empty() || r.duty[k] == LoopDuty::kAutomatic;
+}
+
+double shareAtLimits(const ControlRecord& r, double& lower, double& upper) {
+  double at_lower = 0.0, at_upper = 0.0, all = 0.0;
+  const double near = 1e-6 * (r.u_upper - r.u_lower);
+  for (std::size_t k = 0; k < r.u.size(); ++k) {
+    if (!std::isfinite(r.u[k]) || !isAutomatic(r, k)) continue;
+    all += 1.0;
+    if (std::isfinite(near)) {
+      if (r.u[k] <= r.u_lower + near) at_lower += 1.0;
+      if (r.u[k] >= r.u_upper - near) at_upper += 1.0;
+    }
+  }
+  lower = all > 0.0 ? at_lower / all : 0.0;
+  upper = all > 0.0 ? at_upper / all : 0.0;
+  return lower + upper;
+}
+
+/// The newest part of a series, at most `count` values.
+std::vector<double> newest(const std::vector<double>& values, std::size_t count) {
+  if (values.size() <= count) return values;
+  return {values.end() - static_cast<std::ptrdiff_t>(count), values.end()};
+}
+
+std::vector<double> automaticOnly(const ControlRecord& r, const std::vector<double>& values) {
+  std::vector<double> some = values;
+  for (std::size_t k = 0; k < some.size(); ++k)
+    if (!isAutomatic(r, k)) some[k] = kNaN;
+  return some;
+}
+
+Eigen::Index factorFor(const LoopHealth& h, double settling) {
+  // twenty means in a period, or five until the error is forgotten
+  const double span = h.oscillation.found ? h.oscillation.period / 20.0 : settling / 5.0;
+  const double most = static_cast<double>(h.samples) / kFewestForValve;
+  return std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::floor(std::min(span, most))));
+}
+
+void judgeValve(const ControlRecord& r, LoopHealth& h, double settling) {
+  const Eigen::Index factor = factorFor(h, settling);
+  const std::size_t count = kMostForValve * static_cast<std::size_t>(factor);
+  const double delay = std::isfinite(h.dead_time_s) ? h.dead_time_s / r.sample_time_s
+                       : h.oscillation.found        ? 0.35 * h.oscillation.period
+                                                    : settling;
+  h.valve = fitValve(newest(automaticOnly(r, r.u), count), newest(automaticOnly(r, r.y), count),
+                     static_cast<int>(std::ceil(delay / static_cast<double>(factor))), factor);
+}
+
+void judgeDynamics(const ControlRecord& r, LoopHealth& h, double settling) {
+  const Eigen::Index factor =
+      std::max<Eigen::Index>(1, static_cast<Eigen::Index>(std::floor(settling / 10.0)));
+  const std::vector<double>& input = r.position.empty() ? r.u : r.position;
+  const LoopDynamics found = loopDynamics(input, r.y, factor, r.sample_time_s);
+  h.response = found.response;
+  if (std::isfinite(r.dead_time_s)) {
+    h.dead_time_s = r.dead_time_s;
+    h.dead_time_source = DeadTimeSource::kGiven;
+  } else if (std::isfinite(found.delay)) {
+    h.dead_time_s = found.delay * r.sample_time_s;
+    h.dead_time_source = DeadTimeSource::kEstimated;
+  }
+  if (!r.model.empty() && !h.response.empty()) h.model = compareModel(r.model, h.response);
+}
+
+LoopCause oscillationCause(const ControlRecord& r, const LoopHealth& h, double lower, double upper) {
+  if (h.valve.sticks) return LoopCause::kStiction;
+  if (h.valve.plays) return LoopCause::kBacklash;
+  if (std::min(lower, upper) > 0.1) return LoopCause::kAggressiveTuning;
+  if (h.oscillation.unrest <= kDriven) return LoopCause::kOscillatingLoad;
+  // a gain too low for its integral time swings too, but slowly
+  double dead = reactionCurve(r.model.empty() ? h.response : r.model).dead_time_s;
+  if (!std::isfinite(dead) && h.dead_time_source != DeadTimeSource::kAssumed)
+    dead = std::max(2.0 * h.sample_time_s, h.dead_time_s);
+  const bool slow = h.periodS() > kLongPeriod * dead;
+  return slow ? LoopCause::kSluggishTuning : LoopCause::kAggressiveTuning;
+}
+
+/// Slower than a PI of one's own for this response would be (simc, skogestad2003), and by what could
+/// be foretold.
+bool isSluggish(const ControlRecord& r, const LoopHealth& h, const std::vector<double>& rest) {
+  ReactionCurve curve = reactionCurve(h.response);
+  if (!r.model.empty()) curve = reactionCurve(r.model);
+  double dead = curve.dead_time_s, usual = kNaN;
+  if (std::isfinite(dead)) {
+    usual = kSlow * (1.2 * dead + 0.55 * std::min(curve.time_constant_s, 8.0 * dead));
+  } else if (h.dead_time_source == DeadTimeSource::kGiven) {
+    dead = std::max(2.0 * h.sample_time_s, h.dead_time_s);
+    usual = kSlowDeadTimes * dead;
+  }
+  if (!(h.settling_s > usual)) return false;
+  const int ahead = static_cast<int>(std::ceil(2.0 * dead / h.sample_time_s));
+  return minimumVariance(rest, std::max(1, ahead)).index < kSlowIndex;
+}
+
+LoopCause causeOf(const ControlRecord& r, const LoopHealth& h, double lower, double upper,
+                  const std::vector<double>& rest) {
+  if (h.sensor.isFrozen()) return LoopCause::kSensorFrozen;
+  if (h.sensor.hasSpikes()) return LoopCause::kSensorSpikes;
+  if (h.oscillation.found) return oscillationCause(r, h, lower, upper);
+  if (h.at_limits > kAtLimits) return LoopCause::kAtLimits;
+  if (h.valve.sticks) return LoopCause::kStiction;
+  if (h.valve.plays) return LoopCause::kBacklash;
+  if (h.model.outdated) return LoopCause::kModelOutOfDate;
+  if (isSluggish(r, h, rest)) return LoopCause::kSluggishTuning;
+  return LoopCause::kHealthy;
+}
+
+}  // namespace
+
+void ControlRecord::validate() const {
+  require(!y.empty(), output, "a column of measured values");
+  require(sample_time_s > 0.0 && std::isfinite(sample_time_s), output, "a sample time > 0");
+  for (const auto* series : {&setpoint, &u, &position})
+    require(series->empty() || series->size() == y.size(), output, "columns of one length");
+  require(duty.empty() || duty.size() == y.size(), output, "columns of one length");
+}
+
+const char* nameOf(LoopCause cause) { return kCauses[static_cast<std::size_t>(cause)].name; }
+const char* adviceOf(LoopCause cause) { return kCauses[static_cast<std::size_t>(cause)].advice; }
+
+LoopHealth judgeLoop(const ControlRecord& r) {
+  r.validate();
+  LoopHealth h;
+  h.output = r.output;
+  h.input = r.input;
+  h.unit = r.unit;
+  h.input_unit = r.input_unit;
+  h.sample_time_s = r.sample_time_s;
+  h.samples = static_cast<Eigen::Index>(r.y.size());
+  h.hours = static_cast<double>(h.samples) * r.sample_time_s / 3600.0;
+  for (const double v : r.y) h.missing += std::isfinite(v) ? 0 : 1;
+  h.automatic = shareOf(r.duty, LoopDuty::kAutomatic);
+  h.manual = shareOf(r.duty, LoopDuty::kManual);
+  h.fallback = shareOf(r.duty, LoopDuty::kFallback);
+  h.held = shareOf(r.duty, LoopDuty::kHeld);
+  double lower = 0.0, upper = 0.0;
+  h.at_limits = shareAtLimits(r, lower, upper);
+  h.sensor = sensorFaults(r.y);
+  const std::vector<double> error = errorOf(r);
+  h.error_std = stdOf(error);
+  h.error_mean = meanOf(error);
+  double settling = settlingOf(error);
+  if (!r.u.empty()) judgeDynamics(r, h, settling);
+  const double dead = std::isfinite(h.dead_time_s) ? std::max(1.0, std::round(h.dead_time_s / r.sample_time_s)) : 1.0;
+  if (!std::isfinite(h.dead_time_s)) h.dead_time_s = dead * r.sample_time_s;
+  const std::vector<double> rest =
+      atRest(r, error, static_cast<std::size_t>(2.0 * dead) + 10);
+  h.harris = minimumVariance(rest, static_cast<int>(dead));
+  h.oscillation = findOscillation(rest);
+  settling = settlingOf(rest);
+  h.settling_s = settling * r.sample_time_s;
+  h.undershoot = undershootOf(rest, settling);
+  double known = 0.0;
+  for (const double v : error) known += std::isfinite(v) ? 1.0 : 0.0;
+  if (known < kFewestAutomatic || !(h.error_std > 0.0)) return h;
+  if (!r.u.empty()) judgeValve(r, h, settling);
+  h.cause = causeOf(r, h, lower, upper, rest);
+  return h;
+}
+
+}  // namespace fpc

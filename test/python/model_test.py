@@ -1,0 +1,140 @@
+#!/usr/bin/python3
+"""Models: the same from arrays, frame and CSV; studies, tunings and analyses as the tool prints them."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import numpy
+import pandas
+
+import fmbpc
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+RECORD = TOP / "examples/reactor_record.csv"
+TOOL = os.environ["FMBPC_TOOL"]
+SIGNALS = {"inputs": ["q_c"], "outputs": ["CA"]}
+QUICK = {**SIGNALS, "work": 5, "kind": "linear", "blocks": 2}
+
+
+class Models(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.frame = pandas.read_csv(RECORD)
+        cls.model = fmbpc.identify(str(RECORD), **QUICK)
+        cls.y, cls.u = (cls.frame[c].to_numpy() for c in ("CA[mol/l]", "q_c[l/min]"))
+
+    def rules(self, model):
+        """The text without where the data came from."""
+        return [line for line in model._core.text.splitlines() if "source" not in line and "name:" not in line]
+
+    def test_arrays_frame_and_csv_give_the_same_model(self):
+        arrays = {c: self.frame[c].to_numpy() for c in self.frame}
+        strided = {c: numpy.repeat(v, 2)[::2] for c, v in arrays.items()}
+        plain = self.frame.rename(columns=lambda c: c.partition("[")[0])
+        plain.attrs["units"] = {"time": "min", "CA": "mol/l", "q_c": "l/min"}
+        for data in (self.frame, arrays, strided, plain, pathlib.Path(RECORD)):
+            self.assertEqual(self.rules(self.model), self.rules(fmbpc.identify(data, **QUICK)))
+
+    def test_the_tool_finds_the_same_model(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "model.yaml")
+            subprocess.run([TOOL, "identify", str(RECORD), "--auto", "--inputs", "q_c", "--outputs", "CA", "--work", "5", "--kind", "linear",
+                            "--blocks", "2", "--out", file], capture_output=True, check=True)
+            self.assertEqual(self.rules(fmbpc.Model(file)), self.rules(self.model))
+            self.model.save(file)
+            self.assertEqual(fmbpc.Model(file)._core.text, self.model._core.text)
+
+    def test_what_is_wrong_with_a_record_is_named(self):
+        good = {"CA": self.y, "q_c": self.u}
+        wrong = [({**good, "CA": self.y[:-1]}, "q_c|CA"), ({**good, "q_c": ["a"] * len(self.u)}, "q_c"), ({**good, "q_c": self.u * 1j}, "q_c"),
+                 ({**good, "q_c": numpy.full(len(self.u), numpy.inf)}, "q_c"), ({"CA": self.y}, "q_c"), ({}, "columns"),
+                 ({**good, "q_c": self.u[:, None]}, "q_c"), (str(RECORD) + ".no", "no")]
+        for data, words in wrong:
+            with self.subTest(words), self.assertRaisesRegex(fmbpc.InputError, words):
+                fmbpc.identify(data, sample_time_s=60.0, **QUICK)
+        for options, words in (({"inputs": ["q_c"]}, "outputs"), ({"outputs": ["CA"]}, "inputs"), ({**SIGNALS, "structure": "no_such"}, "no_such"),
+                               ({**SIGNALS, "rows": "b:a"}, "b:a")):
+            with self.subTest(words), self.assertRaisesRegex(fmbpc.InputError, words):
+                fmbpc.identify(self.frame, **options)
+
+    def test_predictions_and_simulations(self):
+        one = self.model.predict(self.y, self.u)
+        ten = self.model.predict(self.y, self.u, steps=10)
+        self.assertEqual((len(self.y), 1), one.shape)
+        good = numpy.isfinite(ten[:, 0])
+        error = [float(numpy.nanmean((p[good, 0] - self.y[good]) ** 2)) for p in (one, ten)]
+        self.assertLess(error[0], error[1])
+        free = self.model.simulate(self.u, y0=self.y[0])
+        self.assertEqual(self.y[0], free[0, 0])
+        self.assertTrue(numpy.isfinite(free).all())
+        for y, u in ((self.y[:-1], self.u), (numpy.zeros((9, 2)), self.u[:9]), (["a"], [1.0])):
+            with self.assertRaises(fmbpc.InputError):
+                self.model.predict(y, u)
+
+    def test_the_linearisation_moves_as_the_model(self):
+        linear = self.model.linearise(y=self.y[0], u=self.u[0])
+        self.assertEqual((linear["A"].shape[0], 1), linear["B"].shape)
+        with self.assertRaises(fmbpc.InputError):
+            self.model.linearise(y={"T": 1.0})
+
+    def test_validation_is_that_of_the_tool(self):
+        found = self.model.validate(self.frame, rows="1:300")
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "model.yaml")
+            self.model.save(file)
+            told = json.loads(subprocess.run([TOOL, "validate", file, str(RECORD), "--rows", "1:300", "--json"], capture_output=True, check=True).stdout)
+        self.assertEqual(told["validation"], found["validation"])
+
+    def test_a_model_goes_into_a_controller_or_is_refused(self):
+        law = fmbpc.Loop("asp_case1").controller()
+        with self.assertRaises(fmbpc.InputError):
+            law.set_model(self.model)
+        pi = fmbpc.Loop("asp_case1_pi_x").controller()
+        with self.assertRaises(fmbpc.InputError):
+            pi.set_model(self.model)
+        law.set_model(fmbpc.Model(fmbpc.Loop("asp_case1").model_file))
+
+    def test_a_structure_is_identified_as_by_the_tool(self):
+        with tempfile.TemporaryDirectory() as folder:
+            fmbpc.Loop("asp_d_record" if "asp_d_record" in fmbpc.loops() else "asp_case1", set={"sampling.duration_h": 2000}).run().save(folder)
+            record = os.path.join(folder, "trajectory.csv")
+            model = fmbpc.identify(record, structure="asp_d")
+            told = json.loads(subprocess.run([TOOL, "identify", record, "asp_d", "--json"], capture_output=True, check=True).stdout)
+        told.pop("seconds")
+        mine = dict(model.report)
+        mine.pop("seconds")
+        self.assertEqual(told, mine)
+
+
+class Reports(unittest.TestCase):
+    def tool(self, *words):
+        done = subprocess.run([TOOL, *words, "--json"], capture_output=True, check=False)
+        return json.loads(done.stdout)
+
+    def test_a_study_is_that_of_the_tool(self):
+        mine = fmbpc.study("asp_case1", "asp_case1_pi_x", seeds=3, set={"sampling.duration_h": 24})
+        told = self.tool("study", "asp_case1", "asp_case1_pi_x", "--seeds", "1:3", "--set", "sampling.duration_h=24")
+        self.assertEqual(told, mine)
+        with self.assertRaises(fmbpc.InputError):
+            fmbpc.study("asp_case1", "no_such_loop", seeds=2)
+
+    def test_stability_is_that_of_the_tool(self):
+        self.assertEqual(self.tool("stability", "fm_1", "--horizon", "1..9"), fmbpc.stability("fm_1", horizon=range(1, 10)))
+        with self.assertRaises(fmbpc.InputError):
+            fmbpc.stability("fm_1", at={"no": 1.0})
+
+    def test_a_tuning_is_that_of_the_tool(self):
+        short = {"sampling.duration_h": 24}
+        mine = fmbpc.tune("asp_case1_pi_x", "pi_x", set=short, evaluations=24, seed=2)
+        told = self.tool("tune", "asp_case1_pi_x", "pi_x", "--set", "sampling.duration_h=24", "--evaluations", "24", "--seed", "2")
+        for result in (mine, told):
+            result.pop("seconds")
+            result.pop("evaluations_per_s")
+        self.assertEqual(told, mine)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,41 @@
+#!/usr/bin/python3
+"""Pictures of runs: from a folder as the tool draws them, and of runs in this process."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import fmbpc  # noqa: E402
+from fmbpc import plots  # noqa: E402
+
+
+class Plots(unittest.TestCase):
+    def test_a_run_is_drawn_with_a_panel_of_each_signal(self):
+        run = fmbpc.Loop("asp_case1", set={"sampling.duration_h": 4}).run()
+        axes = run.plot().axes
+        self.assertGreaterEqual(len(axes), len(run.outputs) + len(run.inputs))
+        self.assertEqual(len(run.time), len(axes[0].lines[-1].get_xdata()))
+        with tempfile.TemporaryDirectory() as folder:
+            run.save(folder)
+            self.assertEqual(len(axes), len(plots.run_picture([folder]).axes))
+
+    def test_what_cannot_be_drawn_is_said(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for words, code in (([], 2), (["cake", folder], 2), (["run", folder], 1), (["model", folder], 1), (["reproduce", folder], 1)):
+                done = subprocess.run([sys.executable, "-m", "fmbpc.plots", *words], capture_output=True, check=False)
+                self.assertEqual((code, True), (done.returncode, bool(done.stderr)), words)
+
+    def test_the_tool_draws_by_it(self):
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([os.environ["FMBPC_TOOL"], "run", "asp_case1", "--set", "sampling.duration_h=4", "--out", folder], check=True, capture_output=True)
+            self.assertTrue(pathlib.Path(folder, "plot.png").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
