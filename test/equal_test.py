@@ -15,6 +15,7 @@ sys.path.insert(0, str(TOP / "test" / "ros"))
 import ring  # noqa: E402
 
 EXAMPLE = TOP / "examples" / "two_tanks" / "config"
+HANDOVER = TOP / "examples" / "handover"
 LINE = '[{"output": x, "from": reactor, "to": sludge_analyzer, "velocity_m_s": 0.05}]'
 
 # name: loop, samples, keys over it, pace, speedup
@@ -33,6 +34,8 @@ CASES = {
                    "lockstep", 3600),
     "adaptive_pi": ("column_adaptive", 900, [], "lockstep", 3600),
     "matrix": ("heated_tank", 360, [], "lockstep", 3600),
+    "targets": ("tanks_three_pumps", 240, [], "lockstep", 3600),
+    "targets_clp": ("four_on_two", 180, [], "lockstep", 3600),
     "column_clp": ("column_clp_tracking", 150, [], "lockstep", 3600),
     "fuzzy_optimal": ("surge_tank_steps", 1200, [], "lockstep", 3600),
     "fuzzy_optimal_two_inputs": ("mimo_cstr_steps", 5400, ["sampling.duration_h=0.9"], "lockstep", 3600),
@@ -62,6 +65,8 @@ CASES = {
                         "lockstep", 3600),
     "load_supervisor": ("bsm1_supervisor", 60, ["disturbance={}", "sampling.duration_h=5", "report.record_from_h=0"],
                         "lockstep", 3600),
+    "handover": (str(HANDOVER / "tank.yaml"), 1200, [f"candidate.loop={HANDOVER / 'tank_candidate.yaml'}",
+                                                     "candidate.automatic=true"], "lockstep", 3600),
     "plugin": ("two_tanks_outflow", 360, [], "lockstep", 3600),
 }
 CLAMPED = ("heated_tank", 360, ["setpoint.upper.T=55", "setpoint.commands=[{time_h: 1, name: T, mode: offset, value: 9}]",

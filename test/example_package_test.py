@@ -111,6 +111,20 @@ class ExamplePackage(unittest.TestCase):
         self.assertNotEqual(0, subprocess.run([self.fmbpc / "lib" / "fmbpc" / "fmbpc_tool", "check", "nowhere"],
                                               capture_output=True, check=False).returncode)
 
+    def test_the_arena_agrees_with_the_publications_of_its_plants(self):
+        build, own = self.folder / "arena_build", self.folder / "arena"
+        run("cmake", "-S", TOP / "examples" / "arena", "-B", build, "-DCMAKE_BUILD_TYPE=Release", f"-DCMAKE_INSTALL_PREFIX={own}",
+            f"-DCATKIN_DEVEL_PREFIX={build}/devel", f"-DCMAKE_PREFIX_PATH={self.fmbpc}", "-DARENA_TEST=ON",
+            "-DPYTHON_EXECUTABLE=/usr/bin/python3", "-DPython3_EXECUTABLE=/usr/bin/python3", CMAKE_PREFIX_PATH="")
+        run("cmake", "--build", build, "--target", "install")
+        self.assertIn("100% tests passed", run("cmake", "--build", build, "--target", "test"))
+        where = {"CMAKE_PREFIX_PATH": own, "FMBPC_TOOL": self.fmbpc / "lib" / "fmbpc" / "fmbpc_tool", "LD_LIBRARY_PATH": ""}
+        self.assertNotIn("BROKEN", run(where["FMBPC_TOOL"], "check", "arena", **where))
+        script = own / "lib" / "arena" / "arena"
+        self.assertEqual(len(run(script, "list").split()), 9)
+        run(script, "draw", "drum_level", "7", "--out", self.folder / "drum.yaml", **where)
+        run(where["FMBPC_TOOL"], "run", self.folder / "drum.yaml", "--no-plot", "--out", self.folder / "drum", **where)
+
     def test_new_packages_build_and_their_tests_pass(self):
         for kind in ("plant", "controller"):
             name = f"my_{kind}"

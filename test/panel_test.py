@@ -7,6 +7,7 @@ import os
 import pathlib
 import random
 import stat
+import subprocess
 import sys
 import tempfile
 import types
@@ -454,6 +455,43 @@ class Plans(unittest.TestCase):
         sets = lambda c: types.SimpleNamespace(center=[], inverse_covariance=[], antecedents=[types.SimpleNamespace(shape=1, parameters=[c, 1.0])])  # noqa: E731
         weights, _ = predict.firing(types.SimpleNamespace(rules=[sets(0.0), sets(2.0)]), [1.0])
         self.assertEqual([0.5, 0.5], weights)
+
+
+class ThePage(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+
+    def run_page(self, *words):
+        done = subprocess.run([sys.executable, str(TOP / "python/panel/page.py"), *words], check=False, stdout=subprocess.PIPE, stderr=subprocess.PIPE, universal_newlines=True)
+        return done.returncode, done.stdout + done.stderr
+
+    def record(self, rows="0,1,2,1.5\n0.5,1.5,2,1.25\n1,,3,1\n", summary=None):
+        with open(os.path.join(self.folder.name, "trajectory.csv"), "w", encoding="utf-8") as stream:
+            stream.write("time[h],y[mg/l],u[m3/h],y_setpoint[mg/l]\n" + rows)
+        with open(os.path.join(self.folder.name, "summary.json"), "w", encoding="utf-8") as stream:
+            stream.write(summary if summary is not None else json.dumps({"title": "</script><b>", "complete": True, "outputs": {"y": {"unit": "mg/l", "ise": 1.0}}, "inputs": {"u": {}}, "events": []}))
+
+    def test_one_file_that_loads_nothing_and_holds_the_run(self):
+        self.record()
+        self.assertEqual(0, self.run_page(self.folder.name)[0])
+        with open(os.path.join(self.folder.name, "page.html"), encoding="utf-8") as stream:
+            html = stream.read()
+        self.assertNotRegex(html, r"<(script|link|img)[^>]+(src|href)=")
+        self.assertEqual(3, html.count("</script>"))  # no title ends one
+        given = json.loads(html.split("window.FMBPC_RUN=")[1].split("</script>")[0])
+        self.assertEqual([0, 1, 2], given["series"]["steps"])
+        self.assertEqual([1.0, 1.5, None], given["series"]["data"][given["series"]["columns"].index("y")])
+        self.assertEqual((1800.0, True), (given["series"]["dt"], given["complete"]))
+
+    def test_what_is_no_run_is_one_line(self):
+        for make in (lambda: None, lambda: self.record(summary="{"), lambda: self.record(rows="1,2\n"), lambda: self.record(rows="")):
+            make()
+            code, words = self.run_page(self.folder.name)
+            self.assertEqual(1, code, words)
+            self.assertEqual(1, words.strip().count("\n") + 1, words)
+            self.assertTrue(words.startswith("fmbpc: page: "), words)
+        self.assertEqual(1, self.run_page("/nowhere")[0])
 
 
 if __name__ == "__main__":

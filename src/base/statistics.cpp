@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <limits>
 
 namespace fpc {
@@ -22,6 +23,10 @@ double median(std::vector<double> values) { return quantile(std::move(values), 0
 
 double normalBound(double confidence) {
   return boost::math::quantile(boost::math::normal(), 0.5 * (1.0 + confidence));
+}
+
+double studentBound(double confidence, double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), 0.5 * (1.0 + confidence));
 }
 
 double binomialAtMost(std::size_t k, std::size_t n, double share) {

@@ -13,6 +13,8 @@ double median(std::vector<double> values);  ///< quantile(values, 0.5)
 
 /// z with P(|N(0, 1)| < z) = confidence, 0 <= confidence < 1.
 double normalBound(double confidence);
+/// t with P(|T| < t) = confidence for Student's T of `freedom` degrees, 0 <= confidence < 1.
+double studentBound(double confidence, double freedom);
 /// P(B <= k), B binomial(n, share).
 double binomialAtMost(std::size_t k, std::size_t n, double share);
 

@@ -170,11 +170,24 @@ const std::vector<Kind>& kinds() {
        [](Entry entry, Key key, Loop loop) -> What {
          return UseModel{readModelOf(entry, key, loop)};
        }},
-      {"identify", [](Entry entry, Key key, Loop) -> What {
+      {"identify",
+       [](Entry entry, Key key, Loop) -> What {
          int window = 0;
          entry.integer(key, window, 0);
          return Identify{window};
-       }}};
+       }},
+      {"watch",
+       [](Entry entry, Key key, Loop loop) -> What {
+         std::string file;
+         entry.text(key, file);
+         try {
+           return WatchCandidate{readCandidateLoop(file, loop), loop.candidate.params};
+         } catch (const InputError& error) {
+           throw InputError(entry.where(key) + ": " + error.what());
+         }
+       }},
+      {"handover",
+       [](Entry entry, Key key, Loop) -> What { return HandOver{readOn(entry, key)}; }}};
   return all;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,10 +42,20 @@ struct Identify {
   int window;
 };
 
+/// Another loop's law beside the one in charge.
+struct WatchCandidate {
+  std::shared_ptr<const LoopFile> loop;
+  CandidateParams params;
+};
+/// To the candidate that has passed, or back to the former law.
+struct HandOver {
+  bool on;
+};
+
 struct TimedCommand {
   double time_h{};
   std::variant<SetpointCommand, DisturbanceCommand, SetManual, SetManualInput, HoldRecipe, SetAdapt,
-               Retune, UseModel, Identify>
+               Retune, UseModel, Identify, WatchCandidate, HandOver>
       what;
 };
 

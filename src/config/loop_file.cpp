@@ -38,10 +38,10 @@ void describePlant(YamlSection& root, LoopFile& loop) {
 
 const std::vector<std::string>& sections() {
   static const std::vector<std::string> names{
-      "actuator",     "clp",     "controller", "disturbance", "estimator", "extends",
-      "gateway",      "guard",   "loop",       "model",       "noise",     "plant",
-      "plausibility", "plugins", "report",     "sampling",    "sensors",   "setpoint",
-      "standstill",   "targets", "tf",         "title"};
+      "actuator", "candidate",    "clp",     "controller", "disturbance", "estimator",
+      "extends",  "gateway",      "guard",   "loop",       "model",       "noise",
+      "plant",    "plausibility", "plugins", "report",     "sampling",    "sensors",
+      "setpoint", "standstill",   "targets", "tf",         "title"};
   return names;
 }
 
@@ -143,6 +143,7 @@ LoopFile readSections(YamlSection& root, const std::string& name) {
   readStandstill(root, loop);
   readPlausibility(root, loop);
   readModelSection(root, loop);
+  readCandidate(root, loop);
   readRing(root, loop);
   readReport(root, loop, names);
   root.finish();

@@ -16,6 +16,7 @@
 #include "identification/online_learner.hpp"
 #include "identification/structure.hpp"
 #include "plant/simulation.hpp"
+#include "supervision/candidate_params.hpp"
 #include "supervision/guard_params.hpp"
 #include "supervision/plausibility_params.hpp"
 #include "supervision/standstill_params.hpp"
@@ -101,6 +102,15 @@ struct IdentifyParams {
   OnlineParams online;
 };
 
+struct LoopFile;
+
+/// Section `candidate`: a law that is watched beside the one in charge.
+struct CandidateFile {
+  std::string file;  ///< of its loop, absolute; empty: there is none
+  CandidateParams params;
+  std::shared_ptr<const LoopFile> loop;  ///< null if there is none
+};
+
 struct LoopFile {
   std::string name;  ///< the file's stem
   std::string file;
@@ -124,6 +134,7 @@ struct LoopFile {
   EstimatorParams estimator;    ///< around a law with a model; without outputs: none
   StandstillParams standstill;  ///< around any law; without signals: none
   GatewayParams gateway;        ///< of an external plant
+  CandidateFile candidate;      ///< beside the law
   bool has_clp{false};
   ClpParams clp;
   TargetParams targets;
@@ -144,6 +155,11 @@ struct LoopFile {
   }
 };
 
+/// A loop as a candidate for the place of another one's law: its own section `candidate` is left
+/// out. @throws InputError naming the file, or what differs from the loop in charge: signals,
+/// sample time, an optimizer, or a model that lacks.
+std::shared_ptr<const LoopFile> readCandidateLoop(const std::string& name_or_path,
+                                                  const LoopFile& in_charge);
 /// What the loop tells its controller.
 ControllerContext controllerContext(const LoopFile& loop);
 /// matchToPlant() with what the loop's controller estimates.

@@ -49,6 +49,7 @@ void readModelSection(YamlSection& root, LoopFile& loop);
 /// dead times of the loop file. @throws InputError for one that lasts too many samples.
 TsModel withInstruments(TsModel model, const SimulationParams& plant);
 void readGuard(YamlSection& root, LoopFile& loop, const LoopNames& names);
+void readCandidate(YamlSection& root, LoopFile& loop);
 void readRing(YamlSection& root, LoopFile& loop);
 void readReport(YamlSection& root, LoopFile& loop, const LoopNames& names);
 

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kOnModel[] = "model";
+constexpr char kOnModel[] = "model", kLoopFolder[] = "loop";
 
 /// The scalar at a path of keys; undefined if it is not there.
 YAML::Node scalarAt(const YAML::Node& root, const std::vector<std::string>& keys) {
@@ -76,6 +76,10 @@ void makeAbsolute(MergedLoop& loop, const std::vector<std::string>& keys,
   const bool from_file = origin != loop.origins.end() && !origin->second.file.empty();
   const fs::path beside =
       from_file ? fs::path(origin->second.file).parent_path() : fs::current_path();
+  if (folder == kLoopFolder && !fs::is_regular_file(beside / file.Scalar())) {
+    file = fs::absolute(findLoop(file.Scalar())).lexically_normal().string();
+    return;
+  }
   file = findFile(expanded(file.Scalar(), where), beside.string(), folder, where);
 }
 
@@ -101,6 +105,7 @@ void eachFile(const MergedLoop& loop, Use use) {
   use({"model", "file"}, "model");
   use({"plant", "model"}, "model");
   use({"model", "identify", "structure"}, "structure");
+  use({"candidate", "loop"}, kLoopFolder);
   const YAML::Node source = scalarAt(loop.root, {"disturbance", "source"});
   const std::string csv = wordOf(DisturbanceSource::kCsv);
   if (!source.IsDefined() || !source.IsScalar() || source.Scalar() != csv) return;
@@ -183,6 +188,30 @@ void validate(const MergedLoop& merged, const std::string& file) {
   } catch (const InputError& e) {
     throw InputError(root.where("disturbance") + ": " + e.what());
   }
+}
+
+/// Same signals, sample time and optimizer, and a model.
+void requireSuitable(const LoopFile& candidate, const LoopFile& in_charge,
+                     const std::string& file) {
+  const auto same = [&](const char* kind, const std::vector<SignalInfo>& mine,
+                        const std::vector<SignalInfo>& theirs) {
+    bool equal = mine.size() == theirs.size();
+    for (std::size_t i = 0; equal && i < mine.size(); ++i)
+      equal = mine[i].name == theirs[i].name && mine[i].unit == theirs[i].unit;
+    require(equal, file + ": " + kind,
+            "those of the loop in charge, with their units: " + join(namesOf(theirs)));
+  };
+  const PlantInfo &mine = candidate.plant_info, &theirs = in_charge.plant_info;
+  same("outputs", mine.outputs, theirs.outputs);
+  same("inputs", mine.inputs, theirs.inputs);
+  same("measured disturbances", mine.disturbances, theirs.disturbances);
+  require(mine.sample_time_s == theirs.sample_time_s, file + ": sampling.sample_time_s",
+          exactText(theirs.sample_time_s) + ", as in the loop in charge");
+  require(candidate.has_clp == in_charge.has_clp, file + ": clp",
+          in_charge.has_clp ? "an optimizer as in the loop in charge"
+                            : "none, as in the loop in charge");
+  require(candidate.has_model, file + ": model.file",
+          "a model: a candidate is judged by what its model foresees");
 }
 
 /// [lower, upper] of a signal that the model has too.
@@ -289,6 +318,19 @@ LoopFile parseLoop(const std::string& text, const std::string& name, const Overr
   YamlSection root(merged.root, name, "", merged.trace());
   LoopFile loop = readSections(root, name);
   loop.resolved = resolved;
+  return loop;
+}
+
+std::shared_ptr<const LoopFile> readCandidateLoop(const std::string& name_or_path,
+                                                  const LoopFile& in_charge) {
+  const std::string file = findLoop(name_or_path);
+  MergedLoop merged = mergeLoop(file);
+  merged.root.remove("candidate");
+  makeFilesAbsolute(merged);
+  YamlSection root(merged.root, file, "", merged.trace());
+  auto loop = std::make_shared<LoopFile>(readSections(root, fs::path(file).stem().string()));
+  loop->resolved = textOf(merged.root);
+  requireSuitable(*loop, in_charge, file);
   return loop;
 }
 

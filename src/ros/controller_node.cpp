@@ -53,6 +53,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
           serve(private_node, topics::kManualInput, &ControllerNode::onManualInput, this)),
       hold_(serve(private_node, topics::kHold, &ControllerNode::onHold, this)),
       adapt_(serve(private_node, topics::kAdapt, &ControllerNode::onAdapt, this)),
+      candidate_(serve(private_node, topics::kCandidate, &ControllerNode::onCandidate, this)),
       parked_timer_(guardedTimer(
           node, kLookAgain, "parked", [this] { answerParked(); }, false, false)),
       settings_(

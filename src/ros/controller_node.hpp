@@ -2,6 +2,7 @@
 // is answered with a base action and, if the law predicts, its prediction.
 #pragma once
 
+#include <fmbpc/Candidate.h>
 #include <fmbpc/CommandEffect.h>
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/FuzzyModel.h>
@@ -43,8 +44,9 @@ namespace fpc {
 /// has come. Base actions go out on base_action, or straight on control_action if the loop has no
 /// optimizer (or ~final_action is true). Services: ~manual (SetBool: true is manual),
 /// ~manual_input, ~hold (SetBool: true stops the setpoint schedule, false lets it go on), ~adapt
-/// (SetBool: false freezes a controller that retunes itself). Settings that may change in a run are
-/// served to dynamic_reconfigure under the node's name.
+/// (SetBool: false freezes a controller that retunes itself), ~candidate (Candidate: watches
+/// another law, hands over, takes back). Settings that may change in a run are served to
+/// dynamic_reconfigure under the node's name.
 class ControllerNode : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }  ///< every loop has a controller
@@ -60,6 +62,7 @@ class ControllerNode : public Node {
   bool onManual(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   bool onManualInput(fmbpc::ManualInput::Request& request, fmbpc::ManualInput::Response& response);
   bool onHold(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
+  bool onCandidate(fmbpc::Candidate::Request& request, fmbpc::Candidate::Response& response);
   bool onAdapt(std_srvs::SetBool::Request& request, std_srvs::SetBool::Response& response);
   void onTargets(const fmbpc::Targets::ConstPtr& msg);
   bool hasTargets(const StepHeader& sample);
@@ -110,7 +113,7 @@ class ControllerNode : public Node {
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       identified_subscriber_, setpoint_subscriber_, targets_subscriber_;
-  ros::ServiceServer manual_, manual_input_, hold_, adapt_;
+  ros::ServiceServer manual_, manual_input_, hold_, adapt_, candidate_;
   ros::SteadyTimer parked_timer_;
   SettingsServer settings_;
   SummaryListener summary_;

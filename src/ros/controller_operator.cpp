@@ -3,6 +3,7 @@
 #include "ros/controller_node.hpp"
 #include "ros/conversions.hpp"
 #include "ros/topics.hpp"
+#include "runtime/factory.hpp"
 
 namespace fpc {
 void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
@@ -26,6 +27,32 @@ bool ControllerNode::onManual(std_srvs::SetBool::Request& request,
   tell();
   response.success = true;
   response.message = session_.isManual() ? "manual" : "auto";
+  return true;
+}
+
+bool ControllerNode::onCandidate(fmbpc::Candidate::Request& request,
+                                 fmbpc::Candidate::Response& response) {
+  using Request = fmbpc::Candidate::Request;
+  try {
+    if (request.order == Request::WATCH) {
+      const std::shared_ptr<const LoopFile> other =
+          request.loop.empty() ? loop_.candidate.loop : readCandidateLoop(request.loop, loop_);
+      require(other != nullptr, topics::kCandidate,
+              "a loop file, or candidate.loop in the loop's own");
+      session_.watch(makeCandidate(*other, loop_.candidate.params));
+    } else if (request.order == Request::HAND_OVER || request.order == Request::BACK) {
+      session_.handOver(request.order == Request::HAND_OVER);
+    } else {
+      require(request.order == Request::REPORT, topics::kCandidate, "order 1, 2, 3 or 4");
+      require(session_.watched() != nullptr, topics::kCandidate,
+              "one that is watched; there is none");
+    }
+    response.message = session_.watched()->report();
+    response.success = true;
+  } catch (const InputError& error) {
+    response.message = error.what();
+    refuse(topics::kCandidate, error.what());
+  }
   return true;
 }
 

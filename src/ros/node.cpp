@@ -24,7 +24,7 @@ constexpr std::size_t kMostCommands = 10;  // refused ones that are told to the 
 
 bool isCommand(const std::string& topic) {
   return topic == topics::kSetpoint || topic == topics::kDisturbance ||
-         topic == topics::kManualInput || topic == topics::kSettings;
+         topic == topics::kManualInput || topic == topics::kSettings || topic == topics::kCandidate;
 }
 
 std::string shortened(const std::string& words) {

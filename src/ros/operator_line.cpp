@@ -1,5 +1,6 @@
 #include "runtime/operator_line.hpp"
 
+#include <fmbpc/Candidate.h>
 #include <fmbpc/CommandEffect.h>
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/Disturbance.h>
@@ -86,6 +87,10 @@ class Line {
         return command<fmbpc::Disturbance>(topics::kDisturbance, topics::kDisturbanceEffect, c);
       case OperatorVerb::kRelease:
         return release(c.names);
+      case OperatorVerb::kShadow:
+      case OperatorVerb::kHandOver:
+      case OperatorVerb::kBack:
+        return candidate(c);
       case OperatorVerb::kManual:
       case OperatorVerb::kAuto:
         break;
@@ -252,6 +257,19 @@ class Line {
     return words;
   }
 
+  /// What the controller says of its candidate, in JSON.
+  static std::string candidate(const OperatorCommand& c) {
+    using Request = fmbpc::Candidate::Request;
+    fmbpc::Candidate ask;
+    ask.request.loop = c.loop;
+    ask.request.order = c.verb == OperatorVerb::kHandOver ? Request::HAND_OVER
+                        : c.verb == OperatorVerb::kBack   ? Request::BACK
+                        : c.loop.empty()                  ? Request::REPORT
+                                                          : Request::WATCH;
+    call(topics::kCandidate, ask);
+    return ask.response.message + "\n";
+  }
+
   /// Inputs that are not named stay where they are.
   fmbpc::ManualInput byHand(const OperatorCommand& c) const {
     fmbpc::ManualInput put;
@@ -266,7 +284,7 @@ class Line {
   }
 
   template <typename Service>
-  void call(const char* name, Service& service) {
+  static void call(const char* name, Service& service) {
     const std::string full = std::string(kControllerName) + "/" + name;
     require(ros::service::call(full, service), full, "a controller that answers");
     if (!service.response.success)

@@ -168,9 +168,10 @@ void Links::lookAtTopics(const ByTopic& publishers, const ByTopic& subscribers) 
 /// roscpp tells nobody which services a node has: all names that a node of ours may have are tried.
 void Links::lookAtServices(const ByTopic& services, const std::vector<std::string>& spaces) {
   for (const std::string& space : spaces)
-    for (const char* name : {topics::kPause, topics::kStep, topics::kReset, topics::kManual,
-                             topics::kAdapt, topics::kManualInput, topics::kHold, "set_parameters",
-                             "get_loggers", "set_logger_level"}) {
+    for (const char* name :
+         {topics::kPause, topics::kStep, topics::kReset, topics::kManual, topics::kAdapt,
+          topics::kManualInput, topics::kHold, topics::kCandidate, "set_parameters", "get_loggers",
+          "set_logger_level"}) {
       const std::string service = space + "/" + name;
       if (ros::ServiceManager::instance()->lookupServicePublication(service) &&
           isForgotten("serves " + service, has(services, service, ros::this_node::getName())))

@@ -48,6 +48,7 @@ inline constexpr char kManual[] = "manual";
 inline constexpr char kAdapt[] = "adapt";
 inline constexpr char kManualInput[] = "manual_input";
 inline constexpr char kHold[] = "hold";
+inline constexpr char kCandidate[] = "candidate";
 inline constexpr char kSettings[] = "settings";
 
 // Parameters: the loop as text (`fmbpc resolve`), searched upwards from the node's namespace.

@@ -2,6 +2,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "runtime/factory.hpp"
 
 namespace fpc {
 namespace {
@@ -23,6 +24,10 @@ struct Doer {
   }
   void operator()(const UseModel& c) const { targets.controller.setModel(c.model); }
   void operator()(const Identify& c) const { targets.identify(c.window); }
+  void operator()(const WatchCandidate& c) const {
+    targets.controller.watch(makeCandidate(*c.loop, c.params));
+  }
+  void operator()(const HandOver& c) const { targets.controller.handOver(c.on); }
 };
 
 }  // namespace

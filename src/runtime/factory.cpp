@@ -3,6 +3,7 @@
 #include "config/disturbance_source.hpp"
 #include "control/estimating_controller.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "runtime/model_use.hpp"
 #include "supervision/guard.hpp"
 #include "supervision/standstill.hpp"
 
@@ -47,7 +48,20 @@ ControllerSession makeControllerSession(const LoopFile& loop) {
                             loop.plant_info, loop.max_pole, loop.plausibility);
   if (loop.has_clp) session.leadsAnOptimizer();
   session.withoutSetpoint(loop.report.without_setpoint);
+  if (loop.candidate.loop)
+    session.watch(makeCandidate(*loop.candidate.loop, loop.candidate.params));
   return session;
+}
+
+Candidate makeCandidate(const LoopFile& other, const CandidateParams& params) {
+  Candidate candidate;
+  candidate.name = other.name;
+  candidate.law = makeController(other);
+  candidate.model = other.model;
+  candidate.params = params;
+  candidate.moved = movedInputs(other);
+  if (candidate.law->needsModel()) candidate.law->setModel(other.model);
+  return candidate;
 }
 
 TargetSession makeTargetSession(const LoopFile& loop) {

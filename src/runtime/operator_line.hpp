@@ -8,13 +8,14 @@
 
 namespace fpc {
 
-enum class OperatorVerb { kSet, kDisturb, kManual, kAuto, kRelease };
+enum class OperatorVerb { kSet, kDisturb, kManual, kAuto, kRelease, kShadow, kHandOver, kBack };
 
 struct OperatorCommand {
   OperatorVerb verb{OperatorVerb::kSet};
   std::vector<std::pair<std::string, double>> values;  ///< set, disturb, manual: by name
   std::vector<std::string> names;                      ///< release; none: everything
   bool offset{false};                                  ///< set, disturb: added, not instead
+  std::string loop;  ///< shadow: of the candidate; empty: how it is
 };
 
 /// Asks it of the loop on the present master (ROS_MASTER_URI, ROS_NAMESPACE) and waits for the

@@ -20,6 +20,8 @@
 namespace fpc {
 
 class ReactionWatch;
+class WatchedLaw;
+struct Candidate;
 
 /// What a controller sends back for one measurement.
 struct ControllerAnswer {
@@ -121,6 +123,14 @@ class ControllerSession {
   /// New settings of the law from the next sample on; see Controller::retune().
   bool retune(const Settings& settings);
 
+  /// Watches a candidate beside the law from the next sample on, in the place of another one; see
+  /// WatchedLaw, which is then the controller(). @throws InputError
+  void watch(Candidate candidate);
+  /// To the candidate from the next sample on, or back to the former law.
+  /// @throws InputError if there is none that has passed, or that is in charge.
+  void handOver(bool on);
+  const WatchedLaw* watched() const { return watched_; }
+
   OperatorWishes wishes() const;
   /// Before the first sample. What has been asked of this object itself is newer and stays.
   /// @throws InputError for what the controller refuses; the rest is taken.
@@ -182,6 +192,7 @@ class ControllerSession {
   void beginAnew();
 
   std::unique_ptr<Controller> controller_;
+  WatchedLaw* watched_{nullptr};             // controller_, where there is a candidate
   std::vector<std::string> setpoint_texts_;  // by output; empty: that it is clamped is not said
   SetpointSource setpoint_;
   InputLimits limits_;

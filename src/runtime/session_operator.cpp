@@ -6,6 +6,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "runtime/session.hpp"
+#include "runtime/watched_law.hpp"
 #include "supervision/reaction_watch.hpp"
 
 namespace fpc {
@@ -70,6 +71,24 @@ bool ControllerSession::retune(const Settings& settings) {
       known->second = value;
   }
   return true;
+}
+
+void ControllerSession::watch(Candidate candidate) {
+  if (watched_ == nullptr) {
+    auto watched = std::make_unique<WatchedLaw>(std::move(controller_), model_, limits_, plant_,
+                                                leads_an_optimizer_);
+    watched_ = watched.get();
+    controller_ = std::move(watched);
+  }
+  watched_->watch(std::move(candidate));
+}
+
+void ControllerSession::handOver(bool on) {
+  require(watched_ != nullptr, "candidate", "one that is watched; there is none");
+  if (on)
+    watched_->handOver();
+  else
+    watched_->back();
 }
 
 OperatorWishes ControllerSession::wishes() const {

@@ -15,16 +15,6 @@ using Index = Eigen::Index;
 constexpr double kFlat = 1e-7;       // of an output: a forecast that moves less says nothing
 constexpr double kMostAlike = 0.98;  // of an autocorrelation
 
-int longestLag(const TsModel& model, Index input) {
-  int longest = 1;
-  for (const OutputModel& submodel : model.submodels)
-    for (const auto* list : {&submodel.antecedents, &submodel.regressors})
-      for (const Regressor& regressor : *list)
-        if (regressor.kind == SignalKind::kInput && regressor.index == input)
-          longest = std::max(longest, regressor.lag);
-  return longest;
-}
-
 /// Mean, sum of squares about it, and autocorrelation at lag one.
 struct Spread {
   double mean{}, squares{}, alike{};
@@ -48,21 +38,9 @@ Spread spreadOf(Index n, const At& at) {
 }  // namespace
 
 ReactionWatch::ReactionWatch(const TsModel& model, int samples)
-    : local_(model),
-      names_(namesOf(model.inputs)),
-      state_(Vector::Zero(local_.stateSize())),
-      part_(state_),
-      next_(state_),
-      before_(Vector::Zero(countOf(model.disturbances))),
-      reference_(Vector::Zero(countOf(model.inputs))) {
+    : parts_(model), names_(namesOf(model.inputs)) {
   require(samples >= 8, "plausibility.reaction_samples", "0 or an integer >= 8");
   const Index n_y = countOf(model.outputs), n_u = countOf(model.inputs);
-  for (Index i = 0; i < n_u; ++i) {
-    first_.push_back(local_.inputState(i, 1));
-    end_.push_back(first_.back() + longestLag(model, i));
-  }
-  effect_ = error_ = Vector::Zero(n_y);
-  forecast_ = Vector::Zero(n_y * n_u);
   errors_ = Matrix::Zero(n_y, samples);
   phi_ = Matrix::Zero(n_y * n_u, samples);
   share_ = Vector::Zero(n_u);
@@ -72,7 +50,7 @@ ReactionWatch::ReactionWatch(const TsModel& model, int samples)
 }
 
 void ReactionWatch::reset() {
-  known_ = started_ = false;
+  parts_.reset();
   filled_ = place_ = 0;
   share_.setConstant(kNaN);
   away_.assign(names_.size(), 0);
@@ -81,41 +59,14 @@ void ReactionWatch::reset() {
 }
 
 void ReactionWatch::look(const Measurement& now) {
-  if (!started_) reference_ = now.input_applied;
-  started_ = true;
-  if (known_) {
-    predict(now);
-    keep();
-    if (filled_ == errors_.cols()) judge();
-    local_.shiftState(now.outputs, now.input_applied, before_, state_);
-  } else {
-    local_.restState(now.outputs, now.input_applied, now.disturbances, state_);
-    known_ = true;
-  }
-  before_ = now.disturbances;
-}
-
-/// The error of y(k) out of sample k - 1, and what each input had to do with its forecast.
-void ReactionWatch::predict(const Measurement& now) {
-  local_.advance(state_, now.input_applied, before_, next_);
-  const AffineModel& affine = local_.affine();
-  error_ = now.outputs;
-  error_.noalias() -= affine.C * next_;
-  const Index n_y = error_.size();
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    const auto k = static_cast<Index>(i);
-    part_.setZero();
-    for (Index row = first_[i]; row < end_[i]; ++row) part_[row] = state_[row] - reference_[k];
-    next_.noalias() = affine.A * part_;
-    next_ += (now.input_applied[k] - reference_[k]) * affine.B.col(k);
-    effect_.noalias() = affine.C * next_;
-    forecast_.segment(k * n_y, n_y) = effect_;
-  }
+  if (!parts_.look(now)) return;
+  keep();
+  if (filled_ == errors_.cols()) judge();
 }
 
 void ReactionWatch::keep() {
-  errors_.col(place_) = error_;
-  phi_.col(place_) = forecast_;
+  errors_.col(place_) = parts_.error();
+  phi_.col(place_) = parts_.effect();
   place_ = (place_ + 1) % errors_.cols();
   filled_ = std::min(filled_ + 1, errors_.cols());
 }
@@ -126,7 +77,7 @@ void ReactionWatch::estimate(Index output, Index input, double& share, double& e
   const auto phi = [&](Index k) { return phi_(row, in_order(k)); };
   const auto e = [&](Index k) { return errors_(output, in_order(k)); };
   const Spread moves = spreadOf(n, phi), errors = spreadOf(n, e);
-  const double size = std::abs(state_[local_.outputState(output)]);
+  const double size = std::abs(parts_.state()[parts_.local().outputState(output)]);
   error = std::numeric_limits<double>::infinity();
   if (!(moves.squares > static_cast<double>(n) * std::pow(kFlat * size, 2.0))) return;
   double product = 0.0;

@@ -7,7 +7,7 @@
 
 #include "fmbpc/base/event.hpp"
 #include "fmbpc/base/ring.hpp"
-#include "fmbpc/model/local_model.hpp"
+#include "supervision/forecast_parts.hpp"
 
 namespace fpc {
 
@@ -30,7 +30,7 @@ class ReactionWatch {
   /// Forgets everything.
   void reset();
   /// A sample was lost or not accepted: goes on with the next one.
-  void interrupt() { known_ = false; }
+  void interrupt() { parts_.interrupt(); }
   /// Sample k; its input_applied is what was told, or what was read back. No allocation.
   void look(const Measurement& now);
   /// "the outputs do not react to input q_r as the model says"; kNone if they do, or nobody knows.
@@ -38,22 +38,17 @@ class ReactionWatch {
   double share(Eigen::Index input) const { return share_[input]; }  ///< c; NaN: not known
 
  private:
-  void predict(const Measurement& now);
   void keep();
   void judge();
   void estimate(Eigen::Index output, Eigen::Index input, double& share, double& error) const;
 
-  LocalModel local_;
-  std::vector<std::string> names_;         // of the inputs
-  std::vector<Eigen::Index> first_, end_;  // rows of each input's past in the state
-  Vector state_, part_, next_, effect_, before_, reference_;
-  Matrix errors_, phi_;      // n_y N; n_y n_u, N
-  Vector error_, forecast_;  // of this sample: n_y; n_y n_u
-  Vector share_;             // n_u
-  std::vector<int> away_;    // samples in a row
+  ForecastParts parts_;
+  std::vector<std::string> names_;  // of the inputs
+  Matrix errors_, phi_;             // n_y N; n_y n_u, N
+  Vector share_;                    // n_u
+  std::vector<int> away_;           // samples in a row
   std::vector<bool> dead_;
   Eigen::Index filled_{}, place_{};
-  bool known_{false}, started_{false};
   std::vector<std::string> texts_;  // by input
   Notice notice_;
 };

@@ -150,6 +150,17 @@ struct ReplayArguments {
   bool json{false};
 };
 
+struct CommissionArguments {
+  std::string brief;
+  std::string folder;           ///< empty: NAME of the brief in the present one
+  std::string until{"design"};  ///< last stage
+  std::string again;            ///< stage that is gone through anew, with all after it; empty: none
+  bool undo{false};             ///< takes `again` and all after it back, and does nothing else
+  int evaluations{48}, members{16}, threads{0};
+  bool json{false};
+};
+
+int commission(const CommissionArguments& arguments);
 int evaluate(const EvaluateArguments& arguments);
 int identify(const IdentifyArguments& arguments);
 int validate(const ValidateArguments& arguments);
@@ -185,6 +196,7 @@ int replay(const ReplayArguments& arguments);
 int recover(const RecoverArguments& arguments);
 /// These become other programs: they return only by throwing.
 int watch(const std::vector<std::string>& words);
+int page(std::vector<std::string> words);
 int reproduce(const std::vector<std::string>& words);
 
 }  // namespace fpc::tool

@@ -49,6 +49,33 @@ void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
   });
 }
 
+void addCommission(CLI::App& app, fpc::tool::CommissionArguments& a) {
+  CLI::App* commission = app.add_subcommand(
+      "commission",
+      "From a brief of a plant to a law that holds it: watches, tests, models, designs; what is "
+      "done is kept in a folder");
+  commission->add_option("BRIEF", a.brief, "what the operator says, docs/commissioning.md")
+      ->required();
+  commission->add_option("--folder", a.folder, "of its files (default: ./NAME_commissioned)");
+  commission->add_option("--until", a.until, "last stage")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"brief", "watch", "test", "model", "design"}));
+  commission->add_option("--again", a.again, "goes through this stage and those after it once more")
+      ->check(CLI::IsMember({"brief", "watch", "test", "model", "design"}));
+  commission->add_flag("--undo", a.undo,
+                       "only takes back what --again names, and what is after it");
+  commission->add_option("--evaluations", a.evaluations, "of each search of stage design")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  commission->add_option("--members", a.members, "of the ensemble of models")
+      ->capture_default_str()
+      ->check(CLI::Range(8, 200));
+  commission->add_option("--threads", a.threads, "0: all cores")->capture_default_str();
+  commission->add_flag("--json", a.json, "print one JSON object and nothing else");
+  commission->footer("Example: fmbpc commission heated_tank_brief.yaml --until watch\n");
+  commission->callback([&a] { chosen = [&a] { return fpc::tool::commission(a); }; });
+}
+
 void addFormat(CLI::App& command, fpc::tool::RecordFormat& f) {
   command.add_option("--separator", f.separator, "comma, semicolon, tab or bar")
       ->capture_default_str();
@@ -286,6 +313,8 @@ int main(int argc, char** argv) {
   addEvaluate(app, evaluate_arguments);
   fpc::tool::IdentifyArguments identify_arguments;
   addIdentify(app, identify_arguments);
+  fpc::tool::CommissionArguments commission_arguments;
+  addCommission(app, commission_arguments);
   fpc::tool::ValidateArguments validate_arguments;
   addValidate(app, validate_arguments);
   fpc::tool::LoopsArguments loops_arguments;
@@ -306,8 +335,10 @@ int main(int argc, char** argv) {
   fpc::tool::RecoverArguments recover;
   fpc::tool::addRecover(app, recover, chosen);
   fpc::tool::addOperate(app, chosen);
+  fpc::tool::addShadow(app, chosen);
   fpc::tool::addExport(app, chosen);
   fpc::tool::addWatch(app);
+  fpc::tool::addPage(app);
   fpc::tool::refuseEmptyNames(app);
   try {
     if (const int code = fpc::tool::runOther(argc, argv); code >= 0) return code;

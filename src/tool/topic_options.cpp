@@ -3,7 +3,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr char kWatch[] = "watch", kReproduce[] = "reproduce";
+constexpr char kWatch[] = "watch", kPage[] = "page", kReproduce[] = "reproduce";
 
 }  // namespace
 
@@ -34,6 +34,10 @@ void addWatch(CLI::App& app) {
   app.add_subcommand(kWatch, "Shows a running loop from its topics: in the terminal, or --window");
 }
 
+void addPage(CLI::App& app) {
+  app.add_subcommand(kPage, "Writes a finished run, a folder or a bag, as one HTML file");
+}
+
 void addReproduce(CLI::App& app) {
   app.add_subcommand(kReproduce, "Tables and figures of the papers: paper | here | verdict");
 }
@@ -43,6 +47,7 @@ int runOther(int argc, char** argv) {
   const std::string command = argv[1];
   const std::vector<std::string> words(argv + 2, argv + argc);
   if (command == kWatch) return watch(words);
+  if (command == kPage) return page(words);
   return command == kReproduce ? reproduce(words) : -1;
 }
 

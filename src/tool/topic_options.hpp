@@ -17,9 +17,12 @@ void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen
 
 /// set, disturb, manual, auto, release.
 void addOperate(CLI::App& app, std::function<int()>& chosen);
+void addShadow(CLI::App& app, std::function<int()>& chosen);
 
-/// `watch` and `reproduce` for the list of commands only: their words are those of other programs.
+/// `watch`, `page` and `reproduce` for the list of commands only: their words are those of other
+/// programs.
 void addWatch(CLI::App& app);
+void addPage(CLI::App& app);
 void addExport(CLI::App& app, std::function<int()>& chosen);
 void addReproduce(CLI::App& app);
 /// Becomes the other program if one of them is asked for, whatever stands behind it, --help too.

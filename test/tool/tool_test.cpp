@@ -80,7 +80,7 @@ TEST_F(Tool, HelpNamesTheToolAndGivesAnExampleOfEveryCommand) {
   EXPECT_EQ(all.find("fmbpc_tool"), std::string::npos) << all;
   for (const char* command : {"run", "resolve", "evaluate", "identify", "validate", "loops",
                               "plants", "controllers", "model", "table", "stability", "reproduce",
-                              "tune", "study", "replay", "recover", "watch"}) {
+                              "tune", "study", "replay", "recover", "watch", "page"}) {
     EXPECT_NE(all.find(command), std::string::npos) << command;
     const std::string help = tool(std::string(command) + " --help").printed;
     EXPECT_NE(help.find("Example: fmbpc " + std::string(command)), std::string::npos) << help;

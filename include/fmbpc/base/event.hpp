@@ -52,6 +52,13 @@ enum class EventCode : std::uint8_t {
   kNeverControlled,
   kInputAtLimit,
   kSoftLimitExceeded,
+  // a candidate beside the law in charge
+  kCandidateWatched,
+  kCandidatePassed,
+  kCandidateRefused,
+  kCandidateOpen,
+  kHandOver,
+  kHandBack,
   // the target layer
   kTargetGivenUp,
   kTargetNotFound,

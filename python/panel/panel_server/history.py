@@ -46,6 +46,23 @@ class History:
         self.first = step if self.first is None else min(self.first, step)
         self.last = step if self.last is None else max(self.last, step)
 
+    def fill(self, steps, names, table):
+        """Puts in what is not there yet: table has a row for each of steps, a column for each of names."""
+        columns = [self.index[n] for n in names]
+        numbers = steps // CHUNK
+        for number in numpy.unique(numbers).tolist():
+            if self.last is not None and number <= self.last // CHUNK - self.most:
+                continue
+            chunk = self._rows(number * CHUNK)
+            mine = numbers == number
+            if chunk is None or not mine.any():
+                continue
+            at = numpy.ix_(steps[mine] % CHUNK, columns)
+            chunk[0][at] = numpy.where(numpy.isnan(chunk[0][at]), table[mine], chunk[0][at])
+            first, last = int(steps[mine].min()), int(steps[mine].max())
+            self.first = first if self.first is None else min(self.first, first)
+            self.last = last if self.last is None else max(self.last, last)
+
     def get(self, step):
         """(values, wall) of a sample, or None."""
         chunk = self.chunks.get(step // CHUNK)
@@ -114,3 +131,18 @@ class History:
 def plain(array, digits=7):
     """A list for JSON: None for what is no number, as many digits as a float32 has."""
     return [None if not math.isfinite(v) else float(f"%.{digits}g" % v) for v in numpy.asarray(array, dtype=float).ravel()]
+
+
+def read_csv(path):
+    """(names without units, table) of a trajectory.csv; a last line that is being written is left out."""
+    with open(path, encoding="utf-8") as stream:
+        names = [word.split("[")[0] for word in stream.readline().strip().split(",")]
+        rows = []
+        for line in stream:
+            cells = line.rstrip("\n").split(",")
+            if line.endswith("\n") and len(cells) == len(names):
+                try:
+                    rows.append([float(c) if c else math.nan for c in cells])
+                except ValueError:
+                    continue
+    return names, numpy.array(rows, dtype=float).reshape(-1, len(names))

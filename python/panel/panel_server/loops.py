@@ -17,10 +17,11 @@ from fmbpc import msg as messages
 from std_msgs.msg import String
 
 from panel_server import predict, state, wire
-from panel_server.history import History
+from panel_server.history import History, read_csv
 
 SILENT = 1.5      # s of wall time without a word from the plant: the loop is stale
 MOST_WAITING = 20000  # raw messages of a topic between two looks
+MOST_FILLED = 200000  # rows of a run's earlier parts
 PLAN_GRACE = 60.0 # s that plans are listened to after the last page that shows them
 
 # Who speaks where, as in the loop file (loop.publishers); () is anyone.
@@ -304,34 +305,32 @@ class Loop:
     def _fill_from(self, run_id):
         try:
             folder = rospy.get_param(self.prefix + "loop_recorder/out", "")
-            rows = recorded(folder, self.tool)
+            parts = recorded(folder, self.tool, run_id)
             with self.lock:
-                if run_id == self.run_id and rows is not None:
-                    self._take_rows(*rows)
+                if run_id == self.run_id:
+                    for names, table, certain in parts:
+                        self._take_rows(names, table, certain)
         except Exception:  # noqa: BLE001: a record of another make leaves a gap, which the trend shows
             self.damaged += 1
         finally:
             self.filling = False
 
-    def _take_rows(self, names, table):
-        hours = table[:, names.index("time")]
-        steps = numpy.rint(hours * 3600.0 / self.info.sample_time_s).astype(int)
-        wanted = {}
-        for i, name in enumerate(names):
-            target = {**{s.name: s.name + "_applied" for s in self.info.inputs}, **{s.name + "_commanded": s.name for s in self.info.inputs}}.get(name, name)
-            if target in self.history.index:
-                wanted[target] = i
-        same = self.history.get(self.step)
-        if same is not None and self.step in set(steps.tolist()):  # another run's record would differ
-            row = table[int(numpy.flatnonzero(steps == self.step)[0])]
-            first = self.info.outputs[0].name
-            if first in wanted and not math.isclose(float(same[0][self.history.index[first]]), row[wanted[first]], rel_tol=1e-4, abs_tol=1e-9):
-                return
-        for step, row in zip(steps, table):
-            if step > self.step:
-                break
-            self.history.put(int(step), {name: row[i] for name, i in wanted.items() if math.isnan(self.history.value(int(step), name))})
-        self.filled = max(self.filled, int(steps[-1]) if len(steps) else 0)
+    def _take_rows(self, names, table, certain):
+        """certain: it is of this run; else some of its samples must be those that came over the topics."""
+        if "time" not in names or not len(table):
+            return
+        steps = numpy.rint(table[:, names.index("time")] * 3600.0 / self.info.sample_time_s).astype(int)
+        inputs = {s.name for s in self.info.inputs}
+        wanted = {(n + "_applied" if n in inputs else n[:-len("_commanded")] if n.endswith("_commanded") else n): i for i, n in enumerate(names)}
+        wanted = {n: i for n, i in wanted.items() if n in self.history.index}
+        first = self.info.outputs[0].name
+        mine = numpy.array([self.history.value(int(k), first) for k in steps[-200:]])
+        both = numpy.isfinite(mine)
+        if not certain and not (both.any() and first in wanted and numpy.allclose(mine[both], table[-200:][both, wanted[first]], rtol=1e-4, atol=1e-9)):
+            return
+        keep = (steps >= 0) & (steps <= self.step)
+        self.history.fill(steps[keep], list(wanted), table[keep][:, list(wanted.values())])
+        self.filled = max(self.filled, int(steps[keep].max(initial=0)))
         self.restarted += 1  # the pages fetch all again
 
     # What it is.
@@ -356,7 +355,8 @@ class Loop:
         codes = {code for code, _ in found}
         for message in self.states.values():
             if message.code and message.code not in codes and message.word not in ("finished",):
-                found[(message.code, "")] = (severity.get(message.code, "warning"), message.reason)
+                signal = next((s for (_, code, s) in self.seen_events if code == message.code and s), "")  # one alarm, not one with and one without
+                found[(message.code, signal)] = (severity.get(message.code, "warning"), message.reason)
         if self.heard is not None and self.stale(now) and not self.over():
             found = {("node_silent", "plant"): ("warning", f"the plant has said nothing for {self.stale(now):.0f} s")}
         return found
@@ -502,31 +502,27 @@ def rounded(values, digits=6):
     return [float(f"%.{digits}g" % v) if math.isfinite(v) else None for v in values]
 
 
-def read_csv(path):
-    """(names without units, table) of a trajectory.csv; a last line that is being written is left out."""
-    with open(path, encoding="utf-8") as stream:
-        names = [word.split("[")[0] for word in stream.readline().strip().split(",")]
-        rows = []
-        for line in stream:
-            cells = line.rstrip("\n").split(",")
-            if line.endswith("\n") and len(cells) == len(names):
-                try:
-                    rows.append([float(c) if c else math.nan for c in cells])
-                except ValueError:
-                    continue
-    return names, numpy.array(rows, dtype=float).reshape(-1, len(names))
-
-
-def recorded(folder, tool):
-    """What the recorder of a loop has on disk, of the run that goes on or of the one that has ended; None if that is elsewhere."""
+def recorded(folder, tool, run_id=None):
+    """[(names, table, of this run for certain)] of what the recorder of a loop has on disk: the parts of a run that are filed already, then the run that goes on or has
+    ended; [] if that is elsewhere."""
     if not folder or not os.path.isdir(folder):
-        return None
+        return []
+    found, history = [], os.path.join(folder, "history")
+    if run_id is not None and os.path.isdir(history):
+        parts = [p for p in os.listdir(history) if p == str(run_id) or p.startswith(f"{run_id}-")]
+        parts.sort(key=lambda p: int(p.rsplit("-", 1)[1]) if "-" in p and p.rsplit("-", 1)[1].isdigit() else 0)
+        rows = 0
+        for part in reversed(parts):
+            path = os.path.join(history, part, "trajectory.csv")
+            if os.path.exists(path) and rows < MOST_FILLED:
+                found.insert(0, (*read_csv(path), True))
+                rows += len(found[0][1])
     journal = os.path.join(folder, "journal.bin")
     if os.path.exists(journal) and tool:
         with tempfile.TemporaryDirectory(prefix="fmbpc_panel_") as work:
             shutil.copy(journal, work)
             subprocess.run([tool, "recover", "--no-plot", work], check=False, timeout=120, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
             if os.path.exists(os.path.join(work, "trajectory.csv")):
-                return read_csv(os.path.join(work, "trajectory.csv"))
+                found.append((*read_csv(os.path.join(work, "trajectory.csv")), False))
     path = os.path.join(folder, "trajectory.csv")
-    return read_csv(path) if os.path.exists(path) else None
+    return found + ([(*read_csv(path), False)] if os.path.exists(path) else [])
