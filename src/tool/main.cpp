@@ -27,7 +27,7 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
                   "folder for trajectory.csv, summary.json, plot.png; of several loops one below "
                   "it each, with comparison.png (default: nothing is written)");
   run->add_option("--commands", a.commands,
-                  "file of what an operator does at which time (docs/operation.md)");
+                  "file of what an operator does at which time (docs/operators.md)");
   run->add_flag("--on-model", a.on_model,
                 "the loop's model, with its noise, in the place of its plant: a rehearsal");
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
