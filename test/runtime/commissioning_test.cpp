@@ -134,10 +134,10 @@ TEST(Commissioning, OfOneInputGoesTheWholeWayInsideItsLimits) {
   }
 }
 
-TEST(Commissioning, OfTwoInputsFindsTheCouplingAndOffersOneOfBoth) {
+TEST(Commissioning, OfTwoInputsFindsTheCouplingInsideItsLimits) {
   const std::string folder = folderOf("column", kColumnBrief, "column.yaml", kColumn);
   Commissioning c = made(folder);
-  c.run(Stage::kDesign);
+  c.run(Stage::kModel);
   const OrderedJson test = c.figures(Stage::kTest);
   EXPECT_EQ(test["limits_left"], 0);
   EXPECT_EQ(test["ended"], "enough") << test["reason"];
@@ -145,9 +145,6 @@ TEST(Commissioning, OfTwoInputsFindsTheCouplingAndOffersOneOfBoth) {
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j)
       expectWithin(elementOf(c, i, j), "gain", "gain_bound", gains[i][j]);
-  const OrderedJson design = c.figures(Stage::kDesign);
-  EXPECT_LE(design["law"]["sensitivity_peak"].get<double>(), 2.0);
-  EXPECT_EQ(design["offers"], "law");
 }
 
 TEST(Commissioning, AStageIsResumedRepeatedAndUndone) {
@@ -175,15 +172,6 @@ TEST(Commissioning, AStageIsResumedRepeatedAndUndone) {
   other.replace(other.find("seed: 1"), 7, "seed: 2");
   writeText(other, inFolder(folder, "brief_in.yaml"));
   EXPECT_FALSE(made(folder).done(Stage::kWatch));
-}
-
-TEST(Commissioning, AFrozenSensorStopsItBeforeTheTest) {
-  const std::string folder = folderOf("frozen", kTankBrief, "tank.yaml",
-                                      std::string(kTank) + "sensors: {T: {noise_std: 0.05, stuck_from_h: 0.9}}\n");
-  Commissioning c = made(folder);
-  EXPECT_THROW(c.run(Stage::kTest), InputError);
-  EXPECT_TRUE(c.figures(Stage::kWatch)["grave"].get<bool>());
-  EXPECT_FALSE(c.done(Stage::kTest));
 }
 
 }  // namespace commissioning_test
