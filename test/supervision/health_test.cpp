@@ -56,7 +56,7 @@ TEST(MinimumVarianceIndex, IsThatOfThePaper) {
     for (const int dead_time : {1, 2, 3, 5, 8})
       for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const MinimumVariance found =
-            minimumVariance(filtered(noise(5000, seed), loops[loop]), dead_time);
+            minimumVariance(filtered(noise(20000, seed), loops[loop]), dead_time);
         const double exact = exactIndex(loops[loop], dead_time);
         EXPECT_NEAR(found.index, exact, 0.05) << loop << " " << dead_time << " " << seed;
         worst = std::max(worst, std::abs(found.index - exact));

@@ -11,7 +11,7 @@ namespace fpc {
 namespace {
 
 constexpr int kMostLags = 30;
-constexpr Eigen::Index kFewestPerLag = 8;
+constexpr Eigen::Index kFewestPerLag = 8, kFewestCompared = 50;
 
 /// Sums over t of x(t - lag i) x(t - lag j), lags 0, d, d + 1, .., d + m - 1. Lags that follow each
 /// other need no sum of their own but at the ends.
@@ -49,7 +49,7 @@ MinimumVariance minimumVariance(const std::vector<double>& error, int dead_time)
   while (lags > 2 && usable(lags) < kFewestPerLag * lags) lags /= 2;
   MinimumVariance result;
   const Eigen::Index n = usable(lags);
-  if (n < kFewestPerLag * lags) return result;
+  if (n < std::max(kFewestCompared, kFewestPerLag * lags)) return result;
   std::vector<double> x = error;
   const double mean = meanOf(x);
   for (double& value : x) value -= mean;
