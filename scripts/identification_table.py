@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Every table of figures in docs/identification.md: `fmbpc identify --auto` on public records (identified from the first rows of each,
+"""Every table of figures in docs/identification_results.md: `fmbpc identify --auto` on public records (identified from the first rows of each,
 judged on the others in free run and one step ahead), then the sections of identification_runs.py.
 
     FMBPC_DATA=FOLDER scripts/identification_table.py [NAME..] [--section SECTION]... [--work W] [--write]
 
-NAME: of a record, and no other section. --write puts each table between its marks in docs/identification.md, and the models of the
+NAME: of a record, and no other section. --write puts each table between its marks in docs/identification_results.md, and the models of the
 section `loops` into config/model.
 """
 import argparse
@@ -18,7 +18,7 @@ import tempfile
 from identification_runs import SECTIONS, Records
 
 TOOL = pathlib.Path(__file__).resolve().parent / "fmbpc"
-PAGE = TOOL.parent.parent / "docs" / "identification.md"
+PAGE = TOOL.parent.parent / "docs" / "identification_results.md"
 BEGIN, END = "<!-- identification_table.py %s -->", "<!-- end -->"
 PLANT_INPUTS = "u1_gas_flow,u2_turbine_valves,u3_superheater_spray,u4_gas_dampers,u5_air_flow"
 PLANT_OUTPUTS = "y1_steam_pressure,y2_main_steam_temp,y3_reheat_steam_temp"
@@ -173,7 +173,7 @@ def main():
     parser.add_argument("names", nargs="*", metavar="NAME", help=", ".join(RECORDS))
     parser.add_argument("--section", action="append", choices=["records", *SECTIONS], help="all, if none is named")
     parser.add_argument("--work", type=float, default=120.0, help="per record")
-    parser.add_argument("--write", action="store_true", help="into docs/identification.md as well")
+    parser.add_argument("--write", action="store_true", help="into docs/identification_results.md as well")
     arguments = parser.parse_args()
     wrong = refused(arguments)
     if wrong:

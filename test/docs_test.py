@@ -78,15 +78,18 @@ class Docs(unittest.TestCase):
 
     def test_every_table_of_comparisons_says_what_makes_it(self):
         """In the words before it, since the table before or the heading."""
-        before = []
-        for line in (TOP / "docs/comparisons.md").read_text().splitlines():
-            if line.startswith("#"):
-                before = []
-            elif line.startswith("|---"):
-                self.assertRegex(" ".join(before), SOURCE)
-                before = []
-            elif not line.startswith("|"):
-                before.append(line)
+        for page in sorted((TOP / "docs").glob("comparisons*.md")):
+            before, cells = [], ""
+            for line in page.read_text().split("## In short")[-1].partition("\n## ")[2].splitlines():
+                if line.startswith("#"):
+                    before = []
+                elif line.startswith("|---"):
+                    self.assertRegex(" ".join([*before, cells]), SOURCE, page)
+                    before = []
+                elif line.startswith("|"):
+                    cells = line
+                else:
+                    before.append(line)
 
     def test_the_page_of_records_is_the_list_that_errors_quote(self):
         listed = re.findall(r"^(\w+\.csv):\n  from: (.*)\n  sha256: (\w{64})$", (TOP / "config/records.yaml").read_text(), re.MULTILINE)

@@ -104,12 +104,12 @@ class House(unittest.TestCase):
         """The registration, its line for CMake, a loop, its keys: docs/own_controller.md lists them; nobody else may have to know."""
         where = (TOP / "docs/own_controller.md").read_text().split("## Where the files go")[1]
         listed = re.findall(r"^\| `([^`]+)` \|", where, flags=re.M)
-        self.assertEqual(listed, ["src/control/FAMILY/my_type.cpp", "src/CMakeLists.txt", "config/loop/PLANT/PLANT_my.yaml", "docs/loop_file.md"])
+        self.assertEqual(listed, ["src/control/FAMILY/my_type.cpp", "src/CMakeLists.txt", "config/loop/PLANT/PLANT_my.yaml", "docs/loop_controller.md"])
         loops = "\n".join(path.read_text() for path in (TOP / "config/loop").rglob("*.yaml"))
         for name, registration in controller_types().items():
             self.assertIn(f" control/{registration.parent.name}/{registration.name}\n", (TOP / "src/CMakeLists.txt").read_text())
             self.assertRegex(loops, rf"(?m)^  type: {name}\b")
-            self.assertRegex((TOP / "docs/loop_file.md").read_text(), rf"`[^`\n]*\b{name}\b[^`\n]*`")
+            self.assertRegex((TOP / "docs/loop_controller.md").read_text(), rf"`[^`\n]*\b{name}\b[^`\n]*`")
         # "fmbpc" is the package as well, "pi" a key of the section guard
         self.assertEqual([], named_by_others(set(controller_types()) - {"fmbpc", "pi"}, "control"))
 

@@ -6,7 +6,7 @@ import re
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
-DOCS = ("docs/loop_file.md", "docs/identification.md", "docs/tuning.md", "docs/study.md")
+DOCS = [*sorted(p.relative_to(TOP).as_posix() for p in (TOP / "docs").glob("loop_*.md")), "docs/structure_file.md", "docs/tuning_file.md", "docs/study_file.md"]
 SECTIONS = ("plant", "sampling", "disturbance", "setpoint", "model", "controller", "clp", "actuator", "noise", "loop", "tf",
             "report", "partition", "consequents", "repair", "validation", "time", "csv", "fitness", "search", "scenarios",
             "guard", "sensors", "gateway")

@@ -59,7 +59,7 @@ struct TimedCommand {
       what;
 };
 
-/// A list `commands` of entries {time_h: T, WHAT: ...}; docs/operation.md lists them. In the order
+/// A list `commands` of entries {time_h: T, WHAT: ...}; docs/operators.md lists them. In the order
 /// of their times, equal times as they stand. Names of models are as in a loop file.
 /// @throws InputError naming file, entry and what was expected.
 std::vector<TimedCommand> readCommands(const std::string& file, const LoopFile& loop);

@@ -9,7 +9,7 @@
 
 namespace fpc {
 
-/// Keys: docs/identification.md. `known`: takes what is known of each output; without it such
+/// Keys: docs/structure_file.md. `known`: takes what is known of each output; without it such
 /// statements are refused, since nobody would keep them. @throws InputError naming file, line, key.
 Structure readStructure(const std::string& file, std::vector<PriorKnowledge>* known = nullptr);
 Structure parseStructure(const std::string& text, const std::string& name,

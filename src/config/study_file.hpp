@@ -1,5 +1,5 @@
 // A study file read into structs: which loops are compared, over which seeds, parameters, noise and
-// records, and what is counted. All keys: docs/study.md.
+// records, and what is counted. All keys: docs/study_file.md.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // A tuning file read into structs: which numbers of a loop may change, what a good run is, on which
-// scenarios. All keys: docs/tuning.md.
+// scenarios. All keys: docs/tuning_file.md.
 #pragma once
 
 #include <cstdint>

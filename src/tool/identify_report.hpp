@@ -25,7 +25,7 @@ struct IdentifyReport {
   double seconds{};  ///< wall time of identification
 };
 
-/// Keys: docs/identification.md. Numbers that are not finite, and figures of no sample, are null.
+/// Keys: docs/structure_file.md. Numbers that are not finite, and figures of no sample, are null.
 std::string toJson(const IdentifyReport& report);
 std::string toTables(const IdentifyReport& report);
 

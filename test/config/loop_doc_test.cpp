@@ -1,6 +1,7 @@
-// docs/loop_file.md lists every key the reader knows and no other, with the structs' defaults.
+// The pages docs/loop_*.md list every key the reader knows and no other, with the structs' defaults.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <regex>
@@ -31,16 +32,19 @@ std::string trimmed(const std::string& cell) {
   return from == std::string::npos ? "" : cell.substr(from, cell.find_last_not_of(' ') - from + 1);
 }
 
-/// Rows "| `key` | unit | default | meaning |" of the page.
+/// Rows "| `key` | unit | default | meaning |" of the pages.
 std::map<std::string, Row> documented() {
-  std::ifstream stream(sourceDir() + "/docs/loop_file.md");
   std::map<std::string, Row> rows;
   const std::regex row(R"(\| `([^`]+)` \|([^|]*)\|([^|]*)\|([^|]*)\|)");
-  for (std::string line; std::getline(stream, line);) {
-    std::smatch match;
-    if (!std::regex_match(line, match, row)) continue;
-    EXPECT_EQ(rows.count(match[1]), 0U) << match[1];
-    rows[match[1]] = {trimmed(match[2]), trimmed(match[3]), trimmed(match[4])};
+  for (const auto& page : std::filesystem::directory_iterator(sourceDir() + "/docs")) {
+    if (page.path().filename().string().rfind("loop_", 0) != 0) continue;
+    std::ifstream stream(page.path());
+    for (std::string line; std::getline(stream, line);) {
+      std::smatch match;
+      if (!std::regex_match(line, match, row)) continue;
+      EXPECT_EQ(rows.count(match[1]), 0U) << match[1];
+      rows[match[1]] = {trimmed(match[2]), trimmed(match[3]), trimmed(match[4])};
+    }
   }
   return rows;
 }

@@ -1,4 +1,4 @@
-// docs/identification.md lists every key the structure reader knows and no other, with the defaults
+// docs/structure_file.md lists every key the structure reader knows and no other, with the defaults
 // of the structs.
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace config_structure_doc_test {
 /// Default by key, from rows "| `key` | default | meaning |"; a cell may name several keys of one
 /// section.
 std::map<std::string, std::string> documented() {
-  std::ifstream stream(sourceDir() + "/docs/identification.md");
+  std::ifstream stream(sourceDir() + "/docs/structure_file.md");
   std::map<std::string, std::string> rows;
   const std::regex row(R"(\| (`[^|]+`) \| ([^|]*) \| ([^|]+) \|)"), key(R"(`([^`]+)`)");
   std::string section;
@@ -111,7 +111,7 @@ std::set<std::string> words(const std::string& text) {
 }
 
 TEST(StructureDocs, EveryMembershipOfTheReaderIsDocumented) {
-  std::ifstream stream(sourceDir() + "/docs/identification.md");
+  std::ifstream stream(sourceDir() + "/docs/structure_file.md");
   std::string row;
   while (std::getline(stream, row) && row.rfind("| `.membership` |", 0) != 0) {
   }

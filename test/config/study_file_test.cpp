@@ -1,4 +1,4 @@
-// The reader of study files: what it reads, what it refuses, and that docs/study.md tells it all.
+// The reader of study files: what it reads, what it refuses, and that docs/study_file.md tells it all.
 #include "config/study_file.hpp"
 
 #include <fstream>
@@ -70,7 +70,7 @@ TEST(StudyFile, MistakesNameFileKeyAndWhatWasExpected) {
 }
 
 TEST(StudyFile, TheDocumentTellsItsKeys) {
-  std::ifstream stream(sourceDir() + "/docs/study.md");
+  std::ifstream stream(sourceDir() + "/docs/study_file.md");
   const std::string page((std::istreambuf_iterator<char>(stream)), {});
   const auto knownAfter = [](const std::string& error) {
     std::set<std::string> keys;
@@ -85,7 +85,7 @@ TEST(StudyFile, TheDocumentTellsItsKeys) {
     for (const auto& key : knownAfter(error)) {
       const bool section = key == "fitness" || key == "scenarios" || key == "terms";
       const std::string row = "`" + prefix + key + (section ? "" : "`");
-      EXPECT_NE(page.find(row), std::string::npos) << row << " is not in docs/study.md";
+      EXPECT_NE(page.find(row), std::string::npos) << row << " is not in docs/study_file.md";
     }
   };
   expectRows("", errorIn(text("nonsense: 1\n")));

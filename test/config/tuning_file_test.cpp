@@ -1,4 +1,4 @@
-// The reader of tuning files: what it reads, what it refuses, and that docs/tuning.md tells it all.
+// The reader of tuning files: what it reads, what it refuses, and that docs/tuning_file.md tells it all.
 #include <cmath>
 #include <map>
 #include <regex>
@@ -97,7 +97,7 @@ TEST(TuningFile, MistakesNameFileKeyAndWhatWasExpected) {
 
 /// Rows "| `key` | default | meaning |" of the page.
 std::map<std::string, std::string> documented() {
-  std::ifstream stream(sourceDir() + "/docs/tuning.md");
+  std::ifstream stream(sourceDir() + "/docs/tuning_file.md");
   std::map<std::string, std::string> rows;
   const std::regex row(R"(\| `([a-z_\[\].]+)` \| ([^|]*) \| ([^|]+) \|)");
   for (std::string line; std::getline(stream, line);) {
@@ -136,7 +136,7 @@ TEST(TuningDocs, TellEveryKeyOfTheReaderAndNoOther) {
   for (const char* section : {"parameters", "fitness", "fitness.terms", "scenarios", "search"})
     all.erase(section);
   const auto rows = documented();
-  for (const auto& key : all) EXPECT_EQ(rows.count(key), 1U) << key << " is not in docs/tuning.md";
+  for (const auto& key : all) EXPECT_EQ(rows.count(key), 1U) << key << " is not in docs/tuning_file.md";
   for (const auto& row : rows) EXPECT_EQ(all.count(row.first), 1U) << row.first << " is no key";
 }
 
@@ -174,7 +174,7 @@ TEST(TuningDocs, TellTheDefaultsOfTheStructs) {
 }
 
 TEST(TuningDocs, TellEveryIndex) {
-  std::ifstream stream(sourceDir() + "/docs/tuning.md");
+  std::ifstream stream(sourceDir() + "/docs/tuning_file.md");
   const std::string page((std::istreambuf_iterator<char>(stream)), {});
   for (const auto& index : fitnessIndices())
     EXPECT_NE(page.find("`" + index + "`"), std::string::npos) << index;
