@@ -9,6 +9,10 @@ std::unique_ptr<LawCode> makeLawCode(BlockParts& parts) {
   require(!loop.has_clp, loop.name + ": clp",
           "clp.enabled: false; the constraint optimizer is not exported, its law alone would be "
           "another loop");
+  require(
+      !loop.targets.enabled, loop.name + ": targets",
+      "targets.enabled: false; the target layer is not exported, its law alone would follow other "
+      "setpoints");
   for (const auto make : {&makePiCode, &makeSupervisorCode, &makeFmbpcCode, &makeOptimalCode})
     if (std::unique_ptr<LawCode> code = make(parts)) return code;
   const std::string& type = loop.controllerType().name;

@@ -44,8 +44,11 @@ class ProbedLoop {
  public:
   explicit ProbedLoop(const LoopFile& loop)
       : simulation_(loop.simulation), controller_(makeControllerSession(loop)) {
+    if (loop.targets.enabled) layer_.emplace(makeTargetSession(loop));
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     controller_.announce(1);
+    if (layer_) layer_->announce(1);
+    if (layer_) layer_->setModel(loop.model);
     if (optimizer_) optimizer_->announce(1);
     if (controller_.controller().needsModel()) controller_.setModel(loop.model);
     displaced_ = Vector::Zero(loop.simulation.actuator.initial.size());
@@ -55,6 +58,7 @@ class ProbedLoop {
   bool step(const Vector& pulse) {
     Measurement now = simulation_.measurement();
     now.input_applied -= displaced_;
+    if (layer_ && layer_->receive(now) == Receipt::kAnswered) controller_.aim(layer_->answer());
     controller_.receive(now);
     command_ = optimizer_ ? optimized(controller_.answer()) : controller_.answer().base.input;
     displaced_ = pulse;
@@ -74,6 +78,7 @@ class ProbedLoop {
 
   Simulation simulation_;
   ControllerSession controller_;
+  std::optional<TargetSession> layer_;
   std::optional<OptimizerSession> optimizer_;
   Vector command_, displaced_;
 };

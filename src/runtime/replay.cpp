@@ -78,6 +78,7 @@ class Replay {
  public:
   Replay(const LoopFile& loop, const RecordedRun& run)
       : run_(run), controller_(makeControllerSession(loop)) {
+    if (loop.targets.enabled) layer_.emplace(makeTargetSession(loop));
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     findMissing(loop, run, result_);
   }
@@ -89,6 +90,8 @@ class Replay {
       require(controller_.ready(), "the record",
               "the model that the controller worked with (fuzzy_model)" +
                   (result_.refused.empty() ? "" : "; " + result_.refused.front()));
+      if (layer_ && layer_->receive(measurement) == Receipt::kAnswered)
+        controller_.aim(layer_->answer());
       const Receipt receipt = controller_.receive(measurement);
       require(receipt != Receipt::kDropped, "measurement " + std::to_string(step),
               "the sizes of the loop");
@@ -102,10 +105,15 @@ class Replay {
  private:
   /// What acts from this sample on, in the order in which a node would have heard of it.
   void prepare(std::uint32_t step) {
-    upTo(run_.models, model_, step, [this](const TsModel& model) { controller_.setModel(model); });
+    upTo(run_.models, model_, step, [this](const TsModel& model) {
+      if (layer_) layer_->setModel(model);
+      controller_.setModel(model);
+    });
     upTo(run_.wishes, wish_, step, [this](const OperatorWishes& wishes) { ask(wishes); });
-    upTo(run_.setpoints, setpoint_, step,
-         [this](const Command& command) { controller_.command(command); });
+    upTo(run_.setpoints, setpoint_, step, [this](const Command& command) {
+      if (layer_) layer_->command(command);
+      controller_.command(command);
+    });
   }
 
   template <typename Map, typename Use>
@@ -164,6 +172,7 @@ class Replay {
 
   const RecordedRun& run_;
   ControllerSession controller_;
+  std::optional<TargetSession> layer_;
   std::optional<OptimizerSession> optimizer_;
   ReplayResult result_;
   decltype(RecordedRun::models)::const_iterator model_{run_.models.begin()};
