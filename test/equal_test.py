@@ -34,6 +34,8 @@ CASES = {
                    "lockstep", 3600),
     "adaptive_pi": ("column_adaptive", 900, [], "lockstep", 3600),
     "matrix": ("heated_tank", 360, [], "lockstep", 3600),
+    "targets": ("tanks_three_pumps", 240, [], "lockstep", 3600),
+    "targets_clp": ("four_on_two", 180, [], "lockstep", 3600),
     "column_clp": ("column_clp_tracking", 150, [], "lockstep", 3600),
     "fuzzy_optimal": ("surge_tank_steps", 1200, [], "lockstep", 3600),
     "fuzzy_optimal_two_inputs": ("mimo_cstr_steps", 5400, ["sampling.duration_h=0.9"], "lockstep", 3600),

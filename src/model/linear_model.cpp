@@ -7,13 +7,6 @@ namespace {
 
 using Polynomial = std::vector<double>;  // in 1/z
 
-Polynomial product(const Polynomial& a, const Polynomial& b) {
-  Polynomial c(a.size() + b.size() - 1, 0.0);
-  for (std::size_t i = 0; i < a.size(); ++i)
-    for (std::size_t j = 0; j < b.size(); ++j) c[i + j] += a[i] * b[j];
-  return c;
-}
-
 double sum(const Polynomial& p) {
   double total = 0.0;
   for (const double value : p) total += value;
@@ -38,37 +31,48 @@ class Submodel {
   std::vector<double> coefficients;
 };
 
-double pointOf(const LinearPoint& point, const LinearElement& e) {
+double pointOf(const LinearPoint& point, const SampledLinearElement& e) {
   return e.kind == SignalKind::kInput ? point.inputs[e.index] : point.disturbances[e.index];
 }
 
-OutputModel submodelOf(int output, const std::vector<LinearElement>& elements,
-                       const LinearPoint& point, double sample_time_min) {
-  std::vector<SampledFopdt> lags;
-  for (const auto& e : elements) lags.push_back(sampled(e.element, sample_time_min));
-  Polynomial denominator{1.0};
-  for (const auto& lag : lags) denominator = product(denominator, {1.0, -lag.a});
+OutputModel submodelOf(int output, const std::vector<SampledLinearElement>& elements,
+                       const LinearPoint& point) {
+  Polynomial shared{1.0};
+  for (const auto& e : elements)
+    if (e.element.shared.size() > 1) shared = e.element.shared;
+  Polynomial denominator = shared;
+  for (const auto& e : elements) denominator = product(denominator, e.element.own);
   Submodel result;
   for (std::size_t i = 1; i < denominator.size(); ++i)
     result.add(SignalKind::kOutput, output, static_cast<int>(i) - 1, -denominator[i]);
   double offset = sum(denominator) * point.outputs[output];
   for (std::size_t j = 0; j < elements.size(); ++j) {
-    const double gain = elements[j].element.gain;
-    Polynomial numerator{gain * lags[j].near};
-    if (lags[j].far != 0.0) numerator.push_back(gain * lags[j].far);
-    for (std::size_t i = 0; i < lags.size(); ++i)
-      if (i != j) numerator = product(numerator, {1.0, -lags[i].a});
+    const SampledElement& own = elements[j].element;
+    Polynomial numerator = own.b;
+    if (own.shared.size() < shared.size()) numerator = product(numerator, shared);
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      if (i != j) numerator = product(numerator, elements[i].element.own);
     for (std::size_t i = 0; i < numerator.size(); ++i)
-      result.add(elements[j].kind, elements[j].index, lags[j].delay + static_cast<int>(i),
+      result.add(elements[j].kind, elements[j].index, own.delay + static_cast<int>(i),
                  numerator[i]);
     offset -= sum(numerator) * pointOf(point, elements[j]);
   }
   return result.finish(offset);
 }
 
+SampledElement sampledLag(const Fopdt& element, double sample_time_min) {
+  const SampledFopdt lag = sampled(element, sample_time_min);
+  SampledElement result;
+  result.own = {1.0, -lag.a};
+  result.b = {element.gain * lag.near};
+  if (lag.far != 0.0) result.b.push_back(element.gain * lag.far);
+  result.delay = lag.delay;
+  return result;
+}
+
 }  // namespace
 
-TsModel linearModel(const TsModel& names, const std::vector<LinearElement>& elements,
+TsModel linearModel(const TsModel& names, const std::vector<SampledLinearElement>& elements,
                     const LinearPoint& point) {
   const auto size = [](const std::vector<SignalInfo>& s) {
     return static_cast<Eigen::Index>(s.size());
@@ -80,19 +84,28 @@ TsModel linearModel(const TsModel& names, const std::vector<LinearElement>& elem
   TsModel model = names;
   model.submodels.clear();
   for (int output = 0; output < size(names.outputs); ++output) {
-    std::vector<LinearElement> own;
+    std::vector<SampledLinearElement> own;
     for (const auto& e : elements) {
       require(e.kind != SignalKind::kOutput && e.output >= 0 && e.output < size(names.outputs) &&
                   e.index >= 0 && e.index < size(names.signals(e.kind)),
               "linear model: element", "indices of the model's signals");
-      e.element.validate("linear model: ");
       if (e.output == output) own.push_back(e);
     }
     require(!own.empty(), "linear model: output " + std::to_string(output), "at least one element");
-    model.submodels.push_back(submodelOf(output, own, point, names.sample_time_s / 60.0));
+    model.submodels.push_back(submodelOf(output, own, point));
   }
   model.validate();
   return model;
+}
+
+TsModel linearModel(const TsModel& names, const std::vector<LinearElement>& elements,
+                    const LinearPoint& point) {
+  std::vector<SampledLinearElement> all;
+  for (const auto& e : elements) {
+    e.element.validate("linear model: ");
+    all.push_back({e.output, e.kind, e.index, sampledLag(e.element, names.sample_time_s / 60.0)});
+  }
+  return linearModel(names, all, point);
 }
 
 }  // namespace fpc

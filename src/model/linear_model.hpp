@@ -6,6 +6,7 @@
 
 #include "base/fopdt.hpp"
 #include "fmbpc/model/ts_model.hpp"
+#include "model/process_element.hpp"
 
 namespace fpc {
 
@@ -25,6 +26,16 @@ struct LinearPoint {
 /// y(k+1) over the common denominator of its elements, the dead times (fractional ones too) in the
 /// lags of the inputs. @throws InputError on indices, sizes, or an output without elements.
 TsModel linearModel(const TsModel& names, const std::vector<LinearElement>& elements,
+                    const LinearPoint& point);
+
+/// The same of elements of any kind; of one output, integrators and unstable poles are one pole.
+struct SampledLinearElement {
+  int output{};
+  SignalKind kind{SignalKind::kInput};
+  int index{};
+  SampledElement element;
+};
+TsModel linearModel(const TsModel& names, const std::vector<SampledLinearElement>& elements,
                     const LinearPoint& point);
 
 }  // namespace fpc

@@ -35,6 +35,7 @@ struct RunRecord {
   std::uint32_t failed_samples{};  ///< samples over which the plant could not be moved and was held
   std::string trouble;             ///< of the first of them: "sample 17: REASON"
   std::vector<Event> events;       ///< besides those of the samples
+  double slowest_step_s{};         ///< wall time of law and optimizer, in one process
 };
 
 /// Counts failed samples, and says whether the run is complete: nothing missing,

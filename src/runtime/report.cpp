@@ -108,6 +108,7 @@ std::string toJson(const Summary& summary) {
   if (!summary.trouble.empty()) json["trouble"] = summary.trouble;
   json["steps"] = summary.steps;
   json["wall_s"] = summary.wall_s;
+  if (summary.slowest_step_s > 0.0) json["slowest_step_s"] = summary.slowest_step_s;
   json["outputs"] = outputsOf(summary);
   json["inputs"] = inputsOf(summary);
   json["violations"] = {{"input", summary.input_violations},

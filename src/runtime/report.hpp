@@ -29,6 +29,7 @@ struct Summary {
   bool complete{};        ///< the final sample came, nothing is missing, the plant moved as asked
   std::uint32_t steps{};  ///< number of actions
   double wall_s{};
+  double slowest_step_s{};  ///< wall time of law and optimizer; 0: not measured
   std::vector<std::string> output_names, input_names;
   std::vector<std::string> output_units, input_units;  ///< empty: not known
   std::vector<OutputIndices> outputs;

@@ -1,6 +1,7 @@
 #include "runtime/run.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <utility>
 
@@ -52,12 +53,16 @@ class Ring {
     recorder_.receive(simulation_.state(),
                       joined(simulation_.events(),
                              delayEvents(loop_, loop_.simulation.output_delay_s, present_)));
+    const auto asked = std::chrono::steady_clock::now();
     controller_.receive(now);
     const ControllerAnswer& answer = controller_.answer();
     recorder_.receive(answer.tracking, joined(answer.events, controller_.takeEvents()));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
-      plant_.receive(optimize());
+      const ControlAction& action = optimize();
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - asked;
+      record_.slowest_step_s = std::max(record_.slowest_step_s, taken.count());
+      plant_.receive(action);
       plant_.advance(0.0);
     }
     controller_.learn(now);

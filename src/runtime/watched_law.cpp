@@ -82,7 +82,7 @@ void WatchedLaw::begin() {
   trial_.emplace(candidate_.model, present_.submodels.empty() ? nullptr : &present_,
                  candidate_.params, limits_, candidate_.moved);
   const Eigen::Index window = candidate_.params.step_samples;
-  errors_ = Promise(window, floorsOf(plant_.outputs));
+  errors_ = ErrorPromise(window, floorsOf(plant_.outputs));
   outputs_ = errors_;
   swings_.assign(plant_.inputs.size(), SwingWatch(kSwingMove, kSwingRelease));
   state_ = CandidateState::kWatched;
@@ -222,8 +222,10 @@ void WatchedLaw::shadow(const Measurement& now, const SetpointSource& setpoint, 
 }
 
 void WatchedLaw::decide() {
-  if (state_ != CandidateState::kWatched || !trial_->judgeIfDue()) return;
+  if (!trial_->judgeIfDue()) return;
   const CandidateFigures& figures = trial_->figures();
+  const bool passed = state_ == CandidateState::kPassed;  // it may still turn out to be wrong
+  if (passed && figures.result != TrialResult::kWrong) return;
   if (figures.result == TrialResult::kRight) {
     state_ = CandidateState::kPassed;
     say(EventCode::kCandidatePassed,
@@ -240,7 +242,7 @@ void WatchedLaw::decide() {
 }
 
 std::string WatchedLaw::brokenPromise() const {
-  const auto words = [&](const Promise& promise, Eigen::Index i, const char* what) {
+  const auto words = [&](const ErrorPromise& promise, Eigen::Index i, const char* what) {
     return what + plant_.outputs[static_cast<std::size_t>(i)].name + " are " +
            shortText(std::sqrt(promise.seen(i))) + ", at most " +
            shortText(std::sqrt(promise.promised(i))) + " were promised";

@@ -36,7 +36,7 @@ const char* nameOf(CandidateState state);  ///< "none", "watched", "passed", ...
 /// former law goes on beside it. The first input is the former law's, and the bias dies out
 /// (BumplessTransfer); where an optimizer follows, the prediction carries the limits instead. The
 /// authority grows every step_samples. At each sample the candidate must keep what was seen while
-/// it was watched (Promise): its model's errors one sample ahead, and the errors of the outputs;
+/// it was watched (ErrorPromise): its model's errors one sample ahead, and the errors of the outputs;
 /// and it must not throw an input from end to end (SwingWatch). Else, or if it gives no input, the
 /// former law is back from that sample on, bumplessly, and the candidate stays out until it is
 /// watched anew. Every change of state is an event with its figures.
@@ -100,7 +100,7 @@ class WatchedLaw final : public ControllerAround {
   bool optimizer_;
   Candidate candidate_;
   std::optional<CandidateTrial> trial_;
-  Promise errors_, outputs_;
+  ErrorPromise errors_, outputs_;
   std::vector<SwingWatch> swings_;
   CandidateState state_{CandidateState::kNone};
   std::size_t level_{};  // of authority

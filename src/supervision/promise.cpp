@@ -7,14 +7,14 @@ namespace fpc {
 
 using Eigen::Index;
 
-Promise::Promise(Index window, Vector floor)
+ErrorPromise::ErrorPromise(Index window, Vector floor)
     : squares_(Matrix::Zero(floor.size(), window)),
       changes_(Vector::Zero(window)),
       mean_(Vector::Zero(floor.size())),
       promised_(mean_),
       floor_(std::move(floor)) {}
 
-void Promise::reset() {
+void ErrorPromise::reset() {
   squares_.setZero();
   changes_.setZero();
   mean_.setZero();
@@ -24,7 +24,7 @@ void Promise::reset() {
   known_ = false;
 }
 
-void Promise::add(VectorRef squares, double change, bool promises) {
+void ErrorPromise::add(VectorRef squares, double change, bool promises) {
   const Index window = squares_.cols();
   for (Index i = 0; i < squares.size(); ++i)
     squares_(i, place_) = std::isfinite(squares[i]) ? squares[i] : 0.0;
@@ -39,7 +39,7 @@ void Promise::add(VectorRef squares, double change, bool promises) {
   known_ = true;
 }
 
-Index Promise::broken() const {
+Index ErrorPromise::broken() const {
   if (!known_) return -1;
   double factor = 1.0;
   if (change_ > promised_change_) {

@@ -10,13 +10,13 @@ namespace fpc {
 /// Means of squares over a window, one per signal, and the largest ones that were promised. Larger
 /// setpoint changes than those of the promise allow more, by the square of their ratio. No
 /// allocation after construction.
-class Promise {
+class ErrorPromise {
  public:
   static constexpr double kLeaves = 4.0;  ///< times what was promised: twice the amplitude
 
-  Promise() = default;
+  ErrorPromise() = default;
   /// @param floor n: mean squares that always pass.
-  Promise(Eigen::Index window, Vector floor);
+  ErrorPromise(Eigen::Index window, Vector floor);
   void reset();
   /// One sample: squares (n; what is not finite is none) and the largest setpoint change of it. It
   /// counts as a promise, or is only seen.

@@ -53,6 +53,7 @@ Summary runOne(const LoopFile& loop, const std::string& folder, const std::strin
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
   Summary summary = summarize(loop, record, wall.count());
   if (!folder.empty()) writeRun(loop, record, summary, folder);
+  summary.slowest_step_s = record.slowest_step_s;  // printed, not kept: it differs every time
   if (isForAModel(loop, record) && !identified && !interruption()) {
     failed = true;
     std::fprintf(stderr, "fmbpc: %s: no model was identified\n", loop.name.c_str());

@@ -137,6 +137,22 @@ struct EvaluateArguments {
   bool json{false};
 };
 
+struct HealthArguments {
+  std::vector<std::string> records;  ///< run folders, folders of them, CSVs, bags
+  std::vector<std::string> outputs, setpoints, inputs, positions;  ///< columns, loop by loop
+  std::string mode;  ///< column that says who moves the input
+  std::vector<std::string> automatic{"1"}, manual, fallback;  ///< its values
+  std::string time;                                           ///< column, empty: found
+  double sample_time_s{};                                     ///< 0: from the time column
+  std::vector<double> dead_times_s;  ///< of each loop, or one of all; empty: estimated
+  std::string limits;                ///< "LOWER:UPPER" of the inputs; empty: none
+  std::string model;                 ///< name of config/model, or path; empty: none
+  std::string rows;                  ///< "FIRST:LAST"
+  RecordFormat format;
+  std::string out;  ///< folder, empty: nothing is written
+  bool json{false};
+};
+
 struct RecoverArguments {
   std::string folder;
   bool no_plot{false};
@@ -150,6 +166,17 @@ struct ReplayArguments {
   bool json{false};
 };
 
+struct CommissionArguments {
+  std::string brief;
+  std::string folder;           ///< empty: NAME of the brief in the present one
+  std::string until{"design"};  ///< last stage
+  std::string again;            ///< stage that is gone through anew, with all after it; empty: none
+  bool undo{false};             ///< takes `again` and all after it back, and does nothing else
+  int evaluations{48}, members{16}, threads{0};
+  bool json{false};
+};
+
+int commission(const CommissionArguments& arguments);
 int evaluate(const EvaluateArguments& arguments);
 int identify(const IdentifyArguments& arguments);
 int validate(const ValidateArguments& arguments);
@@ -183,6 +210,7 @@ int table(const std::vector<std::string>& folders, bool brief);
 void printVerdict(const std::vector<Summary>& summaries);
 int replay(const ReplayArguments& arguments);
 int recover(const RecoverArguments& arguments);
+int health(const HealthArguments& arguments);
 /// These become other programs: they return only by throwing.
 int watch(const std::vector<std::string>& words);
 int page(std::vector<std::string> words);

@@ -50,7 +50,7 @@ std::string general(std::string path) {
   path = std::regex_replace(path, std::regex(R"(\[\d+\])"), "[]");
   const std::regex named(
       R"(^(plant\.parameters|plant\.initial_state|disturbance\.\w+\.channels|tf\.frames|actuator\.lag|)"
-      R"(controller\.inputs\[\]|controller\.levels|controller\.observer\.estimated|controller\.forbidden\[\]|report\.consumption|gateway\.tags|plausibility\.signals|standstill\.signals)\.[\w/]+)");
+      R"(controller\.inputs\[\]|controller\.levels|controller\.observer\.estimated|controller\.forbidden\[\]|report\.consumption|gateway\.tags|targets\.outputs|targets\.inputs|plausibility\.signals|standstill\.signals)\.[\w/]+)");
   path = std::regex_replace(path, named, "$1.NAME");
   path = std::regex_replace(path, std::regex(R"(^sensors\.(?!seed$|step_s$)\w+)"), "sensors.NAME");
   path = std::regex_replace(path, std::regex(R"(^guard\.pi\.)"), "controller.");

@@ -52,7 +52,7 @@ SteadyModel::SteadyModel(const TsModel& model, const std::vector<bool>& integrat
   input_ = old_input_ = Matrix::Zero(n_y, n_u);
   constant_ = old_constant_ = Vector::Zero(n_y);
   regular_ = Matrix::Zero(n_r, n_r);
-  right_ = Matrix::Zero(n_r, n_u + n_w + 1);
+  right_ = solved_ = Matrix::Zero(n_r, n_u + n_w + 1);
   if (n_r > 0) factors_ = Eigen::PartialPivLU<Matrix>(n_r);
   gain_ = Matrix::Zero(n_y, n_u + n_w);
   offset_ = Vector::Zero(n_y);
@@ -112,13 +112,13 @@ bool SteadyModel::linearise(VectorRef y, VectorRef u, VectorRef d, VectorRef w, 
   if (n_r > 0) {
     factors_.compute(regular_);
     if (factors_.matrixLU().diagonal().cwiseAbs().minCoeff() <= kNoRest) return false;
-    right_ = factors_.solve(right_).eval();
+    solved_ = factors_.solve(right_);
   }
   gain_.setZero();
   offset_.setZero();
   for (Index i = 0; i < n_r; ++i) {
-    gain_.row(others_[static_cast<std::size_t>(i)]) = right_.row(i).head(n_u + n_w);
-    offset_[others_[static_cast<std::size_t>(i)]] = right_(i, n_u + n_w);
+    gain_.row(others_[static_cast<std::size_t>(i)]) = solved_.row(i).head(n_u + n_w);
+    offset_[others_[static_cast<std::size_t>(i)]] = solved_(i, n_u + n_w);
   }
   for (Index j = 0; j < n_w; ++j) gain_(levels_[static_cast<std::size_t>(j)], n_u + j) = 1.0;
   for (Index i = 0; i < n_w; ++i) {

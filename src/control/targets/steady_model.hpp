@@ -46,7 +46,7 @@ class SteadyModel {
   Vector constant_;     // n_y
   Matrix old_own_, old_input_;
   Vector old_constant_;
-  Matrix regular_, right_;  // of the others
+  Matrix regular_, right_, solved_;  // of the others
   Eigen::PartialPivLU<Matrix> factors_;
   Matrix gain_, balance_;
   Vector offset_, imbalance_;

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <ctime>
-
 #include "control/targets/target_reference.hpp"
 #include "random/dice.hpp"
 

@@ -1,0 +1,720 @@
+#include "identification/process_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/random.hpp"
+#include "base/statistics.hpp"
+#include "fmbpc/base/input_error.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr Index kFewestRows = 30;
+constexpr double kStartPole = 0.9;  // of the noise while starts are sought
+constexpr double kGridRatio = 1.7;  // of the lags that are tried first
+constexpr int kIterations = 40;
+constexpr double kWorthwhile = 6.0;    // by which Schwarz's criterion must fall
+constexpr double kShortestLag = 0.15;  // of a sample
+constexpr double kConverged = 1e-7;    // of the cost, relative
+
+/// Shape of an element: which of its numbers are free.
+enum Shape { kNone = 0, kFirst = 1, kSecond = 2, kLead = 3 };
+
+struct Candidate {
+  ProcessKind kind{ProcessKind::kStable};
+  std::vector<ProcessElement> elements;
+  std::vector<Shape> shapes;
+  double pole{1.0};  // shared, of kUnstable, as a time constant [samples], > 0
+  Vector noise;
+  double constant{};
+};
+
+class Fitter {
+ public:
+  Fitter(const Matrix& inputs, const Vector& output, double Ts, const ProcessFitParams& params)
+      : y_(output), Ts_(Ts), params_(params), N_(output.size()) {
+    mean_ = Vector::Zero(inputs.cols());
+    u_ = inputs;
+    for (Index j = 0; j < u_.cols(); ++j) {
+      for (Index k = 1; k < N_; ++k)
+        if (!std::isfinite(u_(k, j))) u_(k, j) = u_(k - 1, j);
+      mean_[j] = u_.col(j).mean();
+      start_.push_back(u_(0, j));
+      u_.col(j).array() -= u_(0, j);
+    }
+    longest_ = params.longest_dead_time_s > 0.0 ? params.longest_dead_time_s / Ts
+                                                : 0.1 * static_cast<double>(N_);
+    longest_ = std::min(longest_, 0.3 * static_cast<double>(N_));
+  }
+
+  ProcessFit best() {
+    std::vector<ProcessKind> kinds{ProcessKind::kStable, ProcessKind::kIntegrating,
+                                   ProcessKind::kUnstable};
+    if (params_.kind) kinds = {*params_.kind};
+    std::optional<Candidate> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const ProcessKind kind : kinds) {
+      Candidate c = start(kind);
+      if (!refine(c)) continue;
+      const double value = criterion(c);
+      // Another kind than stable must be worth it.
+      const double asked = kind == ProcessKind::kStable ? 0.0 : kWorthwhile;
+      if (value + asked < least) {
+        least = value;
+        best = c;
+      }
+    }
+    require(best.has_value(), "record",
+            "data to which a process of one of the kinds can be fitted");
+    return finish(std::move(*best));
+  }
+
+ private:
+  // ---- what a candidate makes of the record
+
+  double sharedPole(const Candidate& c) const {
+    if (c.kind == ProcessKind::kStable) return 0.0;
+    return c.kind == ProcessKind::kIntegrating ? 1.0 : std::exp(1.0 / c.pole);
+  }
+
+  ProcessElement shaped(const Candidate& c, ProcessElement e) const {
+    e.integrating = c.kind == ProcessKind::kIntegrating;
+    if (c.kind == ProcessKind::kUnstable) e.time_constant = -c.pole * Ts_;
+    return e;
+  }
+
+  /// (own response) of one element to its input, before the shared pole.
+  Vector response(const ProcessElement& element, Index j) const {
+    const SampledElement s = sampled(element, Ts_);
+    Vector w = Vector::Zero(N_);
+    const auto n_a = static_cast<Index>(s.own.size()), n_b = static_cast<Index>(s.b.size());
+    const auto& u = u_.col(j);
+    for (Index k = 1 + s.delay; k < N_; ++k) {
+      double value = 0.0;
+      for (Index i = 0; i < n_b && k - 1 - s.delay - i >= 0; ++i)
+        value += s.b[static_cast<std::size_t>(i)] * u[k - 1 - s.delay - i];
+      for (Index i = 1; i < n_a && k - i >= 0; ++i)
+        value -= s.own[static_cast<std::size_t>(i)] * w[k - i];
+      w[k] = value;
+    }
+    return w;
+  }
+
+  /// y without the shared pole.
+  Vector reduced(double pole) const {
+    Vector v = y_;
+    if (pole > 0.0) {
+      v[0] = std::numeric_limits<double>::quiet_NaN();
+      for (Index k = 1; k < N_; ++k) v[k] = y_[k] - pole * y_[k - 1];
+    }
+    return v;
+  }
+
+  static Vector filtered(const Vector& v, const Vector& noise) {
+    const Index p = noise.size(), n = v.size();
+    Vector e(n);
+    for (Index k = 0; k < n; ++k) {
+      double value = v[k];
+      for (Index i = 0; i < p; ++i)
+        value -= noise[i] * (k > i ? v[k - 1 - i] : std::numeric_limits<double>::quiet_NaN());
+      e[k] = value;
+    }
+    return e;
+  }
+
+  /// The same of a response, which was 0 before.
+  static Vector filteredResponse(const Vector& w, const Vector& noise) {
+    Vector e = w;
+    for (Index i = 0; i < noise.size(); ++i)
+      e.tail(w.size() - 1 - i) -= noise[i] * w.head(w.size() - 1 - i);
+    return e;
+  }
+
+  /// Where all of the errors are known: the same rows whatever the noise terms, so that costs of
+  /// one record can be compared.
+  std::vector<Index> usable() const {
+    std::vector<Index> rows;
+    const Index past = params_.most_noise_terms + 1;
+    Index good = 0;
+    for (Index k = 0; k < N_; ++k) {
+      good = std::isfinite(y_[k]) ? good + 1 : 0;
+      if (good > past) rows.push_back(k);
+    }
+    return rows;
+  }
+
+  // ---- starts
+
+  std::vector<double> lagGrid() const {
+    std::vector<double> lags;
+    for (double lag = 0.7; lag <= std::max(2.0, 0.25 * static_cast<double>(N_)); lag *= kGridRatio)
+      lags.push_back(lag);
+    return lags;
+  }
+  std::vector<double> delayGrid() const {
+    std::vector<double> delays;
+    for (double d = 0.0; d <= longest_ + 0.5; d = std::max(d + 1.0, std::floor(1.3 * d)))
+      delays.push_back(d);
+    return delays;
+  }
+
+  Candidate start(ProcessKind kind) {
+    Candidate c;
+    c.kind = kind;
+    const Index m = u_.cols();
+    c.elements.assign(static_cast<std::size_t>(m), {});
+    c.shapes.assign(static_cast<std::size_t>(m), kNone);
+    c.noise = Vector::Constant(1, kind == ProcessKind::kStable ? kStartPole : 0.0);
+    std::vector<double> poles{1.0};
+    if (kind == ProcessKind::kUnstable) poles = {3.0, 8.0, 20.0, 50.0, 120.0};
+    double least = std::numeric_limits<double>::infinity();
+    Candidate found = c;
+    for (const double pole : poles) {
+      c.pole = pole;
+      const double cost = startWith(c);
+      if (cost < least) {
+        least = cost;
+        found = c;
+      }
+    }
+    return found;
+  }
+
+  /// One element after the other, each with the best of the grid; the sum of squares left.
+  double startWith(Candidate& c) {
+    const std::vector<Index> rows = usable();
+    const Vector target = filtered(reduced(sharedPole(c)), c.noise);
+    Vector left(static_cast<Index>(rows.size()));
+    for (std::size_t i = 0; i < rows.size(); ++i) left[static_cast<Index>(i)] = target[rows[i]];
+    left.array() -= left.mean();
+    const auto pick = [&](const Vector& w) {
+      Vector x(left.size());
+      for (std::size_t i = 0; i < rows.size(); ++i) x[static_cast<Index>(i)] = w[rows[i]];
+      x.array() -= x.mean();
+      return x;
+    };
+    const std::vector<double> lags = lagGrid(), delays = delayGrid();
+    std::vector<Vector> parts(c.elements.size(), Vector::Zero(left.size()));
+    for (int pass = 0; pass < 2; ++pass)
+      for (std::size_t j = 0; j < c.elements.size(); ++j) {
+        left += parts[j];
+        double most = 0.0;
+        ProcessElement chosen;
+        Vector part = Vector::Zero(left.size());
+        for (const double lag : lags) {
+          ProcessElement e = shaped(c, {});
+          e.gain = 1.0;
+          (c.kind == ProcessKind::kStable ? e.time_constant : e.second) = lag * Ts_;
+          const Vector w = filteredResponse(response(e, static_cast<Index>(j)), c.noise);
+          for (const double delay : delays) {
+            const auto d = static_cast<Index>(delay);
+            Vector late = Vector::Zero(N_);
+            if (d < N_) late.tail(N_ - d) = w.head(N_ - d);
+            const Vector x = pick(late);
+            const double square = x.squaredNorm();
+            if (!(square > 0.0)) continue;
+            const double inner = x.dot(left);
+            if (inner * inner / square <= most) continue;
+            most = inner * inner / square;
+            chosen = e;
+            chosen.dead_time = delay * Ts_;
+            chosen.gain = inner / square;
+            part = chosen.gain * x;
+          }
+        }
+        c.elements[j] = chosen;
+        c.shapes[j] = most > 0.0 ? kFirst : kNone;
+        parts[j] = part;
+        left -= part;
+      }
+    return left.squaredNorm();
+  }
+
+  // ---- parameters
+
+  /// Free numbers: pole (unstable), then gain, lag, second lag, lead, dead time of each element,
+  /// then the noise, then the constant.
+  Index shapeParameters(const Candidate& c) const {
+    Index n = c.kind == ProcessKind::kUnstable ? 1 : 0;
+    for (const Shape s : c.shapes) n += countOf(c.kind, s);
+    return n;
+  }
+  /// Stable: gain, tau_1 (tau_2 (beta)) theta. With a shared pole: gain, tau_2 (beta) theta.
+  static Index countOf(ProcessKind kind, Shape s) {
+    if (s == kNone) return 0;
+    if (kind == ProcessKind::kStable) return s == kFirst ? 3 : s == kSecond ? 4 : 5;
+    return s == kLead ? 4 : 3;
+  }
+
+  double lowLag() const { return kShortestLag * Ts_; }
+  double highLag() const { return 2.0 * static_cast<double>(N_) * Ts_; }
+
+  Vector pack(const Candidate& c) const {
+    std::vector<double> p;
+    if (c.kind == ProcessKind::kUnstable) p.push_back(std::log(c.pole));
+    for (std::size_t j = 0; j < c.elements.size(); ++j) {
+      const ProcessElement& e = c.elements[j];
+      if (c.shapes[j] == kNone) continue;
+      p.push_back(e.gain);
+      if (c.kind == ProcessKind::kStable) {
+        p.push_back(std::log(e.time_constant));
+        if (c.shapes[j] != kFirst) p.push_back(std::log(std::max(e.second, lowLag())));
+      } else {
+        p.push_back(std::log(std::max(e.second, lowLag())));
+      }
+      if (c.shapes[j] == kLead) p.push_back(e.lead / scaleOf(e));
+      p.push_back(e.dead_time / Ts_);
+    }
+    return Eigen::Map<const Vector>(p.data(), static_cast<Index>(p.size()));
+  }
+  static double scaleOf(const ProcessElement& e) {
+    return std::max(e.integrating || e.time_constant < 0.0 ? e.second : e.time_constant + e.second,
+                    1e-300);
+  }
+  void unpack(const Vector& p, Candidate& c) const {
+    Index i = 0;
+    const double low = std::log(lowLag()), high = std::log(highLag());
+    const auto lag = [&](double value) { return std::exp(std::clamp(value, low, high)); };
+    if (c.kind == ProcessKind::kUnstable)
+      c.pole = std::exp(std::clamp(p[i++], std::log(1.0), std::log(static_cast<double>(N_))));
+    for (std::size_t j = 0; j < c.elements.size(); ++j) {
+      if (c.shapes[j] == kNone) continue;
+      ProcessElement e = shaped(c, {});
+      e.gain = p[i++];
+      if (c.kind == ProcessKind::kStable) {
+        e.time_constant = lag(p[i++]);
+        if (c.shapes[j] != kFirst) e.second = lag(p[i++]);
+      } else {
+        e.second = lag(p[i++]);
+      }
+      if (c.shapes[j] == kLead) e.lead = std::clamp(p[i++], -20.0, 20.0) * scaleOf(e);
+      e.dead_time = std::clamp(p[i++], 0.0, longest_) * Ts_;
+      c.elements[j] = e;
+    }
+  }
+
+  Vector residualOf(const Candidate& c) const {
+    Vector v = reduced(sharedPole(c));
+    for (std::size_t j = 0; j < c.elements.size(); ++j)
+      if (c.shapes[j] != kNone) v -= response(c.elements[j], static_cast<Index>(j));
+    return v;
+  }
+
+  struct Evaluation {
+    Vector e;  // of the usable rows
+    double cost{};
+    Matrix J;  // d e / d parameters
+  };
+
+  Vector errorsOf(const Candidate& c, const Vector& v) const {
+    const Vector all = filtered(v, c.noise);
+    Vector e(static_cast<Index>(rows_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      e[static_cast<Index>(i)] = all[rows_[i]] - c.constant;
+    return e;
+  }
+
+  /// Noise and constant by least squares of v on its past.
+  void fitNoise(Candidate& c, const Vector& v, Index terms) const {
+    const auto n = static_cast<Index>(rows_.size());
+    Matrix A(n, terms + 1);
+    Vector b(n);
+    for (Index r = 0; r < n; ++r) {
+      const Index k = rows_[static_cast<std::size_t>(r)];
+      for (Index i = 0; i < terms; ++i) A(r, i) = v[k - 1 - i];
+      A(r, terms) = 1.0;
+      b[r] = v[k];
+    }
+    const double mean = b.mean();
+    A.leftCols(terms).array() -= mean;  // about the mean: the constant is not lost
+    Matrix normal = A.transpose() * A;
+    normal.diagonal().array() += 1e-12 * normal.diagonal().maxCoeff();
+    const Vector x = normal.ldlt().solve(A.transpose() * (b.array() - mean).matrix());
+    c.noise = x.head(terms);
+    c.constant = x[terms] + mean * (1.0 - x.head(terms).sum());
+  }
+
+  double logCost(double cost) const {
+    const auto n = static_cast<double>(rows_.size());
+    return n * std::log(std::max(cost, 1e-300) / n);
+  }
+  double criterion(const Candidate& c) const {
+    const auto n = static_cast<double>(rows_.size());
+    return logCost(errorsOf(c, residualOf(c)).squaredNorm()) +
+           static_cast<double>(shapeParameters(c) + c.noise.size() + 1) * std::log(n);
+  }
+
+  Index chooseNoise(Candidate& c) const {
+    const Vector v = residualOf(c);
+    const double n = static_cast<double>(rows_.size());
+    double least = std::numeric_limits<double>::infinity();
+    Index chosen = 0;
+    for (Index terms = 0; terms <= params_.most_noise_terms; ++terms) {
+      fitNoise(c, v, terms);
+      const double value =
+          logCost(errorsOf(c, v).squaredNorm()) + static_cast<double>(terms) * std::log(n);
+      if (value < least - 1e-9) {
+        least = value;
+        chosen = terms;
+      }
+    }
+    fitNoise(c, v, chosen);
+    return chosen;
+  }
+
+  Matrix jacobian(const Candidate& c, const Vector& v) const {
+    const Index shape = shapeParameters(c), terms = c.noise.size();
+    Matrix J(static_cast<Index>(rows_.size()), shape + terms + 1);
+    const Vector p = pack(c);
+    const auto put = [&](Index column, const Vector& full) {
+      for (std::size_t r = 0; r < rows_.size(); ++r)
+        J(static_cast<Index>(r), column) = full[rows_[r]];
+    };
+    Index i = 0;
+    if (c.kind == ProcessKind::kUnstable) {
+      Candidate up = c, down = c;
+      Vector q = p;
+      q[0] = p[0] + 1e-4;
+      unpack(q, up);
+      q[0] = p[0] - 1e-4;
+      unpack(q, down);
+      put(i++, (filtered(residualOf(up), c.noise) - filtered(residualOf(down), c.noise)) / 2e-4);
+    }
+    for (std::size_t j = 0; j < c.elements.size(); ++j) {
+      const Index n = countOf(c.kind, c.shapes[j]);
+      if (n == 0) continue;
+      const auto input = static_cast<Index>(j);
+      Candidate beside = c;
+      for (Index a = 0; a < n; ++a) {
+        const bool is_gain = a == 0, is_delay = a == n - 1;
+        if (is_gain) {
+          ProcessElement unit = c.elements[j];
+          unit.gain = 1.0;
+          put(i + a, -filteredResponse(response(unit, input), c.noise));
+          continue;
+        }
+        const double step = is_delay ? 1e-3 : 1e-4;
+        Vector q = p;
+        q[i + a] = p[i + a] + step;
+        unpack(q, beside);
+        const Vector up = response(beside.elements[j], input);
+        double width = step;
+        q[i + a] = std::max(p[i + a] - step, is_delay ? 0.0 : p[i + a] - step);
+        width += p[i + a] - q[i + a];
+        unpack(q, beside);
+        const Vector down = response(beside.elements[j], input);
+        put(i + a, -filteredResponse((up - down) / width, c.noise));
+      }
+      i += n;
+    }
+    for (Index a = 0; a < terms; ++a)
+      for (std::size_t r = 0; r < rows_.size(); ++r)
+        J(static_cast<Index>(r), shape + a) = -v[rows_[r] - 1 - a];
+    J.col(shape + terms).setConstant(-1.0);
+    return J;
+  }
+
+  /// Levenberg-Marquardt over all free numbers.
+  bool descend(Candidate& c) {
+    Vector v = residualOf(c);
+    Vector e = errorsOf(c, v);
+    double cost = e.squaredNorm(), damping = 1e-3;
+    if (!std::isfinite(cost)) return false;
+    const Index shape = shapeParameters(c), terms = c.noise.size();
+    for (int iteration = 0; iteration < kIterations; ++iteration) {
+      const Matrix J = jacobian(c, v);
+      const Matrix H = J.transpose() * J;
+      const Vector g = J.transpose() * e;
+      bool better = false;
+      double before = cost;
+      for (int attempt = 0; attempt < 8 && !better; ++attempt) {
+        Matrix A = H;
+        A.diagonal() += damping * H.diagonal();
+        A.diagonal().array() += 1e-14 * H.diagonal().maxCoeff();
+        const Vector step = A.ldlt().solve(-g);
+        Candidate next = c;
+        unpack(pack(c) + step.head(shape), next);
+        next.noise += step.segment(shape, terms);
+        next.constant += step[shape + terms];
+        const Vector v_next = residualOf(next);
+        const Vector e_next = errorsOf(next, v_next);
+        const double value = e_next.squaredNorm();
+        if (std::isfinite(value) && value < cost) {
+          c = next;
+          v = v_next;
+          e = e_next;
+          cost = value;
+          damping = std::max(damping * 0.2, 1e-9);
+          better = true;
+        } else {
+          damping *= 6.0;
+        }
+      }
+      if (!better || before - cost < kConverged * cost) break;
+    }
+    return true;
+  }
+
+  bool refine(Candidate& c) {
+    rows_ = usable();
+    if (static_cast<Index>(rows_.size()) < kFewestRows - params_.most_noise_terms) return false;
+    for (int pass = 0; pass < 3; ++pass) {
+      chooseNoise(c);
+      if (!descend(c)) return false;
+    }
+    double value = criterion(c);
+    if (params_.second_order)
+      for (std::size_t j = 0; j < c.elements.size(); ++j)
+        for (const Shape shape : {kSecond, kLead}) {
+          if (c.shapes[j] == kNone || c.shapes[j] >= shape) continue;
+          if (shape == kSecond && c.kind != ProcessKind::kStable) continue;
+          value = tryShape(c, j, shape, value);
+        }
+    for (std::size_t j = 0; j < c.elements.size(); ++j) value = tryWithout(c, j, value);
+    return std::isfinite(value);
+  }
+
+  double tryShape(Candidate& c, std::size_t j, Shape shape, double value) {
+    Candidate best = c;
+    double least = value - kWorthwhile;
+    const ProcessElement from = c.elements[j];
+    std::vector<ProcessElement> starts;
+    if (shape == kSecond) {
+      ProcessElement e = from;
+      e.second = std::max(0.4 * from.time_constant, lowLag());
+      e.time_constant = std::max(0.8 * from.time_constant, lowLag());
+      e.dead_time = std::max(0.0, from.dead_time - 0.3 * from.time_constant);
+      starts.push_back(e);
+    } else {
+      for (const double lead : {-0.5, 0.5}) {
+        ProcessElement e = from;
+        if (c.kind == ProcessKind::kStable && e.second <= lowLag())
+          e.second = 0.3 * e.time_constant;
+        e.lead = lead * scaleOf(e);
+        if (lead < 0.0) e.dead_time = 0.5 * from.dead_time;
+        starts.push_back(e);
+      }
+    }
+    for (const ProcessElement& e : starts) {
+      Candidate next = c;
+      next.shapes[j] = shape;
+      next.elements[j] = e;
+      if (!descend(next)) continue;
+      chooseNoise(next);
+      if (!descend(next)) continue;
+      const double criterion_next = criterion(next);
+      if (criterion_next < least) {
+        least = criterion_next;
+        best = next;
+      }
+    }
+    if (least < value - kWorthwhile) {
+      c = best;
+      return least;
+    }
+    return value;
+  }
+
+  /// An element that the record does not show: its gain is nothing beside its bound.
+  double tryWithout(Candidate& c, std::size_t j, double value) {
+    if (c.shapes[j] == kNone) return value;
+    Candidate next = c;
+    next.shapes[j] = kNone;
+    next.elements[j].gain = 0.0;
+    if (std::all_of(next.shapes.begin(), next.shapes.end(), [](Shape s) { return s == kNone; }))
+      return value;
+    if (!descend(next)) return value;
+    const double without = criterion(next);
+    if (without > value) return value;
+    c = next;
+    return without;
+  }
+
+  // ---- bounds
+
+  ProcessFit finish(Candidate c) {
+    const Vector v = residualOf(c);
+    const Vector e = errorsOf(c, v);
+    const Matrix J = jacobian(c, v);
+    const auto n = static_cast<double>(e.size());
+    const Index all = J.cols(), shape = shapeParameters(c);
+    const double variance = e.squaredNorm() / std::max(1.0, n - static_cast<double>(all));
+    Matrix H = J.transpose() * J;
+    H.diagonal().array() += 1e-12 * H.diagonal().array().abs().maxCoeff() * 1e-6;
+    const Vector scale = H.diagonal().cwiseSqrt().cwiseMax(1e-300).cwiseInverse();
+    const Matrix scaled = scale.asDiagonal() * H * scale.asDiagonal();
+    const Matrix inverse =
+        scale.asDiagonal() *
+        (scaled + 1e-12 * Matrix::Identity(all, all)).ldlt().solve(Matrix::Identity(all, all)) *
+        scale.asDiagonal();
+    // Of the model as it is, and from blocks of the record, which show what it is not: the larger.
+    Matrix B = Matrix::Zero(all, all);
+    const Index size = e.size() / params_.blocks;
+    for (int b = 0; b < params_.blocks; ++b) {
+      const Index from = b * size, count = b + 1 == params_.blocks ? e.size() - from : size;
+      const Vector g = J.middleRows(from, count).transpose() * e.segment(from, count);
+      B += g * g.transpose();
+    }
+    const double few = static_cast<double>(params_.blocks) / (params_.blocks - 1.0);
+    const Matrix plain = variance * inverse, blocked = few * inverse * B * inverse;
+    Vector stretch(all);
+    for (Index i = 0; i < all; ++i)
+      stretch[i] = std::sqrt(std::max(1.0, blocked(i, i) / std::max(plain(i, i), 1e-300)));
+    const Matrix covariance =
+        (stretch.asDiagonal() * plain * stretch.asDiagonal()).topLeftCorner(shape, shape);
+    ProcessFit fit;
+    fit.kind = c.kind;
+    fit.noise = c.noise;
+    fit.one_step = std::sqrt(e.squaredNorm() / n);
+    fit.criterion = criterion(c);
+    fit.rows = e.size();
+    fit.input = mean_;
+    rest(c, v, fit);
+    bounds(c, covariance, variance, fit);
+    draw(c, covariance, fit);
+    return fit;
+  }
+
+  void rest(const Candidate& c, const Vector& v, ProcessFit& fit) const {
+    double sum = 0.0, square = 0.0, y = 0.0, count = 0.0;
+    for (const Index k : rows_) {
+      sum += v[k];
+      square += v[k] * v[k];
+      y += y_[k];
+      count += 1.0;
+    }
+    const double mean = sum / count;
+    if (c.kind != ProcessKind::kStable) {
+      fit.output = y / count;
+      fit.free_run = fit.one_step;
+      return;
+    }
+    fit.free_run = std::sqrt(std::max(square / count - mean * mean, 0.0));
+    fit.output = mean;
+    for (std::size_t j = 0; j < c.elements.size(); ++j)
+      if (c.shapes[j] != kNone)
+        fit.output += c.elements[j].gain * (mean_[static_cast<Index>(j)] - start_[j]);
+  }
+
+  void bounds(const Candidate& c, const Matrix& covariance, double variance,
+              ProcessFit& fit) const {
+    const double z = normalBound(0.95);
+    fit.elements.resize(c.elements.size());
+    Index i = c.kind == ProcessKind::kUnstable ? 1 : 0;
+    for (std::size_t j = 0; j < c.elements.size(); ++j) {
+      ElementEstimate& out = fit.elements[j];
+      const Index n = countOf(c.kind, c.shapes[j]);
+      if (n == 0) {
+        out.gain_bound = unseenBound(c, j, variance);
+        continue;
+      }
+      out.seen = true;
+      out.element = c.elements[j];
+      out.gain_bound = z * std::sqrt(std::max(covariance(i, i), 0.0));
+      out.dead_time_bound = z * std::sqrt(std::max(covariance(i + n - 1, i + n - 1), 0.0)) * Ts_;
+      // The mean residence time, by its slopes with respect to the element's numbers.
+      Vector slope = Vector::Zero(covariance.rows());
+      const ProcessElement& e = out.element;
+      if (c.kind == ProcessKind::kStable) {
+        slope[i + 1] = e.time_constant;
+        if (c.shapes[j] != kFirst) slope[i + 2] = e.second;
+      } else {
+        slope[i + 1] = e.second;
+      }
+      if (c.shapes[j] == kLead) slope[i + n - 2] = -scaleOf(e);
+      slope[i + n - 1] = Ts_;
+      out.time_bound = z * std::sqrt(std::max(slope.dot(covariance * slope), 0.0));
+      i += n;
+    }
+  }
+
+  /// Of a gain that is taken for none: what it may be, with lags as another of the output has.
+  double unseenBound(const Candidate& c, std::size_t j, double variance) const {
+    ProcessElement unit = shaped(c, {});
+    for (std::size_t i = 0; i < c.elements.size(); ++i)  // as one that is seen
+      if (c.shapes[i] != kNone) unit = c.elements[i];
+    if (unit.time_constant == 0.0 && unit.second == 0.0)
+      (c.kind == ProcessKind::kStable ? unit.time_constant : unit.second) = 10.0 * Ts_;
+    unit.gain = 1.0;
+    const Vector w = filteredResponse(response(unit, static_cast<Index>(j)), c.noise);
+    double square = 0.0, sum = 0.0;
+    for (const Index k : rows_) {
+      square += w[k] * w[k];
+      sum += w[k];
+    }
+    square -= sum * sum / static_cast<double>(rows_.size());
+    return square > 0.0 ? normalBound(0.95) * std::sqrt(variance / square)
+                        : std::numeric_limits<double>::infinity();
+  }
+
+  /// Normal draws of the free numbers.
+  void draw(const Candidate& c, const Matrix& covariance, ProcessFit& fit) const {
+    const Index n = covariance.rows();
+    Matrix root = Matrix::Zero(n, n);
+    if (n > 0) {
+      const Vector scale = covariance.diagonal().cwiseSqrt().cwiseMax(1e-300);
+      const Vector less = scale.cwiseInverse();
+      Matrix correlation = less.asDiagonal() * covariance * less.asDiagonal();
+      correlation.diagonal().array() += 1e-9;
+      const Eigen::LLT<Matrix> llt(correlation);
+      if (llt.info() == Eigen::Success)
+        root = scale.asDiagonal() * Matrix(llt.matrixL());
+      else
+        root = scale.asDiagonal();
+    }
+    auto engine = seededEngine(params_.seed, {7});
+    const Vector p = pack(c);
+    for (int member = 0; member < params_.ensemble; ++member) {
+      Vector z(n);
+      for (Index i = 0; i < n; ++i) z[i] = std::clamp(standardNormal(engine), -2.5, 2.5);
+      Candidate drawn = c;
+      unpack(p + root * z, drawn);
+      for (std::size_t j = 0; j < c.elements.size(); ++j)
+        if (c.shapes[j] != kNone && drawn.elements[j].gain * c.elements[j].gain <= 0.0)
+          drawn.elements[j].gain = 0.1 * c.elements[j].gain;  // the sign is what is known
+      fit.ensemble.push_back(drawn.elements);
+    }
+  }
+
+  Vector y_;
+  Matrix u_;
+  double Ts_;
+  ProcessFitParams params_;
+  Index N_;
+  double longest_{};  // dead time [samples]
+  Vector mean_;
+  std::vector<double> start_;
+  std::vector<Index> rows_;
+};
+
+}  // namespace
+
+void ProcessFitParams::validate() const {
+  require(longest_dead_time_s >= 0.0, "longest_dead_time_s", "a time >= 0");
+  require(most_noise_terms >= 1 && most_noise_terms <= 50, "most_noise_terms", "1 to 50");
+  require(blocks >= 2 && blocks <= 100, "blocks", "2 to 100");
+  require(ensemble >= 0 && ensemble <= 10000, "ensemble", "0 to 10000");
+}
+
+ProcessFit fitProcess(const Matrix& inputs, const Vector& output, double sample_time_s,
+                      const ProcessFitParams& params) {
+  params.validate();
+  require(inputs.rows() == output.size() && inputs.cols() > 0, "record",
+          "a row of inputs per output");
+  require(output.size() >= kFewestRows, "record", "30 rows or more");
+  require(sample_time_s > 0.0, "sample time", "a time > 0");
+  require(inputs.row(0).allFinite(), "record", "inputs that are known in the first row");
+  bool moves = false;
+  for (Index j = 0; j < inputs.cols() && !moves; ++j)
+    for (Index k = 1; k < inputs.rows() && !moves; ++k)
+      moves = inputs(k, j) != inputs(0, j) && std::isfinite(inputs(k, j));
+  require(moves, "record", "an input that moves");
+  return Fitter(inputs, output, sample_time_s, params).best();
+}
+
+}  // namespace fpc

@@ -1,0 +1,55 @@
+// Process elements from a record, with bounds that hold under feedback: the prediction errors of
+// elements and noise are made small together, so that an input that answers to the output's noise
+// does not bias them (ljung1999, secs. 4.2 and 13.4). An unstable pole or an integrator belongs to
+// the noise as well (forssell2000).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "model/process_element.hpp"
+
+namespace fpc {
+
+/// What is common to the elements of an output.
+enum class ProcessKind { kStable, kIntegrating, kUnstable };
+
+struct ProcessFitParams {
+  double longest_dead_time_s{};     ///< 0: a tenth of the record
+  int most_noise_terms{10};         ///< of the autoregressive noise
+  int blocks{10};                   ///< of the record, for bounds where the model is not all of it
+  int ensemble{20};                 ///< drawn for ProcessFit::ensemble
+  bool second_order{true};          ///< try second lags and leads
+  std::optional<ProcessKind> kind;  ///< known; empty: the likeliest
+  std::uint64_t seed{1};
+  void validate() const;  ///< @throws InputError naming the field
+};
+
+/// Half widths of 95 % intervals.
+struct ElementEstimate {
+  ProcessElement element;
+  bool seen{false};  ///< whether the record shows an effect; else gain 0, its bound a limit
+  double gain_bound{}, dead_time_bound{}, time_bound{};  ///< time: of tau_1 + tau_2 + theta - beta
+};
+
+struct ProcessFit {
+  ProcessKind kind{ProcessKind::kStable};
+  std::vector<ElementEstimate> elements;  ///< one per column of the inputs
+  Vector noise;                           ///< coefficients of the autoregressive noise
+  double one_step{};                      ///< rms of the prediction errors
+  double free_run{};  ///< rms of what the inputs alone do not explain; with a shared pole: one_step
+  double output{};    ///< the output where the inputs are `input` and nothing else acts
+  Vector input;       ///< means of the inputs
+  double criterion{};  ///< Schwarz's, smaller is better
+  Eigen::Index rows{};
+  std::vector<std::vector<ProcessElement>> ensemble;  ///< elements of equally likely processes
+};
+
+/// Row k of `inputs` (rows x n) acts from then on, `output` is measured then; NaN where missing
+/// (inputs are held over it). The process has rested with the inputs of the first row.
+/// @throws InputError for fewer than 30 rows, sizes, or inputs none of which moves.
+ProcessFit fitProcess(const Matrix& inputs, const Vector& output, double sample_time_s,
+                      const ProcessFitParams& params = {});
+
+}  // namespace fpc

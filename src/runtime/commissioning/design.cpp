@@ -1,0 +1,657 @@
+#include "runtime/commissioning/design.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "base/parallel.hpp"
+#include "base/statistics.hpp"
+#include "base/yaml_load.hpp"
+#include "control/pi/tuning.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
+#include "fmbpc/base/text.hpp"
+#include "optim/population_search.hpp"
+#include "runtime/loop_probe.hpp"
+#include "runtime/run.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+
+constexpr double kStepRoom = 0.3;    // of the distance to a limit: steps of the setpoints
+constexpr double kStepReach = 0.5;   // of what the strongest input can do
+constexpr double kLoad = 0.5;        // of the step: shift of an output by a load
+constexpr double kViolation = 10.0;  // cost of all samples beyond the limits
+constexpr double kFailed = 1e3;      // cost of a run that fails
+constexpr int kFewestRun = 40, kMostRun = 220;  // samples of one stretch of the scenario
+constexpr double kShortHorizon = 10, kLongHorizon = 60;
+constexpr double kStiffer = 2.0;  // the moves' weight when a member is not stable enough
+constexpr int kStiffenings = 8;
+constexpr double kSpoiltGain = 1.6, kSpoiltDelay = 0.25;  // factor; of dead time and a sample
+constexpr double kSpoiltShare = 0.2;                      // of the cost that is tuned
+constexpr double kWeakWeight = 0.3;   // of the square of a weak direction's gain
+constexpr double kZoneWeight = 0.01;  // of an output that may float
+constexpr double kLeastBetter = 1.0;  // cost ratio that a law must be below
+
+std::string mapOf(const std::vector<SignalInfo>& signals, const Vector& values) {
+  std::string text = "{";
+  for (std::size_t i = 0; i < signals.size(); ++i)
+    text += (i ? ", " : "") + signals[i].name + ": " + exactText(values[static_cast<Index>(i)]);
+  return text + "}";
+}
+
+struct Pairing {
+  Index input, output;
+};
+
+/// What the models say of the loops, in the units of the plant.
+struct Outline {
+  Vector y_scale, u_range;  // step of each setpoint; range of each input
+  Matrix gain;              // likeliest; of integrators per settling time
+  double settling{};
+  std::vector<Pairing> pairs;
+  int stretch{};  // samples
+};
+
+double rangeOf(const InputLimits& limits, Index j) {
+  const double range = limits.upper[j] - limits.lower[j];
+  return std::isfinite(range) ? range : 100.0 * limits.move[j];
+}
+
+/// Inputs and outputs by relative gains near 1 (bristol1966) among those with an effect, else by
+/// size; outputs that are held first.
+std::vector<Pairing> pairsOf(const CommissioningBrief& brief, const Matrix& scaled) {
+  Matrix strength = scaled.cwiseAbs();
+  if (scaled.rows() == scaled.cols()) {
+    const Eigen::FullPivLU<Matrix> lu(scaled);
+    if (lu.isInvertible()) {
+      const Matrix relative = scaled.cwiseProduct(lu.inverse().transpose());
+      for (Index i = 0; i < scaled.rows(); ++i)
+        for (Index j = 0; j < scaled.cols(); ++j)
+          strength(i, j) = relative(i, j) > 0.0 ? 1.0 / (1e-3 + std::abs(std::log(relative(i, j))))
+                                                : std::min(1e-6, std::abs(scaled(i, j)));
+    }
+  }
+  for (Index i = 0; i < scaled.rows(); ++i)
+    if (!brief.held[static_cast<std::size_t>(i)]) strength.row(i).setZero();
+  std::vector<Pairing> pairs;
+  Pairing next{};
+  while (strength.size() > 0 && strength.maxCoeff(&next.output, &next.input) > 0.0) {
+    pairs.push_back(next);
+    strength.row(next.output).setZero();
+    strength.col(next.input).setZero();
+  }
+  return pairs;
+}
+
+Outline outlineOf(const CommissioningBrief& brief, const ProcessModels& models) {
+  const InputLimits& limits = brief.loop.simulation.actuator.limits;
+  const Index n_y = countOf(brief.loop.plant_info.outputs),
+              n_u = countOf(brief.loop.plant_info.inputs);
+  const double Ts = brief.loop.plant_info.sample_time_s;
+  Outline o;
+  o.u_range.resize(n_u);
+  for (Index j = 0; j < n_u; ++j) o.u_range[j] = rangeOf(limits, j);
+  for (const ProcessFit& fit : models.fits)
+    for (Index j = 0; j < n_u; ++j)
+      if (fit.elements[static_cast<std::size_t>(j)].seen)
+        o.settling =
+            std::max(o.settling, fit.elements[static_cast<std::size_t>(j)].element.settling());
+  o.settling = std::max(o.settling, 3.0 * Ts);
+  o.gain.setZero(n_y, n_u);
+  for (Index i = 0; i < n_y; ++i)
+    for (Index j = 0; j < n_u; ++j) {
+      const ProcessElement& e =
+          models.fits[static_cast<std::size_t>(i)].elements[static_cast<std::size_t>(j)].element;
+      o.gain(i, j) = e.integrating ? e.gain * o.settling : e.gain;
+    }
+  o.y_scale.resize(n_y);
+  for (Index i = 0; i < n_y; ++i) {
+    const double room = std::min(brief.upper[i] - brief.hold[i], brief.hold[i] - brief.lower[i]);
+    double reach = 0.0;
+    const Vector& rest = models.fits[static_cast<std::size_t>(i)].input;
+    for (Index j = 0; j < n_u; ++j)
+      reach = std::max(reach, std::abs(o.gain(i, j)) * std::max(std::min(limits.upper[j] - rest[j],
+                                                                         rest[j] - limits.lower[j]),
+                                                                0.1 * o.u_range[j]));
+    o.y_scale[i] = std::min(kStepRoom * room, kStepReach * reach);
+    if (!(o.y_scale[i] > 0.0)) o.y_scale[i] = kStepRoom * room;
+  }
+  o.pairs = pairsOf(brief, o.y_scale.cwiseInverse().asDiagonal() * o.gain * o.u_range.asDiagonal());
+  o.stretch =
+      static_cast<int>(std::clamp<double>(std::ceil(1.5 * o.settling / Ts), kFewestRun, kMostRun));
+  return o;
+}
+
+// ---- loop files
+
+/// The plant's loop file with another control, as text that stands by itself.
+std::string rewritten(const CommissioningBrief& brief, const std::string& head,
+                      const std::vector<std::pair<std::string, std::string>>& sections) {
+  YAML::Node root = detached(loadYaml(brief.loop.resolved, brief.loop.name));
+  for (const char* key : {"controller", "clp", "model", "guard", "estimator", "standstill"})
+    root.remove(key);
+  for (const auto& [key, text] : sections) root[key] = detached(loadYaml(text, "design: " + key));
+  root["actuator"]["move_upper"] =
+      detached(loadYaml(mapOf(brief.loop.plant_info.inputs, brief.move), "design: moves"));
+  YAML::Emitter out;
+  out << root;
+  return head + out.c_str() + "\n";
+}
+
+struct PiSetting {
+  double kp{}, ti_min{};
+};
+
+std::string piLoops(const CommissioningBrief& brief, const Outline& o,
+                    const std::vector<PiSetting>& settings) {
+  std::string text = "[";
+  for (std::size_t p = 0; p < o.pairs.size(); ++p)
+    text += std::string(p ? ", " : "") + "{input: " +
+            brief.loop.plant_info.inputs[static_cast<std::size_t>(o.pairs[p].input)].name +
+            ", output: " +
+            brief.loop.plant_info.outputs[static_cast<std::size_t>(o.pairs[p].output)].name +
+            ", kp: " + exactText(settings[p].kp) +
+            ", ki_per_h: " + exactText(settings[p].kp * 60.0 / settings[p].ti_min) +
+            ", start: bumpless}";
+  return text + "]";
+}
+
+class Designer {
+ public:
+  Designer(const CommissioningBrief& brief, const Vector& noise, std::string model_file,
+           const ProcessModels& models, const DesignParams& params)
+      : brief_(brief),
+        noise_(noise),
+        model_file_(std::move(model_file)),
+        models_(models),
+        params_(params),
+        outline_(outlineOf(brief, models)) {
+    const std::size_t all = models.ensemble.size();
+    const auto tuned = static_cast<std::size_t>(params.tuned_members);
+    require(all > tuned + 1, "ensemble", "more members than are tuned on");
+    for (std::size_t m = 0; m < all; ++m)
+      (m < tuned ? tuned_ : held_out_).push_back(&models.ensemble[m]);
+    tuned_.insert(tuned_.begin(), &models.model);
+    double late = brief.loop.plant_info.sample_time_s;
+    for (const ProcessFit& fit : models.fits)
+      for (const ElementEstimate& e : fit.elements) late = std::max(late, e.element.dead_time);
+    spoilt_ = spoiltModel(models, kSpoiltGain, kSpoiltDelay * late);
+  }
+
+  Design run() {
+    Design d;
+    require(!outline_.pairs.empty(), brief_.file + ": zone", "an output that is to be held");
+    lookAtDirections(d);
+    show("PI: " + std::to_string(params_.evaluations) + " settings");
+    const std::vector<double> pi = searched(
+        piStart(), piWidth(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
+    pi_ = piOf(Eigen::Map<const Vector>(pi.data(), static_cast<Index>(pi.size())));
+    show("law: " + std::to_string(params_.evaluations) + " settings");
+    Vector start, width;
+    lawStart(start, width);
+    std::vector<double> law = searched(
+        start, width, [this](const Vector& x) { return lawText(x); }, d.law_figures);
+    Vector x = Eigen::Map<const Vector>(law.data(), static_cast<Index>(law.size()));
+    Vector pi_x = Eigen::Map<const Vector>(pi.data(), static_cast<Index>(pi.size()));
+    show("margins of the PI");
+    chooseProbed(piText(pi_x), lawText(x));
+    d.probed = probed_.size();
+    soften(
+        d.pi_figures, [&] { return piText(pi_x); },
+        [&] {
+          for (Index i = 0; i < pi_x.size(); i += 2) pi_x[i] -= 0.5;  // log2 of the gain
+        });
+    pi_ = piOf(pi_x);
+    show("margins of the law");
+    soften(
+        d.law_figures, [&] { return lawText(x); }, [&] { x[0] += std::log10(kStiffer); });
+    d.pi = piText(pi_x);
+    d.law = lawText(x);
+    compare(d);
+    return d;
+  }
+
+ private:
+  void show(const std::string& text) const {
+    if (params_.show) params_.show(text);
+  }
+
+  // ---- the PI
+
+  Index loops() const { return static_cast<Index>(outline_.pairs.size()); }
+  Vector piStart() const { return Vector::Zero(2 * loops()); }
+  Vector piWidth() const { return Vector::Constant(2 * loops(), 3.0); }
+
+  /// x: log2 of what the rule's gain and integral time are multiplied by.
+  std::vector<PiSetting> piOf(const Vector& x) const {
+    std::vector<PiSetting> settings;
+    const double Ts = brief_.loop.plant_info.sample_time_s;
+    for (Index p = 0; p < loops(); ++p) {
+      const Pairing& pair = outline_.pairs[static_cast<std::size_t>(p)];
+      const ProcessElement& e = models_.fits[static_cast<std::size_t>(pair.output)]
+                                    .elements[static_cast<std::size_t>(pair.input)]
+                                    .element;
+      PiSetting s;
+      const double late = e.dead_time + std::abs(std::min(e.lead, 0.0)) + 0.5 * Ts;
+      if (e.integrating) {  // skogestad2003
+        const double wait = std::max(late + e.second, Ts);
+        s.kp = 0.5 / (e.gain * wait);
+        s.ti_min = 8.0 * wait / 60.0;
+      } else if (e.time_constant < 0.0) {
+        const double wait = std::max(late + e.second, Ts);
+        s.kp = 1.5 / e.gain * std::min(std::sqrt(-e.time_constant / wait), 4.0);
+        s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
+      } else {
+        const Fopdt lag{e.gain, std::max(e.time_constant + e.second, 0.3 * Ts) / 60.0, late / 60.0};
+        const PiTuning t =
+            imcTuning(lag, std::max({lag.dead_time, 0.5 * lag.time_constant, Ts / 60.0}));
+        s = {t.kp, t.integral_time_min};
+      }
+      s.kp *= std::exp2(x[2 * p]);
+      s.ti_min *= std::exp2(x[2 * p + 1]);
+      settings.push_back(s);
+    }
+    return settings;
+  }
+
+  std::string piText(const Vector& x) const {
+    return rewritten(
+        brief_, "# PI of the commissioning of " + brief_.loop.name + ".\n",
+        {{"controller", "{type: pi, loops: " + piLoops(brief_, outline_, piOf(x)) + "}"}});
+  }
+
+  // ---- the predictive law
+
+  /// x: log10 of the moves' weight, log10 of disturbance over noise, then log2 of the reference
+  /// times of the held outputs.
+  void lawStart(Vector& start, Vector& width) const {
+    const auto held = static_cast<Index>(std::count(brief_.held.begin(), brief_.held.end(), true));
+    start = Vector::Zero(2 + held);
+    width = Vector::Constant(2 + held, 2.5);
+    start[0] = -1.0;
+    width[0] = 2.5;
+    start[1] = -0.5;
+    width[1] = 1.0;
+  }
+
+  std::string lawText(const Vector& x) const {
+    const PlantInfo& plant = brief_.loop.plant_info;
+    const double Ts = plant.sample_time_s;
+    const Index n_y = countOf(plant.outputs), n_u = countOf(plant.inputs);
+    Vector weight(n_y), pole(n_y), move(n_u), noise(n_y), walk(n_y), pull = Vector::Zero(n_u);
+    Index next = 2;
+    for (Index i = 0; i < n_y; ++i) {
+      const bool held = brief_.held[static_cast<std::size_t>(i)];
+      weight[i] = (held ? 1.0 : kZoneWeight) / (outline_.y_scale[i] * outline_.y_scale[i]);
+      double lag = Ts;
+      const ProcessFit& fit = models_.fits[static_cast<std::size_t>(i)];
+      double most = 0.0;
+      for (Index j = 0; j < n_u; ++j) {
+        const ProcessElement& e = fit.elements[static_cast<std::size_t>(j)].element;
+        if (std::abs(outline_.gain(i, j)) * outline_.u_range[j] <= most) continue;
+        most = std::abs(outline_.gain(i, j)) * outline_.u_range[j];
+        const double first = e.integrating || e.time_constant < 0.0 ? 0.0 : e.time_constant;
+        lag = std::max({0.3 * (first + e.second), 0.5 * e.dead_time, 0.5 * Ts});
+      }
+      pole[i] = std::exp(-Ts / (lag * (held ? std::exp2(x[next]) : 1.0)));
+      if (held) ++next;
+      noise[i] = std::max(noise_[i], 1e-4 * outline_.y_scale[i]);
+      walk[i] = std::pow(10.0, x[1]) * std::max(fit.one_step, 1e-4 * outline_.y_scale[i]);
+    }
+    for (Index j = 0; j < n_u; ++j) {
+      const double unit = 1.0 / (outline_.u_range[j] * outline_.u_range[j]);
+      move[j] = std::pow(10.0, x[0]) * unit * 10.0;
+      pull[j] = pull_ * unit;
+    }
+    const double horizon =
+        std::clamp(std::ceil(outline_.settling / Ts), kShortHorizon, kLongHorizon);
+    std::ostringstream c;
+    c << "{type: fmbpc, law: iterated, horizon_steps: " << horizon
+      << ", reference_pole: " << mapOf(plant.outputs, pole)
+      << ", weight_output: " << mapOf(plant.outputs, weight)
+      << ", weight_move: " << mapOf(plant.inputs, move);
+    if (pull_ > 0.0)
+      c << ", weight_input: " << mapOf(plant.inputs, pull)
+        << ", input_target: " << mapOf(plant.inputs, modelRest(models_.fits, n_u).inputs);
+    c << ", realisation: observer, observer: {noise_std: " << mapOf(plant.outputs, noise)
+      << ", disturbance_std: " << mapOf(plant.outputs, walk) << "}}";
+    return rewritten(
+        brief_, "# Law of the commissioning of " + brief_.loop.name + ", on " + model_file_ + ".\n",
+        {{"model", "{file: '" + model_file_ + "'}"},
+         {"controller", c.str()},
+         {"guard", "{pi: {loops: " +
+                       piLoops(brief_, outline_, pi_.empty() ? piOf(piStart()) : pi_) + "}}"}});
+  }
+
+  // ---- judging
+
+  /// The loop on one model, asked for steps of all that is held, then for loads.
+  LoopFile scenario(const std::string& text, const TsModel& model) const {
+    LoopFile loop = onModel(parseLoop(text, brief_.loop.name), model, models_.errors,
+                            modelRest(models_.fits, countOf(brief_.loop.plant_info.inputs)));
+    const double Ts = brief_.loop.plant_info.sample_time_s,
+                 stretch_h = outline_.stretch * Ts / 3600.0;
+    loop.setpoint.initial = loop.simulation.initial_state;
+    const Vector rest = loop.simulation.initial_state;
+    Vector asked = rest;
+    int stretch = 0;
+    const auto at = [&](int n) { return 0.1 * stretch_h + n * stretch_h; };
+    for (Index i = 0; i < rest.size(); ++i) {
+      if (!brief_.held[static_cast<std::size_t>(i)]) continue;
+      const double up = brief_.upper[i] - rest[i], down = rest[i] - brief_.lower[i];
+      asked[i] = rest[i] + (up >= down ? 1.0 : -1.0) * outline_.y_scale[i];
+      loop.setpoint.schedule.push_back({at(stretch++), asked, 0.0});
+    }
+    loop.setpoint.schedule.push_back({at(stretch++), rest, 0.0});
+    for (Index i = 0; i < rest.size(); ++i) {
+      if (!brief_.held[static_cast<std::size_t>(i)]) continue;
+      double sum = 1.0;  // of the denominator: what a constant load is divided by
+      const OutputModel& submodel = model.submodels[static_cast<std::size_t>(i)];
+      for (std::size_t r = 0; r < submodel.regressors.size(); ++r)
+        if (submodel.regressors[r].kind == SignalKind::kOutput)
+          sum -= submodel.rules.front().coefficients[static_cast<Index>(r)];
+      const double load = kLoad * outline_.y_scale[i] * std::max(sum, Ts / outline_.settling);
+      Command command;
+      command.name = {"load/" + brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name};
+      command.value = {load};
+      command.mode = CommandMode::kOffset;
+      loop.simulation.disturbance_commands.push_back({at(stretch++), command});
+    }
+    loop.simulation.samples =
+        static_cast<std::uint32_t>(stretch * outline_.stretch + outline_.stretch / 10);
+    return loop;
+  }
+
+  /// Mean square of the errors, in steps, plus that of the moves, in parts of what a step needs.
+  double cost(const std::string& text, const TsModel& model, std::uint64_t seed) const {
+    LoopFile loop = scenario(text, model);
+    loop.simulation.noise_seed = seed;
+    const RunRecord record = runLoop(loop);
+    if (!record.complete) return kFailed;
+    double error = 0.0, moves = 0.0, beyond = 0.0;
+    const auto n = static_cast<double>(record.samples.size());
+    for (std::size_t k = 0; k < record.samples.size(); ++k) {
+      const SampleRecord& s = record.samples[k];
+      for (Index i = 0; i < s.state.outputs.size(); ++i) {
+        if (s.state.outputs[i] > brief_.upper[i] || s.state.outputs[i] < brief_.lower[i])
+          beyond += 1.0;
+        double e = s.tracking.setpoint[i] - s.state.outputs[i];
+        if (!brief_.held[static_cast<std::size_t>(i)]) {
+          const double y = s.state.outputs[i];
+          e = std::max({y - brief_.zone_upper[i], brief_.zone_lower[i] - y, 0.0});
+        }
+        error += e * e / (outline_.y_scale[i] * outline_.y_scale[i]);
+      }
+      if (k + 1 < record.samples.size() && k > 0) {
+        const Vector& u = s.action.input;
+        const Vector& before = record.samples[k - 1].action.input;
+        for (Index j = 0; j < u.size(); ++j) {
+          double need = kInfinity;  // input that a step of an output takes
+          for (Index i = 0; i < outline_.gain.rows(); ++i)
+            if (std::abs(outline_.gain(i, j)) > 0.0)
+              need = std::min(need, outline_.y_scale[i] / std::abs(outline_.gain(i, j)));
+          need = std::min(need, 0.3 * outline_.u_range[j]);
+          const double part = (u[j] - before[j]) / need;
+          moves += params_.movement * part * part;
+        }
+      }
+    }
+    const double value = (error + moves + kViolation * beyond) / n;
+    return std::isfinite(value) ? std::min(value, kFailed) : kFailed;
+  }
+
+  std::vector<double> costsOver(const std::string& text,
+                                const std::vector<const TsModel*>& models) const {
+    std::vector<double> costs(models.size(), kFailed);
+    parallelFor(models.size(), params_.threads, [&](std::size_t m) {
+      try {
+        costs[m] = cost(text, *models[m], params_.seed + m);
+      } catch (const InputError&) {
+        costs[m] = kFailed;  // a setting with which the loop cannot be run
+      }
+    });
+    return costs;
+  }
+
+  template <typename Text>
+  std::vector<double> searched(const Vector& start, const Vector& width, const Text& text,
+                               DesignFigures& figures) const {
+    SearchParams search;
+    search.method = SearchMethod::kApso;
+    search.population = 8;
+    search.evaluations = params_.evaluations;
+    search.seed = params_.seed;
+    const SearchResult result = runSearch(
+        search, start - width, start + width,
+        [&](const Matrix& points, Vector& costs) {
+          costs.resize(points.cols());
+          for (Index c = 0; c < points.cols(); ++c) {
+            const std::vector<double> all = costsOver(text(points.col(c)), tuned_);
+            double sum = 0.0, worst = 0.0;
+            for (const double v : all) {
+              sum += v;
+              worst = std::max(worst, v);
+            }
+            // Half of what counts is the worst of them, and a part what a plant further off costs.
+            const double own = 0.5 * (sum / static_cast<double>(all.size()) + worst);
+            costs[c] = (1.0 - kSpoiltShare) * own +
+                       kSpoiltShare * costsOver(text(points.col(c)), {&spoilt_}).front();
+          }
+          return true;
+        },
+        start);
+    figures.tuned = result.cost;
+    return {result.best.begin(), result.best.end()};
+  }
+
+  /// Those on which margins are asked: a probe takes as long as twenty runs.
+  void chooseProbed(const std::string& pi, const std::string& law) {
+    probed_ = tuned_;
+    std::vector<const TsModel*> rest = held_out_;
+    const std::vector<double> one = costsOver(pi, rest), other = costsOver(law, rest);
+    std::vector<std::size_t> order(rest.size());
+    for (std::size_t m = 0; m < order.size(); ++m) order[m] = m;
+    const auto worse = [](const std::vector<double>& costs) {
+      return [&costs](std::size_t a, std::size_t b) { return costs[a] > costs[b]; };
+    };
+    std::stable_sort(order.begin(), order.end(), worse(one));
+    probed_.push_back(rest[order.front()]);
+    const std::size_t first = order.front();
+    std::stable_sort(order.begin(), order.end(), worse(other));
+    probed_.push_back(rest[order.front() == first ? order[1] : order.front()]);
+  }
+
+  /// Until all of them are stable enough, or nothing helps.
+  template <typename Text, typename Softer>
+  void soften(DesignFigures& figures, const Text& text, const Softer& softer) {
+    for (int k = 0;; ++k) {
+      margins(text(), figures, k < kStiffenings);
+      if (figures.worst_peak <= params_.peak || k == kStiffenings) return;
+      softer();
+    }
+  }
+
+  /// With `early` the first model beyond the peak ends it, and is the first one the next time.
+  void margins(const std::string& text, DesignFigures& figures, bool early) {
+    figures.worst_peak = 0.0;
+    figures.least_gain = figures.least_delay_s = kInfinity;
+    for (std::size_t m = 0; m < probed_.size(); ++m) {
+      LoopFile loop = scenario(text, *probed_[m]);
+      loop.simulation.disturbance_commands.clear();
+      const LoopCourse course(loop);
+      const CoursePoint point = course.points(1).front();
+      const LoopProbe probe = probeLoop(course.stayingAt(loop, point), point);
+      if (probe.result != ProbeResult::kLinear) {
+        figures.worst_peak = kInfinity;
+        figures.least_gain = figures.least_delay_s = 0.0;
+      } else {
+        figures.worst_peak = std::max(figures.worst_peak, probe.response->peak());
+        for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
+          const LoopMargins margin = probe.response->margins(j);
+          figures.least_gain = std::min(figures.least_gain, margin.gain_upper);
+          figures.least_delay_s = std::min(figures.least_delay_s, margin.delay_s);
+        }
+      }
+      if (!early || figures.worst_peak <= params_.peak) continue;
+      std::swap(probed_.front(), probed_[m]);
+      return;
+    }
+  }
+
+  void compare(Design& d) const {
+    d.law_figures.costs = costsOver(d.law, held_out_);
+    d.pi_figures.costs = costsOver(d.pi, held_out_);
+    const auto n = static_cast<double>(held_out_.size());
+    double mean = 0.0, square = 0.0;  // of the logarithm of the ratio
+    for (std::size_t m = 0; m < held_out_.size(); ++m) {
+      const double r = std::log(d.law_figures.costs[m] / d.pi_figures.costs[m]);
+      mean += r / n;
+      square += r * r / n;
+    }
+    const double half =
+        normalBound(0.95) * std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0));
+    d.ratio = std::exp(mean);
+    d.ratio_bound = d.ratio * std::expm1(half);
+    const bool pi_holds = d.pi_figures.worst_peak <= params_.peak;
+    const bool law_holds = d.law_figures.worst_peak <= params_.peak;
+    d.offers_law = law_holds && (!pi_holds || std::exp(mean + half) < kLeastBetter);
+    if (!law_holds)
+      d.remarks.push_back("the law is not stable on every model with a sensitivity peak below " +
+                          shortText(params_.peak));
+    if (!pi_holds)
+      d.remarks.push_back("the PI is not stable on every model with a sensitivity peak below " +
+                          shortText(params_.peak));
+    d.remarks.push_back(d.offers_law ? "the law is offered: it costs " + shortText(d.ratio) +
+                                           " of what the PI does"
+                        : pi_holds ? "the PI is offered: the law does not beat it"
+                                   : "neither is offered: test again, or allow more plant time");
+  }
+
+  void lookAtDirections(Design& d) {
+    d.weak = weakDirections(models_, outline_.u_range, outline_.y_scale);
+    // Scaled gains: a unit of cost is a step of an output, a unit of input its range.
+    const Matrix scaled = outline_.y_scale.cwiseInverse().asDiagonal() * outline_.gain *
+                          outline_.u_range.asDiagonal();
+    for (const WeakDirection& w : d.weak) {
+      const double gain = (scaled * w.inputs).norm();
+      std::string direction;
+      for (Index j = 0; j < w.inputs.size(); ++j)
+        direction += (j ? ", " : "") +
+                     brief_.loop.plant_info.inputs[static_cast<std::size_t>(j)].name + " " +
+                     shortText(w.inputs[j]);
+      if (w.certain) {
+        d.remarks.push_back("moving (" + direction + ") together, in parts of their ranges, does " +
+                            shortText(100.0 * w.share) +
+                            " % of what the strongest direction does: it is used, and slow");
+      } else {
+        pull_ = std::max(pull_, kWeakWeight * gain * gain);
+        d.remarks.push_back("the sign of what (" + direction +
+                            ") do together, in parts of their ranges, is not known: that direction "
+                            "is left alone, and an offset stays in it");
+      }
+    }
+  }
+
+  const CommissioningBrief& brief_;
+  Vector noise_;
+  std::string model_file_;
+  const ProcessModels& models_;
+  DesignParams params_;
+  Outline outline_;
+  std::vector<const TsModel*> tuned_, held_out_, probed_;
+  TsModel spoilt_;
+  std::vector<PiSetting> pi_;
+  double pull_{};
+};
+
+}  // namespace
+
+LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& errors,
+                 const LinearPoint& rest) {
+  LoopFile on = loop;
+  SimulationParams& sim = on.simulation;
+  const InputLimits& limits = sim.actuator.limits;
+  // A run leaves the operator's limits without ending: that is judged.
+  std::vector<SignalInfo> ranges;
+  for (const SignalInfo& y : model.outputs) {
+    const double wide = 10.0 * (y.upper - y.lower);
+    ranges.push_back({y.name, y.unit, y.lower - wide, y.upper + wide});
+  }
+  for (std::size_t j = 0; j < model.inputs.size(); ++j)
+    ranges.push_back({model.inputs[j].name, model.inputs[j].unit,
+                      std::max(-1e12, limits.lower[static_cast<Index>(j)]),
+                      std::min(1e12, limits.upper[static_cast<Index>(j)])});
+  const auto made = std::make_shared<ModelPlant>(model, errors, ranges);
+  const PlantDescription& about = made->description();
+  sim.factory = [model, errors, ranges](const PlantParameters&) {
+    return std::make_unique<ModelPlant>(model, errors, ranges);
+  };
+  sim.parameters.clear();
+  sim.outputs = namesOf(model.outputs);
+  sim.output_delay_s.clear();
+  sim.measured_disturbances = namesOf(model.disturbances);
+  sim.instruments = {};
+  sim.actuator.drives.clear();
+  sim.disturbance = {};
+  on.disturbance = {};
+  sim.disturbance_commands.clear();
+  const auto n_d = countOf(about.disturbances);
+  sim.disturbance_nominal.setZero(n_d);
+  sim.disturbance_nominal.head(rest.disturbances.size()) = rest.disturbances;
+  sim.disturbance_noise_std.setZero(n_d);
+  for (std::size_t i = 0; i < about.disturbances.size(); ++i) {
+    const auto noise = about.noise_std.find(about.disturbances[i].name);
+    if (noise != about.noise_std.end())
+      sim.disturbance_noise_std[static_cast<Index>(i)] = noise->second;
+  }
+  sim.noise_std.setZero(countOf(model.outputs));
+  sim.initial_state = rest.outputs;
+  for (std::size_t i = 0; i < model.outputs.size(); ++i) {
+    const auto noise = about.noise_std.find(model.outputs[i].name);
+    if (noise != about.noise_std.end()) sim.noise_std[static_cast<Index>(i)] = noise->second;
+  }
+  sim.actuator.initial = rest.inputs;
+  on.setpoint.schedule.clear();
+  on.setpoint.commands.clear();
+  return on;
+}
+
+Design designLaws(const CommissioningBrief& brief, const Vector& noise,
+                  const std::string& model_file, const ProcessModels& models,
+                  const DesignParams& params) {
+  return Designer(brief, noise, model_file, models, params).run();
+}
+
+OrderedJson toJson(const Design& d, const PlantInfo& plant) {
+  const auto finite = [](double v) {
+    return std::isfinite(v) ? OrderedJson(v) : OrderedJson(nullptr);
+  };
+  const auto figures = [&](const DesignFigures& f) {
+    return OrderedJson{{"tuned_cost", f.tuned},
+                       {"held_out_costs", f.costs},
+                       {"sensitivity_peak", finite(f.worst_peak)},
+                       {"gain_margin", finite(f.least_gain)},
+                       {"delay_margin_s", finite(f.least_delay_s)}};
+  };
+  OrderedJson weak = OrderedJson::array();
+  for (const WeakDirection& w : d.weak) {
+    OrderedJson inputs = OrderedJson::object();
+    for (std::size_t j = 0; j < plant.inputs.size(); ++j)
+      inputs[plant.inputs[j].name] = w.inputs[static_cast<Index>(j)];
+    weak.push_back({{"inputs", inputs}, {"share", w.share}, {"certain", w.certain}});
+  }
+  return {{"offers", d.offers_law ? "law" : "pi"},
+          {"cost_ratio", d.ratio},
+          {"cost_ratio_bound", d.ratio_bound},
+          {"models_probed", d.probed},
+          {"law", figures(d.law_figures)},
+          {"pi", figures(d.pi_figures)},
+          {"weak_directions", weak},
+          {"remarks", d.remarks}};
+}
+
+}  // namespace fpc

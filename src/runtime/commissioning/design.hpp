@@ -1,0 +1,54 @@
+// Stage 5: a predictive law and the PI that it falls back to, both tuned over the same ensemble
+// with the same effort, and the word which of the two is offered.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/ordered_json.hpp"
+#include "model/linear_model.hpp"
+#include "runtime/commissioning/process_models.hpp"
+
+namespace fpc {
+
+struct DesignParams {
+  int evaluations{48};   ///< points that each search judges, each over the tuned members
+  int tuned_members{4};  ///< beside the likeliest model
+  double peak{2.0};      ///< largest sensitivity that any member may have (astrom2008)
+  double movement{0.1};  ///< weight of the moves beside the errors, see designCost()
+  int threads{0};        ///< 0: all cores
+  std::uint64_t seed{1};
+  std::function<void(const std::string&)> show;  ///< told what is done; may be empty
+};
+
+/// What one law reaches over an ensemble.
+struct DesignFigures {
+  double tuned{};             ///< mean cost over what it was tuned on
+  std::vector<double> costs;  ///< of each member that was held out
+  double worst_peak{};        ///< sensitivity, largest of the models probed; infinite: not stable
+  double least_gain{}, least_delay_s{};  ///< margins, least of them
+};
+
+struct Design {
+  std::string law, pi;  ///< the texts of the two loop files
+  DesignFigures law_figures, pi_figures;
+  double ratio{};        ///< cost of the law over that of the PI, mean of the held-out pairs
+  double ratio_bound{};  ///< half width of its 95 % interval
+  bool offers_law{};     ///< it is stable on all members, and better than the PI beyond that bound
+  std::vector<std::string> remarks;
+  std::vector<WeakDirection> weak;
+  std::size_t probed{};  ///< models: the likeliest, those tuned on, the costliest held out
+};
+
+/// @throws InputError if the plant's loop file cannot be rewritten, or if no PI is stable.
+Design designLaws(const CommissioningBrief& brief, const Vector& noise,
+                  const std::string& model_file, const ProcessModels& models,
+                  const DesignParams& params);
+OrderedJson toJson(const Design& design, const PlantInfo& plant);
+
+/// The loop with a model in the place of its plant, which begins at `rest`, with neither schedule.
+LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& errors,
+                 const LinearPoint& rest);
+
+}  // namespace fpc

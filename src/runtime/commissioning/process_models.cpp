@@ -1,0 +1,281 @@
+#include "runtime/commissioning/process_models.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include "base/files.hpp"
+#include "base/statistics.hpp"
+#include "config/identified_file.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/signals.hpp"
+
+namespace fpc {
+namespace {
+
+using Eigen::Index;
+namespace fs = std::filesystem;
+
+constexpr double kWeak = 0.1;  // of the strongest direction's gain
+
+TsModel modelNames(const CommissioningBrief& brief) {
+  const PlantInfo& plant = brief.loop.plant_info;
+  TsModel names;
+  names.name = brief.loop.name;
+  names.source = "commissioning of " + brief.loop.name;
+  names.sample_time_s = plant.sample_time_s;
+  names.outputs = plant.outputs;
+  names.inputs = plant.inputs;
+  names.disturbances = plant.disturbances;
+  // A model of lags is trusted as far as the operator lets the plant go.
+  for (std::size_t i = 0; i < names.outputs.size(); ++i) {
+    names.outputs[i].lower = brief.lower[static_cast<Index>(i)];
+    names.outputs[i].upper = brief.upper[static_cast<Index>(i)];
+  }
+  return names;
+}
+
+TsModel modelOf(const TsModel& names, const std::vector<ProcessFit>& fits, int member) {
+  std::vector<SampledLinearElement> all;
+  const Index n_u = countOf(names.inputs);
+  const LinearPoint point = modelRest(fits, n_u);
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const ProcessFit& fit = fits[i];
+    for (std::size_t j = 0; j < fit.elements.size(); ++j) {
+      if (!fit.elements[j].seen) continue;
+      const ProcessElement& element =
+          member < 0 ? fit.elements[j].element : fit.ensemble[static_cast<std::size_t>(member)][j];
+      const bool input = static_cast<Index>(j) < n_u;
+      all.push_back({static_cast<int>(i), input ? SignalKind::kInput : SignalKind::kDisturbance,
+                     static_cast<int>(input ? j : j - static_cast<std::size_t>(n_u)),
+                     sampled(element, names.sample_time_s)});
+    }
+  }
+  return linearModel(names, all, point);
+}
+
+OrderedJson elementJson(const ProcessElement& e) {
+  return {{"gain", e.gain},   {"time_constant_s", e.time_constant}, {"second_s", e.second},
+          {"lead_s", e.lead}, {"dead_time_s", e.dead_time},         {"integrating", e.integrating}};
+}
+
+ProcessElement elementOf(const OrderedJson& json) {
+  ProcessElement e;
+  e.gain = json.at("gain");
+  e.time_constant = json.at("time_constant_s");
+  e.second = json.at("second_s");
+  e.lead = json.at("lead_s");
+  e.dead_time = json.at("dead_time_s");
+  e.integrating = json.at("integrating");
+  return e;
+}
+
+const char* wordOf(ProcessKind kind) {
+  return kind == ProcessKind::kStable        ? "stable"
+         : kind == ProcessKind::kIntegrating ? "integrating"
+                                             : "unstable";
+}
+
+IdentifiedModel identifiedOf(const ProcessModels& models, const TsModel& model) {
+  IdentifiedModel found;
+  found.model = model;
+  const double z = normalBound(0.95);
+  for (const ProcessFit& fit : models.fits) {
+    IdentifiedOutput o;
+    o.best = ModelKind::kRegressors;
+    o.free_run_width = z * fit.free_run;
+    o.one_step_width = z * fit.one_step;
+    found.outputs.push_back(o);
+  }
+  return found;
+}
+
+std::string memberFile(const std::string& folder, std::size_t member) {
+  return inFolder(inFolder(folder, "ensemble"), std::to_string(member + 1) + ".yaml");
+}
+
+}  // namespace
+
+LinearPoint modelRest(const std::vector<ProcessFit>& fits, Index inputs) {
+  const Vector& all = fits.front().input;
+  LinearPoint point{Vector(static_cast<Index>(fits.size())), all.head(inputs),
+                    all.tail(all.size() - inputs)};
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    point.outputs[static_cast<Index>(i)] = fits[i].output;
+  return point;
+}
+
+ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members) {
+  ProcessModels models;
+  const TsModel names = modelNames(brief);
+  const Matrix inputs = record.inputsAndDisturbances();
+  ProcessFitParams params;
+  params.ensemble = members;
+  for (std::size_t i = 0; i < names.outputs.size(); ++i) {
+    params.seed = brief.seed + 1000 * i;
+    models.fits.push_back(fitProcess(inputs, record.outputs().col(static_cast<Index>(i)),
+                                     names.sample_time_s, params));
+    const auto& elements = models.fits.back().elements;
+    require(std::any_of(elements.begin(), elements.begin() + countOf(names.inputs),
+                        [](const ElementEstimate& e) { return e.seen; }),
+            "output " + names.outputs[i].name, "an input that was seen to move it: test again");
+  }
+  models.model = modelOf(names, models.fits, -1);
+  for (int member = 0; member < members; ++member)
+    models.ensemble.push_back(modelOf(names, models.fits, member));
+  models.errors.one_step.resize(countOf(names.outputs));
+  models.errors.free_run.resize(countOf(names.outputs));
+  for (std::size_t i = 0; i < models.fits.size(); ++i) {
+    models.errors.one_step[static_cast<Index>(i)] = models.fits[i].one_step;
+    models.errors.free_run[static_cast<Index>(i)] = models.fits[i].free_run;
+  }
+  return models;
+}
+
+TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more_dead_time_s) {
+  std::vector<ProcessFit> fits = models.fits;
+  for (ProcessFit& fit : fits)
+    for (std::size_t j = 0; j < models.model.inputs.size(); ++j) {
+      fit.elements[j].element.gain *= gain_factor;
+      fit.elements[j].element.dead_time += more_dead_time_s;
+    }
+  return modelOf(models.model, fits, -1);
+}
+
+Matrix gainsOf(const std::vector<ProcessFit>& fits, Index inputs) {
+  Matrix gains(static_cast<Index>(fits.size()), inputs);
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    for (Index j = 0; j < inputs; ++j) {
+      const ElementEstimate& e = fits[i].elements[static_cast<std::size_t>(j)];
+      gains(static_cast<Index>(i), j) = e.element.gain * (e.element.integrating ? 3600.0 : 1.0);
+    }
+  return gains;
+}
+
+std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
+                                          const Vector& output_range) {
+  const Index n_u = input_range.size(), n_y = output_range.size();
+  const auto scaled = [&](const Matrix& gains) {
+    return Matrix(output_range.cwiseInverse().asDiagonal() * gains * input_range.asDiagonal());
+  };
+  const Matrix gains = scaled(gainsOf(models.fits, n_u));
+  const Eigen::JacobiSVD<Matrix> svd(gains, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  std::vector<WeakDirection> weak;
+  const Vector values = svd.singularValues();
+  for (Index k = 1; k < std::min(n_u, n_y); ++k) {
+    const double share = values[k] / values[0];
+    // The gain of this direction as every member of the ensemble has it.
+    bool certain = true;
+    const std::size_t members = models.fits.front().ensemble.size();
+    for (std::size_t m = 0; m < members; ++m) {
+      Matrix one(n_y, n_u);
+      for (Index i = 0; i < n_y; ++i)
+        for (Index j = 0; j < n_u; ++j) {
+          const ProcessElement& e =
+              models.fits[static_cast<std::size_t>(i)].ensemble[m][static_cast<std::size_t>(j)];
+          one(i, j) =
+              models.fits[static_cast<std::size_t>(i)].elements[static_cast<std::size_t>(j)].seen
+                  ? e.gain * (e.integrating ? 3600.0 : 1.0)
+                  : 0.0;
+        }
+      if (svd.matrixU().col(k).dot(scaled(one) * svd.matrixV().col(k)) <= 0.2 * values[k])
+        certain = false;
+    }
+    if (share < kWeak || !certain) weak.push_back({svd.matrixV().col(k), share, certain});
+  }
+  return weak;
+}
+
+OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant) {
+  OrderedJson json = {{"outputs", OrderedJson::array()}};
+  for (std::size_t i = 0; i < models.fits.size(); ++i) {
+    const ProcessFit& fit = models.fits[i];
+    OrderedJson output = {{"name", plant.outputs[i].name},
+                          {"kind", wordOf(fit.kind)},
+                          {"rows", fit.rows},
+                          {"one_step", fit.one_step},
+                          {"free_run", fit.free_run},
+                          {"noise_terms", fit.noise.size()},
+                          {"rest", fit.output},
+                          {"elements", OrderedJson::array()}};
+    for (std::size_t j = 0; j < fit.elements.size(); ++j) {
+      const ElementEstimate& e = fit.elements[j];
+      OrderedJson element = {
+          {"from", j < plant.inputs.size() ? plant.inputs[j].name
+                                           : plant.disturbances[j - plant.inputs.size()].name},
+          {"seen", e.seen}};
+      element.update(elementJson(e.element));
+      element["gain_bound"] =
+          std::isfinite(e.gain_bound) ? OrderedJson(e.gain_bound) : OrderedJson(nullptr);
+      element["dead_time_bound_s"] = e.dead_time_bound;
+      element["time_bound_s"] = e.time_bound;
+      element["ensemble"] = OrderedJson::array();
+      for (const auto& member : fit.ensemble) element["ensemble"].push_back(elementJson(member[j]));
+      output["elements"].push_back(std::move(element));
+    }
+    output["inputs_mean"] = std::vector<double>(fit.input.begin(), fit.input.end());
+    json["outputs"].push_back(std::move(output));
+  }
+  return json;
+}
+
+std::vector<ProcessFit> fitsOf(const OrderedJson& json) {
+  std::vector<ProcessFit> fits;
+  for (const auto& output : json.at("outputs")) {
+    ProcessFit fit;
+    const std::string kind = output.at("kind");
+    for (const ProcessKind k : {ProcessKind::kIntegrating, ProcessKind::kUnstable})
+      if (kind == wordOf(k)) fit.kind = k;
+    fit.rows = output.at("rows");
+    fit.one_step = output.at("one_step");
+    fit.free_run = output.at("free_run");
+    fit.output = output.at("rest");
+    const std::vector<double> mean = output.at("inputs_mean");
+    fit.input = Eigen::Map<const Vector>(mean.data(), static_cast<Index>(mean.size()));
+    for (const auto& element : output.at("elements")) {
+      ElementEstimate e;
+      e.element = elementOf(element);
+      e.seen = element.at("seen");
+      e.gain_bound = element.at("gain_bound").is_null() ? std::numeric_limits<double>::infinity()
+                                                        : element.at("gain_bound").get<double>();
+      e.dead_time_bound = element.at("dead_time_bound_s");
+      e.time_bound = element.at("time_bound_s");
+      fit.ensemble.resize(element.at("ensemble").size());
+      for (std::size_t m = 0; m < fit.ensemble.size(); ++m)
+        fit.ensemble[m].push_back(elementOf(element.at("ensemble")[m]));
+      fit.elements.push_back(e);
+    }
+    fits.push_back(std::move(fit));
+  }
+  return fits;
+}
+
+void writeModels(const ProcessModels& models, const std::string& folder) {
+  makeFolder(inFolder(folder, "ensemble"));
+  writeText(writeIdentified(identifiedOf(models, models.model)), inFolder(folder, "model.yaml"));
+  for (std::size_t m = 0; m < models.ensemble.size(); ++m)
+    writeText(writeIdentified(identifiedOf(models, models.ensemble[m])), memberFile(folder, m));
+}
+
+ProcessModels readModels(const std::string& folder) {
+  ProcessModels models;
+  const std::string file = inFolder(folder, "model.json");
+  std::ifstream stream(file);
+  require(static_cast<bool>(stream), file, "the file that stage model writes");
+  try {
+    models.fits = fitsOf(OrderedJson::parse(stream));
+  } catch (const nlohmann::json::exception& e) {
+    throw InputError(file + ": expected what stage model writes (" + e.what() + ")");
+  }
+  const IdentifiedModel found = readIdentified(inFolder(folder, "model.yaml"));
+  models.model = found.model;
+  models.errors = modelErrorsOf(found);
+  for (std::size_t m = 0; fs::is_regular_file(memberFile(folder, m)); ++m)
+    models.ensemble.push_back(readIdentified(memberFile(folder, m)).model);
+  return models;
+}
+
+}  // namespace fpc

@@ -1,0 +1,55 @@
+// Stage 4: models of the plant from what was seen of it, with what is not known of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/ordered_json.hpp"
+#include "fmbpc/model/ts_model.hpp"
+#include "identification/process_fit.hpp"
+#include "model/linear_model.hpp"
+#include "plant/model_plant.hpp"
+#include "runtime/commissioning/brief.hpp"
+#include "runtime/commissioning/plant_record.hpp"
+
+namespace fpc {
+
+struct ProcessModels {
+  std::vector<ProcessFit> fits;   ///< one per output: elements of inputs, then disturbances
+  TsModel model;                  ///< the likeliest
+  std::vector<TsModel> ensemble;  ///< equally likely ones
+  ModelErrors errors;
+};
+
+/// @throws InputError naming an output that no input moves.
+ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members);
+/// Elements with their bounds, kinds, errors, directions of the inputs that are weak.
+OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant);
+/// fits of model.json, without the ensemble's.
+std::vector<ProcessFit> fitsOf(const OrderedJson& json);
+/// model.yaml and ensemble/NUMBER.yaml, each a plant of type model.
+void writeModels(const ProcessModels& models, const std::string& folder);
+/// What writeModels() wrote, with model.json. @throws InputError naming the file.
+ProcessModels readModels(const std::string& folder);
+
+/// The likeliest model with other gains and more dead time: what a law is to bear beside the
+/// ensemble.
+TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more_dead_time_s);
+
+/// n_y n_u, gains of the elements (per hour of an integrator).
+Matrix gainsOf(const std::vector<ProcessFit>& fits, Eigen::Index inputs);
+
+/// Where the models rest, whatever their gains.
+LinearPoint modelRest(const std::vector<ProcessFit>& fits, Eigen::Index inputs);
+
+/// A direction of the inputs, in parts of their ranges, that moves the outputs, in parts of theirs,
+/// little beside the strongest one.
+struct WeakDirection {
+  Vector inputs;   ///< of length 1
+  double share{};  ///< of the strongest one's gain
+  bool certain{};  ///< its gain has the same sign in the whole ensemble
+};
+std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
+                                          const Vector& output_range);
+
+}  // namespace fpc

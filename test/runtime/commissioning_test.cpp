@@ -1,0 +1,190 @@
+#include "runtime/commissioning/commissioning.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/files.hpp"
+#include "fmbpc/base/input_error.hpp"
+#include "paths.hpp"
+#include "runtime/run.hpp"
+
+namespace fpc {
+namespace commissioning_test {
+
+namespace fs = std::filesystem;
+using Stage = CommissioningStage;
+
+const char kTankBrief[] =
+    "loop: tank.yaml\n"
+    "limits: {T: [30, 55]}\n"
+    "moves: {heat: 1}\n"
+    "hold: {T: 42}\n"
+    "plant_time_h: 12\n"
+    "seed: 1\n";
+const char kTank[] =
+    "extends: heated_tank\n"
+    "noise: {std: {T: 0.05}}\n"
+    "controller:\n"
+    "  loops: [{input: heat, output: T, kp: 0.3, ki_per_h: 1, start: bumpless}]\n"
+    "disturbance: {commands: []}\n";
+const char kColumnBrief[] =
+    "loop: column.yaml\n"
+    "limits: {T_17: [-3, 3], T_4: [-3, 3]}\n"
+    "moves: {R: 0.1, S: 0.1}\n"
+    "hold: {T_17: 0, T_4: 0}\n"
+    "plant_time_h: 12\n";
+const char kColumn[] =
+    "extends: methanol_clip\n"
+    "noise: {std: {T_17: 0.03, T_4: 0.03}}\n"
+    "setpoint: {initial: {T_17: 0, T_4: 0}}\n"
+    "controller:\n"
+    "  type: pi\n"
+    "  loops:\n"
+    "    - {input: R, output: T_17, kp: -0.2, ki_per_h: -2, start: bumpless}\n"
+    "    - {input: S, output: T_4, kp: 0.2, ki_per_h: 2, start: bumpless}\n";
+
+std::string textOf(const std::string& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// A folder of its own, with brief and loop file.
+std::string folderOf(const std::string& name, const std::string& brief,
+                     const std::string& loop_name, const std::string& loop) {
+  const std::string folder = inFolder(resultsDir(), "commissioning_" + name);
+  fs::remove_all(folder);
+  makeFolder(folder);
+  writeText(brief, inFolder(folder, "brief_in.yaml"));
+  writeText(loop, inFolder(folder, loop_name));
+  return folder;
+}
+
+Commissioning made(const std::string& folder) {
+  CommissioningOptions options;
+  options.evaluations = 16;
+  options.members = 9;
+  options.threads = 1;
+  return {inFolder(folder, "brief_in.yaml"), folder, options};
+}
+
+std::string errorOfBrief(const std::string& without) {
+  std::string brief = kTankBrief;
+  const std::size_t at = brief.find(without + ":");
+  brief.erase(at, brief.find('\n', at) - at + 1);
+  const std::string folder = folderOf("brief", brief, "tank.yaml", kTank);
+  try {
+    readBrief(inFolder(folder, "brief_in.yaml"));
+  } catch (const InputError& e) {
+    return e.what();
+  }
+  return "";
+}
+
+TEST(CommissioningBrief, AsksByNameForWhatIsMissing) {
+  for (const char* key : {"loop", "plant_time_h"})
+    EXPECT_NE(errorOfBrief(key).find(key), std::string::npos) << key;
+  EXPECT_EQ(errorOfBrief("moves"), "");  // the loop file says them
+  EXPECT_EQ(errorOfBrief("seed"), "");
+}
+
+TEST(CommissioningBrief, RefusesUnknownSignalsAndSetpointsBeyondTheLimits) {
+  for (const char* bad :
+       {"hold: {T: 60}\n", "hold: {X: 42}\n", "hold: {T: 42}\nzone: {T: [50, 40]}\n"}) {
+    std::string brief = kTankBrief;
+    brief.replace(brief.find("hold: {T: 42}\n"), 14, bad);
+    const std::string folder = folderOf("brief", brief, "tank.yaml", kTank);
+    EXPECT_THROW(readBrief(inFolder(folder, "brief_in.yaml")), InputError) << bad;
+  }
+}
+
+/// What stage model says of one element.
+OrderedJson elementOf(const Commissioning& c, std::size_t output, std::size_t input) {
+  return c.figures(Stage::kModel)["outputs"][output]["elements"][input];
+}
+
+void expectWithin(const OrderedJson& element, const char* key, const char* bound, double truth) {
+  // Two of five bounds of 95 % may miss a little; three times as far none does.
+  EXPECT_NEAR(element[key].get<double>(), truth, 1.5 * element[bound].get<double>()) << key;
+}
+
+TEST(Commissioning, OfOneInputGoesTheWholeWayInsideItsLimits) {
+  const std::string folder = folderOf("tank", kTankBrief, "tank.yaml", kTank);
+  Commissioning c = made(folder);
+  c.run(Stage::kDesign);
+  const OrderedJson test = c.figures(Stage::kTest);
+  EXPECT_EQ(test["ended"], "enough") << test["reason"];
+  EXPECT_EQ(test["limits_left"], 0);
+  const OrderedJson element = elementOf(c, 0, 0);
+  expectWithin(element, "gain", "gain_bound", 2.5);
+  EXPECT_LT(element["gain_bound"].get<double>(), 0.5);
+  const OrderedJson design = c.figures(Stage::kDesign);
+  EXPECT_TRUE(fs::is_regular_file(design["offered"].get<std::string>()));
+  for (const std::string& file : {c.lawFile(), c.piFile()}) {
+    LoopFile loop = readLoop(file);
+    const RunRecord record = runLoop(loop);
+    EXPECT_TRUE(record.complete) << file;
+    EXPECT_NEAR(record.samples.back().state.outputs[0], 50.0, 0.5)
+        << file;  // its own setpoint at the end
+  }
+}
+
+TEST(Commissioning, OfTwoInputsFindsTheCouplingAndOffersOneOfBoth) {
+  const std::string folder = folderOf("column", kColumnBrief, "column.yaml", kColumn);
+  Commissioning c = made(folder);
+  c.run(Stage::kDesign);
+  const OrderedJson test = c.figures(Stage::kTest);
+  EXPECT_EQ(test["limits_left"], 0);
+  EXPECT_EQ(test["ended"], "enough") << test["reason"];
+  const double gains[2][2] = {{-2.2, 1.3}, {-2.8, 4.3}};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j)
+      expectWithin(elementOf(c, i, j), "gain", "gain_bound", gains[i][j]);
+  const OrderedJson design = c.figures(Stage::kDesign);
+  EXPECT_LE(design["law"]["sensitivity_peak"].get<double>(), 2.0);
+  EXPECT_EQ(design["offers"], "law");
+}
+
+TEST(Commissioning, AStageIsResumedRepeatedAndUndone) {
+  const std::string folder = folderOf("again", kTankBrief, "tank.yaml", kTank);
+  Commissioning c = made(folder);
+  c.run(Stage::kTest);
+  EXPECT_TRUE(c.done(Stage::kTest));
+  EXPECT_FALSE(c.done(Stage::kModel));
+  const std::string test = textOf(inFolder(folder, "test.json")),
+                    rows = textOf(inFolder(folder, "test.csv"));
+  // Killed after its record was written and before it said so: the same bits again.
+  fs::remove(inFolder(folder, "test.json"));
+  Commissioning next = made(folder);
+  EXPECT_TRUE(next.done(Stage::kWatch));
+  EXPECT_FALSE(next.done(Stage::kTest));
+  next.run(Stage::kTest);
+  EXPECT_EQ(textOf(inFolder(folder, "test.json")), test);
+  EXPECT_EQ(textOf(inFolder(folder, "test.csv")), rows);
+  next.undo(Stage::kWatch);
+  EXPECT_TRUE(next.done(Stage::kBrief));
+  EXPECT_FALSE(next.done(Stage::kWatch));
+  next.run(Stage::kWatch);
+  // Another brief makes all of it new.
+  std::string other = kTankBrief;
+  other.replace(other.find("seed: 1"), 7, "seed: 2");
+  writeText(other, inFolder(folder, "brief_in.yaml"));
+  EXPECT_FALSE(made(folder).done(Stage::kWatch));
+}
+
+TEST(Commissioning, AFrozenSensorStopsItBeforeTheTest) {
+  const std::string folder = folderOf("frozen", kTankBrief, "tank.yaml",
+                                      std::string(kTank) + "sensors: {T: {noise_std: 0.05, stuck_from_h: 0.9}}\n");
+  Commissioning c = made(folder);
+  EXPECT_THROW(c.run(Stage::kTest), InputError);
+  EXPECT_TRUE(c.figures(Stage::kWatch)["grave"].get<bool>());
+  EXPECT_FALSE(c.done(Stage::kTest));
+}
+
+}  // namespace commissioning_test
+}  // namespace fpc
