@@ -3,7 +3,6 @@ import collections
 import math
 import os
 import shutil
-import struct
 import subprocess
 import tempfile
 import threading
