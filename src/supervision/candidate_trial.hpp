@@ -36,9 +36,9 @@ std::string jsonOf(const CandidateFigures& figures);
 
 /// Judged once `samples` samples are kept, and again with 2, 3, 5, 7 and 10 times as many; then
 /// anew. The confidence of a look is 1 - (1 - confidence) / (kLooks 2^w) in window w = 0, 1, ...:
-/// all looks together keep the asked one, however long it takes. Right: ModelTrial says so, at no
-/// horizon are its squares surely kWorse times those of "it stays" or of the law in charge, and it
-/// was inside its data for all but kOutside of the time.
+/// all looks together keep the asked one, however long it takes. Right: ModelTrial says so, at the
+/// longest horizon its squares are not surely kWorse times those of "it stays" or of the law in
+/// charge, and it was inside its data for all but kOutside of the time.
 class CandidateTrial {
  public:
   static constexpr int kLooks = 6;

@@ -51,7 +51,7 @@ struct TrialFigures {
 class ModelTrial {
  public:
   static constexpr int kOrder = 6, kSlack = 4, kBlocks = 20;
-  static constexpr double kExplained = 0.5, kGain = 2.0;
+  static constexpr double kExplained = 0.9, kGain = 2.0;
 
   /// `model` is matched to the plant; `moved`: the inputs that a law may move, empty for all.
   /// @throws InputError unless capacity > 0 [samples].
