@@ -17,7 +17,7 @@ using Eigen::Index;
 constexpr Index kFewestRows = 30;
 constexpr double kStartPole = 0.9;  // of the noise while starts are sought
 constexpr double kGridRatio = 1.7;  // of the lags that are tried first
-constexpr int kIterations = 40;
+constexpr int kFitIterations = 40;
 constexpr double kWorthwhile = 6.0;    // by which Schwarz's criterion must fall
 constexpr double kShortestLag = 0.15;  // of a sample
 constexpr double kConverged = 1e-7;    // of the cost, relative
@@ -239,11 +239,6 @@ class Fitter {
 
   /// Free numbers: pole (unstable), then gain, lag, second lag, lead, dead time of each element,
   /// then the noise, then the constant.
-  static int shapeCount(ProcessKind kind, Shape s) {
-    if (s == kNone) return 0;
-    const int own = kind == ProcessKind::kStable ? 0 : 0;
-    return own + (s == kFirst ? 3 : s == kSecond ? 4 : 5);
-  }
   Index shapeParameters(const Candidate& c) const {
     Index n = c.kind == ProcessKind::kUnstable ? 1 : 0;
     for (const Shape s : c.shapes) n += countOf(c.kind, s);
@@ -431,7 +426,7 @@ class Fitter {
     double cost = e.squaredNorm(), damping = 1e-3;
     if (!std::isfinite(cost)) return false;
     const Index shape = shapeParameters(c), terms = c.noise.size();
-    for (int iteration = 0; iteration < kIterations; ++iteration) {
+    for (int iteration = 0; iteration < kFitIterations; ++iteration) {
       const Matrix J = jacobian(c, v);
       const Matrix H = J.transpose() * J;
       const Vector g = J.transpose() * e;
@@ -536,8 +531,6 @@ class Fitter {
     if (!descend(next)) return value;
     const double without = criterion(next);
     if (without > value) return value;
-    dropped_.resize(c.shapes.size());
-    dropped_[j] = c.elements[j];
     c = next;
     return without;
   }
@@ -640,10 +633,11 @@ class Fitter {
     }
   }
 
-  /// Of a gain that is taken for none: what it may be, with the lag that it had.
+  /// Of a gain that is taken for none: what it may be, with lags as another of the output has.
   double unseenBound(const Candidate& c, std::size_t j, double variance) const {
     ProcessElement unit = shaped(c, {});
-    if (j < dropped_.size() && dropped_[j].gain != 0.0) unit = dropped_[j];
+    for (std::size_t i = 0; i < c.elements.size(); ++i)  // as one that is seen
+      if (c.shapes[i] != kNone) unit = c.elements[i];
     if (unit.time_constant == 0.0 && unit.second == 0.0)
       (c.kind == ProcessKind::kStable ? unit.time_constant : unit.second) = 10.0 * Ts_;
     unit.gain = 1.0;
@@ -696,7 +690,6 @@ class Fitter {
   Vector mean_;
   std::vector<double> start_;
   std::vector<Index> rows_;
-  std::vector<ProcessElement> dropped_;
 };
 
 }  // namespace

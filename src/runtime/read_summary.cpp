@@ -53,6 +53,18 @@ void readClp(const Json& json, Summary& summary) {
   summary.clp_p99_us = json.at("p99_us");
 }
 
+/// Bounds of the inputs; null: none.
+void readLimits(const Json& json, Summary& summary) {
+  const auto size = static_cast<Eigen::Index>(json.size());
+  summary.limits = {Vector(size), Vector(size), Vector::Constant(size, kInfinity)};
+  Eigen::Index i = 0;
+  for (const auto& [name, u] : json.items()) {
+    summary.limits.lower[i] = u.at("lower").is_null() ? -kInfinity : u.at("lower").get<double>();
+    summary.limits.upper[i] = u.at("upper").is_null() ? kInfinity : u.at("upper").get<double>();
+    ++i;
+  }
+}
+
 Summary summaryOf(const Json& json) {
   Summary summary;
   summary.loop = json.at("loop");
@@ -78,6 +90,7 @@ Summary summaryOf(const Json& json) {
     for (const Json& event : json.at("events"))
       summary.events.push_back({eventCode(event.at("code")), event.at("signal"), event.at("text"),
                                 event.at("first"), event.at("last"), event.at("count")});
+  if (json.contains("limits")) readLimits(json.at("limits").at("inputs"), summary);
   summary.outside_model = json.value("outside_model", std::uint64_t{0});
   if (json.contains("clp")) readClp(json.at("clp"), summary);
   return summary;

@@ -222,8 +222,10 @@ void WatchedLaw::shadow(const Measurement& now, const SetpointSource& setpoint, 
 }
 
 void WatchedLaw::decide() {
-  if (state_ != CandidateState::kWatched || !trial_->judgeIfDue()) return;
+  if (!trial_->judgeIfDue()) return;
   const CandidateFigures& figures = trial_->figures();
+  const bool passed = state_ == CandidateState::kPassed;  // it may still turn out to be wrong
+  if (passed && figures.result != TrialResult::kWrong) return;
   if (figures.result == TrialResult::kRight) {
     state_ = CandidateState::kPassed;
     say(EventCode::kCandidatePassed,

@@ -137,6 +137,22 @@ struct EvaluateArguments {
   bool json{false};
 };
 
+struct HealthArguments {
+  std::vector<std::string> records;  ///< run folders, folders of them, CSVs, bags
+  std::vector<std::string> outputs, setpoints, inputs, positions;  ///< columns, loop by loop
+  std::string mode;  ///< column that says who moves the input
+  std::vector<std::string> automatic{"1"}, manual, fallback;  ///< its values
+  std::string time;                                           ///< column, empty: found
+  double sample_time_s{};                                     ///< 0: from the time column
+  std::vector<double> dead_times_s;  ///< of each loop, or one of all; empty: estimated
+  std::string limits;                ///< "LOWER:UPPER" of the inputs; empty: none
+  std::string model;                 ///< name of config/model, or path; empty: none
+  std::string rows;                  ///< "FIRST:LAST"
+  RecordFormat format;
+  std::string out;  ///< folder, empty: nothing is written
+  bool json{false};
+};
+
 struct RecoverArguments {
   std::string folder;
   bool no_plot{false};
@@ -194,6 +210,7 @@ int table(const std::vector<std::string>& folders, bool brief);
 void printVerdict(const std::vector<Summary>& summaries);
 int replay(const ReplayArguments& arguments);
 int recover(const RecoverArguments& arguments);
+int health(const HealthArguments& arguments);
 /// These become other programs: they return only by throwing.
 int watch(const std::vector<std::string>& words);
 int page(std::vector<std::string> words);

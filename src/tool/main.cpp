@@ -187,6 +187,48 @@ void addValidate(CLI::App& app, fpc::tool::ValidateArguments& a) {
   validate->callback([&a] { chosen = [&a] { return fpc::tool::validate(a); }; });
 }
 
+void addHealth(CLI::App& app, fpc::tool::HealthArguments& a) {
+  CLI::App* health = app.add_subcommand(
+      "health",
+      "Judges loops from their records: least variance, oscillation and its cause, valve, sensor, "
+      "model");
+  health
+      ->add_option("RECORD", a.records,
+                   "folders of `run --out` or of a recorder, folders of these, CSVs or bags")
+      ->required();
+  health->add_option("--outputs", a.outputs, "of a CSV: columns of measured values, one a loop")
+      ->delimiter(',');
+  health->add_option("--setpoints", a.setpoints, "their setpoints (default: the mean is held)")
+      ->delimiter(',');
+  health->add_option("--inputs", a.inputs, "what their controllers asked for")->delimiter(',');
+  health->add_option("--positions", a.positions, "where their valves stood")->delimiter(',');
+  health->add_option("--mode", a.mode, "column that says who moves the inputs");
+  health->add_option("--automatic", a.automatic, "its values in automatic")
+      ->capture_default_str()
+      ->delimiter(',');
+  health->add_option("--manual", a.manual, "... by hand")->delimiter(',');
+  health->add_option("--fallback", a.fallback, "... on the fallback; other values: held")
+      ->delimiter(',');
+  health->add_option("--time", a.time, "column of times; found by its name if left out");
+  health->add_option("--sample-time", a.sample_time_s, "[s], instead of a time column");
+  health
+      ->add_option("--dead-time", a.dead_times_s,
+                   "[s], of each loop or one for all (default: from the record)")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber);
+  health->add_option("--limits", a.limits, "LOWER:UPPER of the inputs (of runs: their own)");
+  health->add_option("--model", a.model, "name of config/model, or path: is it out of date?");
+  health->add_option("--rows", a.rows, "FIRST:LAST rows to judge, from 1 (default: all)");
+  addFormat(*health, a.format);
+  health->add_option("--out", a.out, "folder for a page for each loop and index.html");
+  health->add_flag("--json", a.json, "print one JSON object and nothing else");
+  health->footer(
+      "Example: fmbpc health results/asp_best --out results/health\n"
+      "         fmbpc health historian.csv --outputs PV --setpoints SP --inputs OP --dead-time "
+      "30\n");
+  health->callback([&a] { chosen = [&a] { return fpc::tool::health(a); }; });
+}
+
 void addLoops(CLI::App& app, fpc::tool::LoopsArguments& a) {
   CLI::App* loops =
       app.add_subcommand("loops", "Lists the loop files with title, plant and controller");
@@ -317,6 +359,8 @@ int main(int argc, char** argv) {
   addCommission(app, commission_arguments);
   fpc::tool::ValidateArguments validate_arguments;
   addValidate(app, validate_arguments);
+  fpc::tool::HealthArguments health_arguments;
+  addHealth(app, health_arguments);
   fpc::tool::LoopsArguments loops_arguments;
   addLoops(app, loops_arguments);
   addLists(app, arguments);

@@ -137,7 +137,7 @@ TEST(ProcessFit, KnowsAnIntegratorAndAnUnstablePole) {
   EXPECT_NEAR(first.elements[0].element.gain, 0.1, 0.005);
 
   const ProcessElement unstable = lag(-2.0, -30.0, 2.0, 3.0);
-  const Data two = record(unstable, -1.5, -0.03, 0.5, {0.005, 0.0, 0.0, 0.005}, 500, 5);
+  const Data two = record(unstable, 1.5, 0.03, 0.5, {0.005, 0.0, 0.0, 0.005}, 500, 5);
   const ProcessFit second = fitProcess(two.u, two.y, 1.0);
   EXPECT_EQ(second.kind, ProcessKind::kUnstable);
   EXPECT_NEAR(second.elements[0].element.time_constant, -30.0, 6.0);

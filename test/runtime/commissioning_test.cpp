@@ -179,7 +179,7 @@ TEST(Commissioning, AStageIsResumedRepeatedAndUndone) {
 
 TEST(Commissioning, AFrozenSensorStopsItBeforeTheTest) {
   const std::string folder = folderOf("frozen", kTankBrief, "tank.yaml",
-                                      std::string(kTank) + "sensors: {T: {stuck_from_h: 0.6}}\n");
+                                      std::string(kTank) + "sensors: {T: {noise_std: 0.05, stuck_from_h: 0.9}}\n");
   Commissioning c = made(folder);
   EXPECT_THROW(c.run(Stage::kTest), InputError);
   EXPECT_TRUE(c.figures(Stage::kWatch)["grave"].get<bool>());

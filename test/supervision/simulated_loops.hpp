@@ -25,9 +25,9 @@ enum class Fault {
   kFrozen,
   kOutdated,
 };
-constexpr Fault kFaults[] = {Fault::kNone,       Fault::kStiction, Fault::kBacklash,
-                             Fault::kLoad,       Fault::kAggressive, Fault::kSluggish,
-                             Fault::kFrozen,     Fault::kOutdated};
+constexpr Fault kFaults[] = {Fault::kNone,   Fault::kStiction,   Fault::kBacklash,
+                             Fault::kLoad,   Fault::kAggressive, Fault::kSluggish,
+                             Fault::kFrozen, Fault::kOutdated};
 inline LoopCause causeOf(Fault fault) {
   constexpr LoopCause causes[] = {LoopCause::kHealthy,          LoopCause::kStiction,
                                   LoopCause::kBacklash,         LoopCause::kOscillatingLoad,
@@ -76,7 +76,8 @@ inline Pi simc(const Process& p, double speed) {
     }
   }
   const double closed = speed * dead;
-  const double gain = p.integrates ? 1.0 / p.gain / (closed + dead) : tau / p.gain / (closed + dead);
+  const double gain =
+      p.integrates ? 1.0 / p.gain / (closed + dead) : tau / p.gain / (closed + dead);
   return {gain, p.integrates ? 4.0 * (closed + dead) : std::min(tau, 4.0 * (closed + dead))};
 }
 
@@ -93,7 +94,8 @@ inline double gainMargin(const Process& p, const Pi& c) {
 
 class ProcessState {
  public:
-  explicit ProcessState(const Process& p) : p_(p), lags_(p.lags.size(), 0.0), waiting_(p.delay, 0.0) {}
+  explicit ProcessState(const Process& p)
+      : p_(p), lags_(p.lags.size(), 0.0), waiting_(p.delay, 0.0) {}
   double step(double u) {
     waiting_.push_back(u);
     double x = waiting_.front();
@@ -150,13 +152,15 @@ inline const std::vector<Process>& judgingPlants() {
   return plants;
 }
 
-inline ControlRecord drawLoop(const Process& p, Fault fault, std::uint64_t seed, int samples = 6000) {
+inline ControlRecord drawLoop(const Process& p, Fault fault, std::uint64_t seed,
+                              int samples = 6000) {
   std::mt19937_64 engine = seededEngine(seed, {static_cast<std::uint64_t>(fault)});
   const auto between = [&](double a, double b) { return a + (b - a) * uniform(engine); };
   Pi c = simc(p, between(1.0, 1.8));
   if (fault == Fault::kAggressive) c.gain *= gainMargin(p, c) / between(1.04, 1.2);
   if (fault == Fault::kSluggish) c.gain /= between(6.0, 12.0);
-  const double slow = p.integrates ? 1.0 / std::abs(p.gain) : *std::max_element(p.lags.begin(), p.lags.end());
+  const double slow =
+      p.integrates ? 1.0 / std::abs(p.gain) : *std::max_element(p.lags.begin(), p.lags.end());
   const double scale = p.integrates ? std::abs(p.gain) * 10.0 : std::abs(p.gain);  // of y per u
   const double band = between(3.0, 8.0), jump = between(0.3, 1.0) * band;
   const bool slips = uniform(engine) < 0.5;
@@ -164,7 +168,8 @@ inline ControlRecord drawLoop(const Process& p, Fault fault, std::uint64_t seed,
   SlippingValve slipping(band, jump);
   const double noise = scale * between(0.05, 0.2), load = between(0.5, 1.5);
   const double lag = between(0.5, 2.0) * std::min(slow, 40.0), keep = std::exp(-1.0 / lag);
-  const double period = (p.delay + 2.0) * between(6.0, 20.0) + 2.0 * (p.lags.empty() ? 0.0 : p.lags[0]) * between(0.3, 1.0);
+  const double period = (p.delay + 2.0) * between(6.0, 20.0) +
+                        2.0 * (p.lags.empty() ? 0.0 : p.lags[0]) * between(0.3, 1.0);
   const double swing = fault == Fault::kLoad ? between(2.0, 5.0) : 0.0;
   const bool steps = fault == Fault::kOutdated || uniform(engine) < 0.5;
   const int freeze = static_cast<int>(between(0.2, 0.7) * samples);
@@ -199,7 +204,8 @@ inline ControlRecord drawLoop(const Process& p, Fault fault, std::uint64_t seed,
     y = state.step(x);
   }
   Process model = p;
-  if (fault == Fault::kOutdated) model.gain *= uniform(engine) < 0.5 ? between(0.3, 0.55) : between(1.8, 3.0);
+  if (fault == Fault::kOutdated)
+    model.gain *= uniform(engine) < 0.5 ? between(0.3, 0.55) : between(1.8, 3.0);
   r.model = stepOf(model, 400);
   return r;
 }

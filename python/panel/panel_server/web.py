@@ -5,6 +5,7 @@ import fcntl
 import gzip
 import hashlib
 import json
+import logging
 import os
 import shutil
 import socket
@@ -33,6 +34,19 @@ FILES = {"/": ("index.html", "text/html; charset=utf-8"), "/app.js": ("app.js", 
          "/uPlot.css": ("uPlot.min.css", "text/css; charset=utf-8"), "/icon.svg": ("icon.svg", "image/svg+xml"),
          "/uPlot.LICENSE": ("uPlot.LICENSE", "text/plain; charset=utf-8")}
 POLICY = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'"
+
+
+class Seldom(logging.Filter):
+    """One line of a logger in ten seconds: whoever sends rubbish must not fill the disk."""
+
+    last = -1e9
+
+    def filter(self, record):
+        now = time.monotonic()
+        passes = now - self.last > 10.0
+        if passes:
+            self.last = now
+        return passes
 
 
 class StartError(Exception):
@@ -598,6 +612,8 @@ def application(panel, hosts, secure=False, cookie="fmbpc_panel", anonymous="vie
 
 def serve(panel, address, port, hosts=(), secure=False, anonymous="view"):
     """Listens; returns the server and its port (0: a free one)."""
+    for name in ("tornado.access", "tornado.application", "tornado.general", "asyncio"):
+        logging.getLogger(name).filters[:] = [Seldom()]
     try:
         sockets = tornado.netutil.bind_sockets(port, address)
     except OSError as error:

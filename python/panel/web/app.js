@@ -102,7 +102,7 @@ function connect() {
   const loop = view.loop ? "?loop=" + encodeURIComponent(view.loop) : "";
   source = new EventSource("stream" + loop);
   const on = (kind, take) => source.addEventListener(kind, (e) => { S.heard = Date.now(); take(JSON.parse(e.data)); });
-  on("hello", (m) => { S.me = m.me; S.events = m.events; renderHeader(); if (view.loop) fetchTrend(view.loop); fetchSparks(); if (S.me.role === "none") login(); });
+  on("hello", (m) => { S.me = m.me; S.events = m.events; renderHeader(); if (view.loop) fetchTrend(view.loop); fetchSparks(); if (S.me.role === "none") login(); render(true); });
   on("overview", (m) => { S.loops = m.loops; S.master = m.master; S.trouble = m.trouble; S.time = m.t; sparkle(); renderHeader(); renderBanner(); if (view.kind !== "loop") render(); });
   on("alarms", (m) => { S.alarms = m; renderBanner(); renderHeader(); if (view.kind === "alarms" || view.kind === "loop") render(); });
   on("journal", (m) => { const seen = new Set(S.journal.map((e) => e.n)); S.journal = S.journal.concat(m.filter((e) => !seen.has(e.n))).slice(-1000); if (view.kind === "journal") render(); });

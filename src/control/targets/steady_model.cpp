@@ -53,7 +53,8 @@ SteadyModel::SteadyModel(const TsModel& model, const std::vector<bool>& integrat
   constant_ = old_constant_ = Vector::Zero(n_y);
   regular_ = Matrix::Zero(n_r, n_r);
   right_ = solved_ = Matrix::Zero(n_r, n_u + n_w + 1);
-  if (n_r > 0) factors_ = Eigen::PartialPivLU<Matrix>(n_r);
+  column_ = Vector::Zero(n_r);
+  if (n_r > 0) factors_ = Eigen::FullPivLU<Matrix>(n_r, n_r);
   gain_ = Matrix::Zero(n_y, n_u + n_w);
   offset_ = Vector::Zero(n_y);
   balance_ = Matrix::Zero(n_w, n_u + n_w);
@@ -90,6 +91,18 @@ void SteadyModel::derive(VectorRef y, VectorRef u, VectorRef d, VectorRef w) {
   constant_ -= input_.lazyProduct(u);
 }
 
+/// By hand: FullPivLU::solve allocates.
+void SteadyModel::solveOthers() {
+  const auto& rows = factors_.permutationP().indices();
+  const auto& columns = factors_.permutationQ().indices();
+  for (Index c = 0; c < right_.cols(); ++c) {
+    for (Index i = 0; i < rows.size(); ++i) column_[rows[i]] = right_(i, c);
+    factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(column_);
+    factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(column_);
+    for (Index i = 0; i < columns.size(); ++i) solved_(columns[i], c) = column_[i];
+  }
+}
+
 bool SteadyModel::linearise(VectorRef y, VectorRef u, VectorRef d, VectorRef w, VectorRef held) {
   old_own_.swap(own_);
   old_input_.swap(input_);
@@ -112,7 +125,7 @@ bool SteadyModel::linearise(VectorRef y, VectorRef u, VectorRef d, VectorRef w, 
   if (n_r > 0) {
     factors_.compute(regular_);
     if (factors_.matrixLU().diagonal().cwiseAbs().minCoeff() <= kNoRest) return false;
-    solved_ = factors_.solve(right_);
+    solveOthers();
   }
   gain_.setZero();
   offset_.setZero();

@@ -35,6 +35,7 @@ class SteadyModel {
   bool settled() const { return settled_; }
 
  private:
+  void solveOthers();
   void derive(VectorRef y, VectorRef u, VectorRef d, VectorRef w);
 
   LocalModel local_;
@@ -47,7 +48,8 @@ class SteadyModel {
   Matrix old_own_, old_input_;
   Vector old_constant_;
   Matrix regular_, right_, solved_;  // of the others
-  Eigen::PartialPivLU<Matrix> factors_;
+  Vector column_;
+  Eigen::FullPivLU<Matrix> factors_;
   Matrix gain_, balance_;
   Vector offset_, imbalance_;
   bool settled_{false};

@@ -14,6 +14,7 @@ using Eigen::Index;
 constexpr double kKept = 1e-9;     // of a unit: so little given up is nothing
 constexpr double kMargin = 1e-10;  // of a unit: room that a rank leaves to those behind it
 constexpr double kRoom = 1e-10;    // of the cost's size: the same for the resting values
+constexpr double kFirstRoom = 1e-10, kMostRoom = 1e-7;  // of a unit
 constexpr double kPull = 1e-6;  // of the unknowns to where they are: each stage is strictly convex,
 constexpr int kPulls = 12;      // and pulls again from where it came until nothing moves
 constexpr double kStill = 1e-11;
@@ -125,13 +126,23 @@ struct TargetSolver::Workspace {
       }
   }
 
+  /// Rows that must hold meet in corners that only rounding can miss: one that is missed is opened
+  /// a little, and what is opened stays far below what counts as given up.
   bool run(Stage& stage) {
-    const QpResult& result = stage.solver.solve(stage.qp);
-    solution.iterations += result.iterations;
-    solution.status = result.status;
-    if (!result.usable()) return false;
-    x = result.x.head(n);
-    return true;
+    for (double room = 0.0; room <= kMostRoom; room = room == 0.0 ? kFirstRoom : 10.0 * room) {
+      const auto first = static_cast<Index>(stage.soft.size());
+      if (room > 0.0) {
+        stage.qp.a_lower.tail(stage.qp.a_lower.size() - first).array() -= room;
+        stage.qp.a_upper.tail(stage.qp.a_upper.size() - first).array() += room;
+      }
+      const QpResult& result = stage.solver.solve(stage.qp);
+      solution.iterations += result.iterations;
+      solution.status = result.status;
+      if (!result.usable()) continue;
+      x = result.x.head(n);
+      return true;
+    }
+    return false;
   }
 
   /// Proximal points: exact after few, as the cost is linear or quadratic on a polyhedron.

@@ -28,8 +28,10 @@ constexpr double kViolation = 10.0;  // cost of all samples beyond the limits
 constexpr double kFailed = 1e3;      // cost of a run that fails
 constexpr int kFewestRun = 40, kMostRun = 220;  // samples of one stretch of the scenario
 constexpr double kShortHorizon = 10, kLongHorizon = 60;
-constexpr double kStiffer = 3.0;  // the moves' weight when a member is not stable enough
-constexpr int kStiffenings = 6;
+constexpr double kStiffer = 2.0;  // the moves' weight when a member is not stable enough
+constexpr int kStiffenings = 8;
+constexpr double kSpoiltGain = 1.6, kSpoiltDelay = 0.25;  // factor; of dead time and a sample
+constexpr double kSpoiltShare = 0.2;                      // of the cost that is tuned
 constexpr double kWeakWeight = 0.3;   // of the square of a weak direction's gain
 constexpr double kZoneWeight = 0.01;  // of an output that may float
 constexpr double kLeastBetter = 1.0;  // cost ratio that a law must be below
@@ -174,6 +176,10 @@ class Designer {
     for (std::size_t m = 0; m < all; ++m)
       (m < tuned ? tuned_ : held_out_).push_back(&models.ensemble[m]);
     tuned_.insert(tuned_.begin(), &models.model);
+    double late = brief.loop.plant_info.sample_time_s;
+    for (const ProcessFit& fit : models.fits)
+      for (const ElementEstimate& e : fit.elements) late = std::max(late, e.element.dead_time);
+    spoilt_ = spoiltModel(models, kSpoiltGain, kSpoiltDelay * late);
   }
 
   Design run() {
@@ -190,20 +196,19 @@ class Designer {
     std::vector<double> law = searched(
         start, width, [this](const Vector& x) { return lawText(x); }, d.law_figures);
     Vector x = Eigen::Map<const Vector>(law.data(), static_cast<Index>(law.size()));
-    show("margins over " + std::to_string(models_.ensemble.size() + 1) + " models");
-    margins(piText(Eigen::Map<const Vector>(pi.data(), static_cast<Index>(pi.size()))),
-            d.pi_figures);
     Vector pi_x = Eigen::Map<const Vector>(pi.data(), static_cast<Index>(pi.size()));
-    for (int k = 0; k < kStiffenings && d.pi_figures.worst_peak > params_.peak; ++k) {
-      for (Index i = 0; i < pi_x.size(); i += 2) pi_x[i] -= 0.5;  // log2 of the gain
-      margins(piText(pi_x), d.pi_figures);
-    }
+    show("margins of the PI");
+    chooseProbed(piText(pi_x), lawText(x));
+    d.probed = probed_.size();
+    soften(
+        d.pi_figures, [&] { return piText(pi_x); },
+        [&] {
+          for (Index i = 0; i < pi_x.size(); i += 2) pi_x[i] -= 0.5;  // log2 of the gain
+        });
     pi_ = piOf(pi_x);
-    margins(lawText(x), d.law_figures);
-    for (int k = 0; k < kStiffenings && d.law_figures.worst_peak > params_.peak; ++k) {
-      x[0] += std::log10(kStiffer);
-      margins(lawText(x), d.law_figures);
-    }
+    show("margins of the law");
+    soften(
+        d.law_figures, [&] { return lawText(x); }, [&] { x[0] += std::log10(kStiffer); });
     d.pi = piText(pi_x);
     d.law = lawText(x);
     compare(d);
@@ -431,8 +436,10 @@ class Designer {
               sum += v;
               worst = std::max(worst, v);
             }
-            // Half of what counts is the worst of them.
-            costs[c] = 0.5 * (sum / static_cast<double>(all.size()) + worst);
+            // Half of what counts is the worst of them, and a part what a plant further off costs.
+            const double own = 0.5 * (sum / static_cast<double>(all.size()) + worst);
+            costs[c] = (1.0 - kSpoiltShare) * own +
+                       kSpoiltShare * costsOver(text(points.col(c)), {&spoilt_}).front();
           }
           return true;
         },
@@ -441,30 +448,58 @@ class Designer {
     return {result.best.begin(), result.best.end()};
   }
 
-  void margins(const std::string& text, DesignFigures& figures) const {
-    std::vector<const TsModel*> all = tuned_;
-    all.insert(all.end(), held_out_.begin(), held_out_.end());
-    std::vector<double> peaks(all.size(), kInfinity), gains(all.size(), 0.0),
-        delays(all.size(), 0.0);
-    parallelFor(all.size(), params_.threads, [&](std::size_t m) {
-      LoopFile loop = scenario(text, *all[m]);
+  /// Those on which margins are asked: a probe takes as long as twenty runs.
+  void chooseProbed(const std::string& pi, const std::string& law) {
+    probed_ = tuned_;
+    std::vector<const TsModel*> rest = held_out_;
+    const std::vector<double> one = costsOver(pi, rest), other = costsOver(law, rest);
+    std::vector<std::size_t> order(rest.size());
+    for (std::size_t m = 0; m < order.size(); ++m) order[m] = m;
+    const auto worse = [](const std::vector<double>& costs) {
+      return [&costs](std::size_t a, std::size_t b) { return costs[a] > costs[b]; };
+    };
+    std::stable_sort(order.begin(), order.end(), worse(one));
+    probed_.push_back(rest[order.front()]);
+    const std::size_t first = order.front();
+    std::stable_sort(order.begin(), order.end(), worse(other));
+    probed_.push_back(rest[order.front() == first ? order[1] : order.front()]);
+  }
+
+  /// Until all of them are stable enough, or nothing helps.
+  template <typename Text, typename Softer>
+  void soften(DesignFigures& figures, const Text& text, const Softer& softer) {
+    for (int k = 0;; ++k) {
+      margins(text(), figures, k < kStiffenings);
+      if (figures.worst_peak <= params_.peak || k == kStiffenings) return;
+      softer();
+    }
+  }
+
+  /// With `early` the first model beyond the peak ends it, and is the first one the next time.
+  void margins(const std::string& text, DesignFigures& figures, bool early) {
+    figures.worst_peak = 0.0;
+    figures.least_gain = figures.least_delay_s = kInfinity;
+    for (std::size_t m = 0; m < probed_.size(); ++m) {
+      LoopFile loop = scenario(text, *probed_[m]);
       loop.simulation.disturbance_commands.clear();
-      loop.simulation.noise_std.setZero();
       const LoopCourse course(loop);
       const CoursePoint point = course.points(1).front();
       const LoopProbe probe = probeLoop(course.stayingAt(loop, point), point);
-      if (probe.result != ProbeResult::kLinear) return;
-      peaks[m] = probe.response->peak();
-      gains[m] = delays[m] = kInfinity;
-      for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
-        const LoopMargins margin = probe.response->margins(j);
-        gains[m] = std::min(gains[m], margin.gain_upper);
-        delays[m] = std::min(delays[m], margin.delay_s);
+      if (probe.result != ProbeResult::kLinear) {
+        figures.worst_peak = kInfinity;
+        figures.least_gain = figures.least_delay_s = 0.0;
+      } else {
+        figures.worst_peak = std::max(figures.worst_peak, probe.response->peak());
+        for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
+          const LoopMargins margin = probe.response->margins(j);
+          figures.least_gain = std::min(figures.least_gain, margin.gain_upper);
+          figures.least_delay_s = std::min(figures.least_delay_s, margin.delay_s);
+        }
       }
-    });
-    figures.worst_peak = *std::max_element(peaks.begin(), peaks.end());
-    figures.least_gain = *std::min_element(gains.begin(), gains.end());
-    figures.least_delay_s = *std::min_element(delays.begin(), delays.end());
+      if (!early || figures.worst_peak <= params_.peak) continue;
+      std::swap(probed_.front(), probed_[m]);
+      return;
+    }
   }
 
   void compare(Design& d) const {
@@ -527,7 +562,8 @@ class Designer {
   const ProcessModels& models_;
   DesignParams params_;
   Outline outline_;
-  std::vector<const TsModel*> tuned_, held_out_;
+  std::vector<const TsModel*> tuned_, held_out_, probed_;
+  TsModel spoilt_;
   std::vector<PiSetting> pi_;
   double pull_{};
 };
@@ -611,6 +647,7 @@ OrderedJson toJson(const Design& d, const PlantInfo& plant) {
   return {{"offers", d.offers_law ? "law" : "pi"},
           {"cost_ratio", d.ratio},
           {"cost_ratio_bound", d.ratio_bound},
+          {"models_probed", d.probed},
           {"law", figures(d.law_figures)},
           {"pi", figures(d.pi_figures)},
           {"weak_directions", weak},

@@ -26,8 +26,8 @@ struct DesignParams {
 struct DesignFigures {
   double tuned{};             ///< mean cost over what it was tuned on
   std::vector<double> costs;  ///< of each member that was held out
-  double worst_peak{};        ///< sensitivity, largest of all members; infinite: not stable
-  double least_gain{}, least_delay_s{};  ///< margins, least of all members
+  double worst_peak{};        ///< sensitivity, largest of the models probed; infinite: not stable
+  double least_gain{}, least_delay_s{};  ///< margins, least of them
 };
 
 struct Design {
@@ -38,6 +38,7 @@ struct Design {
   bool offers_law{};     ///< it is stable on all members, and better than the PI beyond that bound
   std::vector<std::string> remarks;
   std::vector<WeakDirection> weak;
+  std::size_t probed{};  ///< models: the likeliest, those tuned on, the costliest held out
 };
 
 /// @throws InputError if the plant's loop file cannot be rewritten, or if no PI is stable.

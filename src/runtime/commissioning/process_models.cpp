@@ -135,6 +135,16 @@ ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& rec
   return models;
 }
 
+TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more_dead_time_s) {
+  std::vector<ProcessFit> fits = models.fits;
+  for (ProcessFit& fit : fits)
+    for (std::size_t j = 0; j < models.model.inputs.size(); ++j) {
+      fit.elements[j].element.gain *= gain_factor;
+      fit.elements[j].element.dead_time += more_dead_time_s;
+    }
+  return modelOf(models.model, fits, -1);
+}
+
 Matrix gainsOf(const std::vector<ProcessFit>& fits, Index inputs) {
   Matrix gains(static_cast<Index>(fits.size()), inputs);
   for (std::size_t i = 0; i < fits.size(); ++i)

@@ -32,6 +32,10 @@ void writeModels(const ProcessModels& models, const std::string& folder);
 /// What writeModels() wrote, with model.json. @throws InputError naming the file.
 ProcessModels readModels(const std::string& folder);
 
+/// The likeliest model with other gains and more dead time: what a law is to bear beside the
+/// ensemble.
+TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more_dead_time_s);
+
 /// n_y n_u, gains of the elements (per hour of an integrator).
 Matrix gainsOf(const std::vector<ProcessFit>& fits, Eigen::Index inputs);
 

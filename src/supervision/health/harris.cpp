@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "supervision/health/stretches.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
 namespace {
@@ -30,8 +30,8 @@ void addLagProducts(const double* x, Eigen::Index n, int d, int m, Matrix& produ
   own.row(0) = row.transpose();
   for (int i = 1; i < m; ++i)
     for (int j = i; j < m; ++j)
-      own(i, j) = own(i - 1, j - 1) + x[first - d - i] * x[first - d - j] -
-                  x[n - d - i] * x[n - d - j];
+      own(i, j) =
+          own(i - 1, j - 1) + x[first - d - i] * x[first - d - j] - x[n - d - i] * x[n - d - j];
   products.bottomRightCorner(m, m) += Matrix(own.triangularView<Eigen::Upper>());
 }
 
@@ -41,7 +41,7 @@ MinimumVariance minimumVariance(const std::vector<double>& error, int dead_time)
   require(dead_time >= 1, "dead time", "at least one sample");
   const auto usable = [&](int lags) {
     Eigen::Index sum = 0;
-    for (const Stretch& s : finiteStretches(error))
+    for (const FiniteRun& s : finiteRuns(error))
       sum += std::max<Eigen::Index>(0, s.count - dead_time - lags + 1);
     return sum;
   };
@@ -54,7 +54,7 @@ MinimumVariance minimumVariance(const std::vector<double>& error, int dead_time)
   const double mean = meanOf(x);
   for (double& value : x) value -= mean;
   Matrix products = Matrix::Zero(lags + 1, lags + 1);
-  for (const Stretch& s : finiteStretches(x))
+  for (const FiniteRun& s : finiteRuns(x))
     if (s.count >= dead_time + lags)
       addLagProducts(x.data() + s.first, s.count, dead_time, lags, products);
   Matrix normal = products.bottomRightCorner(lags, lags).selfadjointView<Eigen::Upper>();
@@ -66,7 +66,8 @@ MinimumVariance minimumVariance(const std::vector<double>& error, int dead_time)
   result.std_error = std::sqrt(total / static_cast<double>(n));
   result.std_least = std::sqrt(left / static_cast<double>(n - lags));
   if (total > 0.0)
-    result.index = std::min(1.0, left / static_cast<double>(n - lags) * static_cast<double>(n) / total);
+    result.index =
+        std::min(1.0, left / static_cast<double>(n - lags) * static_cast<double>(n) / total);
   return result;
 }
 

@@ -9,10 +9,10 @@ namespace fpc {
 
 /// Of a control error; all NaN where too few samples are there.
 struct MinimumVariance {
-  double index{kNaN};        ///< least variance over variance, 1: nothing is to be gained
-  double std_least{kNaN};    ///< of minimum-variance control, in units of the error
-  double std_error{kNaN};    ///< of the error, about its mean
-  Eigen::Index samples{};    ///< that were compared
+  double index{kNaN};      ///< least variance over variance, 1: nothing is to be gained
+  double std_least{kNaN};  ///< of minimum-variance control, in units of the error
+  double std_error{kNaN};  ///< of the error, about its mean
+  Eigen::Index samples{};  ///< that were compared
 };
 
 /// Regression of the error on its own values `dead_time` and more samples ago: what that leaves is

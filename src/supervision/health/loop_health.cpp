@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/number.hpp"
 #include "base/order_statistics.hpp"
 #include "fmbpc/base/input_error.hpp"
-#include "supervision/health/stretches.hpp"
+#include "fmbpc/base/text.hpp"
+#include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
 namespace {
 
-constexpr double kFewestAutomatic = 200.0;  // samples, without which nothing is judged
+constexpr double kFewestAutomatic = 200.0;   // samples, without which nothing is judged
 constexpr std::size_t kMostForValve = 3000;  // means of samples
 constexpr double kFewestForValve = 1200.0;
-constexpr double kSettled = 0.2;             // of the error's autocorrelation
-constexpr double kSlow = 1.55;                // times the usual settling
-constexpr double kSlowDeadTimes = 14.0;       // where only these are given
+constexpr double kSettled = 0.2;         // of the error's autocorrelation
+constexpr double kSlow = 1.55;           // times the usual settling
+constexpr double kSlowDeadTimes = 14.0;  // where only these are given
 constexpr double kSlowIndex = 0.8;
 constexpr double kLongPeriod = 25.0;  // dead times
 constexpr double kDriven = 0.36;      // unrest of the envelope: below it driven, above it rings
@@ -93,15 +93,13 @@ double settlingOf(const std::vector<double>& e) {
   return static_cast<double>(n);
 }
 
-/// Least value of the error's autocorrelation within eight settlings.
-double undershootOf(const std::vector<double>& e, double settling) {
-  const auto factor = static_cast<Eigen::Index>(std::max(1.0, std::floor(settling / 10.0)));
-  const std::vector<double> c =
-      autocorrelationOf(blockMeans(e, factor), static_cast<Eigen::Index>(8.0 * settling) / factor);
-  return c.empty() ? kNaN : *std::min_element(c.begin(), c.end());
-}
-
-double shareOf(const std::vector<LoopDuty>& duty, LoopDuty which) {
+double shareOf(const ControlRecord& r, LoopDuty which) {
+  const std::vector<LoopDuty>& duty = r.duty;
+  if (duty.empty() && r.counts.size() == 4) {
+    double all = 0.0;
+    for (const std::uint64_t count : r.counts) all += static_cast<double>(count);
+    return all > 0.0 ? static_cast<double>(r.counts[static_cast<std::size_t>(which)]) / all : 0.0;
+  }
   if (duty.empty()) return which == LoopDuty::kAutomatic ? 1.0 : 0.0;
   return static_cast<double>(std::count(duty.begin(), duty.end(), which)) /
          static_cast<double>(duty.size());
@@ -173,7 +171,8 @@ void judgeDynamics(const ControlRecord& r, LoopHealth& h, double settling) {
   if (!r.model.empty() && !h.response.empty()) h.model = compareModel(r.model, h.response);
 }
 
-LoopCause oscillationCause(const ControlRecord& r, const LoopHealth& h, double lower, double upper) {
+LoopCause oscillationCause(const ControlRecord& r, const LoopHealth& h, double lower,
+                           double upper) {
   if (h.valve.sticks) return LoopCause::kStiction;
   if (h.valve.plays) return LoopCause::kBacklash;
   if (std::min(lower, upper) > 0.1) return LoopCause::kAggressiveTuning;
@@ -186,8 +185,8 @@ LoopCause oscillationCause(const ControlRecord& r, const LoopHealth& h, double l
   return slow ? LoopCause::kSluggishTuning : LoopCause::kAggressiveTuning;
 }
 
-/// Slower than a PI of one's own for this response would be (simc, skogestad2003), and by what could
-/// be foretold.
+/// Slower than a PI of one's own for this response would be (simc, skogestad2003), and by what
+/// could be foretold.
 bool isSluggish(const ControlRecord& r, const LoopHealth& h, const std::vector<double>& rest) {
   ReactionCurve curve = reactionCurve(h.response);
   if (!r.model.empty()) curve = reactionCurve(r.model);
@@ -216,6 +215,59 @@ LoopCause causeOf(const ControlRecord& r, const LoopHealth& h, double lower, dou
   return LoopCause::kHealthy;
 }
 
+std::string percent(double share) { return shortText(std::round(1000.0 * share) / 10.0) + " %"; }
+
+void remarkSensor(const ControlRecord& r, LoopHealth& h) {
+  const SensorFaults& s = h.sensor;
+  if (s.isFrozen())
+    h.remarks.push_back("The sensor repeats one value against its own noise in " +
+                        percent(s.frozen) + " of the samples, longest from sample " +
+                        std::to_string(s.frozen_first) + " on for " +
+                        std::to_string(s.frozen_samples));
+  if (s.hasSpikes())
+    h.remarks.push_back("Values that stand alone: " + percent(s.spikes) + " of the samples");
+  if (s.isCoarse(h.error_std))
+    h.remarks.push_back("The resolution of " + shortText(s.resolution) + " " + h.unit +
+                        " is coarse beside an error of " + shortText(h.error_std));
+  if (!r.u.empty()) {
+    const double trend = certainTrend(r.u), trend_y = certainTrend(r.y);
+    const double spread = stdOf(r.u);
+    if (std::abs(trend) > 2.0 * spread && std::abs(trend_y) < stdOf(r.y))
+      h.remarks.push_back("The input drifts by " + shortText(trend) + " " + h.input_unit +
+                          " over the record while the output holds: a drifting sensor, fouling or "
+                          "a drifting load");
+  }
+}
+
+void remarkTest(const ControlRecord& r, LoopHealth& h) {
+  if (h.response.empty()) return;
+  const double end = std::abs(h.response.value.back());
+  const double bounds = h.response.std.back() / end;
+  const bool shows = end > 0.0 && bounds < 0.5;
+  if (h.model.outdated)
+    h.remarks.push_back("The model's step response is off by " + percent(h.model.distance) +
+                        "; a new test would mend that");
+  else if (!shows)
+    h.remarks.push_back(
+        "Under this feedback the record does not show the process; a test with steps of the "
+        "setpoint or excitation would");
+  else
+    h.remarks.push_back("The record shows the step response to within " + percent(2.0 * bounds) +
+                        (r.model.empty() ? "" : ", and the model agrees with it") +
+                        "; a new test would bring little more");
+}
+
+void remarkHarris(LoopHealth& h) {
+  if (!std::isfinite(h.harris.index)) return;
+  if (h.dead_time_source == DeadTimeSource::kAssumed)
+    h.remarks.push_back(
+        "The dead time is not known and not seen: one sample is assumed, the index is a lower "
+        "bound");
+  h.remarks.push_back("Minimum-variance control would have a standard deviation of " +
+                      shortText(h.harris.std_least) + " " + h.unit + ", this loop has " +
+                      shortText(h.harris.std_error));
+}
+
 }  // namespace
 
 void ControlRecord::validate() const {
@@ -240,10 +292,10 @@ LoopHealth judgeLoop(const ControlRecord& r) {
   h.samples = static_cast<Eigen::Index>(r.y.size());
   h.hours = static_cast<double>(h.samples) * r.sample_time_s / 3600.0;
   for (const double v : r.y) h.missing += std::isfinite(v) ? 0 : 1;
-  h.automatic = shareOf(r.duty, LoopDuty::kAutomatic);
-  h.manual = shareOf(r.duty, LoopDuty::kManual);
-  h.fallback = shareOf(r.duty, LoopDuty::kFallback);
-  h.held = shareOf(r.duty, LoopDuty::kHeld);
+  h.automatic = shareOf(r, LoopDuty::kAutomatic);
+  h.manual = shareOf(r, LoopDuty::kManual);
+  h.fallback = shareOf(r, LoopDuty::kFallback);
+  h.held = shareOf(r, LoopDuty::kHeld);
   double lower = 0.0, upper = 0.0;
   h.at_limits = shareAtLimits(r, lower, upper);
   h.sensor = sensorFaults(r.y);
@@ -252,21 +304,80 @@ LoopHealth judgeLoop(const ControlRecord& r) {
   h.error_mean = meanOf(error);
   double settling = settlingOf(error);
   if (!r.u.empty()) judgeDynamics(r, h, settling);
-  const double dead = std::isfinite(h.dead_time_s) ? std::max(1.0, std::round(h.dead_time_s / r.sample_time_s)) : 1.0;
+  const double dead = std::isfinite(h.dead_time_s)
+                          ? std::max(1.0, std::round(h.dead_time_s / r.sample_time_s))
+                          : 1.0;
   if (!std::isfinite(h.dead_time_s)) h.dead_time_s = dead * r.sample_time_s;
-  const std::vector<double> rest =
-      atRest(r, error, static_cast<std::size_t>(2.0 * dead) + 10);
+  const std::vector<double> rest = atRest(r, error, static_cast<std::size_t>(2.0 * dead) + 10);
   h.harris = minimumVariance(rest, static_cast<int>(dead));
   h.oscillation = findOscillation(rest);
   settling = settlingOf(rest);
   h.settling_s = settling * r.sample_time_s;
-  h.undershoot = undershootOf(rest, settling);
   double known = 0.0;
   for (const double v : error) known += std::isfinite(v) ? 1.0 : 0.0;
   if (known < kFewestAutomatic || !(h.error_std > 0.0)) return h;
   if (!r.u.empty()) judgeValve(r, h, settling);
   h.cause = causeOf(r, h, lower, upper, rest);
+  remarkHarris(h);
+  remarkSensor(r, h);
+  remarkTest(r, h);
   return h;
+}
+
+void relateLoops(std::vector<LoopHealth>& loops) {
+  constexpr double kSamePeriod = 0.1;
+  for (LoopHealth& loop : loops) {
+    if (!loop.oscillation.found) continue;
+    std::string others, source;
+    for (const LoopHealth& other : loops) {
+      if (&other == &loop || !other.oscillation.found) continue;
+      if (std::abs(other.periodS() / loop.periodS() - 1.0) > kSamePeriod) continue;
+      others += (others.empty() ? "" : ", ") + other.output;
+      if (other.cause == LoopCause::kStiction || other.cause == LoopCause::kBacklash ||
+          other.cause == LoopCause::kAggressiveTuning)
+        source = other.output;
+    }
+    if (others.empty()) continue;
+    loop.remarks.push_back("The same period is seen in " + others +
+                           (loop.cause == LoopCause::kOscillatingLoad && !source.empty()
+                                ? "; " + source + " is the likely source"
+                                : ""));
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> figuresOf(const LoopHealth& h) {
+  const auto number = [](double v) { return std::isfinite(v) ? shortText(v) : std::string("-"); };
+  constexpr const char* kSources[] = {"assumed", "estimated", "given"};
+  std::vector<std::pair<std::string, std::string>> f;
+  f.emplace_back("cause", nameOf(h.cause));
+  f.emplace_back("input", h.input);
+  f.emplace_back("hours", number(h.hours));
+  f.emplace_back("samples", std::to_string(h.samples));
+  f.emplace_back("missing", std::to_string(h.missing));
+  f.emplace_back("automatic [%]", number(100.0 * h.automatic));
+  f.emplace_back("manual [%]", number(100.0 * h.manual));
+  f.emplace_back("fallback [%]", number(100.0 * h.fallback));
+  f.emplace_back("held [%]", number(100.0 * h.held));
+  f.emplace_back("at limits [%]", number(100.0 * h.at_limits));
+  f.emplace_back("Harris index", number(h.harris.index));
+  f.emplace_back("dead time [s]", number(h.dead_time_s) + " (" +
+                                      kSources[static_cast<std::size_t>(h.dead_time_source)] + ")");
+  f.emplace_back("error, mean [" + h.unit + "]", number(h.error_mean));
+  f.emplace_back("error, standard deviation [" + h.unit + "]", number(h.error_std));
+  f.emplace_back("error forgotten after [s]", number(h.settling_s));
+  f.emplace_back("period [s]", h.oscillation.found ? number(h.periodS()) : "-");
+  f.emplace_back("amplitude [" + h.unit + "]",
+                 h.oscillation.found ? number(h.oscillation.amplitude) : "-");
+  f.emplace_back("regularity", h.oscillation.found ? number(h.oscillation.regularity) : "-");
+  const bool valve = h.valve.sticks || h.valve.plays;
+  f.emplace_back("valve, dead band [" + h.input_unit + "]", valve ? number(h.valve.band) : "-");
+  f.emplace_back("valve, slip jump [" + h.input_unit + "]", valve ? number(h.valve.jump) : "-");
+  f.emplace_back("frozen [%]", number(100.0 * h.sensor.frozen));
+  f.emplace_back("spikes [%]", number(100.0 * h.sensor.spikes));
+  f.emplace_back("model, distance over the horizon [%]",
+                 h.model.judged ? number(100.0 * h.model.distance) : "-");
+  f.emplace_back("gain, record over model", h.model.judged ? number(h.model.gain_ratio) : "-");
+  return f;
 }
 
 }  // namespace fpc

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "supervision/health/harris.hpp"
@@ -26,6 +27,9 @@ struct ControlRecord {
   std::vector<double> u;         ///< what the controller asked for; empty: unknown
   std::vector<double> position;  ///< of the valve, where it is measured; else empty
   std::vector<LoopDuty> duty;    ///< empty: automatic throughout
+  /// Samples in automatic, by hand, on the fallback and held, where `duty` is not known; empty: not
+  /// known either.
+  std::vector<std::uint64_t> counts;
   double u_lower{-kInfinity}, u_upper{kInfinity};
   double y_lower{-kInfinity}, y_upper{kInfinity};  ///< of the instrument
   double dead_time_s{kNaN};                        ///< NaN: estimated
@@ -62,14 +66,13 @@ struct LoopHealth {
   double at_limits{};                                ///< of the automatic ones
   double dead_time_s{kNaN};
   DeadTimeSource dead_time_source{};
-  MinimumVariance harris;     ///< of stretches whose setpoint rests; times as the record's
+  MinimumVariance harris;  ///< of stretches whose setpoint rests; times as the record's
   double error_std{kNaN}, error_mean{kNaN};
-  double settling_s{kNaN};    ///< of the error's autocorrelation, down to 0.2
-  double undershoot{kNaN};    ///< its least value within eight such times, below 0: returns
-  Oscillation oscillation;    ///< of the error; period in samples
+  double settling_s{kNaN};  ///< until the error's autocorrelation is 0.2
+  Oscillation oscillation;  ///< of the error; period in samples
   ValveFit valve;
   SensorFaults sensor;
-  StepResponse response;      ///< as the record shows it; empty if it does not
+  StepResponse response;  ///< as the record shows it; empty if it does not
   ModelAge model;
   LoopCause cause{LoopCause::kUnknown};
   std::vector<std::string> remarks;  ///< sentences: why, and what else
@@ -83,5 +86,8 @@ LoopHealth judgeLoop(const ControlRecord& record);
 /// Loops of one plant that oscillate with one period: the one whose own valve or tuning does it is
 /// the likely source, the others get an oscillating load. Says so in their remarks.
 void relateLoops(std::vector<LoopHealth>& loops);
+
+/// Name and value of each figure, in short numbers: for tables, pages and topics.
+std::vector<std::pair<std::string, std::string>> figuresOf(const LoopHealth& health);
 
 }  // namespace fpc

@@ -5,8 +5,8 @@
 #include <complex>
 #include <unsupported/Eigen/FFT>
 
-#include "supervision/health/stretches.hpp"
 #include "base/statistics.hpp"
+#include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
 namespace {
@@ -44,8 +44,7 @@ struct Spectrum {
   }
   std::size_t bin(double frequency) const {
     const double at = frequency * static_cast<double>(bins.size());
-    return static_cast<std::size_t>(
-        std::clamp(at, 1.0, static_cast<double>(power.size()) - 1.0));
+    return static_cast<std::size_t>(std::clamp(at, 1.0, static_cast<double>(power.size()) - 1.0));
   }
 };
 
@@ -162,12 +161,11 @@ Oscillation oscillationAt(const Spectrum& s, double f) {
   o.regularity = mean / std::max(1e-9 * mean, 3.0 * stdOf(intervals));
   o.share = c.total() / s.total;
   // twice the power of positive frequencies over all bins is the mean square of the padded signal
-  o.amplitude =
-      std::sqrt(2.0 * 2.0 * c.total() / static_cast<double>(s.bins.size()) / s.n);
+  o.amplitude = std::sqrt(2.0 * 2.0 * c.total() / static_cast<double>(s.bins.size()) / s.n);
   o.after_one = heightNear(c, o.period, o.period, s.n);
   o.after_ten = heightNear(c, std::min(10.0 * o.period, 0.6 * s.n), o.period, s.n);
-  o.found = o.regularity > kLeastRegularity && o.share >= kLeastShare &&
-            o.after_one >= kLeastAfterOne;
+  o.found =
+      o.regularity > kLeastRegularity && o.share >= kLeastShare && o.after_one >= kLeastAfterOne;
   if (o.found) o.unrest = unrestOf(s, from, std::min(to, s.power.size()), o.period);
   return o;
 }

@@ -6,7 +6,7 @@
 
 #include "base/order_statistics.hpp"
 #include "supervision/flat_line.hpp"
-#include "supervision/health/stretches.hpp"
+#include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
 namespace {
@@ -46,7 +46,8 @@ void findFrozen(const std::vector<double>& values, SensorFaults& faults) {
     if (line.isUnlikely() && !line.isAtExtreme()) run = line.repeats();
   }
   end(values.size());
-  if (!values.empty()) faults.frozen = static_cast<double>(frozen) / static_cast<double>(values.size());
+  if (!values.empty())
+    faults.frozen = static_cast<double>(frozen) / static_cast<double>(values.size());
 }
 
 double medianOfFive(const double* v) {
@@ -67,8 +68,8 @@ void findSpikes(const std::vector<double>& values, SensorFaults& faults) {
   if (some.size() < 50 || some_apart.size() < 50) return;
   const double range = sampleQuantile(some, 0.99) - sampleQuantile(some, 0.01);
   const double usual = 1.4826 * upperMedian(some_apart);
-  const double limit = std::max({kSpikeSize * usual, kSpikeOfRange * range,
-                                 2.0 * sampleQuantile(some_apart, 0.98)});
+  const double limit =
+      std::max({kSpikeSize * usual, kSpikeOfRange * range, 2.0 * sampleQuantile(some_apart, 0.98)});
   double spikes = 0.0;
   for (const double a : apart) spikes += a > limit && limit > 0.0 ? 1.0 : 0.0;
   faults.spikes = spikes < 3.0 ? 0.0 : spikes / static_cast<double>(values.size());

@@ -8,10 +8,10 @@
 namespace fpc {
 
 struct SensorFaults {
-  double frozen{};      ///< share of the samples that repeat a value against the signal's own noise
-  double spikes{};      ///< share of the samples that stand alone, far from both sides
+  double frozen{};  ///< share of the samples that repeat a value against the signal's own noise
+  double spikes{};  ///< share of the samples that stand alone, far from both sides
   double resolution{kNaN};  ///< smallest step, where all steps are multiples of it
-  double standing{};    ///< share of the samples equal to the one before
+  double standing{};        ///< share of the samples equal to the one before
   Eigen::Index frozen_first{}, frozen_samples{};  ///< the longest such run
 
   bool isFrozen() const;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/random.hpp"
-#include "supervision/health/stretches.hpp"
+#include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
 namespace {
@@ -18,7 +18,7 @@ constexpr Eigen::Index kMostRows = 20000;
 constexpr double kOutdatedDistance = 0.35, kOutdatedCertainty = 2.5, kWideBounds = 0.6;
 
 struct ArxFit {
-  Vector theta;        // outputs, inputs, one; empty: no fit
+  Vector theta;          // outputs, inputs, one; empty: no fit
   Eigen::MatrixXd root;  // of the covariance
 };
 
@@ -169,7 +169,8 @@ LoopDynamics loopDynamics(const std::vector<double>& u, const std::vector<double
 
 ModelAge compareModel(const StepResponse& model, const StepResponse& record) {
   ModelAge age;
-  double difference = 0.0, size = 0.0, own = 0.0, bounds = 0.0, squares = 0.0, count = 0.0, last = 0.0;
+  double difference = 0.0, size = 0.0, own = 0.0, bounds = 0.0, squares = 0.0, count = 0.0,
+         last = 0.0;
   for (std::size_t k = 0; k < record.value.size(); ++k) {
     const double t = record.sample_time_s * static_cast<double>(k + 1), m = model.at(t);
     if (!std::isfinite(m)) break;
@@ -187,7 +188,8 @@ ModelAge compareModel(const StepResponse& model, const StepResponse& record) {
   age.judged = std::sqrt(bounds / std::max(size, std::min(own, 25.0 * size))) < kWideBounds;
   age.distance = std::sqrt(difference / size);
   age.certainty = std::sqrt(squares / count);
-  age.outdated = age.judged && age.distance > kOutdatedDistance && age.certainty > kOutdatedCertainty;
+  age.outdated =
+      age.judged && age.distance > kOutdatedDistance && age.certainty > kOutdatedCertainty;
   return age;
 }
 

@@ -41,9 +41,9 @@ LoopDynamics loopDynamics(const std::vector<double>& u, const std::vector<double
 
 /// A model beside what the record shows.
 struct ModelAge {
-  bool judged{};          ///< the record shows enough
+  bool judged{};  ///< the record shows enough
   bool outdated{};
-  double distance{kNaN};  ///< root mean square of the difference over that of the model's response
+  double distance{kNaN};   ///< root mean square of the difference over that of the model's response
   double certainty{kNaN};  ///< root mean square of the difference in standard deviations
   double gain_ratio{kNaN};  ///< record over model at the end of the horizon
 };

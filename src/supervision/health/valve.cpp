@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "supervision/health/stretches.hpp"
 #include "base/order_statistics.hpp"
+#include "supervision/health/finite_runs.hpp"
 
 namespace fpc {
 namespace {
@@ -15,7 +15,7 @@ constexpr int kPastOutputs = 10;
 constexpr double kMemories[] = {6.0, 15.0, 40.0, 100.0};  // of smoothed pasts [means]
 constexpr int kSmoothed = 2 * static_cast<int>(std::size(kMemories));
 constexpr double kBands[] = {0.1, 0.15, 0.2, 0.27, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92, 1.0};
-constexpr double kLeastF = 8.5, kLeastShare = 0.05, kLeastJumpF = 10.0;
+constexpr double kLeastF = 8.5, kLeastValveShare = 0.05, kLeastJumpF = 10.0;
 constexpr Eigen::Index kFewest = 200;
 
 template <typename Valve>
@@ -38,8 +38,8 @@ std::vector<double> smoothed(const std::vector<double>& values, double mean, dou
   return result;
 }
 
-/// Rows of past outputs, past signals, their exponential means and a one; what they leave of y, and what of valve positions
-/// they do not explain.
+/// Rows of past outputs, past signals, their exponential means and a one; what they leave of y, and
+/// what of valve positions they do not explain.
 class ValveRegression {
  public:
   ValveRegression(const std::vector<double>& signal, const std::vector<double>& y, int lags)
@@ -207,10 +207,9 @@ ValveFit fitValve(const std::vector<double>& signal, const std::vector<double>& 
   if (regression.rows() < kFewest || !(regression.left() > 0.0)) return fit;
   const auto leftOf = [&](const Shape& s) {
     const double band = s.band * range, jump = s.jump * band;
-    return regression.leftWith(
-        blockMeans(s.slips ? positions<SlippingValve>(signal, band, jump)
-                           : positions<StickingValve>(signal, band, jump),
-                   factor));
+    return regression.leftWith(blockMeans(s.slips ? positions<SlippingValve>(signal, band, jump)
+                                                  : positions<StickingValve>(signal, band, jump),
+                                          factor));
   };
   constexpr double kNone = std::numeric_limits<double>::infinity();
   Shape play{0.0, 0.0, false, kNone}, stick = play, slip{0.0, 0.0, true, kNone};
@@ -238,7 +237,7 @@ ValveFit fitValve(const std::vector<double>& signal, const std::vector<double>& 
   fit.share = 1.0 - best / regression.left();
   fit.significance = (regression.left() - best) / lags / of_noise;
   fit.jump_significance = (best_play - best) / of_noise;
-  const bool certain = fit.significance > kLeastF && fit.share > kLeastShare;
+  const bool certain = fit.significance > kLeastF && fit.share > kLeastValveShare;
   fit.sticks = certain && fit.jump > 0.0 && fit.jump_significance > kLeastJumpF;
   fit.plays = certain && !fit.sticks;
   if (fit.plays) {

@@ -36,17 +36,17 @@ class SlippingValve {
 
 /// The valve that explains a record best, beside a linear one.
 struct ValveFit {
-  double band{};         ///< in units of the signal; 0: a linear valve does as well
-  double jump{};         ///< at most `band`
-  double share{};        ///< of the variance that a linear valve leaves unexplained
-  double significance{};  ///< F of the best band against none
+  double band{};               ///< in units of the signal; 0: a linear valve does as well
+  double jump{};               ///< at most `band`
+  double share{};              ///< of the variance that a linear valve leaves unexplained
+  double significance{};       ///< F of the best band against none
   double jump_significance{};  ///< F of the jump against pure backlash
-  bool sticks{};         ///< certain, with a jump
-  bool plays{};          ///< certain, without
+  bool sticks{};               ///< certain, with a jump
+  bool plays{};                ///< certain, without
 };
 
-/// The error of a linear model one step ahead, over a grid of bands and jumps of both kinds of valve:
-/// y from its past, the signal's and the valve's. Source: jelali2008, karra2009
+/// The error of a linear model one step ahead, over a grid of bands and jumps of both kinds of
+/// valve: y from its past, the signal's and the valve's. Source: jelali2008, karra2009
 /// @param signal, y  equally long, NaN where unknown
 /// @param delay      largest dead time that is expected [means]
 /// @param factor     samples in a mean; at least 200 means are needed, else the fit is empty

@@ -8,12 +8,12 @@
 
 namespace fpc {
 
-struct Stretch {
+struct FiniteRun {
   Eigen::Index first{}, count{};
 };
 
-inline std::vector<Stretch> finiteStretches(const std::vector<double>& values) {
-  std::vector<Stretch> all;
+inline std::vector<FiniteRun> finiteRuns(const std::vector<double>& values) {
+  std::vector<FiniteRun> all;
   bool open = false;
   for (std::size_t k = 0; k < values.size(); ++k) {
     const bool is = std::isfinite(values[k]);

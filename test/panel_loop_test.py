@@ -1,0 +1,215 @@
+#!/usr/bin/python3
+"""What the panel makes of a loop's messages, without a master: every event of the list is one alarm, rows are complete, plans are rolled out,
+damaged messages and strangers change nothing."""
+import io
+import math
+import pathlib
+import random
+import re
+import sys
+import tempfile
+import types
+import unittest
+from unittest import mock
+
+TOP = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(TOP / "python/panel"))
+try:
+    from fmbpc import msg as messages
+    from panel_server import alarms, loops, wire
+except ImportError as error:  # a build without ROS
+    raise unittest.SkipTest(str(error)) from error
+
+RUN = 77
+PLANT, CONTROLLER, OPTIMIZER = "/a/plant_simulator", "/a/fmbpc_controller", "/a/clp_optimizer"
+
+
+def listed():
+    """{code: severity} of docs/events.md."""
+    rows = re.findall(r"^\| `(\w+)` \| (\w+) \|", (TOP / "docs/events.md").read_text(), re.MULTILINE)
+    assert len(rows) > 40
+    return dict(rows)
+
+
+def packed(message):
+    stream = io.BytesIO()
+    message.serialize(stream)
+    return stream.getvalue()
+
+
+def loop():
+    """/a with output y, input u, disturbance d; its topics are fed by put()."""
+    with mock.patch.object(loops.rospy, "Subscriber"), mock.patch.object(loops.rospy, "get_param", side_effect=KeyError):
+        made = loops.Loop("/a", 1e6)
+    made.want_plan = lambda now: None
+    for topic in ("predictive_action", "base_action", "input_plan"):
+        with mock.patch.object(loops.rospy, "Subscriber"):
+            made.on_demand[topic] = loops.Raw(topic)
+    made.plan_wanted = math.inf
+    info = messages.PlantInfo(run_id=RUN, name="tank", sample_time_s=60.0, outputs=[messages.SignalInfo("y", "m", 0.0, 10.0)], inputs=[messages.SignalInfo("u", "l/s", 0.0, 5.0)],
+                              disturbances=[messages.SignalInfo("d", "l/s", 0.0, 9.0)])
+    put(made, "plant_info", info, PLANT)
+    made.look(0.0)
+    return made
+
+
+def put(made, topic, message, caller):
+    raw = made.raw.get(topic) or made.on_demand[topic]
+    raw.waiting.append((caller, message if isinstance(message, bytes) else packed(message), 1000.0))
+
+
+def sample(made, k, y=1.0, u=2.0, source=1):
+    put(made, "measurement", messages.Measurement(run_id=RUN, step=k, outputs=[y], disturbances=[3.0], input_applied=[u]), PLANT)
+    put(made, "tracking", messages.Tracking(run_id=RUN, step=k, setpoint=[4.0], reference=[3.5]), CONTROLLER)
+    put(made, "control_action", messages.ControlAction(run_id=RUN, step=k, input=[u], source=source), OPTIMIZER)
+
+
+def state(made, k, node=PLANT, code="", events=(), word="automatic"):
+    put(made, "loop_state", messages.LoopState(run_id=RUN, step=k, node=node, summary=node == PLANT, mode=2, word=word, code=code, reason=code, events=list(events)), node)
+
+
+class Loop(unittest.TestCase):
+    def test_quick_reading_is_what_ros_reads(self):
+        dice = random.Random(3)
+        for _ in range(300):
+            numbers = lambda: [dice.choice((math.inf, -0.0, dice.uniform(-1e9, 1e9))) for _ in range(dice.randrange(4))]  # noqa: E731
+            m = messages.Measurement(run_id=dice.getrandbits(64), step=dice.getrandbits(32), outputs=numbers(), disturbances=numbers(), input_applied=numbers(), final=dice.random() < 0.5,
+                                     quality=bytes(dice.randrange(4) for _ in range(dice.randrange(4))), age_s=numbers(), local=dice.random() < 0.5)
+            m.header.frame_id = "x" * dice.randrange(9)
+            self.assertEqual((m.run_id, m.step, tuple(m.outputs), tuple(m.disturbances), tuple(m.input_applied), m.final, tuple(m.quality), tuple(m.age_s), m.local), wire.measurement(packed(m)))
+            a = messages.ControlAction(run_id=m.run_id, step=m.step, input=numbers(), source=dice.randrange(8))
+            self.assertEqual((a.run_id, a.step, tuple(a.input), a.source), wire.action(packed(a)))
+            t = messages.Tracking(run_id=m.run_id, step=m.step, setpoint=numbers(), reference=numbers())
+            self.assertEqual((t.run_id, t.step, tuple(t.setpoint), tuple(t.reference)), wire.tracking(packed(t)))
+
+    def test_samples_become_rows_and_tables(self):
+        made = loop()
+        for k in range(50):
+            sample(made, k, y=0.1 * k, u=5.0 if k == 49 else 1.0)
+        made.look(1.0)
+        self.assertEqual([], made.history.gaps("y") + made.history.gaps("u") + made.history.gaps("y_setpoint"))
+        table = made.tables(1.0)
+        self.assertEqual((4.9, 4.0, "good"), (round(table["outputs"][0]["value"], 4), table["outputs"][0]["working"], table["outputs"][0]["status"]))
+        self.assertEqual(("limited", ["upper"]), (table["inputs"][0]["status"], table["inputs"][0]["active"]))
+        self.assertEqual(3.0, table["disturbances"][0]["value"])
+
+    def test_strangers_and_damage_change_nothing(self):
+        made, dice = loop(), random.Random(5)
+        for k in range(10):
+            sample(made, k)
+        made.look(1.0)
+        before = made.tables(1.0)
+        liar = messages.Measurement(run_id=RUN, step=9, outputs=[9.0], disturbances=[9.0], input_applied=[9.0])
+        put(made, "measurement", liar, "/stranger")
+        put(made, "control_action", messages.ControlAction(run_id=RUN, step=9, input=[9.0], source=5), "/stranger")
+        put(made, "loop_state", messages.LoopState(run_id=RUN, step=9, node=PLANT, summary=True, word="finished"), "/stranger")
+        for message in (messages.Measurement(run_id=RUN, step=9, outputs=[9.0, 9.0], disturbances=[9.0], input_applied=[9.0]), messages.Measurement(run_id=1, step=9, outputs=[9.0], disturbances=[9.0], input_applied=[9.0]),
+                        messages.Measurement(run_id=RUN, step=2 ** 32 - 1, outputs=[9.0], disturbances=[9.0], input_applied=[9.0])):
+            put(made, "measurement", message, PLANT)
+        for topic in ("measurement", "tracking", "control_action", "predictive_action", "fuzzy_model", "loop_state", "operator_kept", "plant_info"):
+            for _ in range(200):
+                put(made, topic, bytes(dice.randrange(256) for _ in range(dice.randrange(120))), PLANT if topic in ("measurement", "plant_info", "operator_kept") else CONTROLLER)
+        made.look(1.0)
+        self.assertEqual(before, made.tables(1.0))
+        self.assertGreater(made.strangers, 2)
+
+    def test_the_plan_is_ahead_of_now(self):
+        made = loop()
+        sample(made, 0)
+        matrix = lambda rows: messages.Matrix(len(rows), len(rows[0]), [v for row in rows for v in row])  # noqa: E731
+        put(made, "input_plan", messages.InputPlan(run_id=RUN, step=0, input=matrix([[1.0, 2.0, 3.0]])), OPTIMIZER)
+        put(made, "predictive_action", messages.PredictiveAction(run_id=RUN, step=0, state=[1.0], A=matrix([[0.5]]), B=matrix([[1.0]]), C=matrix([[1.0]]), offset_state=[0.0], offset_output=[0.0],
+                                                                   K=matrix([[0.0]]), feedforward=matrix([[7.0, 7.0, 7.0]]), reference=matrix([[4.0, 4.0, 4.0]]), setpoint=[4.0],
+                                                                   input_base_unclipped=[7.0], input_previous=[0.0]), CONTROLLER)
+        made.look(1.0)
+        ahead = made.ahead()
+        self.assertEqual(([[1.0, 2.0, 3.0]], [[7.0, 7.0, 7.0]], [[1.5, 2.75, 4.375]], True), (ahead["inputs"], ahead["base_inputs"], ahead["outputs"], ahead["constrained"]))
+        self.assertIn("upper limit is 5", made.tables(1.0)["why"])
+
+    def test_a_new_run_begins_anew(self):
+        made = loop()
+        sample(made, 5)
+        made.look(1.0)
+        put(made, "plant_info", messages.PlantInfo(run_id=RUN + 1, sample_time_s=60.0, outputs=made.info.outputs, inputs=made.info.inputs), PLANT)
+        made.look(1.1)
+        self.assertEqual((-1, None), (made.step, made.history.first))
+
+
+class Said(unittest.TestCase):
+    """Time is 10 samples a second; loop_state comes twice a second, as from the nodes."""
+
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.now = 100.0
+        journal = alarms.Journal(self.folder.name + "/journal.jsonl")
+        journal.stream.close()
+        journal.stream = types.SimpleNamespace(write=lambda _: None, flush=lambda: None, fileno=lambda: 1, tell=lambda: 0, close=lambda: None)
+        self.fsync = mock.patch.object(alarms.os, "fsync")
+        self.fsync.start()
+        self.addCleanup(self.fsync.stop)
+        self.list = alarms.AlarmList(journal, lambda: self.now)
+        loops.Loop.severities = listed()
+
+    def run_for(self, made, seconds, k, says):
+        """says(k): (code of the node's state, events)."""
+        for _ in range(int(round(10 * seconds))):
+            self.now += 0.1
+            k += 1
+            sample(made, k)
+            if k % 5 == 0:
+                code, events = says(k)
+                state(made, k)
+                state(made, k, CONTROLLER, code, events, "degraded" if code else "automatic")
+            made.look(self.now)
+            self.list.look("/a", made.current(self.now), self.now, k, RUN)
+        return k
+
+    def active(self):
+        return [a for a in self.list.alarms.values() if a.active and a.state != alarms.SUPPRESSED]
+
+    def test_every_event_of_the_list_is_one_alarm_within_two_seconds_and_goes(self):
+        number = {"info": 0, "warning": 1, "error": 2}
+        for code, severity in listed().items():
+            self.list.alarms.clear()
+            made = loop()
+            k = self.run_for(made, 3.0, 0, lambda k: ("", ()))
+            self.assertEqual([], self.active())
+            first = k + 1
+
+            def lasting(k):
+                event = messages.Event(code=code, severity=number[severity], signal="y", first=first, last=k, count=k - first + 1, text=code)
+                return code, [event]
+            k = self.run_for(made, 2.0, k, lasting)
+            self.assertEqual(0 if severity == "info" else 1, len(self.active()), (code, severity))
+            k = self.run_for(made, 4.0, k, lasting)
+            gone = messages.Event(code=code, severity=number[severity], signal="y", first=first, last=k, count=k - first + 1, text=code)
+            k = self.run_for(made, alarms.OFF_DELAY + 2.0, k, lambda k: ("", [gone]))
+            self.assertEqual([], self.active(), code)
+            self.assertEqual([1] if severity != "info" else [], [a.count for a in self.list.alarms.values()])
+
+    def test_what_lasts_one_sample_is_not_missed_and_what_flickers_does_not_chatter(self):
+        made = loop()
+        k = self.run_for(made, 1.0, 0, lambda k: ("", ()))
+        once = messages.Event(code="qp_not_solved", severity=1, first=k - 8, last=k - 8, count=1, text="once")
+        k = self.run_for(made, 1.0, k, lambda k: ("", [once]))
+        self.assertEqual(["qp_not_solved"], [a.code for a in self.active()])
+        dice, count = random.Random(1), [0]
+
+        def flickers(k):
+            if dice.random() < 0.3:
+                count[0] += 1
+            return "", [messages.Event(code="law_failed", severity=2, first=1, last=k if dice.random() < 0.3 else max(k - 40, 1), count=1 + count[0], text="flickers")]
+        self.run_for(made, 120.0, k, flickers)
+        self.assertLessEqual(self.list.alarms["/a|law_failed|"].count, 2)
+
+    def test_a_plant_that_is_silent_is_said_in_two_seconds(self):
+        made = loop()
+        self.run_for(made, 2.0, 0, lambda k: ("", ()))
+        self.now += 1.9
+        made.look(self.now)
+        self.assertEqual({("node_silent", "plant")}, set(made.current(self.now)))
+
+
+if __name__ == "__main__":
+    unittest.main()
