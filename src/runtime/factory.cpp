@@ -53,8 +53,8 @@ ControllerSession makeControllerSession(const LoopFile& loop) {
   return session;
 }
 
-Candidate makeCandidate(const LoopFile& other, const CandidateParams& params) {
-  Candidate candidate;
+CandidateLaw makeCandidate(const LoopFile& other, const CandidateParams& params) {
+  CandidateLaw candidate;
   candidate.name = other.name;
   candidate.law = makeController(other);
   candidate.model = other.model;

@@ -6,8 +6,8 @@
 #include "config/loop_file.hpp"
 #include "plant/simulation.hpp"
 #include "runtime/session.hpp"
-#include "runtime/watched_law.hpp"
 #include "runtime/target_session.hpp"
+#include "runtime/watched_law.hpp"
 
 namespace fpc {
 
@@ -15,7 +15,7 @@ Simulation makeSimulation(const LoopFile& loop);  ///< @throws InputError for an
 ControllerSession makeControllerSession(
     const LoopFile& loop);  ///< without a model: send it by setModel()
 /// The law and the model of another loop, to be watched beside the one in charge.
-Candidate makeCandidate(const LoopFile& other, const CandidateParams& params);
+CandidateLaw makeCandidate(const LoopFile& other, const CandidateParams& params);
 TargetSession makeTargetSession(
     const LoopFile& loop);  ///< without a model. @throws InputError without a section targets
 OptimizerSession makeOptimizerSession(

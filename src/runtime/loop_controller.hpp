@@ -1,6 +1,6 @@
-// What answers a plant: controller, target layer, optimizer and identifier of a loop, called in the order in
-// which messages would travel. The run in one process is made of it, and a controller that is
-// stepped by somebody else's program.
+// What answers a plant: controller, target layer, optimizer and identifier of a loop, called in the
+// order in which messages would travel. The run in one process is made of it, and a controller that
+// is stepped by somebody else's program.
 #pragma once
 
 #include <functional>

@@ -21,7 +21,7 @@ namespace fpc {
 
 class ReactionWatch;
 class WatchedLaw;
-struct Candidate;
+struct CandidateLaw;
 
 /// What a controller sends back for one measurement.
 struct ControllerAnswer {
@@ -125,7 +125,7 @@ class ControllerSession {
 
   /// Watches a candidate beside the law from the next sample on, in the place of another one; see
   /// WatchedLaw, which is then the controller(). @throws InputError
-  void watch(Candidate candidate);
+  void watch(CandidateLaw candidate);
   /// To the candidate from the next sample on, or back to the former law.
   /// @throws InputError if there is none that has passed, or that is in charge.
   void handOver(bool on);

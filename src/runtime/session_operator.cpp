@@ -73,7 +73,7 @@ bool ControllerSession::retune(const Settings& settings) {
   return true;
 }
 
-void ControllerSession::watch(Candidate candidate) {
+void ControllerSession::watch(CandidateLaw candidate) {
   if (watched_ == nullptr) {
     auto watched = std::make_unique<WatchedLaw>(std::move(controller_), model_, limits_, plant_,
                                                 leads_an_optimizer_);

@@ -63,7 +63,7 @@ WatchedLaw::WatchedLaw(std::unique_ptr<Controller> inside, TsModel present, Inpu
   squares_ = deviation_ = Vector::Zero(countOf(plant_.outputs));
 }
 
-void WatchedLaw::watch(Candidate candidate) {
+void WatchedLaw::watch(CandidateLaw candidate) {
   require(candidate.law != nullptr, "candidate.loop", "a loop with a law");
   require(candidate.law->followsSetpoint(), "candidate.loop", "a law that follows setpoints");
   require(!candidate.model.submodels.empty(), "candidate.loop",

@@ -17,7 +17,7 @@
 namespace fpc {
 
 /// A law that waits for its turn.
-struct Candidate {
+struct CandidateLaw {
   std::string name;
   std::unique_ptr<Controller> law;  ///< has its model
   TsModel model;                    ///< matched to the plant
@@ -36,12 +36,12 @@ const char* nameOf(CandidateState state);  ///< "none", "watched", "passed", ...
 /// former law goes on beside it. The first input is the former law's, and the bias dies out
 /// (BumplessTransfer); where an optimizer follows, the prediction carries the limits instead. The
 /// authority grows every step_samples. At each sample the candidate must keep what was seen while
-/// it was watched (ErrorPromise): its model's errors one sample ahead, and the errors of the outputs;
-/// and it must not throw an input from end to end (SwingWatch). Else, or if it gives no input, the
-/// former law is back from that sample on, bumplessly, and the candidate stays out until it is
-/// watched anew. Every change of state is an event with its figures.
-/// signals(): those of the law inside, then beside_INPUT, what the law asks for that is not in
-/// charge, and candidate_authority. Judging allocates; other samples do not.
+/// it was watched (ErrorPromise): its model's errors one sample ahead, and the errors of the
+/// outputs; and it must not throw an input from end to end (SwingWatch). Else, or if it gives no
+/// input, the former law is back from that sample on, bumplessly, and the candidate stays out until
+/// it is watched anew. Every change of state is an event with its figures. signals(): those of the
+/// law inside, then beside_INPUT, what the law asks for that is not in charge, and
+/// candidate_authority. Judging allocates; other samples do not.
 class WatchedLaw final : public ControllerAround {
  public:
   /// optimizer: what the laws answer goes to one.
@@ -50,7 +50,7 @@ class WatchedLaw final : public ControllerAround {
              PlantInfo plant, bool optimizer);
   /// Begins anew with this candidate. The former law is back in charge if another one was not.
   /// @throws InputError naming candidate.KEY.
-  void watch(Candidate candidate);
+  void watch(CandidateLaw candidate);
   /// From the next sample on. @throws InputError unless the candidate has passed.
   void handOver();
   /// By an operator's word, from the next sample on. @throws InputError unless it is in charge.
@@ -98,7 +98,7 @@ class WatchedLaw final : public ControllerAround {
   InputLimits limits_;
   PlantInfo plant_;
   bool optimizer_;
-  Candidate candidate_;
+  CandidateLaw candidate_;
   std::optional<CandidateTrial> trial_;
   ErrorPromise errors_, outputs_;
   std::vector<SwingWatch> swings_;

@@ -15,13 +15,12 @@ namespace fpc {
 ///            at most this probability; or the share of zeros among the steps, if that is larger
 /// The run is unlikely once p^repeats < kChance. A signal has noise if that product is between 0.45
 /// and 0.85 of the mean square of these differences (white noise: two thirds, a signal that
-/// alternates: 1), no difference is a quarter of that sum (a jump, an oscillation that dies out), and
-/// eight steps are of two resolutions or more (rounding alone makes none); without noise no run is
-/// unlikely. A reading at the largest or the smallest value seen so far may
-/// be at a limit, as a flow over a weir.
-/// A signal in motion (three quarters of the steps are not 0, the last two go on one way by far
-/// more than q) that shows a number once more was not read anew: the reading is repeated, for kLate
-/// samples; what lasts longer is a limit that it has come to.
+/// alternates: 1), no difference is a quarter of that sum (a jump, an oscillation that dies out),
+/// and eight steps are of two resolutions or more (rounding alone makes none); without noise no run
+/// is unlikely. A reading at the largest or the smallest value seen so far may be at a limit, as a
+/// flow over a weir. A signal in motion (three quarters of the steps are not 0, the last two go on
+/// one way by far more than q) that shows a number once more was not read anew: the reading is
+/// repeated, for kLate samples; what lasts longer is a limit that it has come to.
 class FlatLine {
  public:
   static constexpr int kWindow = 64, kFewest = 24, kMoving = 48, kLate = 3;

@@ -1,4 +1,5 @@
-// The pages docs/loop_*.md list every key the reader knows and no other, with the structs' defaults.
+// The pages docs/loop_*.md list every key the reader knows and no other, with the structs'
+// defaults.
 #include <gtest/gtest.h>
 
 #include <filesystem>

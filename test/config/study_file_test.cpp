@@ -1,4 +1,5 @@
-// The reader of study files: what it reads, what it refuses, and that docs/study_file.md tells it all.
+// The reader of study files: what it reads, what it refuses, and that docs/study_file.md tells it
+// all.
 #include "config/study_file.hpp"
 
 #include <fstream>

@@ -1,4 +1,5 @@
-// The reader of tuning files: what it reads, what it refuses, and that docs/tuning_file.md tells it all.
+// The reader of tuning files: what it reads, what it refuses, and that docs/tuning_file.md tells it
+// all.
 #include <cmath>
 #include <map>
 #include <regex>
@@ -136,7 +137,8 @@ TEST(TuningDocs, TellEveryKeyOfTheReaderAndNoOther) {
   for (const char* section : {"parameters", "fitness", "fitness.terms", "scenarios", "search"})
     all.erase(section);
   const auto rows = documented();
-  for (const auto& key : all) EXPECT_EQ(rows.count(key), 1U) << key << " is not in docs/tuning_file.md";
+  for (const auto& key : all)
+    EXPECT_EQ(rows.count(key), 1U) << key << " is not in docs/tuning_file.md";
   for (const auto& row : rows) EXPECT_EQ(all.count(row.first), 1U) << row.first << " is no key";
 }
 

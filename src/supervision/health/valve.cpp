@@ -211,8 +211,8 @@ ValveFit fitValve(const std::vector<double>& signal, const std::vector<double>& 
                                                   : positions<StickingValve>(signal, band, jump),
                                           factor));
   };
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  Shape play{0.0, 0.0, false, kNone}, stick = play, slip{0.0, 0.0, true, kNone};
+
+  Shape play{0.0, 0.0, false, kInfinity}, stick = play, slip{0.0, 0.0, true, kInfinity};
   const auto look = [&](Shape& best, double band, double jump) {
     Shape s{std::max(kBands[0], band), jump, best.slips, 0.0};
     s.left = leftOf(s);
