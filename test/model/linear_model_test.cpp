@@ -74,7 +74,9 @@ TEST(LinearModel, RefusesElementsOfNobody) {
   EXPECT_THROW(
       linearModel(names, {{0, SignalKind::kInput, 2, e}, {1, SignalKind::kInput, 0, e}}, point),
       InputError);
-  EXPECT_THROW(linearModel(names, {}, {Vector::Zero(1), Vector::Zero(2), Vector()}), InputError);
+  EXPECT_THROW(linearModel(names, std::vector<LinearElement>{},
+                           {Vector::Zero(1), Vector::Zero(2), Vector()}),
+               InputError);
 }
 
 }  // namespace fuzzy_linear_model_test
