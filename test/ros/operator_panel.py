@@ -220,7 +220,8 @@ class Panel(unittest.TestCase):
         self.open("#/loop/%2Fa/model")
         field = self.see(By.CSS_SELECTOR, "input[aria-label='coincidence_steps']")
         ring.wait_until(field.is_enabled, "the engineer's field")
-        self.page.execute_script("arguments[0].value = '8'", field)
+        field.clear()
+        field.send_keys("8")
         self.see(By.XPATH, "//tr[td='coincidence_steps']//button").click()
         self.said("coincidence_steps = 8")
 

@@ -45,6 +45,7 @@ class PlcLaw(unittest.TestCase):
 
         nodes = [ring.pid(node) for node in ("/plant_gateway", "/fmbpc_controller")]
         for node in ("/plant_simulator", "/loop_recorder", "/end_launch"):  # the run has no end, and neither have they
+            ring.wait_until(lambda: ring.is_registered(node), node)  # pylint: disable=cell-var-from-loop
             self.addCleanup(os.kill, ring.pid(node), signal.SIGKILL)
         os.kill(launch.pid, signal.SIGKILL)
         for node in nodes:

@@ -88,6 +88,13 @@ def pid(node, master=None):
     return slave(node, master).getPid(rospy.get_name())[2]
 
 
+def is_registered(node, master=None):
+    try:
+        return bool((master or rosgraph.Master(rospy.get_name())).lookupNode(node))
+    except rosgraph.MasterException:
+        return False
+
+
 def threads(process):
     """Names of its threads."""
     names = []

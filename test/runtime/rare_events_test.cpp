@@ -19,6 +19,9 @@ constexpr double kRare = 0.01;  // of the samples
 const std::map<std::string, std::set<EventCode>> kOnPurpose{
     {"asp_case_b", {EventCode::kOutsideModel}},     // a setpoint where its model has no data
     {"asp_uci_daily", {EventCode::kOutsideModel}},  // a record with days like no other
+    {"four_on_two", {EventCode::kTargetGivenUp, EventCode::kSoftLimitExceeded}},  // more is asked
+    {"shell_fractionator",
+     {EventCode::kTargetGivenUp}},  // disturbances beyond what is held at rest
     {"column_clp_limits", {EventCode::kSoftLimitExceeded}},  // a limit that cannot hold
 };
 

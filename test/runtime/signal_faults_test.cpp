@@ -85,7 +85,7 @@ TEST(SignalFaults, AReadingThatComesTwiceCostsLittle) {
 // An analyser that freezes for half an hour of the reactor's time while the setpoint steps: it is
 // found by its noise, and the model's value takes its place.
 TEST(SignalFaults, AFrozenAnalyserIsFoundAndReplaced) {
-  for (const std::uint32_t from : {190U, 203U, 210U, 225U, 240U, 260U}) {
+  for (const std::uint32_t from : {190U, 203U, 240U, 260U}) {
     std::uint32_t found = 0;
     const double ours = ise("cstr_tracking", reactor({kNoise}), frozen(from, from + 300), &found);
     const double blind = ise("cstr_tracking", reactor({kNoise, kBlind}), frozen(from, from + 300));

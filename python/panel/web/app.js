@@ -468,6 +468,7 @@ function journalView() {
 // ---- model and settings
 
 let modelAt = 0, modelData = {};
+const typed = {};  // what somebody typed and has not sent yet: drawing anew keeps it, and moves handlers to other elements
 async function modelView() {
   if (Date.now() - modelAt > 900) { modelAt = Date.now(); try { modelData[view.loop] = await get("api/model?loop=" + encodeURIComponent(view.loop)); } catch (e) { /* the next one */ } }
   const got = modelData[view.loop];
@@ -485,9 +486,12 @@ async function modelView() {
       h("section.card", null, h("h2", null, "How plans came true"), m.rms.length ? h("div.scroll", null, table(["#samples ahead"].concat(m.outputs.map((y) => `#${y}, rms error`)), m.rms.map((r) => h("tr", null, cell("ahead", String(r.ahead), ".num"), r.rms.map((v, q) => cell(m.outputs[q], num(v, 4) + unit(m.units[m.outputs[q]]), ".num")))))) : h("p.soft", null, "Too few samples yet: it counts while somebody looks at this loop."))));
   }
   const adapt = (on) => h("button.pad", { disabled: !may("operate"), onclick: () => ask("adapt", view.loop, { on }, on ? "adapt" : "freeze") }, on ? "Adapt" : "Freeze");
-  const field = (s) => { const input = h("input", { "aria-label": s.key, value: mark === "," && typeof s.value === "number" ? String(s.value).replace(".", ",") : String(s.value), disabled: !may("engineer") }); return h("tr", null, h("td.name", null, s.key), h("td", null, h("div.row", null, input, h("button.pad", { disabled: !may("engineer"), onclick: () => ask("setting", view.loop, { key: s.key, value: input.value }, s.key) }, "Set"))), h("td.reason", null, s.about)); };
+  const field = (s) => { const own = view.loop + " " + s.key, now = mark === "," && typeof s.value === "number" ? String(s.value).replace(".", ",") : String(s.value);
+    const input = h("input", { "aria-label": s.key, value: own in typed ? typed[own] : now, disabled: !may("engineer"), oninput: (e) => { typed[own] = e.target.value; } });
+    return h("tr", null, h("td.name", null, s.key), h("td", null, h("div.row", null, input, h("button.pad", { disabled: !may("engineer"), onclick: () => { const value = own in typed ? typed[own] : now; delete typed[own]; ask("setting", view.loop, { key: s.key, value }, s.key); } }, "Set"))), h("td.reason", null, s.about)); };
   parts.push(h("section.card", null, h("h2", null, "Settings of the law"), may("engineer") ? null : h("p.soft", null, "Log in as engineer to change them."), got.settings.length ? h("div.scroll", null, table(["", "value", "what it is"], got.settings.map(field))) : h("p.soft", null, "It has none."), h("div.row", null, h("span", null, "A law that changes itself:"), adapt(false), adapt(true))));
-  if (m) { const rows = h("input", { value: "500", "aria-label": "samples", inputmode: "numeric" }), go = (use) => () => ask("identify", view.loop, { window: parseInt(rows.value, 10) || 0, use }, "identification");
+  if (m) { const rows = h("input", { value: typed.samples || "500", "aria-label": "samples", inputmode: "numeric", oninput: (e) => { typed.samples = e.target.value; } });
+    const go = (use) => () => ask("identify", view.loop, { window: parseInt(typed.samples || "500", 10) || 0, use }, "identification");
     parts.push(h("section.card", null, h("h2", null, "Identify from this run"), h("div.row", null, h("label", null, "newest samples (0: all) ", rows), h("button.pad", { disabled: !may("engineer"), onclick: go(false) }, "Try"), h("button.pad", { disabled: !may("engineer"), onclick: go(true) }, "Identify and use")), h("p.soft", null, "Try says how well it fits and changes nothing; the model in use stays until another one is accepted."))); }
   put($("model"), parts);
   for (const bar of document.querySelectorAll("[data-w]")) bar.style.width = 100 * Number(bar.dataset.w) + "%";
