@@ -269,7 +269,7 @@ OrderedJson Commissioning::design() {
   writeText(result.law, lawFile());
   writeText(result.pi, piFile());
   OrderedJson json = toJson(result, brief_.loop.plant_info);
-  json["offered"] = result.offers_law ? lawFile() : piFile();
+  json["offered"] = result.offers_law ? lawFile() : result.offers_pi ? piFile() : "none";
   return json;
 }
 

@@ -519,6 +519,7 @@ class Designer {
     const bool pi_holds = d.pi_figures.worst_peak <= params_.peak;
     const bool law_holds = d.law_figures.worst_peak <= params_.peak;
     d.offers_law = law_holds && (!pi_holds || std::exp(mean + half) < kLeastBetter);
+    d.offers_pi = !d.offers_law && pi_holds;
     if (!law_holds)
       d.remarks.push_back("the law is not stable on every model with a sensitivity peak below " +
                           shortText(params_.peak));
@@ -644,7 +645,9 @@ OrderedJson toJson(const Design& d, const PlantInfo& plant) {
       inputs[plant.inputs[j].name] = w.inputs[static_cast<Index>(j)];
     weak.push_back({{"inputs", inputs}, {"share", w.share}, {"certain", w.certain}});
   }
-  return {{"offers", d.offers_law ? "law" : "pi"},
+  return {{"offers", d.offers_law  ? "law"
+                     : d.offers_pi ? "pi"
+                                   : "none"},
           {"cost_ratio", d.ratio},
           {"cost_ratio_bound", d.ratio_bound},
           {"models_probed", d.probed},

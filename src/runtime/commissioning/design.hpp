@@ -36,6 +36,7 @@ struct Design {
   double ratio{};        ///< cost of the law over that of the PI, mean of the held-out pairs
   double ratio_bound{};  ///< half width of its 95 % interval
   bool offers_law{};     ///< it is stable on all members, and better than the PI beyond that bound
+  bool offers_pi{};      ///< the law is not offered, and the PI is stable on all members
   std::vector<std::string> remarks;
   std::vector<WeakDirection> weak;
   std::size_t probed{};  ///< models: the likeliest, those tuned on, the costliest held out
