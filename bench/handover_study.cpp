@@ -1,10 +1,12 @@
 // The whole study of shadow and hand-over: bench/handover_study [CASES OF EACH KIND AND PLANT]
-// [FIRST SEED] [PLANT]. Prints one row for each kind and plant, and what became of cases that went
-// otherwise than asked.
+// [FIRST SEED] [PLANT] [NUMBER OF THE KIND]. Prints one row for each kind and plant, and what
+// became of cases that went otherwise than asked; of one kind, what became of all.
 #include "handover_study.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 #include "paths.hpp"
 

@@ -53,8 +53,8 @@ struct CaseResult {
   CandidateState state{};
   bool handed_over{false};
   std::uint32_t handed_at{}, back_at{};  ///< samples; 0: never
-  double bump{},
-      bump_back{};          ///< in allowed moves: from what the former law asked for; from before
+  double bump{};                         ///< in allowed moves: from what the former law asked for
+  double bump_back{};                    ///< in allowed moves: from the input before
   double after_back{kNaN};  ///< mean square error a settling time later over that of no candidate
   std::string report;
 };
@@ -129,6 +129,16 @@ inline double distance(const InputLimits& limits, VectorRef a, VectorRef b) {
   return (a - b).cwiseAbs().cwiseQuotient(limits.move).maxCoeff();
 }
 
+/// What the law asks for that is not in charge: signals beside_INPUT, before the last one.
+inline Vector besideOf(const Controller& law, Eigen::Index n_u) {
+  const auto& signals = law.signals();
+  const std::size_t first = signals.size() - 1 - static_cast<std::size_t>(n_u);
+  Vector input(n_u);
+  for (Eigen::Index i = 0; i < n_u; ++i)
+    input[i] = signals[first + static_cast<std::size_t>(i)].second;
+  return input;
+}
+
 inline CaseRun runOnce(const LoopFile& loop, const std::vector<Command>& commands) {
   CaseRun run;
   CaseResult& result = run.result;
@@ -151,14 +161,9 @@ inline CaseRun runOnce(const LoopFile& loop, const std::vector<Command>& command
     if (watched != nullptr) {
       const CandidateState state = watched->state();
       if (before == CandidateState::kInCharge && !result.handed_over) {  // the first it drives
-        Vector former(input.size());
-        const auto& signals = session.controller().signals();
-        const std::size_t first = signals.size() - 1 - static_cast<std::size_t>(input.size());
-        for (Eigen::Index i = 0; i < input.size(); ++i)
-          former[i] = signals[first + static_cast<std::size_t>(i)].second;
         result.handed_over = true;
         result.handed_at = k;
-        result.bump = distance(limits, input, former);
+        result.bump = distance(limits, input, besideOf(session.controller(), input.size()));
       }
       if (before == CandidateState::kInCharge && state == CandidateState::kBack) {
         result.back_at = k;
@@ -168,8 +173,9 @@ inline CaseRun runOnce(const LoopFile& loop, const std::vector<Command>& command
     }
     simulation.advance(input);
   }
-  if (watched != nullptr) result.state = watched->state();
-  if (watched != nullptr) result.report = watched->report();
+  if (watched == nullptr) return run;
+  result.state = watched->state();
+  result.report = watched->report();
   return run;
 }
 

@@ -20,7 +20,7 @@ if {"-h", "--help"} & set(sys.argv[1:]):  # without ROS as well
     print(__doc__.strip())
     sys.exit(0)
 
-# Debian 11's rospy asks threads by a name that its Python knows no more, and would end with a traceback.
+# Debian 11's rospy calls Thread.isAlive, which its Python has no more.
 if not hasattr(threading.Thread, "isAlive"):
     threading.Thread.isAlive = threading.Thread.is_alive
 

@@ -12,13 +12,14 @@ import sys
 import tempfile
 import types
 import unittest
+import unittest.mock
 
 import numpy
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "python/panel"))
 
-from panel_server import access, alarms, asked, history, predict, state  # noqa: E402
+from panel_server import access, alarms, asked, history, predict, state, tool  # noqa: E402
 
 
 class Clock:
@@ -455,6 +456,12 @@ class Plans(unittest.TestCase):
         sets = lambda c: types.SimpleNamespace(center=[], inverse_covariance=[], antecedents=[types.SimpleNamespace(shape=1, parameters=[c, 1.0])])  # noqa: E731
         weights, _ = predict.firing(types.SimpleNamespace(rules=[sets(0.0), sets(2.0)]), [1.0])
         self.assertEqual([0.5, 0.5], weights)
+
+
+class Tool(unittest.TestCase):
+    def test_the_one_of_this_tree_comes_first(self):
+        with unittest.mock.patch("os.access", lambda path, _: True):
+            self.assertEqual(str(TOP / "devel/lib/fmbpc/fmbpc_tool"), tool.tool_path())
 
 
 class ThePage(unittest.TestCase):

@@ -167,15 +167,15 @@ def env(loop, *, set=None, seeds: Sequence[int] | None = None, reward: Callable 
     Env has the interface of gymnasium.Env and is one where gymnasium is installed.
     """
     from fmbpc._loop import Loop
-    from fmbpc._text import overrides
+    from fmbpc._text import assignments
+    settings = assignments(set)
 
     def make(seed):
-        pairs = overrides(set)
-        plain = Loop(loop, set=[f"{k}={v}" for k, v in pairs])
+        plain = Loop(loop, set=settings)
         if seed is None:
             return plain
         seeded = [f"{key}={int(seed)}" for key in plain._core.seeded_keys]
-        return Loop(loop, set=[f"{k}={v}" for k, v in pairs] + seeded) if seeded else plain
+        return Loop(loop, set=settings + seeded) if seeded else plain
     gymnasium = _gymnasium()
     kind = Env if gymnasium is None else type("Env", (Env, gymnasium.Env), {"__doc__": Env.__doc__})
     if seeds is None:

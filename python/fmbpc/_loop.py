@@ -7,13 +7,12 @@ from typing import Any, Callable, Mapping, Sequence
 
 from fmbpc import _core, _progress, _text
 from fmbpc._control import Controller
+from fmbpc._described import Described
 from fmbpc._plant import Simulation
 from fmbpc._run import Run
 
-SignalTuple = "tuple[str, str, float, float]"  # name, unit, lower, upper
 
-
-class Loop:
+class Loop(Described):
     """A loop: plant, law, optimizer, schedule, as a loop file says (docs/loop_file.md lists the keys).
 
     loop: a name of loops(), a path, or a dict with the sections of a file, `extends` included
@@ -34,31 +33,8 @@ class Loop:
             self._core = _core.read_loop(os.fspath(loop), pairs)
 
     @property
-    def name(self) -> str:
-        return self._core.name
-
-    @property
     def title(self) -> str:
         return self._core.title
-
-    @property
-    def outputs(self) -> list[tuple[str, str, float, float]]:
-        """(name, unit, lower, upper) of each measured output."""
-        return self._core.outputs
-
-    @property
-    def inputs(self) -> list[tuple[str, str, float, float]]:
-        """(name, unit, lower, upper) of each input; the limits are those of the actuator."""
-        return self._core.inputs
-
-    @property
-    def disturbances(self) -> list[tuple[str, str, float, float]]:
-        """(name, unit, lower, upper) of each disturbance that is measured."""
-        return self._core.disturbances
-
-    @property
-    def sample_time_s(self) -> float:
-        return self._core.sample_time_s
 
     @property
     def samples(self) -> int:

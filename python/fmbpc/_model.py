@@ -11,6 +11,7 @@ import numpy
 
 from fmbpc import _core, _progress, _text
 from fmbpc._control import Values
+from fmbpc._described import Described
 
 
 def _split(header):
@@ -66,7 +67,7 @@ def _record(data, name="frame"):
     return name, names, found, dates, numpy.column_stack(values)
 
 
-class Model:
+class Model(Described):
     """A Takagi-Sugeno model: made by identify(), or read by name (of config/model) or path.
 
     Arrays have a row a sample: y n_y columns, u n_u, d n_d, in the order of `outputs`, `inputs`, `disturbances`;
@@ -77,30 +78,9 @@ class Model:
         self._core = model if isinstance(model, _core.Model) else _core.read_model(os.fspath(model))
 
     @property
-    def name(self) -> str:
-        return self._core.name
-
-    @property
     def source(self) -> str:
         """What it was made from, in words."""
         return self._core.source
-
-    @property
-    def sample_time_s(self) -> float:
-        return self._core.sample_time_s
-
-    @property
-    def outputs(self) -> list[tuple[str, str, float, float]]:
-        """(name, unit, lower, upper) of each, the range of the data."""
-        return self._core.outputs
-
-    @property
-    def inputs(self) -> list[tuple[str, str, float, float]]:
-        return self._core.inputs
-
-    @property
-    def disturbances(self) -> list[tuple[str, str, float, float]]:
-        return self._core.disturbances
 
     @property
     def rules(self) -> dict[str, int]:
@@ -118,8 +98,10 @@ class Model:
         return json.loads(self._core.report) if self._core.report else {}
 
     def _matrix(self, values, signals):
-        array = numpy.asarray([] if values is None else values)
-        return None if values is None else array[:, None] if array.ndim == 1 and len(signals) == 1 else array
+        if values is None:
+            return None
+        array = numpy.asarray(values)
+        return array[:, None] if array.ndim == 1 and len(signals) == 1 else array
 
     def predict(self, y, u, d=None, *, steps: int = 1) -> numpy.ndarray:
         """What follows `steps` samples later from measured pasts, n_samples x n_y; NaN where the past is not there."""

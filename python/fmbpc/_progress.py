@@ -1,4 +1,5 @@
 """The only thing that prints: a bar on standard error where somebody looks."""
+import contextlib
 import sys
 
 
@@ -30,20 +31,9 @@ class Bar:
             sys.stderr.flush()
 
 
-class _Nothing:
-    def __enter__(self):
-        return None
-
-    def __exit__(self, *_):
-        pass
-
-
 def bar(name, asked):
     """`asked`: True, False, a callable (share, words), or None: where a person looks."""
     if callable(asked):
-        class Given(_Nothing):
-            def __enter__(self):
-                return asked
-        return Given()
+        return contextlib.nullcontext(asked)
     look = (sys.stderr is not None and sys.stderr.isatty()) or _in_notebook() if asked is None else asked
-    return Bar(name) if look else _Nothing()
+    return Bar(name) if look else contextlib.nullcontext()

@@ -9,10 +9,6 @@ from typing import Any, Callable, Mapping, Sequence
 from fmbpc import _core, _progress, _text
 
 
-def _pairs(settings):
-    return [f"{key}={value}" for key, value in _text.overrides(settings)]
-
-
 def _interruptible(call, progress):
     """In a thread of its own, so that Ctrl-C reaches this one; the computation hears of it by its progress."""
     ended, found = threading.Event(), {}
@@ -56,7 +52,7 @@ def study(*loops: str, set: Mapping[str, Any] | None = None, seeds: str | int | 
     varied = [f"{key}={value}" for key, value in (vary or {}).items()]
     noisy = [f"{key}={value!r}" for key, value in (noise or {}).items()]
     with _progress.bar("study", progress) as bar:
-        return _interruptible(lambda look: _core.study([os.fspath(loop) for loop in loops], _pairs(set), varied, noisy,
+        return _interruptible(lambda look: _core.study([os.fspath(loop) for loop in loops], _text.assignments(set), varied, noisy,
                                                        -1.0 if noise_percent is None else float(noise_percent), text, against, index, threads, look), bar)
 
 
@@ -68,7 +64,7 @@ def tune(loop: str, tuning: str, *, set: Mapping[str, Any] | None = None, method
     Returns the costs before and after and the values found, as tuning.json. Raises InputError; Ctrl-C KeyboardInterrupt.
     """
     with _progress.bar("tune", progress) as bar:
-        return _interruptible(lambda look: _core.tune(os.fspath(loop), os.fspath(tuning), _pairs(set), method, evaluations, seed, threads, look), bar)
+        return _interruptible(lambda look: _core.tune(os.fspath(loop), os.fspath(tuning), _text.assignments(set), method, evaluations, seed, threads, look), bar)
 
 
 def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: range | str = "1..200", noise_gain: float = 0.0,

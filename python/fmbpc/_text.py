@@ -33,6 +33,11 @@ def _flow(value):
     raise TypeError(f"a loop holds numbers, texts, truth values, lists and dicts, not {type(value).__name__}")
 
 
+def assignments(settings):
+    """What overrides() takes, as a list of "path=value"."""
+    return [f"{key}={value}" for key, value in overrides(settings)]
+
+
 def overrides(settings):
     """Pairs (path, text) of a dict {"sampling.duration_h": 48}, or of a list of "path=value"."""
     if settings is None:

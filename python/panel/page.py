@@ -10,7 +10,6 @@ import argparse
 import json
 import math
 import os
-import subprocess
 import sys
 
 import numpy
@@ -18,7 +17,8 @@ import numpy
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, HERE)
 
-from panel_server.history import read_csv  # noqa: E402
+from panel_server.history import plain, read_csv  # noqa: E402
+from panel_server.tool import event_list  # noqa: E402
 
 SUFFIXES = ("_setpoint", "_reference", "_true", "_commanded", "_base", "_perturbation")
 MOST_NUMBERS = 2000000  # in one page
@@ -39,10 +39,7 @@ def read_folder(folder):
             summary = json.load(stream)
     except ValueError as error:
         raise PageError(f"{summary_path}: expected JSON ({error})") from error
-    with open(path, encoding="utf-8") as stream:
-        header = stream.readline().strip().split(",")
-    units = {word.split("[")[0]: word.partition("[")[2].rstrip("]") for word in header}
-    names, table = read_csv(path)
+    names, units, table = read_csv(path)
     if not table.size or table.shape[1] != len(names) or names[0] != "time":
         raise PageError(f"{path}: expected a column time[h] and rows of {len(names)} numbers")
     return {"title": summary.get("title") or summary.get("loop", folder), "complete": bool(summary.get("complete")), "outputs": summary.get("outputs", {}),
@@ -84,12 +81,12 @@ def read_bag(path):
     steps = range(min(rows), max(rows) + 1)
     table = numpy.array([[k * info.sample_time_s / 3600.0] + [rows.get(k, {}).get(c, math.nan) for c in names[1:]] for k in steps])
     units = {s.name: s.unit for s in list(info.outputs) + list(info.inputs) + list(info.disturbances)}
-    outputs = {s.name: {"unit": s.unit, **indices(table, names, s.name, info.sample_time_s / 3600.0)} for s in info.outputs}
+    outputs = {s.name: {"unit": s.unit, **indices(table, names, s.name)} for s in info.outputs}
     return {"title": f"{info.name}, {os.path.basename(path)}", "complete": finished, "outputs": outputs, "inputs": [s.name for s in info.inputs], "events": list(events.values()),
             "names": names, "units": units, "table": table, "ranges": {s.name: (s.lower, s.upper) for s in info.inputs}}
 
 
-def indices(table, names, output, _):
+def indices(table, names, output):
     """As summary.json has them: sums over the samples."""
     if output + "_setpoint" not in names or output not in names:
         return {}
@@ -99,11 +96,7 @@ def indices(table, names, output, _):
     return {"ise": float((error ** 2).sum()), "iae": float(abs(error).sum()), "itae": float((time * abs(error)).sum()), "rmse": float(math.sqrt((error ** 2).mean()))} if len(error) else {}
 
 
-def finite(values, digits=7):
-    return [float(f"%.{digits}g" % v) if math.isfinite(v) else None for v in values]
-
-
-def contents(run, remedies):
+def contents(run, events):
     """What the page is given."""
     names, table = run["names"], run["table"]
     hours = table[:, 0]
@@ -125,7 +118,7 @@ def contents(run, remedies):
             continue
         target = name[:-len("_commanded")] if name.endswith("_commanded") else name + "_applied" if name in inputs else name
         columns.append(target)
-        data.append(finite(table[:, names.index(name)]))
+        data.append(plain(table[:, names.index(name)]))
     if len(columns) * len(hours) > MOST_NUMBERS:
         raise PageError(f"expected a run of at most {MOST_NUMBERS // max(len(columns), 1)} samples for a page, got {len(hours)}")
     steps = [int(s) for s in numpy.rint(hours * 3600.0 / dt)]
@@ -136,17 +129,8 @@ def contents(run, remedies):
     return {"loop": {"name": "run", "title": run["title"], "step": steps[-1], "outputs": [signal(n) for n in outputs], "inputs": [signal(n) for n in inputs],
                      "disturbances": [signal(n) for n in disturbances], "ahead": None},
             "series": {"name": "run", "run": "0", "columns": columns, "steps": steps, "wall": [None] * len(steps), "data": data, "dt": dt},
-            "complete": run["complete"], "samples": len(steps), "outputs": run["outputs"], "events": run["events"], "remedies": remedies}
-
-
-def remedies_of(tool):
-    """{code: {remedy}} of `fmbpc events`; {} without the tool."""
-    try:
-        text = subprocess.run([tool, "events"], check=True, timeout=20, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, universal_newlines=True).stdout
-    except (OSError, TypeError, subprocess.SubprocessError):
-        return {}
-    rows = [[c.strip() for c in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("| `")]
-    return {row[0].strip("`"): {"remedy": row[4]} for row in rows if len(row) == 5}
+            "complete": run["complete"], "samples": len(steps), "outputs": run["outputs"], "events": run["events"],
+            "remedies": {code: {"remedy": event["remedy"]} for code, event in events.items()}}
 
 
 def page(given):
@@ -180,7 +164,7 @@ def main():
         raise PageError(f"{arguments.run}: expected the folder of a run, or a bag")
     run = read_folder(arguments.run) if folder else read_bag(arguments.run)
     out = arguments.out or (os.path.join(arguments.run, "page.html") if folder else os.path.splitext(arguments.run)[0] + ".html")
-    html = page(contents(run, remedies_of(arguments.tool)))
+    html = page(contents(run, event_list(arguments.tool)))
     try:
         with open(out, "w", encoding="utf-8") as stream:
             stream.write(html)

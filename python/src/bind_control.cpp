@@ -94,8 +94,6 @@ void bindPlants(py::module_& m) {
       .def_property_readonly("trouble", &LoopPlant::trouble);
 }
 
-}  // namespace
-
 py::list brokenOf(const std::vector<Promise>& promises) {
   py::list list;
   for (const Promise& p : promises)
@@ -103,21 +101,16 @@ py::list brokenOf(const std::vector<Promise>& promises) {
   return list;
 }
 
-/// What a computation without the GIL gives, or what Python code in it has thrown.
 template <typename Compute>
 py::list promisesOf(Compute compute) {
   Watch watch{py::none()};
   std::vector<Promise> promises;
-  try {
-    const py::gil_scoped_release release;
-    promises = compute();
-  } catch (...) {
-    watch.rethrow();
-    throw;
-  }
+  watch.during([&] { promises = compute(); });
   watch.rethrow();
   return brokenOf(promises);
 }
+
+}  // namespace
 
 py::dict dictOf(const PlantDescription& plant) {
   py::dict about;

@@ -26,13 +26,9 @@ struct MadeRun {
 
 LoopPtr readLoopFrom(const std::string& name, const Overrides& overrides) {
   Watch watch{py::none()};
-  try {
-    const py::gil_scoped_release release;
-    return std::make_shared<const LoopFile>(readLoop(name, overrides));
-  } catch (...) {
-    watch.rethrow();
-    throw;
-  }
+  LoopPtr loop;
+  watch.during([&] { loop = std::make_shared<const LoopFile>(readLoop(name, overrides)); });
+  return loop;
 }
 
 std::shared_ptr<MadeRun> runHere(LoopPtr loop, const std::string& commands, py::object progress) {
@@ -46,16 +42,12 @@ std::shared_ptr<MadeRun> runHere(LoopPtr loop, const std::string& commands, py::
     share = static_cast<double>(step) / samples;
   };
   options.stop = [&] { return !watch.goOn(share); };
-  try {
-    const py::gil_scoped_release release;
+  watch.during([&] {
     const auto start = std::chrono::steady_clock::now();
     run->record = runLoop(*run->loop, options);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     run->wall_s = wall.count();
-  } catch (...) {
-    watch.rethrow();
-    throw;
-  }
+  });
   watch.rethrow();
   run->interrupted = watch.interrupted();
   return run;
@@ -145,10 +137,7 @@ void bindLoop(py::module_& m) {
   m.def("read_loop", [](const std::string& name, const Overrides& overrides) {
     return std::const_pointer_cast<LoopFile>(readLoopFrom(name, overrides));
   });
-  m.def("resolve_loop", &resolveLoop, py::call_guard<py::gil_scoped_release>());
   m.def("loop_names", &loopNames);
-  m.def("model_names", &modelNames);
-  m.def("config_folders", &configFolders);
 }
 
 }  // namespace fpc::python

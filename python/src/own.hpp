@@ -15,7 +15,7 @@ namespace fpc::python {
 
 /// An object of Python in C++ objects that may die anywhere.
 using Held = std::shared_ptr<py::object>;
-Held held(py::object object) {
+inline Held held(py::object object) {
   return {new py::object(std::move(object)), [](py::object* owned) {
             const py::gil_scoped_acquire gil;
             delete owned;

@@ -3,6 +3,7 @@
 #include <variant>
 #include <vector>
 
+#include "bind.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "fmbpc/control/registry.hpp"
@@ -27,19 +28,13 @@ std::map<std::string, std::shared_ptr<const OwnControllerType>>& ownControllerTy
   return *types;
 }
 
-py::list signalsOf(const std::vector<SignalInfo>& signals) {
-  py::list list;
-  for (const SignalInfo& s : signals) list.append(py::make_tuple(s.name, s.unit, s.lower, s.upper));
-  return list;
-}
-
-/// What the class is told at its start.
+/// What the class finds at its start.
 py::dict contextOf(const ControllerContext& loop) {
   py::dict context;
   context["sample_time_s"] = loop.plant.sample_time_s;
-  context["outputs"] = signalsOf(loop.plant.outputs);
-  context["inputs"] = signalsOf(loop.plant.inputs);
-  context["disturbances"] = signalsOf(loop.plant.disturbances);
+  context["outputs"] = listOf(loop.plant.outputs);
+  context["inputs"] = listOf(loop.plant.inputs);
+  context["disturbances"] = listOf(loop.plant.disturbances);
   context["input_lower"] = toArray(loop.limits.lower);
   context["input_upper"] = toArray(loop.limits.upper);
   context["move"] = toArray(loop.limits.move);

@@ -5,31 +5,10 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
+#include "runtime/report.hpp"
 #include "watch.hpp"
 
 namespace fpc::python {
-namespace {
-
-std::string sourceName(ActionSource source) {
-  switch (source) {
-    case ActionSource::kBase:
-      return "base";
-    case ActionSource::kConstrained:
-      return "constrained";
-    case ActionSource::kClipped:
-      return "clipped";
-    case ActionSource::kHeld:
-      return "held";
-    case ActionSource::kManual:
-      return "manual";
-    case ActionSource::kFallback:
-      return "fallback";
-    default:
-      return "guarded";
-  }
-}
-
-}  // namespace
 
 SteppedController::SteppedController(LoopPtr loop)
     : loop_(std::move(loop)),
@@ -98,15 +77,11 @@ Array SteppedController::answer() {
   now_.header = {clock_.timeAt(step_), run_id_, step_};
   controller_.turnTo(step_);
   Watch watch{py::none()};
-  try {
-    const py::gil_scoped_release release;
+  watch.during([&] {
     controller_.receive(now_);
     applied_ = controller_.optimize().input;
     controller_.learn(now_);
-  } catch (...) {
-    watch.rethrow();
-    throw;
-  }
+  });
   ++step_;
   events_ = controller_.answer().events;
   for (Event& event : controller_.takeEvents()) events_.push_back(std::move(event));
@@ -178,7 +153,7 @@ Array SteppedController::reference() const {
 
 std::string SteppedController::source() const {
   if (step_ == 0) return "none";
-  return sourceName(controller_.sent().source);
+  return nameOf(controller_.sent().source);
 }
 
 py::object SteppedController::prediction() const {

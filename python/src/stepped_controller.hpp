@@ -29,7 +29,6 @@ class SteppedController {
   bool adapt(bool on);
   void setModel(const TsModel& model);
 
-  const LoopFile& loop() const { return *loop_; }
   std::uint32_t steps() const { return step_; }  ///< answered in this run
   Array setpoint() const;
   Array reference() const;

@@ -100,12 +100,7 @@ Array SteppedPlant::derivatives(py::handle state, py::handle input, py::handle d
   readSignals(input, inputs_, "u", u);
   readSignals(disturbance, disturbances_, "d", d);
   Watch watch{py::none()};
-  try {
-    plant_->derivatives(x, u, d, dxdt);
-  } catch (...) {
-    watch.rethrow();
-    throw;
-  }
+  watch.during([&] { plant_->derivatives(x, u, d, dxdt); });
   return toArray(dxdt);
 }
 

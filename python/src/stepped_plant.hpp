@@ -61,7 +61,6 @@ class LoopPlant {
   double timeH() const { return simulation_->clock().hoursAt(measurement().header.step); }
   /// What the loop's schedule asks of the present sample, n_y.
   Array setpoint() const { return toArray(setpoint_.present()); }
-  const LoopFile& loop() const { return *loop_; }
 
  private:
   LoopPlant(std::shared_ptr<const LoopFile> loop, std::unique_ptr<SimulatedProcess> made);

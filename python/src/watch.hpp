@@ -13,7 +13,7 @@ namespace py = pybind11;
 /// Of one computation in the calling thread, which has given the GIL away meanwhile.
 class Watch {
  public:
-  /// `progress(share, words)` is called ten times a second at most; None: nobody.
+  /// `progress(share, words)` is called ten times a second at most, unless it is None.
   explicit Watch(py::object progress);
   ~Watch();
   Watch(const Watch&) = delete;
@@ -21,6 +21,17 @@ class Watch {
 
   /// False: it is to end now.
   bool goOn(double share, const std::string& words = {});
+  /// Runs `compute` without the GIL. What it throws is thrown on, as Python code in it threw it.
+  template <typename Compute>
+  void during(Compute compute) {
+    try {
+      const py::gil_scoped_release release;
+      compute();
+    } catch (...) {
+      rethrow();
+      throw;
+    }
+  }
   bool interrupted() const { return interrupted_; }  ///< by Ctrl-C
   /// Throws what Python code inside, or a signal handler, has thrown. With the GIL.
   void rethrow();

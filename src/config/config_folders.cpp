@@ -33,7 +33,8 @@ std::vector<std::string> configFolders() {
   const fs::path beside = (libraryFolder() / fs::path(FMBPC_LIBRARY_TO_CONFIG)).lexically_normal();
   std::error_code ignored;
   for (const fs::path& folder : {beside, fs::path(FMBPC_SOURCE_CONFIG)})
-    if (fs::is_directory(folder / "loop", ignored)) folders.push_back(folder.string());
+    if (!folder.empty() && fs::is_directory(folder / "loop", ignored))
+      folders.push_back(folder.string());
   return folders;
 }
 

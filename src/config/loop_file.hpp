@@ -157,7 +157,7 @@ struct LoopFile {
 
 /// A loop as a candidate for the place of another one's law: its own section `candidate` is left
 /// out. @throws InputError naming the file, or what differs from the loop in charge: signals,
-/// sample time, an optimizer, or a model that lacks.
+/// sample time, an optimizer, or a missing model.
 std::shared_ptr<const LoopFile> readCandidateLoop(const std::string& name_or_path,
                                                   const LoopFile& in_charge);
 /// What the loop tells its controller.

@@ -108,6 +108,14 @@ void readClpParams(YamlSection& section, ClpParams& clp, const LoopNames& names)
   qp.finish();
 }
 
+/// The section is there, and its key `enabled` does not switch it off.
+bool isEnabled(YamlSection& root, const std::string& name, YamlSection& section) {
+  const bool there = root.has(name) && !root.raw(name).IsNull();
+  bool enabled = there;
+  section.boolean("enabled", enabled);
+  return there && enabled;
+}
+
 /// Zones become soft limits of the optimizer, unless its section has others; a rank above another
 /// one weighs kRankWeight times as much there.
 void limitOptimizer(LoopFile& loop) {
@@ -192,10 +200,7 @@ void readSetpoint(YamlSection& root, LoopFile& loop, const LoopNames& names) {
 
 void readClp(YamlSection& root, LoopFile& loop, const LoopNames& names) {
   YamlSection section = root.section("clp");
-  const bool there = root.has("clp") && !root.raw("clp").IsNull();
-  bool enabled = there;
-  section.boolean("enabled", enabled);
-  loop.has_clp = there && enabled;
+  loop.has_clp = isEnabled(root, "clp", section);
   const Eigen::Index n_y = countOf(names.outputs), n_u = countOf(names.inputs);
   defaultClp(loop.clp, n_y, n_u);
   readClpParams(section, loop.clp, names);
@@ -216,9 +221,7 @@ void readController(YamlSection& root, LoopFile& loop) {
 
 void readTargets(YamlSection& root, LoopFile& loop) {
   YamlSection section = root.section("targets");
-  const bool there = root.has("targets") && !root.raw("targets").IsNull();
-  bool enabled = there;
-  section.boolean("enabled", enabled);
+  const bool enabled = isEnabled(root, "targets", section);
   const ControllerContext context = controllerContext(loop);
   loop.targets = readTargetParams(section, context);
   loop.targets.enabled = enabled;

@@ -49,7 +49,7 @@ bool readObserver(YamlSection& controller, ObserverParams& params, const Control
   if (params.adaptive && !section.has("disturbance_std") && !params.noise_std.any())
     section.fail("disturbance_std", "numbers > 0 where adaptive is to find the noise");
   bool enabled = params.noisy();
-  section.boolean("enabled", enabled);
+  if (key != ObserverKey::kAlways) section.boolean("enabled", enabled);
   checked(section, [&] { params.validate(static_cast<Eigen::Index>(loop.outputs().size())); });
   section.finish();
   return enabled;

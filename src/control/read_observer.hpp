@@ -10,7 +10,8 @@ namespace fpc {
 /// take the place of raw differences: `enabled`, by default where there is noise. `input_std` is a
 /// key of laws that can place disturbances at the inputs, `estimated` one of laws whose observer
 /// goes by a model.
-enum class ObserverKey { kNone, kInputStd, kEstimated };
+/// kAlways: there is no other way than the observer, and no key `enabled`.
+enum class ObserverKey { kNone, kInputStd, kEstimated, kAlways };
 bool readObserver(YamlSection& controller, ObserverParams& params, const ControllerContext& loop,
                   ObserverKey key = ObserverKey::kNone);
 

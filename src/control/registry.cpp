@@ -95,9 +95,13 @@ bool registerControllerReader(ControllerType type, ControllerReader read) {
   return is_new;
 }
 
-std::vector<std::string> refusedControllers() { return refused(); }
+std::vector<std::string> refusedControllers() {
+  const std::shared_lock lock(registryMutex());
+  return refused();
+}
 
 std::vector<const void*> controllerCode() {
+  const std::shared_lock lock(registryMutex());
   std::vector<const void*> code;
   for (const auto& entry : registry()) code.push_back(codeAddress(entry.second.read));
   return code;

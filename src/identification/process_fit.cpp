@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/random.hpp"
 #include "base/statistics.hpp"
@@ -50,15 +51,14 @@ class Fitter {
     longest_ = params.longest_dead_time_s > 0.0 ? params.longest_dead_time_s / Ts
                                                 : 0.1 * static_cast<double>(N_);
     longest_ = std::min(longest_, 0.3 * static_cast<double>(N_));
+    rows_ = usable();
   }
 
   ProcessFit best() {
-    std::vector<ProcessKind> kinds{ProcessKind::kStable, ProcessKind::kIntegrating,
-                                   ProcessKind::kUnstable};
-    if (params_.kind) kinds = {*params_.kind};
     std::optional<Candidate> best;
     double least = std::numeric_limits<double>::infinity();
-    for (const ProcessKind kind : kinds) {
+    for (const ProcessKind kind :
+         {ProcessKind::kStable, ProcessKind::kIntegrating, ProcessKind::kUnstable}) {
       Candidate c = start(kind);
       if (!refine(c)) continue;
       const double value = criterion(c);
@@ -187,14 +187,13 @@ class Fitter {
 
   /// One element after the other, each with the best of the grid; the sum of squares left.
   double startWith(Candidate& c) {
-    const std::vector<Index> rows = usable();
     const Vector target = filtered(reduced(sharedPole(c)), c.noise);
-    Vector left(static_cast<Index>(rows.size()));
-    for (std::size_t i = 0; i < rows.size(); ++i) left[static_cast<Index>(i)] = target[rows[i]];
+    Vector left(static_cast<Index>(rows_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i) left[static_cast<Index>(i)] = target[rows_[i]];
     left.array() -= left.mean();
     const auto pick = [&](const Vector& w) {
       Vector x(left.size());
-      for (std::size_t i = 0; i < rows.size(); ++i) x[static_cast<Index>(i)] = w[rows[i]];
+      for (std::size_t i = 0; i < rows_.size(); ++i) x[static_cast<Index>(i)] = w[rows_[i]];
       x.array() -= x.mean();
       return x;
     };
@@ -349,7 +348,7 @@ class Fitter {
            static_cast<double>(shapeParameters(c) + c.noise.size() + 1) * std::log(n);
   }
 
-  Index chooseNoise(Candidate& c) const {
+  void chooseNoise(Candidate& c) const {
     const Vector v = residualOf(c);
     const double n = static_cast<double>(rows_.size());
     double least = std::numeric_limits<double>::infinity();
@@ -364,7 +363,6 @@ class Fitter {
       }
     }
     fitNoise(c, v, chosen);
-    return chosen;
   }
 
   Matrix jacobian(const Candidate& c, const Vector& v) const {
@@ -461,20 +459,18 @@ class Fitter {
   }
 
   bool refine(Candidate& c) {
-    rows_ = usable();
     if (static_cast<Index>(rows_.size()) < kFewestRows - params_.most_noise_terms) return false;
     for (int pass = 0; pass < 3; ++pass) {
       chooseNoise(c);
       if (!descend(c)) return false;
     }
     double value = criterion(c);
-    if (params_.second_order)
-      for (std::size_t j = 0; j < c.elements.size(); ++j)
-        for (const Shape shape : {kSecond, kLead}) {
-          if (c.shapes[j] == kNone || c.shapes[j] >= shape) continue;
-          if (shape == kSecond && c.kind != ProcessKind::kStable) continue;
-          value = tryShape(c, j, shape, value);
-        }
+    for (std::size_t j = 0; j < c.elements.size(); ++j)
+      for (const Shape shape : {kSecond, kLead}) {
+        if (c.shapes[j] == kNone || c.shapes[j] >= shape) continue;
+        if (shape == kSecond && c.kind != ProcessKind::kStable) continue;
+        value = tryShape(c, j, shape, value);
+      }
     for (std::size_t j = 0; j < c.elements.size(); ++j) value = tryWithout(c, j, value);
     return std::isfinite(value);
   }
@@ -571,7 +567,6 @@ class Fitter {
     fit.kind = c.kind;
     fit.noise = c.noise;
     fit.one_step = std::sqrt(e.squaredNorm() / n);
-    fit.criterion = criterion(c);
     fit.rows = e.size();
     fit.input = mean_;
     rest(c, v, fit);

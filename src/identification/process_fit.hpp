@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "model/process_element.hpp"
@@ -16,12 +15,10 @@ namespace fpc {
 enum class ProcessKind { kStable, kIntegrating, kUnstable };
 
 struct ProcessFitParams {
-  double longest_dead_time_s{};     ///< 0: a tenth of the record
-  int most_noise_terms{10};         ///< of the autoregressive noise
-  int blocks{10};                   ///< of the record, for bounds where the model is not all of it
-  int ensemble{20};                 ///< drawn for ProcessFit::ensemble
-  bool second_order{true};          ///< try second lags and leads
-  std::optional<ProcessKind> kind;  ///< known; empty: the likeliest
+  double longest_dead_time_s{};  ///< 0: a tenth of the record
+  int most_noise_terms{10};      ///< of the autoregressive noise
+  int blocks{10};                ///< of the record, for bounds where the model is not all of it
+  int ensemble{20};              ///< drawn for ProcessFit::ensemble
   std::uint64_t seed{1};
   void validate() const;  ///< @throws InputError naming the field
 };
@@ -41,7 +38,6 @@ struct ProcessFit {
   double free_run{};  ///< rms of what the inputs alone do not explain; with a shared pole: one_step
   double output{};    ///< the output where the inputs are `input` and nothing else acts
   Vector input;       ///< means of the inputs
-  double criterion{};  ///< Schwarz's, smaller is better
   Eigen::Index rows{};
   std::vector<std::vector<ProcessElement>> ensemble;  ///< elements of equally likely processes
 };

@@ -19,7 +19,6 @@ struct ProcessElement {
   double dead_time{};      ///< theta >= 0
   bool integrating{false};
 
-  bool isStable() const { return !integrating && time_constant > 0.0; }
   double step(double time_s) const;  ///< response to a unit step at time 0
   double settling() const;  ///< theta + tau_1 + 2 of its stable lags: when about 95 % are there [s]
 };

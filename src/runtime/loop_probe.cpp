@@ -47,8 +47,10 @@ class ProbedLoop {
     if (loop.targets.enabled) layer_.emplace(makeTargetSession(loop));
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     controller_.announce(1);
-    if (layer_) layer_->announce(1);
-    if (layer_) layer_->setModel(loop.model);
+    if (layer_) {
+      layer_->announce(1);
+      layer_->setModel(loop.model);
+    }
     if (optimizer_) optimizer_->announce(1);
     if (controller_.controller().needsModel()) controller_.setModel(loop.model);
     displaced_ = Vector::Zero(loop.simulation.actuator.initial.size());

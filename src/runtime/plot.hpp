@@ -28,8 +28,7 @@ PlotResult drawTuning(const std::string& folder);
 /// distributions.png in a folder with a study.json.
 PlotResult drawStudy(const std::string& folder);
 
-/// The same for a folder that `fmbpc identify --plots` fills; several
-/// pictures, none is named.
+/// The same for a folder that `fmbpc identify --plots` fills; several pictures, none is named.
 PlotResult drawModelPlots(const std::string& folder);
 
 /// The same for a folder that `fmbpc reproduce --plots` fills.

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/finite_json.hpp"
 #include "base/ordered_json.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/report.hpp"
@@ -60,7 +61,7 @@ void readLimits(const Json& json, Summary& summary) {
   Eigen::Index i = 0;
   for (const auto& [name, u] : json.items()) {
     summary.limits.lower[i] = u.at("lower").is_null() ? -kInfinity : u.at("lower").get<double>();
-    summary.limits.upper[i] = u.at("upper").is_null() ? kInfinity : u.at("upper").get<double>();
+    summary.limits.upper[i] = numberOrInfinity(u.at("upper"));
     ++i;
   }
 }

@@ -26,6 +26,12 @@ RecordLayout layoutOf(const RunRecord& record) {
 constexpr const char* kSourceNames[] = {"",     "base",   "constrained", "clipped",
                                         "held", "manual", "fallback",    "guarded"};
 
+}  // namespace
+
+const char* nameOf(ActionSource source) { return kSourceNames[static_cast<std::size_t>(source)]; }
+
+namespace {
+
 /// JSON has no infinity: an absent limit is null.
 Json outputsOf(const Summary& summary) {
   Json outputs = Json::object();

@@ -21,6 +21,9 @@ struct WindowIndices {
   std::uint64_t samples{};
 };
 
+/// "base", "constrained", ...: as in summary.json.
+const char* nameOf(ActionSource source);
+
 struct Summary {
   std::string loop;
   std::string title;

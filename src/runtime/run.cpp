@@ -18,6 +18,13 @@ namespace {
 
 constexpr std::uint64_t kRunId = 1;
 
+template <class Work>
+double secondsOf(Work&& work) {
+  const auto begun = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
 /// The members of the ring, called in the order in which messages would travel.
 class Ring {
  public:
@@ -53,16 +60,18 @@ class Ring {
     recorder_.receive(simulation_.state(),
                       joined(simulation_.events(),
                              delayEvents(loop_, loop_.simulation.output_delay_s, present_)));
-    const auto asked = std::chrono::steady_clock::now();
-    controller_.receive(now);
+    double taken = secondsOf([&] { controller_.receive(now); });
     const ControllerAnswer& answer = controller_.answer();
     recorder_.receive(answer.tracking, joined(answer.events, controller_.takeEvents()));
     if (!now.final) {
       recorder_.receiveBase(answer.base);
-      const ControlAction& action = optimize();
-      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - asked;
-      record_.slowest_step_s = std::max(record_.slowest_step_s, taken.count());
-      plant_.receive(action);
+      taken += secondsOf([&] { controller_.optimize(); });
+      record_.slowest_step_s = std::max(record_.slowest_step_s, taken);
+      if (controller_.hasOptimizer()) {
+        recorder_.receiveAction(controller_.sent());
+        recorder_.receive(controller_.report());
+      }
+      plant_.receive(controller_.sent());
       plant_.advance(0.0);
     }
     controller_.learn(now);
@@ -80,15 +89,6 @@ class Ring {
   }
 
  private:
-  const ControlAction& optimize() {
-    const ControlAction& action = controller_.optimize();
-    if (controller_.hasOptimizer()) {
-      recorder_.receiveAction(action);
-      recorder_.receive(controller_.report());
-    }
-    return action;
-  }
-
   const LoopFile& loop_;
   const RunOptions& options_;
   std::uint32_t present_{};                 // the sample that is answered

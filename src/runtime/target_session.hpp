@@ -1,7 +1,6 @@
 // The target layer behind the rules of the ring: repeats get the cached answer, gaps reset.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "base/step_gate.hpp"

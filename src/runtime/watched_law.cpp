@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "base/finite_json.hpp"
+#include "base/same_sample.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
@@ -162,37 +163,40 @@ bool WatchedLaw::mayBeSent(VectorRef input) const { return acting().mayBeSent(in
 
 void WatchedLaw::makeSendable(Eigen::Ref<Vector> input) const { acting().makeSendable(input); }
 
+/// Largest move of a setpoint since the sample before, of its output's range; 0 if that is not
+/// known.
+double WatchedLaw::changeTo(const Vector& setpoint) const {
+  double change = 0.0;
+  for (Eigen::Index i = 0; i < setpoint_.size(); ++i) {
+    const SignalInfo& output = plant_.outputs[static_cast<std::size_t>(i)];
+    const double range = output.upper - output.lower, moved = std::abs(setpoint[i] - setpoint_[i]);
+    if (std::isfinite(moved))
+      change = std::max(change, std::isfinite(range) && range > 0.0 ? moved / range : moved);
+  }
+  return change;
+}
+
 /// What the sample says of the candidate's model and of the loop, whoever has the inputs.
 void WatchedLaw::observe(const Measurement& now, const SetpointSource* setpoint) {
+  if (seen_ && isSameSample(now.header, last_)) return;
   const bool next = seen_ && now.header.run_id == last_.run_id && now.header.step == last_.step + 1;
-  if (seen_ && now.header.run_id == last_.run_id && now.header.step == last_.step) return;
   if (!next) trial_->interrupt();
   last_ = now.header;
+  seen_ = true;
   trial_->look(now);
   if (setpoint == nullptr) {  // somebody else has the inputs: no promise of this loop
-    seen_ = true;
     setpoint_.resize(0);
     return;
   }
   const bool promises = !inCharge();
   const Vector& asked = setpoint->present();
-  double change = 0.0;
-  for (Eigen::Index i = 0; i < asked.size(); ++i) {
-    const double error = now.outputs[i] - asked[i];
-    deviation_[i] = error * error;
-    const double range = plant_.outputs[static_cast<std::size_t>(i)].upper -
-                         plant_.outputs[static_cast<std::size_t>(i)].lower;
-    if (setpoint_.size() != asked.size()) continue;
-    const double moved = std::abs(asked[i] - setpoint_[i]);
-    if (std::isfinite(moved))
-      change = std::max(change, std::isfinite(range) && range > 0.0 ? moved / range : moved);
-  }
+  const double change = changeTo(asked);
+  deviation_ = (now.outputs - asked).cwiseAbs2();
   squares_.setZero();
   if (next) squares_ = trial_->parts().error().cwiseAbs2();
   errors_.add(squares_, change, promises);
   outputs_.add(deviation_, change, promises);
   setpoint_ = asked;
-  seen_ = true;
 }
 
 bool WatchedLaw::runCandidate(const Measurement& now, const SetpointSource& setpoint,
@@ -209,7 +213,7 @@ bool WatchedLaw::runCandidate(const Measurement& now, const SetpointSource& setp
   return output.ok && output.input.size() == now.input_applied.size() && output.input.allFinite();
 }
 
-/// The candidate asks for what nobody sends.
+/// The input of the candidate is looked at, and not sent.
 void WatchedLaw::shadow(const Measurement& now, const SetpointSource& setpoint, const Vector& law) {
   observe(now, &setpoint);
   if (!runCandidate(now, setpoint, beside_)) {

@@ -48,7 +48,7 @@ class WatchedLaw final : public ControllerAround {
   /// present: the model of the law in charge, matched to the plant; without submodels: none yet.
   WatchedLaw(std::unique_ptr<Controller> inside, TsModel present, InputLimits limits,
              PlantInfo plant, bool optimizer);
-  /// Begins anew with this candidate. The former law is back in charge if another one was not.
+  /// Begins anew with this candidate. If another one was in charge, the former law is back.
   /// @throws InputError naming candidate.KEY.
   void watch(CandidateLaw candidate);
   /// From the next sample on. @throws InputError unless the candidate has passed.
@@ -56,11 +56,8 @@ class WatchedLaw final : public ControllerAround {
   /// By an operator's word, from the next sample on. @throws InputError unless it is in charge.
   void back();
   CandidateState state() const { return state_; }
-  double authority() const;  ///< 0 unless it is in charge
   /// As of now: a JSON object with name, state, authority and the figures.
   std::string report() const;
-  /// Of the last judgement.
-  const CandidateFigures* figures() const { return trial_ ? &trial_->figures() : nullptr; }
 
   void reset(const Measurement& start) override;
   void forget() override;
@@ -79,7 +76,9 @@ class WatchedLaw final : public ControllerAround {
     return state_ == CandidateState::kWatched || state_ == CandidateState::kPassed;
   }
   const Controller& acting() const { return inCharge() ? *candidate_.law : *inside_; }
+  double authority() const;  // 0 unless it is in charge
   void begin();
+  double changeTo(const Vector& setpoint) const;
   void observe(const Measurement& now, const SetpointSource* setpoint);
   void shadow(const Measurement& now, const SetpointSource& setpoint, const Vector& law);
   void drive(const Measurement& now, const SetpointSource& setpoint, ControllerOutput& output);

@@ -9,6 +9,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "model/process_trust.hpp"
+#include "supervision/guard_params.hpp"
 
 namespace fpc {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using Eigen::Index;
 
 constexpr int kLookAt[CandidateTrial::kLooks] = {1, 2, 3, 5, 7, 10};  // times params.samples
-constexpr double kTrusted = 0.25;                                     // GuardParams::trust_low
+const double kTrusted = GuardParams().trust_low;
 
 std::string brief(double value) {
   if (!std::isfinite(value)) return "?";
@@ -160,24 +161,25 @@ CandidateFigures CandidateTrial::judge() const {
   for (std::size_t h = 0; h < errors_.horizons().size(); ++h) {
     CandidateFigures::Horizon horizon;
     horizon.samples = errors_.horizons()[h];
-    if (errors_.kept() > 0) horizon.ratio = errors_.ratio(h, 0, errors_.kept());
-    if (errors_.kept() > 0) horizon.squares = ratio(h, false, t);
-    if (present_.hasModel() && present_.kept() == errors_.kept() && errors_.kept() > 0) {
-      horizon.present = present_.ratio(h, 0, present_.kept());
+    if (errors_.kept() > 0) {
+      horizon.ratio = errors_.ratio(h);
+      horizon.squares = ratio(h, false, t);
+    }
+    if (errors_.kept() > 0 && present_.hasModel()) {
+      horizon.present = present_.ratio(h);
       horizon.against = ratio(h, true, t);
-    }
-    const bool last = h + 1 == errors_.horizons().size();  // nearer ones carry the sensors' noise
-    const std::string ahead = std::to_string(horizon.samples) + " samples ahead";
-    if (last && f.result != TrialResult::kWrong && horizon.squares.lower > kWorse) {
-      f.result = TrialResult::kWrong;
-      f.why = "its predictions are worse than 'it stays' " + ahead;
-    }
-    if (last && f.result != TrialResult::kWrong && horizon.against.lower > kWorse) {
-      f.result = TrialResult::kWrong;
-      f.why = "its predictions are worse than those of the law in charge " + ahead;
     }
     f.horizons.push_back(horizon);
   }
+  const CandidateFigures::Horizon& last = f.horizons.back();  // nearer ones carry sensors' noise
+  const auto refuse_worse = [&](const Bounded& squares, const std::string& than) {
+    if (f.result == TrialResult::kWrong || !(squares.lower > kWorse)) return;
+    f.result = TrialResult::kWrong;
+    f.why = "its predictions are worse than " + than + " " + std::to_string(last.samples) +
+            " samples ahead";
+  };
+  refuse_worse(last.squares, "'it stays'");
+  refuse_worse(last.against, "those of the law in charge");
   if (seen_ > 0) f.outside = static_cast<double>(outside_) / static_cast<double>(seen_);
   if (compared_ > 0) {
     f.difference = std::sqrt(squares_ / static_cast<double>(compared_));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "fmbpc/base/signals.hpp"
 
@@ -21,10 +22,10 @@ ForecastParts::ForecastParts(const TsModel& model, std::vector<int> shifts)
       error_(output_) {
   findLags();
   const Index n_u = countOf(model.inputs);
-  int longest = 0;
+  int longest = 0, latest = 0;
   for (Index i = 0; i < n_u; ++i) longest = std::max(longest, lastLag(i));
-  for (const int shift : shifts_) longest = std::max(longest, longest + shift);
-  past_ = Matrix::Zero(n_u, longest + 1);
+  for (const int shift : shifts_) latest = std::max(latest, shift);
+  past_ = Matrix::Zero(n_u, longest + latest + 1);
   effects_.assign(shifts_.size(), Vector::Zero(output_.size() * n_u));
 }
 

@@ -13,7 +13,7 @@ using Eigen::Index;
 HorizonErrors::HorizonErrors(const TsModel* model, int horizon, Index capacity) {
   require(horizon >= 1, "candidate.horizon", "an integer >= 1");
   require(capacity > 0, "candidate.samples", "an integer > 0");
-  if (model != nullptr) local_.emplace_back(*model);
+  if (model != nullptr) local_.emplace(*model);
   for (int h = 1; h < horizon; h *= 2) horizons_.push_back(h);
   horizons_.push_back(horizon);
   runs_.resize(static_cast<std::size_t>(horizon));
@@ -44,7 +44,7 @@ void HorizonErrors::look(const Measurement& now) {
     for (Vector& offset : offsets_) offset = offset_;
     before_ = now.disturbances;
     if (hasModel()) {
-      state_ = next_ = Vector::Zero(local_[0].stateSize());
+      state_ = next_ = Vector::Zero(local_->stateSize());
       for (Vector& run : runs_) run = state_;
     }
   }
@@ -60,7 +60,7 @@ void HorizonErrors::look(const Measurement& now) {
       stays_[h].col(kept_) = (now.outputs - past_.col(static_cast<Index>(slot))).cwiseAbs2();
       if (!hasModel()) continue;
       for (Index o = 0; o < n_y; ++o) {
-        const double error = now.outputs[o] - runs_[slot][local_[0].outputState(o)];
+        const double error = now.outputs[o] - runs_[slot][local_->outputState(o)];
         model_[h](o, kept_) = error * error;
       }
     }
@@ -68,9 +68,9 @@ void HorizonErrors::look(const Measurement& now) {
   }
   if (hasModel()) {
     if (known_)
-      local_[0].shiftState(now.outputs, now.input_applied, before_, state_);
+      local_->shiftState(now.outputs, now.input_applied, before_, state_);
     else
-      local_[0].restState(now.outputs, now.input_applied, now.disturbances, state_);
+      local_->restState(now.outputs, now.input_applied, now.disturbances, state_);
   }
   known_ = true;
   before_ = now.disturbances;
@@ -81,9 +81,9 @@ void HorizonErrors::look(const Measurement& now) {
   running_ = std::min(running_ + 1, static_cast<int>(runs_.size()));
 }
 
-/// All predictions by one sample; the newest one tells the mean error.
+/// All predictions by one sample; the newest one gives the mean error.
 void HorizonErrors::move(const Measurement& now) {
-  LocalModel& local = local_[0];
+  LocalModel& local = *local_;
   const std::size_t n = runs_.size();
   for (int age = 0; age < running_; ++age) {
     const std::size_t slot = (newest_ + n - static_cast<std::size_t>(age)) % n;
@@ -99,12 +99,12 @@ void HorizonErrors::move(const Measurement& now) {
   }
 }
 
-double HorizonErrors::ratio(std::size_t h, Index from, Index to) const {
+double HorizonErrors::ratio(std::size_t h) const {
   double sum = 0.0;
   int outputs = 0;
   for (Index o = 0; o < model_[h].rows(); ++o) {
     double of_model = 0.0, of_stays = 0.0;
-    for (Index k = from; k < to; ++k) {
+    for (Index k = 0; k < kept_; ++k) {
       if (!std::isfinite(stays_[h](o, k))) continue;
       of_model += std::isfinite(model_[h](o, k)) ? model_[h](o, k) : kInfinity;
       of_stays += stays_[h](o, k);

@@ -1,6 +1,7 @@
 // How far off a model's predictions are, by horizon, beside those of "it stays as it is".
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "fmbpc/base/ring.hpp"
@@ -28,15 +29,15 @@ class HorizonErrors {
   /// Squared error of output o at horizon number h of the kept sample k; NaN where none was due.
   double model(Eigen::Index o, std::size_t h, Eigen::Index k) const { return model_[h](o, k); }
   double stays(Eigen::Index o, std::size_t h, Eigen::Index k) const { return stays_[h](o, k); }
-  bool hasModel() const { return !local_.empty(); }
-  /// Root mean square over outputs, each over its mean square of "it stays", and samples from
-  /// `from` to `to`, of the model's error over that of "it stays"; NaN if nothing was due.
-  double ratio(std::size_t h, Eigen::Index from, Eigen::Index to) const;
+  bool hasModel() const { return local_.has_value(); }
+  /// Root mean square over outputs, each over its mean square of "it stays", and the kept samples,
+  /// of the model's error over that of "it stays"; NaN if nothing was due.
+  double ratio(std::size_t h) const;
 
  private:
   void move(const Measurement& now);
 
-  std::vector<LocalModel> local_;  // one or none
+  std::optional<LocalModel> local_;
   std::vector<int> horizons_;
   std::vector<Vector> runs_, offsets_;  // of the predictions on their way, by start
   Matrix past_;                         // n_y H: what was measured at their starts

@@ -1,4 +1,4 @@
-// What a statistic of blocks is known to be.
+// A statistic of blocks with its bounds.
 #pragma once
 
 #include <cmath>

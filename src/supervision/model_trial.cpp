@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/statistics.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -15,7 +16,7 @@ namespace {
 using Eigen::Index;
 
 constexpr int kShifts[] = {0, -2, -1, 1, 2};
-constexpr Index kShiftCount = 5;
+constexpr auto kShiftCount = static_cast<Index>(std::size(kShifts));
 constexpr double kNoise = 1e-6;    // least share of unexplained squares
 constexpr double kMatters = 0.02;  // of the inputs' effect: less of it says nothing of an input
 constexpr Index kPerUnknown = 3;   // samples for each coefficient

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace fpc {
 
@@ -13,16 +14,6 @@ ErrorPromise::ErrorPromise(Index window, Vector floor)
       mean_(Vector::Zero(floor.size())),
       promised_(mean_),
       floor_(std::move(floor)) {}
-
-void ErrorPromise::reset() {
-  squares_.setZero();
-  changes_.setZero();
-  mean_.setZero();
-  promised_.setZero();
-  change_ = promised_change_ = 0.0;
-  place_ = filled_ = 0;
-  known_ = false;
-}
 
 void ErrorPromise::add(VectorRef squares, double change, bool promises) {
   const Index window = squares_.cols();

@@ -1,8 +1,6 @@
 // What was seen of a loop, as a promise of what is to be seen.
 #pragma once
 
-#include <vector>
-
 #include "fmbpc/base/types.hpp"
 
 namespace fpc {
@@ -17,7 +15,6 @@ class ErrorPromise {
   ErrorPromise() = default;
   /// @param floor n: mean squares that always pass.
   ErrorPromise(Eigen::Index window, Vector floor);
-  void reset();
   /// One sample: squares (n; what is not finite is none) and the largest setpoint change of it. It
   /// counts as a promise, or is only seen.
   void add(VectorRef squares, double change, bool promises);

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "runtime/commissioning/commissioning.hpp"
 #include "tool/commands.hpp"
@@ -93,7 +94,7 @@ int commission(const CommissionArguments& a) {
   options.threads = a.threads;
   if (!a.json)
     options.show = [](CommissioningStage stage, const std::string& text) {
-      std::cerr << wordsOf(stage)[static_cast<std::size_t>(stage)] << ": " << text << "\n";
+      std::cerr << wordOf(stage) << ": " << text << "\n";
     };
   Commissioning commissioning(a.brief, folder, options);
   require(!a.undo || !a.again.empty(), "--undo", "--again with the stage that is taken back");
@@ -102,7 +103,7 @@ int commission(const CommissionArguments& a) {
   Json all = Json::object();
   for (int s = 0; s < kCommissioningStages; ++s) {
     const auto stage = static_cast<CommissioningStage>(s);
-    const std::string word = wordsOf(stage)[static_cast<std::size_t>(s)];
+    const std::string word = wordOf(stage);
     Json figures = commissioning.done(stage) ? commissioning.figures(stage) : Json(nullptr);
     if (!a.json) {
       std::cout << word << (figures.is_null() ? ": to be done" : ": done") << "\n";

@@ -249,7 +249,7 @@ IdentifyTables readTables(const IdentifyArguments& a, const CsvFormat& format) {
   IdentifyTables tables;
   for (const auto& file : a.data)
     tables.data.push_back(readRecord(file, format, !a.format.no_header));
-  std::error_code ignored;  // a file that is not there is told by its reader
+  std::error_code ignored;  // the reader names a file that is not there
   const bool same = a.validate.empty() || fs::equivalent(a.validate, a.data.front(), ignored);
   if (!same) tables.validation = readRecord(a.validate, format, !a.format.no_header);
   if (same && !a.validate.empty() && a.validate_rows.empty()) tables.validate_all = true;

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 
+#include "base/files.hpp"
 #include "base/finite_json.hpp"
-#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
 #include "supervision/health/finite_runs.hpp"
 
@@ -165,27 +163,18 @@ const char* classOf(LoopCause cause) {
                                         : "fault";
 }
 
-void writePage(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream stream(file);
-  stream << text;
-  stream.close();
-  require(stream.good(), file.string(), "a file that can be written");
-}
-
 std::vector<std::vector<std::string>> plantRows(const std::vector<NamedRecord>& records,
                                                 const std::vector<LoopHealth>& loops) {
-  const auto number = [](double v) { return std::isfinite(v) ? shortText(v) : std::string("-"); };
   std::vector<std::vector<std::string>> rows{{"loop", "cause", "Harris", "automatic [%]",
                                               "at limits [%]", "fallback [%]", "period [s]",
                                               "error std", "dead time [s]"}};
   const auto rounded = [](double v) { return std::round(1000.0 * v) / 1000.0; };
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const LoopHealth& h = loops[i];
-    rows.push_back({records[i].name, nameOf(h.cause), number(rounded(h.harris.index)),
-                    number(rounded(100.0 * h.automatic)), number(rounded(100.0 * h.at_limits)),
-                    number(rounded(100.0 * h.fallback)),
-                    h.oscillation.found ? number(h.periodS()) : "-", number(h.error_std),
-                    number(h.dead_time_s)});
+    rows.push_back({records[i].name, nameOf(h.cause), shortText(rounded(h.harris.index)),
+                    shortText(rounded(100.0 * h.automatic)),
+                    shortText(rounded(100.0 * h.at_limits)), shortText(rounded(100.0 * h.fallback)),
+                    shortText(h.periodS()), shortText(h.error_std), shortText(h.dead_time_s)});
   }
   return rows;
 }
@@ -228,7 +217,6 @@ std::string loopPage(const NamedRecord& named, const LoopHealth& h) {
 }  // namespace
 
 OrderedJson toJson(const LoopHealth& h, const std::string& name) {
-  constexpr const char* kSources[] = {"assumed", "estimated", "given"};
   OrderedJson json;
   json["name"] = name;
   json["output"] = h.output;
@@ -248,7 +236,7 @@ OrderedJson toJson(const LoopHealth& h, const std::string& name) {
                     {"std_error", numberOrNull(h.harris.std_error)},
                     {"samples", h.harris.samples}};
   json["dead_time_s"] = numberOrNull(h.dead_time_s);
-  json["dead_time"] = kSources[static_cast<std::size_t>(h.dead_time_source)];
+  json["dead_time"] = nameOf(h.dead_time_source);
   json["error_mean"] = numberOrNull(h.error_mean);
   json["error_std"] = numberOrNull(h.error_std);
   json["settling_s"] = numberOrNull(h.settling_s);
@@ -282,18 +270,15 @@ std::string healthTable(const std::vector<NamedRecord>& records,
 
 void writeHealth(const std::vector<NamedRecord>& records, const std::vector<LoopHealth>& loops,
                  const std::string& folder) {
-  std::error_code failed;
-  std::filesystem::create_directories(folder, failed);
-  require(std::filesystem::is_directory(folder), folder, "a folder that can be made");
-  const std::filesystem::path path(folder);
+  makeFolder(folder);
   OrderedJson json = OrderedJson::object();
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    writePage(path / (records[i].name + ".html"), loopPage(records[i], loops[i]));
+    writeText(loopPage(records[i], loops[i]), inFolder(folder, records[i].name + ".html"));
     json["loops"].push_back(toJson(loops[i], records[i].name));
   }
-  writePage(path / "index.html", indexPage(records, loops));
-  writePage(path / "health.json",
-            json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n");
+  writeText(indexPage(records, loops), inFolder(folder, "index.html"));
+  writeText(json.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n",
+            inFolder(folder, "health.json"));
 }
 
 }  // namespace fpc::tool

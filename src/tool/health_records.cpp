@@ -67,7 +67,7 @@ double recordSampleTime(const CsvTable& table, const HealthArguments& a,
   return time.step_s;
 }
 
-/// The input whose changes go most with what the output does after them.
+/// The input whose values go most with those of the output.
 std::string closestInput(const CsvTable& table, const std::vector<double>& y,
                          const std::vector<std::string>& inputs) {
   std::string best;
@@ -193,7 +193,7 @@ void addHistorian(const std::string& file, const HealthArguments& a,
   }
 }
 
-/// By the counts of the summary: which samples they were the files of a run do not say.
+/// By the counts of the summary: the files of a run do not say which samples they were.
 void addRunFolder(const std::string& folder, const HealthArguments& a,
                   std::vector<NamedRecord>& records, std::vector<std::string>& remarks) {
   const Summary summary = readSummary((fs::path(folder) / "summary.json").string());

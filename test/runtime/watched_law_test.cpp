@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <set>
 #include <string>
 
 #include "bench/handover_study.hpp"
@@ -48,8 +47,6 @@ TEST(WatchedLaw, ACandidateThatIsOnlyWatchedCostsTheLawInChargeNoBit) {
     LoopFile file = readLoop(name, withoutRecords(name));
     const bool enough = file.simulation.samples == 0 || file.simulation.samples > kSamples;
     if (file.external_plant || !file.has_model || !enough) continue;
-    static const std::set<std::string> slow{"nmpc", "swarm_mpc", "hybrid_mpc"};
-    if (slow.count(file.controllerType().name) > 0) continue;
     if (!makeControllerSession(file).controller().followsSetpoint()) continue;
     const Matrix alone = courseOf(file, kSamples);
     LoopFile candidate = file;
@@ -100,7 +97,7 @@ TEST_P(Study, ALawThatSwingsIsTakenBackAndTheVarianceIsAsBefore) {
 
 INSTANTIATE_TEST_SUITE_P(Plants, Study, ::testing::Range(0, 4));
 
-/// The tank of the study under its candidate, not automatic.
+/// The tank of the study with its right candidate.
 LoopFile tank(bool automatic) {
   LoopFile loop =
       bench::makeCase(sourceDir(), bench::studyPlants()[0], bench::Spoil::kNone, 901).loop;

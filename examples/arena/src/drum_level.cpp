@@ -8,7 +8,7 @@
 // From feed water q to the level that is K (1 - beta s) / (s (tau s + 1)); its dead time is that of
 // the gauge (sensors.level.delay_s). Source: luyben2003, the boiler drum; that steam does the
 // opposite of feed water is an addition. Level and flows are deviations, in % of their ranges.
-#include <fmbpc/plant/plant.hpp>
+#include "arena_plant.hpp"
 
 namespace {
 
@@ -31,15 +31,12 @@ fpc::PlantDescription describe() {
   p.parameters = {{"gain", "1/min", 0.547, 1e-3, 1e3},   // K
                   {"lag", "min", 1.06, 1e-3, 1e3},       // tau
                   {"inverse", "min", 0.418, 0.0, 1e3}};  // beta
-  p.frames = {{"plant", "map", 0.0, 0.0, 0.0}};
   return p;
 }
 
-class DrumLevel final : public fpc::Plant {
+class DrumLevel final : public arena::ArenaPlant {
  public:
-  explicit DrumLevel(const fpc::PlantParameters& parameters)
-      : description_(describe()), p_(fpc::parameterValues(description_, parameters)) {}
-  const fpc::PlantDescription& description() const override { return description_; }
+  explicit DrumLevel(const fpc::PlantParameters& given) : ArenaPlant(describe(), given) {}
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     dxdt[0] = p_[0] * (u[0] - d[0]);
     dxdt[1] = (u[0] - description_.inputs[0].nominal - x[1]) / p_[1];
@@ -48,14 +45,8 @@ class DrumLevel final : public fpc::Plant {
   void algebraic(VectorRef x, VectorRef, VectorRef, Eigen::Ref<Vector> y) const override {
     y[0] = x[0] - p_[0] * (p_[1] + p_[2]) * (x[1] - x[2]);
   }
-
- private:
-  fpc::PlantDescription description_;
-  Vector p_;
 };
 
-const bool kRegistered = fpc::registerPlant(
-    "drum_level",
-    [](const fpc::PlantParameters& parameters) { return std::make_unique<DrumLevel>(parameters); });
+const bool kRegistered = arena::registered<DrumLevel>("drum_level");
 
 }  // namespace

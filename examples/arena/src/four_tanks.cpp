@@ -8,7 +8,7 @@
 //   A4 dh4/dt = -a4 sqrt(2 g h4) + (1 - gamma1) k1 v1         levels in cm, flows in cm3/s
 //
 // Source: johansson2000, section II; the loads f1 and f2 are an addition.
-#include <fmbpc/plant/plant.hpp>
+#include "arena_plant.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,15 +42,12 @@ fpc::PlantDescription describe() {
                   {"pump_1", "cm3/(V s)", 3.33, 0.0, 1e3}, {"pump_2", "cm3/(V s)", 3.35, 0.0, 1e3},
                   {"split_1", "-", 0.70, 0.0, 1.0},  // gamma1
                   {"split_2", "-", 0.60, 0.0, 1.0}};
-  p.frames = {{"plant", "map", 0.0, 0.0, 0.0}};
   return p;
 }
 
-class FourTanks final : public fpc::Plant {
+class FourTanks final : public arena::ArenaPlant {
  public:
-  explicit FourTanks(const fpc::PlantParameters& parameters)
-      : description_(describe()), p_(fpc::parameterValues(description_, parameters)) {}
-  const fpc::PlantDescription& description() const override { return description_; }
+  explicit FourTanks(const fpc::PlantParameters& given) : ArenaPlant(describe(), given) {}
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     double out[4];
     for (Eigen::Index i = 0; i < 4; ++i)
@@ -61,14 +58,8 @@ class FourTanks final : public fpc::Plant {
     dxdt[2] = ((1.0 - p_[9]) * q2 - out[2]) / p_[0];
     dxdt[3] = ((1.0 - p_[8]) * q1 - out[3]) / p_[1];
   }
-
- private:
-  fpc::PlantDescription description_;
-  Vector p_;
 };
 
-const bool kRegistered = fpc::registerPlant(
-    "four_tanks",
-    [](const fpc::PlantParameters& parameters) { return std::make_unique<FourTanks>(parameters); });
+const bool kRegistered = arena::registered<FourTanks>("four_tanks");
 
 }  // namespace

@@ -6,7 +6,7 @@
 //
 // Source: hicks1971 in the form of kameswaran2006; the nominal point is the unstable state of
 // rawlings2017, example 3.22, and w the disturbance there. Times are taken as minutes.
-#include <fmbpc/plant/plant.hpp>
+#include "arena_plant.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,28 +40,19 @@ fpc::PlantDescription describe() {
                   {"feed_temperature", "-", 0.3947, 0.0, 2.0},
                   {"coolant_temperature", "-", 0.3816, 0.0, 2.0},
                   {"cooling", "1/min", 0.117, 0.0, 10.0}};
-  p.frames = {{"plant", "map", 0.0, 0.0, 0.0}};
   return p;
 }
 
-class HicksRay final : public fpc::Plant {
+class HicksRay final : public arena::ArenaPlant {
  public:
-  explicit HicksRay(const fpc::PlantParameters& parameters)
-      : description_(describe()), p_(fpc::parameterValues(description_, parameters)) {}
-  const fpc::PlantDescription& description() const override { return description_; }
+  explicit HicksRay(const fpc::PlantParameters& given) : ArenaPlant(describe(), given) {}
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     const double reaction = reactionRate(p_[1], p_[2], x[1]) * x[0];
     dxdt[0] = (1.0 - x[0]) / p_[0] - reaction;
     dxdt[1] = (p_[3] - x[1]) / p_[0] + reaction - p_[5] * u[0] * (x[1] - p_[4]) + d[0];
   }
-
- private:
-  fpc::PlantDescription description_;
-  Vector p_;
 };
 
-const bool kRegistered = fpc::registerPlant(
-    "hicks_ray",
-    [](const fpc::PlantParameters& parameters) { return std::make_unique<HicksRay>(parameters); });
+const bool kRegistered = arena::registered<HicksRay>("hicks_ray");
 
 }  // namespace

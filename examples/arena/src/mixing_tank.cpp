@@ -7,7 +7,7 @@
 //
 // Source: zenger2009 (ideal mixer and plug flow in series). Flows are held over a sample: T is then
 // an exponential in it, and the plant is moved exactly.
-#include <fmbpc/plant/plant.hpp>
+#include "arena_plant.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +31,6 @@ fpc::PlantDescription describe() {
   p.hidden_disturbances = {"Th", "Tc"};
   p.outputs = {"Tm"};
   p.parameters = {{"tank_volume", "l", 40.0, 0.1, 1e5}, {"pipe_volume", "l", 40.0, 0.0, 1e5}};
-  p.frames = {{"plant", "map", 0.0, 0.0, 0.0}};
   return p;
 }
 
@@ -71,11 +70,9 @@ class Stepper final : public fpc::PlantStepper {
   double left_{};  // volume that has left the tank since reset [l]
 };
 
-class MixingTank final : public fpc::Plant {
+class MixingTank final : public arena::ArenaPlant {
  public:
-  explicit MixingTank(const fpc::PlantParameters& parameters)
-      : description_(describe()), p_(fpc::parameterValues(description_, parameters)) {}
-  const fpc::PlantDescription& description() const override { return description_; }
+  explicit MixingTank(const fpc::PlantParameters& given) : ArenaPlant(describe(), given) {}
   /// The pipe as a lag of its mean stay: the same steady states.
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     dxdt[0] = (u[0] * (d[1] - x[0]) + d[0] * (d[2] - x[0])) / p_[0];
@@ -84,15 +81,8 @@ class MixingTank final : public fpc::Plant {
   std::unique_ptr<fpc::PlantStepper> makeStepper(double sample_time_s) const override {
     return std::make_unique<Stepper>(p_[0], p_[1], sample_time_s);
   }
-
- private:
-  fpc::PlantDescription description_;
-  Vector p_;
 };
 
-const bool kRegistered =
-    fpc::registerPlant("mixing_tank", [](const fpc::PlantParameters& parameters) {
-      return std::make_unique<MixingTank>(parameters);
-    });
+const bool kRegistered = arena::registered<MixingTank>("mixing_tank");
 
 }  // namespace

@@ -6,7 +6,7 @@
 //   0 = Wa + 10^(pH - 14) - 10^-pH + Wb (1 + 2 10^(pH - pK2)) / (1 + 10^(pK1 - pH) + 10^(pH - pK2))
 //
 // Source: henson1994. Wa and Wb [mmol/l] are reaction invariants: charge and carbonate.
-#include <fmbpc/plant/plant.hpp>
+#include "arena_plant.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -68,15 +68,12 @@ fpc::PlantDescription describe() {
                   {"base_carbonate", "mmol/l", kCarbonate[2], 0.0, 30.0},
                   {"pk_1", "-", 6.35, 1.0, 13.0},
                   {"pk_2", "-", 10.25, 1.0, 13.0}};
-  p.frames = {{"plant", "map", 0.0, 0.0, 0.0}};
   return p;
 }
 
-class PhNeutralisation final : public fpc::Plant {
+class PhNeutralisation final : public arena::ArenaPlant {
  public:
-  explicit PhNeutralisation(const fpc::PlantParameters& parameters)
-      : description_(describe()), p_(fpc::parameterValues(description_, parameters)) {}
-  const fpc::PlantDescription& description() const override { return description_; }
+  explicit PhNeutralisation(const fpc::PlantParameters& given) : ArenaPlant(describe(), given) {}
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     const double level = std::max(x[0], 1e-3), held = p_[0] * level;
     dxdt[0] = (d[0] + d[1] + u[0] - p_[1] * std::pow(level + kOffset, kExponent)) / p_[0];
@@ -86,15 +83,8 @@ class PhNeutralisation final : public fpc::Plant {
   void algebraic(VectorRef x, VectorRef, VectorRef, Eigen::Ref<Vector> y) const override {
     y[0] = solvePh(x[1], std::max(x[2], 0.0), p_[6], p_[7]);
   }
-
- private:
-  fpc::PlantDescription description_;
-  Vector p_;
 };
 
-const bool kRegistered =
-    fpc::registerPlant("ph_neutralisation", [](const fpc::PlantParameters& parameters) {
-      return std::make_unique<PhNeutralisation>(parameters);
-    });
+const bool kRegistered = arena::registered<PhNeutralisation>("ph_neutralisation");
 
 }  // namespace

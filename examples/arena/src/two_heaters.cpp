@@ -6,7 +6,7 @@
 //   x = U As (T2 - T1) + eps s As (T2^4 - T1^4)
 //
 // Source: hedengren2019, the temperature control laboratory.
-#include <fmbpc/plant/plant.hpp>
+#include "arena_plant.hpp"
 
 #include <cmath>
 
@@ -36,15 +36,12 @@ fpc::PlantDescription describe() {
                   {"emissivity", "-", 0.9, 0.0, 1.0},        // eps
                   {"heater_1", "W/%", 0.01, 0.0, 1e3},       // alpha1
                   {"heater_2", "W/%", 0.0075, 0.0, 1e3}};    // alpha2
-  p.frames = {{"plant", "map", 0.0, 0.0, 0.0}};
   return p;
 }
 
-class TwoHeaters final : public fpc::Plant {
+class TwoHeaters final : public arena::ArenaPlant {
  public:
-  explicit TwoHeaters(const fpc::PlantParameters& parameters)
-      : description_(describe()), p_(fpc::parameterValues(description_, parameters)) {}
-  const fpc::PlantDescription& description() const override { return description_; }
+  explicit TwoHeaters(const fpc::PlantParameters& given) : ArenaPlant(describe(), given) {}
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     const double between = flow(p_[4], x[0], x[1]), content = p_[0] * p_[1];
     dxdt[0] = (flow(p_[3], x[0], d[0]) + between + p_[6] * u[0]) / content;
@@ -57,14 +54,8 @@ class TwoHeaters final : public fpc::Plant {
     return area * (p_[2] * (from - to) + p_[5] * kStefanBoltzmann *
                                              (std::pow(from + kZero, 4) - std::pow(to + kZero, 4)));
   }
-
-  fpc::PlantDescription description_;
-  Vector p_;
 };
 
-const bool kRegistered =
-    fpc::registerPlant("two_heaters", [](const fpc::PlantParameters& parameters) {
-      return std::make_unique<TwoHeaters>(parameters);
-    });
+const bool kRegistered = arena::registered<TwoHeaters>("two_heaters");
 
 }  // namespace

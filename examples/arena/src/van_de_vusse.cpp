@@ -3,12 +3,13 @@
 //
 //   dcA/dt = F (cA0 - cA) - k1 cA - k3 cA^2
 //   dcB/dt = -F cB + k1 cA - k2 cB                            F: feed per volume [1/h]
-//   dT/dt  = F (T0 - T) - (k1 cA H1 + k2 cB H2 + k3 cA^2 H3) / (rho Cp) + kw A (TK - T) / (rho Cp
-//   V) dTK/dt = (Q + kw A (T - TK)) / (mK CpK)                   Q: heat into the jacket [kJ/h] ki
-//   = ki0 exp(-Ei / (T + 273.15))
+//   dT/dt  = F (T0 - T) - (k1 cA H1 + k2 cB H2 + k3 cA^2 H3) / (rho Cp)
+//            + kw A (TK - T) / (rho Cp V)
+//   dTK/dt = (Q + kw A (T - TK)) / (mK CpK)                   Q: heat into the jacket [kJ/h]
+//   ki     = ki0 exp(-Ei / (T + 273.15))
 //
 // Source: chen1995, whose main operating point is the nominal one: the yield's maximum.
-#include <fmbpc/plant/plant.hpp>
+#include "arena_plant.hpp"
 
 #include <cmath>
 
@@ -45,19 +46,16 @@ fpc::PlantDescription describe() {
                   {"volume", "l", 10.0, 1e-3, 1e6},
                   {"coolant_mass", "kg", 5.0, 1e-3, 1e6},
                   {"coolant_heat_capacity", "kJ/(kg K)", 2.0, 0.1, 10.0}};
-  p.frames = {{"plant", "map", 0.0, 0.0, 0.0}};
   return p;
 }
 
-class VanDeVusse final : public fpc::Plant {
+class VanDeVusse final : public arena::ArenaPlant {
  public:
-  explicit VanDeVusse(const fpc::PlantParameters& parameters)
-      : description_(describe()), p_(fpc::parameterValues(description_, parameters)) {
+  explicit VanDeVusse(const fpc::PlantParameters& given) : ArenaPlant(describe(), given) {
     contents_ = p_[8] * p_[9];
     transfer_ = p_[10] * p_[11];
     coolant_ = p_[13] * p_[14];
   }
-  const fpc::PlantDescription& description() const override { return description_; }
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
     const double kelvin = x[2] + 273.15;
     const double first = p_[0] * std::exp(-p_[3] / kelvin) * x[0];
@@ -71,14 +69,9 @@ class VanDeVusse final : public fpc::Plant {
   }
 
  private:
-  fpc::PlantDescription description_;
-  Vector p_;
   double contents_, transfer_, coolant_;
 };
 
-const bool kRegistered =
-    fpc::registerPlant("van_de_vusse", [](const fpc::PlantParameters& parameters) {
-      return std::make_unique<VanDeVusse>(parameters);
-    });
+const bool kRegistered = arena::registered<VanDeVusse>("van_de_vusse");
 
 }  // namespace

@@ -200,8 +200,8 @@ class AlarmList:
         self.journal.write({"t": round(self.wall(), 3), "kind": "alarm", "what": what, "who": who, "note": note, "loop": alarm.loop,
                             "step": alarm.step, "alarm": alarm.dump()})
 
-    def look(self, loop, causes, now, step=0, run_id=0, live=True):
-        """What is wrong with a loop now: {(code, signal): (severity, text)}. live: False leaves what is not named as it is.
+    def look(self, loop, causes, now, step=0, run_id=0):
+        """What is wrong with a loop now: {(code, signal): (severity, text)}.
 
         Info is no alarm: it asks nothing of the operator."""
         with self.lock:
@@ -231,7 +231,7 @@ class AlarmList:
                 elif quieted or freed:
                     self._say(alarm, "suppressed" if quieted else "no longer suppressed")
             for alarm in list(self.alarms.values()):
-                if alarm.loop != loop or not live or (alarm.code, alarm.signal) in causes:
+                if alarm.loop != loop or (alarm.code, alarm.signal) in causes:
                     continue
                 if alarm.see(False, now):
                     alarm.gone = self.wall()
@@ -252,7 +252,7 @@ class AlarmList:
                     self._say(alarm, "unshelved", "", "the time is over")
 
     def acknowledge(self, key, who):
-        """Why not, or "". Shelved, suppressed and out-of-service alarms are not acknowledged: nobody has seen them."""
+        """Why not, or "". Shelved, suppressed and out-of-service alarms are not acknowledged: the operator has not seen them."""
         with self.lock:
             alarm = self.alarms.get(key)
             if alarm is None:

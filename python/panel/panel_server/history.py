@@ -11,15 +11,23 @@ class History:
 
     def __init__(self, columns, most_bytes=100e6):
         self.columns, self.index = list(columns), {name: i for i, name in enumerate(columns)}
-        self.most = max(2, int(most_bytes / (CHUNK * (4 * len(self.columns) + 8))))  # chunks
+        self.chunk_bytes = CHUNK * (4 * len(self.columns) + 8)
         self.chunks = {}       # number: (values, wall)
         self.first = self.last = None
+        self.limit(most_bytes)
+
+    def limit(self, most_bytes):
+        """From the next new chunk on."""
+        self.most = max(2, int(most_bytes / self.chunk_bytes))  # chunks
+
+    def _empty(self):
+        return (numpy.full((CHUNK, len(self.columns)), numpy.nan, dtype=numpy.float32), numpy.full(CHUNK, numpy.nan))
 
     def _rows(self, step):
         number = step // CHUNK
         chunk = self.chunks.get(number)
         if chunk is None:
-            chunk = (numpy.full((CHUNK, len(self.columns)), numpy.nan, dtype=numpy.float32), numpy.full(CHUNK, numpy.nan))
+            chunk = self._empty()
             self.chunks[number] = chunk
             while len(self.chunks) > self.most:
                 oldest = min(self.chunks)
@@ -74,21 +82,20 @@ class History:
 
     def rows(self, first, last):
         """(steps, values, wall) of first..last, both included."""
+        nothing = numpy.zeros(0, int), numpy.zeros((0, len(self.columns)), numpy.float32), numpy.zeros(0)
         if self.first is None:
-            return numpy.zeros(0, int), numpy.zeros((0, len(self.columns)), numpy.float32), numpy.zeros(0)
+            return nothing
         first, last = max(first, self.first), min(last, self.last)
         values, wall = [], []
         for number in range(first // CHUNK, last // CHUNK + 1):
             begin, end = max(first - number * CHUNK, 0), min(last - number * CHUNK, CHUNK - 1) + 1
             if end <= begin:
                 continue
-            chunk = self.chunks.get(number)
-            if chunk is None:
-                chunk = (numpy.full((CHUNK, len(self.columns)), numpy.nan, dtype=numpy.float32), numpy.full(CHUNK, numpy.nan))
+            chunk = self.chunks.get(number) or self._empty()
             values.append(chunk[0][begin:end])
             wall.append(chunk[1][begin:end])
         if not values:
-            return numpy.zeros(0, int), numpy.zeros((0, len(self.columns)), numpy.float32), numpy.zeros(0)
+            return nothing
         return numpy.arange(first, last + 1), numpy.concatenate(values), numpy.concatenate(wall)
 
     def gaps(self, name):
@@ -101,7 +108,7 @@ class History:
         return [(int(steps[a]), int(steps[b - 1])) for a, b in zip(edges[::2], edges[1::2])]
 
     def bytes(self):
-        return len(self.chunks) * CHUNK * (4 * len(self.columns) + 8)
+        return len(self.chunks) * self.chunk_bytes
 
     def drawn(self, first, last, points):
         """(steps, values, wall), at most about `points` rows: of each bucket the least and the most of every column, so that no peak is lost."""
@@ -134,9 +141,10 @@ def plain(array, digits=7):
 
 
 def read_csv(path):
-    """(names without units, table) of a trajectory.csv; a last line that is being written is left out."""
+    """(names, units by name, table) of a trajectory.csv; a last line that is being written is left out."""
     with open(path, encoding="utf-8") as stream:
-        names = [word.split("[")[0] for word in stream.readline().strip().split(",")]
+        header = [word.partition("[") for word in stream.readline().strip().split(",")]
+        names = [name for name, _, _ in header]
         rows = []
         for line in stream:
             cells = line.rstrip("\n").split(",")
@@ -145,4 +153,4 @@ def read_csv(path):
                     rows.append([float(c) if c else math.nan for c in cells])
                 except ValueError:
                     continue
-    return names, numpy.array(rows, dtype=float).reshape(-1, len(names))
+    return names, {name: unit.rstrip("]") for name, _, unit in header}, numpy.array(rows, dtype=float).reshape(-1, len(names))

@@ -16,7 +16,7 @@ from fmbpc import msg as messages
 from std_msgs.msg import String
 
 from panel_server import predict, state, wire
-from panel_server.history import History, read_csv
+from panel_server.history import History, plain, read_csv
 
 SILENT = 1.5      # s of wall time without a word from the plant: the loop is stale
 MOST_WAITING = 20000  # raw messages of a topic between two looks
@@ -66,7 +66,7 @@ class Loop:
         self.text, self.speakers = {}, dict(SPEAKERS)
         self.states, self.heard_of, self.seen_events = {}, {}, {}
         self.step = -1
-        self.quality, self.age, self.final, self.local = (), (), False, False
+        self.quality, self.final = (), False
         self.applied, self.action, self.source, self.action_step = (), (), 0, -1
         self.base, self.base_step = (), -1
         self.setpoint, self.reference = (), ()
@@ -75,8 +75,8 @@ class Loop:
         self.model = self.trust = None
         self.kept, self.settings, self.settings_now = None, None, None
         self.signals = {}          # name: latest value of signal/NAME
-        self.run_end = self.recorded = None
-        self.heard = self.sampled = None
+        self.run_end = None
+        self.heard = None
         self.damaged = self.strangers = 0
         self.sent_from = 0         # the sample from which rows are new to the pages
         self.restarted = 0         # counts runs
@@ -89,8 +89,7 @@ class Loop:
         self.subscribers = [
             rospy.Subscriber(self.prefix + "fmbpc_controller/parameter_descriptions", ConfigDescription, self._on_description),
             rospy.Subscriber(self.prefix + "fmbpc_controller/parameter_updates", Config, self._on_config),
-            rospy.Subscriber(self.prefix + "run_end", String, lambda m: setattr(self, "run_end", m.data)),
-            rospy.Subscriber(self.prefix + "recorded", String, lambda m: setattr(self, "recorded", m.data))]
+            rospy.Subscriber(self.prefix + "run_end", String, lambda m: setattr(self, "run_end", m.data))]
         for signal in ("model_trust", "model_trust_ahead"):
             self.subscribers.append(rospy.Subscriber(self.prefix + "signal/" + signal, messages.Signal,
                                                      lambda m, s=signal: self.signals.__setitem__(s, m.data)))
@@ -199,7 +198,7 @@ class Loop:
         return self.info is not None and run_id == self.run_id
 
     def _on_measurement(self, buffer, wall, now, _caller):
-        run_id, step, outputs, disturbances, applied, final, quality, age, local = wire.measurement(buffer)
+        run_id, step, outputs, disturbances, applied, final, quality, _, _ = wire.measurement(buffer)
         info = self.info
         if not self._ours(run_id) or len(outputs) != len(info.outputs) or len(disturbances) != len(info.disturbances):
             return
@@ -214,9 +213,7 @@ class Loop:
         self.errors.came(step, outputs)
         self.sent_from = min(self.sent_from, step)
         if step >= self.step:
-            if step > self.step:
-                self.sampled = now
-            self.step, self.quality, self.age, self.final, self.local, self.applied = step, quality, age, final, local, applied
+            self.step, self.quality, self.final, self.applied = step, quality, final, applied
         self.heard = now
 
     def _on_tracking(self, buffer, *_):
@@ -307,7 +304,7 @@ class Loop:
             parts = recorded(folder, self.tool, run_id)
             with self.lock:
                 if run_id == self.run_id:
-                    for names, table, certain in parts:
+                    for names, _, table, certain in parts:
                         self._take_rows(names, table, certain)
         except Exception:  # noqa: BLE001: a record of another make leaves a gap, which the trend shows
             self.damaged += 1
@@ -448,12 +445,12 @@ class Loop:
             points[:, missing] = self.trust.centres[:, missing].mean(axis=0) if missing and len(self.trust.centres) else points[:, missing]
             trust = [round(float(t), 3) for t in self.trust.of(points)]
         return {"step": plan.step, "n": n, "constrained": plan.constrained, "trust": trust,
-                "outputs": [rounded(plan.output[:, j]) for j in range(plan.output.shape[1])],
-                "base_outputs": [rounded(plan.base_output[:, j]) for j in range(plan.output.shape[1])],
-                "band": None if band is None else [rounded(2.0 * band[:, j], 4) for j in range(band.shape[1])],
-                "inputs": [rounded(plan.input[:, j]) for j in range(plan.input.shape[1])],
-                "base_inputs": [rounded(plan.base_input[:, j]) for j in range(plan.input.shape[1])],
-                "reference": [rounded(plan.reference[j]) for j in range(len(plan.reference))]}
+                "outputs": [plain(plan.output[:, j], 6) for j in range(plan.output.shape[1])],
+                "base_outputs": [plain(plan.base_output[:, j], 6) for j in range(plan.output.shape[1])],
+                "band": None if band is None else [plain(2.0 * band[:, j], 4) for j in range(band.shape[1])],
+                "inputs": [plain(plan.input[:, j], 6) for j in range(plan.input.shape[1])],
+                "base_inputs": [plain(plan.base_input[:, j], 6) for j in range(plan.input.shape[1])],
+                "reference": [plain(plan.reference[j], 6) for j in range(len(plan.reference))]}
 
     def model_view(self):
         """Rules and where the process is among them, gains and poles here, errors of predictions; for JSON."""
@@ -475,9 +472,9 @@ class Loop:
                 "trust": finite(self.signals.get("model_trust")), "trust_ahead": finite(self.signals.get("model_trust_ahead")),
                 "trust_here": self._trust_here(),
                 "poles": [] if plan is None else [[round(float(p.real), 6), round(float(p.imag), 6)] for p in plan.poles()],
-                "gains": None if gains is None else [rounded(row, 5) for row in gains],
+                "gains": None if gains is None else [plain(row, 5) for row in gains],
                 "outputs": [s.name for s in self.info.outputs], "inputs": [s.name for s in self.info.inputs],
-                "errors": self.errors.latest() if self.errors else [], "rms": rms_table(self.errors, plan)}
+                "rms": rms_table(self.errors, plan)}
 
     def _trust_here(self):
         if self.trust is None or not self.trust.known():
@@ -490,19 +487,15 @@ def rms_table(errors, plan):
     if errors is None or plan is None:
         return []
     band = errors.rms(len(plan.output))
-    return [] if band is None else [{"ahead": a, "rms": rounded(band[a - 1], 4)} for a in (1, 2, 5, 10, 20, 40) if a <= len(band)]
+    return [] if band is None else [{"ahead": a, "rms": plain(band[a - 1], 4)} for a in (1, 2, 5, 10, 20, 40) if a <= len(band)]
 
 
 def finite(value):
     return float(f"{float(value):.9g}") if value is not None and math.isfinite(value) else None
 
 
-def rounded(values, digits=6):
-    return [float(f"%.{digits}g" % v) if math.isfinite(v) else None for v in values]
-
-
 def recorded(folder, tool, run_id=None):
-    """[(names, table, of this run for certain)] of what the recorder of a loop has on disk: the parts of a run that are filed already, then the run that goes on or has
+    """[(names, units, table, of this run for certain)] of what the recorder of a loop has on disk: the parts of a run that are filed already, then the run that goes on or has
     ended; [] if that is elsewhere."""
     if not folder or not os.path.isdir(folder):
         return []
@@ -515,7 +508,7 @@ def recorded(folder, tool, run_id=None):
             path = os.path.join(history, part, "trajectory.csv")
             if os.path.exists(path) and rows < MOST_FILLED:
                 found.insert(0, (*read_csv(path), True))
-                rows += len(found[0][1])
+                rows += len(found[0][2])
     journal = os.path.join(folder, "journal.bin")
     if os.path.exists(journal) and tool:
         with tempfile.TemporaryDirectory(prefix="fmbpc_panel_") as work:

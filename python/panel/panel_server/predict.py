@@ -143,10 +143,6 @@ class Errors:
             result.append(last)
         return numpy.maximum.accumulate(numpy.array(result), axis=0)
 
-    def latest(self, most=40):
-        """Of one sample ahead."""
-        return [list(map(float, e)) for e in list(self.errors.get(1, ()))[-most:]]
-
 
 def log_degree(shape, p, z):
     """Logarithm of a membership (FuzzySet)."""

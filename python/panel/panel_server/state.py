@@ -2,7 +2,6 @@
 import math
 
 GOOD, PREDICTED, HELD, HIGH, LOW, LIMITED, BAD = "good", "predicted", "held", "high", "low", "limited", "bad"
-WORDS = (GOOD, PREDICTED, HELD, HIGH, LOW, LIMITED, BAD)
 QUALITY = ("good", "stale", "bad", "missing")
 SOURCES = {0: "", 1: "law", 2: "optimizer", 3: "clipped", 4: "held", 5: "manual", 6: "fallback", 7: "guarded"}
 MODEL_USED = {"signal_frozen", "signal_not_renewed"}

@@ -7,9 +7,7 @@ import hashlib
 import json
 import logging
 import os
-import shutil
 import socket
-import subprocess
 import time
 
 import rosgraph
@@ -21,6 +19,7 @@ import tornado.web
 
 from panel_server import access, alarms, asked, commands, loops
 from panel_server.history import plain
+from panel_server.tool import event_list, tool_path
 
 TICK = 0.1            # s
 LOOK_FOR_LOOPS = 2.0  # s
@@ -57,32 +56,6 @@ def compact(value):
     return json.dumps(value, separators=(",", ":"), allow_nan=False)
 
 
-def event_list(tool):
-    """{code: {severity, cause, consequence, remedy}} of `fmbpc events`; {} without the tool."""
-    if not tool:
-        return {}
-    try:
-        text = subprocess.run([tool, "events"], check=True, timeout=20, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True).stdout
-    except (OSError, subprocess.SubprocessError):
-        return {}
-    found = {}
-    for line in text.splitlines():
-        cells = [c.strip() for c in line.strip("|").split("|")]
-        if line.startswith("| `") and len(cells) == 5:
-            found[cells[0].strip("`")] = dict(zip(("severity", "cause", "consequence", "remedy"), cells[1:]))
-    return found
-
-
-def tool_path():
-    """fmbpc_tool, where scripts/fmbpc finds it."""
-    top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
-    places = [os.path.join(p, "lib/fmbpc/fmbpc_tool") for p in os.environ.get("CMAKE_PREFIX_PATH", "").split(":") if p]
-    for path in [os.path.join(top, "devel/lib/fmbpc/fmbpc_tool")] + places:
-        if os.access(path, os.X_OK):
-            return path
-    return shutil.which("fmbpc_tool")
-
-
 class Panel:
     """What all browsers share."""
 
@@ -103,7 +76,7 @@ class Panel:
         self.loops, self.desks, self.streams = {}, {}, set()
         self.commands_rate = access.Bucket(per_s=5.0, burst=20)
         self.requests_rate = access.Bucket(per_s=100.0, burst=400)
-        self.beat, self.said_alarms, self.said_journal, self.looked = 0, None, self.journal.number, 0.0
+        self.beat, self.said_alarms = 0, None
         self.journal.write({"t": round(time.time(), 3), "kind": "panel", "what": "started", "who": "", "note": ""})
         self.said_journal = self.journal.number
         self.looking, self.master_gone = False, False
@@ -133,7 +106,7 @@ class Panel:
         for loop in self.loops.values():
             loop.history_bytes = share
             if loop.history is not None:
-                loop.history.most = max(2, int(share / (4096 * (4 * len(loop.history.columns) + 8))))
+                loop.history.limit(share)
 
     def look_for_loops(self):
         if self.looking:
@@ -218,7 +191,7 @@ class Panel:
             update["trust"] = loops.finite(loop.signals.get("model_trust"))
             update["external"] = loop.get("plant", "type") == "external"
             first = loop.sent_from
-            if loop.step - first > MOST_ROWS or (0 <= first < loop.step - MOST_ROWS):
+            if loop.step - first > MOST_ROWS:
                 update["refetch"] = True
                 first = loop.step
             steps, values, wall = loop.history.rows(first, loop.step)
@@ -280,7 +253,7 @@ class Panel:
 
 
 def lead(loop):
-    """The first output with a reason to be followed: one that is not weighed at nothing has none; the first one."""
+    """Index of the output that the overview shows, the first one; None before there is one."""
     return 0 if loop.info is not None and loop.info.outputs else None
 
 
@@ -322,7 +295,7 @@ class Handler(tornado.web.RequestHandler):
             self.refuse(401, "token: unknown")
 
     def who(self):
-        """The caller; None if it shows a token that nobody has."""
+        """The caller; None if it shows an unknown token."""
         given = self.request.headers.get("Authorization")
         if given is not None:
             found = self.panel.access.token(given[7:], self.request.remote_ip) if given.startswith("Bearer ") else None
@@ -348,13 +321,16 @@ class Handler(tornado.web.RequestHandler):
         self.finish(compact({"error": {404: "no such page", 405: "method: not for this page"}.get(status_code, "it could not be done")}))
 
     def may_view(self):
+        """Answers itself if not."""
         if self.caller.may("view"):
             return True
         self.refuse(401, "log in to see this")
         return False
 
-    def loop(self):
-        """The loop asked for; answers itself if there is none."""
+    def seen_loop(self):
+        """The loop asked for; None after an answer of its own: the caller may not see it, or there is none."""
+        if not self.may_view():
+            return None
         found = self.panel.loops.get(self.get_query_argument("loop", ""))
         if found is None or found.history is None:
             self.refuse(404, "no such loop")
@@ -414,7 +390,7 @@ class Stream(Handler):
         self.set_header("X-Accel-Buffering", "no")
         now = time.monotonic()
         self.write("retry: 1000\n\n")
-        self.event("hello", compact({"me": me(self.caller), "events": panel.events, "states": list(alarms.STATES)}))
+        self.event("hello", compact({"me": me(self.caller), "events": panel.events}))
         self.event("overview", compact(panel.overview(now)))
         self.event("alarms", compact(panel.alarms.listed()))
         self.event("journal", compact([light(e) for e in panel.journal.latest(200)]))
@@ -458,9 +434,7 @@ class Stream(Handler):
 
 class HistoryPage(Handler):
     def get(self):
-        if not self.may_view():
-            return
-        loop = self.loop()
+        loop = self.seen_loop()
         if loop is None:
             return
         try:
@@ -498,9 +472,7 @@ class Sparks(Handler):
 
 class ModelPage(Handler):
     def get(self):
-        if not self.may_view():
-            return
-        loop = self.loop()
+        loop = self.seen_loop()
         if loop is None:
             return
         with loop.lock:

@@ -115,13 +115,13 @@ void ClpLimits::set(const PredictiveAction& now, VectorRef u_ss) {
     first_lower_[a] = std::clamp(reach_lower, lower_[a], upper_[a]);
     first_upper_[a] = std::clamp(reach_upper, lower_[a], upper_[a]);
   }
+  const bool zones = now.output_lower.size() > 0;
   for (const Eigen::Index o : limited_outputs_) {
-    const bool told = now.output_lower.size() > 0;
     output_lower_[o] = stated_lower_[o];
     output_upper_[o] = stated_upper_[o];
-    if (told && std::isfinite(stated_lower_[o]) && std::isfinite(now.output_lower[o]))
+    if (zones && std::isfinite(stated_lower_[o]) && std::isfinite(now.output_lower[o]))
       output_lower_[o] = now.output_lower[o];
-    if (told && std::isfinite(stated_upper_[o]) && std::isfinite(now.output_upper[o]))
+    if (zones && std::isfinite(stated_upper_[o]) && std::isfinite(now.output_upper[o]))
       output_upper_[o] = now.output_upper[o];
   }
   for (Eigen::Index a = 0; a < now.input_lower.size(); ++a) {

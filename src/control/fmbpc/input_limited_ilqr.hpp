@@ -31,9 +31,8 @@ class InputLimitedIlqr {
  public:
   InputLimitedIlqr(const LocalModel& model, IlqrParams params, InputLimits limits);
   void forget();  ///< the next plan starts from the input held
-  void aimInputs(VectorRef input_target) {
-    params_.input_target = input_target;
-  }  ///< n_u, next plan
+  /// n_u, where the inputs of the next plans are to rest.
+  void aimInputs(VectorRef input_target) { params_.input_target = input_target; }
   /// From the next plan on; the horizon stays.
   void retune(int iterations, VectorRef weight_output, VectorRef weight_move,
               VectorRef weight_input, VectorRef input_target);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "control/read_observer.hpp"
@@ -99,14 +98,14 @@ TargetParams readTargetParams(YamlSection& section, const ControllerContext& loo
     const auto k = static_cast<Eigen::Index>(i);
     params.inputs[i].lower = loop.limits.lower[k];
     params.inputs[i].upper = loop.limits.upper[k];
-    params.inputs[i].rest = std::numeric_limits<double>::quiet_NaN();
+    params.inputs[i].rest = kNaN;
     YamlSection input = inputs.section(loop.plant.inputs[i].name);
     readInput(input, params.inputs[i]);
   }
   inputs.finish();
   section.number("band", params.band, kFiniteNotNegative);
   section.integer("iterations", params.iterations, 1, 100);
-  readObserver(section, params.observer, loop, ObserverKey::kNone);
+  readObserver(section, params.observer, loop, ObserverKey::kAlways);
   return params;
 }
 

@@ -43,11 +43,13 @@ struct TargetLayer::Workspace {
   std::optional<ModelObserver> observer;
   std::optional<SteadyModel> model;
   std::optional<TargetSolver> solver;
+  std::vector<Index> output_rows;  // of the observer's state
   std::vector<Ask> asks;
   TargetProblem problem;
 
   Vector y, u;            // where the model is linearised, and then the target
   Vector best_y, best_u;  // the last good target
+  double cost{};          // of it
   Vector held;            // levels at this sample
   Vector past_disturbances;
   StepHeader seen;
@@ -99,9 +101,12 @@ struct TargetLayer::Workspace {
     std::vector<bool> integrating;
     for (const TargetOutput& output : params.outputs) integrating.push_back(output.integrating);
     SteadyModel steady(given, integrating);
-    ModelObserver watching(LocalModel(given), params.observer, 0);
+    const LocalModel local(given);
+    ModelObserver watching(local, params.observer, 0);
     model.emplace(std::move(steady));
     observer.emplace(std::move(watching));
+    output_rows.clear();
+    for (Index i = 0; i < n_y; ++i) output_rows.push_back(local.outputState(i));
     observing = false;
     layOut();
   }
@@ -148,11 +153,8 @@ struct TargetLayer::Workspace {
     observing = begun_run = true;
     seen = now.header;
     past_disturbances = now.disturbances;
-    for (Index i = 0; i < n_y; ++i) held[i] = observer->state()[rowOf(i)];
+    for (Index i = 0; i < n_y; ++i) held[i] = observer->state()[output_rows[at(i)]];
   }
-
-  Index rowOf(Index output) const { return output_rows[at(output)]; }
-  std::vector<Index> output_rows;  // of the observer's state
 
   void fill(VectorRef setpoint) {
     const Matrix& gain = model->gain();
@@ -227,20 +229,17 @@ struct TargetLayer::Workspace {
         y[i] = level;
       }
       if (!y.allFinite() || !u.allFinite()) return EventCode::kTargetNotFound;
-      cost = found.cost;
-      given_up = &found.given_up;
       if (round > 1 && moved <= kSettled) return EventCode::kNone;
     }
     if (model->linearise(y, u, now.disturbances, observer->disturbance(), held) && model->settled())
       return EventCode::kNone;
     return EventCode::kTargetNotSettled;
   }
-  double cost{};
-  const Vector* given_up{nullptr};
 
   void sayGivenUp() {
-    for (Index i = 0; given_up && i < given_up->size(); ++i) {
-      const double beyond = (*given_up)[i];
+    const Vector& given_up = solver->solution().given_up;
+    for (Index i = 0; i < given_up.size(); ++i) {
+      const double beyond = given_up[i];
       if (std::abs(beyond) <= kGivenUp * problem.row_unit[i]) continue;
       const Ask& a = asks[at(i)];
       said.add({EventCode::kTargetGivenUp, beyond > 0.0 ? a.above.c_str() : a.below.c_str(),
@@ -288,6 +287,7 @@ struct TargetLayer::Workspace {
       count();
       best_y = y;
       best_u = u;
+      cost = solver->solution().cost;
       known = true;
     } else if (!known) {  // nothing better than where it is
       if (now.outputs.allFinite()) best_y = now.outputs;
@@ -305,12 +305,7 @@ TargetLayer::TargetLayer(TargetParams params, InputLimits limits, PlantInfo plan
 TargetLayer::~TargetLayer() = default;
 TargetLayer::TargetLayer(TargetLayer&&) noexcept = default;
 
-void TargetLayer::setModel(const TsModel& model) {
-  work_->setModel(model);
-  const LocalModel local(model);
-  work_->output_rows.clear();
-  for (Index i = 0; i < work_->n_y; ++i) work_->output_rows.push_back(local.outputState(i));
-}
+void TargetLayer::setModel(const TsModel& model) { work_->setModel(model); }
 
 bool TargetLayer::ready() const { return work_->model.has_value(); }
 

@@ -2,9 +2,8 @@
 // limits.
 #pragma once
 
+#include <cstdint>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "control/targets/params.hpp"
 #include "fmbpc/base/event.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "optim/qp.hpp"
@@ -35,25 +36,21 @@ struct Stage {
   }
 };
 
-std::vector<Index> rowsBelow(const std::vector<int>& ranks, int rank) {
+template <typename Has>
+std::vector<Index> rowsWhere(const std::vector<int>& ranks, const Has& has) {
   std::vector<Index> rows;
   for (std::size_t i = 0; i < ranks.size(); ++i)
-    if (ranks[i] < rank) rows.push_back(static_cast<Index>(i));
-  return rows;
-}
-
-std::vector<Index> rowsOf(const std::vector<int>& ranks, int rank) {
-  std::vector<Index> rows;
-  for (std::size_t i = 0; i < ranks.size(); ++i)
-    if (ranks[i] == rank) rows.push_back(static_cast<Index>(i));
+    if (has(ranks[i])) rows.push_back(static_cast<Index>(i));
   return rows;
 }
 
 std::vector<Index> allRows(std::size_t count) {
-  std::vector<Index> rows;
-  for (std::size_t i = 0; i < count; ++i) rows.push_back(static_cast<Index>(i));
+  std::vector<Index> rows(count);
+  std::iota(rows.begin(), rows.end(), Index{0});
   return rows;
 }
+
+double largest(const Vector& price) { return price.size() > 0 ? price.cwiseAbs().maxCoeff() : 0.0; }
 
 }  // namespace
 
@@ -99,7 +96,8 @@ struct TargetSolver::Workspace {
     std::sort(distinct.begin(), distinct.end());
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
     for (const int rank : distinct)
-      stages.emplace_back(n, rowsOf(ranks, rank), rowsBelow(ranks, rank));
+      stages.emplace_back(n, rowsWhere(ranks, [&](int r) { return r == rank; }),
+                          rowsWhere(ranks, [&](int r) { return r < rank; }));
     resting.qp.H.diagonal().setOnes();
     solution.v = Vector::Zero(n);
     solution.given_up = Vector::Zero(m);
@@ -136,7 +134,6 @@ struct TargetSolver::Workspace {
         stage.qp.a_upper.tail(stage.qp.a_upper.size() - first).array() += room;
       }
       const QpResult& result = stage.solver.solve(stage.qp);
-      solution.iterations += result.iterations;
       solution.status = result.status;
       if (!result.usable()) continue;
       x = result.x.head(n);
@@ -203,7 +200,7 @@ struct TargetSolver::Workspace {
 
   bool leastCost(const TargetProblem& p) {
     price = p.price.cwiseProduct(p.unit);
-    const double size = price.size() > 0 ? price.cwiseAbs().maxCoeff() : 0.0;
+    const double size = largest(price);
     if (size == 0.0) return true;
     put(p, money);
     price /= size;
@@ -216,7 +213,7 @@ struct TargetSolver::Workspace {
     put(p, resting);
     QpProblem& qp = resting.qp;
     qp.g = -p.rest.cwiseQuotient(p.unit);
-    const double size = std::max(price.cwiseAbs().maxCoeff(), 0.0);
+    const double size = largest(price);
     qp.a_lower[m] = -kInfinity;
     qp.a_upper[m] = kInfinity;
     qp.A.row(m).setZero();
@@ -248,7 +245,6 @@ TargetSolver::TargetSolver(TargetSolver&&) noexcept = default;
 
 const TargetSolution& TargetSolver::solve(const TargetProblem& p) {
   Workspace& w = *work_;
-  w.solution.iterations = 0;
   w.solution.status = SolveStatus::kInvalidProblem;
   if (!Workspace::valid(p)) return w.solution;
   for (Index i = 0; i < w.m; ++i) {
@@ -258,11 +254,11 @@ const TargetSolution& TargetSolver::solve(const TargetProblem& p) {
   }
   if (!w.rank(p) || !w.leastCost(p)) return w.solution;
   w.solution.least_cost = p.price.dot(w.x.cwiseProduct(p.unit));
-  const Vector& cheapest = w.x;
-  w.solution.v = cheapest;
   if (!w.rest(p)) w.solution.status = SolveStatus::kSolved;  // x is still the cheapest
   w.conclude(p);
   return w.solution;
 }
+
+const TargetSolution& TargetSolver::solution() const { return work_->solution; }
 
 }  // namespace fpc

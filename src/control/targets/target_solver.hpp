@@ -33,7 +33,6 @@ struct TargetSolution {
   Vector given_up;      ///< m, row . v beyond its limit: > 0 above the upper one, < 0 below
   double cost{};        ///< price . v
   double least_cost{};  ///< the least that the ranked limits allow
-  int iterations{};
   bool usable() const { return status == SolveStatus::kSolved; }
 };
 
@@ -50,6 +49,7 @@ class TargetSolver {
   /// are not finite and lower > upper; numerical error where a price drives an unknown without a
   /// limit, or a solver fails.
   const TargetSolution& solve(const TargetProblem& problem);
+  const TargetSolution& solution() const;  ///< of the last solve()
 
  private:
   struct Workspace;

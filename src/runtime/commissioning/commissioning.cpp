@@ -6,8 +6,10 @@
 #include <fstream>
 
 #include "base/files.hpp"
+#include "base/finite_json.hpp"
 #include "base/text_hash.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "runtime/commissioning/bench.hpp"
@@ -36,10 +38,19 @@ std::uint32_t watchedSamples(const CommissioningBrief& brief) {
 OrderedJson byName(const std::vector<SignalInfo>& signals, const Vector& values) {
   OrderedJson json = OrderedJson::object();
   for (std::size_t i = 0; i < signals.size(); ++i)
-    json[signals[i].name] = std::isfinite(values[static_cast<Index>(i)])
-                                ? OrderedJson(values[static_cast<Index>(i)])
-                                : OrderedJson(nullptr);
+    json[signals[i].name] = numberOrNull(values[static_cast<Index>(i)]);
   return json;
+}
+
+/// Rows of the plant under its present control.
+PlantRecord watchedRows(Bench& bench, const CommissioningBrief& brief) {
+  PlantRecord record(brief.loop.plant_info);
+  for (std::uint32_t k = 0; k < watchedSamples(brief); ++k) {
+    const Vector input = bench.present();
+    record.add(bench.now(), input);
+    bench.send(input);
+  }
+  return record;
 }
 
 }  // namespace
@@ -53,7 +64,7 @@ Commissioning::Commissioning(const std::string& brief, std::string folder,
 }
 
 std::string Commissioning::file(Stage stage) const {
-  return inFolder(folder_, wordsOf(stage)[static_cast<std::size_t>(stage)] + ".json");
+  return inFolder(folder_, wordOf(stage) + ".json");
 }
 std::string Commissioning::lawFile() const {
   return inFolder(folder_, brief_.loop.name + "_law.yaml");
@@ -62,7 +73,7 @@ std::string Commissioning::piFile() const {
   return inFolder(folder_, brief_.loop.name + "_pi.yaml");
 }
 
-/// Of what the stage is made from: the brief, the loop, and the stage before it.
+/// Of what the stage is made from: the brief, the loop, and the options of it and those before it.
 std::string Commissioning::fingerprint(Stage stage) const {
   std::string from = brief_.text + brief_.loop.resolved;
   if (stage > Stage::kModel) from += " evaluations " + std::to_string(options_.evaluations);
@@ -146,14 +157,9 @@ OrderedJson Commissioning::state() const {
 
 OrderedJson Commissioning::watchPlant() {
   Bench bench(brief_);
-  PlantRecord record(brief_.loop.plant_info);
   const std::uint32_t samples = watchedSamples(brief_);
   show(Stage::kWatch, std::to_string(samples) + " samples under the present control");
-  for (std::uint32_t k = 0; k < samples; ++k) {
-    const Vector input = bench.present();
-    record.add(bench.now(), input);
-    bench.send(input);
-  }
+  const PlantRecord record = watchedRows(bench, brief_);
   record.write(inFolder(folder_, "watch.csv"));
   OrderedJson json = toJson(watch(record));
   json["samples"] = samples;
@@ -185,17 +191,10 @@ OrderedJson Commissioning::testPlant() {
   params.start_input = actuator.initial;
   params.closed = brief_.closed;
   params.seed = brief_.seed;
-  const std::uint32_t before = watchedSamples(brief_);
-  params.most_rows = static_cast<Index>(brief_.samples() - before);
+  params.most_rows = static_cast<Index>(brief_.samples() - watchedSamples(brief_));
   // The plant's life begins at its start: what was watched is played again.
   Bench bench(brief_);
-  PlantRecord record(brief_.loop.plant_info);
-  for (std::uint32_t k = 0; k < before; ++k) {
-    const Vector input = bench.present();
-    record.add(bench.now(), input);
-    bench.send(input);
-  }
-  PlantTest test(params, record);
+  PlantTest test(params, watchedRows(bench, brief_));
   Vector lowest = Vector::Constant(n_y, 1e300), highest = -lowest;
   while (test.end() == TestEnd::kNone) {
     const Vector present = bench.present();
@@ -220,8 +219,7 @@ OrderedJson Commissioning::testPlant() {
       bounds.push_back({{"output", plant.outputs[i].name},
                         {"input", plant.inputs[j].name},
                         {"gain", e.element.gain},
-                        {"gain_bound", std::isfinite(e.gain_bound) ? OrderedJson(e.gain_bound)
-                                                                   : OrderedJson(nullptr)},
+                        {"gain_bound", numberOrNull(e.gain_bound)},
                         {"dead_time_s", e.element.dead_time},
                         {"dead_time_bound_s", e.dead_time_bound}});
     }

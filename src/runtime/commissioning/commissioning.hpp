@@ -40,8 +40,6 @@ class Commissioning {
   /// Takes the stage and all after it back.
   void undo(CommissioningStage first);
   OrderedJson figures(CommissioningStage stage) const;  ///< null if it is not done
-  const CommissioningBrief& brief() const { return brief_; }
-  const std::string& folder() const { return folder_; }
   std::string lawFile() const;
   std::string piFile() const;
 

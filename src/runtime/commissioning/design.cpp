@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "base/finite_json.hpp"
 #include "base/parallel.hpp"
 #include "base/statistics.hpp"
 #include "base/yaml_load.hpp"
@@ -187,16 +188,14 @@ class Designer {
     require(!outline_.pairs.empty(), brief_.file + ": zone", "an output that is to be held");
     lookAtDirections(d);
     show("PI: " + std::to_string(params_.evaluations) + " settings");
-    const std::vector<double> pi = searched(
+    Vector pi_x = searched(
         piStart(), piWidth(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
-    pi_ = piOf(Eigen::Map<const Vector>(pi.data(), static_cast<Index>(pi.size())));
+    pi_ = piOf(pi_x);
     show("law: " + std::to_string(params_.evaluations) + " settings");
     Vector start, width;
     lawStart(start, width);
-    std::vector<double> law = searched(
-        start, width, [this](const Vector& x) { return lawText(x); }, d.law_figures);
-    Vector x = Eigen::Map<const Vector>(law.data(), static_cast<Index>(law.size()));
-    Vector pi_x = Eigen::Map<const Vector>(pi.data(), static_cast<Index>(pi.size()));
+    Vector x = searched(
+        start, width, [this](const Vector& point) { return lawText(point); }, d.law_figures);
     show("margins of the PI");
     chooseProbed(piText(pi_x), lawText(x));
     d.probed = probed_.size();
@@ -273,7 +272,6 @@ class Designer {
     start = Vector::Zero(2 + held);
     width = Vector::Constant(2 + held, 2.5);
     start[0] = -1.0;
-    width[0] = 2.5;
     start[1] = -0.5;
     width[1] = 1.0;
   }
@@ -418,8 +416,8 @@ class Designer {
   }
 
   template <typename Text>
-  std::vector<double> searched(const Vector& start, const Vector& width, const Text& text,
-                               DesignFigures& figures) const {
+  Vector searched(const Vector& start, const Vector& width, const Text& text,
+                  DesignFigures& figures) const {
     SearchParams search;
     search.method = SearchMethod::kApso;
     search.population = 8;
@@ -445,7 +443,7 @@ class Designer {
         },
         start);
     figures.tuned = result.cost;
-    return {result.best.begin(), result.best.end()};
+    return result.best;
   }
 
   /// Those on which margins are asked: a probe takes as long as twenty runs.
@@ -628,15 +626,12 @@ Design designLaws(const CommissioningBrief& brief, const Vector& noise,
 }
 
 OrderedJson toJson(const Design& d, const PlantInfo& plant) {
-  const auto finite = [](double v) {
-    return std::isfinite(v) ? OrderedJson(v) : OrderedJson(nullptr);
-  };
   const auto figures = [&](const DesignFigures& f) {
     return OrderedJson{{"tuned_cost", f.tuned},
                        {"held_out_costs", f.costs},
-                       {"sensitivity_peak", finite(f.worst_peak)},
-                       {"gain_margin", finite(f.least_gain)},
-                       {"delay_margin_s", finite(f.least_delay_s)}};
+                       {"sensitivity_peak", numberOrNull(f.worst_peak)},
+                       {"gain_margin", numberOrNull(f.least_gain)},
+                       {"delay_margin_s", numberOrNull(f.least_delay_s)}};
   };
   OrderedJson weak = OrderedJson::array();
   for (const WeakDirection& w : d.weak) {

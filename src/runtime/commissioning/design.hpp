@@ -16,10 +16,10 @@ struct DesignParams {
   int evaluations{48};   ///< points that each search judges, each over the tuned members
   int tuned_members{4};  ///< beside the likeliest model
   double peak{2.0};      ///< largest sensitivity that any member may have (astrom2008)
-  double movement{0.1};  ///< weight of the moves beside the errors, see designCost()
+  double movement{0.1};  ///< weight of the moves beside the errors
   int threads{0};        ///< 0: all cores
   std::uint64_t seed{1};
-  std::function<void(const std::string&)> show;  ///< told what is done; may be empty
+  std::function<void(const std::string&)> show;  ///< called with what is done; may be empty
 };
 
 /// What one law reaches over an ensemble.
@@ -42,7 +42,7 @@ struct Design {
   std::size_t probed{};  ///< models: the likeliest, those tuned on, the costliest held out
 };
 
-/// @throws InputError if the plant's loop file cannot be rewritten, or if no PI is stable.
+/// @throws InputError if the plant's loop file cannot be rewritten, or if no output is to be held.
 Design designLaws(const CommissioningBrief& brief, const Vector& noise,
                   const std::string& model_file, const ProcessModels& models,
                   const DesignParams& params);

@@ -49,6 +49,19 @@ const char* wordOf(TestEnd end) {
   }
 }
 
+template <typename Input>
+double PlantTest::Track::next(const std::vector<double>& so_far, const Input& input) const {
+  const auto k = static_cast<Index>(so_far.size());
+  double value = 0.0;
+  for (std::size_t i = 0; i < sampled.b.size(); ++i) {
+    const Index at = k - 1 - sampled.delay - static_cast<Index>(i);
+    if (at >= 0) value += sampled.b[i] * input(at);
+  }
+  for (std::size_t i = 1; i < a.size() && i <= so_far.size(); ++i)
+    value -= a[i] * so_far[so_far.size() - i];
+  return value;
+}
+
 PlantTest::PlantTest(PlantTestParams params, PlantRecord watched)
     : params_(std::move(params)),
       record_(std::move(watched)),
@@ -149,17 +162,8 @@ void PlantTest::follow() {
     for (Index j = 0; j < n_u_; ++j) {
       Track& t = tracks_[static_cast<std::size_t>(i * n_u_ + j)];
       if (!t.seen) continue;
-      while (static_cast<Index>(t.w.size()) <= record_.rows()) {
-        const auto k = static_cast<Index>(t.w.size());
-        double value = 0.0;
-        for (std::size_t b = 0; b < t.sampled.b.size(); ++b) {
-          const Index at = k - 1 - t.sampled.delay - static_cast<Index>(b);
-          if (at >= 0) value += t.sampled.b[b] * (u(at, j) - u(0, j));
-        }
-        for (std::size_t a = 1; a < t.a.size() && a <= static_cast<std::size_t>(k); ++a)
-          value -= t.a[a] * t.w[static_cast<std::size_t>(k) - a];
-        t.w.push_back(value);
-      }
+      const auto input = [&](Index k) { return u(k, j) - u(0, j); };
+      while (static_cast<Index>(t.w.size()) <= record_.rows()) t.w.push_back(t.next(t.w, input));
     }
 }
 
@@ -184,28 +188,20 @@ void PlantTest::predict(const Vector& present) {
       for (Index i = 0; i < n_y_; ++i) {
         const Track& t = tracks_[static_cast<std::size_t>(i * n_u_ + j)];
         if (!t.seen) continue;
+        const auto input = [&](Index k) {
+          return (k >= now ? planned[k - now] : u(k, j)) - u(0, j);
+        };
         std::vector<double> w = t.w;
-        const double base = w[static_cast<std::size_t>(now)];
         for (Index h = 0; h < H; ++h) {
-          const Index k = now + h + 1;
-          double value = 0.0;
-          for (std::size_t b = 0; b < t.sampled.b.size(); ++b) {
-            const Index from = k - 1 - t.sampled.delay - static_cast<Index>(b);
-            if (from >= 0)
-              value +=
-                  t.sampled.b[b] * ((from >= now ? planned[from - now] : u(from, j)) - u(0, j));
-          }
-          for (std::size_t a = 1; a < t.a.size() && static_cast<Index>(a) <= k; ++a)
-            value -= t.a[a] * w[static_cast<std::size_t>(k) - a];
-          w.push_back(value);
-          ahead(i, h) = (value - base) * (1.0 + t.margin);
+          w.push_back(t.next(w, input));
+          ahead(i, h) = (w.back() - t.w.back()) * (1.0 + t.margin);
         }
       }
     }
 }
 
 /// By how much the limits would be left under these levels, in parts of the room.
-double PlantTest::excess(const std::vector<int>& levels, const Vector& /*present*/) {
+double PlantTest::excess(const std::vector<int>& levels) const {
   const Index H = ahead_.front().cols();
   Matrix change = Matrix::Zero(n_y_, H);
   for (Index j = 0; j < n_u_; ++j)
@@ -253,7 +249,7 @@ void PlantTest::choose(const Vector& present) {
     if (nearLimit()) std::fill(taken.begin(), taken.end(), 0);
   } else {
     predict(present);
-    double least = excess(taken, present);
+    double least = excess(taken);
     // The input that helps most is turned, or left out, until no limit is left any more.
     for (std::size_t round = 0; round < taken.size() && least > 0.0; ++round) {
       std::vector<int> best = taken;
@@ -261,7 +257,7 @@ void PlantTest::choose(const Vector& present) {
         for (int level = -1; level <= 1; ++level) {
           std::vector<int> other = taken;
           other[j] = level;
-          const double value = excess(other, present);
+          const double value = excess(other);
           if (value < least - 1e-12) {
             least = value;
             best = other;

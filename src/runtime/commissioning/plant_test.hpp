@@ -59,7 +59,7 @@ class PlantTest {
   void judge();
   void setAmplitudes();
   void choose(const Vector& present);
-  double excess(const std::vector<int>& levels, const Vector& present);
+  double excess(const std::vector<int>& levels) const;
   void follow();
   void predict(const Vector& present);
   bool nearLimit() const;
@@ -76,6 +76,9 @@ class PlantTest {
     std::vector<double> a;  // whole denominator
     std::vector<double> w;
     double margin{};  // by which its gain may be larger
+    /// What follows the responses `so_far`; input(k): from that of the first row.
+    template <typename Input>
+    double next(const std::vector<double>& so_far, const Input& input) const;
   };
   std::vector<Track> tracks_;  // [output * n_u + input]
   std::vector<Matrix> ahead_;  // [input * 3 + level + 1]: n_y H changes

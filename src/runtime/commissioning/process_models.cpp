@@ -5,9 +5,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 
 #include "base/files.hpp"
+#include "base/finite_json.hpp"
 #include "base/statistics.hpp"
 #include "config/identified_file.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -97,6 +97,51 @@ std::string memberFile(const std::string& folder, std::size_t member) {
   return inFolder(inFolder(folder, "ensemble"), std::to_string(member + 1) + ".yaml");
 }
 
+/// Of the element, per hour of an integrator.
+double gainOf(const ProcessElement& e) { return e.gain * (e.integrating ? 3600.0 : 1.0); }
+
+/// n_y n_u.
+Matrix gainsOf(const std::vector<ProcessFit>& fits, Index inputs) {
+  Matrix gains(static_cast<Index>(fits.size()), inputs);
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    for (Index j = 0; j < inputs; ++j) {
+      const ElementEstimate& e = fits[i].elements[static_cast<std::size_t>(j)];
+      gains(static_cast<Index>(i), j) = gainOf(e.element);
+    }
+  return gains;
+}
+
+/// What toJson() made of them.
+std::vector<ProcessFit> fitsOf(const OrderedJson& json) {
+  std::vector<ProcessFit> fits;
+  for (const auto& output : json.at("outputs")) {
+    ProcessFit fit;
+    const std::string kind = output.at("kind");
+    for (const ProcessKind k : {ProcessKind::kIntegrating, ProcessKind::kUnstable})
+      if (kind == wordOf(k)) fit.kind = k;
+    fit.rows = output.at("rows");
+    fit.one_step = output.at("one_step");
+    fit.free_run = output.at("free_run");
+    fit.output = output.at("rest");
+    const std::vector<double> mean = output.at("inputs_mean");
+    fit.input = Eigen::Map<const Vector>(mean.data(), static_cast<Index>(mean.size()));
+    for (const auto& element : output.at("elements")) {
+      ElementEstimate e;
+      e.element = elementOf(element);
+      e.seen = element.at("seen");
+      e.gain_bound = numberOrInfinity(element.at("gain_bound"));
+      e.dead_time_bound = element.at("dead_time_bound_s");
+      e.time_bound = element.at("time_bound_s");
+      fit.ensemble.resize(element.at("ensemble").size());
+      for (std::size_t m = 0; m < fit.ensemble.size(); ++m)
+        fit.ensemble[m].push_back(elementOf(element.at("ensemble")[m]));
+      fit.elements.push_back(e);
+    }
+    fits.push_back(std::move(fit));
+  }
+  return fits;
+}
+
 }  // namespace
 
 LinearPoint modelRest(const std::vector<ProcessFit>& fits, Index inputs) {
@@ -145,16 +190,6 @@ TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more
   return modelOf(models.model, fits, -1);
 }
 
-Matrix gainsOf(const std::vector<ProcessFit>& fits, Index inputs) {
-  Matrix gains(static_cast<Index>(fits.size()), inputs);
-  for (std::size_t i = 0; i < fits.size(); ++i)
-    for (Index j = 0; j < inputs; ++j) {
-      const ElementEstimate& e = fits[i].elements[static_cast<std::size_t>(j)];
-      gains(static_cast<Index>(i), j) = e.element.gain * (e.element.integrating ? 3600.0 : 1.0);
-    }
-  return gains;
-}
-
 std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vector& input_range,
                                           const Vector& output_range) {
   const Index n_u = input_range.size(), n_y = output_range.size();
@@ -178,7 +213,7 @@ std::vector<WeakDirection> weakDirections(const ProcessModels& models, const Vec
               models.fits[static_cast<std::size_t>(i)].ensemble[m][static_cast<std::size_t>(j)];
           one(i, j) =
               models.fits[static_cast<std::size_t>(i)].elements[static_cast<std::size_t>(j)].seen
-                  ? e.gain * (e.integrating ? 3600.0 : 1.0)
+                  ? gainOf(e)
                   : 0.0;
         }
       if (svd.matrixU().col(k).dot(scaled(one) * svd.matrixV().col(k)) <= 0.2 * values[k])
@@ -208,8 +243,7 @@ OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant) {
                                            : plant.disturbances[j - plant.inputs.size()].name},
           {"seen", e.seen}};
       element.update(elementJson(e.element));
-      element["gain_bound"] =
-          std::isfinite(e.gain_bound) ? OrderedJson(e.gain_bound) : OrderedJson(nullptr);
+      element["gain_bound"] = numberOrNull(e.gain_bound);
       element["dead_time_bound_s"] = e.dead_time_bound;
       element["time_bound_s"] = e.time_bound;
       element["ensemble"] = OrderedJson::array();
@@ -220,37 +254,6 @@ OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant) {
     json["outputs"].push_back(std::move(output));
   }
   return json;
-}
-
-std::vector<ProcessFit> fitsOf(const OrderedJson& json) {
-  std::vector<ProcessFit> fits;
-  for (const auto& output : json.at("outputs")) {
-    ProcessFit fit;
-    const std::string kind = output.at("kind");
-    for (const ProcessKind k : {ProcessKind::kIntegrating, ProcessKind::kUnstable})
-      if (kind == wordOf(k)) fit.kind = k;
-    fit.rows = output.at("rows");
-    fit.one_step = output.at("one_step");
-    fit.free_run = output.at("free_run");
-    fit.output = output.at("rest");
-    const std::vector<double> mean = output.at("inputs_mean");
-    fit.input = Eigen::Map<const Vector>(mean.data(), static_cast<Index>(mean.size()));
-    for (const auto& element : output.at("elements")) {
-      ElementEstimate e;
-      e.element = elementOf(element);
-      e.seen = element.at("seen");
-      e.gain_bound = element.at("gain_bound").is_null() ? std::numeric_limits<double>::infinity()
-                                                        : element.at("gain_bound").get<double>();
-      e.dead_time_bound = element.at("dead_time_bound_s");
-      e.time_bound = element.at("time_bound_s");
-      fit.ensemble.resize(element.at("ensemble").size());
-      for (std::size_t m = 0; m < fit.ensemble.size(); ++m)
-        fit.ensemble[m].push_back(elementOf(element.at("ensemble")[m]));
-      fit.elements.push_back(e);
-    }
-    fits.push_back(std::move(fit));
-  }
-  return fits;
 }
 
 void writeModels(const ProcessModels& models, const std::string& folder) {

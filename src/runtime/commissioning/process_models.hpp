@@ -23,10 +23,8 @@ struct ProcessModels {
 
 /// @throws InputError naming an output that no input moves.
 ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members);
-/// Elements with their bounds, kinds, errors, directions of the inputs that are weak.
+/// Elements with their bounds, kinds and errors, those of the ensemble too.
 OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant);
-/// fits of model.json, without the ensemble's.
-std::vector<ProcessFit> fitsOf(const OrderedJson& json);
 /// model.yaml and ensemble/NUMBER.yaml, each a plant of type model.
 void writeModels(const ProcessModels& models, const std::string& folder);
 /// What writeModels() wrote, with model.json. @throws InputError naming the file.
@@ -35,9 +33,6 @@ ProcessModels readModels(const std::string& folder);
 /// The likeliest model with other gains and more dead time: what a law is to bear beside the
 /// ensemble.
 TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more_dead_time_s);
-
-/// n_y n_u, gains of the elements (per hour of an integrator).
-Matrix gainsOf(const std::vector<ProcessFit>& fits, Eigen::Index inputs);
 
 /// Where the models rest, whatever their gains.
 LinearPoint modelRest(const std::vector<ProcessFit>& fits, Eigen::Index inputs);

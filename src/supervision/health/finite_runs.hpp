@@ -24,6 +24,14 @@ inline std::vector<FiniteRun> finiteRuns(const std::vector<double>& values) {
   return all;
 }
 
+/// The numbers among them.
+inline std::vector<double> finiteOnly(const std::vector<double>& values) {
+  std::vector<double> some;
+  for (const double v : values)
+    if (std::isfinite(v)) some.push_back(v);
+  return some;
+}
+
 /// Of the numbers among them; NaN without any.
 inline double meanOf(const std::vector<double>& values) {
   double sum = 0.0, count = 0.0;

@@ -11,12 +11,13 @@
 namespace fpc {
 namespace {
 
-constexpr double kFewestAutomatic = 200.0;   // samples, without which nothing is judged
-constexpr std::size_t kMostForValve = 3000;  // means of samples
+constexpr std::size_t kFewestAutomatic = 200;  // samples, without which nothing is judged
+constexpr std::size_t kMostForValve = 3000;    // means of samples
 constexpr double kFewestForValve = 1200.0;
-constexpr double kSettled = 0.2;         // of the error's autocorrelation
-constexpr double kSlow = 1.55;           // times the usual settling
-constexpr double kSlowDeadTimes = 14.0;  // where only these are given
+constexpr double kDay = 86400.0, kSamePeriod = 0.06;  // s; of a period
+constexpr double kSettled = 0.2;                      // of the error's autocorrelation
+constexpr double kSlow = 1.55;                        // times the usual settling
+constexpr double kSlowDeadTimes = 14.0;               // where only these are given
 constexpr double kSlowIndex = 0.8;
 constexpr double kLongPeriod = 25.0;  // dead times
 constexpr double kDriven = 0.36;      // unrest of the envelope: below it driven, above it rings
@@ -41,21 +42,24 @@ constexpr CauseWords kCauses[] = {
 };
 static_assert(std::size(kCauses) == static_cast<std::size_t>(LoopCause::kModelOutOfDate) + 1);
 
-/// y - setpoint while in automatic, NaN elsewhere and where the setpoint has just moved.
+bool isAutomatic(const ControlRecord& r, std::size_t k) {
+  return r.duty.empty() || r.duty[k] == LoopDuty::kAutomatic;
+}
+
+/// y - setpoint while in automatic, NaN elsewhere.
 std::vector<double> errorOf(const ControlRecord& r) {
   std::vector<double> e(r.y.size(), kNaN);
   const double mean = r.setpoint.empty() ? meanOf(r.y) : 0.0;
   for (std::size_t k = 0; k < e.size(); ++k) {
-    if (!r.duty.empty() && r.duty[k] != LoopDuty::kAutomatic) continue;
+    if (!isAutomatic(r, k)) continue;
     e[k] = r.y[k] - (r.setpoint.empty() ? mean : r.setpoint[k]);
   }
   return e;
 }
 
 double medianSize(const std::vector<double>& values) {
-  std::vector<double> sizes;
-  for (const double v : values)
-    if (std::isfinite(v)) sizes.push_back(std::abs(v));
+  std::vector<double> sizes = finiteOnly(values);
+  for (double& v : sizes) v = std::abs(v);
   return upperMedian(std::move(sizes));
 }
 
@@ -103,10 +107,6 @@ double shareOf(const ControlRecord& r, LoopDuty which) {
   if (duty.empty()) return which == LoopDuty::kAutomatic ? 1.0 : 0.0;
   return static_cast<double>(std::count(duty.begin(), duty.end(), which)) /
          static_cast<double>(duty.size());
-}
-
-bool isAutomatic(const ControlRecord& r, std::size_t k) {
-  return r.duty.empty() || r.duty[k] == LoopDuty::kAutomatic;
 }
 
 double shareAtLimits(const ControlRecord& r, double& lower, double& upper) {
@@ -206,7 +206,7 @@ LoopCause causeOf(const ControlRecord& r, const LoopHealth& h, double lower, dou
                   const std::vector<double>& rest) {
   if (h.sensor.isFrozen()) return LoopCause::kSensorFrozen;
   if (h.sensor.hasSpikes()) return LoopCause::kSensorSpikes;
-  if (h.oscillation.found) return oscillationCause(r, h, lower, upper);
+  if (h.oscillation.found && !h.isDaily()) return oscillationCause(r, h, lower, upper);
   if (h.at_limits > kAtLimits) return LoopCause::kAtLimits;
   if (h.valve.sticks) return LoopCause::kStiction;
   if (h.valve.plays) return LoopCause::kBacklash;
@@ -237,6 +237,11 @@ void remarkSensor(const ControlRecord& r, LoopHealth& h) {
                           " over the record while the output holds: a drifting sensor, fouling or "
                           "a drifting load");
   }
+}
+
+void remarkPeriod(LoopHealth& h) {
+  if (h.isDaily())
+    h.remarks.push_back("It swings with the day, as a load does; that is taken for no fault");
 }
 
 void remarkTest(const ControlRecord& r, LoopHealth& h) {
@@ -281,6 +286,17 @@ void ControlRecord::validate() const {
 const char* nameOf(LoopCause cause) { return kCauses[static_cast<std::size_t>(cause)].name; }
 const char* adviceOf(LoopCause cause) { return kCauses[static_cast<std::size_t>(cause)].advice; }
 
+const char* nameOf(DeadTimeSource source) {
+  constexpr const char* kNames[] = {"assumed", "estimated", "given"};
+  return kNames[static_cast<std::size_t>(source)];
+}
+
+bool LoopHealth::isDaily() const {
+  if (!oscillation.found) return false;
+  const double days = periodS() / kDay;
+  return std::abs(days - 1.0) < kSamePeriod || std::abs(2.0 * days - 1.0) < kSamePeriod;
+}
+
 LoopHealth judgeLoop(const ControlRecord& r) {
   r.validate();
   LoopHealth h;
@@ -313,25 +329,24 @@ LoopHealth judgeLoop(const ControlRecord& r) {
   h.oscillation = findOscillation(rest);
   settling = settlingOf(rest);
   h.settling_s = settling * r.sample_time_s;
-  double known = 0.0;
-  for (const double v : error) known += std::isfinite(v) ? 1.0 : 0.0;
-  if (known < kFewestAutomatic || !(h.error_std > 0.0)) return h;
+  if (finiteOnly(error).size() < kFewestAutomatic || !(h.error_std > 0.0)) return h;
   if (!r.u.empty()) judgeValve(r, h, settling);
   h.cause = causeOf(r, h, lower, upper, rest);
   remarkHarris(h);
   remarkSensor(r, h);
+  remarkPeriod(h);
   remarkTest(r, h);
   return h;
 }
 
 void relateLoops(std::vector<LoopHealth>& loops) {
-  constexpr double kSamePeriod = 0.1;
+  constexpr double kAlike = 0.1;
   for (LoopHealth& loop : loops) {
     if (!loop.oscillation.found) continue;
     std::string others, source;
     for (const LoopHealth& other : loops) {
       if (&other == &loop || !other.oscillation.found) continue;
-      if (std::abs(other.periodS() / loop.periodS() - 1.0) > kSamePeriod) continue;
+      if (std::abs(other.periodS() / loop.periodS() - 1.0) > kAlike) continue;
       others += (others.empty() ? "" : ", ") + other.output;
       if (other.cause == LoopCause::kStiction || other.cause == LoopCause::kBacklash ||
           other.cause == LoopCause::kAggressiveTuning)
@@ -346,37 +361,34 @@ void relateLoops(std::vector<LoopHealth>& loops) {
 }
 
 std::vector<std::pair<std::string, std::string>> figuresOf(const LoopHealth& h) {
-  const auto number = [](double v) { return std::isfinite(v) ? shortText(v) : std::string("-"); };
-  constexpr const char* kSources[] = {"assumed", "estimated", "given"};
   std::vector<std::pair<std::string, std::string>> f;
   f.emplace_back("cause", nameOf(h.cause));
   f.emplace_back("input", h.input);
-  f.emplace_back("hours", number(h.hours));
+  f.emplace_back("hours", shortText(h.hours));
   f.emplace_back("samples", std::to_string(h.samples));
   f.emplace_back("missing", std::to_string(h.missing));
-  f.emplace_back("automatic [%]", number(100.0 * h.automatic));
-  f.emplace_back("manual [%]", number(100.0 * h.manual));
-  f.emplace_back("fallback [%]", number(100.0 * h.fallback));
-  f.emplace_back("held [%]", number(100.0 * h.held));
-  f.emplace_back("at limits [%]", number(100.0 * h.at_limits));
-  f.emplace_back("Harris index", number(h.harris.index));
-  f.emplace_back("dead time [s]", number(h.dead_time_s) + " (" +
-                                      kSources[static_cast<std::size_t>(h.dead_time_source)] + ")");
-  f.emplace_back("error, mean [" + h.unit + "]", number(h.error_mean));
-  f.emplace_back("error, standard deviation [" + h.unit + "]", number(h.error_std));
-  f.emplace_back("error forgotten after [s]", number(h.settling_s));
-  f.emplace_back("period [s]", h.oscillation.found ? number(h.periodS()) : "-");
-  f.emplace_back("amplitude [" + h.unit + "]",
-                 h.oscillation.found ? number(h.oscillation.amplitude) : "-");
-  f.emplace_back("regularity", h.oscillation.found ? number(h.oscillation.regularity) : "-");
+  f.emplace_back("automatic [%]", shortText(100.0 * h.automatic));
+  f.emplace_back("manual [%]", shortText(100.0 * h.manual));
+  f.emplace_back("fallback [%]", shortText(100.0 * h.fallback));
+  f.emplace_back("held [%]", shortText(100.0 * h.held));
+  f.emplace_back("at limits [%]", shortText(100.0 * h.at_limits));
+  f.emplace_back("Harris index", shortText(h.harris.index));
+  f.emplace_back("dead time [s]",
+                 shortText(h.dead_time_s) + " (" + nameOf(h.dead_time_source) + ")");
+  f.emplace_back("error, mean [" + h.unit + "]", shortText(h.error_mean));
+  f.emplace_back("error, standard deviation [" + h.unit + "]", shortText(h.error_std));
+  f.emplace_back("error forgotten after [s]", shortText(h.settling_s));
+  f.emplace_back("period [s]", shortText(h.periodS()));
+  f.emplace_back("amplitude [" + h.unit + "]", shortText(h.oscillation.amplitude));
+  f.emplace_back("regularity", shortText(h.oscillation.regularity));
   const bool valve = h.valve.sticks || h.valve.plays;
-  f.emplace_back("valve, dead band [" + h.input_unit + "]", valve ? number(h.valve.band) : "-");
-  f.emplace_back("valve, slip jump [" + h.input_unit + "]", valve ? number(h.valve.jump) : "-");
-  f.emplace_back("frozen [%]", number(100.0 * h.sensor.frozen));
-  f.emplace_back("spikes [%]", number(100.0 * h.sensor.spikes));
+  f.emplace_back("valve, dead band [" + h.input_unit + "]", valve ? shortText(h.valve.band) : "-");
+  f.emplace_back("valve, slip jump [" + h.input_unit + "]", valve ? shortText(h.valve.jump) : "-");
+  f.emplace_back("frozen [%]", shortText(100.0 * h.sensor.frozen));
+  f.emplace_back("spikes [%]", shortText(100.0 * h.sensor.spikes));
   f.emplace_back("model, distance over the horizon [%]",
-                 h.model.judged ? number(100.0 * h.model.distance) : "-");
-  f.emplace_back("gain, record over model", h.model.judged ? number(h.model.gain_ratio) : "-");
+                 h.model.judged ? shortText(100.0 * h.model.distance) : "-");
+  f.emplace_back("gain, record over model", h.model.judged ? shortText(h.model.gain_ratio) : "-");
   return f;
 }
 

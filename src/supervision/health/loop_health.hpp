@@ -31,8 +31,7 @@ struct ControlRecord {
   /// known either.
   std::vector<std::uint64_t> counts;
   double u_lower{-kInfinity}, u_upper{kInfinity};
-  double y_lower{-kInfinity}, y_upper{kInfinity};  ///< of the instrument
-  double dead_time_s{kNaN};                        ///< NaN: estimated
+  double dead_time_s{kNaN};  ///< NaN: estimated
   StepResponse model;  ///< of a model of this loop at its operating point; empty: none is named
 
   /// @throws InputError naming the series: none, or of other length than y.
@@ -57,6 +56,7 @@ const char* nameOf(LoopCause cause);    ///< stable word: "stiction"
 const char* adviceOf(LoopCause cause);  ///< a sentence without full stop
 
 enum class DeadTimeSource : std::uint8_t { kAssumed, kEstimated, kGiven };
+const char* nameOf(DeadTimeSource source);  ///< "assumed"
 
 struct LoopHealth {
   std::string output, input, unit, input_unit;
@@ -78,6 +78,7 @@ struct LoopHealth {
   std::vector<std::string> remarks;  ///< sentences: why, and what else
 
   double periodS() const { return oscillation.period * sample_time_s; }
+  bool isDaily() const;  ///< it swings with the period of a day or half of one, as loads do
 };
 
 /// @throws InputError as ControlRecord::validate().

@@ -15,7 +15,7 @@ constexpr double kTau = 6.283185307179586;
 constexpr int kPerOctave = 12;      // bands of the spectrum
 constexpr double kHalfBand = 1.45;  // the band around a peak: from f / this to f times this
 constexpr int kPeaks = 4;           // that are looked at
-constexpr double kFewestPeriods = 8.0, kShortestPeriod = 3.5;
+constexpr double kFewestPeriods = 12.0, kShortestPeriod = 3.5;
 constexpr int kIntervals = 10;  // between zero crossings
 constexpr double kLeastRegularity = 4.0, kLeastShare = 0.2, kLeastAfterOne = 0.6;
 
@@ -115,11 +115,11 @@ class BandCorrelation {
   double total_{};
 };
 
-/// Highest absolute value within half a period around a lag, unbiased for the record's length.
-double heightNear(const BandCorrelation& c, double lag, double period, double n) {
+/// Highest value within half a period around one period, unbiased for the record's length.
+double heightAfterOne(const BandCorrelation& c, double period, double n) {
   double most = 0.0;
-  for (int k = -8; k <= 8; ++k) most = std::max(most, c.at(lag + period * k / 32.0));
-  return most / std::max(0.05, 1.0 - lag / n);
+  for (int k = -8; k <= 8; ++k) most = std::max(most, c.at(period + period * k / 32.0));
+  return most / std::max(0.05, 1.0 - period / n);
 }
 
 /// Standard deviation over mean of the envelope of the band.
@@ -162,8 +162,7 @@ Oscillation oscillationAt(const Spectrum& s, double f) {
   o.share = c.total() / s.total;
   // twice the power of positive frequencies over all bins is the mean square of the padded signal
   o.amplitude = std::sqrt(2.0 * 2.0 * c.total() / static_cast<double>(s.bins.size()) / s.n);
-  o.after_one = heightNear(c, o.period, o.period, s.n);
-  o.after_ten = heightNear(c, std::min(10.0 * o.period, 0.6 * s.n), o.period, s.n);
+  o.after_one = heightAfterOne(c, o.period, s.n);
   o.found =
       o.regularity > kLeastRegularity && o.share >= kLeastShare && o.after_one >= kLeastAfterOne;
   if (o.found) o.unrest = unrestOf(s, from, std::min(to, s.power.size()), o.period);

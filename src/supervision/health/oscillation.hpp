@@ -14,14 +14,12 @@ struct Oscillation {
   double regularity{kNaN};  ///< mean over three standard deviations of these; above 1: regular
   double amplitude{kNaN};   ///< of a sine of this power
   double share{kNaN};       ///< of the signal's variance, in the octave around it
-  double after_one{kNaN};   ///< autocorrelation one period later ...
-  double after_ten{kNaN};  ///< ... and ten: near 1 what is driven or a limit cycle, less what noise
-                           ///< rings
-  double unrest{kNaN};     ///< standard deviation over mean of the envelope: a sine 0, noise 0.52
+  double after_one{kNaN};   ///< autocorrelation one period later
+  double unrest{kNaN};      ///< standard deviation over mean of the envelope: a sine 0, noise 0.52
 };
 
 /// Regular crossings of the autocorrelation in a band around the highest peak of the spectrum, f S.
-/// At least eight periods must fit into the record. NaN counts as the mean. Source: thornhill2003
+/// At least twelve periods must fit into the record. NaN counts as the mean. Source: thornhill2003
 Oscillation findOscillation(const std::vector<double>& signal);
 
 /// Autocorrelation at lags 0..`most`, of what is there in pairs.

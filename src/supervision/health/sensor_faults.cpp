@@ -1,10 +1,9 @@
 #include "supervision/health/sensor_faults.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "base/order_statistics.hpp"
+#include "identification/record_remarks.hpp"
 #include "supervision/flat_line.hpp"
 #include "supervision/health/finite_runs.hpp"
 
@@ -13,18 +12,7 @@ namespace {
 
 constexpr Eigen::Index kShortestFreeze = 20;
 constexpr double kFrozenShare = 0.02, kSpikeShare = 0.001;
-constexpr double kSpikeSize = 8.0;      // robust standard deviations
-constexpr double kSpikeOfRange = 0.05;  // and of the signal's range
-constexpr std::size_t kMostForRanks = 200000;
-
-/// Every so many of the values that enough are left.
-std::vector<double> thinned(const std::vector<double>& values) {
-  const std::size_t step = 1 + values.size() / kMostForRanks;
-  std::vector<double> some;
-  for (std::size_t k = 0; k < values.size(); k += step)
-    if (std::isfinite(values[k])) some.push_back(values[k]);
-  return some;
-}
+constexpr std::size_t kFewestSpikes = 3;
 
 void findFrozen(const std::vector<double>& values, SensorFaults& faults) {
   FlatLine line;
@@ -50,29 +38,11 @@ void findFrozen(const std::vector<double>& values, SensorFaults& faults) {
     faults.frozen = static_cast<double>(frozen) / static_cast<double>(values.size());
 }
 
-double medianOfFive(const double* v) {
-  std::array<double, 5> five{v[0], v[1], v[2], v[3], v[4]};
-  std::nth_element(five.begin(), five.begin() + 2, five.end());
-  return five[2];
-}
-
 void findSpikes(const std::vector<double>& values, SensorFaults& faults) {
-  if (values.size() < 50) return;
-  std::vector<double> apart(values.size(), kNaN);
-  for (std::size_t k = 2; k + 2 < values.size(); ++k) {
-    bool all = true;
-    for (std::size_t j = k - 2; j <= k + 2; ++j) all = all && std::isfinite(values[j]);
-    if (all) apart[k] = std::abs(values[k] - medianOfFive(&values[k - 2]));
-  }
-  const std::vector<double> some = thinned(values), some_apart = thinned(apart);
-  if (some.size() < 50 || some_apart.size() < 50) return;
-  const double range = sampleQuantile(some, 0.99) - sampleQuantile(some, 0.01);
-  const double usual = 1.4826 * upperMedian(some_apart);
-  const double limit =
-      std::max({kSpikeSize * usual, kSpikeOfRange * range, 2.0 * sampleQuantile(some_apart, 0.98)});
-  double spikes = 0.0;
-  for (const double a : apart) spikes += a > limit && limit > 0.0 ? 1.0 : 0.0;
-  faults.spikes = spikes < 3.0 ? 0.0 : spikes / static_cast<double>(values.size());
+  const auto size = static_cast<Eigen::Index>(values.size());
+  const std::size_t spikes = outliersOf(Eigen::Map<const Vector>(values.data(), size)).size();
+  if (spikes >= kFewestSpikes)
+    faults.spikes = static_cast<double>(spikes) / static_cast<double>(values.size());
 }
 
 void findResolution(const std::vector<double>& values, SensorFaults& faults) {
@@ -116,9 +86,7 @@ SensorFaults sensorFaults(const std::vector<double>& values) {
 
 double certainTrend(const std::vector<double>& values) {
   constexpr std::size_t kBlocks = 20;
-  std::vector<double> there;
-  for (const double v : values)
-    if (std::isfinite(v)) there.push_back(v);
+  const std::vector<double> there = finiteOnly(values);
   if (there.size() < 10 * kBlocks) return 0.0;
   const std::vector<double> means =
       blockMeans(there, static_cast<Eigen::Index>(there.size() / kBlocks));

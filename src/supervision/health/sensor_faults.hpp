@@ -20,7 +20,7 @@ struct SensorFaults {
   bool isCoarse(double std_error) const;
 };
 
-/// Frozen as FlatLine has it, in runs of at least twenty; spikes against the median of five.
+/// Frozen as FlatLine has it, in runs of at least twenty; spikes as outliersOf() has them.
 SensorFaults sensorFaults(const std::vector<double>& values);
 
 /// Change of a series over its whole length, from the ranks of twenty means; 0 unless it goes one

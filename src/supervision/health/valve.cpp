@@ -16,7 +16,8 @@ constexpr double kMemories[] = {6.0, 15.0, 40.0, 100.0};  // of smoothed pasts [
 constexpr int kSmoothed = 2 * static_cast<int>(std::size(kMemories));
 constexpr double kBands[] = {0.1, 0.15, 0.2, 0.27, 0.35, 0.45, 0.55, 0.65, 0.75, 0.85, 0.92, 1.0};
 constexpr double kLeastF = 8.5, kLeastValveShare = 0.05, kLeastJumpF = 10.0;
-constexpr Eigen::Index kFewest = 200;
+constexpr Eigen::Index kFewest = 1000;
+constexpr int kFewestTurns = 10;
 
 template <typename Valve>
 std::vector<double> positions(const std::vector<double>& signal, double band, double jump) {
@@ -117,6 +118,21 @@ class ValveRegression {
   double left_{};
 };
 
+/// Turns of a signal by more than `least`.
+int turnsOf(const std::vector<double>& signal, double least) {
+  int turns = 0, way = 0;
+  double extreme = signal.front();
+  for (const double v : signal) {
+    const bool turned = way * (extreme - v) > least || (way == 0 && std::abs(v - extreme) > least);
+    if (turned) {
+      way = v > extreme ? 1 : -1;
+      ++turns;
+    }
+    if (turned || way * (v - extreme) > 0.0) extreme = v;
+  }
+  return turns;
+}
+
 /// In parts of the signal's range, the jump in parts of the band; what it leaves.
 struct Shape {
   double band, jump;
@@ -195,9 +211,7 @@ double SlippingValve::move(double signal) {
 ValveFit fitValve(const std::vector<double>& signal, const std::vector<double>& y, int delay,
                   Eigen::Index factor) {
   ValveFit fit;
-  std::vector<double> finite;
-  for (const double v : signal)
-    if (std::isfinite(v)) finite.push_back(v);
+  const std::vector<double> finite = finiteOnly(signal);
   if (finite.size() < static_cast<std::size_t>(kFewest)) return fit;
   const double range = sampleQuantile(finite, 0.99) - sampleQuantile(finite, 0.01);
   if (!(range > 0.0)) return fit;
@@ -237,7 +251,8 @@ ValveFit fitValve(const std::vector<double>& signal, const std::vector<double>& 
   fit.share = 1.0 - best / regression.left();
   fit.significance = (regression.left() - best) / lags / of_noise;
   fit.jump_significance = (best_play - best) / of_noise;
-  const bool certain = fit.significance > kLeastF && fit.share > kLeastValveShare;
+  const bool certain = fit.significance > kLeastF && fit.share > kLeastValveShare &&
+                       turnsOf(finite, 0.5 * fit.band) >= kFewestTurns;
   fit.sticks = certain && fit.jump > 0.0 && fit.jump_significance > kLeastJumpF;
   fit.plays = certain && !fit.sticks;
   if (fit.plays) {
