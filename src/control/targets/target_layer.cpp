@@ -23,18 +23,18 @@ constexpr double kSettled = 1e-7;  // of a unit: two linearisations agree
 constexpr double kGivenUp = 1e-6;  // of a unit: less is nothing
 constexpr double kFarOut = 1e6;    // units: a price drives it where nothing holds it
 
-/// One row of the problem: what it asks of which unknown or output.
-struct Ask {
-  enum Kind { kBalance, kZone, kSetpoint, kRest } kind;
-  Index index;                    // of the level, the output or the input
-  std::string above, below, who;  // texts of what is given up
-};
-
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
 struct TargetLayer::Workspace {
+  /// One row of the problem: what it asks of which unknown or output.
+  struct Ask {
+    enum Kind { kBalance, kZone, kSetpoint, kRest } kind;
+    Index index;                    // of the level, the output or the input
+    std::string above, below, who;  // texts of what is given up
+  };
+
   TargetParams params;
   InputLimits limits;
   PlantInfo plant;

@@ -20,22 +20,6 @@ constexpr double kPull = 1e-6;  // of the unknowns to where they are: each stage
 constexpr int kPulls = 12;      // and pulls again from where it came until nothing moves
 constexpr double kStill = 1e-11;
 
-/// Rows that one stage gives up, and those of the stages before, which it keeps.
-struct Stage {
-  std::vector<Index> soft, hard;
-  QpProblem qp;  // in v / unit, then what is given up of each soft row over its unit
-  QpSolver solver;
-
-  Stage(Index n, std::vector<Index> soft_rows, std::vector<Index> hard_rows)
-      : soft(std::move(soft_rows)),
-        hard(std::move(hard_rows)),
-        qp(n + static_cast<Index>(soft.size()), static_cast<Index>(soft.size() + hard.size())),
-        solver(std::max<Index>(qp.g.size(), 1), qp.a_lower.size()) {
-    qp.H.diagonal().head(n).setConstant(kPull);
-    for (Index k = 0; k < static_cast<Index>(soft.size()); ++k) qp.A(k, n + k) = -1.0;
-  }
-};
-
 template <typename Has>
 std::vector<Index> rowsWhere(const std::vector<int>& ranks, const Has& has) {
   std::vector<Index> rows;
@@ -67,6 +51,22 @@ TargetProblem::TargetProblem(Index n, Index m)
       rest(Vector::Zero(n)) {}
 
 struct TargetSolver::Workspace {
+  /// Rows that one stage gives up, and those of the stages before, which it keeps.
+  struct Stage {
+    std::vector<Index> soft, hard;
+    QpProblem qp;  // in v / unit, then what is given up of each soft row over its unit
+    QpSolver solver;
+
+    Stage(Index n, std::vector<Index> soft_rows, std::vector<Index> hard_rows)
+        : soft(std::move(soft_rows)),
+          hard(std::move(hard_rows)),
+          qp(n + static_cast<Index>(soft.size()), static_cast<Index>(soft.size() + hard.size())),
+          solver(std::max<Index>(qp.g.size(), 1), qp.a_lower.size()) {
+      qp.H.diagonal().head(n).setConstant(kPull);
+      for (Index k = 0; k < static_cast<Index>(soft.size()); ++k) qp.A(k, n + k) = -1.0;
+    }
+  };
+
   Index n, m;
   std::vector<int> ranks;
   Stage together;             // all rows at once: enough where all can be kept

@@ -31,6 +31,7 @@ void readRanges(YamlSection& brief, const std::string& key, const std::vector<Si
                 Vector& lower, Vector& upper) {
   YamlSection section = brief.section(key);
   for (std::size_t i = 0; i < signals.size(); ++i) {
+    section.markRead(signals[i].name);
     if (!section.has(signals[i].name)) continue;
     std::vector<double> range;
     section.numbers(signals[i].name, range);
@@ -45,9 +46,11 @@ void readRanges(YamlSection& brief, const std::string& key, const std::vector<Si
 void readValues(YamlSection& brief, const std::string& key, const std::vector<SignalInfo>& signals,
                 Vector& values, Range range) {
   YamlSection section = brief.section(key);
-  for (std::size_t i = 0; i < signals.size(); ++i)
+  for (std::size_t i = 0; i < signals.size(); ++i) {
+    section.markRead(signals[i].name);
     if (section.has(signals[i].name))
       section.number(signals[i].name, values[static_cast<Index>(i)], range);
+  }
   section.finish();
 }
 
