@@ -14,7 +14,7 @@
 #include "runtime/factory.hpp"
 
 namespace fpc {
-namespace {
+namespace block_vectors {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
@@ -267,7 +267,10 @@ class Scenario {
   bool reset_{false};
 };
 
-}  // namespace
+}  // namespace block_vectors
+
+using block_vectors::BlockCase;
+using block_vectors::kNoNumber;
 
 struct BlockVectors::Run {
   Run(const LoopFile& given, const ir::Program& program, std::uint64_t seed, int samples)
@@ -419,10 +422,10 @@ struct BlockVectors::Run {
   }
 
   LoopFile loop;
-  Scenario scenario;
+  block_vectors::Scenario scenario;
   std::optional<ControllerSession> session;
   std::optional<Simulation> simulation;
-  std::optional<StandIn> stand_in;
+  std::optional<block_vectors::StandIn> stand_in;
   std::vector<std::string> inputs, outputs;
   std::vector<double> defaults, row;
   Vector asked, last;
