@@ -22,6 +22,8 @@ constexpr double kHeard = 1.0;          // [s] in which a run under way is heard
 constexpr double kLookForRing = 0.01;   // [s] of wall time, at who is there
 constexpr double kSettled = 0.1;        // [s]: a connection is complete at both ends a moment later
 constexpr double kLookForTopics = 0.1, kLookForMore = 0.5;  // [s], until ready and then
+constexpr int kStragglers =
+    100;  // polls, 5 s of its own: so long, at least, what a sample lacks is waited for
 constexpr double kPredecessor = 5.0;  // [s] in which one of the same name may end in order
 
 template <typename Msg>
@@ -107,6 +109,7 @@ void LoopRecorder::poll() {
   store_->sync(steadyNow());
   if (bag_) bag_->sync(steadyNow());
   if (written_) return;
+  giveUpOld();
   if (clock_.closed()) return conclude();  // the disk had no room
   if (!clock_.stragglersLost(steadyNow())) return;
   const std::uint32_t last = session_.latest().step, expected = session_.layout().samples;
@@ -116,6 +119,16 @@ void LoopRecorder::poll() {
                  : "the final sample came, but the record has gaps: " + join(session_.gaps());
   session_.close();
   conclude();
+}
+
+// A real plant goes on without an answer: what a sample lacks is not waited for in memory, where
+// it and all that follow would be lost with this process.
+void LoopRecorder::giveUpOld() {
+  if (++waited_ < kStragglers) return;
+  const StepHeader& newest = session_.latest();
+  if (marked_.run_id == newest.run_id) session_.giveUpBefore(marked_.step);
+  marked_ = newest;
+  waited_ = 0;
 }
 
 // A folder that cannot be used ends the launch before the first sample; a run that is under way

@@ -58,6 +58,7 @@ class LoopRecorder : public Node {
   std::unique_ptr<RecordStore> openStore(const std::string& folder);
   void poll();
   void giveUp();
+  void giveUpOld();
   void announceIfConnected();
   void beginRun(std::uint64_t run_id);
   template <typename Msg, typename Take>
@@ -83,6 +84,8 @@ class LoopRecorder : public Node {
   std::string announcer_;  // of the run: its measurements count
   std::unique_ptr<BagWriter> bag_;
   double looked_s_{-1};  // at the topics
+  StepHeader marked_;    // newest sample when it was looked at last ...
+  int waited_{};         // ... so many polls ago
   bool bag_ready_{false};
 
   RecorderClock clock_;

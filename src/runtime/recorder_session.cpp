@@ -181,6 +181,11 @@ void RecorderSession::passOn() {
   while (!window_.empty() && layout_.isComplete(window_.front())) emitFront();
 }
 
+void RecorderSession::giveUpBefore(std::uint32_t step) {
+  while (next_ < step && !window_.empty()) emitFront();
+  passOn();
+}
+
 // A run that was cut short ends with the last measurement; its action is not missed.
 void RecorderSession::close() {
   while (!window_.empty() && !window_.back().has_measurement) window_.pop_back();

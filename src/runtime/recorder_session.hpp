@@ -59,6 +59,8 @@ class RecorderSession {
   void receiveBase(const ControlAction& a);
   void receiveAction(const ControlAction& a);
   void receive(const SolverReport& r);
+  /// Passes on samples before this one, complete or not: what they lack has been waited for.
+  void giveUpBefore(std::uint32_t step);
   /// Passes on what waits, complete or not; holes are then gaps.
   void close();
 

@@ -3,19 +3,17 @@ NaN, wrong sizes, answers of an impostor, bursts. What the plant keeps sending w
 import math
 
 from fault import Fault
-from strangers import far, final, latest, next_run
+from strangers import far, final, latest, needs, next_run
 
 NAN = [math.nan]
 
 
-def fault(topic, name, change, times=3, counted=None, said=None, needs=(), lasts=1.0):
+def fault(topic, name, change, times=3, counted=None, said=None, lasts=1.0, **more):
     def do(loop):
         message = latest(loop, topic)
         change(message, loop)
         loop.send(topic, message, times)
-    if topic in ("base_action", "predictive_action", "solver_report"):
-        needs = ("optimizer",)
-    return Fault(f"rubbish: {topic}, {name}", do, counted=counted, said=said, needs=needs, lasts=lasts)
+    return Fault(f"rubbish: {topic}, {name}", do, counted=counted, said=said, needs=needs(topic), lasts=lasts, **more)
 
 
 def inputs(make):
@@ -92,8 +90,8 @@ FAULTS = [
     fault("tracking", "wrong size", sized("setpoint", 7), counted=(RECORDER, "dropped: wrong size")),
     fault("solver_report", "wrong size", sized("perturbation", 0)),
     fault("plant_state", "wrong size", sized("state", 1), counted=(RECORDER, "dropped: wrong size")),
-    fault("plant_info", "run 2^63", next_run, times=1, lasts=2.5),
-    fault("plant_info", "other units", other_units, times=1, counted=(CONTROLLER, "refused: plant_info")),
+    fault("plant_info", "run 2^63", next_run, times=1, lasts=2.5, gap=True),
+    fault("plant_info", "other units", other_units, times=1, counted=(CONTROLLER, "refused: plant_info"), gap=True),
 ]
 
 
@@ -104,4 +102,4 @@ def announced_lie(loop):
     loop.send("measurement", now, 3)
 
 
-FAULTS += [Fault("rubbish: a second plant announces a run and measures once", announced_lie, lasts=3.0)]
+FAULTS += [Fault("rubbish: a second plant announces a run and measures once", announced_lie, lasts=3.0, gap=True)]
