@@ -26,17 +26,17 @@ OPEN = " ".join(f"loop.publishers.{topic}=[]" for topic in RING)
 LOOPS = {
     "asp_case1_clp": dict(
         sets="sampling.duration_h=0 disturbance.source=constant actuator.move_upper.q_r=40 "
-             "actuator.fallback.q_r=300", sample_time=720.0, has=("optimizer", "model", "forgiving", "wide")),
+             "actuator.fallback.q_r=300", sample_time=720.0, has=("optimizer", "model", "wide")),
     "mimo_cstr_steps": dict(
         sets="sampling.duration_h=0 setpoint.schedule=[] disturbance={} noise.std.T=0.02 actuator.move_upper.q=2.5 "
              "actuator.move_upper.qc=3.75 actuator.fallback.q=90 actuator.fallback.qc=90",
-        sample_time=0.6, has=("model", "forgiving")),
+        sample_time=0.6, has=("model",)),
     "cstr_modbus": dict(sets="sampling.duration_h=0 setpoint.schedule=[]", sample_time=6.0, has=("gateway", "modbus", "model"), move=0.02),
     "example_external": dict(
         sets="sampling.duration_h=0 setpoint.schedule=[] gateway.stale_s=1 gateway.tags.inflow.readback=tank/inflow_read "
-             "gateway.tags.level.topic=tank/state_read loop.publishers.tags=[example_plant,fault_matrix]", sample_time=60.0, has=("gateway", "float64", "forgiving", "wide"), move=0.1),
+             "gateway.tags.level.topic=tank/state_read loop.publishers.tags=[example_plant,fault_matrix]", sample_time=60.0, has=("gateway", "float64", "wide"), move=0.1),
 }
-# forgiving: the plant comes back from wherever its inputs have led it; wide: the model, if any, has data there
+# wide: wherever its inputs lead the plant, it comes back, and the model, if any, has data there
 MOVE = 0.025  # largest move a sample, share of the input's range
 COMMON = "actuator.hold_samples=5 loop.action_timeout_s=1.5"
 PERIOD = {"paced": 0.1, "realtime": 0.2, "nodelets": 0.2}  # s of wall time a sample; nodelets: realtime, in one process
@@ -222,7 +222,7 @@ def judge_records(launch, loop, met):
 
     def seen(outcome):
         return record.shown([item for item in measurements.since(outcome.began) if item[0] < outcome.ended], plant)
-    return {fault.name: record.complaints(filed, seen(outcome), info, fault.gap or bool(launch.far) and "loop_recorder" in fault.touches)
+    return {fault.name: record.complaints(filed, seen(outcome), info, fault.gap or launch.pace != "paced" and "loop_recorder" in fault.touches)
             for fault, outcome in met}
 
 

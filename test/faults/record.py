@@ -17,7 +17,7 @@ def alike(a, b):
 
 def filed(folder, signals):
     """Of the newest run and of history/: {(run_id, step): values of the signals (header of a column each)}, last rows of the
-    parts, which end before what was applied from there on has been read, and the gaps that the summaries name."""
+    parts, where what was applied from there on is not read any more, and the gaps that the summaries name."""
     rows, last, gaps = {}, set(), set()
     for summary in sorted(pathlib.Path(folder).glob("**/summary.json")):
         about = json.loads(summary.read_text(encoding="utf-8"))
@@ -38,6 +38,10 @@ def shown(measurements, plant):
     return {(m.run_id, m.step): m for _, m in measurements if m._connection_header.get("callerid") == plant}
 
 
+def is_empty(row, n_y):
+    return row is None or all(math.isnan(v) for v in row[:n_y])
+
+
 def complaints(record, seen, info, gap):
     """Outputs of every sample that was shown stand in its row, and so does what was applied until the next one. `gap`: samples
     may lack if the summary names them."""
@@ -45,10 +49,10 @@ def complaints(record, seen, info, gap):
     n_y = len(info.outputs)
     for (run, step), message in sorted(seen.items()):
         row, after = rows.get((run, step)), seen.get((run, step + 1))
-        if row is None or all(math.isnan(v) for v in row[:n_y]) and not all(math.isnan(v) for v in message.outputs):
+        if row is None or is_empty(row, n_y) and not all(math.isnan(v) for v in message.outputs):
             lost += [] if gap and (run, step) in gaps else [step]
             continue
-        known = after and (run, step) not in last
+        known = after and (run, step) not in last and not is_empty(rows.get((run, step + 1)), n_y)
         expected = list(message.outputs) + (list(after.input_applied) if known else row[n_y:])
         wrong += [step] if not all(map(alike, row, expected)) else []
     return ([f"record: {len(lost)} samples lack, {lost[:SHOWN]}"] if lost else []) + (

@@ -27,8 +27,8 @@ on, and nothing need be reported. An empty cell: this loop has no such part.
 | silence | no 2 s without a sample that nobody explains |
 | processes | none ended but those that the fault kills |
 
-A forced valve (`input/NAME` of a disturbance), the way there and the sample of its release are the fault's moves, not the loop's. A real
-plant does not wait for a recorder that was killed or hangs: samples may lack, and the summary must name them.
+A forced valve (`input/NAME` of a disturbance), the way there and the sample of its release are the fault's moves, not the loop's. In
+realtime no plant waits for a recorder that was killed: samples may lack, and the summary must name them.
 
 {verdict}
 """
