@@ -207,7 +207,7 @@ def joins_without_state(loop):
 
 FAULTS = [
     Fault("a controller joins without knowing what was asked", joins_without_state, lambda loop: loop.end_children(),
-          said="/newcomer held: ", lasts=1.0, said_within=6.0),
+          said="/newcomer held: ", needs=("processes",), lasts=1.0, said_within=6.0),
     in_manual("manual for 30 samples and more, then automatic"),
     in_manual("manual, controller killed", CONTROLLER),
     in_manual("manual, optimizer killed", "clp_optimizer"),

@@ -34,8 +34,11 @@ def filed(folder, signals):
 
 
 def shown(measurements, plant):
-    """{(run_id, step): message} of what the plant itself has published."""
-    return {(m.run_id, m.step): m for _, m in measurements if m._connection_header.get("callerid") == plant}
+    """{(run_id, step): message} of what the plant itself has published; a run that another one replaced at its first sample is
+    none."""
+    seen = {(m.run_id, m.step): m for _, m in measurements if m._connection_header.get("callerid") == plant}
+    replaced = {run for run, _ in seen if (run, 1) not in seen and run < max(r for r, _ in seen)}
+    return {(run, step): m for (run, step), m in seen.items() if step > 0 or run not in replaced}
 
 
 def is_empty(row, n_y):

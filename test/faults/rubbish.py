@@ -6,6 +6,7 @@ from fault import Fault
 from strangers import far, final, latest, needs, next_run
 
 NAN = [math.nan]
+WRONG_SIZE = ("dropped: wrong size", "refused: measurement")  # the second: its qualities, of a gateway, are of another size
 
 
 def fault(topic, name, change, times=3, counted=None, said=None, lasts=1.0, **more):
@@ -71,8 +72,8 @@ FAULTS = [
     fault("measurement", "another run", next_run, counted=(CONTROLLER, "dropped: run not announced")),
     fault("measurement", "5 steps old", stale, counted=(CONTROLLER, "dropped: old step")),
     fault("measurement", "NaN at the next step", lambda m, loop: (nan("outputs")(m, loop), ahead(1)(m, loop))),
-    fault("measurement", "no outputs", sized("outputs", 0), counted=(CONTROLLER, "dropped: wrong size")),
-    fault("measurement", "too many outputs", sized("outputs", 9), counted=(CONTROLLER, "dropped: wrong size")),
+    fault("measurement", "no outputs", sized("outputs", 0), counted=(CONTROLLER, WRONG_SIZE)),
+    fault("measurement", "too many outputs", sized("outputs", 9), counted=(CONTROLLER, WRONG_SIZE)),
     fault("measurement", "burst of 3000 old ones", stale, times=3000),
     fault("base_action", "far ahead", far),
     fault("base_action", "NaN", nan("input")),

@@ -137,7 +137,7 @@ FAULTS = [
     Fault("disk full", fill, room, said=f"{RECORDER}.*(cannot be written|full|room|No space)", needs=("disk",), lasts=2.0),
     Fault("disk full, recorder killed", lambda loop: (fill(loop), loop.kill(RECORDER)), room,
           touches=(RECORDER,), needs=("disk",), lasts=4.0),
-    stranger_node("fmbpc_controller", "controller", counted=(RECORDER, "refused: tracking from /second")),
+    stranger_node("fmbpc_controller", "controller", counted=(RECORDER, "refused: tracking from /second"), needs=("processes",)),
     stranger_node("loop_recorder", "recorder"),
     stranger_node("plant_simulator", "plant", counted=(CONTROLLER, "refused: plant_info from /second"), needs=("simulator",)),
     usurper("fmbpc_controller", CONTROLLER, "controller"),
