@@ -56,6 +56,8 @@ class Desk:
         act = getattr(self, "_" + verb, None)
         if act is None or verb not in VERBS:
             raise Refused(f"unknown: {verb}")
+        loop.want_all(time.monotonic())
+        self._wait(lambda: loop.journal is None, 2.0)
         return act(arguments)
 
     # Topics.

@@ -134,8 +134,9 @@ class Panel:
         self.alarms.tick()
         if self.streams:
             self.say(now, watched)
-        for loop in self.loops.values():
-            loop.sent_from = loop.step + 1
+        for name, loop in self.loops.items():
+            if name not in watched:
+                loop.sent_from = loop.step + 1
 
     def say(self, now, watched):
         if self.beat % 5 == 0:
@@ -195,6 +196,7 @@ class Panel:
                 update["refetch"] = True
                 first = loop.step
             steps, values, wall = loop.history.rows(first, loop.step)
+            loop.sent_from = loop.step + 1
             update["rows"] = [[int(s), None if w != w else round(float(w), 2)] + plain(v) for s, v, w in zip(steps, values, wall)]
         return update
 
