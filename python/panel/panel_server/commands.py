@@ -34,6 +34,8 @@ class Desk:
     def close(self):
         for item in self.listeners + [self.setpoint, self.disturbance]:
             item.unregister()
+        if self.identify_client is not None:
+            self.identify_client.action_client.stop()
 
     def _effect(self, message):
         with self.arrived:
