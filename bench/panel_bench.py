@@ -120,9 +120,10 @@ sys.stdin.readline()
 @contextlib.contextmanager
 def loop_of(env, out, hours, *words, gate=True):
     """A lockstep loop that begins once it is told to: yields (process of roslaunch, function that lets it begin)."""
+    endless = " disturbance.source=constant setpoint.schedule=[]" if hours == 0 else ""
     gated = " loop.wait_for=[loop_recorder,fmbpc_controller,fuzzy_identifier,clp_optimizer,bench_go]" if gate else ""
     launch = subprocess.Popen(["roslaunch", "--wait", "fmbpc", "loop.launch", f"loop:={LOOP}", f"out:={out}", "draw:=false", "sim_time:=false", *words,
-                               f"set:=sampling.duration_h={hours}{gated}"], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                               f"set:=sampling.duration_h={hours}{endless}{gated}"], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     go = subprocess.Popen([sys.executable, "-c", GO], env=env, stdin=subprocess.PIPE, text=True) if gate else None
 
     def begin():
