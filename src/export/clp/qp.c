@@ -24,10 +24,6 @@ static double clp_limit(const clp_qp_t* q, int32_t id, int32_t side) {
   return limit;
 }
 
-static bool clp_is_equality(const clp_qp_t* q, int32_t id) {
-  return clp_limit(q, id, 1) >= clp_limit(q, id, -1);
-}
-
 /* R := L with H = L L', then J := L^-T. False where H is not positive definite. */
 static bool clp_factor(clp_qp_t* q) {
   bool definite = true;
@@ -253,7 +249,7 @@ static int32_t clp_blocking(const clp_qp_t* q, bool dependent, double size, doub
   int32_t first = -1;
   for (int32_t k = 0; k < q->count; k++) {
     const double rate = q->r[k];
-    if ((rate > 0.0) && !clp_is_equality(q, q->set[k])) {
+    if (rate > 0.0) {
       const double multiplier = (q->y[k] > 0.0) ? q->y[k] : 0.0;
       const double* column = &q->R[clp_first(k)];
       double square = 0.0;

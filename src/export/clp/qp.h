@@ -13,11 +13,12 @@ typedef struct {
   int32_t count;      /* constraints in the working set */
   /* work: J'HJ = I and J'N = [R; 0] for the normals N of the working set */
   double J[CLP_N * CLP_N]; /* row by row */
-  double R[(CLP_N * (CLP_N + 1)) / 2]; /* upper triangle, column by column; before, the factor of H */
-  double y[CLP_N];                     /* multipliers of the working set */
-  double d[CLP_N];                     /* J'n of the constraint that enters */
-  double z[CLP_N];                     /* step of x */
-  double r[CLP_N];                     /* step of y */
+  double
+      R[(CLP_N * (CLP_N + 1)) / 2]; /* upper triangle, column by column; before, the factor of H */
+  double y[CLP_N];                  /* multipliers of the working set */
+  double d[CLP_N];                  /* J'n of the constraint that enters */
+  double z[CLP_N];                  /* step of x */
+  double r[CLP_N];                  /* step of y */
   double c[CLP_N];
   double normal[CLP_N];
   double turn_c[CLP_N]; /* rotations of a removal */
