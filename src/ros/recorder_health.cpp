@@ -4,7 +4,7 @@
 namespace fpc {
 
 namespace {
-constexpr double kGapShown = 10.0;  // [s] that a gap stays in words
+constexpr double kGapShown = 2.0;  // [s] that a gap stays in words
 }
 
 Health LoopRecorder::health(double now_s) const {

@@ -198,12 +198,12 @@ def heal(loop):
 
 def second_gateway(loop):
     """A second launch of the same loop, on a master of its own, at the same PLC: refused in words."""
-    folder = os.path.join(os.path.dirname(loop.far.log), "second")
+    folder, port = os.path.join(os.path.dirname(loop.far.log), "second"), ring.free_port()
     with open(folder + ".log", "w", encoding="utf-8") as log:
         loop.second = subprocess.Popen(
-            ring.tied(["roslaunch", "-p", str(ring.free_port()), "fmbpc", "loop.launch", "loop:=cstr_modbus", f"out:={folder}",
+            ring.tied(["roslaunch", "-p", port, "fmbpc", "loop.launch", "loop:=cstr_modbus", f"out:={folder}",
                        f"set:=gateway.modbus.port={loop.far.wire.port} sampling.duration_h=0", "draw:=false", "sim_time:=false"]),
-            stdout=log, stderr=log, start_new_session=True)
+            env={**os.environ, "ROS_MASTER_URI": f"http://localhost:{port}"}, stdout=log, stderr=log, start_new_session=True)
 
     def refused():
         with open(folder + ".log", encoding="utf-8", errors="replace") as file:

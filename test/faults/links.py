@@ -16,7 +16,9 @@ MENDED = 5.0  # s
 
 
 def needs(node):
-    return ("nodelets",) if node == MANAGER else ("processes", "optimizer") if node == OPTIMIZER else ("processes",)
+    """An identifier that the loop does not need is idle, and no member."""
+    return ("nodelets",) if node == MANAGER else ("processes", *[what for of, what in ((OPTIMIZER, "optimizer"), (IDENTIFIER, "model"))
+                                                                 if of == node])
 
 
 def proxy(loop, node):
@@ -71,7 +73,7 @@ def forget_publishers(loop, node):
 
 def forged(node):
     return Fault(f"{node}: publisherUpdate with empty lists", lambda loop: forget_publishers(loop, node), whole,
-                 needs=needs(node))
+                 needs=needs(node), own_hand=node == PLANT, gap=True)
 
 
 def clean_up(loop, node):
@@ -97,7 +99,7 @@ def thaw(loop):
 
 def cleaned(node):
     return Fault(f"rosnode cleanup while {node} hangs for 3 s", lambda loop: clean_up(loop, node), thaw, needs=needs(node),
-                 lasts=3.0, own_hand=node == PLANT)
+                 lasts=3.0, own_hand=node == PLANT, gap=True)
 
 
 def connections(process):

@@ -79,7 +79,7 @@ class Loop:
                            for topic, kind in KINDS.items() if topic not in ("plant_info",)}
         self.publishers["plant_info"] = rospy.Publisher("plant_info", PlantInfo, queue_size=10, tcp_nodelay=True)
         self.master = rosgraph.Master(rospy.get_name())
-        self.frozen, self.children, self.pulse = set(), [], Pulse()
+        self.frozen, self.children, self.pulse, self.far = set(), [], Pulse(), None  # far: what stands behind a gateway
 
     # What it says.
     def now(self):

@@ -162,7 +162,8 @@ def ready(launch):
     """The loop under test, automatic."""
     from loop_under_test import Loop
     plant = "plant_gateway" if launch.far else "plant_simulator"
-    nodes = [plant, "fmbpc_controller", "loop_recorder", "fuzzy_identifier"] + ["clp_optimizer"] * ("optimizer" in launch.has())
+    nodes = [plant, "fmbpc_controller", "loop_recorder"] + [node for node, part in (("fuzzy_identifier", "model"), ("clp_optimizer", "optimizer"))
+                                                            if part in launch.has()]
     loop = Loop(["loop_manager"] if launch.pace == "nodelets" else nodes, plant)
     loop.clock, loop.disk, loop.core, loop.start_core, loop.far = launch.clock, launch.disk, launch.core, None, launch.far
     loop.launch, loop.wide = launch.launch, "wide" in launch.has()
@@ -212,6 +213,7 @@ def meet_all(launch, loop, faults, met, report):
         report({"family": family, **vars(met[-1][1])})
         if met[-1][1].back_after is None:
             break
+        loop.samples(2)  # between two faults there is none
 
 
 def judge_records(launch, loop, met):
