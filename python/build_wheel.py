@@ -38,7 +38,8 @@ def _cmake_install(prefix):
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if any(os.access(os.path.join(d, "ccache"), os.X_OK) for d in os.get_exec_path()) else []
     jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL") or str(os.cpu_count() or 1)
     subprocess.run(["cmake", "-S", str(TOP), "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DFMBPC_WITH_ROS=OFF", "-DFMBPC_BENCH=OFF", "-DFMBPC_TESTS=OFF",
-                    "-DFMBPC_WITH_MPI=OFF", "-DFMBPC_PYTHON=.", f"-DPython3_EXECUTABLE={sys.executable}", *launcher], check=True)
+                    "-DFMBPC_WITH_MPI=OFF", "-DFMBPC_PYTHON=.", f"-DFMBPC_CORE_OBJECTS={os.environ.get('FMBPC_WHEEL_CORE', '')}",
+                    f"-DPython3_EXECUTABLE={sys.executable}", *launcher], check=True)
     subprocess.run(["cmake", "--build", build, "-j", jobs], check=True)
     subprocess.run(["cmake", "--install", build, "--prefix", str(prefix), "--strip"], check=True)
 
