@@ -14,8 +14,8 @@ namespace py = pybind11;
 class Watch {
  public:
   /// `progress(share, words)` is called ten times a second at most, unless it is None.
-  /// `keeps`: what keep() is given ends the computation as that exception; a study of many runs does
-  /// not, it says what ended a run.
+  /// `keeps`: what keep() is given ends the computation as that exception; a study of many runs
+  /// does not, it says what ended a run.
   explicit Watch(py::object progress, bool keeps = true);
   ~Watch();
   Watch(const Watch&) = delete;
