@@ -29,6 +29,7 @@ sys.path.insert(0, next(p for p in (os.path.join(os.path.dirname(os.path.realpat
 
 from panel_server import access  # noqa: E402
 
+NICE = 10  # the loops come first
 LOOPBACK = ("127.0.0.1", "::1", "localhost")
 
 
@@ -57,6 +58,7 @@ def main():
 
     from panel_server import web
 
+    os.nice(NICE)
     rospy.init_node("panel", disable_signals=True)
     get = rospy.get_param
     address, port = str(get("~address", "127.0.0.1")), int(get("~port", 8080))

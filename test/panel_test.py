@@ -6,6 +6,7 @@ import math
 import os
 import pathlib
 import random
+import re
 import stat
 import subprocess
 import sys
@@ -155,6 +156,77 @@ class Alarms(Folder):
         self.assertEqual(sorted(before, key=lambda a: a["key"]), sorted(again.listed(), key=lambda a: a["key"]))
         again.look("/a", {(c, ""): ("warning", c) for c in "xyzw"}, 5.0)  # what was there goes on: it has not come again
         self.assertEqual([1, 1, 1, 1], [a.count for a in again.alarms.values()])
+
+
+    def test_no_event_of_the_list_chatters_and_each_has_a_remedy(self):
+        """Warnings and errors of docs/events.md, coming and going in many rhythms for five minutes: within a minute an alarm comes twice at most."""
+        rows = re.findall(r"^\| `(\w+)` \| (\w+) \|[^|]*\|[^|]*\| ([^|]*) \|$", (TOP / "docs/events.md").read_text(encoding="utf-8"), re.MULTILINE)
+        loud = [(code, severity, remedy) for code, severity, remedy in rows if severity != "info"]
+        self.assertGreater(len(loud), 40)
+        for code, severity, remedy in loud:
+            self.assertNotIn(remedy.strip(), ("", "none"), code)
+        self.assertEqual(set(), {c for c in alarms.CONSEQUENCES if c not in {code for code, _, _ in rows}})
+        for code, severity, _ in loud:
+            for on, off in ((0.2, 0.2), (0.3, 1.0), (1.0, 4.9), (2.0, 5.2), (5.0, 5.5), (10.0, 20.0)):
+                self.list.alarms.clear()
+                self.now, came, count = self.now + 1000.0, [], 0
+                begin = self.now
+                while self.now < begin + 300.0:
+                    there = (self.now - begin) % (on + off) < on
+                    self.look(*([code] if there else []), seconds=min(on, off), severity=severity)
+                    alarm = self.list.alarms.get(f"/a|{code}|")
+                    if alarm and alarm.count > count:
+                        count = alarm.count
+                        came.append(self.now)
+                self.assertTrue(came, (code, on, off))
+                for first, third in zip(came, came[2:]):
+                    self.assertGreaterEqual(third - first, alarms.CHATTER, (code, on, off))
+
+
+class Contrast(unittest.TestCase):
+    """Text on what may lie behind it, by the style sheet: at least 4.5 to 1 (WCAG 2.1); what has faded is no text to be read (.gone, .away)."""
+
+    SHEET = (TOP / "python/panel/web/app.css").read_text(encoding="utf-8")
+    SURFACES = ("var(--page)", "var(--card)", "var(--field)", "#c6cbd1")  # the last: the header
+
+    def colour(self, text):
+        named = re.fullmatch(r"var\((--\w+)\)", text.strip())
+        if named:
+            text = re.search(named[1] + r": (#\w+)", self.SHEET)[1]
+        digits = text.strip().lstrip("#")
+        digits = "".join(2 * d for d in digits) if len(digits) == 3 else digits
+        parts = [int(digits[i:i + 2], 16) / 255.0 for i in (0, 2, 4)]
+        return sum(f * (v / 12.92 if v <= 0.03928 else ((v + 0.055) / 1.055) ** 2.4) for f, v in zip((0.2126, 0.7152, 0.0722), parts))
+
+    def ratio(self, front, back):
+        front, back = self.colour(front), self.colour(back)
+        return (max(front, back) + 0.05) / (min(front, back) + 0.05)
+
+    def test_known_ratios(self):
+        self.assertAlmostEqual(21.0, self.ratio("#000", "#ffffff"))
+        self.assertAlmostEqual(4.54, self.ratio("#767676", "#fff"), 2)
+
+    def test_of_all_rules(self):
+        rules = re.findall(r"([^{}]+)\{([^{}]*)\}", re.sub(r"/\*.*?\*/", "", self.SHEET, flags=re.S))
+        seen = 0
+        for selector, body in rules:
+            front = re.search(r"(?<![\w-])color: ?(#\w+|var\(--\w+\))", body)
+            back = re.search(r"background(?:-color)?: ?(#\w+|var\(--\w+\))", body)
+            if front:
+                seen += 1
+                # In the header stand words and links of its own alone.
+                for surface in [back[1]] if back else self.SURFACES[:3] if selector.strip().startswith("#banner") else self.SURFACES:
+                    self.assertGreaterEqual(self.ratio(front[1], surface), 4.5, (selector.strip(), surface))
+        self.assertGreater(seen, 15)
+
+    def test_of_what_is_drawn(self):
+        """Words and numbers in the trends, on a card or on the white of the plan."""
+        text = (TOP / "python/panel/web/app.js").read_text(encoding="utf-8")
+        drawn = set(re.findall(r'stroke: "(#\w{6})", grid', text)) | set(re.findall(r'fillStyle = "(#\w{6})"', text))
+        self.assertGreaterEqual(len(drawn), 2)
+        for colour in drawn:
+            for surface in ("var(--card)", "#ffffff"):
+                self.assertGreaterEqual(self.ratio(colour, surface), 4.5, colour)
 
 
 class TheJournal(Folder):

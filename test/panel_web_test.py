@@ -13,6 +13,7 @@ import threading
 import time
 import types
 import unittest
+from unittest import mock
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "python/panel"))
@@ -24,6 +25,7 @@ except ImportError as error:  # a build without ROS
 import tornado.ioloop  # noqa: E402
 
 FUZZ_S = float(os.environ.get("FMBPC_PANEL_FUZZ_S", "3"))
+access.SCRYPT["n"] = 16  # a wrong token costs as many hashes as there are tokens: here they need not be dear
 PASSWORDS = {"vera": "view", "olga": "operate", "emil": "engineer"}
 ALARM = "/b|signal_missing|x"
 
@@ -51,7 +53,7 @@ class Server:
         self.panel = web.Panel(os.path.join(self.folder.name, "data"), access.Access(access.read_users(path), anonymous))
         self.panel.find_loops = lambda: None
         self.desk = FakeDesk()
-        self.panel.loops["/a"] = types.SimpleNamespace(name="/a", step=5, info=None, history=None, look=lambda now: None, want_plan=lambda now: None)
+        self.panel.loops["/a"] = types.SimpleNamespace(name="/a", step=5, info=None, history=None, heard=None, look=lambda now: None, want_plan=lambda now: None)
         self.panel.desks["/a"] = self.desk
         self.panel.overview = lambda now: {"t": 0.0, "loops": [], "master": True, "trouble": ""}
         self.panel.update = lambda loop, now: {"name": loop.name}
@@ -184,6 +186,32 @@ class Web(unittest.TestCase):
             self.assertNotRegex(text, r"https?://(?!www\.w3\.org)")
             for never in ("innerHTML =", "insertAdjacentHTML", "eval(", "document.write", "new Function"):
                 self.assertNotIn(never, text)
+
+    def test_a_loop_that_vanishes_is_let_go_with_all_that_hears_it(self):
+        panel = self.server.panel
+        with mock.patch.object(web.loops, "Loop") as loop, mock.patch.object(web.commands, "Desk") as desk:
+            loop.side_effect = lambda *_: mock.MagicMock(heard=None, history=None, info=None)
+            desk.side_effect = lambda *_: mock.Mock()
+            panel.take_up(["/gone", "/heard"], 0.0)
+            closed = [panel.loops["/gone"].close, panel.desks["/gone"].close]
+            panel.loops["/heard"].heard = web.LEFT_AFTER  # its plant speaks, the master was started anew
+            panel.alarms.look("/gone", {("link_lost", ""): ("warning", "lost")}, 1.0)
+            panel.take_up([], web.LEFT_AFTER - 1.0)
+            panel.take_up(None, 10.0 * web.LEFT_AFTER)  # no master: nothing is said of any loop
+            self.assertLessEqual({"/gone", "/heard"}, set(panel.loops))
+            self.assertEqual("unacknowledged", panel.alarms.alarms["/gone|link_lost|"].state)
+            panel.take_up([], web.LEFT_AFTER + 1.0)
+            self.assertNotIn("/gone", panel.loops)
+            self.assertNotIn("/gone", panel.desks)
+            self.assertIn("/heard", panel.loops)
+            self.assertEqual("returned", panel.alarms.alarms["/gone|link_lost|"].state)
+            panel.executor.submit(lambda: None).result(10)
+            for _ in range(100):
+                if all(c.called for c in closed):
+                    break
+                time.sleep(0.01)
+            self.assertEqual([1, 1], [c.call_count for c in closed])
+            panel.let_go("/heard")
 
     def test_a_cookie_is_for_this_page_alone(self):
         headers = self.server.ask("POST", "/api/login", {"name": "vera", "password": "correct horse"}, **self.server.good())[1]

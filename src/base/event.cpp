@@ -95,7 +95,7 @@ constexpr EventKind kKinds[] = {
     {C::kLinkLost, "link_lost", kW, "the gateway's link to the plant, or a signal on it, is lost", "inputs stay what they are at the plant", "look at the link"},
     {C::kNetworkProblem, "network_problem", kW, "a node cannot be reached from elsewhere", "its messages do not arrive there", "set ROS_IP or ROS_HOSTNAME; the text says where"},
     {C::kPaused, "paused", kI, "an operator paused the plant", "the run stands still", "call plant_simulator/pause with false"},
-    {C::kShutDown, "shut_down", kW, "the plant's process was told to end", "the run ends early", "none"},
+    {C::kShutDown, "shut_down", kW, "the plant's process was told to end", "the run ends early", "launch it again, unless that was meant"},
     {C::kCannotStart, "cannot_start", kE, "a node cannot start", "the loop does not run", "read the text"},
 };
 // clang-format on

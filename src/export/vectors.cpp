@@ -14,7 +14,7 @@
 #include "runtime/factory.hpp"
 
 namespace fpc {
-namespace {
+namespace block_vectors {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
@@ -267,7 +267,10 @@ class Scenario {
   bool reset_{false};
 };
 
-}  // namespace
+}  // namespace block_vectors
+
+using block_vectors::BlockCase;
+using block_vectors::kNoNumber;
 
 struct BlockVectors::Run {
   Run(const LoopFile& given, const ir::Program& program, std::uint64_t seed, int samples)
@@ -302,6 +305,7 @@ struct BlockVectors::Run {
 
   void begin() {
     session.emplace(makeControllerSession(loop));
+    if (loop.has_clp) optimizer.emplace(makeOptimizerSession(loop));
     if (loop.has_model && loop.controllerType().needs_model) session->setModel(loop.model);
   }
 
@@ -356,17 +360,25 @@ struct BlockVectors::Run {
     m.input_applied = now.track ? now.actuator : last;
     if (!m.input_applied.allFinite()) errors += kActuatorBad;
     session->receive(m);
-    const ControlAction& base = session->answer().base;
-    last = base.input;
+    const ControlAction& action = optimized();
+    last = action.input;
     for (Eigen::Index i = 0; i < last.size(); ++i) row.push_back(last[i]);
     for (Eigen::Index i = 0; i < n_y; ++i) row.push_back(session->answer().tracking.setpoint[i]);
-    row.push_back(static_cast<double>(base.source));
+    row.push_back(static_cast<double>(action.source));
     BlockState state = static_cast<BlockState>(now.mode);
-    if (base.source == ActionSource::kHeld) state = BlockState::kHeld;
+    if (action.source == ActionSource::kHeld) state = BlockState::kHeld;
     if (session->fellBack()) state = BlockState::kFallback;
     if (!now.enable || now.mode < 1) state = BlockState::kOff;
     row.push_back(static_cast<double>(state));
     row.push_back(errors);
+  }
+
+  const ControlAction& optimized() {
+    const ControllerAnswer& answer = session->answer();
+    if (!optimizer) return answer.base;
+    if (answer.has_prediction) optimizer->receive(answer.prediction);
+    optimizer->receive(answer.base);
+    return optimizer->action();
   }
 
   void describe(const BlockCase& now) {
@@ -419,10 +431,11 @@ struct BlockVectors::Run {
   }
 
   LoopFile loop;
-  Scenario scenario;
+  block_vectors::Scenario scenario;
   std::optional<ControllerSession> session;
+  std::optional<OptimizerSession> optimizer;
   std::optional<Simulation> simulation;
-  std::optional<StandIn> stand_in;
+  std::optional<block_vectors::StandIn> stand_in;
   std::vector<std::string> inputs, outputs;
   std::vector<double> defaults, row;
   Vector asked, last;

@@ -22,6 +22,7 @@ constexpr double kHeard = 1.0;          // [s] in which a run under way is heard
 constexpr double kLookForRing = 0.01;   // [s] of wall time, at who is there
 constexpr double kSettled = 0.1;        // [s]: a connection is complete at both ends a moment later
 constexpr double kLookForTopics = 0.1, kLookForMore = 0.5;  // [s], until ready and then
+constexpr int kLateAnswers = 20, kNoAnswers = 100;          // polls of 0.05 s
 constexpr double kPredecessor = 5.0;  // [s] in which one of the same name may end in order
 
 template <typename Msg>
@@ -107,6 +108,7 @@ void LoopRecorder::poll() {
   store_->sync(steadyNow());
   if (bag_) bag_->sync(steadyNow());
   if (written_) return;
+  giveUpOld();
   if (clock_.closed()) return conclude();  // the disk had no room
   if (!clock_.stragglersLost(steadyNow())) return;
   const std::uint32_t last = session_.latest().step, expected = session_.layout().samples;
@@ -116,6 +118,22 @@ void LoopRecorder::poll() {
                  : "the final sample came, but the record has gaps: " + join(session_.gaps());
   session_.close();
   conclude();
+}
+
+// What a sample lacks is not waited for in memory for long, where it and all that follow would be
+// lost with this process. What comes late comes in order: once a later sample is whole, a second is
+// enough. Where nobody answers, what was measured is worth more than answers of long after.
+void LoopRecorder::giveUpOld() {
+  const auto look = [&](Mark& mark, std::uint32_t before, int polls) {
+    if (++mark.polls < polls) return;
+    if (mark.run_id == plant_.runId()) session_.giveUpBefore(mark.before);
+    mark = {plant_.runId(), before, 0};
+  };
+  look(whole_, session_.wholeBefore(), kLateAnswers);
+  look(heard_, session_.latest().step, kNoAnswers);
+  if (session_.gapCount() == gaps_) return;
+  gaps_ = session_.gapCount();
+  gap_s_ = steadyNow();
 }
 
 // A folder that cannot be used ends the launch before the first sample; a run that is under way
@@ -256,9 +274,11 @@ void LoopRecorder::sayEnd() {
 bool LoopRecorder::tryWrite() {
   try {
     const double wall_s = clock_.elapsed(steadyNow());
+    const bool waits = !loop_.external_plant && loop_.ring.pace != Pace::kRealtime;
+    session_.giveUpBefore(session_.latest().step);
     const std::uint32_t whole = session_.passedOn();
-    session_.close();  // a simulated plant sends again what is not whole
-    const std::uint32_t kept = loop_.external_plant ? session_.passedOn() : whole;
+    session_.close();  // a plant that waits sends again what is not whole
+    const std::uint32_t kept = waits ? whole : session_.passedOn();
     const Summary summary =
         clock_.closed() ? store_->finish(wall_s) : store_->interrupt(wall_s, kept);
     written_ = true;

@@ -58,6 +58,7 @@ class LoopRecorder : public Node {
   std::unique_ptr<RecordStore> openStore(const std::string& folder);
   void poll();
   void giveUp();
+  void giveUpOld();
   void announceIfConnected();
   void beginRun(std::uint64_t run_id);
   template <typename Msg, typename Take>
@@ -83,6 +84,14 @@ class LoopRecorder : public Node {
   std::string announcer_;  // of the run: its measurements count
   std::unique_ptr<BagWriter> bag_;
   double looked_s_{-1};  // at the topics
+  struct Mark {
+    std::uint64_t run_id{};
+    std::uint32_t before{};
+    int polls{};  // since then
+  };
+  Mark whole_, heard_;    // see giveUpOld()
+  std::uint64_t gaps_{};  // that are said ...
+  double gap_s_{-1};      // ... since then
   bool bag_ready_{false};
 
   RecorderClock clock_;

@@ -6,6 +6,7 @@
 #include <boost/make_shared.hpp>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -18,42 +19,46 @@ template <typename Item>
 class Newest {
  public:
   using Handler = std::function<void(const Item&)>;
-  /// `queue`: the one whose callbacks call put(), from one thread; it must outlive this.
+  /// `queue`: the one whose callbacks call put(), from one thread. It may end before this does:
+  /// roscpp keeps a subscriber's handler for a while after a nodelet and its queue are gone.
   Newest(ros::CallbackQueueInterface& queue, Handler handler)
-      : queue_(queue), handler_(std::move(handler)) {}
-  ~Newest() { queue_.removeByID(id()); }
+      : queue_(queue), held_(std::make_shared<Held>()) {
+    held_->handler = std::move(handler);
+  }
   Newest(const Newest&) = delete;
   Newest& operator=(const Newest&) = delete;
 
   void put(Item item) {
-    const bool due = waiting_.has_value();
-    waiting_ = std::move(item);
-    if (!due) queue_.addCallback(boost::make_shared<Turn>(*this), id());
+    const bool due = held_->waiting.has_value();
+    held_->waiting = std::move(item);
+    if (!due) queue_.addCallback(boost::make_shared<Turn>(held_), id());
   }
 
  private:
+  struct Held {
+    Handler handler;
+    std::optional<Item> waiting;
+  };
   class Turn : public ros::CallbackInterface {
    public:
-    explicit Turn(Newest& newest) : newest_(newest) {}
+    explicit Turn(const std::shared_ptr<Held>& held) : held_(held) {}
     CallResult call() override {
-      newest_.pass();
+      const std::shared_ptr<Held> held = held_.lock();  // none: who would handle it is gone
+      if (held && held->waiting) {
+        const Item item = std::move(*std::exchange(held->waiting, std::nullopt));
+        held->handler(item);
+      }
       return Success;
     }
 
    private:
-    Newest& newest_;
+    std::weak_ptr<Held> held_;
   };
 
   std::uint64_t id() const { return reinterpret_cast<std::uintptr_t>(this); }
-  void pass() {
-    if (!waiting_) return;
-    const Item item = std::move(*std::exchange(waiting_, std::nullopt));
-    handler_(item);
-  }
 
   ros::CallbackQueueInterface& queue_;
-  Handler handler_;
-  std::optional<Item> waiting_;
+  std::shared_ptr<Held> held_;
 };
 
 }  // namespace fpc

@@ -3,7 +3,11 @@
 
 namespace fpc {
 
-Health LoopRecorder::health(double) const {
+namespace {
+constexpr double kGapShown = 10.0;  // [s] that a gap stays in words
+}
+
+Health LoopRecorder::health(double now_s) const {
   if (!plant_.problem().empty())
     return {LoopMode::kFailed, EventCode::kPlantDiffers, plant_.problem(), {}};
   if (!store_->problem().empty())
@@ -14,10 +18,10 @@ Health LoopRecorder::health(double) const {
   if (!ready_.announced())
     return {LoopMode::kStarting, EventCode::kWaiting, "waiting for publishers of the ring", {}};
   if (written_) return {LoopMode::kFinished, EventCode::kNone, "written", {}};
-  if (session_.gapCount() > 0)
+  if (gaps_ > 0 && now_s - gap_s_ < kGapShown)
     return {LoopMode::kDegraded,
             EventCode::kRecordGap,
-            "recording, with gaps: " + session_.gaps(1).front(),
+            "recording, with gaps: " + session_.lastGap(),
             {}};
   return {LoopMode::kAutomatic, EventCode::kNone, session_.running() ? "recording" : "waiting", {}};
 }

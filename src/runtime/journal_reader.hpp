@@ -14,6 +14,8 @@ class JournalReader {
  public:
   /// @throws InputError if the file is no journal of this loop.
   JournalReader(const std::string& file, const RecordLayout& layout);
+  /// Leaves out as many samples; behind the last one next() finds nothing.
+  void skip(std::uint64_t samples);
   /// The next sample; false at the end. What a kill cut in half is not read.
   bool next(SampleRecord& sample);
   /// Of the samples read so far: nothing is missing and the last one is final; of an endless run

@@ -199,6 +199,11 @@ JournalReader::JournalReader(const std::string& file, const RecordLayout& layout
   layout_.first_step = static_cast<std::uint32_t>(header.first_step);
 }
 
+void JournalReader::skip(std::uint64_t samples) {
+  stream_.seekg(static_cast<std::streamoff>(samples * entry_.size() * sizeof(double)),
+                std::ios::cur);
+}
+
 bool JournalReader::next(SampleRecord& sample) {
   const auto bytes = static_cast<std::streamsize>(entry_.size() * sizeof(double));
   if (!stream_.read(reinterpret_cast<char*>(entry_.data()), bytes)) return false;

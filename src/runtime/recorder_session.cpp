@@ -171,6 +171,9 @@ void RecorderSession::emitFront() {
   if (!layout_.isComplete(sample)) {
     ++gap_count_;
     noteGaps(sample, next_, kMostGaps, gaps_);
+    std::vector<std::string> lines;
+    noteGaps(sample, next_, 1, lines);
+    last_gap_ = lines.front();
   }
   sink_(sample);
   window_.pop_front();
@@ -179,6 +182,17 @@ void RecorderSession::emitFront() {
 
 void RecorderSession::passOn() {
   while (!window_.empty() && layout_.isComplete(window_.front())) emitFront();
+}
+
+void RecorderSession::giveUpBefore(std::uint32_t step) {
+  while (next_ < step && !window_.empty()) emitFront();
+  passOn();
+}
+
+std::uint32_t RecorderSession::wholeBefore() const {
+  std::size_t place = window_.size();
+  while (place > 0 && !layout_.isComplete(window_[place - 1])) --place;
+  return next_ + static_cast<std::uint32_t>(place);
 }
 
 // A run that was cut short ends with the last measurement; its action is not missed.

@@ -59,6 +59,10 @@ class RecorderSession {
   void receiveBase(const ControlAction& a);
   void receiveAction(const ControlAction& a);
   void receive(const SolverReport& r);
+  /// Passes on samples before this one, complete or not: what they lack has been waited for.
+  void giveUpBefore(std::uint32_t step);
+  /// Step behind the last sample that is complete; 0: none has been passed on or waits.
+  std::uint32_t wholeBefore() const;
   /// Passes on what waits, complete or not; holes are then gaps.
   void close();
 
@@ -71,7 +75,8 @@ class RecorderSession {
   /// "sample 17: no control_action" for the first holes, those of waiting samples included.
   std::vector<std::string> gaps(std::size_t limit = 10) const;
   std::uint64_t gapCount() const { return gap_count_; }
-  std::uint32_t passedOn() const { return next_; }  ///< samples
+  const std::string& lastGap() const { return last_gap_; }  ///< likewise, of those passed on
+  std::uint32_t passedOn() const { return next_; }          ///< samples
   std::size_t waiting() const { return window_.size(); }
   const StepHeader& latest() const { return latest_; }  ///< of the measurements
   std::uint64_t strays() const { return strays_; }      ///< other runs, or too far from now
@@ -98,6 +103,7 @@ class RecorderSession {
   StepHeader latest_;
   std::optional<std::uint32_t> final_;
   std::vector<std::string> gaps_;
+  std::string last_gap_;
   std::uint64_t gap_count_{}, strays_{}, wrong_size_{};
   std::uint32_t far_step_{}, far_streak_{};  // of measurements far ahead that follow each other
 };

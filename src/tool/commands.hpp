@@ -156,6 +156,7 @@ struct HealthArguments {
 struct RecoverArguments {
   std::string folder;
   bool no_plot{false};
+  bool rows{false};  ///< answers with rows, see followJournal()
 };
 
 struct ReplayArguments {

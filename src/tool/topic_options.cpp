@@ -26,6 +26,9 @@ void addRecover(CLI::App& app, RecoverArguments& a, std::function<int()>& chosen
       "recover", "Makes the files of runs over topics whose recorder was killed (journal.bin)");
   command->add_option("FOLDER", a.folder, "folder `out` of the launch")->required();
   command->add_flag("--no-plot", a.no_plot, "no plot.png");
+  command->add_flag("--rows", a.rows,
+                    "leave the journal as it is and answer each sample number on the input with "
+                    "the rows from there on (for programs, see docs/recording.md)");
   command->footer("Example: fmbpc recover ~/.ros/fmbpc/asp_case1_clp\n");
   command->callback([&a, &chosen] { chosen = [&a] { return fpc::tool::recover(a); }; });
 }

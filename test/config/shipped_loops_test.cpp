@@ -24,6 +24,10 @@ TEST_P(ShippedLoop, IsRead) {
   EXPECT_GT(loop.simulation.samples, 0U);
 }
 
+TEST_P(ShippedLoop, RefusesAWeightThatIsNoNumber) {
+  EXPECT_THROW(readLoop(GetParam(), {{"controller.weight_output", ".nan"}}), InputError);
+}
+
 TEST_P(ShippedLoop, HasBaselinesUnderTheSameDisturbances) {
   const std::string name = GetParam();
   const auto cut = std::min(name.find("_pi"), name.find("_gspi"));

@@ -15,8 +15,9 @@ class Fault:
 
     `said`: regular expression for a line "NODE WORD: REASON (MISSING)" of loop_state or /diagnostics; None: the loop goes
     on as if nothing had happened and need not say anything. `counted`: (node, start of a counter's name) that must grow.
-    `needs`: "optimizer", "adapt", ... of the loop. `touches`: nodes that the fault itself kills. `end`: word of the loop's
-    summary afterwards. `after`: a check of its own once the loop is back; returns words if it is not content.
+    `needs`: "optimizer", "simulator", "processes" (of their own), ... of the loop. `touches`: nodes that the fault itself kills.
+    `end`: word of the loop's summary afterwards. `after`: a check of its own once the loop is back; returns words if it is not
+    content. The name plant_simulator stands for the loop's plant, a gateway too.
     """
     name: str
     do: typing.Callable
@@ -31,7 +32,7 @@ class Fault:
     said_within: float = SAID_WITHIN  # s; longer where a process must start first
     new_run: bool = False       # the plant starts a new run
     own_hand: bool = False      # of a gateway's plant: it takes the inputs itself meanwhile
-    paces: tuple = ("paced", "realtime")
+    gap: bool = False           # samples may lack in the record if its summary names them
 
 
 @dataclasses.dataclass
@@ -44,4 +45,6 @@ class Outcome:
     largest_move: float = 0.0   # % of the range
     bump: float = 0.0           # % of the range, first move after the input was held or on its fallback
     stood_still: float = 0.0    # s that the machine gave to nobody, the longest
+    began: float = 0.0          # s of the steady clock
+    ended: float = 0.0
     problems: list = dataclasses.field(default_factory=list)

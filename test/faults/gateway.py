@@ -46,24 +46,34 @@ class PlcBehindWire:
                 return (None, bytes([0x83, 2])) if mine else (data, None)
         self.wire.breaks(NoPosition())
 
+    def measures(self, change):
+        def changed(data):
+            return struct.pack(">f", change(struct.unpack(">f", data)[0]))
+        if change:
+            self.wire.breaks(wire.Registers(4, 0, changed))
+        else:
+            self.wire.heals()
+
     def end(self):
         self.process.kill()
         self.process.wait()
 
 
 class TankBehindRelay:
-    """The example's tank, whose position reaches the gateway through this process."""
+    """The example's tank, whose level and position reach the gateway through this process."""
     RANGE = 20.0
     sets = ""
 
     def __init__(self, _):
         import rospy
         from std_msgs.msg import Float64
-        self.change, self.silent = None, False
+        self.change, self.silent, self.analyser = None, False, None
         self.process = subprocess.Popen(["/usr/bin/python3", os.path.join(SCRIPTS, "example_plant.py")],
                                         stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         self.publisher = rospy.Publisher("tank/inflow_read", Float64, queue_size=10, tcp_nodelay=True)
-        self.subscriber = rospy.Subscriber("tank/inflow", Float64, self.relay, queue_size=10, tcp_nodelay=True)
+        self.level = rospy.Publisher("tank/state_read", Float64, queue_size=10, tcp_nodelay=True)
+        self.subscribers = [rospy.Subscriber(topic, Float64, take, queue_size=10, tcp_nodelay=True)
+                            for topic, take in (("tank/inflow", self.relay), ("tank/state", self.relay_level))]
 
     def relay(self, message):
         if self.silent:
@@ -71,8 +81,16 @@ class TankBehindRelay:
         change = self.change
         self.publisher.publish(self.RANGE * change(message.data / self.RANGE) if change else message.data)
 
+    def relay_level(self, message):
+        analyser = self.analyser
+        self.level.publish(analyser(message.data) if analyser else message.data)
+
     def position(self, change):
         self.change, self.silent = change, False
+
+    def measures(self, change):
+        """`change` of the measured output; None: the truth."""
+        self.analyser = change
 
     def unread(self):
         self.silent = True
@@ -83,7 +101,7 @@ class TankBehindRelay:
 def lie(what, make, said=AWAY, lasts=2.0, **more):
     """`make` gives the change of a position (share of the range) anew at each meeting."""
     return Fault(f"position {what}", lambda loop: loop.far.position(make()), lambda loop: loop.far.position(None), said=said,
-                 lasts=lasts, **more)
+                 needs=("gateway",), lasts=lasts, **more)
 
 
 def offset(share):
@@ -126,6 +144,26 @@ def frozen():
     return change
 
 
+def noisy_analyser(loop):
+    """Noise of a thousandth of what it shows, for so long that it is known."""
+    dice = random.Random(1)
+    loop.far.measures(lambda y: y * (1.0 + dice.gauss(0.0, 1e-3)))
+    loop.samples(180)
+
+
+def frozen_analyser(loop):
+    first = []
+
+    def shows(y):
+        first.append(y)
+        return first[0]
+    loop.far.measures(shows)
+
+
+def well(loop):
+    loop.far.measures(None)
+
+
 def unread(loop):
     loop.far.unread()
 
@@ -136,6 +174,11 @@ def truth(loop):
 
 def nan():
     return lambda p: math.nan
+
+
+def gateway_gone(how, number):
+    return Fault(f"plant_gateway {how}", lambda loop: loop.kill("plant_gateway", with_signal=number), needs=("gateway",),
+                 touches=("plant_gateway",), new_run=True, own_hand=True, lasts=2.0)
 
 
 def said_by_plc(words):
@@ -200,9 +243,15 @@ FAULTS = (
      lie("is rounded to the half", lambda: lambda p: round(2 * p) / 2),
      lie("is 0", lambda: lambda p: 0.0), lie("is at its end", lambda: lambda p: 1.0),
      lie("stays where it was", frozen, None),
-     Fault("position is not read any more", unread, truth, said=UNREAD + "|Illegal data address", lasts=3.0, said_within=3.0),
+     Fault("position is not read any more", unread, truth, said=UNREAD + "|Illegal data address", needs=("gateway",), lasts=3.0,
+           said_within=3.0),
      Fault("position is no number", lambda loop: loop.far.position(nan()), truth, said=UNREAD, needs=("float64",), lasts=3.0,
            said_within=3.0),
+     Fault("analyser noisy", noisy_analyser, needs=("gateway",)),
+     Fault("analyser frozen, noisy before", frozen_analyser, well, said="frozen", needs=("gateway",), said_within=10.0, lasts=2.0),
+     gateway_gone("killed (-9)", signal.SIGKILL), gateway_gone("ended (SIGINT)", signal.SIGINT),
+     Fault("plant_gateway frozen for 3 s", lambda loop: loop.freeze("plant_gateway"), lambda loop: loop.thaw(),
+           said="/plant_gateway|no measurement", needs=("gateway", "processes"), own_hand=True, lasts=3.0),
      modbus("another master's word in the owner's register", another_word, heal, said="the word of another master", lasts=1.5,
             own_hand=True),
      modbus("a second master claims the plant", lambda loop: wire.write_register(loop.far.port, 22, 4711), lasts=1.0,
@@ -214,5 +263,5 @@ FAULTS = (
      modbus("a second gateway at the same PLC", second_gateway, end_second, lasts=3.0),
      float64("a stranger commands the tank", stranger("/tank/control_effort", 4.0),
              said="control_effort is published by /rostopic.* as well"),
-     float64("a stranger speaks for the tank", stranger("/tank/state", 3.9),
+     float64("a stranger speaks for the tank", stranger("/tank/state_read", 3.9),
              counted=("plant_gateway", "refused: tags from /rostopic"))])

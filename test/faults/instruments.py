@@ -14,7 +14,8 @@ def valve(what, share):
     def do(loop):
         s = loop.info().inputs[0]
         disturb(loop, name(loop), [s.lower + share * (s.upper - s.lower)])
-    return Fault(f"valve {what}", do, lambda loop: disturb(loop, name(loop), [], 3), lasts=2.0)
+    return Fault(f"valve {what}", do, lambda loop: disturb(loop, name(loop), [], 3), needs=("simulator",),
+                 lasts=2.0)
 
 
 def sensor(what, value, mode):
@@ -23,7 +24,7 @@ def sensor(what, value, mode):
 
     def do(loop):
         disturb(loop, name(loop), [value(loop.now().outputs[-1])], mode)
-    return Fault(f"sensor {what}", do, lambda loop: disturb(loop, name(loop), [], 3), lasts=2.0)
+    return Fault(f"sensor {what}", do, lambda loop: disturb(loop, name(loop), [], 3), needs=("simulator",), lasts=2.0)
 
 
 FAULTS = [

@@ -4,8 +4,9 @@ import time
 import types
 
 from fault import PATIENCE, RECOVERY, SETTLE, SILENCE, Outcome
+from loop_under_test import SIMULATOR
 
-HELD = (4, 6)  # ControlAction.HELD, FALLBACK
+PLC_PATIENCE = 0.9  # s without a command until a gateway's plant takes its inputs itself
 
 
 class Limits:
@@ -49,10 +50,11 @@ def judge_law(loop, limits, start, outcome):
 
 def judge_inputs(loop, limits, start, outcome, own_hand=False):
     """Bounds and move limits of what the plant applied, sample by sample, and that no sample is missing."""
-    seen = {}
-    for _, m in loop.logs["measurement"].since(start - 1.0):
+    seen, arrived = {}, {}
+    for t, m in loop.logs["measurement"].since(start - 1.0):
         if len(m.input_applied) == len(limits.names):
             seen.setdefault(m.run_id, {})[m.step] = m
+            arrived[m.run_id, m.step] = t
     real = {s.run_id for _, s in genuine_samples(loop, start - 1.0) if s.state}
     forced = forced_steps(loop, start)
     for run_id in sorted(set(seen) & real):
@@ -62,7 +64,8 @@ def judge_inputs(loop, limits, start, outcome, own_hand=False):
         if steps and steps != list(range(steps[0], steps[-1] + 1)):
             outcome.problems.append("samples missing")
         for before, after in zip(steps, steps[1:]):
-            if not (own_hand and (run[before].local or run[after].local)):
+            late = arrived[run_id, after] - arrived[run_id, before] > PLC_PATIENCE  # it has taken its inputs meanwhile
+            if not (own_hand and (run[before].local or run[after].local or late)):
                 judge_move(run[before], run[after], limits, forced, outcome)
 
 
@@ -129,10 +132,10 @@ def meet(loop, limits, fault):
     outcome = Outcome(fault.name)
     before = loop.pids()
     count = loop.counter(*fault.counted) if fault.counted else 0
-    start = time.monotonic()
+    start = outcome.began = time.monotonic()
     attempt(fault.do, loop, outcome)
     if fault.said:
-        found = loop.wait_for_words(fault.said, start, PATIENCE)
+        found = loop.wait_for_words(fault.said.replace(SIMULATOR, loop.plant), start, max(PATIENCE, fault.said_within))
         if found:
             outcome.said_after, outcome.said_words = found
         if found is None or found[0] > fault.said_within:
@@ -158,6 +161,7 @@ def meet(loop, limits, fault):
     judge_processes(loop, fault, before, outcome)
     if fault.after:
         attempt(fault.after, loop, outcome)
+    outcome.ended = time.monotonic()
     return outcome
 
 

@@ -5,20 +5,22 @@ import resource
 import time
 import xmlrpc.client
 
+import contacts
 from fault import Fault
 
 ME = "/fault_matrix"
 PLANT, CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER = NODES = (
     "plant_simulator", "fmbpc_controller", "clp_optimizer", "loop_recorder", "fuzzy_identifier")
+MANAGER = "loop_manager"
 MENDED = 5.0  # s
 
 
 def needs(node):
-    return ("optimizer",) if node == OPTIMIZER else ()
+    return ("nodelets",) if node == MANAGER else ("processes", "optimizer") if node == OPTIMIZER else ("processes",)
 
 
 def proxy(loop, node):
-    return xmlrpc.client.ServerProxy(loop.master.lookupNode("/" + node))
+    return xmlrpc.client.ServerProxy(loop.master.lookupNode("/" + loop.name(node)))
 
 
 def missing(loop, node):
@@ -76,7 +78,8 @@ def clean_up(loop, node):
     """What `rosnode cleanup` does with a node that does not answer."""
     remember(loop)
     loop.freeze(node)
-    name, uri, master = "/" + node, loop.master.lookupNode("/" + node), xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"])
+    name, master = "/" + loop.name(node), xmlrpc.client.ServerProxy(os.environ["ROS_MASTER_URI"])
+    uri = loop.master.lookupNode(name)
     published, subscribed, services = loop.master.getSystemState()
     for topics, forget in ((published, master.unregisterPublisher), (subscribed, master.unregisterSubscriber)):
         for topic, names in topics:
@@ -94,7 +97,7 @@ def thaw(loop):
 
 def cleaned(node):
     return Fault(f"rosnode cleanup while {node} hangs for 3 s", lambda loop: clean_up(loop, node), thaw, needs=needs(node),
-                 lasts=3.0)
+                 lasts=3.0, own_hand=node == PLANT)
 
 
 def connections(process):
@@ -110,7 +113,7 @@ def use_up(loop, node):
     """No file descriptor is left to a node, nor do those help that are free once somebody whom it hears has died, who is
     started again."""
     remember(loop)
-    loop.starved = loop.pid("/" + node)
+    loop.starved = loop.pid("/" + loop.name(node))
     loop.descriptors = resource.prlimit(loop.starved, resource.RLIMIT_NOFILE)
     open_now = {int(name) for name in os.listdir(f"/proc/{loop.starved}/fd")}
     free = next(number for number in range(len(open_now) + 1) if number not in open_now)
@@ -130,4 +133,14 @@ def starved(node):
                  said=f"/{node} .*(no connection can be made|not connected)", said_within=5.0, touches=(CONTROLLER,), lasts=2.0)
 
 
-FAULTS = [forged(node) for node in NODES] + [cleaned(node) for node in NODES] + [starved(RECORDER), starved(PLANT)]
+def contacted(node):
+    """A stranger sends to its ports what once ended a node at first contact."""
+    def do(loop):
+        name = "/" + loop.name(node)
+        ports = contacts.ports(loop.master.lookupNode(name))
+        for _, port, data in contacts.killers(name):
+            contacts.send(ports[port], data, answer=port == "tcpros")
+    return Fault(f"{node}: bytes that once ended nodes", do, needs=needs(node), lasts=1.0)
+
+
+FAULTS = [forged(node) for node in (*NODES, MANAGER)] + [contacted(node) for node in (*NODES, MANAGER)] + [cleaned(node) for node in NODES] + [starved(RECORDER), starved(PLANT)]

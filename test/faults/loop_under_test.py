@@ -26,6 +26,12 @@ HEARD = ("plant_info", "measurement", "plant_state", "base_action", "predictive_
          "solver_report", "fuzzy_model", "loop_state", "operator_kept")
 
 
+SIMULATOR = "plant_simulator"  # in the names of faults: whatever plant the loop has
+MANAGER = "loop_manager"       # of nodelets, who speak in its name
+ROLES = {"plant": SIMULATOR, "controller": "fmbpc_controller", "optimizer": "clp_optimizer", "recorder": "loop_recorder",
+         "model": "fuzzy_identifier"}
+
+
 class Log:
     """(wall time, message) of a topic."""
 
@@ -64,8 +70,8 @@ class Log:
 class Loop:
     """Nodes, topics and services by their short names."""
 
-    def __init__(self, nodes):
-        self.nodes = ["/" + name for name in nodes]
+    def __init__(self, nodes, plant=SIMULATOR):
+        self.nodes, self.plant = ["/" + name for name in nodes], plant
         self.logs = {topic: Log(topic, KINDS[topic]) for topic in HEARD}
         self.effects = Log("disturbance_effect", CommandEffect)
         self.diagnostics = Log("/diagnostics", DiagnosticArray)
@@ -87,7 +93,7 @@ class Loop:
         lines = [(t, f"{s.node} {s.word}: {s.reason} ({', '.join(s.missing)})")
                  for t, s in self.logs["loop_state"].since(start)]
         for t, array in self.diagnostics.since(start):
-            lines += [(t, f"{s.name.split(':')[0]} {('automatic', 'warning', 'error', 'stale')[s.level]}: {s.message} ()")
+            lines += [(t, f"{self.speaker(s.name)} {('automatic', 'warning', 'error', 'stale')[s.level]}: {s.message} ()")
                       for s in array.status]
         return sorted((line for line in lines if " automatic:" not in line[1]), key=lambda line: line[0])
 
@@ -113,9 +119,17 @@ class Loop:
         """Sum of a node's counters whose names start with `key`, as it said last."""
         for _, array in reversed(list(self.diagnostics.items)[-400:]):
             for status in array.status:
-                if status.name.startswith(node + ":"):
+                if self.speaker(status.name) == self.name(node):
                     return sum(int(p.value) for p in status.values if p.key.startswith(key) and p.value.isdigit())
         return 0
+
+    def name(self, node):
+        return self.plant if node == SIMULATOR else node
+
+    def speaker(self, status_name):
+        """The node of a status "NODE: ROLE"."""
+        node, _, role = status_name.partition(": ")
+        return self.name(ROLES.get(role, node)) if node == MANAGER else node
 
     # What is done to it.
     def pid(self, node):
@@ -129,14 +143,14 @@ class Loop:
 
     def kill(self, *nodes, with_signal=signal.SIGKILL):
         for node in nodes:
-            process = self.pid("/" + node)
+            process = self.pid("/" + self.name(node))
             if not process:
                 raise RuntimeError(f"/{node} is not there to be killed")
             os.kill(process, with_signal)
 
     def freeze(self, *nodes):
         for node in nodes:
-            process = self.pid("/" + node)
+            process = self.pid("/" + self.name(node))
             if process:
                 os.kill(process, signal.SIGSTOP)
                 self.frozen.add(process)

@@ -1,6 +1,8 @@
 """Nodes that are killed, ended or frozen."""
+import http.client
 import signal
 import time
+import xmlrpc.client
 
 from fault import Fault
 
@@ -9,13 +11,24 @@ CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER, PLANT = (
 
 
 def needs(*nodes):
-    return ("optimizer",) if OPTIMIZER in nodes else ()
+    return ("processes", *(("optimizer",) if OPTIMIZER in nodes else ()), *(("simulator",) if PLANT in nodes else ()),
+            *(("model",) if IDENTIFIER in nodes else ()))
 
 
 def quickly_back(node, with_signal, how):
     """A respawned node may be back before anybody misses it: nothing need be said."""
     return Fault(f"{node} {how}", lambda loop: loop.kill(node, with_signal=with_signal), needs=needs(node), touches=(node,),
                  lasts=2.0)
+
+
+def shut_down(node):
+    """As rosnode kill asks it to."""
+    def do(loop):
+        try:
+            xmlrpc.client.ServerProxy(loop.master.lookupNode("/" + node)).shutdown("/fault_matrix", "asked to")
+        except (OSError, xmlrpc.client.Error, http.client.HTTPException):  # it may end before it answers
+            pass
+    return Fault(f"rosnode kill {node}", do, needs=needs(node), touches=(node,), lasts=2.0)
 
 
 def frozen(*nodes, seconds=3.0):
@@ -40,6 +53,7 @@ FAULTS = (
     [quickly_back(node, signal.SIGKILL, "killed (-9)") for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER)] +
     [quickly_back(node, signal.SIGTERM, "ended (SIGTERM)") for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER)] +
     [quickly_back(node, signal.SIGINT, "ended (SIGINT)") for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER)] +
+    [shut_down(node) for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER)] +
     [quickly_back(CONTROLLER, signal.SIGSEGV, "crashed (SIGSEGV)")] +
     [frozen(node) for node in (CONTROLLER, OPTIMIZER, RECORDER, IDENTIFIER, PLANT)] +
     [blink(node) for node in (CONTROLLER, OPTIMIZER, RECORDER, PLANT)] +

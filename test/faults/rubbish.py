@@ -3,19 +3,18 @@ NaN, wrong sizes, answers of an impostor, bursts. What the plant keeps sending w
 import math
 
 from fault import Fault
-from strangers import far, final, latest, next_run
+from strangers import far, final, latest, needs, next_run
 
 NAN = [math.nan]
+WRONG_SIZE = ("dropped: wrong size", "refused: measurement")  # the second: its qualities, of a gateway, are of another size
 
 
-def fault(topic, name, change, times=3, counted=None, said=None, needs=(), lasts=1.0):
+def fault(topic, name, change, times=3, counted=None, said=None, lasts=1.0, **more):
     def do(loop):
         message = latest(loop, topic)
         change(message, loop)
         loop.send(topic, message, times)
-    if topic in ("base_action", "predictive_action", "solver_report"):
-        needs = ("optimizer",)
-    return Fault(f"rubbish: {topic}, {name}", do, counted=counted, said=said, needs=needs, lasts=lasts)
+    return Fault(f"rubbish: {topic}, {name}", do, counted=counted, said=said, needs=needs(topic), lasts=lasts, **more)
 
 
 def inputs(make):
@@ -73,8 +72,8 @@ FAULTS = [
     fault("measurement", "another run", next_run, counted=(CONTROLLER, "dropped: run not announced")),
     fault("measurement", "5 steps old", stale, counted=(CONTROLLER, "dropped: old step")),
     fault("measurement", "NaN at the next step", lambda m, loop: (nan("outputs")(m, loop), ahead(1)(m, loop))),
-    fault("measurement", "no outputs", sized("outputs", 0), counted=(CONTROLLER, "dropped: wrong size")),
-    fault("measurement", "too many outputs", sized("outputs", 9), counted=(CONTROLLER, "dropped: wrong size")),
+    fault("measurement", "no outputs", sized("outputs", 0), counted=(CONTROLLER, WRONG_SIZE)),
+    fault("measurement", "too many outputs", sized("outputs", 9), counted=(CONTROLLER, WRONG_SIZE)),
     fault("measurement", "burst of 3000 old ones", stale, times=3000),
     fault("base_action", "far ahead", far),
     fault("base_action", "NaN", nan("input")),
@@ -92,8 +91,8 @@ FAULTS = [
     fault("tracking", "wrong size", sized("setpoint", 7), counted=(RECORDER, "dropped: wrong size")),
     fault("solver_report", "wrong size", sized("perturbation", 0)),
     fault("plant_state", "wrong size", sized("state", 1), counted=(RECORDER, "dropped: wrong size")),
-    fault("plant_info", "run 2^63", next_run, times=1, lasts=2.5),
-    fault("plant_info", "other units", other_units, times=1, counted=(CONTROLLER, "refused: plant_info")),
+    fault("plant_info", "run 2^63", next_run, times=1, lasts=2.5, gap=True),
+    fault("plant_info", "other units", other_units, times=1, counted=(CONTROLLER, "refused: plant_info"), gap=True),
 ]
 
 
@@ -104,4 +103,4 @@ def announced_lie(loop):
     loop.send("measurement", now, 3)
 
 
-FAULTS += [Fault("rubbish: a second plant announces a run and measures once", announced_lie, lasts=3.0)]
+FAULTS += [Fault("rubbish: a second plant announces a run and measures once", announced_lie, lasts=3.0, gap=True)]

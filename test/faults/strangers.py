@@ -7,7 +7,12 @@ ME = "/fault_matrix"
 LISTENER = {"plant_info": "fmbpc_controller", "measurement": "fmbpc_controller", "plant_state": "loop_recorder",
             "base_action": "clp_optimizer", "predictive_action": "clp_optimizer", "control_action": "plant_simulator",
             "tracking": "loop_recorder", "solver_report": "loop_recorder", "fuzzy_model": "fmbpc_controller"}
-OPTIMIZER_ONLY = ("base_action", "predictive_action", "solver_report")
+NEEDS = {"base_action": "optimizer", "predictive_action": "optimizer", "solver_report": "optimizer", "plant_state": "simulator",
+         "fuzzy_model": "model"}
+
+
+def needs(topic):
+    return (NEEDS[topic],) if topic in NEEDS else ()
 
 
 def latest(loop, topic):
@@ -23,8 +28,8 @@ def forged(topic, change, what):
         message = latest(loop, topic)
         change(message, loop)
         loop.send(topic, message, 20)
-    return Fault(f"stranger: {topic}, {what}", do, counted=(LISTENER[topic], f"refused: {topic} from {ME}"),
-                 needs=("optimizer",) if topic in OPTIMIZER_ONLY else (), lasts=1.0)
+    return Fault(f"stranger: {topic}, {what}", do, counted=(LISTENER[topic], f"refused: {topic} from {ME}"), needs=needs(topic),
+                 lasts=1.0)
 
 
 def far(message, _):

@@ -51,8 +51,8 @@ def end(loop):
     loop.end_children()
 
 
-def stranger_node(executable, what, said=None, counted=None):
-    return Fault(f"second {what} beside ours", second(executable, "second"), end, said=said, counted=counted, lasts=3.0)
+def stranger_node(executable, what, counted=None, needs=()):
+    return Fault(f"second {what} beside ours", second(executable, "second"), end, counted=counted, needs=needs, lasts=3.0)
 
 
 def usurper(executable, node, what):
@@ -100,6 +100,13 @@ def parameters(loop):
     loop.kill(CONTROLLER)
 
 
+def other_text(loop):
+    """The loop file has changed, and one of the nodes is started again."""
+    loop.text = loop.master.getParam("/loop_text")
+    loop.master.setParam("/loop_text", loop.text + "\n# changed\n")
+    loop.kill(CONTROLLER)
+
+
 def master_frozen(loop):
     os.kill(loop.core.pid, signal.SIGSTOP)
 
@@ -130,15 +137,17 @@ FAULTS = [
     Fault("disk full", fill, room, said=f"{RECORDER}.*(cannot be written|full|room|No space)", needs=("disk",), lasts=2.0),
     Fault("disk full, recorder killed", lambda loop: (fill(loop), loop.kill(RECORDER)), room,
           touches=(RECORDER,), needs=("disk",), lasts=4.0),
-    stranger_node("fmbpc_controller", "controller", counted=(RECORDER, "refused: tracking from /second")),
+    stranger_node("fmbpc_controller", "controller", counted=(RECORDER, "refused: tracking from /second"), needs=("processes",)),
     stranger_node("loop_recorder", "recorder"),
-    stranger_node("plant_simulator", "plant", counted=(CONTROLLER, "refused: plant_info from /second")),
+    stranger_node("plant_simulator", "plant", counted=(CONTROLLER, "refused: plant_info from /second"), needs=("simulator",)),
     usurper("fmbpc_controller", CONTROLLER, "controller"),
     usurper("loop_recorder", RECORDER, "recorder"),
     Fault("second launch on the same master", second_launch, after=was_refused),
     Fault("five viewers come and go", viewers, end, lasts=1.0),
     Fault("a viewer hangs", hung_viewer, unhang, lasts=3.0),
     Fault("loop_text removed, then the controller killed", no_parameters, parameters, touches=(CONTROLLER,), lasts=3.0),
+    Fault("loop_text changed, the controller killed", other_text, parameters, touches=(CONTROLLER,), lasts=2.0,
+          said="/fmbpc_controller .*the plant reads another loop_text", said_within=10.0),
     Fault("master frozen for 4 s", master_frozen, master_thawed, lasts=4.0),
     Fault("master killed and started anew", master_killed, master_again, lasts=3.0),
     Fault("master killed and started anew, then the controller killed", master_killed, then_the_controller,

@@ -62,6 +62,14 @@ TEST_F(NewestOfTheQueue, WhatComesWhileItAnswersIsNotLost) {
   EXPECT_EQ(answered_, std::vector<int>({1, 3}));
 }
 
+TEST_F(NewestOfTheQueue, TheQueueMayEndFirst) {
+  auto queue = std::make_unique<ros::CallbackQueue>();
+  Newest<int> newest(*queue, [this](int item) { answered_.push_back(item); });
+  newest.put(1);
+  queue.reset();
+  EXPECT_TRUE(answered_.empty());
+}
+
 TEST_F(NewestOfTheQueue, NothingIsCalledOnceItIsGone) {
   {
     Newest<int> newest(queue_, [this](int item) { answered_.push_back(item); });

@@ -1,6 +1,5 @@
 #!/usr/bin/python3
 """The operator's panel as somebody uses it: a browser loads, looks, clicks, steers a loop over topics and sees the effect."""
-import json
 import os
 import signal
 import subprocess
@@ -8,24 +7,19 @@ import sys
 import tempfile
 import time
 import unittest
-import urllib.request
 import xmlrpc.client
 
 import rosgraph
 import rospy
 import rostest
-import selenium
 from fmbpc.msg import CommandEffect, ControlAction, Tracking
-from selenium import webdriver
 from selenium.common.exceptions import StaleElementReferenceException
-from selenium.webdriver.chrome.service import Service
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
+import panel_page
 import ring
 
-TOP = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
-SCRIPT = os.path.join(TOP, "scripts", "panel.py")
 PASSWORD = "correct horse"
 
 # Text whose contrast with what is behind it is below 4.5 to 1 (WCAG 2.1), of all that is seen.
@@ -50,45 +44,26 @@ return [s.steps[0], s.steps[s.steps.length - 1], holes];
 """
 
 
-def browser():
-    options = webdriver.ChromeOptions()
-    for word in ("--headless=new", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--window-size=1280,1000", "--lang=en-US"):
-        options.add_argument(word)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    if selenium.__version__.startswith("3."):  # Debian 11
-        return webdriver.Chrome("/usr/bin/chromedriver", options=options)
-    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
-
-
 class Panel(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         cls.users = os.path.join(cls.folder.name, "users.json")
         for name, role in (("olga", "operate"), ("emil", "engineer")):
-            subprocess.run([sys.executable, SCRIPT, "--users", cls.users, "--add-user", name, role], input=PASSWORD + "\n", check=True, text=True, stdout=subprocess.DEVNULL)
+            subprocess.run([sys.executable, panel_page.SCRIPT, "--users", cls.users, "--add-user", name, role], input=PASSWORD + "\n", check=True, text=True, stdout=subprocess.DEVNULL)
         cls.port = ring.free_port()
-        cls.start()
-        cls.page = browser()
-
-    @classmethod
-    def start(cls):
-        cls.panel = subprocess.Popen([sys.executable, SCRIPT, f"_port:={cls.port}", f"_users:={cls.users}", f"_data:={cls.folder.name}/data", "__name:=panel", "__ns:=/"])
-        ring.wait_until(lambda: rospy.has_param("/panel/listening"), "the panel")
+        cls.panel = panel_page.PanelProcess(cls.port, cls.folder.name + "/data", users=cls.users)
+        cls.page = panel_page.browser()
 
     @classmethod
     def tearDownClass(cls):
         cls.page.quit()
         cls.panel.kill()
-        cls.panel.wait()
         cls.folder.cleanup()
 
     def setUp(self):
         self.clicks = 0
-        self.size(1280, 1000)
-
-    def size(self, width, height):
-        self.page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500})
+        panel_page.size(self.page, 1280, 1000)
 
     def open(self, path="#/"):
         self.page.get("about:blank")
@@ -146,7 +121,7 @@ class Panel(unittest.TestCase):
         self.assertEqual([], [name for name in loaded if not name.startswith(f"http://localhost:{self.port}/")])
         for path in ("#/", "#/loop/%2Fa", "#/loop/%2Fa/model", "#/alarms", "#/journal"):
             for width in (1280, 360):
-                self.size(width, 900)
+                panel_page.size(self.page, width, 900)
                 self.open(path)
                 self.see(By.CSS_SELECTOR, "main h1, main h2")
                 time.sleep(1.0)  # what is drawn over and over has no end that could be awaited
@@ -262,16 +237,14 @@ class Panel(unittest.TestCase):
         self.open("#/loop/%2Fa")
         self.see(By.ID, "outputs", "x [mg/l]")
         listed = self.alarm_keys()
-        rospy.delete_param("/panel/listening")
         self.panel.kill()
-        self.panel.wait()
         self.see(By.ID, "banner", "NO CONNECTION")
         tracking = ring.Listener("tracking", Tracking)
         away = tracking.wait().step
         tracking.wait(lambda t: t.step > away + 20)  # samples that no panel saw
-        self.start()
+        self.panel.start()
         ring.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
-        ring.wait_until(lambda: self.holes(0, away + 20) == 0, "a trend without holes", 40.0)
+        ring.wait_until(lambda: self.panel.holes("/a", ("x", "x_reference", "q_r"), 0, away + 20) == 0, "a trend without holes", 40.0)
         self.click(By.XPATH, "//button[.='whole run']")
 
         def whole():
@@ -279,16 +252,6 @@ class Panel(unittest.TestCase):
             return got is not None and got[0] == 0 and got[1] > away + 20 and got[2] == 0
         ring.wait_until(whole, "the same in the browser", 40.0)
         ring.wait_until(lambda: self.alarm_keys() >= listed, "the alarms of before")
-
-    def holes(self, first, last):
-        """Samples without a measurement, a reference or an action in what the panel has."""
-        count = 0
-        for begin in range(first, last, 3000):
-            with urllib.request.urlopen(f"http://localhost:{self.port}/api/history?loop=/a&from={begin}&to={min(begin + 2999, last)}&points=4000") as answer:
-                got = json.load(answer)
-            count += min(begin + 2999, last) - begin + 1 - len(got["steps"])
-            count += sum(v is None for name in ("x", "x_reference", "q_r") for v in got["data"][got["columns"].index(name)])
-        return count
 
     def alarm_keys(self):
         return set(self.page.execute_script("return window.fmbpcPanel.alarms.map((a) => a.key)"))

@@ -236,6 +236,30 @@ TEST_F(RecorderSessionTest, WhatIsMissingForLongIsGivenUpAndNamed) {
   EXPECT_EQ(r.waiting(), 0U);
 }
 
+TEST_F(RecorderSessionTest, WhatHasBeenWaitedForKeepsNothingInMemory) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  for (std::uint32_t k = 0; k < 5; ++k) r.receive(measurement(k));  // nobody answers
+  addSample(r, 5);
+  addSample(r, 6);
+  EXPECT_EQ(r.waiting(), 7U);
+  EXPECT_EQ(r.wholeBefore(), 7U);
+  r.receive(measurement(7));
+  EXPECT_EQ(r.wholeBefore(), 7U);
+  r.giveUpBefore(3);
+  EXPECT_EQ(r.lastGap(), "sample 2: no tracking");
+  EXPECT_EQ(passed_.size(), 3U);
+  EXPECT_EQ(r.gapCount(), 3U);
+  r.receive(tracking(1));  // too late
+  r.giveUpBefore(5);
+  EXPECT_EQ(passed_.size(), 7U) << "those that follow are whole";
+  EXPECT_EQ(r.gapCount(), 5U);
+  EXPECT_EQ(r.waiting(), 1U);
+  addSample(r, 7);
+  EXPECT_EQ(r.wholeBefore(), 8U);
+  EXPECT_EQ(passed_.back().measurement.header.step, 7U);
+}
+
 TEST_F(RecorderSessionTest, ClosePassesOnWhatWaits) {
   RecorderSession r = recorder(true);
   r.announce(7);

@@ -243,6 +243,15 @@ class AlarmList:
             elif self.quiet_since.get(loop, -math.inf) is None:
                 self.quiet_since[loop] = now
 
+    def end(self, loop):
+        """The loop is not there any more: what was active has gone."""
+        with self.lock:
+            for alarm in self.alarms.values():
+                if alarm.loop == loop and alarm.active:
+                    alarm.active, alarm.suppressed, alarm.away_since, alarm.gone = False, False, None, self.wall()
+                    self._say(alarm, "went", "", "the loop is not there any more")
+            self.quiet_since.pop(loop, None)
+
     def tick(self):
         """Ends what is shelved."""
         with self.lock:

@@ -34,6 +34,8 @@ class Desk:
     def close(self):
         for item in self.listeners + [self.setpoint, self.disturbance]:
             item.unregister()
+        if self.identify_client is not None:
+            self.identify_client.action_client.stop()
 
     def _effect(self, message):
         with self.arrived:
@@ -56,6 +58,8 @@ class Desk:
         act = getattr(self, "_" + verb, None)
         if act is None or verb not in VERBS:
             raise Refused(f"unknown: {verb}")
+        loop.want_all(time.monotonic())
+        self._wait(lambda: loop.journal is None, 2.0)
         return act(arguments)
 
     # Topics.

@@ -1,5 +1,7 @@
 """What a loop did, sample by sample, in bounded memory: rows are found by the number of their sample, so late ones find their place."""
 import math
+import os
+import subprocess
 
 import numpy
 
@@ -100,39 +102,83 @@ class History:
 
     def gaps(self, name):
         """[(first, last)] of samples without a value in a column, inside what is kept."""
-        steps, values, _ = self.rows(0, 2 ** 62)
-        if not len(steps):
+        if self.first is None:
             return []
-        missing = numpy.isnan(values[:, self.index[name]])
+        column, nothing = self.index[name], numpy.full(CHUNK, True)
+        missing = numpy.concatenate([numpy.isnan(self.chunks[n][0][:, column]) if n in self.chunks else nothing
+                                     for n in range(self.first // CHUNK, self.last // CHUNK + 1)])
+        begin = self.first // CHUNK * CHUNK
+        missing = missing[self.first - begin:self.last - begin + 1]
         edges = numpy.flatnonzero(numpy.diff(numpy.concatenate(([False], missing, [False])).astype(numpy.int8)))
-        return [(int(steps[a]), int(steps[b - 1])) for a, b in zip(edges[::2], edges[1::2])]
+        return [(int(self.first + a), int(self.first + b - 1)) for a, b in zip(edges[::2], edges[1::2])]
 
     def bytes(self):
         return len(self.chunks) * self.chunk_bytes
 
     def drawn(self, first, last, points):
         """(steps, values, wall), at most about `points` rows: of each bucket the least and the most of every column, so that no peak is lost."""
-        steps, values, wall = self.rows(first, last)
-        if len(steps) <= max(points, 4):
-            return steps, values, wall
-        bucket = -(-2 * len(steps) // points)
-        whole = -(-len(steps) // bucket) * bucket
-        padded = numpy.full((whole, values.shape[1]), numpy.nan, dtype=numpy.float32)
-        padded[:len(steps)] = values
-        shaped = padded.reshape(-1, bucket, values.shape[1])
-        empty = numpy.isnan(shaped).all(axis=1)
-        low = numpy.where(numpy.isnan(shaped), numpy.inf, shaped).min(axis=1)
-        high = numpy.where(numpy.isnan(shaped), -numpy.inf, shaped).max(axis=1)
-        low[empty] = high[empty] = numpy.nan
-        falls = padded[::bucket] > numpy.nan_to_num(padded[numpy.minimum(numpy.arange(bucket - 1, whole, bucket), len(steps) - 1)], nan=-numpy.inf)
-        both = numpy.empty((2 * len(low), values.shape[1]), dtype=numpy.float32)
-        both[::2], both[1::2] = numpy.where(falls, high, low), numpy.where(falls, low, high)
-        starts = numpy.arange(0, whole, bucket)
-        at = numpy.empty(2 * len(low), int)
-        at[::2], at[1::2] = starts, numpy.minimum(starts + max(bucket // 2, 1), len(steps) - 1)
-        keep = at < len(steps)
-        # The newest sample as it is.
-        return (numpy.append(steps[at[keep]], steps[-1]), numpy.vstack([both[keep], values[-1:]]), numpy.append(wall[at[keep]], wall[-1]))
+        if self.first is None or min(last, self.last) - max(first, self.first) < max(points, 4):
+            return self.rows(first, last)
+        first, last = max(first, self.first), min(last, self.last)
+        bucket = -(-2 * (last - first + 1) // points)
+        block = max(1, 4 * CHUNK // bucket) * bucket  # so that no copy of all is made
+        parts = [thinned(*self.rows(begin, min(begin + block, last + 1) - 1), bucket) for begin in range(first, last + 1, block)]
+        parts.append(self.rows(last, last))  # the newest sample as it is
+        return tuple(numpy.concatenate(column) for column in zip(*parts))
+
+
+def thinned(steps, values, wall, bucket):
+    whole = -(-len(steps) // bucket) * bucket
+    padded = numpy.full((whole, values.shape[1]), numpy.nan, dtype=numpy.float32)
+    padded[:len(steps)] = values
+    shaped = padded.reshape(-1, bucket, values.shape[1])
+    empty = numpy.isnan(shaped).all(axis=1)
+    low = numpy.where(numpy.isnan(shaped), numpy.inf, shaped).min(axis=1)
+    high = numpy.where(numpy.isnan(shaped), -numpy.inf, shaped).max(axis=1)
+    low[empty] = high[empty] = numpy.nan
+    falls = padded[::bucket] > numpy.nan_to_num(padded[numpy.minimum(numpy.arange(bucket - 1, whole, bucket), len(steps) - 1)], nan=-numpy.inf)
+    both = numpy.empty((2 * len(low), values.shape[1]), dtype=numpy.float32)
+    both[::2], both[1::2] = numpy.where(falls, high, low), numpy.where(falls, low, high)
+    starts = numpy.arange(0, whole, bucket)
+    at = numpy.empty(2 * len(low), int)
+    at[::2], at[1::2] = starts, numpy.minimum(starts + max(bucket // 2, 1), len(steps) - 1)
+    return steps[at], both, wall[at]
+
+
+class Journal:
+    """The samples of a run from the journal that its recorder goes on writing: `fmbpc recover --rows`, which reads it, answers."""
+
+    def __init__(self, tool, folder):
+        """Raises ValueError or OSError if there is none."""
+        self.last = -1
+        self.process = subprocess.Popen([tool, "recover", "--rows", os.path.expanduser(folder)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        run, _, names = self.process.stdout.readline().decode().strip().partition(" ")
+        if not names:
+            self.close()
+            raise ValueError(f"{folder}: expected a journal of a run")
+        self.run_id, self.names = int(run), names.split(",")
+
+    def rows(self, first):
+        """The rows from a sample on, as trajectory.csv has them; not all at once, where there are very many."""
+        self.process.stdin.write(b"%d\n" % first)
+        self.process.stdin.flush()
+        begin, count = (int(word) for word in self.process.stdout.readline().split())
+        table = numpy.frombuffer(self.process.stdout.read(8 * count * len(self.names)), dtype=float).reshape(count, len(self.names))
+        if count:
+            self.last = begin + count - 1
+        return table
+
+    def close(self):
+        self.process.kill()
+        self.process.wait()
+        self.process.stdin.close()
+        self.process.stdout.close()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
 
 
 def plain(array, digits=7):

@@ -2,9 +2,6 @@
 import collections
 import math
 import os
-import shutil
-import subprocess
-import tempfile
 import threading
 import time
 
@@ -16,12 +13,17 @@ from fmbpc import msg as messages
 from std_msgs.msg import String
 
 from panel_server import predict, state, wire
-from panel_server.history import History, plain, read_csv
+from panel_server.history import History, Journal, plain, read_csv
 
 SILENT = 1.5      # s of wall time without a word from the plant: the loop is stale
 MOST_WAITING = 20000  # raw messages of a topic between two looks
 MOST_FILLED = 200000  # rows of a run's earlier parts
 PLAN_GRACE = 60.0 # s that plans are listened to after the last page that shows them
+FAST = 100        # samples a second of wall time; of a faster loop the recorder's journal is read, not each message
+GLANCE = 2.0      # s between two looks at the messages of a fast loop
+GLANCED = 0.3     # s that such a look lasts at most
+ALL_FOR = 6.0     # s that a fast loop's messages are heard once somebody asks something of it
+SAMPLED = ("measurement", "tracking", "control_action")
 
 # Who speaks where, as in the loop file (loop.publishers); () is anyone.
 SPEAKERS = {"plant_info": ("plant_simulator", "plant_gateway"), "measurement": ("plant_simulator", "plant_gateway"),
@@ -31,7 +33,7 @@ SPEAKERS = {"plant_info": ("plant_simulator", "plant_gateway"), "measurement": (
 
 
 class Raw:
-    """A topic whose messages wait, unread, until somebody looks."""
+    """A topic whose messages wait, unread, until somebody looks. keep: the newest ones."""
 
     def __init__(self, topic, keep=MOST_WAITING):
         self.waiting = collections.deque(maxlen=keep)
@@ -82,6 +84,10 @@ class Loop:
         self.restarted = 0         # counts runs
         self.filled, self.fill_tried, self.filling = 0, -math.inf, False
         self.plan_wanted = -math.inf
+        self.paced = collections.deque()  # (time, step) of the latest second
+        self.journal, self.following, self.followed = None, False, 0
+        self.fast_tried = self.all_until = self.glanced = -math.inf
+        self.glance, self.closed = {}, False
         self.lock = threading.RLock()
         self.raw = {topic: Raw(self.prefix + topic) for topic in ("plant_info", "measurement", "tracking", "control_action", "loop_state",
                                                                    "operator_kept", "fuzzy_model")}
@@ -96,10 +102,17 @@ class Loop:
         self._read_text()
 
     def close(self):
-        for item in list(self.raw.values()) + list(self.on_demand.values()):
+        with self.lock:
+            self.closed = True
+            topics = [*self.raw.values(), *self.on_demand.values(), *self.glance.values()]
+            self.raw, self.on_demand, self.glance = {}, {}, {}
+            journal, self.journal = self.journal, None
+        for item in topics:
             item.close()
         for item in self.subscribers:
             item.unregister()
+        if journal is not None:
+            journal.close()
 
     def _on_description(self, message):
         self.settings = [(p.name, p.type, p.description) for g in message.groups for p in g.parameters]
@@ -149,9 +162,10 @@ class Loop:
 
     def want_plan(self, now):
         self.plan_wanted = now
-        if not self.on_demand:
-            kinds = ["predictive_action", "base_action", "input_plan"]
-            self.on_demand = {topic: Raw(self.prefix + topic, keep=200) for topic in kinds}
+        if not self.on_demand and self.journal is None:
+            # A plan costs as much as a hundred samples and is shown ten times a second: the newest ones are enough.
+            keep = {"predictive_action": 2, "base_action": MOST_WAITING, "input_plan": 2}
+            self.on_demand = {topic: Raw(self.prefix + topic, keep=n) for topic, n in keep.items()}
 
     def look(self, now):
         """Takes in what has come. now: of time.monotonic()."""
@@ -164,7 +178,7 @@ class Loop:
                                 ("control_action", self._on_action), ("base_action", self._on_base), ("input_plan", self._on_plan),
                                 ("predictive_action", self._on_prediction), ("fuzzy_model", self._on_model), ("operator_kept", self._on_kept),
                                 ("loop_state", self._on_state)):
-                raw = self.raw.get(topic) or self.on_demand.get(topic)
+                raw = self.raw.get(topic) or self.on_demand.get(topic) or self.glance.get(topic)
                 for caller, buffer, wall in raw.drain() if raw else ():
                     if topic != "loop_state" and not self._counts(topic, caller):
                         continue
@@ -172,6 +186,7 @@ class Loop:
                         take(buffer, wall, now, caller)
                     except Exception:  # noqa: BLE001: whatever a stranger sends must not end the panel; it is counted
                         self.damaged += 1
+            self._pace(now)
             self._fill(now)
 
     def _on_info(self, buffer, _wall, now, _caller):
@@ -191,6 +206,7 @@ class Loop:
         self.final, self.run_end, self.sent_from = False, None, 0
         self.seen_events, self.states, self.fill_tried = {}, {}, -math.inf
         self.filled = 0
+        self.paced.clear()
         self.restarted += 1
         self.heard = now
 
@@ -244,7 +260,7 @@ class Loop:
     def _on_plan(self, buffer, *_):
         plan = read(messages.InputPlan, buffer)
         if self._ours(plan.run_id):
-            self.planned = plan
+            self.planned = {**{k: p for k, p in (self.planned or {}).items() if k >= plan.step - 3}, plan.step: plan}
 
     def _on_prediction(self, buffer, *_):
         action = read(messages.PredictiveAction, buffer)
@@ -254,7 +270,8 @@ class Loop:
         lower, upper = (numpy.array([pair[i] for pair in limits["input"]]) for i in (0, 1))
         self.prediction_law, self.prediction_step = tuple(action.input_base_unclipped), action.step
         self.guard_limits = list(zip(action.input_lower, action.input_upper)) if action.input_lower else None
-        planned = self.planned.input if self.planned is not None and self.planned.step == action.step and self.planned.input.data else None
+        planned = (self.planned or {}).get(action.step)
+        planned = planned.input if planned is not None and planned.input.data else None
         plan = predict.Plan(action, lower, upper, numpy.array(limits["move"]), planned)
         if plan.finite():
             self.plan = plan
@@ -292,8 +309,9 @@ class Loop:
             return
         name = self.info.outputs[0].name if self.info.outputs else None
         begun = self.history.first > 0 and not self.filled
-        # Not the newest samples: those are on their way.
-        if name is None or not (begun or any(b < self.step - 20 and a > self.filled for a, b in self.history.gaps(name))):
+        # Not the newest samples of a run that goes on: those are on their way.
+        newest = self.step if self.over() else self.step - 20
+        if name is None or not (begun or any(a < newest and a > self.filled for a, _ in self.history.gaps(name))):
             return
         self.fill_tried, self.filling = now, True
         self.executor.submit(self._fill_from, self.run_id)
@@ -301,10 +319,9 @@ class Loop:
     def _fill_from(self, run_id):
         try:
             folder = rospy.get_param(self.prefix + "loop_recorder/out", "")
-            parts = recorded(folder, self.tool, run_id)
-            with self.lock:
-                if run_id == self.run_id:
-                    for names, _, table, certain in parts:
+            for names, table, certain in recorded(folder, self.tool, run_id):
+                with self.lock:
+                    if run_id == self.run_id:
                         self._take_rows(names, table, certain)
         except Exception:  # noqa: BLE001: a record of another make leaves a gap, which the trend shows
             self.damaged += 1
@@ -313,12 +330,9 @@ class Loop:
 
     def _take_rows(self, names, table, certain):
         """certain: it is of this run; else some of its samples must be those that came over the topics."""
-        if "time" not in names or not len(table):
+        steps, wanted = self._placed(names, table)
+        if not len(steps):
             return
-        steps = numpy.rint(table[:, names.index("time")] * 3600.0 / self.info.sample_time_s).astype(int)
-        inputs = {s.name for s in self.info.inputs}
-        wanted = {(n + "_applied" if n in inputs else n[:-len("_commanded")] if n.endswith("_commanded") else n): i for i, n in enumerate(names)}
-        wanted = {n: i for n, i in wanted.items() if n in self.history.index}
         first = self.info.outputs[0].name
         mine = numpy.array([self.history.value(int(k), first) for k in steps[-200:]])
         both = numpy.isfinite(mine)
@@ -328,6 +342,113 @@ class Loop:
         self.history.fill(steps[keep], list(wanted), table[keep][:, list(wanted.values())])
         self.filled = max(self.filled, int(steps[keep].max(initial=0)))
         self.restarted += 1  # the pages fetch all again
+
+    def _placed(self, names, table):
+        """Of rows as trajectory.csv has them: (steps, {column of the history: column of the table})."""
+        if "time" not in names or not len(table):
+            return numpy.zeros(0, int), {}
+        inputs = {s.name for s in self.info.inputs}
+        wanted = {(n + "_applied" if n in inputs else n[:-len("_commanded")] if n.endswith("_commanded") else n): i for i, n in enumerate(names)}
+        return (numpy.rint(table[:, names.index("time")] * 3600.0 / self.info.sample_time_s).astype(int),
+                {n: i for n, i in wanted.items() if n in self.history.index})
+
+    # A loop that goes much faster than anybody can look: each message to one more listener costs it, so the samples are read from the journal that
+    # its recorder writes on this machine, and of the messages only some are looked at, for what is not in there (quality, source, plan).
+
+    def want_all(self, now):
+        """Somebody asks something of the loop: each message counts for a while."""
+        self.all_until = now + ALL_FOR
+
+    def _pace(self, now):
+        self.paced.append((now, self.step))
+        while now - self.paced[0][0] > 1.0:
+            self.paced.popleft()
+        since, step = self.paced[0]
+        rate = (self.step - step) / (now - since) if now - since >= 0.5 else math.nan
+        if self.journal is None:
+            begins = rate > FAST and now > self.all_until and now - self.fast_tried > 5.0 and self.tool and self.executor is not None and not self.over()
+            if not begins or self.following:
+                return
+            self.fast_tried = now
+        if not self.following:
+            self.following = True
+            slow = rate < 0.5 * FAST or now < self.all_until or self.over()
+            self.executor.submit(self._follow, now, self.run_id, self.journal is not None and slow)
+
+    def _follow(self, now, run_id, ends):
+        """In a thread: nothing here may keep the others waiting."""
+        try:
+            if self.journal is None:
+                self._begin_to_follow(run_id)
+            if self.journal is not None:
+                self._take_newest(now, run_id)
+                self._glance(now)
+            if ends:
+                self._hear_all()
+        except Exception:  # noqa: BLE001: no journal (any more), or of another run: the messages are heard as before
+            self._hear_all()
+        finally:
+            self.following = False
+
+    def _begin_to_follow(self, run_id):
+        journal = Journal(self.tool, rospy.get_param(self.prefix + "loop_recorder/out"))
+        with self.lock:
+            fits = journal.run_id == run_id == self.run_id and not self.closed
+            if fits:
+                self.journal, self.followed = journal, max(self.step - 20, 0)
+                topics = [self.raw.pop(t) for t in SAMPLED] + list(self.on_demand.values())
+                self.on_demand = {}
+        if not fits:
+            journal.close()
+            return
+        for raw in topics:
+            raw.close()
+
+    def _take_newest(self, now, run_id):
+        table = self.journal.rows(self.followed)
+        if not len(table):
+            return
+        with self.lock:
+            if run_id != self.run_id:
+                raise ValueError("a new run")
+            steps, wanted = self._placed(self.journal.names, table)
+            self.history.fill(steps, list(wanted), table[:, list(wanted.values())])
+            last = int(steps[-1])
+            self.history.put(last, {}, time.time())
+            value = lambda names: tuple(float(table[-1, wanted[n]]) if n in wanted else math.nan for n in names)  # noqa: E731
+            outputs, inputs = [s.name for s in self.info.outputs], [s.name for s in self.info.inputs]
+            for k, row in zip(steps.tolist(), table[:, [wanted[n] for n in outputs]]):
+                self.errors.came(k, row)
+            self.sent_from, self.followed = min(self.sent_from, int(steps[0])), last + 1
+            if last > self.step:
+                self.step, self.heard = last, now
+                self.applied, self.action, self.action_step = value(n + "_applied" for n in inputs), value(inputs), last
+                self.setpoint, self.reference = value(n + "_setpoint" for n in outputs), value(n + "_reference" for n in outputs)
+
+    def _glance(self, now):
+        """Some messages, every now and then."""
+        if self.glance and now - self.glanced > GLANCED:
+            with self.lock:
+                topics, self.glance = self.glance, {}
+            for raw in topics.values():
+                raw.close()
+        elif not self.glance and now - self.glanced > GLANCE:
+            self.glanced = now
+            plans = ("predictive_action", "input_plan") if now - self.plan_wanted < PLAN_GRACE else ()
+            self.glance = {topic: Raw(self.prefix + topic, keep=2) for topic in ("measurement", "control_action", *plans)}
+
+    def _hear_all(self):
+        with self.lock:
+            journal, self.journal = self.journal, None
+            topics, self.glance = self.glance, {}
+            missing = [] if self.closed else [t for t in SAMPLED if t not in self.raw]
+        for raw in topics.values():
+            raw.close()
+        made = {t: Raw(self.prefix + t) for t in missing}
+        with self.lock:
+            self.raw.update(made)
+        if journal is not None:
+            journal.close()
 
     # What it is.
 
@@ -495,26 +616,29 @@ def finite(value):
 
 
 def recorded(folder, tool, run_id=None):
-    """[(names, units, table, of this run for certain)] of what the recorder of a loop has on disk: the parts of a run that are filed already, then the run that goes on or has
-    ended; [] if that is elsewhere."""
+    """(names, table, of this run for certain) of what the recorder of a loop has on disk: the parts of a run that are filed already, then the run that goes on or has
+    ended; nothing if that is elsewhere."""
     if not folder or not os.path.isdir(folder):
-        return []
-    found, history = [], os.path.join(folder, "history")
+        return
+    history = os.path.join(folder, "history")
     if run_id is not None and os.path.isdir(history):
         parts = [p for p in os.listdir(history) if p == str(run_id) or p.startswith(f"{run_id}-")]
         parts.sort(key=lambda p: int(p.rsplit("-", 1)[1]) if "-" in p and p.rsplit("-", 1)[1].isdigit() else 0)
-        rows = 0
+        found, rows = [], 0
         for part in reversed(parts):
             path = os.path.join(history, part, "trajectory.csv")
             if os.path.exists(path) and rows < MOST_FILLED:
-                found.insert(0, (*read_csv(path), True))
+                found.insert(0, read_csv(path))
                 rows += len(found[0][2])
-    journal = os.path.join(folder, "journal.bin")
-    if os.path.exists(journal) and tool:
-        with tempfile.TemporaryDirectory(prefix="fmbpc_panel_") as work:
-            shutil.copy(journal, work)
-            subprocess.run([tool, "recover", "--no-plot", work], check=False, timeout=120, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            if os.path.exists(os.path.join(work, "trajectory.csv")):
-                found.append((*read_csv(os.path.join(work, "trajectory.csv")), False))
+        for names, _, table in found:
+            yield names, table, True
+    if tool and os.path.exists(os.path.join(folder, "journal.bin")):
+        with Journal(tool, folder) as journal:
+            table = journal.rows(0) if run_id in (None, journal.run_id) else ()
+            while len(table):
+                yield journal.names, table, True
+                table = journal.rows(journal.last + 1)
     path = os.path.join(folder, "trajectory.csv")
-    return found + ([(*read_csv(path), False)] if os.path.exists(path) else [])
+    if os.path.exists(path):
+        names, _, table = read_csv(path)
+        yield names, table, False

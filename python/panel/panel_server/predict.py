@@ -124,9 +124,11 @@ class Errors:
             self.waiting.popitem(last=False)
 
     def came(self, step, outputs):
-        for at, planned in self.waiting.items():
-            ahead = step - at
-            if 1 <= ahead <= len(planned):
+        for at in reversed(self.waiting):
+            planned, ahead = self.waiting[at], step - at
+            if ahead > len(planned):
+                return  # those before it are older still
+            if ahead >= 1:
                 error = numpy.array(outputs) - planned[ahead - 1]
                 if numpy.isfinite(error).all():
                     self.errors.setdefault(ahead, collections.deque(maxlen=REMEMBERED)).append(error)

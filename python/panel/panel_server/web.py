@@ -6,6 +6,7 @@ import gzip
 import hashlib
 import json
 import logging
+import math
 import os
 import socket
 import time
@@ -24,6 +25,7 @@ from panel_server.tool import event_list, tool_path
 TICK = 0.1            # s
 LOOK_FOR_LOOPS = 2.0  # s
 MOST_LOOPS = 200
+LEFT_AFTER = 600.0    # s that a loop is shown that no master lists and nobody hears any more
 MOST_ROWS = 400       # in one message; more, and pages fetch the trend
 MOST_STREAMS, MOST_STREAMS_OF_ONE = 100, 32
 MOST_POINTS = 4000
@@ -74,6 +76,7 @@ class Panel:
         self.alarms = alarms.AlarmList(self.journal, time.time)
         self.executor = concurrent.futures.ThreadPoolExecutor(8)
         self.loops, self.desks, self.streams = {}, {}, set()
+        self.listed = {}  # name: when a master listed it last
         self.commands_rate = access.Bucket(per_s=5.0, burst=20)
         self.requests_rate = access.Bucket(per_s=100.0, burst=400)
         self.beat, self.said_alarms = 0, None
@@ -88,7 +91,7 @@ class Panel:
         before = socket.getdefaulttimeout()
         socket.setdefaulttimeout(3.0)
         try:
-            topics = rosgraph.Master("/panel_look").getTopicTypes()
+            topics = rosgraph.Master("/panel_look").getPublishedTopics("")  # of types the master forgets none
         except Exception:  # noqa: BLE001: gone, or busy: those that are there stay
             return None
         finally:
@@ -96,17 +99,29 @@ class Panel:
         found = [t[:-len("/plant_info")] or "/" for t, kind in topics if kind == "fmbpc/PlantInfo" and t.endswith("/plant_info")]
         return [n for n in sorted(found) if not self.only or n in self.only][:MOST_LOOPS]
 
-    def take_up(self, names):
+    def take_up(self, names, now):
         self.master_gone = names is None
         for name in names or ():
             if name not in self.loops:
                 self.loops[name] = loops.Loop(name, self.history_bytes, self.tool, self.executor)
                 self.desks[name] = commands.Desk(self.loops[name])
+            self.listed[name] = now
+        for name, loop in list(self.loops.items()) if names is not None else ():
+            if now - max(self.listed.get(name, now), loop.heard or -math.inf) > LEFT_AFTER:
+                self.let_go(name)
         share = self.history_bytes / max(len(self.loops), 1)
         for loop in self.loops.values():
             loop.history_bytes = share
             if loop.history is not None:
                 loop.history.limit(share)
+
+    def let_go(self, name):
+        """Its alarms go, and stay in the list where nobody has acknowledged them."""
+        for item in (self.loops.pop(name), self.desks.pop(name)):
+            self.executor.submit(item.close)  # the master may hang
+        self.alarms.end(name)
+        self.listed.pop(name, None)
+        self.journal.write({"t": round(time.time(), 3), "kind": "loop", "what": "gone", "who": "", "loop": name, "note": f"unheard for {LEFT_AFTER:.0f} s"})
 
     def look_for_loops(self):
         if self.looking:
@@ -115,7 +130,7 @@ class Panel:
 
         def done(future):
             self.looking = False
-            self.take_up(future.result())
+            self.take_up(future.result(), time.monotonic())
         tornado.ioloop.IOLoop.current().add_future(self.executor.submit(self.find_loops), done)
 
     # Ten times a second.
@@ -134,8 +149,9 @@ class Panel:
         self.alarms.tick()
         if self.streams:
             self.say(now, watched)
-        for loop in self.loops.values():
-            loop.sent_from = loop.step + 1
+        for name, loop in self.loops.items():
+            if name not in watched:
+                loop.sent_from = loop.step + 1
 
     def say(self, now, watched):
         if self.beat % 5 == 0:
@@ -195,6 +211,7 @@ class Panel:
                 update["refetch"] = True
                 first = loop.step
             steps, values, wall = loop.history.rows(first, loop.step)
+            loop.sent_from = loop.step + 1
             update["rows"] = [[int(s), None if w != w else round(float(w), 2)] + plain(v) for s, v, w in zip(steps, values, wall)]
         return update
 
