@@ -80,7 +80,11 @@ Array SteppedPlant::step(py::handle input, py::handle disturbance) {
   requireInside(description().disturbances, d, "d");
   Watch watch{py::none()};
   std::string failure;
-  watch.during([&] { failure = move(x, u, d); });
+  {
+    const py::gil_scoped_release release;
+    failure = move(x, u, d);
+  }
+  watch.rethrow();
   if (!failure.empty())
     throw std::runtime_error(description().name + ": could not be moved: " + failure);
   before_ = std::exchange(x_, x);
@@ -131,24 +135,26 @@ Array LoopPlant::reset() {
   session_.start(0.0);
   setpoint_.restart();
   setpoint_.advance(0);
-  return toArray(now().outputs);
+  return toArray(measurement().outputs);
 }
 
 Array LoopPlant::step(py::handle input) {
-  require(!now().final, "step", "reset() after the final sample of " + loop_->name);
+  require(!measurement().final, "step", "reset() after the final sample of " + loop_->name);
   require(!input.is_none(), "u", "an input");
   ControlAction action;
-  action.header = now().header;
-  action.input = now().input_applied;
+  action.header = measurement().header;
+  action.input = measurement().input_applied;
   readSignals(input, inputs_, "u", action.input);
   action.source = ActionSource::kBase;
   Watch watch{py::none()};
-  watch.during([&] {
+  {
+    const py::gil_scoped_release release;
     session_.receive(action);
     session_.advance(0.0);
-    setpoint_.advance(now().header.step);
-  });
-  return toArray(now().outputs);
+    setpoint_.advance(measurement().header.step);
+  }
+  watch.rethrow();
+  return toArray(measurement().outputs);
 }
 
 void LoopPlant::disturb(const py::dict& values) {

@@ -8,12 +8,11 @@
 #include "convert.hpp"
 #include "plant/integrator.hpp"
 #include "runtime/plant_session.hpp"
-#include "used_alone.hpp"
 
 namespace fpc::python {
 
 /// Equations alone: inputs and disturbances act over a sample, all outputs are seen.
-class SteppedPlant : public UsedAlone {
+class SteppedPlant {
  public:
   /// @throws InputError naming an unknown plant or parameter, or a time that is none.
   SteppedPlant(const std::string& name, const PlantParameters& parameters, double sample_time_s);
@@ -47,7 +46,7 @@ class SteppedPlant : public UsedAlone {
 };
 
 /// What runLoop() has before its controller.
-class LoopPlant : public UsedAlone {
+class LoopPlant {
  public:
   explicit LoopPlant(std::shared_ptr<const LoopFile> loop);
 
@@ -56,10 +55,10 @@ class LoopPlant : public UsedAlone {
   Array step(py::handle input);
   /// A person's: overrides these disturbances (or input/NAME, output/NAME) from the next sample on.
   void disturb(const py::dict& values);
-  const Measurement& now() const { return session_.process().measurement(); }
+  const Measurement& measurement() const { return session_.process().measurement(); }
   const PlantState& state() const { return simulation_->state(); }
-  std::string trouble() const { return simulation_->trouble(); }
-  double timeH() const { return simulation_->clock().hoursAt(now().header.step); }
+  const std::string& trouble() const { return simulation_->trouble(); }
+  double timeH() const { return simulation_->clock().hoursAt(measurement().header.step); }
   /// What the loop's schedule asks of the present sample, n_y.
   Array setpoint() const { return toArray(setpoint_.present()); }
 
