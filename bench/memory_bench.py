@@ -38,7 +38,7 @@ def growth(what, sizes, words, **more):
     print_json(what=f"{what}, {sizes[1]:,} samples", mb_per_million=(large - small) * 1e6 / (sizes[1] - sizes[0]), peak_mb=large, samples=sizes[1], **more)
 
 
-def tool_growth(tool, sizes, budget):
+def tool_growth(tool, sizes, work):
     with tempfile.TemporaryDirectory() as folder:
         def run(n):
             return [tool, "run", "asp_case1", "--set", f"sampling.duration_h={n * HOURS}", "--out", f"{folder}/{n}", "--no-plot"]
@@ -47,7 +47,7 @@ def tool_growth(tool, sizes, budget):
                lambda n: [tool, "identify", f"{folder}/{n}/trajectory.csv", "asp_d", "--out", f"{folder}/m.yaml"], aim_mb=2048)
         growth("identify --auto of it", sizes,
                lambda n: [tool, "identify", f"{folder}/{n}/trajectory.csv", "--auto", "--inputs", "q_r", "--outputs", "x",
-                          "--disturbances", "q_i", "s_i", "--budget", budget, "--out", f"{folder}/m.yaml"], aim_mb=2048)
+                          "--disturbances", "q_i", "s_i", "--work", work, "--out", f"{folder}/m.yaml"], aim_mb=2048)
 
 
 def field_mb(pid, file, names):
@@ -85,8 +85,8 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small sizes: shows that it works")
     parser.add_argument("--tool", default=str(TOP / "scripts/fmbpc"))
     options = parser.parse_args()
-    sizes, budget = ((1000, 3000), "1") if options.quick else ((200000, 1000000), "10")
-    tool_growth(options.tool, sizes, budget)
+    sizes, work = ((1000, 3000), "1") if options.quick else ((200000, 1000000), "10")
+    tool_growth(options.tool, sizes, work)
     if options.topics:
         nodes(1 if options.quick else 10)
 

@@ -50,7 +50,7 @@ DisturbanceObserver::DisturbanceObserver(ObserverParams params, Index n_x,
       disturbance_(Vector::Zero(n_d_)),
       innovation_(R_),
       correction_(Vector::Zero(n_x_ + n_d_)),
-      factor_(n_y_) {
+      factor_(Matrix::Identity(n_y_, n_y_)) {
   for (Index i = 0; i < n_y_ && !params_.atInputs(); ++i)
     F_(rows_[static_cast<std::size_t>(i)], n_x_ + i) = 1.0;
   reset();
