@@ -1,7 +1,6 @@
 // Time of one decision of the batch reactor's hybrid law over random states (those of the property
 // test): median and 99 % quantile in us, and mean nodes visited, for horizons of 4, 6 and 8 blocks
-// with 7 inputs, by both bounds. BM_Growth counts nodes against horizon and number of inputs, for
-// scripts/plot_tree_growth.py (--benchmark_format=json).
+// with 7 inputs, by both bounds. BM_Growth counts nodes against horizon and number of inputs.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

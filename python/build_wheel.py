@@ -32,13 +32,19 @@ def _metadata():
     return "\n".join(lines) + "\n"
 
 
-def _cmake_install(prefix):
+def _info(tag):
+    """Files of the folder .dist-info but RECORD."""
+    return {"METADATA": _metadata(), "WHEEL": f"Wheel-Version: 1.0\nGenerator: fmbpc\nRoot-Is-Purelib: false\nTag: {tag}\n",
+            "entry_points.txt": "[console_scripts]\nfmbpc = fmbpc.__main__:main\n"}
+
+
+def _cmake_install(prefix, build):
     """Into a folder that is package and prefix at once."""
-    build = os.environ.get("FMBPC_WHEEL_BUILD") or tempfile.mkdtemp(prefix="fmbpc-wheel-")
     launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if any(os.access(os.path.join(d, "ccache"), os.X_OK) for d in os.get_exec_path()) else []
     jobs = os.environ.get("CMAKE_BUILD_PARALLEL_LEVEL") or str(os.cpu_count() or 1)
     subprocess.run(["cmake", "-S", str(TOP), "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DFMBPC_WITH_ROS=OFF", "-DFMBPC_BENCH=OFF", "-DFMBPC_TESTS=OFF",
-                    "-DFMBPC_WITH_MPI=OFF", "-DFMBPC_PYTHON=.", f"-DPython3_EXECUTABLE={sys.executable}", *launcher], check=True)
+                    "-DFMBPC_WITH_MPI=OFF", "-DFMBPC_PYTHON=.", f"-DFMBPC_CORE_OBJECTS={os.environ.get('FMBPC_WHEEL_CORE', '')}",
+                    f"-DPython3_EXECUTABLE={sys.executable}", *launcher], check=True)
     subprocess.run(["cmake", "--build", build, "-j", jobs], check=True)
     subprocess.run(["cmake", "--install", build, "--prefix", str(prefix), "--strip"], check=True)
 
@@ -53,13 +59,12 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     name = f"{p['name']}-{p['version']}-{tag}.whl"
     with tempfile.TemporaryDirectory() as work:
         package = pathlib.Path(work) / p["name"]
-        _cmake_install(package)
+        _cmake_install(package, os.environ.get("FMBPC_WHEEL_BUILD") or os.path.join(work, "build"))
         files = {f"{p['name']}/{f.relative_to(package).as_posix()}": f for f in sorted(package.rglob("*")) if f.is_file() and not f.is_symlink()}
         for link in (f for f in package.rglob("*") if f.is_symlink()):  # a wheel has none: the library under the name that is looked for
             if re.search(r"\.so\.\d+\.\d+$", link.name):
                 files[f"{p['name']}/{link.relative_to(package).as_posix()}"] = link.resolve()
-        texts = {f"{info}/METADATA": _metadata(), f"{info}/WHEEL": f"Wheel-Version: 1.0\nGenerator: fmbpc\nRoot-Is-Purelib: false\nTag: {tag}\n",
-                 f"{info}/entry_points.txt": "[console_scripts]\nfmbpc = fmbpc.__main__:main\n"}
+        texts = {f"{info}/{file}": text for file, text in _info(tag).items()}
         record = []
         with zipfile.ZipFile(os.path.join(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
             for where, data, mode in [(w, f.read_bytes(), f.stat().st_mode) for w, f in files.items()] + [(w, t.encode(), 0o100644) for w, t in texts.items()]:
@@ -70,6 +75,16 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
                 record.append(f"{where},{_digest(data)},{len(data)}")
             wheel.writestr(f"{info}/RECORD", "\n".join(record + [f"{info}/RECORD,,"]) + "\n")
     return name
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """Without this pip builds a wheel to read its name, and then another one."""
+    p = _project()
+    folder = pathlib.Path(metadata_directory) / f"{p['name']}-{p['version']}.dist-info"
+    folder.mkdir()
+    for file, text in _info(_tag()).items():
+        (folder / file).write_text(text, encoding="utf-8")
+    return folder.name
 
 
 def get_requires_for_build_wheel(config_settings=None):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every shipped loop over topics equals the same loop in process, byte for byte. Long: scripts/test --long."""
+"""Every shipped loop over topics, by the tool and from Python: three runs, the same bytes. Long: scripts/test --long."""
 import filecmp
 import os
 import pathlib
@@ -23,7 +23,7 @@ def run(command, **variables):
 
 @unittest.skipUnless(os.environ.get("FMBPC_LONG_TESTS"), "long run: scripts/test --long")
 class EveryLoop(unittest.TestCase):
-    def test_over_topics_equals_in_process(self):
+    def test_over_topics_equals_in_process_equals_python(self):
         self.assertGreater(len(LOOPS), 100)
         for loop, path in LOOPS.items():
             text = path.read_text()
@@ -44,9 +44,13 @@ class EveryLoop(unittest.TestCase):
                      f"set:='{' '.join(sets)}' out:={folder}/topics", ROS_MASTER_URI=f"http://localhost:{port}")
         process = run(f"rosrun fmbpc fmbpc run {loop} --set {' --set '.join(sets)} --no-plot --out {folder}/process")
         self.assertEqual(process.returncode, 0, process.stderr)
-        files = [f"{folder}/{kind}/trajectory.csv" for kind in ("topics", "process")]
-        self.assertTrue(os.path.exists(files[0]), topics.stdout[-2000:])
-        self.assertTrue(filecmp.cmp(*files, shallow=False), f"{loop}: trajectories differ")
+        code = "import fmbpc, sys; fmbpc.Loop(sys.argv[1], set=sys.argv[3:]).run(progress=False).save(sys.argv[2])"
+        python = run(f"/usr/bin/python3 -c '{code}' {loop} {folder}/python {' '.join(sets)}")
+        self.assertEqual(python.returncode, 0, python.stderr)
+        over_topics, in_process, from_python = (f"{folder}/{kind}/trajectory.csv" for kind in ("topics", "process", "python"))
+        self.assertTrue(os.path.exists(over_topics), topics.stdout[-2000:])
+        self.assertTrue(filecmp.cmp(over_topics, in_process, shallow=False), f"{loop}: over topics it differs from the tool")
+        self.assertTrue(filecmp.cmp(from_python, in_process, shallow=False), f"{loop}: from Python it differs from the tool")
 
 
 if __name__ == "__main__":

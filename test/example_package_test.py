@@ -103,6 +103,22 @@ class ExamplePackage(unittest.TestCase):
         link = (ws / "build" / "two_tanks" / "CMakeFiles" / "two_tanks.dir" / "link.txt").read_text()
         self.assertIn("libfmbpc_core.so", link)
 
+    def test_the_python_package_is_in_the_prefix(self):
+        """With everything that it needs, the tool and the loops included; with ROS the messages are in the same package."""
+        if not WITH_ROS and not list((BUILD / "python" / "fmbpc").glob("_core.*")):
+            self.skipTest("the module was not built")
+        code = ("import json, pathlib, fmbpc\n"
+                "loop = fmbpc.Loop('asp_case1_clp', set={'sampling.duration_h': 4})\n"
+                "maps = [line.split()[-1] for line in open('/proc/self/maps') if 'libfmbpc' in line]\n"
+                "print(json.dumps([fmbpc.__file__, str(loop._core.file), *maps, loop.run().complete]))\n"
+                + ("from fmbpc.msg import Measurement\n" if WITH_ROS else ""))
+        where = {"PYTHONPATH": f"{self.fmbpc / 'lib/python3/dist-packages'}:{os.environ.get('PYTHONPATH', '') if WITH_ROS else ''}", "LD_LIBRARY_PATH": ""}
+        *files, complete = json.loads(run("/usr/bin/python3", "-c", code, **where))
+        self.assertTrue(complete)
+        for file in files:
+            self.assertTrue(file.startswith(str(self.fmbpc)), file)
+        self.assertIn("asp_case1_clp", run("/usr/bin/python3", "-m", "fmbpc", "loops", **where))
+
     def test_plant_and_controller_keep_what_every_one_promises(self):
         text = self.tool("check", "two_tanks")
         for subject in ("plant two_tanks", "controller outflow"):

@@ -4,7 +4,7 @@
     run = fmbpc.Loop("reactor_load").run()      # a loop closed in this process
     run.outputs["CA"], run.summary              # numpy arrays with time and unit
     c = fmbpc.Loop("asp_case1").controller()    # the law before a plant of your own
-    u = c.step(y)
+    u = c.step([50.0, 1800.0])                  # of what is measured, in the order of its outputs
 
 Loops and what comes out of them: Loop, Run, loops(), Controller, Simulation.
 Plants and laws: Plant, plants(), controllers(), register(), check() for your own, env() for learning.

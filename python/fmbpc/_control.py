@@ -18,8 +18,9 @@ Values = Union[float, Sequence[float], numpy.ndarray, Mapping[str, float]]
 class Controller:
     """The law of a loop with guard, optimizer and identifier, one sample a call.
 
-    Before the loop's own plant it gives the bits of the run. Arrays are in the order of `outputs`,
-    `inputs` and `disturbances`; a dict names what it holds. Made by Loop.controller().
+    Before the loop's own plant it gives the bits of the run. Arrays are in the order of the loop's `outputs`,
+    `inputs` and `disturbances`; a dict, or a Series with names as its index, names what it holds. Made by
+    Loop.controller(). Controllers share nothing and may run in threads; one of them takes one call at a time (RuntimeError).
     """
 
     def __init__(self, core, loop: "Loop"):
@@ -42,7 +43,10 @@ class Controller:
 
     def reset(self, y: Values, setpoint: Values | None = None, disturbance: Values | None = None, applied: Values | None = None,
               quality: Sequence[bool] | Mapping[str, bool] | None = None) -> numpy.ndarray:
-        """Begins anew with this as sample 0 and returns u(0); see step(). `applied` left out: the loop's initial input."""
+        """Begins anew with this as sample 0 and returns u(0); see step(). `applied` left out: the loop's initial input.
+
+        Setpoints are again those of the schedule; what manual(), retune() and set_model() have set stays.
+        """
         return self._core.reset(y, setpoint, disturbance, applied, quality)
 
     def manual(self, u: Values) -> None:
@@ -71,7 +75,7 @@ class Controller:
 
     def set_model(self, model: "Model") -> None:
         """Another model from the next sample on, bumplessly. Raises InputError if it does not fit or cannot be trusted here; the old one stays."""
-        self._core.set_model(model._core)
+        self._core.set_model(_text.core_of(model, "model", "Model"))
 
     @property
     def settings(self) -> dict[str, str]:

@@ -98,6 +98,7 @@ class Env:
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None):
         """(observation, info) of sample 0; a seed makes other disturbances and noise, until the next one."""
+        getattr(super(), "reset", lambda **_: None)(seed=seed, options=options)  # of gymnasium.Env: its random numbers
         if seed is not None and seed != self._seed:
             self._seed, self.loop = seed, self._make(seed)
             self._plant = self.loop.simulation()

@@ -30,7 +30,7 @@ class Loop(Described):
                         stream.write(f"{key}: {_text._flow(value)}\n")
                 self._core = _core.read_loop(path, pairs)
         else:
-            self._core = _core.read_loop(os.fspath(loop), pairs)
+            self._core = _core.read_loop(_text.path(loop, "loop"), pairs)
 
     @property
     def title(self) -> str:

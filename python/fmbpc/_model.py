@@ -22,6 +22,8 @@ def _split(header):
 
 def _column(values):
     """Numbers, and whether they are days of dates."""
+    if numpy.ma.isMaskedArray(values):
+        values = values.astype(float).filled(numpy.nan)
     column = numpy.asarray(values)
     if column.dtype.kind == "M":
         missing = numpy.isnat(column)
@@ -36,6 +38,8 @@ def _record(data, name="frame"):
     """A path, or what tableFrom() of the module takes."""
     if isinstance(data, (str, os.PathLike)):
         return os.fspath(data)
+    if not hasattr(data, "keys") and not hasattr(data, "to_pandas"):
+        raise _core.InputError(f"{name}: expected a DataFrame, a dict of columns, a Run or the path of a CSV, got {type(data).__name__}")
     units = dict(getattr(data, "attrs", {}).get("units", {}))
     if hasattr(data, "to_pandas") and not isinstance(data, Mapping):  # a Run
         data, units = data.to_pandas(), data.units
@@ -75,7 +79,7 @@ class Model(Described):
     """
 
     def __init__(self, model: str | os.PathLike):
-        self._core = model if isinstance(model, _core.Model) else _core.read_model(os.fspath(model))
+        self._core = model if isinstance(model, _core.Model) else _core.read_model(_text.path(model, "model"))
 
     @property
     def source(self) -> str:
@@ -169,7 +173,7 @@ def identify(data, *, outputs: Sequence[str] = (), inputs: Sequence[str] = (), d
     search = {"sample_time_s": sample_time_s, "name": name, "kind": kind, "work": work, "budget_s": budget_s, "blocks": blocks, "window": window,
               "reach": reach, "longest_delay": longest_delay, "input_row": input_row, "keep_inputs": keep_inputs, "seed": seed}
     options = {"outputs": _names(outputs), "inputs": _names(inputs), "disturbances": _names(disturbances), "rows": rows, "validate_rows": validation_rows,
-               "time": time, "known": known_text, "structure": "" if structure is None else os.fspath(structure),
+               "time": time, "known": known_text, "structure": "" if structure is None else _text.path(structure, "structure"),
                **{key: value for key, value in search.items() if value is not None}}
     with _progress.bar("identify", progress) as bar:
         return Model(_core.identify([_record(r) for r in records], None if validation is None else _record(validation, "validation"), options, bar))

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any, Mapping
 
 import numpy
 
-from fmbpc import _core
+from fmbpc import _core, _text
 from fmbpc._control import Values
 
 if TYPE_CHECKING:
@@ -22,6 +22,7 @@ class Plant:
     """
 
     def __init__(self, name: str, *, sample_time_s: float | None = None, parameters: Mapping[str, float] | None = None):
+        name = _text.path(name, "name")
         if sample_time_s is None:
             sample_time_s = _core.plant_description(name)["time_unit_s"]
         self._core = _core.Plant(name, dict(parameters or {}), float(sample_time_s))

@@ -157,6 +157,6 @@ class Run:
         return plots.run_picture([self, *others])
 
     def __repr__(self) -> str:
-        ise = ", ".join(f"ISE of {n} {o['ise']:.4g}" for n, o in self.summary["outputs"].items() if o.get("ise") is not None)
-        state = "" if self.complete else ", not complete"
-        return f"<fmbpc.Run {self.summary['loop']}: {len(self.time)} samples, {ise}{state}>"
+        ise = [f"ISE of {n} {o['ise']:.4g}" for n, o in self.summary["outputs"].items() if o.get("ise") is not None]
+        state = [] if self.complete else ["not complete"]
+        return f"<fmbpc.Run {self.summary['loop']}: {', '.join([f'{len(self.time)} samples', *ise, *state])}>"

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import json
-import os
 import threading
 from typing import Any, Callable, Mapping, Sequence
 
@@ -52,7 +51,7 @@ def study(*loops: str, set: Mapping[str, Any] | None = None, seeds: str | int | 
     varied = [f"{key}={value}" for key, value in (vary or {}).items()]
     noisy = [f"{key}={value!r}" for key, value in (noise or {}).items()]
     with _progress.bar("study", progress) as bar:
-        return _interruptible(lambda look: _core.study([os.fspath(loop) for loop in loops], _text.assignments(set), varied, noisy,
+        return _interruptible(lambda look: _core.study([_text.path(loop, "study") for loop in loops], _text.assignments(set), varied, noisy,
                                                        -1.0 if noise_percent is None else float(noise_percent), text, against, index, threads, look), bar)
 
 
@@ -64,7 +63,7 @@ def tune(loop: str, tuning: str, *, set: Mapping[str, Any] | None = None, method
     Returns the costs before and after and the values found, as tuning.json. Raises InputError; Ctrl-C KeyboardInterrupt.
     """
     with _progress.bar("tune", progress) as bar:
-        return _interruptible(lambda look: _core.tune(os.fspath(loop), os.fspath(tuning), _text.assignments(set), method, evaluations, seed, threads, look), bar)
+        return _interruptible(lambda look: _core.tune(_text.path(loop, "loop"), _text.path(tuning, "tuning"), _text.assignments(set), method, evaluations, seed, threads, look), bar)
 
 
 def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: range | str = "1..200", noise_gain: float = 0.0,
@@ -75,6 +74,8 @@ def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: rang
     noise_gain and settling [samples]: largest ones of an advised horizon
     Returns what `fmbpc stability --json` prints. Raises InputError.
     """
+    if isinstance(horizon, range) and horizon.step != 1:
+        raise _core.InputError("horizon: expected a range without steps")
     text = f"{horizon.start}..{horizon.stop - 1}" if isinstance(horizon, range) else horizon
     point = ",".join(f"{key}={value!r}" for key, value in (at or {}).items())
-    return json.loads(_core.stability(os.fspath(name), point, text, float(noise_gain), int(settling)))
+    return json.loads(_core.stability(_text.path(name, "name"), point, text, float(noise_gain), int(settling)))

@@ -3,8 +3,26 @@ import collections.abc
 import json
 import math
 import numbers
+import os
 
 import numpy
+
+from fmbpc import _core
+
+
+def path(value, what):
+    """Text of a name or path."""
+    if isinstance(value, (str, os.PathLike)):
+        return os.fspath(value)
+    raise _core.InputError(f"{what}: expected a name or a path, got {type(value).__name__}")
+
+
+def core_of(value, what, kind):
+    """The object of the core in an object of class `kind`."""
+    core = getattr(value, "_core", None)
+    if isinstance(core, getattr(_core, kind)):
+        return core
+    raise _core.InputError(f"{what}: expected an fmbpc.{kind}, got {type(value).__name__}")
 
 
 def yaml_text(value):
@@ -45,9 +63,9 @@ def overrides(settings):
     if isinstance(settings, collections.abc.Mapping):
         return [(str(key), yaml_text(value)) for key, value in settings.items()]
     pairs = []
-    for text in [settings] if isinstance(settings, str) else settings:
-        key, equals, value = text.partition("=")
+    for text in settings if isinstance(settings, (list, tuple)) else [settings]:
+        key, equals, value = text.partition("=") if isinstance(text, str) else ("", "", "")
         if not equals or not key:
-            raise ValueError(f"set: expected KEY=VALUE or a dict, got '{text}'")
+            raise _core.InputError(f"set: expected KEY=VALUE or a dict, got {text!r}")
         pairs.append((key, value))
     return pairs

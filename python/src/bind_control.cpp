@@ -2,11 +2,11 @@
 #include "bind.hpp"
 #include "convert.hpp"
 #include "fmbpc/control/registry.hpp"
-#include "model_handle.hpp"
 #include "own_plant.hpp"
 #include "runtime/contract.hpp"
 #include "stepped_controller.hpp"
 #include "stepped_plant.hpp"
+#include "used_alone.hpp"
 #include "watch.hpp"
 
 namespace fpc::python {
@@ -36,62 +36,59 @@ py::dict typeOf(const std::string& name) {
 
 void bindController(py::module_& m) {
   py::class_<SteppedController>(m, "Controller")
-      .def("step", &SteppedController::step, py::arg("y"), py::arg("setpoint") = py::none(),
+      .def("step", alone(&SteppedController::step), py::arg("y"), py::arg("setpoint") = py::none(),
            py::arg("disturbance") = py::none(), py::arg("applied") = py::none(),
            py::arg("quality") = py::none())
-      .def("reset", &SteppedController::reset, py::arg("y"), py::arg("setpoint") = py::none(),
-           py::arg("disturbance") = py::none(), py::arg("applied") = py::none(),
-           py::arg("quality") = py::none())
-      .def("manual", &SteppedController::manual)
-      .def("automatic", &SteppedController::automatic)
-      .def("release_setpoint", &SteppedController::releaseSetpoint)
-      .def("retune", &SteppedController::retune)
-      .def("adapt", &SteppedController::adapt)
-      .def("set_model",
-           [](SteppedController& c, const ModelHandle& h) { c.setModel(h.identified.model); })
-      .def_property_readonly("steps", &SteppedController::steps)
-      .def_property_readonly("setpoint", &SteppedController::setpoint)
-      .def_property_readonly("reference", &SteppedController::reference)
-      .def_property_readonly("source", &SteppedController::source)
-      .def_property_readonly("events",
-                             [](const SteppedController& c) { return listOf(c.events()); })
-      .def_property_readonly("prediction", &SteppedController::prediction)
-      .def_property_readonly("signals", &SteppedController::signals)
-      .def_property_readonly("settings", &SteppedController::settings)
-      .def_property_readonly("report", &SteppedController::report);
+      .def("reset", alone(&SteppedController::reset), py::arg("y"),
+           py::arg("setpoint") = py::none(), py::arg("disturbance") = py::none(),
+           py::arg("applied") = py::none(), py::arg("quality") = py::none())
+      .def("manual", alone(&SteppedController::manual))
+      .def("automatic", alone(&SteppedController::automatic))
+      .def("release_setpoint", alone(&SteppedController::releaseSetpoint))
+      .def("retune", alone(&SteppedController::retune))
+      .def("adapt", alone(&SteppedController::adapt))
+      .def("set_model", alone(&SteppedController::setModel))
+      .def_property_readonly("steps", alone(&SteppedController::steps))
+      .def_property_readonly("setpoint", alone(&SteppedController::setpoint))
+      .def_property_readonly("reference", alone(&SteppedController::reference))
+      .def_property_readonly("source", alone(&SteppedController::source))
+      .def_property_readonly(
+          "events", alone<SteppedController>([](const auto& c) { return listOf(c.events()); }))
+      .def_property_readonly("prediction", alone(&SteppedController::prediction))
+      .def_property_readonly("signals", alone(&SteppedController::signals))
+      .def_property_readonly("settings", alone(&SteppedController::settings))
+      .def_property_readonly("report", alone(&SteppedController::report));
 }
 
 void bindPlants(py::module_& m) {
   py::class_<SteppedPlant>(m, "Plant")
       .def(py::init<const std::string&, const PlantParameters&, double>())
-      .def("step", &SteppedPlant::step)
-      .def("reset", &SteppedPlant::reset)
-      .def("derivatives", &SteppedPlant::derivatives)
-      .def_property_readonly("outputs", &SteppedPlant::outputs)
-      .def_property_readonly("state", &SteppedPlant::state)
-      .def_property_readonly("time_s", &SteppedPlant::timeS)
+      .def("step", alone(&SteppedPlant::step))
+      .def("reset", alone(&SteppedPlant::reset))
+      .def("derivatives", alone(&SteppedPlant::derivatives))
+      .def_property_readonly("outputs", alone(&SteppedPlant::outputs))
+      .def_property_readonly("state", alone(&SteppedPlant::state))
+      .def_property_readonly("time_s", alone(&SteppedPlant::timeS))
       .def_property_readonly("sample_time_s", &SteppedPlant::sampleTimeS)
       .def_property_readonly("description",
                              [](const SteppedPlant& p) { return dictOf(p.description()); });
+  const auto get = [](auto read) { return alone<LoopPlant>(read); };
   py::class_<LoopPlant>(m, "Simulation")
-      .def("step", &LoopPlant::step)
-      .def("reset", &LoopPlant::reset)
-      .def("disturb", &LoopPlant::disturb)
-      .def_property_readonly("outputs",
-                             [](const LoopPlant& p) { return toArray(p.measurement().outputs); })
-      .def_property_readonly(
-          "disturbance", [](const LoopPlant& p) { return toArray(p.measurement().disturbances); })
-      .def_property_readonly(
-          "applied", [](const LoopPlant& p) { return toArray(p.measurement().input_applied); })
+      .def("step", alone(&LoopPlant::step))
+      .def("reset", alone(&LoopPlant::reset))
+      .def("disturb", alone(&LoopPlant::disturb))
+      .def_property_readonly("outputs", get([](auto& p) { return toArray(p.now().outputs); }))
+      .def_property_readonly("disturbance",
+                             get([](auto& p) { return toArray(p.now().disturbances); }))
+      .def_property_readonly("applied", get([](auto& p) { return toArray(p.now().input_applied); }))
       .def_property_readonly("true_outputs",
-                             [](const LoopPlant& p) { return toArray(p.state().outputs); })
-      .def_property_readonly("state", [](const LoopPlant& p) { return toArray(p.state().state); })
-      .def_property_readonly("setpoint", &LoopPlant::setpoint)
-      .def_property_readonly("time_h", &LoopPlant::timeH)
-      .def_property_readonly("samples",
-                             [](const LoopPlant& p) { return p.measurement().header.step; })
-      .def_property_readonly("done", [](const LoopPlant& p) { return p.measurement().final; })
-      .def_property_readonly("trouble", &LoopPlant::trouble);
+                             get([](auto& p) { return toArray(p.state().outputs); }))
+      .def_property_readonly("state", get([](auto& p) { return toArray(p.state().state); }))
+      .def_property_readonly("setpoint", alone(&LoopPlant::setpoint))
+      .def_property_readonly("time_h", alone(&LoopPlant::timeH))
+      .def_property_readonly("samples", get([](auto& p) { return p.now().header.step; }))
+      .def_property_readonly("done", get([](auto& p) { return p.now().final; }))
+      .def_property_readonly("trouble", alone(&LoopPlant::trouble));
 }
 
 py::list brokenOf(const std::vector<Promise>& promises) {
@@ -99,15 +96,6 @@ py::list brokenOf(const std::vector<Promise>& promises) {
   for (const Promise& p : promises)
     if (!p.broken.empty()) list.append(p.name + ": " + p.broken);
   return list;
-}
-
-template <typename Compute>
-py::list promisesOf(Compute compute) {
-  Watch watch{py::none()};
-  std::vector<Promise> promises;
-  watch.during([&] { promises = compute(); });
-  watch.rethrow();
-  return brokenOf(promises);
 }
 
 }  // namespace
@@ -134,10 +122,10 @@ void bindControl(py::module_& m) {
   m.def("controller_names", &controllerNames);
   m.def("controller_type", &typeOf);
   m.def("check_plant", [](const std::string& name) {
-    return promisesOf([&] { return plantPromises(*makePlant(name), name); });
+    return brokenOf(withoutGil([&] { return plantPromises(*makePlant(name), name); }));
   });
   m.def("check_controller", [](const std::shared_ptr<LoopFile>& loop) {
-    return promisesOf([&] { return controllerPromises(*loop); });
+    return brokenOf(withoutGil([&] { return controllerPromises(*loop); }));
   });
   m.def("register_plant", &registerOwnPlant);
   m.def("register_controller", &registerOwnController);

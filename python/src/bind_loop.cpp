@@ -25,10 +25,7 @@ struct MadeRun {
 };
 
 LoopPtr readLoopFrom(const std::string& name, const Overrides& overrides) {
-  Watch watch{py::none()};
-  LoopPtr loop;
-  watch.during([&] { loop = std::make_shared<const LoopFile>(readLoop(name, overrides)); });
-  return loop;
+  return withoutGil([&] { return std::make_shared<const LoopFile>(readLoop(name, overrides)); });
 }
 
 std::shared_ptr<MadeRun> runHere(LoopPtr loop, const std::string& commands, py::object progress) {
@@ -48,17 +45,12 @@ std::shared_ptr<MadeRun> runHere(LoopPtr loop, const std::string& commands, py::
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     run->wall_s = wall.count();
   });
-  watch.rethrow();
   run->interrupted = watch.interrupted();
   return run;
 }
 
 py::tuple tableOf(const MadeRun& run) {
-  CsvTable table;
-  {
-    const py::gil_scoped_release release;
-    table = trajectoryOf(*run.loop, run.record);
-  }
+  const CsvTable table = withoutGil([&] { return trajectoryOf(*run.loop, run.record); });
   // Column by column, so that each is a vector without gaps.
   py::array_t<double, py::array::f_style> values({table.values.rows(), table.values.cols()});
   std::copy_n(table.values.data(), table.values.size(), values.mutable_data());
@@ -112,19 +104,19 @@ void bindLoop(py::module_& m) {
            [](std::shared_ptr<LoopFile> loop, const std::string& commands, py::object progress) {
              return runHere(std::move(loop), commands, std::move(progress));
            })
-      .def("controller",
-           [](std::shared_ptr<LoopFile> loop) {
-             return std::make_unique<SteppedController>(std::move(loop));
-           })
+      .def(
+          "controller",
+          [](std::shared_ptr<LoopFile> loop) {
+            return withoutGil([&] { return std::make_unique<SteppedController>(std::move(loop)); });
+          })
       .def("simulation", [](std::shared_ptr<LoopFile> loop) {
-        return std::make_unique<LoopPlant>(std::move(loop));
+        return withoutGil([&] { return std::make_unique<LoopPlant>(std::move(loop)); });
       });
   py::class_<MadeRun, std::shared_ptr<MadeRun>>(m, "Run")
       .def("table", &tableOf)
       .def("summary",
            [](const MadeRun& r) {
-             const py::gil_scoped_release release;
-             return toJson(summarize(*r.loop, r.record, r.wall_s));
+             return withoutGil([&] { return toJson(summarize(*r.loop, r.record, r.wall_s)); });
            })
       .def("save",
            [](const MadeRun& r, const std::string& folder) {

@@ -97,8 +97,7 @@ ModelPtr identifyFrom(const py::list& records, const py::object& validation,
   Watch watch{std::move(progress)};
   auto model = std::make_shared<ModelHandle>();
   bool cancelled = false;
-  {
-    const py::gil_scoped_release release;
+  watch.during([&] {
     if (automatic) {
       tool::AutoReport report = tool::searchModel(
           a, tables, [&](const AutoProgress& p) { return watch.goOn(p.share, p.stage); });
@@ -112,8 +111,7 @@ ModelPtr identifyFrom(const py::list& records, const py::object& validation,
       if (!cancelled) model->report = tool::toJson(report);
       model->identified.model = std::move(report.found.model);
     }
-  }
-  watch.rethrow();
+  });
   if (cancelled) {
     PyErr_SetNone(PyExc_KeyboardInterrupt);
     throw py::error_already_set();
@@ -162,40 +160,43 @@ Eigen::Index longestLag(const TsModel& model) {
   return longest;
 }
 
-/// Outputs from a rest at y0 and the first rows of u and d on; row 0 is y0. Models of the outputs'
-/// past begin with y0 in all of it, those with a state of their own with the state that a longer
-/// rest gives.
-Matrix simulated(const ModelHandle& handle, py::handle y0, py::handle u, py::handle d) {
+/// What acts on the model, u and d side by side, a row a sample.
+Matrix actingOn(const TsModel& model, py::handle u, py::handle d) {
+  const Matrix input = readMatrix(u, countOf(model.inputs), "u");
+  require(input.rows() > 0, "u", "rows");
+  const Matrix disturbances =
+      d.is_none() ? Matrix(input.rows(), 0) : readMatrix(d, countOf(model.disturbances), "d");
+  require(disturbances.cols() == countOf(model.disturbances) && disturbances.rows() == input.rows(),
+          "d", std::to_string(input.rows()) + " rows, as u");
+  require(input.allFinite(), "u", "finite numbers");
+  require(disturbances.allFinite(), "d", "finite numbers");
+  Matrix acting(input.rows(), input.cols() + disturbances.cols());
+  acting << input, disturbances;
+  return acting;
+}
+
+/// Outputs from a rest at `start` and the first row of what acts on; row 0 is `start`. Models of
+/// the outputs' past begin with it in all of it, those with a state of their own with the state
+/// that a longer rest gives.
+Matrix simulated(const ModelHandle& handle, const Vector& start, const Matrix& acting) {
   IdentifiedModel m = handle.identified;
   m.reach = 0;
   const auto n_y = countOf(m.model.outputs);
-  Vector start = Vector::Constant(n_y, kNaN);
-  readSignals(y0, namesOf(m.model.outputs), "y0", start);
-  require(start.allFinite(), "y0", "a number for every output");
-  const Matrix input = readMatrix(u, countOf(m.model.inputs), "u");
-  require(input.rows() > 0, "u", "rows");
   const auto from = [&](Eigen::Index rest) {
-    const Matrix disturbances =
-        d.is_none() ? Matrix(input.rows(), 0) : readMatrix(d, countOf(m.model.disturbances), "d");
-    require(
-        disturbances.cols() == countOf(m.model.disturbances) && disturbances.rows() == input.rows(),
-        "d", std::to_string(input.rows()) + " rows, as u");
-    DataSet data = emptyData(m.model, rest + input.rows());
+    DataSet data = emptyData(m.model, rest + acting.rows());
     data.values.topRows(rest + 1).leftCols(n_y).rowwise() = start.transpose();
-    Matrix acting(input.rows(), input.cols() + disturbances.cols());
-    acting << input, disturbances;
     data.values.rightCols(acting.cols()).topRows(rest).rowwise() = acting.row(0);
     data.values.rightCols(acting.cols()).bottomRows(acting.rows()) = acting;
     return asRead(data, m.same_row);
   };
   const auto run = [&](ModelKind kind, Eigen::Index rest) {
-    return Matrix(predictKind(m, kind, from(rest)).free_run.bottomRows(input.rows()));
+    return Matrix(predictKind(m, kind, from(rest)).free_run.bottomRows(acting.rows()));
   };
   const auto byPast = [&](ModelKind kind) {
     return run(kind, longestLag(kind == ModelKind::kLinear ? m.linearModel() : m.model));
   };
   constexpr Eigen::Index kRest = 200;  // of a state of its own, beyond any delay
-  Matrix y(input.rows(), n_y);
+  Matrix y(acting.rows(), n_y);
   for (std::size_t i = 0; i < m.model.outputs.size(); ++i) {
     const auto c = static_cast<Eigen::Index>(i);
     const ModelKind kind = i < m.outputs.size() ? m.outputs[i].best : ModelKind::kRegressors;
@@ -267,14 +268,23 @@ void bindModel(py::module_& m) {
                                  list.append(py::make_tuple(r.output, r.rule, r.text));
                                return list;
                              })
-      .def("simulate", [](const ModelHandle& h, py::handle y0, py::handle u,
-                          py::handle d) { return toArray(simulated(h, y0, u, d)); })
+      .def("simulate",
+           [](const ModelHandle& h, py::handle y0, py::handle u, py::handle d) {
+             const TsModel& model = h.identified.model;
+             Vector start = Vector::Constant(countOf(model.outputs), kNaN);
+             readSignals(y0, namesOf(model.outputs), "y0", start);
+             require(start.allFinite(), "y0", "a number for every output");
+             const Matrix acting = actingOn(model, u, d);
+             return toArray(withoutGil([&] { return simulated(h, start, acting); }));
+           })
       .def("predict",
            [](const ModelHandle& h, py::handle y, py::handle u, py::handle d, int steps) {
              require(steps >= 1, "steps", "an integer >= 1");
              const DataSet data = dataOf(h.identified, y, u, d);
-             if (steps == 1) return toArray(predictBest(h.identified, data).one_step);
-             return toArray(predictSteps(h.identified, data, steps).best);
+             return toArray(withoutGil([&] {
+               return steps == 1 ? Matrix(predictBest(h.identified, data).one_step)
+                                 : Matrix(predictSteps(h.identified, data, steps).best);
+             }));
            })
       .def("validate",
            [](const ModelHandle& h, py::handle record, const std::string& rows,
@@ -283,8 +293,11 @@ void bindModel(py::module_& m) {
              a.rows = rows;
              a.columns = columns;
              a.steps = steps;
-             return tool::validateOn(tableFrom(record, tool::csvFormat(a.format)), h.identified, a)
-                 .json.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
+             const CsvTable table = tableFrom(record, tool::csvFormat(a.format));
+             return withoutGil([&] {
+               return tool::validateOn(table, h.identified, a)
+                   .json.dump(2, ' ', false, OrderedJson::error_handler_t::replace);
+             });
            })
       .def("linearise", &linearised);
   m.def("identify", &identifyFrom);

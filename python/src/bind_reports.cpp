@@ -23,11 +23,10 @@ namespace {
 }
 
 std::string studyHere(const tool::StudyArguments& a, py::object progress) {
-  Watch watch{std::move(progress)};
+  Watch watch(std::move(progress), false);
   std::string json;
   bool complete = false;
-  {
-    const py::gil_scoped_release release;
+  watch.during([&] {
     const StudyPlan plan(tool::studyOf(a));
     std::mutex one;  // stop is called from several threads
     StudyOptions options;
@@ -42,8 +41,7 @@ std::string studyHere(const tool::StudyArguments& a, py::object progress) {
     const StudyResult result = runStudy(plan, options);
     complete = result.complete;
     json = tool::toJson(plan, result, statisticsOf(plan, result)).dump();
-  }
-  watch.rethrow();
+  });
   if (!complete) interruptedBy();
   return json;
 }
@@ -51,11 +49,10 @@ std::string studyHere(const tool::StudyArguments& a, py::object progress) {
 std::string tuneHere(const std::string& loop, const std::string& file,
                      const std::vector<std::string>& set, const std::string& method,
                      int evaluations, std::int64_t seed, int threads, py::object progress) {
-  Watch watch{std::move(progress)};
+  Watch watch(std::move(progress), false);
   std::string json;
   bool stopped = false;
-  {
-    const py::gil_scoped_release release;
+  watch.during([&] {
     const TuningFile tuning = readTuning(file);
     SearchParams search = tuning.search;
     if (!method.empty()) search.method = searchMethod(method);
@@ -77,8 +74,7 @@ std::string tuneHere(const std::string& loop, const std::string& file,
       tuned.held_out = objective.judgeHeldOut(
           tuned.result.history[static_cast<std::size_t>(tuned.result.best)].shares, options.stop);
     json = tool::toJson(objective, tuned).dump();
-  }
-  watch.rethrow();
+  });
   if (stopped) interruptedBy();
   return json;
 }
@@ -105,14 +101,13 @@ void bindReports(py::module_& m) {
   m.def("tune", &tuneHere);
   m.def("stability", [](const std::string& name, const std::string& at, const std::string& horizon,
                         double noise_gain, int settling) {
-    const py::gil_scoped_release release;
     tool::StabilityArguments a;
     a.name = name;
     a.at = at;
     a.horizon = horizon;
     a.noise_gain = noise_gain;
     a.settling = settling;
-    return tool::stabilityReport(a).dump();
+    return withoutGil([&] { return tool::stabilityReport(a).dump(); });
   });
 }
 

@@ -30,9 +30,15 @@ double numberOf(py::handle value, const char* what, const std::string& name) {
   failAtSignal(what, name, "a real number");
 }
 
-/// Of real numbers; lists and scalars become one.
+bool isPlainArray(py::handle value) {
+  return std::strcmp(Py_TYPE(value.ptr())->tp_name, "numpy.ndarray") == 0;
+}
+
+/// Of real numbers; lists and scalars become one. What a masked array hides is NaN.
 Array realArray(py::handle value, const char* what) {
-  const py::array array = py::array::ensure(value);
+  py::array array = py::array::ensure(value);
+  if (array && !isPlainArray(value) && py::hasattr(value, "filled") && py::hasattr(value, "mask"))
+    array = py::array::ensure(value.attr("astype")("f8").attr("filled")(kNaN));
   if (!array) PyErr_Clear();
   require(array && std::strchr("fiu", array.dtype().kind()) != nullptr, what,
           "an array of real numbers");
@@ -41,13 +47,22 @@ Array realArray(py::handle value, const char* what) {
 
 }  // namespace
 
+py::object byName(py::handle value) {
+  if (PyDict_Check(value.ptr())) return py::reinterpret_borrow<py::object>(value);
+  if (isPlainArray(value) || !py::hasattr(value, "keys")) return {};
+  py::dict named = py::module_::import("builtins").attr("dict")(value);
+  for (const auto& item : named)
+    if (!py::isinstance<py::str>(item.first)) return {};
+  return std::move(named);
+}
+
 void readSignals(py::handle value, const Names& names, const char* what, Vector& out,
-                 const std::vector<bool>& bad) {
+                 const std::vector<bool>* bad) {
   if (value.is_none()) return;
   thread_local Vector read;
   read = out;
-  if (PyDict_Check(value.ptr())) {
-    for (const auto& item : py::reinterpret_borrow<py::dict>(value)) {
+  if (const py::object named = byName(value)) {
+    for (const auto& item : py::reinterpret_borrow<py::dict>(named)) {
       const std::size_t i = indexOf(item.first, names, what);
       read[static_cast<Eigen::Index>(i)] = numberOf(item.second, what, names[i]);
     }
@@ -68,10 +83,12 @@ void readSignals(py::handle value, const Names& names, const char* what, Vector&
   for (std::size_t i = 0; i < names.size(); ++i) {
     double& number = read[static_cast<Eigen::Index>(i)];
     if (std::isfinite(number)) continue;
-    if (!bad.empty() && bad[i])
+    if (bad != nullptr && !bad->empty() && (*bad)[i])
       number = out[static_cast<Eigen::Index>(i)];
     else
-      failAtSignal(what, names[i], "a finite number; a reading that is missing has quality False");
+      failAtSignal(what, names[i],
+                   bad == nullptr ? "a finite number"
+                                  : "a finite number; a reading that is missing has quality False");
   }
   out = read;
 }
@@ -81,7 +98,8 @@ std::vector<bool> readBad(py::handle quality, const Names& names) {
   std::vector<bool> bad(names.size(), false);
   const auto good = [](py::handle truth) {
     const int is = PyObject_IsTrue(truth.ptr());
-    if (is < 0) throw py::error_already_set();
+    if (is < 0) PyErr_Clear();
+    require(is >= 0, "quality", "a truth value for each reading");
     return is == 1;
   };
   if (PyDict_Check(quality.ptr())) {

@@ -76,9 +76,6 @@ class OwnPlant final : public Plant {
     const Vector values = parameterValues(type_->about, parameters);
     for (std::size_t i = 0; i < type_->about.parameters.size(); ++i)
       parameters_[type_->about.parameters[i].name] = values[static_cast<Eigen::Index>(i)];
-    if (type_->steps) return;
-    const py::gil_scoped_acquire gil;
-    object_ = held((*type_->make)(dictOf(parameters_)));
   }
   const PlantDescription& description() const override { return type_->about; }
   void derivatives(VectorRef x, VectorRef u, VectorRef d, Eigen::Ref<Vector> dxdt) const override {
@@ -86,6 +83,8 @@ class OwnPlant final : public Plant {
     if (type_->steps) return;  // its stepper moves it
     const py::gil_scoped_acquire gil;
     calling(type_->about.name + ": derivatives()", [&] {
+      // Not before: every plant is made where only its description is asked for.
+      if (!object_) object_ = held((*type_->make)(dictOf(parameters_)));
       Vector rate = Vector::Zero(x.size());
       const py::object result =
           object_->attr("derivatives")(toArray(Vector(x)), toArray(Vector(u)), toArray(Vector(d)));
@@ -104,7 +103,7 @@ class OwnPlant final : public Plant {
   std::shared_ptr<const OwnPlantType> type_;
   Names names_;
   PlantParameters parameters_;
-  Held object_;
+  mutable Held object_;
 };
 
 std::vector<Quantity> quantitiesOf(const py::dict& about, const char* key) {

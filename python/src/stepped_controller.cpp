@@ -36,23 +36,22 @@ Array SteppedController::step(py::handle outputs, py::handle setpoint, py::handl
   require(!outputs.is_none(), "y", "a measurement");
   const std::vector<bool> bad = readBad(quality, measured_);
   const auto n_y = static_cast<std::ptrdiff_t>(outputs_.size());
-  const auto part = [&](std::ptrdiff_t first, std::ptrdiff_t last) {
-    return bad.empty() ? bad : std::vector<bool>(bad.begin() + first, bad.begin() + last);
-  };
+  const auto outputs_end = bad.begin() + (bad.empty() ? 0 : n_y);
+  const std::vector<bool> bad_outputs(bad.begin(), outputs_end),
+      bad_disturbances(outputs_end, bad.end());
   Vector y = outputs_good_, d = disturbances_good_, u = applied_, r = setpoint_;
-  readSignals(outputs, outputs_, "y", y, part(0, n_y));
-  readSignals(disturbance, disturbances_, "disturbance", d,
-              part(n_y, static_cast<std::ptrdiff_t>(bad.size())));
+  readSignals(outputs, outputs_, "y", y, &bad_outputs);
+  readSignals(disturbance, disturbances_, "disturbance", d, &bad_disturbances);
   readSignals(applied, inputs_, "applied", u);
   if (!setpoint.is_none()) {
     // Names that are left out of a dict stay with the schedule.
+    const py::object named = byName(setpoint);
     Vector asked = r.array().isNaN().select(0.0, r);
     readSignals(setpoint, outputs_, "setpoint", asked);
     Command command;
     for (std::size_t i = 0; i < outputs_.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
-      const bool given = !PyDict_Check(setpoint.ptr()) ||
-                         py::reinterpret_borrow<py::dict>(setpoint).contains(outputs_[i]);
+      const bool given = !named || py::reinterpret_borrow<py::dict>(named).contains(outputs_[i]);
       if (!given || asked[k] == r[k]) continue;
       command.name.push_back(outputs_[i]);
       command.value.push_back(r[k] = asked[k]);
@@ -137,10 +136,10 @@ bool SteppedController::retune(const Settings& settings) {
 
 bool SteppedController::adapt(bool on) { return controller_.session().adapt(on); }
 
-void SteppedController::setModel(const TsModel& model) {
+void SteppedController::setModel(const ModelHandle& model) {
   require(controller_.session().controller().needsModel(), "model",
           "a law with a model, which " + loop_->controllerType().name + " is not");
-  controller_.session().setModel(matchToLoop(model, *loop_));
+  controller_.session().setModel(matchToLoop(model.identified.model, *loop_));
 }
 
 Array SteppedController::setpoint() const {

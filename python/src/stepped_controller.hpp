@@ -4,14 +4,16 @@
 #include <memory>
 
 #include "convert.hpp"
+#include "model_handle.hpp"
 #include "runtime/loop_controller.hpp"
+#include "used_alone.hpp"
 
 namespace fpc::python {
 
 using LoopPtr = std::shared_ptr<const LoopFile>;
 
 /// Sample by sample what runLoop() does with the same measurements, bit for bit.
-class SteppedController {
+class SteppedController : public UsedAlone {
  public:
   explicit SteppedController(LoopPtr loop);
 
@@ -27,7 +29,7 @@ class SteppedController {
   void releaseSetpoint();
   bool retune(const Settings& settings);
   bool adapt(bool on);
-  void setModel(const TsModel& model);
+  void setModel(const ModelHandle& model);
 
   std::uint32_t steps() const { return step_; }  ///< answered in this run
   Array setpoint() const;

@@ -80,11 +80,7 @@ Array SteppedPlant::step(py::handle input, py::handle disturbance) {
   requireInside(description().disturbances, d, "d");
   Watch watch{py::none()};
   std::string failure;
-  {
-    const py::gil_scoped_release release;
-    failure = move(x, u, d);
-  }
-  watch.rethrow();
+  watch.during([&] { failure = move(x, u, d); });
   if (!failure.empty())
     throw std::runtime_error(description().name + ": could not be moved: " + failure);
   before_ = std::exchange(x_, x);
@@ -135,26 +131,24 @@ Array LoopPlant::reset() {
   session_.start(0.0);
   setpoint_.restart();
   setpoint_.advance(0);
-  return toArray(measurement().outputs);
+  return toArray(now().outputs);
 }
 
 Array LoopPlant::step(py::handle input) {
-  require(!measurement().final, "step", "reset() after the final sample of " + loop_->name);
+  require(!now().final, "step", "reset() after the final sample of " + loop_->name);
   require(!input.is_none(), "u", "an input");
   ControlAction action;
-  action.header = measurement().header;
-  action.input = measurement().input_applied;
+  action.header = now().header;
+  action.input = now().input_applied;
   readSignals(input, inputs_, "u", action.input);
   action.source = ActionSource::kBase;
   Watch watch{py::none()};
-  {
-    const py::gil_scoped_release release;
+  watch.during([&] {
     session_.receive(action);
     session_.advance(0.0);
-    setpoint_.advance(measurement().header.step);
-  }
-  watch.rethrow();
-  return toArray(measurement().outputs);
+    setpoint_.advance(now().header.step);
+  });
+  return toArray(now().outputs);
 }
 
 void LoopPlant::disturb(const py::dict& values) {

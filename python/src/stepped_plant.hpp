@@ -8,11 +8,12 @@
 #include "convert.hpp"
 #include "plant/integrator.hpp"
 #include "runtime/plant_session.hpp"
+#include "used_alone.hpp"
 
 namespace fpc::python {
 
 /// Equations alone: inputs and disturbances act over a sample, all outputs are seen.
-class SteppedPlant {
+class SteppedPlant : public UsedAlone {
  public:
   /// @throws InputError naming an unknown plant or parameter, or a time that is none.
   SteppedPlant(const std::string& name, const PlantParameters& parameters, double sample_time_s);
@@ -46,7 +47,7 @@ class SteppedPlant {
 };
 
 /// What runLoop() has before its controller.
-class LoopPlant {
+class LoopPlant : public UsedAlone {
  public:
   explicit LoopPlant(std::shared_ptr<const LoopFile> loop);
 
@@ -55,10 +56,10 @@ class LoopPlant {
   Array step(py::handle input);
   /// A person's: overrides these disturbances (or input/NAME, output/NAME) from the next sample on.
   void disturb(const py::dict& values);
-  const Measurement& measurement() const { return session_.process().measurement(); }
+  const Measurement& now() const { return session_.process().measurement(); }
   const PlantState& state() const { return simulation_->state(); }
-  const std::string& trouble() const { return simulation_->trouble(); }
-  double timeH() const { return simulation_->clock().hoursAt(measurement().header.step); }
+  std::string trouble() const { return simulation_->trouble(); }
+  double timeH() const { return simulation_->clock().hoursAt(now().header.step); }
   /// What the loop's schedule asks of the present sample, n_y.
   Array setpoint() const { return toArray(setpoint_.present()); }
 

@@ -11,10 +11,10 @@ constexpr auto kPause = std::chrono::milliseconds(100);
 
 }  // namespace
 
-Watch::Watch(py::object progress)
+Watch::Watch(py::object progress, bool keeps)
     : progress_(std::move(progress)),
       next_(std::chrono::steady_clock::now() + kPause),
-      before_(std::exchange(watch_of_thread, this)) {}
+      before_(std::exchange(watch_of_thread, keeps ? this : nullptr)) {}
 
 Watch::~Watch() { watch_of_thread = before_; }
 

@@ -14,14 +14,17 @@ namespace py = pybind11;
 class Watch {
  public:
   /// `progress(share, words)` is called ten times a second at most, unless it is None.
-  explicit Watch(py::object progress);
+  /// `keeps`: what keep() is given ends the computation as that exception; a study of many runs
+  /// does not, it says what ended a run.
+  explicit Watch(py::object progress, bool keeps = true);
   ~Watch();
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
   /// False: it is to end now.
   bool goOn(double share, const std::string& words = {});
-  /// Runs `compute` without the GIL. What it throws is thrown on, as Python code in it threw it.
+  /// Runs `compute` without the GIL. Throws what Python code in it, or a signal handler, has
+  /// thrown, even where C++ went on or made words of it; else what `compute` throws.
   template <typename Compute>
   void during(Compute compute) {
     try {
@@ -31,20 +34,30 @@ class Watch {
       rethrow();
       throw;
     }
+    rethrow();
   }
   bool interrupted() const { return interrupted_; }  ///< by Ctrl-C
-  /// Throws what Python code inside, or a signal handler, has thrown. With the GIL.
-  void rethrow();
   /// To be called where an exception of Python code is caught, in the thread of the computation.
   static void keep(std::exception_ptr error);
 
  private:
+  void rethrow();
+
   py::object progress_;
   std::chrono::steady_clock::time_point next_;
   std::exception_ptr error_;
   bool interrupted_{false};
   Watch* before_;  // of an outer computation in this thread
 };
+
+/// What `compute` returns, computed without the GIL.
+template <typename Compute>
+auto withoutGil(Compute compute) {
+  Watch watch{py::none()};
+  decltype(compute()) found;
+  watch.during([&] { found = compute(); });
+  return found;
+}
 
 /// "ZeroDivisionError: division by zero". With the GIL.
 std::string wordsOf(const py::error_already_set& error);

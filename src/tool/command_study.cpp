@@ -116,6 +116,7 @@ bool reportTrouble(const StudyStatistics& statistics) {
 }  // namespace
 
 StudyFile studyOf(const StudyArguments& arguments) {
+  require(!arguments.names.empty(), "study", "a study file or loops");
   const bool from_file = arguments.names.size() == 1 && isStudy(arguments.names.front());
   if (arguments.names.size() == 1 && !from_file) requireStudyOrLoop(arguments.names.front());
   require(!from_file || arguments.index.empty(), "--index", "no study file beside it");

@@ -5,9 +5,11 @@ import signal
 import subprocess
 import sys
 import threading
+import types
 import unittest
 
 import numpy
+import pandas
 
 import fmbpc
 
@@ -31,6 +33,10 @@ class Loops(unittest.TestCase):
             with self.subTest(loop=loop, set=set_), self.assertRaises(fmbpc.InputError) as caught:
                 fmbpc.Loop(loop, set=set_)
             self.assertIn(word, str(caught.exception))
+        for loop, set_, word in ((None, None, "loop"), (3, None, "loop"), ("/bin/ls", None, "YAML"), ("asp_case1", 3, "set"), ("asp_case1", [3], "set"),
+                                 ("asp_case1", "abc", "set"), ("asp_case1", ["=1"], "set")):
+            with self.subTest(loop=loop, set=set_), self.assertRaisesRegex(fmbpc.InputError, word):
+                fmbpc.Loop(loop, set=set_)
         self.assertTrue(issubclass(fmbpc.InputError, ValueError))
         with self.assertRaises(TypeError):
             fmbpc.Loop({"extends": "asp_case1", "sampling": {"duration_h": object()}})
@@ -106,7 +112,11 @@ class Controllers(unittest.TestCase):
                  ({"y": {"z": 1.0}}, r"y\[z\]"), ({"y": [[50.0, 1800.0]]}, "y"), ({"setpoint": {"x": numpy.inf}}, r"setpoint\[x\]"),
                  ({"setpoint": {"x": -1e9}}, "x"), ({"setpoint": 1.0}, "setpoint"), ({"disturbance": [1.0] * 7}, "disturbance"),
                  ({"disturbance": {"q_i": None}}, r"disturbance\[q_i\]"), ({"applied": [numpy.nan]}, r"applied\[q_r\]"),
-                 ({"quality": [True]}, "quality"), ({"quality": {"q": True}}, r"quality\[q\]"), ({"quality": 1}, "quality")]
+                 ({"quality": [True]}, "quality"), ({"quality": {"q": True}}, r"quality\[q\]"), ({"quality": 1}, "quality"),
+                 ({"quality": numpy.ones((4, 2), dtype=bool)}, "quality"), ({"quality": [pandas.NA] * 4}, "quality"), ({"y": []}, "y"),
+                 ({"y": numpy.ma.masked_array(self.y, [False, True])}, r"y\[x\]"), ({"y": pandas.Series([1.0, pandas.NA])}, "y"),
+                 ({"y": b"ab"}, "y"), ({"y": [10**400, 1]}, "y"), ({"y": numpy.array([50.0, 1800.0], dtype=object)}, "y"),
+                 ({"y": {1: 2.0}}, "y"), ({"y": pandas.Series({"z": 1.0})}, r"y\[z\]"), ({"y": fmbpc}, "y")]
         for k in range(5):
             for change, words in wrong:
                 with self.subTest(change=change), self.assertRaisesRegex(fmbpc.InputError, words):
@@ -122,8 +132,16 @@ class Controllers(unittest.TestCase):
         for y, d in ((list(self.y), list(self.d)), (dict(zip(names, self.y)), strided), (numpy.column_stack([self.y, self.y])[:, 1], self.d[::-1][::-1]),
                      (tuple(self.y), dict(zip([n for n, *_ in self.loop.disturbances], self.d)))):
             numpy.testing.assert_array_equal(want, self.loop.controller().step(y, disturbance=d))
-        single = numpy.array([50.0, 1800.0], dtype=numpy.float32)
-        numpy.testing.assert_array_equal(self.loop.controller().step(single), self.loop.controller().step(numpy.array([50, 1800])))
+        whole = self.loop.controller().step(numpy.array([50, 1800]))
+        for dtype in (numpy.float16, numpy.float32, numpy.longdouble, ">f8", "<i2", numpy.uint64):
+            numpy.testing.assert_array_equal(whole, self.loop.controller().step(numpy.array([50, 1800], dtype=dtype)))
+
+    def test_names_rule_where_there_are_names(self):
+        want = self.twin.step(self.y, setpoint={"x": 1850.0})
+        turned = pandas.Series(dict(zip(["x", "s"], self.y[::-1])))
+        for y, setpoint in ((turned, pandas.Series({"x": 1850.0})), (types.MappingProxyType(dict(turned)), {"x": numpy.float32(1850.0)})):
+            numpy.testing.assert_array_equal(want, self.loop.controller().step(y, setpoint=setpoint))
+        numpy.testing.assert_array_equal(self.loop.controller().step(self.y), self.loop.controller().step(pandas.Series(self.y)))
 
     def test_a_bad_reading_is_held_or_bridged_not_refused(self):
         self.law.step(self.y, disturbance=self.d)
@@ -178,6 +196,17 @@ class Controllers(unittest.TestCase):
                 self.law.retune(**wrong)
         self.assertEqual(changed, self.law.settings)
 
+    def test_a_refused_command_leaves_a_controller_as_it_was(self):
+        other = fmbpc.Model(fmbpc.Loop("reactor_load").model_file)
+        for k in range(3):
+            for call in (lambda: self.law.set_model(None), lambda: self.law.set_model("fm_1"), lambda: self.law.set_model(other),
+                         lambda: self.law.manual("a"), lambda: self.law.manual([1.0, 2.0]), lambda: self.law.manual({"x": 1.0}),
+                         lambda: self.law.retune(coincidence_steps="many"), lambda: self.law.retune(no_such=1), lambda: self.law.adapt(True),
+                         lambda: self.law.reset(None), lambda: self.law.reset(self.y[:1]), lambda: self.law.reset(self.y, quality=[True])):
+                with self.assertRaises(fmbpc.InputError):
+                    call()
+            numpy.testing.assert_array_equal(self.twin.step(self.y + k, disturbance=self.d), self.law.step(self.y + k, disturbance=self.d))
+
     def test_prediction_and_trust_are_there(self):
         self.assertIsNone(self.law.prediction)
         self.law.step(self.y, disturbance=self.d)
@@ -210,7 +239,7 @@ class Plants(unittest.TestCase):
             with self.assertRaises(fmbpc.InputError):
                 plant.step(u, d)
         numpy.testing.assert_array_equal(twin.step(100.0), plant.step(100.0))
-        for wrong in ({"name": "cster"}, {"name": "cstr", "parameters": {"volume": 1}}, {"name": "cstr", "sample_time_s": 0}):
+        for wrong in ({"name": None}, {"name": "cster"}, {"name": "cstr", "parameters": {"volume": 1}}, {"name": "cstr", "sample_time_s": 0}):
             with self.assertRaises(fmbpc.InputError):
                 fmbpc.Plant(**wrong)
 

@@ -38,6 +38,21 @@ class Models(unittest.TestCase):
         for data in (self.frame, arrays, strided, plain, pathlib.Path(RECORD)):
             self.assertEqual(self.rules(self.model), self.rules(fmbpc.identify(data, **QUICK)))
 
+    def test_what_a_mask_hides_is_missing(self):
+        """In an array with a mask, in a frame and in a CSV alike."""
+        hidden = numpy.zeros(len(self.y), dtype=bool)
+        hidden[100:103] = True
+        gone = self.frame.copy()
+        gone.loc[hidden, "CA[mol/l]"] = numpy.nan
+        masked = {c: self.frame[c].to_numpy() for c in self.frame}
+        masked["CA[mol/l]"] = numpy.ma.masked_array(self.y, hidden)
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "gone.csv")
+            gone.to_csv(file, index=False)
+            found = [self.rules(fmbpc.identify(data, **QUICK)) for data in (gone, masked, file)]
+        self.assertEqual(found[:1] * 3, found)
+        self.assertNotEqual(self.rules(self.model), found[0])
+
     def test_the_tool_finds_the_same_model(self):
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, "model.yaml")
@@ -51,7 +66,8 @@ class Models(unittest.TestCase):
         good = {"CA": self.y, "q_c": self.u}
         wrong = [({**good, "CA": self.y[:-1]}, "q_c|CA"), ({**good, "q_c": ["a"] * len(self.u)}, "q_c"), ({**good, "q_c": self.u * 1j}, "q_c"),
                  ({**good, "q_c": numpy.full(len(self.u), numpy.inf)}, "q_c"), ({"CA": self.y}, "q_c"), ({}, "columns"),
-                 ({**good, "q_c": self.u[:, None]}, "q_c"), (str(RECORD) + ".no", "no")]
+                 ({**good, "q_c": self.u[:, None]}, "q_c"), (str(RECORD) + ".no", "no"), (None, "frame"), (self.y, "frame"),
+                 ({**good, "CA": numpy.full(len(self.y), numpy.nan)}, "CA"), ({n: v[:5] for n, v in good.items()}, "rows")]
         for data, words in wrong:
             with self.subTest(words), self.assertRaisesRegex(fmbpc.InputError, words):
                 fmbpc.identify(data, sample_time_s=60.0, **QUICK)
@@ -70,9 +86,19 @@ class Models(unittest.TestCase):
         free = self.model.simulate(self.u, y0=self.y[0])
         self.assertEqual(self.y[0], free[0, 0])
         self.assertTrue(numpy.isfinite(free).all())
-        for y, u in ((self.y[:-1], self.u), (numpy.zeros((9, 2)), self.u[:9]), (["a"], [1.0])):
+        for y, u in ((self.y[:-1], self.u), (numpy.zeros((9, 2)), self.u[:9]), (["a"], [1.0]), (self.y, None), (None, self.u), (self.y * 1j, self.u)):
             with self.assertRaises(fmbpc.InputError):
                 self.model.predict(y, u)
+        for u, y0 in (([1.0, numpy.nan], 0.1), ([], 0.1), (["a"], 0.1), ([[1.0, 2.0]], 0.1), ([1.0], None), ([1.0], [numpy.nan]), ([1.0], [0.1, 0.2])):
+            with self.assertRaises(fmbpc.InputError):
+                self.model.simulate(u, y0=y0)
+        for wrong in ({"y": [1.0, 2.0]}, {"u": numpy.nan}, {"u": "a"}, {"d": [1.0]}):
+            with self.assertRaises(fmbpc.InputError):
+                self.model.linearise(**wrong)
+        self.assertEqual(0, len(self.model.predict(self.y[:0], self.u[:0])))
+        strided = [numpy.repeat(v, 3)[::3] for v in (self.y, self.u)]
+        numpy.testing.assert_array_equal(one, self.model.predict(*strided))
+        numpy.testing.assert_array_equal(one, self.model.predict(self.y[:, None], numpy.asfortranarray(self.u[:, None])))
 
     def test_the_linearisation_moves_as_the_model(self):
         linear = self.model.linearise(y=self.y[0], u=self.u[0])
@@ -118,13 +144,24 @@ class Reports(unittest.TestCase):
         mine = fmbpc.study("asp_case1", "asp_case1_pi_x", seeds=3, set={"sampling.duration_h": 24})
         told = self.tool("study", "asp_case1", "asp_case1_pi_x", "--seeds", "1:3", "--set", "sampling.duration_h=24")
         self.assertEqual(told, mine)
-        with self.assertRaises(fmbpc.InputError):
-            fmbpc.study("asp_case1", "no_such_loop", seeds=2)
+        for loops in ((), (None,), ("asp_case1", "no_such_loop")):
+            with self.assertRaises(fmbpc.InputError):
+                fmbpc.study(*loops, seeds=2)
 
     def test_stability_is_that_of_the_tool(self):
         self.assertEqual(self.tool("stability", "fm_1", "--horizon", "1..9"), fmbpc.stability("fm_1", horizon=range(1, 10)))
-        with self.assertRaises(fmbpc.InputError):
-            fmbpc.stability("fm_1", at={"no": 1.0})
+        for wrong in ({"at": {"no": 1.0}}, {"horizon": range(1, 9, 2)}, {"horizon": "many"}):
+            with self.assertRaises(fmbpc.InputError):
+                fmbpc.stability("fm_1", **wrong)
+
+    def test_what_a_progress_raises_ends_the_computation(self):
+        def stop(share, words):
+            raise ZeroDivisionError(words)
+        record = {"u": numpy.random.default_rng(1).normal(size=3000), "y": numpy.random.default_rng(2).normal(size=3000)}
+        for call in (lambda: fmbpc.study("asp_case1", seeds=200, progress=stop), lambda: fmbpc.tune("asp_case1_pi_x", "pi_x", evaluations=400, progress=stop),
+                     lambda: fmbpc.identify(record, inputs="u", outputs="y", sample_time_s=1.0, work=200, progress=stop)):
+            with self.assertRaises(ZeroDivisionError):
+                call()
 
     def test_a_tuning_is_that_of_the_tool(self):
         short = {"sampling.duration_h": 24}

@@ -1,5 +1,9 @@
 #!/usr/bin/python3
 """Plants and laws that are Python classes: in loops of this process, checked, and ending a run in words when they fail."""
+import json
+import pathlib
+import tempfile
+import threading
 import unittest
 
 import numpy
@@ -131,6 +135,64 @@ class Own(unittest.TestCase):
             law.step(1.0)
         with self.assertRaises(ZeroDivisionError):
             law.step(1.0)
+
+    def test_exceptions_in_threads_of_a_study_are_words(self):
+        """They end a run each, not the study, and never the process: so does a class that fails where it is made."""
+        class Failing(OwnLaw):
+            name = "failing_law"
+            step = broken(OwnLaw.step)
+        fmbpc.register(Failing)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "failing.yaml")
+            file.write_text(json.dumps({**tank("failing_law"), "noise": {"std": {"level": 0.01}}}), encoding="utf-8")
+            found = fmbpc.study(file, seeds=8, threads=4)
+            self.assertIn("ZeroDivisionError", json.dumps(found))
+
+        class Unmade(OwnTank):
+            name = "unmade_tank"
+
+            def start(self):
+                raise ZeroDivisionError("at its start")
+        fmbpc.register(Unmade)
+        for use in (lambda: fmbpc.Plant("unmade_tank").step(0.5), lambda: fmbpc.Loop({**tank(), "plant": {"type": "unmade_tank"}}).run()):
+            with self.assertRaises(ZeroDivisionError):
+                use()
+        self.assertTrue(fmbpc.Loop(tank()).run().complete)  # of others it is no trouble
+
+    def test_one_call_at_a_time(self):
+        entered, go = threading.Event(), threading.Event()
+
+        class Waiting(OwnLaw):
+            name = "waiting_law"
+
+            def step(self, y, setpoint):
+                entered.set()
+                go.wait(100)
+                return super().step(y, setpoint)
+        fmbpc.register(Waiting)
+        law, answers = fmbpc.Loop(tank("waiting_law")).controller(), []
+        thread = threading.Thread(target=lambda: answers.append(law.step(1.0)))
+        thread.start()
+        self.assertTrue(entered.wait(100))
+        for call in (lambda: law.step(1.0), lambda: law.reset(1.0), lambda: law.manual(1.0), law.auto, lambda: law.prediction, lambda: law.steps):
+            with self.assertRaisesRegex(RuntimeError, "in use"):
+                call()
+        go.set()
+        thread.join()
+        self.assertEqual(1, law.steps)
+        numpy.testing.assert_array_equal(fmbpc.Loop(tank()).controller().step(1.0), answers[0])
+
+    def test_a_plant_that_steps_itself_is_refused(self):
+        class Inward(OwnTank):
+            name = "inward_tank"
+
+            def derivatives(self, x, u, d):
+                return plant.step(0.5)
+        fmbpc.register(Inward)
+        plant = fmbpc.Plant("inward_tank")
+        with self.assertRaisesRegex(RuntimeError, "in use"):
+            plant.step(0.5)
+        numpy.testing.assert_array_equal([1.0], plant.outputs)
 
     def test_results_of_wrong_size_are_named(self):
         class Two(OwnLaw):

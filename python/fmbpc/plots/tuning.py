@@ -3,26 +3,24 @@
     fmbpc tune LOOP TUNING --out DIR
 """
 import argparse
-import csv
 import json
 import pathlib
 
 import matplotlib.pyplot as plt
 import numpy
 
+from fmbpc.plots.table import read_table
+
 COLOURS = {"apso": "#c8452d", "pso": "#e09a2b", "de": "#1f5fa8", "cmaes": "#3a8f4d", "random": "#777777"}
 
 
 def draw_one(axis, folder):
-    with open(folder / "history.csv", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
-    at = [int(row["evaluation"]) for row in rows]
-    cost = numpy.array([float(row["cost"]) for row in rows])
-    best = numpy.array([float(row["best"]) for row in rows])
+    columns, _ = read_table(folder / "history.csv")
+    at, cost, best = (numpy.array(columns[name]) for name in ("evaluation", "cost", "best"))
     finite = numpy.isfinite(cost)
     top = best[numpy.isfinite(best)].max(initial=0.0)
     seen = finite & (cost <= 5.0 * top)
-    axis.plot(numpy.array(at)[seen], cost[seen], ".", ms=3, color="#bbbbbb", label="each point")
+    axis.plot(at[seen], cost[seen], ".", ms=3, color="#bbbbbb", label="each point")
     axis.step(at, numpy.where(numpy.isfinite(best), best, numpy.nan), where="post", color="#c8452d", label="best so far")
     with open(folder / "tuning.json", encoding="utf-8") as stream:
         tuning = json.load(stream)
