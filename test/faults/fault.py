@@ -6,7 +6,7 @@ SAID_WITHIN = 2.0     # s of wall time from the fault to its words
 PATIENCE = 8.0        # s in which it is looked for at all
 RECOVERY = 30.0       # s of wall time in which the loop must be automatic again
 SETTLE = 1.5          # s after a kill, so that the word of before is not taken for that of after
-SILENCE = 2.0         # s without a sample that nobody has explained: a silent stall
+SILENCE = 2.0         # s without a sample and without a reported reason: a silent stall
 
 
 @dataclasses.dataclass

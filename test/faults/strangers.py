@@ -98,7 +98,7 @@ FAULTS = [
     say("loop_state", finished, "the summary 'finished'"),
     say("operator_kept", forgotten, "manual"),
     say("operator_state", forgotten, "manual"),
-    say("ready", lambda loop: kind(loop, "ready", node="/nobody"), "of nobody"),
+    say("ready", lambda loop: kind(loop, "ready", node="/nobody"), "of an unknown node"),
     say("recorded", lambda loop: kind(loop, "recorded", data="/nowhere"), "early"),
     say("run_end", lambda loop: kind(loop, "run_end", data="recorded"), "early"),
 ]

@@ -24,7 +24,7 @@ on, and nothing need be reported. An empty cell: this loop has no such part.
 | report | within 2 s; within 5 s for lost connections, within 10 s for a frozen analyser, a changed loop and a killed roslaunch |
 | return | automatic (manual where it was) within 30 s, with everything that the operator had asked |
 | record | once the launch has ended: every sample of the fault's time has its row, and the row holds what the plant showed |
-| silence | no 2 s without a sample that nobody explains |
+| silence | an interval of 2 s without samples has its reason reported |
 | processes | none ended but those that the fault kills |
 
 A forced valve (`input/NAME` of a disturbance), the way there and the sample of its release are the fault's moves, not the loop's. In
