@@ -14,9 +14,9 @@ limit of 2.5 % of the input's range a sample. Behind a gateway: `example_externa
 Paced and gateways: 0.1 s a sample; realtime and nodelets (realtime, all nodes in one process): 0.2 s. Faults that want a launch, a machine
 or a file of their own are tests of their own, in the last table.
 
-A cell shows when the fault was reported on `loop_state` or `/diagnostics`, how many samples after its end an answer was still late, the
-largest move of an input, and the first move after the input was held or on its fallback. Moves are in % of the range; `-`: the loop went
-on, and nothing need be reported. An empty cell: this loop has no such part.
+A cell shows when the fault was reported on `loop_state` or `/diagnostics` (no time: the loop went on, and nothing need be reported), how many
+samples after its end an answer was still late (if any), then the largest move of an input and the first move after the input was held or
+on its fallback, both in % of the range. An empty cell: this loop has no such part.
 
 | asked of every cell | |
 |---|---|
@@ -38,9 +38,9 @@ SIMULATED = ("asp_case1_clp", "mimo_cstr_steps")
 def cell(result):
     if result is None:
         return ""
-    said = "-" if result["said_after"] is None else f"{result['said_after']:.1f} s"
-    back = "not back" if result["back_after"] is None else str(result["back_after"])
-    text = f"{said}, {back}, {result['largest_move']:.2f} / {result['bump']:.2f}"
+    said = "" if result["said_after"] is None else f"{result['said_after']:.1f} s, "
+    late = "not back, " if result["back_after"] is None else f"{result['back_after']} late, " if result["back_after"] else ""
+    text = f"{said}{late}{result['largest_move']:.2f}/{result['bump']:.2f}"
     return f"**{text}**" if result["problems"] else text
 
 
