@@ -6,9 +6,9 @@
     c = fmbpc.Loop("asp_case1").controller()    # the law before a plant of your own
     u = c.step([50.0, 1800.0])                  # of what is measured, in the order of its outputs
 
-Loops and what comes out of them: Loop, Run, loops(), Controller, Simulation.
-Plants and laws: Plant, plants(), controllers(), register(), check() for your own, env() for learning.
-Models: identify(), Model. Many runs and analyses: study(), tune(), stability(). Pictures: fmbpc.plots.
+Loops and what comes out of them: Loop, loops(), Run with Signal and Event, Controller, Simulation.
+Plants and laws: Plant, plants(), controllers(); register(), check(), Quantity for your own.
+For learning: env(), an Env or VectorEnv. Models: identify(), Model. Many runs and analyses: study(), tune(), stability(). Pictures: fmbpc.plots.
 Every computation gives the bits that the tool `fmbpc` and the nodes give. Times are hours unless a
 name says otherwise; errors of what you hand over are InputError (a ValueError).
 """
@@ -26,6 +26,7 @@ if _find_spec("fmbpc._core") is not None:  # not where only the plots are there:
     from fmbpc._study import stability, study, tune
 
     InputError = _core.InputError
+    InputError.__doc__ = "What was handed over is wrong: the text names it and what was expected (docs/python.md). A ValueError."
     __version__ = _core.version
 
     __all__ = ["Controller", "Env", "Event", "InputError", "Loop", "Model", "Plant", "Quantity", "Run", "Signal", "Simulation", "VectorEnv",

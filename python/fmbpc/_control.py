@@ -20,7 +20,7 @@ class Controller:
 
     Before the loop's own plant it gives the bits of the run. Arrays are in the order of the loop's `outputs`,
     `inputs` and `disturbances`; a dict, or a Series with names as its index, names what it holds. Made by
-    Loop.controller(). Controllers share nothing and may run in threads; one of them takes one call at a time (RuntimeError).
+    Loop.controller(). What the laws compute and where they were published: docs/theory.md. Controllers share nothing and may run in threads; one of them takes one call at a time (RuntimeError).
     """
 
     def __init__(self, core, loop: "Loop"):
@@ -46,11 +46,12 @@ class Controller:
         """Begins anew with this as sample 0 and returns u(0); see step(). `applied` left out: the loop's initial input.
 
         Setpoints are again those of the schedule; what manual(), retune() and set_model() have set stays.
+        Raises InputError as step().
         """
         return self._core.reset(y, setpoint, disturbance, applied, quality)
 
     def manual(self, u: Values) -> None:
-        """A person's input from the next sample on, inside the limits; the law looks on. Bumpless both ways."""
+        """A person's input from the next sample on, inside the limits; the law looks on. Bumpless both ways. Raises InputError."""
         self._core.manual(u)
 
     def auto(self) -> None:

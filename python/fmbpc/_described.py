@@ -11,10 +11,12 @@ class Described:
 
     @property
     def name(self) -> str:
+        """As its file calls it."""
         return self._core.name
 
     @property
     def sample_time_s(self) -> float:
+        """[s] from one sample to the next."""
         return self._core.sample_time_s
 
     @property

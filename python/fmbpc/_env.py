@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 import importlib
+import numbers
 from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy
 
-from fmbpc import _core
+from fmbpc import _core, _text
 
 if TYPE_CHECKING:
     from fmbpc._loop import Loop
@@ -63,7 +64,7 @@ class Env:
     """One loop without its law: reset(), step(action). Made by env().
 
     An observation holds the measured outputs, their setpoints, the measured disturbances and the applied inputs, n_y + n_y + n_d + n_u,
-    in the loop's units; a reading that did not come is the one before. An action is the inputs, n_u, inside action_space.
+    in the loop's units; a reading that did not come is the one before. An action is the inputs, n_u, inside action_space. See docs/python.md.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}
@@ -83,6 +84,7 @@ class Env:
 
     @property
     def unwrapped(self):
+        """Itself, as gymnasium asks."""
         return self
 
     def _observe(self):
@@ -97,7 +99,12 @@ class Env:
         return {"time_h": self._plant.time_h, "true_outputs": self._plant.true_outputs, "trouble": self._plant.trouble}
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None):
-        """(observation, info) of sample 0; a seed makes other disturbances and noise, until the next one."""
+        """(observation, info) of sample 0; a seed makes other disturbances and noise, until the next one.
+
+        Raises InputError for a seed that is not a whole number, 0 or more; `options` are not used.
+        """
+        if seed is not None and _text.whole(seed, "seed") < 0:
+            raise _core.InputError(f"seed: expected 0 or more, got {seed}")
         getattr(super(), "reset", lambda **_: None)(seed=seed, options=options)  # of gymnasium.Env: its random numbers
         if seed is not None and seed != self._seed:
             self._seed, self.loop = seed, self._make(seed)
@@ -121,14 +128,17 @@ class Env:
         return self._observe(), reward, bool(p.trouble), p.done, self._info()
 
     def render(self):
-        return None
+        """Nothing: Run.plot() draws runs."""
 
     def close(self):
-        pass
+        """Nothing is held open."""
 
 
 class VectorEnv:
-    """The same loop under several seeds, stepped together: observations (n, ...), rewards (n,). An ended one begins anew at its next step."""
+    """The same loop under several seeds, stepped together: observations (n, ...), rewards (n,). An ended one begins anew at its next step.
+
+    Made by env(seeds=...); see docs/python.md.
+    """
 
     def __init__(self, envs: Sequence[Env], seeds: Sequence[int]):
         self.envs, self.seeds, self.num_envs = list(envs), list(seeds), len(envs)
@@ -136,12 +146,16 @@ class VectorEnv:
         self._ended = numpy.zeros(len(envs), dtype=bool)
 
     def reset(self, *, options: dict[str, Any] | None = None):
+        """(observations, infos) of sample 0, each with its seed; raises as Env.reset()."""
         found = [e.reset(seed=s) for e, s in zip(self.envs, self.seeds)]
         self._ended[:] = False
         return numpy.array([o for o, _ in found]), [i for _, i in found]
 
     def step(self, actions):
-        """actions: (n, n_u). The step after an end begins anew: its reward is 0 and its action is not used."""
+        """actions: (n, n_u). The step after an end begins anew: its reward is 0 and its action is not used.
+
+        Returns observations (n, size), rewards, terminated, truncated (n,), infos. Raises InputError as Env.step().
+        """
         actions = numpy.asarray(actions)
         if len(actions) != self.num_envs:
             raise _core.InputError(f"actions: expected {self.num_envs} rows")
@@ -157,7 +171,7 @@ class VectorEnv:
         return numpy.array(o), numpy.array(r), numpy.array(terminated), numpy.array(truncated), list(info)
 
     def close(self):
-        pass
+        """Nothing is held open."""
 
 
 def env(loop, *, set=None, seeds: Sequence[int] | None = None, reward: Callable | None = None):
@@ -165,11 +179,11 @@ def env(loop, *, set=None, seeds: Sequence[int] | None = None, reward: Callable 
 
     loop, set: as Loop() takes them; seeds: several of them together, a VectorEnv, else one Env
     reward(y, setpoint, u, move): instead of minus the squared errors and moves in parts of their ranges
-    Env has the interface of gymnasium.Env and is one where gymnasium is installed.
+    Env has the interface of gymnasium.Env and is one where gymnasium is installed (docs/python.md).
+    Raises InputError as Loop() does, and for seeds that are none.
     """
     from fmbpc._loop import Loop
-    from fmbpc._text import assignments
-    settings = assignments(set)
+    settings = _text.assignments(set)
 
     def make(seed):
         plain = Loop(loop, set=settings)
@@ -181,6 +195,6 @@ def env(loop, *, set=None, seeds: Sequence[int] | None = None, reward: Callable 
     kind = Env if gymnasium is None else type("Env", (Env, gymnasium.Env), {"__doc__": Env.__doc__})
     if seeds is None:
         return kind(make, reward)
-    if not len(seeds):
-        raise _core.InputError("seeds: expected at least one")
+    if isinstance(seeds, (str, numbers.Number)) or not len(seeds):
+        raise _core.InputError(f"seeds: expected a list of at least one, got {seeds!r}")
     return VectorEnv([kind(make, reward) for _ in seeds], seeds)

@@ -34,6 +34,7 @@ class Loop(Described):
 
     @property
     def title(self) -> str:
+        """What it shows, in a line, with its source."""
         return self._core.title
 
     @property
@@ -70,7 +71,7 @@ class Loop(Described):
         Raises InputError for an external plant or an endless run, and what code of your own raises.
         """
         with _progress.bar(self.name, progress) as bar:
-            return Run(self._core.run("" if commands is None else os.fspath(commands), bar))
+            return Run(self._core.run("" if commands is None else _text.path(commands, "commands"), bar))
 
     def controller(self) -> Controller:
         """The law with guard, optimizer and identifier, before a plant that is not ours."""
@@ -85,5 +86,5 @@ class Loop(Described):
 
 
 def loops(*words: str) -> list[str]:
-    """Names of the loops that are shipped or lie below $FMBPC_CONFIG_PATH, those that contain all words."""
-    return [name for name in _core.loop_names() if all(word in name for word in words)]
+    """Names of the loops that are shipped or lie below $FMBPC_CONFIG_PATH, those that contain all words: loops("asp", "pi"); docs/loop_file.md."""
+    return [name for name in _core.loop_names() if all(_text.text(word, "words") in name for word in words)]

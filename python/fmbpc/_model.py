@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Any, Callable, Sequence
 
@@ -12,12 +12,7 @@ import numpy
 from fmbpc import _core, _progress, _text
 from fmbpc._control import Values
 from fmbpc._described import Described
-
-
-def _split(header):
-    """Name and unit of "x[mg/l]"."""
-    name, bracket, unit = str(header).partition("[")
-    return name.strip(), unit.rstrip().removesuffix("]") if bracket else ""
+from fmbpc.plots.table import name_and_unit
 
 
 def _column(values):
@@ -51,7 +46,7 @@ def _record(data, name="frame"):
         raise _core.InputError(f"{name}: expected columns")
     names, found, dates, values = [], [], [], []
     for key, column in columns.items():
-        short, unit = _split(key)
+        short, unit = name_and_unit(key)
         try:
             numbers, is_date = _column(column)
         except _core.InputError as error:
@@ -75,7 +70,8 @@ class Model(Described):
     """A Takagi-Sugeno model: made by identify(), or read by name (of config/model) or path.
 
     Arrays have a row a sample: y n_y columns, u n_u, d n_d, in the order of `outputs`, `inputs`, `disturbances`;
-    with one signal a vector will do. Row k + 1 of a prediction follows from rows up to k.
+    with one signal a vector will do. Row k + 1 of a prediction follows from rows up to k. The equations: docs/theory.md.
+    Raises InputError for a file that is not there or does not hold a model.
     """
 
     def __init__(self, model: str | os.PathLike):
@@ -108,30 +104,38 @@ class Model(Described):
         return array[:, None] if array.ndim == 1 and len(signals) == 1 else array
 
     def predict(self, y, u, d=None, *, steps: int = 1) -> numpy.ndarray:
-        """What follows `steps` samples later from measured pasts, n_samples x n_y; NaN where the past is not there."""
+        """What follows `steps` samples later from measured pasts, n_samples x n_y; NaN where the past is not there.
+
+        Raises InputError naming the array whose size or type is wrong; here a NaN is a reading that did not come.
+        """
         return self._core.predict(self._matrix(y, self.outputs), self._matrix(u, self.inputs), self._matrix(d, self.disturbances), steps)
 
     def simulate(self, u, d=None, *, y0: Values) -> numpy.ndarray:
-        """Outputs n_samples x n_y when the process has rested at y0, u[0], d[0] before; row 0 is y0."""
+        """Outputs n_samples x n_y when the process has rested at y0, u[0], d[0] before; row 0 is y0.
+
+        Raises InputError naming the array whose size or type is wrong or that holds what is not finite.
+        """
         return self._core.simulate(y0, self._matrix(u, self.inputs), self._matrix(d, self.disturbances))
 
     def validate(self, data, *, rows: str = "", columns: Mapping[str, str] | None = None, steps: int = 10) -> dict[str, Any]:
         """Judges it on another record (as identify() takes it), as `fmbpc validate --json`.
 
         rows: "FIRST:LAST", from 1; columns: {"SIGNAL": "COLUMN"} where names differ; steps: of the prediction ahead
+        Raises InputError naming record and column.
         """
-        pairs = [f"{signal}={column}" for signal, column in (columns or {}).items()]
+        pairs = [f"{signal}={column}" for signal, column in _text.items(columns, "columns")]
         return json.loads(self._core.validate(_record(data), rows, pairs, steps))
 
     def linearise(self, y: Values | None = None, u: Values | None = None, d: Values | None = None) -> dict[str, numpy.ndarray]:
         """A, B, C and offset_state of x(k+1) = A x(k) + B u(k) + offset_state, y(k) = C x(k), where it rests at these values.
 
         The state stacks the outputs' lags, then past inputs and disturbances. What is left out is the middle of its range.
+        Raises InputError naming what is unknown, not finite or of the wrong size.
         """
         return self._core.linearise(y, u, d)
 
     def save(self, file: str | os.PathLike) -> None:
-        """A model file that loops name as model.file."""
+        """Writes a model file, which loops name as model.file. Raises OSError where it cannot be written."""
         with open(file, "w", encoding="utf-8") as stream:
             stream.write(self._core.text)
 
@@ -160,7 +164,7 @@ def identify(data, *, outputs: Sequence[str] = (), inputs: Sequence[str] = (), d
     kind: best, linear, regressors or state; seed: of the starts of all fits; name: of the model
     sample_time_s: instead of a column of times; input_row: auto, next or same; keep_inputs: True: those that hardly moved too
     blocks: held out in turn; window, reach, longest_delay: [samples] (docs/identification.md)
-    Ctrl-C keeps the best that the search found. Raises InputError naming record and column, or the option.
+    How it searches, and the sources: docs/identification_method.md. Ctrl-C keeps the best that the search found. Raises InputError naming record and column, or the option.
     """
     records = data if isinstance(data, (list, tuple)) else [data]
     if structure is None and not auto:
@@ -172,12 +176,16 @@ def identify(data, *, outputs: Sequence[str] = (), inputs: Sequence[str] = (), d
     known_text = "" if known is None else ", ".join(f"{k}: {_text._flow(v)}" for k, v in known.items()) if isinstance(known, Mapping) else os.fspath(known)
     search = {"sample_time_s": sample_time_s, "name": name, "kind": kind, "work": work, "budget_s": budget_s, "blocks": blocks, "window": window,
               "reach": reach, "longest_delay": longest_delay, "input_row": input_row, "keep_inputs": keep_inputs, "seed": seed}
-    options = {"outputs": _names(outputs), "inputs": _names(inputs), "disturbances": _names(disturbances), "rows": rows, "validate_rows": validation_rows,
+    signals = (("outputs", outputs), ("inputs", inputs), ("disturbances", disturbances))
+    options = {**{what: _names(names, what) for what, names in signals}, "rows": rows, "validate_rows": validation_rows,
                "time": time, "known": known_text, "structure": "" if structure is None else _text.path(structure, "structure"),
                **{key: value for key, value in search.items() if value is not None}}
     with _progress.bar("identify", progress) as bar:
         return Model(_core.identify([_record(r) for r in records], None if validation is None else _record(validation, "validation"), options, bar))
 
 
-def _names(names):
-    return [names] if isinstance(names, str) else list(names)
+def _names(names, what):
+    found = [names] if isinstance(names, str) else names
+    if not isinstance(found, Iterable) or not all(isinstance(name, str) for name in found):
+        raise _core.InputError(f"{what}: expected names, got {names!r}")
+    return list(found)

@@ -5,11 +5,11 @@ import inspect
 import re
 from typing import Any, NamedTuple
 
-from fmbpc import _core
+from fmbpc import _core, _text
 
 
 class Quantity(NamedTuple):
-    """A signal or parameter of a plant: unit, usual value, range. A plain tuple does as well."""
+    """A signal or parameter of a plant: unit, usual value, range. A plain tuple does as well; see register() and docs/python.md."""
 
     unit: str
     nominal: float
@@ -38,7 +38,7 @@ def _quantities(cls, key):
         if len(tuple(values)) != 4:
             raise _core.InputError(f"{_name_of(cls)}: {key}.{name}: expected (unit, nominal, lower, upper)")
         unit, nominal, lower, upper = values
-        found.append((name, unit, float(nominal), float(lower), float(upper)))
+        found.append((name, _text.text(unit, f"{_name_of(cls)}: {key}.{name}"), *(_text.real(value, f"{_name_of(cls)}: {key}.{name}") for value in (nominal, lower, upper))))
     return found
 
 
@@ -84,8 +84,11 @@ def register(cls):
         sample `applied` and `disturbance`.
     Parameters are attributes of the object; start(self), if it has one, is called once they are there. A loop of this
     process names the class as plant.type or controller.type. A class of the same name takes the place of the former.
+    In C++: docs/own_plant.md, docs/own_controller.md.
     Raises InputError naming what is wrong with the description.
     """
+    if not isinstance(cls, type):
+        raise _core.InputError(f"register: expected a class, got {cls!r}")
     name = _name_of(cls)
     if _is_plant(cls):
         steps = not hasattr(cls, "derivatives")
@@ -93,7 +96,7 @@ def register(cls):
             raise _core.InputError(f"plant {name}: expected derivatives(x, u, d) or step(u, d)")
         about = {key: _quantities(cls, key) for key in ("states", "inputs", "disturbances", "parameters")}
         about["outputs"] = list(getattr(cls, "outputs", None) or dict(getattr(cls, "states", {})))
-        _core.register_plant({"name": name, "title": _title_of(cls), "time_unit_s": float(getattr(cls, "time_unit_s", 1.0)),
+        _core.register_plant({"name": name, "title": _title_of(cls), "time_unit_s": _text.real(getattr(cls, "time_unit_s", 1.0), f"{name}: time_unit_s"),
                               **about}, _make_plant(cls), steps)
     elif hasattr(cls, "step"):
         _core.register_controller(name, _title_of(cls), dict(getattr(cls, "parameters", {})), _make_controller(cls))
@@ -103,7 +106,7 @@ def register(cls):
 
 
 def controllers() -> dict[str, dict[str, Any]]:
-    """What is registered as controller.type: summary, needs_model, predicts, open_loop, settings."""
+    """What is registered as controller.type: summary, needs_model, predicts, open_loop, settings (docs/loop_controller.md)."""
     return {name: _core.controller_type(name) for name in _core.controller_names()}
 
 
@@ -111,7 +114,7 @@ def check(cls, *, loop=None) -> list[str]:
     """The contract tests of every plant and law, asked of a class of your own; returns what is broken, in words.
 
     loop: for a law, a loop (name, path, dict or Loop) of a hundred samples or more that it is tried in, in the place of
-    the loop's own. The class is registered by this. Raises InputError, and what the class itself raises.
+    the loop's own. The class is registered by this (docs/python.md). Raises InputError, and what the class itself raises.
     """
     from fmbpc._loop import Loop
     register(cls)

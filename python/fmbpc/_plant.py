@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 class Plant:
-    """The equations of a registered plant, ours or your own: no noise, no delays, no actuators.
+    """The equations of a registered plant, ours or your own: no noise, no delays, no actuators (docs/own_plant.md; the title names the source).
 
     name: one of plants()
     sample_time_s: over which step() moves it [s]; left out: one time unit of its description
@@ -25,7 +25,7 @@ class Plant:
         name = _text.path(name, "name")
         if sample_time_s is None:
             sample_time_s = _core.plant_description(name)["time_unit_s"]
-        self._core = _core.Plant(name, dict(parameters or {}), float(sample_time_s))
+        self._core = _core.Plant(name, dict(_text.numbers_of(parameters, "parameters")), _text.real(sample_time_s, "sample_time_s"))
 
     def step(self, u: Values | None = None, d: Values | None = None) -> numpy.ndarray:
         """Holds u and d over a sample; returns the outputs at its end, n_y. What is left out stays as it was.
@@ -35,28 +35,31 @@ class Plant:
         return self._core.step(u, d)
 
     def reset(self, state: Values | None = None) -> numpy.ndarray:
-        """Back to the nominal state, with `state` over it; returns the outputs."""
+        """Back to the nominal state, with `state` (n_states, or a dict of some) over it; returns the outputs, n_y. Raises InputError."""
         return self._core.reset(state)
 
     def derivatives(self, x: Values | None = None, u: Values | None = None, d: Values | None = None) -> numpy.ndarray:
-        """dx/dt, n_states, per time unit of the description, where it is or at what is given."""
+        """dx/dt, n_states, per time unit of the description, where it is or at what is given. Raises InputError."""
         return self._core.derivatives(x, u, d)
 
     @property
     def outputs(self) -> numpy.ndarray:
+        """n_y, in the units of the description."""
         return self._core.outputs
 
     @property
     def state(self) -> numpy.ndarray:
+        """n_states, in the units of the description."""
         return self._core.state
 
     @property
     def time_s(self) -> float:
-        """Since the start or the last reset()."""
+        """[s] since the start or the last reset()."""
         return self._core.time_s
 
     @property
     def sample_time_s(self) -> float:
+        """[s] over which step() moves it."""
         return self._core.sample_time_s
 
     @property
@@ -70,7 +73,7 @@ class Plant:
 
 
 class Simulation:
-    """The plant of a loop with its records, actuators, sensors and noise. Made by Loop.simulation()."""
+    """The plant of a loop with its records, actuators, sensors and noise (docs/loop_file.md). Made by Loop.simulation()."""
 
     def __init__(self, core, loop: "Loop"):
         self._core, self.loop = core, loop
@@ -83,11 +86,14 @@ class Simulation:
         return self._core.step(u)
 
     def reset(self) -> numpy.ndarray:
-        """Back to sample 0; returns its outputs."""
+        """Back to sample 0; returns its outputs, n_y."""
         return self._core.reset()
 
     def disturb(self, **values: float) -> None:
-        """Overrides disturbances from the next sample on; `**{"input/NAME": value}` a stuck valve, "output/NAME" a sensor."""
+        """Overrides disturbances from the next sample on; `**{"input/NAME": value}` a stuck valve, "output/NAME" a sensor.
+
+        Values are in the units of the loop. Raises InputError naming what is unknown or not finite; then nothing is changed.
+        """
         self._core.disturb(values)
 
     @property
@@ -112,6 +118,7 @@ class Simulation:
 
     @property
     def state(self) -> numpy.ndarray:
+        """n_states of the plant, as they are."""
         return self._core.state
 
     @property
@@ -121,6 +128,7 @@ class Simulation:
 
     @property
     def time_h(self) -> float:
+        """[h] since the start, of the present sample."""
         return self._core.time_h
 
     @property
@@ -143,5 +151,5 @@ class Simulation:
 
 
 def plants() -> dict[str, dict[str, Any]]:
-    """Descriptions of the registered plants by name; see Plant.description."""
+    """Descriptions of the registered plants by name; see Plant.description and docs/own_plant.md."""
     return {name: _core.plant_description(name) for name in _core.plant_names()}

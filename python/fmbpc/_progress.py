@@ -2,6 +2,8 @@
 import contextlib
 import sys
 
+from fmbpc import _core
+
 
 def _in_notebook():
     shell = sys.modules.get("IPython")
@@ -33,6 +35,8 @@ class Bar:
 
 def bar(name, asked):
     """`asked`: True, False, a callable (share, words), or None: where a person looks."""
+    if not (asked is None or isinstance(asked, bool) or callable(asked)):
+        raise _core.InputError(f"progress: expected True, False, a callable (share, words) or None, got {asked!r}")
     if callable(asked):
         return contextlib.nullcontext(asked)
     look = (sys.stderr is not None and sys.stderr.isatty()) or _in_notebook() if asked is None else asked

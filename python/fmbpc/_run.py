@@ -11,7 +11,10 @@ import numpy
 
 
 class Signal(numpy.ndarray):
-    """A numpy vector of one signal over the run, with `name`, `unit` and `time` [h]; what is computed from it is a plain array."""
+    """A numpy vector of one signal over the run, with `name`, `unit` and `time` [h]; what is computed from it is a plain array.
+
+    Of a run (docs/recording.md).
+    """
 
     name: str
     unit: str
@@ -74,7 +77,7 @@ class Event(NamedTuple):
 
 
 class Run:
-    """Outputs, inputs and all other columns of trajectory.csv as arrays, the summary, the events."""
+    """Outputs, inputs and all other columns of trajectory.csv as arrays, the summary, the events (docs/operation.md). Made by Loop.run()."""
 
     def __init__(self, core):
         self._core = core
@@ -112,6 +115,7 @@ class Run:
 
     @property
     def units(self) -> dict[str, str]:
+        """By name, of all columns."""
         return dict(self._table[1])
 
     @cached_property
@@ -140,7 +144,7 @@ class Run:
         return self._core.wall_s
 
     def save(self, folder: str | os.PathLike) -> None:
-        """trajectory.csv and summary.json in a folder, as `fmbpc run --out`."""
+        """trajectory.csv and summary.json in a folder, as `fmbpc run --out`. Raises InputError where it cannot be written."""
         self._core.save(os.fspath(folder))
 
     def to_pandas(self):

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import numbers
 import threading
 from typing import Any, Callable, Mapping, Sequence
 
@@ -42,34 +43,41 @@ def study(*loops: str, set: Mapping[str, Any] | None = None, seeds: str | int | 
           progress: bool | Callable[[float, str], None] | None = None) -> dict[str, Any]:
     """Compares loops in pairs over seeds, parameters and noise; or runs the one study file that is named (docs/study.md).
 
+    loops: names or paths; set: keys over all of them, as Loop() takes them
     seeds: a number of them, a list, or "1:40"; vary: {"KEY": "0.7:1.3"} factors, "value:0.1:0.2" numbers
     noise: {"OUTPUT": std}; noise_percent of the span of the setpoints; against: the loop to pair with, else the last
     index: of docs/study.md, ise if left out; threads: 0 all cores, the answer does not depend on it
     Returns `loops` with quantiles of the cost, `pairs`, and `runs`. Raises InputError; Ctrl-C KeyboardInterrupt.
     """
-    text = f"1:{seeds}" if isinstance(seeds, int) else seeds if isinstance(seeds, str) else ",".join(map(str, seeds))
-    varied = [f"{key}={value}" for key, value in (vary or {}).items()]
-    noisy = [f"{key}={value!r}" for key, value in (noise or {}).items()]
+    text = seeds if isinstance(seeds, str) else f"1:{_text.whole(seeds, 'seeds')}" if isinstance(seeds, numbers.Number) else ",".join(map(str, seeds))
+    noise_share = -1.0 if noise_percent is None else _text.real(noise_percent, "noise_percent")
+    threads = _text.whole(threads, "threads")
+    varied = [f"{key}={value}" for key, value in _text.items(vary, "vary")]
+    noisy = [f"{key}={value!r}" for key, value in _text.numbers_of(noise, "noise")]
+    against, index = _text.text(against, "against"), _text.text(index, "index")
     with _progress.bar("study", progress) as bar:
         return _interruptible(lambda look: _core.study([_text.path(loop, "study") for loop in loops], _text.assignments(set), varied, noisy,
-                                                       -1.0 if noise_percent is None else float(noise_percent), text, against, index, threads, look), bar)
+                                                       noise_share, text, against, index, threads, look), bar)
 
 
 def tune(loop: str, tuning: str, *, set: Mapping[str, Any] | None = None, method: str = "", evaluations: int = 0, seed: int = -1, threads: int = 0,
          progress: bool | Callable[[float, str], None] | None = None) -> dict[str, Any]:
     """Searches numbers of a loop file, as a tuning file says (docs/tuning.md).
 
+    loop, tuning: names or paths; set: keys over the loop, as Loop() takes them; threads: 0 all cores
     method, evaluations, seed: instead of what the file says
     Returns the costs before and after and the values found, as tuning.json. Raises InputError; Ctrl-C KeyboardInterrupt.
     """
+    counts = [_text.whole(value, what) for value, what in ((evaluations, "evaluations"), (seed, "seed"), (threads, "threads"))]
     with _progress.bar("tune", progress) as bar:
-        return _interruptible(lambda look: _core.tune(_text.path(loop, "loop"), _text.path(tuning, "tuning"), _text.assignments(set), method, evaluations, seed, threads, look), bar)
+        return _interruptible(lambda look: _core.tune(_text.path(loop, "loop"), _text.path(tuning, "tuning"), _text.assignments(set), _text.text(method, "method"), *counts, look), bar)
 
 
 def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: range | str = "1..200", noise_gain: float = 0.0,
               settling: int = 0) -> dict[str, Any]:
-    """Steady states, eigenvalues over the coincidence horizon, zeros and a Lyapunov certificate of a loop or a model.
+    """Steady states, eigenvalues over the coincidence horizon, zeros and a Lyapunov certificate of a loop or a model (docs/stability.md).
 
+    name: of a loop or a model, or a path
     at: the operating point, {"NAME": value} of inputs, disturbances, outputs; horizon: range(1, 201) or "1..200"
     noise_gain and settling [samples]: largest ones of an advised horizon
     Returns what `fmbpc stability --json` prints. Raises InputError.
@@ -77,5 +85,5 @@ def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: rang
     if isinstance(horizon, range) and horizon.step != 1:
         raise _core.InputError("horizon: expected a range without steps")
     text = f"{horizon.start}..{horizon.stop - 1}" if isinstance(horizon, range) else horizon
-    point = ",".join(f"{key}={value!r}" for key, value in (at or {}).items())
-    return json.loads(_core.stability(_text.path(name, "name"), point, text, float(noise_gain), int(settling)))
+    point = ",".join(f"{key}={value!r}" for key, value in _text.numbers_of(at, "at"))
+    return json.loads(_core.stability(_text.path(name, "name"), point, text, _text.real(noise_gain, "noise_gain"), _text.whole(settling, "settling")))

@@ -17,6 +17,39 @@ def path(value, what):
     raise _core.InputError(f"{what}: expected a name or a path, got {type(value).__name__}")
 
 
+def text(value, what):
+    """A text."""
+    if isinstance(value, str):
+        return value
+    raise _core.InputError(f"{what}: expected a text, got {value!r}")
+
+
+def items(value, what):
+    """Pairs of a dict; None: of none."""
+    if value is None or isinstance(value, collections.abc.Mapping):
+        return list((value or {}).items())
+    raise _core.InputError(f"{what}: expected a dict, got {value!r}")
+
+
+def numbers_of(value, what):
+    """Pairs (name, number) of a dict."""
+    return [(str(key), real(number, f"{what}[{key}]")) for key, number in items(value, what)]
+
+
+def whole(value, what):
+    """A whole number."""
+    if isinstance(value, numbers.Integral) and not isinstance(value, bool):
+        return int(value)
+    raise _core.InputError(f"{what}: expected a whole number, got {value!r}")
+
+
+def real(value, what):
+    """A real number."""
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        return float(value)
+    raise _core.InputError(f"{what}: expected a number, got {value!r}")
+
+
 def core_of(value, what, kind):
     """The object of the core in an object of class `kind`."""
     core = getattr(value, "_core", None)
@@ -48,7 +81,7 @@ def _flow(value):
         return _flow(value.tolist())
     if isinstance(value, collections.abc.Iterable):
         return "[" + ", ".join(_flow(v) for v in value) + "]"
-    raise TypeError(f"a loop holds numbers, texts, truth values, lists and dicts, not {type(value).__name__}")
+    raise _core.InputError(f"a loop file: expected numbers, texts, truth values, lists and dicts, got {value!r}")
 
 
 def assignments(settings):

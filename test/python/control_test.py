@@ -38,7 +38,7 @@ class Loops(unittest.TestCase):
             with self.subTest(loop=loop, set=set_), self.assertRaisesRegex(fmbpc.InputError, word):
                 fmbpc.Loop(loop, set=set_)
         self.assertTrue(issubclass(fmbpc.InputError, ValueError))
-        with self.assertRaises(TypeError):
+        with self.assertRaisesRegex(fmbpc.InputError, "object"):
             fmbpc.Loop({"extends": "asp_case1", "sampling": {"duration_h": object()}})
 
     def test_a_run_has_arrays_with_unit_and_time(self):
@@ -239,7 +239,8 @@ class Plants(unittest.TestCase):
             with self.assertRaises(fmbpc.InputError):
                 plant.step(u, d)
         numpy.testing.assert_array_equal(twin.step(100.0), plant.step(100.0))
-        for wrong in ({"name": None}, {"name": "cster"}, {"name": "cstr", "parameters": {"volume": 1}}, {"name": "cstr", "sample_time_s": 0}):
+        for wrong in ({"name": None}, {"name": "cster"}, {"name": "cstr", "parameters": {"volume": 1}}, {"name": "cstr", "sample_time_s": 0},
+                      {"name": "cstr", "sample_time_s": "a"}, {"name": "cstr", "parameters": [1]}, {"name": "cstr", "parameters": {"reactor_volume": "a"}}):
             with self.assertRaises(fmbpc.InputError):
                 fmbpc.Plant(**wrong)
 

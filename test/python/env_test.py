@@ -54,6 +54,12 @@ class Envs(unittest.TestCase):
         for wrong in ([numpy.nan], [1.0, 2.0], None, ["a"]):
             with self.assertRaises(fmbpc.InputError):
                 env.step(wrong)
+        for wrong in ("a", 1.5, -1, True):
+            with self.assertRaisesRegex(fmbpc.InputError, "seed"):
+                env.reset(seed=wrong)
+        for wrong in (3, [], "12"):
+            with self.assertRaisesRegex(fmbpc.InputError, "seeds"):
+                make(seeds=wrong)
         self.episode(env, None)
         with self.assertRaises(fmbpc.InputError):
             env.step([500.0])

@@ -72,7 +72,8 @@ class Models(unittest.TestCase):
             with self.subTest(words), self.assertRaisesRegex(fmbpc.InputError, words):
                 fmbpc.identify(data, sample_time_s=60.0, **QUICK)
         for options, words in (({"inputs": ["q_c"]}, "outputs"), ({"outputs": ["CA"]}, "inputs"), ({**SIGNALS, "structure": "no_such"}, "no_such"),
-                               ({**SIGNALS, "rows": "b:a"}, "b:a")):
+                               ({**SIGNALS, "rows": "b:a"}, "b:a"), ({**SIGNALS, "rows": 3}, "rows"), ({**SIGNALS, "work": "a"}, "work"),
+                               ({**SIGNALS, "inputs": 3}, "inputs"), ({**SIGNALS, "outputs": [3]}, "outputs")):
             with self.subTest(words), self.assertRaisesRegex(fmbpc.InputError, words):
                 fmbpc.identify(self.frame, **options)
 
@@ -153,6 +154,21 @@ class Reports(unittest.TestCase):
         for wrong in ({"at": {"no": 1.0}}, {"horizon": range(1, 9, 2)}, {"horizon": "many"}):
             with self.assertRaises(fmbpc.InputError):
                 fmbpc.stability("fm_1", **wrong)
+
+    def test_what_is_wrong_is_named(self):
+        seeds = {"seeds": 2}
+        wrong = [(fmbpc.study, ("asp_case1",), options, words) for options, words in (
+            ({"seeds": 1.5}, "seeds"), ({"seeds": "x"}, "seeds"), ({**seeds, "threads": "a"}, "threads"), ({**seeds, "noise": {"x": "a"}}, "noise.x"),
+            ({**seeds, "noise": 3}, "noise"), ({**seeds, "noise_percent": "a"}, "noise_percent"), ({**seeds, "vary": 3}, "vary"),
+            ({**seeds, "index": 3}, "index"), ({**seeds, "index": "no"}, "no"), ({**seeds, "against": 3}, "against"), ({**seeds, "progress": "x"}, "progress"))]
+        wrong += [(fmbpc.tune, ("asp_case1_pi_x", "pi_x"), options, words) for options, words in (
+            ({"method": 3}, "method"), ({"evaluations": 0.5}, "evaluations"), ({"seed": "a"}, "seed"), ({"threads": None}, "threads"))]
+        wrong += [(fmbpc.stability, ("fm_1",), options, words) for options, words in (
+            ({"at": 3}, "at"), ({"at": {"q_r": "a"}}, "at.q_r"), ({"noise_gain": "a"}, "noise_gain"), ({"settling": 0.5}, "settling"))]
+        wrong += [(fmbpc.tune, ("asp_case1", "no_such"), {}, "no_such"), (fmbpc.Model, ("no_such",), {}, "no_such")]
+        for call, names, options, words in wrong:
+            with self.subTest(call=call, options=options), self.assertRaisesRegex(fmbpc.InputError, words):
+                call(*names, **options)
 
     def test_what_a_progress_raises_ends_the_computation(self):
         def stop(share, words):

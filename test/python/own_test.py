@@ -205,12 +205,15 @@ class Own(unittest.TestCase):
             fmbpc.Loop(tank("two_inputs")).run()
 
     def test_descriptions_are_checked(self):
-        for change in ({"states": {}}, {"states": {"level": ("m", 5.0, 0.0, 4.0)}}, {"states": {"level": ("m", 5.0)}}, {"outputs": ["height"]},
+        for change in ({"states": {}}, {"states": {"level": ("m", 5.0, 0.0, 4.0)}}, {"states": {"level": ("m", 5.0)}}, {"states": {"level": ("m", "a", 0.0, 4.0)}}, {"states": {"level": (1, 1.0, 0.0, 4.0)}},
+                       {"time_unit_s": "a"}, {"outputs": ["height"]},
                        {"time_unit_s": 0.0}, {"name": "cstr"}, {"inputs": {"level": ("m", 1.0, 0.0, 4.0)}}):
             with self.subTest(change=change), self.assertRaises(fmbpc.InputError):
                 fmbpc.register(type("Wrong", (OwnTank,), {"name": "wrong_tank", **change}))
         with self.assertRaises(fmbpc.InputError):
             fmbpc.register(type("pi", (OwnLaw,), {}))
+        with self.assertRaises(fmbpc.InputError):
+            fmbpc.register(OwnTank())
 
     def test_a_class_takes_the_place_of_the_former(self):
         class Again(OwnTank):

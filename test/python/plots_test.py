@@ -2,7 +2,6 @@
 """Pictures of runs: from a folder as the tool draws them, and of runs in this process."""
 import os
 import pathlib
-import re
 import subprocess
 import sys
 import tempfile
@@ -25,17 +24,6 @@ class Plots(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             run.save(folder)
             self.assertEqual(len(axes), len(plots.run_picture([folder]).axes))
-
-    def test_what_the_page_and_the_help_show_runs(self):
-        """The blocks of docs/python.md, and the lines of help(fmbpc), one after the other."""
-        page = (pathlib.Path(__file__).resolve().parents[2] / "docs/python.md").read_text(encoding="utf-8")
-        blocks = re.findall(r"```python\n(.*?)```", page, flags=re.S)
-        blocks.append("\n".join(line.strip() for line in fmbpc.__doc__.splitlines() if line.startswith("    ")))
-        self.assertTrue(all("import fmbpc" in block for block in blocks) and len(blocks) > 1)
-        with tempfile.TemporaryDirectory() as folder:
-            for block in blocks:
-                subprocess.run([sys.executable, "-c", block], check=True, cwd=folder, env={**os.environ, "MPLBACKEND": "Agg"})
-            self.assertTrue(pathlib.Path(folder, "run.png").exists())
 
     def test_what_cannot_be_drawn_is_said(self):
         with tempfile.TemporaryDirectory() as folder:

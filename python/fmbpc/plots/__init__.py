@@ -11,6 +11,9 @@ __all__ = ["KINDS", "read_table", "run_picture"]
 
 
 def run_picture(runs):
-    """One run with setpoints, references, limits and disturbances, or several compared; a list of fmbpc.Run or of folders."""
+    """One run with setpoints, references, limits and disturbances, or several compared; a list of fmbpc.Run or of folders.
+
+    Returns a matplotlib figure. Raises OSError for a folder without a run (docs/operation.md).
+    """
     from fmbpc.plots import run
     return run.picture([run.Run.of(r) for r in runs])

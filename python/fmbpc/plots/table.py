@@ -2,13 +2,22 @@
 import csv
 
 
+def name_and_unit(cell):
+    """Of "x[mg/l]"."""
+    name, bracket, unit = str(cell).partition("[")
+    return name.strip(), unit.rstrip().removesuffix("]") if bracket else ""
+
+
 def read_table(file):
-    """Columns by name (lists, NaN where a cell is empty), units by name, of a CSV whose header cells are NAME[UNIT]."""
+    """Columns by name (lists, NaN where a cell is empty), units by name, of a CSV whose header cells are NAME[UNIT] (docs/recording.md).
+
+    Raises OSError where it cannot be read, ValueError for a cell that is no number.
+    """
     with open(file, newline="", encoding="utf-8") as stream:
         rows = list(csv.reader(stream))
     columns, units = {}, {}
     for i, cell in enumerate(rows[0]):
-        name, _, unit = cell.partition("[")
-        units[name] = unit.rstrip("]")
+        name, unit = name_and_unit(cell)
+        units[name] = unit
         columns[name] = [float(row[i]) if row[i] else float("nan") for row in rows[1:]]
     return columns, units
