@@ -522,8 +522,8 @@ class BlockBuilder {
             });
           });
     });
-    for (int i = 0; i < n_y_; ++i) p_.set(y_[i], raw_[i]);
-    for (int i = 0; i < n_d_; ++i) p_.set(d_[i], raw_[n_y_ + i]);
+    p_.loop(n_y_, [&](const Value& i) { p_.set(y_[i], raw_[i]); });
+    p_.loop(n_d_, [&](const Value& i) { p_.set(d_[i], raw_[i + n_y_]); });
     p_.when(
         doubtful_, [&] { p_.when(doubted_ < kLongAgo, [&] { p_.set(doubted_, doubted_ + 1); }); },
         [&] { p_.set(doubted_, 0); });
