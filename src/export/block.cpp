@@ -6,6 +6,7 @@
 
 #include "base/text_hash.hpp"
 #include "config/model_file.hpp"
+#include "export/clp_code.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/control/bumpless_transfer.hpp"
@@ -68,6 +69,9 @@ class BlockBuilder {
     BlockParts parts{p_,   loop_, n_y_, n_u_, n_d_, y_,      d_,        seen_,    active_,
                      low_, up_,   mv_,  u_,   ok_,  source_, expected_, foreseen_};
     law_ = makeLawCode(parts);
+    clp_ = law_->optimizer();
+    if (clp_) of_optimizer_ = p_.state("ofOptimizer", Kind::kBool);
+    if (clp_) last_base_ = p_.states("lastBase", Kind::kReal, n_u_, initialInput());
     begin();
     checkCommands();
     readSetpoints();
@@ -177,7 +181,7 @@ class BlockBuilder {
     other_hand_ = p_.state("otherHand", Kind::kBool);
     asked_ = p_.states("asked", Kind::kReal, n_y_, values(loop_.setpoint.initial));
     active_ = p_.states("active", Kind::kReal, n_y_);
-    last_ = p_.states("last", Kind::kReal, n_u_, values(loop_.simulation.actuator.initial));
+    last_ = p_.states("last", Kind::kReal, n_u_, initialInput());
     manual_given_ = p_.state("manualGiven", Kind::kBool);
     manual_ = p_.states("manual", Kind::kReal, n_u_);
     bias_ = p_.states("bias", Kind::kReal, n_u_);
@@ -253,9 +257,10 @@ class BlockBuilder {
                                       Kind::kReal, "setpoint in force"));
     state_out_ = p_.output("iState", Kind::kInt,
                            "0 off, 1 manual, 2 automatic, 3 cascade, 4 held, 5 substitute");
-    source_out_ = p_.output(
-        "iSource", Kind::kInt,
-        "1 law, 3 law at a limit, 4 held, 5 manual, 6 substitute, 7 law outside its data");
+    source_out_ =
+        p_.output("iSource", Kind::kInt,
+                  std::string("1 law, ") + (loop_.has_clp ? "2 optimizer, " : "") +
+                      "3 law at a limit, 4 held, 5 manual, 6 substitute, 7 law outside its data");
     valid_out_ = p_.output("xValid", Kind::kBool, "the output is the law's");
     busy_out_ = p_.output("xBusy", Kind::kBool, "enabled and not off");
     error_out_ = p_.output("xError", Kind::kBool, "some error bit is set");
@@ -265,6 +270,7 @@ class BlockBuilder {
     hash_out_ = p_.output("iIdentity", Kind::kInt, "hash of model and loop");
   }
 
+  std::vector<double> initialInput() const { return values(loop_.simulation.actuator.initial); }
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
   bool jumps() const {
     return loop_.plausibility.enabled &&
@@ -394,7 +400,21 @@ class BlockBuilder {
         p_.set(applied_before_[i], applied_[i]);
       });
     });
-    p_.when(!known_, [&] { p_.loop(n_u_, [&](const Value& i) { p_.set(proven_[i], last_[i]); }); });
+    if (clp_) shareMoves();
+    p_.when(!known_, [&] {
+      p_.loop(n_u_, [&](const Value& i) { p_.set(proven_[i], (clp_ ? last_base_ : last_)[i]); });
+    });
+  }
+
+  /// Of what an optimizer sent only the optimizer knows: the law sees what is read.
+  void shareMoves() {
+    p_.loop(n_u_, [&](const Value& i) {
+      p_.set(clp_->previous[i], seen_[i]);
+      p_.when(of_optimizer_, [&] {
+        p_.set(seen_[i], applied_[i]);
+        p_.set(proven_[i], applied_[i]);
+      });
+    });
   }
 
   /// Only a command that moved tells an offset from a valve that stands still.
@@ -606,7 +626,8 @@ class BlockBuilder {
   Value laws() const {
     return source_ == sourceOf(ActionSource::kBase) ||
            source_ == sourceOf(ActionSource::kClipped) ||
-           source_ == sourceOf(ActionSource::kGuarded);
+           source_ == sourceOf(ActionSource::kGuarded) ||
+           (clp_ ? source_ == sourceOf(ActionSource::kConstrained) : Value(false));
   }
 
   void sendManual() {
@@ -627,10 +648,12 @@ class BlockBuilder {
     p_.when(interrupted_ || first_, [&] {
       p_.words("the law begins, or begins again");
       law_->reset();
-      p_.set(pending_, other_hand_ || pending_ || left_ > kTransferNegligible);
-      p_.set(left_, 0.0);
-      p_.loop(n_u_, [&](const Value& i) { p_.set(bias_[i], 0.0); });
-      p_.set(other_hand_, false);
+      if (!clp_) {
+        p_.set(pending_, other_hand_ || pending_ || left_ > kTransferNegligible);
+        p_.set(left_, 0.0);
+        p_.loop(n_u_, [&](const Value& i) { p_.set(bias_[i], 0.0); });
+        p_.set(other_hand_, false);
+      }
       p_.set(interrupted_, false);
       p_.set(first_, false);
     });
@@ -643,11 +666,12 @@ class BlockBuilder {
     p_.when(
         ok_,
         [&] {
-          p_.when(pending_ || left_ > kTransferNegligible, [&] { bridge(); });
+          if (!clp_) p_.when(pending_ || left_ > kTransferNegligible, [&] { bridge(seen_); });
           clipInputs(parts, u_, seen_);
           p_.loop(n_u_, [&](const Value& i) {
-            p_.when(away_[i], [&] { p_.clamp(u_[i], command_[i] - mv_[i], command_[i] + mv_[i]); });
+            p_.when(clp_ ? away_[i] && !of_optimizer_ : away_[i], [&] { keepNear(i); });
           });
+          if (clp_) optimize(parts);
         },
         [&] {
           p_.set(source_, sourceOf(ActionSource::kHeld));
@@ -655,15 +679,63 @@ class BlockBuilder {
         });
   }
 
+  void keepNear(const Value& i) { p_.clamp(u_[i], command_[i] - mv_[i], command_[i] + mv_[i]); }
+
+  /// The optimizer's answer instead of the law's, and where it comes from; after another hand it
+  /// starts where the input is.
+  void optimize(BlockParts& parts) {
+    const Value guarded = p_.work("guarded", Kind::kBool);
+    p_.words("the optimizer");
+    p_.set(guarded, source_ == sourceOf(ActionSource::kGuarded));
+    p_.loop(n_u_, [&](const Value& i) {
+      p_.set(last_base_[i], u_[i]);
+      p_.set(applied_before_[i], seen_[i]);
+    });
+    clp_->run();
+    p_.loop(n_u_, [&](const Value& i) { p_.set(u_[i], clp_->u[i]); });
+    p_.set(source_, clp_->source);
+    p_.when(guarded, [&] { p_.set(source_, sourceOf(ActionSource::kGuarded)); });
+    const auto clipped = [&] { p_.set(source_, sourceOf(ActionSource::kClipped)); };
+    p_.when(pending_ || left_ > kTransferNegligible, [&] {
+      bridge(clp_->previous);
+      clipInputs(parts, u_, clp_->previous);
+      clipped();
+    });
+    p_.loop(n_u_, [&](const Value& i) {
+      p_.when(away_[i] && of_optimizer_, [&] {
+        p_.set(a_, u_[i]);
+        keepNear(i);
+        p_.when(u_[i] != a_, clipped);
+      });
+    });
+  }
+
+  /// What the optimizer passes through: from another hand it takes over without a bump.
+  void passThrough() {
+    clp_->rest();
+    p_.set(flag_, !begun_ || source_ != sourceOf(ActionSource::kHeld) || pending_ ||
+                      left_ > kTransferNegligible);
+    p_.loop(n_u_, [&](const Value& i) {
+      p_.set(last_base_[i], u_[i]);
+      p_.setAbsolute(a_, u_[i] - last_[i]);
+      p_.when(a_ > kRelativeRounding * (up_[i] - low_[i]), [&] { p_.set(flag_, true); });
+    });
+    p_.when(flag_, [&] {
+      p_.set(pending_, true);
+      p_.set(left_, 0.0);
+      p_.loop(n_u_, [&](const Value& i) { p_.set(bias_[i], 0.0); });
+    });
+  }
+
   /// After another hand the first answer is where the input is; what the law asks for otherwise
   /// comes in as the bias between them dies out.
-  void bridge() {
+  void bridge(const Value& from) {
     p_.when(
         pending_,
         [&] {
           p_.loop(n_u_, [&](const Value& i) {
-            p_.set(bias_[i], seen_[i] - u_[i]);
-            p_.set(u_[i], seen_[i]);
+            p_.set(bias_[i], from[i] - u_[i]);
+            p_.set(u_[i], from[i]);
           });
           p_.set(left_, 1.0);
           p_.set(pending_, false);
@@ -675,8 +747,11 @@ class BlockBuilder {
 
   void finish() {
     p_.words("what goes out");
-    p_.set(other_hand_,
-           other_hand_ || source_ == sourceOf(ActionSource::kManual) || fell_back_ || !takes_);
+    if (clp_)
+      p_.when(!laws(), [&] { passThrough(); });
+    else
+      p_.set(other_hand_,
+             other_hand_ || source_ == sourceOf(ActionSource::kManual) || fell_back_ || !takes_);
     for (int i = 0; i < n_u_; ++i) {
       const std::size_t k = at(i);
       p_.set(out_[k], u_[i]);
@@ -692,11 +767,16 @@ class BlockBuilder {
         [&] {
           p_.loop(n_u_, [&](const Value& i) {
             p_.set(command_before_[i], command_[i]);
-            p_.when(!moves_active_, [&] { p_.set(command_before_[i], u_[i]); });
+            const Value other = clp_ ? !moves_active_ || of_optimizer_ != laws() : !moves_active_;
+            p_.when(other, [&] {
+              p_.set(command_before_[i], u_[i]);
+              if (clp_) p_.set(away_[i], false);
+            });
             p_.set(command_[i], u_[i]);
           });
           p_.set(moves_active_, true);
         });
+    if (clp_) p_.set(of_optimizer_, laws());
     for (int i = 0; i < n_y_; ++i) p_.set(active_out_[at(i)], active_[i]);
     p_.set(source_out_, source_);
     p_.set(valid_out_, laws());
@@ -716,6 +796,8 @@ class BlockBuilder {
   Program& p_;
   int n_y_, n_u_, n_d_;
   std::unique_ptr<LawCode> law_;
+  ClpCode* clp_{nullptr};  // of the law; null: none
+  Value of_optimizer_{0}, last_base_{0};
   std::vector<Value> asked_in_, cascade_in_, value_in_, ok_in_, manual_in_, actuator_in_, lower_in_,
       upper_in_, move_in_, fallback_in_, set_lower_in_, set_upper_in_, set_rate_in_;
   std::vector<Value> out_, high_, lowest_, rate_, step_out_, active_out_;
@@ -725,10 +807,10 @@ class BlockBuilder {
       away_{0}, along_{0}, shown_{0}, command_{0}, command_before_{0}, applied_before_{0}, good_{0},
       has_good_{0}, since_good_{0}, at_level_{0}, level_{0}, doubted_{0};
   Value y_{0}, d_{0}, raw_{0}, raw_ok_{0}, applied_{0}, seen_{0}, proven_{0}, low_{0}, up_{0},
-      mv_{0}, sub_{0}, set_low_{0}, set_up_{0}, set_rate_{0}, wish_{0}, u_{0}, expected_{0}, foreseen_{0}, ok_{0}, source_{0}, errors_{0},
-      is_manual_{0}, takes_{0}, limits_ok_{0}, set_limits_ok_{0}, time_ok_{0}, known_{0},
-      displaced_{0}, verdict_{0}, fell_back_{0}, a_{0}, b_{0}, c_{0}, flag_{0}, any_{0},
-      doubtful_{0}, repaired_{0}, may_end_{0}, flag_bad_manual_{0};
+      mv_{0}, sub_{0}, set_low_{0}, set_up_{0}, set_rate_{0}, wish_{0}, u_{0}, expected_{0},
+      foreseen_{0}, ok_{0}, source_{0}, errors_{0}, is_manual_{0}, takes_{0}, limits_ok_{0},
+      set_limits_ok_{0}, time_ok_{0}, known_{0}, displaced_{0}, verdict_{0}, fell_back_{0}, a_{0},
+      b_{0}, c_{0}, flag_{0}, any_{0}, doubtful_{0}, repaired_{0}, may_end_{0}, flag_bad_manual_{0};
   Value state_out_{0}, source_out_{0}, valid_out_{0}, busy_out_{0}, error_out_{0}, errors_out_{0},
       hash_out_{0};
 };

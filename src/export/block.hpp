@@ -42,6 +42,8 @@ struct BlockParts {
   ir::Value expected, foreseen;  ///< outputs that the law expects; whether it expects any
 };
 
+class ClpCode;
+
 /// A law as code of the block.
 class LawCode {
  public:
@@ -51,6 +53,7 @@ class LawCode {
   virtual void foresee() {}  ///< sets expected and foreseen, at every sample
   virtual void step() = 0;   ///< sets u, source and ok; ok is true before
   virtual void signals() {}  ///< outputs of the law, at the end of every sample
+  virtual ClpCode* optimizer() { return nullptr; }  ///< of a loop with a section clp
 };
 
 /// Builds the whole block into `program`. @throws InputError naming what is not exported.

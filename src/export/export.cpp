@@ -81,6 +81,11 @@ void makeProgram(const LoopFile& loop, const ExportOptions& options, ir::Program
       std::all_of(options.name.begin(), options.name.end(),
                   [](unsigned char c) { return std::isalnum(c) != 0 && std::isupper(c) == 0; });
   require(plain, "--name", "small letters and digits, a letter first");
+  require(!loop.has_clp || !options.structured_text, loop.name + ": clp",
+          "--to c99: the constraint optimizer is exported to C99 only, since its solver is text of "
+          "C; in Structured Text the law alone would be another loop");
+  require(!loop.has_clp || !options.single, loop.name + ": --real",
+          "double precision: the constraint optimizer is exported in double only");
   program.name = options.name;
   program.single = options.single;
   buildBlock(loop, program);

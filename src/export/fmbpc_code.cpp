@@ -103,6 +103,7 @@ class FmbpcCode final : public PredictiveCode {
     a_ = p_.work("lawA");
     c_ = p_.work("lawC");
     some_ = p_.work("someEffect", Kind::kBool);
+    beginOptimizer(model_.layout(), params_.reference_lead_steps);
     for (int i = 0; i < b_.n_y; ++i) {
       const std::string& name = b_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name;
       error_out_.push_back(p_.output("rModelError_" + plainName(name), Kind::kReal,
@@ -202,6 +203,35 @@ class FmbpcCode final : public PredictiveCode {
       published();
     else
       general();
+    if (clp_) predict();
+  }
+
+  /// The local model and how the law depends on state and reference, but for published() and
+  /// general(), which know their gains.
+  void predict() {
+    p_.loop(n_x_, [&](const Value& j) { p_.set(clp_->x[j], x_[j]); });
+    p_.loop(b_.n_y * n_x_, [&](const Value& j) { p_.set(clp_->A[j], model_.A[j]); });
+    p_.loop(b_.n_y * b_.n_u, [&](const Value& j) { p_.set(clp_->B[j], model_.B[j]); });
+    p_.loop(b_.n_y, [&](const Value& i) {
+      p_.set(clp_->g[i], realigned_ ? model_.g[i] + offset_[i] : model_.g[i]);
+      p_.set(clp_->offset[i], realigned_ ? Value(0.0) : offset_[i]);
+    });
+  }
+
+  /// K and L of input j from its gains on what output number k lacks.
+  void feedBack(const Value& j, const Value& gain, int k) {
+    const int output = followed_[static_cast<std::size_t>(k)];
+    p_.loop(n_x_, [&](const Value& i) {
+      p_.set(clp_->K[j * n_x_ + i], clp_->K[j * n_x_ + i] + gain * free_[i + k * n_x_]);
+    });
+    const double at_aim =
+        std::pow(params_.reference_pole[output], static_cast<double>(params_.aimedColumn() + 1));
+    p_.set(clp_->L[j * b_.n_y + output], gain * at_aim);
+  }
+
+  void clearFeedback() {
+    p_.loop(b_.n_u * n_x_, [&](const Value& i) { p_.set(clp_->K[i], 0.0); });
+    p_.loop(b_.n_u * b_.n_y, [&](const Value& i) { p_.set(clp_->L[i], 0.0); });
   }
 
   /// Rows of P = C A^H, S = C (I + ... + A^(H-1)), S B for one output that is followed.
@@ -278,13 +308,18 @@ class FmbpcCode final : public PredictiveCode {
   }
 
   void published() {
-    p_.when(
-        (effect_[0] <= -kFaintEffect || effect_[0] >= kFaintEffect) && ir::sane(effect_[0]),
-        [&] { p_.set(b_.u[0], lack_[0] / effect_[0]); },
-        [&] {
-          p_.set(b_.ok, false);
-          p_.set(b_.u[0], b_.applied[0]);
-        });
+    p_.when((effect_[0] <= -kFaintEffect || effect_[0] >= kFaintEffect) && ir::sane(effect_[0]),
+            [&] {
+              p_.set(b_.u[0], lack_[0] / effect_[0]);
+              if (!clp_) return;
+              clearFeedback();
+              p_.set(a_, 1.0 / effect_[0]);
+              feedBack(0, a_, 0);
+            },
+            [&] {
+              p_.set(b_.ok, false);
+              p_.set(b_.u[0], b_.applied[0]);
+            });
   }
 
   /// u = (M' W M + L)^-1 (M' W e + L u(k-1)), by Cholesky of the matrix with a unit diagonal.
@@ -321,13 +356,43 @@ class FmbpcCode final : public PredictiveCode {
           [&] { p_.set(b_.ok, false); });
     });
     p_.when(
-        b_.ok, [&] { factor(normal, scale, right, m); },
+        b_.ok,
+        [&] {
+          factor(normal, scale, m);
+          p_.loop(m, [&](const Value& i) { p_.set(right[i], right[i] * scale[i]); });
+          substitute(normal, right, m);
+          p_.loop(m, [&](const Value& i) { p_.set(b_.u[i], right[i] * scale[i]); });
+          if (clp_) gains(normal, scale, right, w, l);
+        },
         [&] { p_.loop(m, [&](const Value& i) { p_.set(b_.u[i], b_.applied[i]); }); });
   }
 
-  void factor(const Value& normal, const Value& scale, const Value& right, int m) {
+  /// K and L: u of a unit of what each output lacks, and of each input before.
+  void gains(const Value& normal, const Value& scale, const Value& right, const Value& w,
+             const Value& l) {
+    const int m = b_.n_u;
+    clearFeedback();
+    for (int k = 0; k < static_cast<int>(followed_.size()); ++k) {
+      p_.loop(m, [&](const Value& i) { p_.set(right[i], w[k] * effect_[i + k * m] * scale[i]); });
+      substitute(normal, right, m);
+      p_.loop(m, [&](const Value& i) {
+        p_.set(a_, right[i] * scale[i]);
+        feedBack(i, a_, k);
+      });
+    }
+    for (int j = 0; j < m; ++j) {
+      p_.loop(m, [&](const Value& i) { p_.set(right[i], 0.0); });
+      p_.set(right[j], l[j] * scale[j]);
+      substitute(normal, right, m);
+      const int row = static_cast<int>(model_.layout().inputState(j, 1));
+      p_.loop(m, [&](const Value& i) {
+        p_.set(clp_->K[i * n_x_ + row], clp_->K[i * n_x_ + row] - right[i] * scale[i]);
+      });
+    }
+  }
+
+  void factor(const Value& normal, const Value& scale, int m) {
     p_.loop(m, [&](const Value& i) {
-      p_.set(right[i], right[i] * scale[i]);
       p_.loop(m, [&](const Value& j) {
         p_.set(normal[i * m + j], normal[i * m + j] * scale[i] * scale[j]);
         p_.clamp(normal[i * m + j], -2.0, 2.0);  // it is within 1, but for rounding
@@ -351,6 +416,11 @@ class FmbpcCode final : public PredictiveCode {
         p_.clamp(entry(i, j), -2.0, 2.0);
       }
     }
+  }
+
+  /// right := the solution, by the factor.
+  void substitute(const Value& normal, const Value& right, int m) {
+    const auto entry = [&](int i, int j) { return normal[i * m + j]; };
     for (int i = 0; i < m; ++i) {
       p_.set(a_, right[i]);
       for (int k = 0; k < i; ++k) p_.set(a_, a_ - entry(i, k) * right[k]);
@@ -361,7 +431,6 @@ class FmbpcCode final : public PredictiveCode {
       for (int k = i + 1; k < m; ++k) p_.set(a_, a_ - entry(k, i) * right[k]);
       p_.set(right[i], a_ / entry(i, i));
     }
-    p_.loop(m, [&](const Value& i) { p_.set(b_.u[i], right[i] * scale[i]); });
   }
 
   /// y_m(k+1) but for the input.

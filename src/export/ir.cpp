@@ -113,7 +113,8 @@ void visitRead(const Statements& statements, const std::function<void(const Node
 bool isVain(const Statement& s, const std::set<const Variable*>& read) {
   if (s.form == Statement::Form::kAssign)
     return s.target->variable->role == Role::kWork && read.count(s.target->variable) == 0;
-  return s.form != Statement::Form::kWords && s.then.empty() && s.otherwise.empty();
+  return (s.form == Statement::Form::kIf || s.form == Statement::Form::kFor) && s.then.empty() &&
+         s.otherwise.empty();
 }
 
 bool dropVain(Statements& statements, const std::set<const Variable*>& read) {
@@ -210,6 +211,10 @@ Value Program::table(const std::string& called, std::vector<double> values, Kind
   return Value(add({called, kind, Role::kTable, size, std::move(values), ""}));
 }
 
+Value Program::member(const std::string& called, Kind kind, int size) {
+  return Value(add({called, kind, Role::kMember, size, {}, ""}));
+}
+
 void Program::set(const Value& target, const Value& value) {
   Statement statement{Statement::Form::kAssign,
                       target.pointer(),
@@ -258,6 +263,10 @@ void Program::loop(int count, const std::function<void(const Value& i)>& body) {
 
 void Program::words(const std::string& text) {
   open_->push_back({Statement::Form::kWords, nullptr, nullptr, {}, {}, nullptr, 0, text});
+}
+
+void Program::statement(const std::string& text) {
+  open_->push_back({Statement::Form::kNative, nullptr, nullptr, {}, {}, nullptr, 0, text});
 }
 
 void Program::clamp(const Value& target, const Value& lower, const Value& upper) {

@@ -13,8 +13,8 @@ namespace fpc::ir {
 
 enum class Kind { kReal, kInt, kBool };
 /// Where a variable lives: given and taken each sample, kept between samples, gone afterwards,
-/// never changed.
-enum class Role { kInput, kOutput, kState, kWork, kTable, kArgument, kIndex };
+/// never changed; a member of what only C has (Native).
+enum class Role { kInput, kOutput, kState, kWork, kTable, kArgument, kIndex, kMember };
 
 struct Variable {
   std::string name;
@@ -97,7 +97,7 @@ Value floorOf(const Value& real);  ///< as an integer; |real| < 2^31
 struct Statement;
 using Statements = std::vector<Statement>;
 struct Statement {
-  enum class Form { kAssign, kIf, kFor, kWords } form;
+  enum class Form { kAssign, kIf, kFor, kWords, kNative } form;
   std::shared_ptr<const Node> target, value;  ///< value: also the condition
   Statements then, otherwise;                 ///< then: also the body
   const Variable* index{};
@@ -116,6 +116,12 @@ struct Function {
 
 constexpr double kLargest = 1e12;  ///< what is beyond is no measurement; states stay inside
 
+/// Text of its own that a block in C needs beside what the program says: types and a member of the
+/// state, tables and functions.
+struct Native {
+  std::string types, member, code;
+};
+
 /// The block: its variables, functions, and what it does in a sample.
 class Program {
  public:
@@ -125,6 +131,7 @@ class Program {
   const std::deque<Variable>& variables() const { return variables_; }
   const std::deque<Function>& functions() const { return functions_; }
   const Statements& body() const { return body_; }
+  Native native;
 
   Value input(const std::string& name, Kind kind, double initial, const std::string& meaning);
   Value output(const std::string& name, Kind kind, const std::string& meaning);
@@ -134,6 +141,9 @@ class Program {
   Value works(const std::string& name, Kind kind, int size);
   Value table(const std::string& name, std::vector<double> values, Kind kind = Kind::kReal);
 
+  /// Part of native.member, "clp.x"; size 0: one number.
+  Value member(const std::string& name, Kind kind, int size);
+
   void set(const Value& target, const Value& value);
   void when(const Value& condition, const std::function<void()>& then,
             const std::function<void()>& otherwise = {});
@@ -141,6 +151,7 @@ class Program {
   /// zero times.
   void loop(int count, const std::function<void(const Value& i)>& body);
   void words(const std::string& text);
+  void statement(const std::string& native);  ///< of C
   /// target := inside [lower, upper]; the upper bound wins.
   void clamp(const Value& target, const Value& lower, const Value& upper);
   void setAbsolute(const Value& target, const Value& value);

@@ -6,15 +6,16 @@ namespace fpc {
 
 std::unique_ptr<LawCode> makeLawCode(BlockParts& parts) {
   const LoopFile& loop = parts.loop;
-  require(!loop.has_clp, loop.name + ": clp",
-          "clp.enabled: false; the constraint optimizer is not exported, its law alone would be "
-          "another loop");
   require(
       !loop.targets.enabled, loop.name + ": targets",
       "targets.enabled: false; the target layer is not exported, its law alone would follow other "
       "setpoints");
   for (const auto make : {&makePiCode, &makeSupervisorCode, &makeFmbpcCode, &makeOptimalCode})
-    if (std::unique_ptr<LawCode> code = make(parts)) return code;
+    if (std::unique_ptr<LawCode> code = make(parts)) {
+      require(!loop.has_clp || code->optimizer() != nullptr, loop.name + ": clp",
+              "clp.enabled: false; the law predicts nothing for the constraint optimizer");
+      return code;
+    }
   const std::string& type = loop.controllerType().name;
   require(false, loop.name + ": controller.type",
           "pi, load_supervisor, fmbpc or fuzzy_optimal; " + type +

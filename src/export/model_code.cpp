@@ -186,8 +186,8 @@ std::vector<ModelCode::Group> ModelCode::groupsOf(int output) const {
   const OutputModel& submodel = layout_.model().submodels[place(output)];
   std::vector<Group> groups;
   int first = 0;
-  for (const MembershipShape shape : {MembershipShape::kGaussian, MembershipShape::kExponential,
-                                      MembershipShape::kTrapezoidal}) {
+  for (const MembershipShape shape :
+       {MembershipShape::kGaussian, MembershipShape::kExponential, MembershipShape::kTrapezoidal}) {
     Group group{shape, {}, first, {}};
     group.flanks.name = "O" + std::to_string(output) + std::string(1, "GEL"[groups.size()]);
     const auto belongs = [&](const Membership& m) {
@@ -455,8 +455,29 @@ void GuardCode::distance() {
   });
 }
 
-void GuardCode::step() {
+/// The nearest to a limit that moves of `move_` reach.
+void GuardCode::reach(const Value& to, const Value& limit, const Value& i) {
+  p_.set(to, limit);
+  p_.clamp(to, b_.applied[i] - move_, b_.applied[i] + move_);
+  p_.clamp(to, b_.lower[i], b_.upper[i]);
+}
+
+/// What an optimizer may ask for where the model is trusted: the law's own limits, and where there
+/// is a guard what moves from the applied input reach.
+void GuardCode::leaveAll(ClpCode& optimizer) {
+  p_.loop(b_.n_u, [&](const Value& i) {
+    p_.set(optimizer.least[i], b_.lower[i]);
+    p_.set(optimizer.most[i], b_.upper[i]);
+    if (!b_.loop.guard.enabled) return;
+    p_.set(move_, b_.move[i]);
+    reach(optimizer.least[i], b_.lower[i], i);
+    reach(optimizer.most[i], b_.upper[i], i);
+  });
+}
+
+void GuardCode::step(ClpCode* optimizer) {
   const GuardParams& guard = b_.loop.guard;
+  if (optimizer) leaveAll(*optimizer);
   if (!known_) return;
   p_.words("how far the model is trusted here, and how far the input may move");
   distance();
@@ -476,13 +497,8 @@ void GuardCode::step() {
       p_.set(move_, b_.move[i]);
       p_.when(a_ * (b_.upper[i] - b_.lower[i]) < move_,
               [&] { p_.set(move_, a_ * (b_.upper[i] - b_.lower[i])); });
-      const auto end = [&](const Value& to, const Value& limit) {
-        p_.set(to, limit);
-        p_.clamp(to, b_.applied[i] - move_, b_.applied[i] + move_);
-        p_.clamp(to, b_.lower[i], b_.upper[i]);
-      };
-      end(lower_, b_.lower[i]);
-      end(upper_, b_.upper[i]);
+      reach(lower_, b_.lower[i], i);
+      reach(upper_, b_.upper[i], i);
       p_.when(b_.u[i] < lower_, [&] {
         p_.set(b_.u[i], lower_);
         p_.set(acting_, true);
@@ -491,6 +507,9 @@ void GuardCode::step() {
         p_.set(b_.u[i], upper_);
         p_.set(acting_, true);
       });
+      if (!optimizer) return;
+      p_.set(optimizer->least[i], lower_);
+      p_.set(optimizer->most[i], upper_);
     });
   });
   p_.when(acting_, [&] { p_.set(b_.source, static_cast<int>(ActionSource::kGuarded)); });
@@ -533,6 +552,10 @@ void PredictiveCode::reset() {
   p_.set(start_, true);
 }
 
+void PredictiveCode::beginOptimizer(const LocalModel& model, int lead) {
+  if (b_.loop.has_clp) clp_.emplace(b_, model, law_, lead);
+}
+
 Value PredictiveCode::reference(int output, double samples) const {
   const double power = std::pow(law_.reference_pole[output], samples);
   return power * reference_[output] + (1.0 - power) * b_.setpoint[output];
@@ -553,6 +576,7 @@ void PredictiveCode::step() {
       },
       [&] { advanceModel(); });
   p_.set(start_, false);
+  if (clp_) clp_->begin(reference_, dm_);
   propose();
   p_.loop(b_.n_u, [&](const Value& i) {
     p_.when(!ir::sane(b_.u[i]), [&] {
@@ -574,6 +598,8 @@ void PredictiveCode::step() {
               },
               [&] { p_.set(b_.u[i], b_.u[i] + bias_[i]); });
           p_.set(asked[i], b_.u[i]);
+          if (clp_) p_.set(clp_->base[i], b_.u[i]);
+          if (clp_) p_.set(clp_->bias[i], bias_[i]);
           p_.set(bias_[i], bias_[i] * law_.transfer_decay);
         });
         p_.set(pending_, false);
@@ -587,7 +613,7 @@ void PredictiveCode::step() {
         p_.loop(b_.n_u, [&](const Value& i) { p_.set(bias_[i], 0.0); });
       });
   p_.when(clipped_, [&] { p_.set(b_.source, static_cast<int>(ActionSource::kClipped)); });
-  guard_.step();
+  guard_.step(optimizer());
   keep();
   for (int i = 0; i < b_.n_d; ++i) p_.set(past_[i], dm_[i]);
   p_.when(!healthy(), [&] { p_.set(start_, true); });

@@ -2,10 +2,11 @@
 // the room.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "export/block.hpp"
+#include "export/clp_code.hpp"
 #include "fmbpc/control/predictive_law.hpp"
 #include "fmbpc/model/local_model.hpp"
 
@@ -69,10 +70,13 @@ class GuardCode {
  public:
   GuardCode(BlockParts& parts, const TsModel& model);
   void begin();
-  void step();  ///< after the law, whose answer it narrows
+  /// After the law, whose answer it narrows, and what an optimizer may ask for.
+  void step(ClpCode* optimizer);
 
  private:
   void distance();
+  void reach(const ir::Value& to, const ir::Value& limit, const ir::Value& i);
+  void leaveAll(ClpCode& optimizer);
 
   BlockParts& b_;
   ir::Program& p_;
@@ -87,6 +91,7 @@ class PredictiveCode : public LawCode {
   void begin() override { guard_.begin(); }
   void reset() override;
   void step() override;
+  ClpCode* optimizer() override { return clp_ ? &*clp_ : nullptr; }
 
  protected:
   PredictiveCode(BlockParts& parts, const PredictiveLawParams& params, const TsModel& model);
@@ -95,6 +100,8 @@ class PredictiveCode : public LawCode {
   virtual void propose() = 0;       ///< b_.u before transfer and limits; may take b_.ok away
   virtual void keep() {}            ///< for the next sample
   virtual ir::Value healthy() = 0;  ///< whether the states can be used
+  /// For a loop with a section clp; propose() then fills it.
+  void beginOptimizer(const LocalModel& model, int lead);
   /// y_r(k + n) of one output, n constant.
   ir::Value reference(int output, double samples) const;
 
@@ -102,6 +109,7 @@ class PredictiveCode : public LawCode {
   ir::Program& p_;
   const PredictiveLawParams& law_;
   ir::Value reference_, start_, dm_, past_;
+  std::optional<ClpCode> clp_;
 
  private:
   GuardCode guard_;

@@ -143,6 +143,7 @@ class OptimalCode final : public PredictiveCode {
     error_ = p_.works("modelError", Kind::kReal, b_.n_y);
     a_ = p_.work("lawA");
     healthy_ = p_.work("healthy", Kind::kBool);
+    beginOptimizer(model_.layout(), 0);
     for (int i = 0; i < b_.n_y; ++i)
       error_out_.push_back(p_.output(
           "rModelError_" + plainName(b_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name),
@@ -225,8 +226,30 @@ class OptimalCode final : public PredictiveCode {
         });
       });
     });
+    if (clp_) predict(w);
     for (int i = 0; i < b_.n_y; ++i) p_.set(error_out_[static_cast<std::size_t>(i)], error_[i]);
     for (int r = 0; r < rules(); ++r) p_.set(weights_out_[static_cast<std::size_t>(r)], w[r]);
+  }
+
+  /// The local model, and how the blended law depends on state and reference.
+  void predict(const Value& w) {
+    const int n_y = b_.n_y, n_u = b_.n_u;
+    p_.loop(n_x_, [&](const Value& j) { p_.set(clp_->x[j], x_[j]); });
+    p_.loop(n_y * n_x_, [&](const Value& j) { p_.set(clp_->A[j], model_.A[j]); });
+    p_.loop(n_y * n_u, [&](const Value& j) { p_.set(clp_->B[j], model_.B[j]); });
+    p_.loop(n_y, [&](const Value& i) {
+      p_.set(clp_->g[i], isInside() ? model_.g[i] + error_[i] : model_.g[i]);
+      p_.set(clp_->offset[i], isInside() ? Value(0.0) : error_[i]);
+    });
+    const auto blended = [&](const Value& to, const Value& of, int size) {
+      p_.loop(size, [&](const Value& i) {
+        p_.set(a_, 0.0);
+        p_.loop(rules(), [&](const Value& r) { p_.set(a_, a_ + w[r] * of[r * size + i]); });
+        p_.set(to[i], a_);
+      });
+    };
+    blended(clp_->K, K_, n_u * n_x_);
+    blended(clp_->L, now_, n_u * n_y);
   }
 
   void ruleInput(const Value& r, const Value& j, const Value& weight) {

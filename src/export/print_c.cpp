@@ -45,7 +45,7 @@ class CPrinter final : public ExpressionPrinter {
   std::string variable(const Variable& v) const override {
     if (v.role == Role::kInput) return "in->" + v.name;
     if (v.role == Role::kOutput) return "out->" + v.name;
-    if (v.role == Role::kState) return "s->" + v.name;
+    if (v.role == Role::kState || v.role == Role::kMember) return "s->" + v.name;
     return v.role == Role::kTable ? program_.name + "_" + v.name : v.name;
   }
   std::string operation(const Node& node) const override {
@@ -101,7 +101,7 @@ std::string members(const CPrinter& c, const ir::Program& program, Role role) {
     if (v.role == role)
       text += "  " + c.declaration(v) + ";" +
               (v.meaning.empty() ? "" : " /* " + v.meaning + " */") + "\n";
-  return text;
+  return role == Role::kState ? text + program.native.member : text;
 }
 
 std::string structure(const CPrinter& c, const ir::Program& program, Role role,
@@ -152,6 +152,7 @@ std::string cHeader(const ir::Program& program, const ExportIdentity& id) {
   text += "#define " + upper + "_SAMPLE_TIME_S " + c.number(id.sample_time_s, Kind::kReal) + "\n\n";
   text += structure(c, program, Role::kInput, "in", "What the block is given at each sample.");
   text += structure(c, program, Role::kOutput, "out", "What it answers.");
+  text += program.native.types;
   text += structure(c, program, Role::kState, "state",
                     "Memory. All zeros will do: another hash starts the block anew.");
   text += "/* Every input at its default. */\nvoid " + program.name + "_defaults(" + program.name +
@@ -169,12 +170,13 @@ std::string cSource(const ir::Program& program, const ExportIdentity& id) {
   c.print(program.body(), 1, loops);
   const std::string no_call = upperCase(program.name) + "_NO_CALL";
   if (loops.find(no_call) != std::string::npos)
-    text += "/* Loops that fill and copy stay loops: no call of memset or memcpy. */\n"
-            "#if defined(__GNUC__) && !defined(__FRAMAC__)\n#define " +
-            no_call + " __asm__ __volatile__(\"\");\n#else\n#define " + no_call +
-            "\n#endif\n\n";
+    text +=
+        "/* Loops that fill and copy stay loops: no call of memset or memcpy. */\n"
+        "#if defined(__GNUC__) && !defined(__FRAMAC__)\n#define " +
+        no_call + " __asm__ __volatile__(\"\");\n#else\n#define " + no_call + "\n#endif\n\n";
   printTables(c, program, text);
   printFunctions(c, program, text);
+  text += program.native.code;
   text += "\nvoid " + program.name + "_defaults(" + program.name + "_in_t *in) {\n";
   for (const Variable& v : program.variables())
     if (v.role == Role::kInput)

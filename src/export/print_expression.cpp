@@ -73,6 +73,9 @@ void ExpressionPrinter::print(const ir::Statements& statements, int depth, std::
       case Statement::Form::kWords:
         to += margin + comment(s.words) + "\n";
         break;
+      case Statement::Form::kNative:
+        to += margin + s.words + "\n";
+        break;
       default:
         to += margin + begin(s) + "\n";
         print(s.then, depth + 1, to);

@@ -302,6 +302,7 @@ struct BlockVectors::Run {
 
   void begin() {
     session.emplace(makeControllerSession(loop));
+    if (loop.has_clp) optimizer.emplace(makeOptimizerSession(loop));
     if (loop.has_model && loop.controllerType().needs_model) session->setModel(loop.model);
   }
 
@@ -356,17 +357,25 @@ struct BlockVectors::Run {
     m.input_applied = now.track ? now.actuator : last;
     if (!m.input_applied.allFinite()) errors += kActuatorBad;
     session->receive(m);
-    const ControlAction& base = session->answer().base;
-    last = base.input;
+    const ControlAction& action = optimized();
+    last = action.input;
     for (Eigen::Index i = 0; i < last.size(); ++i) row.push_back(last[i]);
     for (Eigen::Index i = 0; i < n_y; ++i) row.push_back(session->answer().tracking.setpoint[i]);
-    row.push_back(static_cast<double>(base.source));
+    row.push_back(static_cast<double>(action.source));
     BlockState state = static_cast<BlockState>(now.mode);
-    if (base.source == ActionSource::kHeld) state = BlockState::kHeld;
+    if (action.source == ActionSource::kHeld) state = BlockState::kHeld;
     if (session->fellBack()) state = BlockState::kFallback;
     if (!now.enable || now.mode < 1) state = BlockState::kOff;
     row.push_back(static_cast<double>(state));
     row.push_back(errors);
+  }
+
+  const ControlAction& optimized() {
+    const ControllerAnswer& answer = session->answer();
+    if (!optimizer) return answer.base;
+    if (answer.has_prediction) optimizer->receive(answer.prediction);
+    optimizer->receive(answer.base);
+    return optimizer->action();
   }
 
   void describe(const BlockCase& now) {
@@ -421,6 +430,7 @@ struct BlockVectors::Run {
   LoopFile loop;
   Scenario scenario;
   std::optional<ControllerSession> session;
+  std::optional<OptimizerSession> optimizer;
   std::optional<Simulation> simulation;
   std::optional<StandIn> stand_in;
   std::vector<std::string> inputs, outputs;
