@@ -201,11 +201,8 @@ static void print(uint64_t value) {
   call(4, text);
 }
 VECTORS
-void reset(void) {
+static void __attribute__((noinline)) play(void) {
   uint32_t most = 0, sum = 0;
-  *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* the floating-point unit, if there is one */
-  __asm__ volatile("dsb");
-  __asm__ volatile("isb");
   *(volatile uint32_t *)0xE000E014 = 0xFFFFFF;
   *(volatile uint32_t *)0xE000E010 = 5;
   NAME_defaults(&in);
@@ -222,6 +219,13 @@ TAKE
   print(most);
   print(sum);
   call(0x18, (void *)0x20026);
+}
+/* Saves no register of the floating-point unit, if there is one, before it is switched on. */
+void reset(void) {
+  *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20;
+  __asm__ volatile("dsb");
+  __asm__ volatile("isb");
+  play();
   for (;;) {}
 }
 """
@@ -267,7 +271,7 @@ def emulated(folder, name, core, into, samples=ON_BOARD):
     said = run(["timeout", "60", "qemu-system-arm", "-M", board, "-nographic", "-monitor", "none", "-serial", "none", "-semihosting-config",
                 "enable=on,target=native", "-icount", "shift=6", "-kernel", program])
     words = (said.stdout + said.stderr).split()
-    if len(words) < 3:
+    if len(words) != 3:
         raise RuntimeError("the board said " + (said.stderr or said.stdout)[-200:])
     return {"hash": words[0], "instructions": round(int(words[1], 16) / TICKS_PER_INSTRUCTION),
             "mean": round(int(words[2], 16) / TICKS_PER_INSTRUCTION / samples), "code": int(size[0]), "stack": stack}

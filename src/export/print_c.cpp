@@ -17,7 +17,7 @@ using ir::Variable;
 
 /// What compilers make a call of memset or memcpy.
 bool fillsOrCopies(const ir::Statements& statements) {
-  return std::all_of(statements.begin(), statements.end(), [](const Statement& s) {
+  return std::any_of(statements.begin(), statements.end(), [](const Statement& s) {
     return s.form == Statement::Form::kAssign && s.value->operation <= Operation::kElement;
   });
 }
