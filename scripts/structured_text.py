@@ -244,10 +244,6 @@ class Reader:
             self.next()
             text, kind = self.unary()
             return f"(-{text})", kind
-        if self.sees("NOT"):
-            self.next()
-            text, kind = self.unary()
-            return f"(not {text})", kind
         if self.sees("("):
             self.next()
             text, kind = self.level(0)

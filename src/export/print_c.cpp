@@ -74,7 +74,7 @@ class CPrinter final : public ExpressionPrinter {
         return " || ";
     }
   }
-  std::string negation() const override { return "!"; }
+  std::string negated(const std::string& flag) const override { return "!(" + flag + ")"; }
   std::string toReal(const std::string& inner) const override {
     return "((" + type(Kind::kReal) + ")" + inner + ")";
   }
