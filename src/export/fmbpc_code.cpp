@@ -122,8 +122,10 @@ class FmbpcCode final : public PredictiveCode {
     model_.rest(x_, b_.y, b_.applied, dm_);
     if (measured_ && !realigned_) model_.rest(measured_x_, b_.y, b_.applied, dm_);
     p_.loop(b_.n_y, [&](const Value& i) {
-      p_.set(undelayed_[i], b_.y[i]);
-      if (realigned_) p_.set(offset_[i], 0.0);
+      if (realigned_)
+        p_.set(offset_[i], 0.0);
+      else if (!delayed_)
+        p_.set(undelayed_[i], b_.y[i]);
     });
     if (!delayed_) return;
     model_.rest(late_x_, b_.y, b_.applied, dm_);
