@@ -18,6 +18,9 @@ LOOPS = ["asp_case1_pi_x", "cstr_tracking_gspi", "cstr_tracking_pi_best", "bsm1_
          "cstr_modbus", "column_clip", "surge_tank_steps", "mimo_cstr_steps"]
 
 
+OPTIMIZED = ["asp_case1_clp", "asp_clp_1b", "column_clp_limits", "linear_2x2_clp", "surge_tank_steps_clp"]
+
+
 def export(folder, loop, *more):
     return subprocess.run([TOOL, "export", loop, "--out", str(folder), *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           check=False)
@@ -44,6 +47,31 @@ class Export(unittest.TestCase):
                 self.assertLessEqual(said["difference"], 1e-9)
                 text = export_check.interpreted(self.folder, "law")
                 self.assertEqual((250, 0, said["hash"]), (text["samples"], text["flags"], text["hash"]))
+
+    def test_an_optimizer_in_c_answers_as_the_one_in_process(self):
+        for loop in OPTIMIZED:
+            with self.subTest(loop=loop):
+                self.exported(loop, "--to", "c99", "--samples", "250")
+                said = [export_check.native(self.folder, "law", "gcc", level, self.into) for level in ("-O0", "-O2")]
+                self.assertEqual([(250, 0)] * 2, [(s["samples"], s["flags"]) for s in said])
+                self.assertLessEqual(said[0]["difference"], 1e-9)
+                self.assertEqual(said[0]["hash"], said[1]["hash"])
+                rows = [row.split(",") for row in (self.folder / "law_vectors.csv").read_text().splitlines()]
+                sources = {row[rows[0].index("iSource")] for row in rows[1:]}
+                self.assertLessEqual({"2", "3", "4", "5"}, sources)
+
+    def test_an_optimizer_that_may_not_try_enough_clips_the_law(self):
+        self.exported("asp_clp_1b", "--to", "c99", "--samples", "250")
+        vectors = self.folder / "law_vectors.csv"
+        rows = [row.split(",") for row in vectors.read_text().splitlines()]
+        column = rows[0].index("iMostSets")
+        self.assertEqual({"500"}, {row[column] for row in rows[1:]})
+        for row in rows[1:]:
+            row[column] = "0"
+        vectors.write_text("".join(",".join(row) + "\n" for row in rows))
+        said = export_check.native(self.folder, "law", "gcc", "-O0", self.into)
+        self.assertLess(5, said["flags"])  # the law or clipped, where a limit makes the optimizer act
+        self.assertLess(1e-3, said["difference"])
 
     def test_the_vectors_hold_everything_that_happens_to_a_block(self):
         self.exported("asp_case1_pi_x")
@@ -106,7 +134,12 @@ class Export(unittest.TestCase):
         for loop, words in (("cstr_tracking_nmpc", ("controller.type", "nmpc")),
                             ("asp_case1_pi_x --set controller.loops.0.preview_h=1", ("preview_h",)),
                             ("asp_case1_pi_x --set plausibility.signals.x.repeated=true", ("repeated",)),
-                            ("asp_case1_clp", ("clp",)),
+                            ("asp_case1_clp", ("clp", "--to c99")),
+                            ("asp_case1_clp --to c99 --real", ("--real",)),
+                            ("asp_case1_clp --to c99 --set clp.mode2_steps=3", ("clp.mode2_steps",)),
+                            ("asp_clp_1a --to c99 --set clp.action=eq27", ("clp.action",)),
+                            ("bsm1_fmbpc_clp --to c99", ("standstill",)),
+                            ("four_on_two --to c99", ("targets",)),
                             ("cstr_tracking_observer", ("controller.realisation",)),
                             ("column_linear", ("controller.law",)),
                             ("asp_case1_pi_x --name Law-1", ("--name",))):

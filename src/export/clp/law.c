@@ -23,11 +23,14 @@ static double clp_bounded(double v, double low, double high) {
 static double clp_power_of_two(double v) {
   double to = 1.0;
   if ((v > 0.0) && (v < 1e300)) {
-    for (int32_t i = 0; (i < 1100) && (v >= (to * 1.4142135623730951)); i++) {
-      to = to * 2.0;
-    }
-    for (int32_t i = 0; (i < 1000) && (v < (to * 0.7071067811865476)); i++) {
-      to = to * 0.5;
+    for (int32_t i = 0; i < 1000; i++) {
+      if (v >= (to * 1.4142135623730951)) {
+        to = to * 2.0;
+      } else if (v < (to * 0.7071067811865476)) {
+        to = to * 0.5;
+      } else {
+        break;
+      }
     }
   }
   return to;
@@ -623,7 +626,6 @@ static void clp_protect(clp_t* w) {
     moved = moved || (clp_abs(to - w->base[a]) > (1e-9 * clp_unit[a]));
     w->u[a] = to;
   }
-  w->source = 1;
   if (clipped) {
     w->source = 3;
   } else if (moved && (w->status == CLP_SOLVED)) {

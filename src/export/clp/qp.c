@@ -137,7 +137,7 @@ static int32_t clp_violated(clp_t* w, int32_t* side) {
         (by > (CLP_EXACT * (limit + 1.0 + size)))) {
       most = by * q->scale[i];
       worst = i;
-      *side = (below > above) ? 1 : -1;
+      *side = (below > above) ? (int32_t)1 : (int32_t)-1;
     }
   }
   if (worst < 0) {
@@ -151,7 +151,7 @@ static int32_t clp_violated(clp_t* w, int32_t* side) {
           (by > (CLP_EXACT * (limit + (q->row_size[k] * (1.0 + largest)))))) {
         most = by * q->row_scale[k];
         worst = CLP_N + k;
-        *side = (below > above) ? 1 : -1;
+        *side = (below > above) ? (int32_t)1 : (int32_t)-1;
       }
     }
   }
@@ -302,7 +302,7 @@ static int32_t clp_enter(clp_t* w, int32_t id, int32_t side, int32_t most) {
     } else if (dependent && (leaving < 0)) {
       const bool small = violation <= (1e-10 * (clp_abs(limit) + 1.0));
       q->side[id] = 2;
-      status = small ? CLP_SOLVED : CLP_FAILED;
+      status = small ? (int32_t)CLP_SOLVED : (int32_t)CLP_FAILED;
       done = true;
     } else {
       if (!dependent) {
@@ -379,7 +379,10 @@ static double clp_errors(clp_t* w) {
         q->z[i] += y * q->normal[i];
         size += clp_abs(q->normal[i] * q->x[i]);
       }
-      q->c[k] = (side > 0) ? (limit - value) : (value - limit);
+      q->c[k] = limit - value;
+      if (side < 0) {
+        q->c[k] = -q->c[k];
+      }
       error = clp_abs(q->c[k]) / size;
       worst = (error > worst) ? error : worst;
     }
@@ -424,7 +427,7 @@ static void clp_correct(clp_qp_t* q) {
  * rounding has won: an error beyond 1e-9 of the terms). */
 static int32_t clp_solve(clp_t* w, int32_t most) {
   clp_qp_t* q = &w->qp;
-  int32_t status = clp_factor(q) ? CLP_SOLVED : CLP_FAILED;
+  int32_t status = clp_factor(q) ? (int32_t)CLP_SOLVED : (int32_t)CLP_FAILED;
   bool done = status != CLP_SOLVED;
   q->iterations = 0;
   q->count = 0;
@@ -450,9 +453,11 @@ static int32_t clp_solve(clp_t* w, int32_t most) {
       id = clp_violated(w, &side);
     }
     error = clp_errors(w);
-    for (int32_t k = 0; (k < 3) && (error > 1e-15); k++) {
-      clp_correct(q);
-      error = clp_errors(w);
+    for (int32_t k = 0; k < 3; k++) {
+      if (error > 1e-15) {
+        clp_correct(q);
+        error = clp_errors(w);
+      }
     }
     if ((status == CLP_SOLVED) && !(error <= 1e-9)) {
       status = CLP_FAILED;
