@@ -13,6 +13,7 @@
 
 #include "fmbpc/base/text.hpp"
 #include "ros/conversions.hpp"
+#include "ros/guard.hpp"
 #include "ros/node.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
@@ -67,7 +68,12 @@ PlantHost::PlantHost(ros::NodeHandle node, ros::NodeHandle private_node)
   for (auto& [name, place] : places_)
     if (place.ours) start(place);
   timer_ = node_.createSteadyTimer(ros::WallDuration(kLookAtLoops),
-                                   [this](const ros::SteadyTimerEvent&) { look(); });
+                                   [this](const ros::SteadyTimerEvent&) {
+                                     const auto say = [](const char* what) {
+                                       ROS_ERROR("%s: %s", ros::this_node::getName().c_str(), what);
+                                     };
+                                     callGuarded([this] { look(); }, say, say);
+                                   });
 }
 
 PlantHost::~PlantHost() { finish(); }
