@@ -27,6 +27,6 @@ add_message_files(DIRECTORY msg FILES
   Targets.msg
   Tracking.msg
 )
-add_service_files(DIRECTORY srv FILES Candidate.srv ManualInput.srv)
+add_service_files(DIRECTORY srv FILES Candidate.srv LoopOrder.srv ManualInput.srv)
 add_action_files(DIRECTORY action FILES IdentifyModel.action)
 generate_messages(DEPENDENCIES actionlib_msgs std_msgs)

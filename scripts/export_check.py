@@ -1,9 +1,13 @@
 #!/usr/bin/python3
 """Builds and runs what `fmbpc export` wrote, with what this machine has, and says what it could not.
 
-    export_check.py FOLDER      (`fmbpc export --check FOLDER`)
+    export_check.py FOLDER                (`fmbpc export --check FOLDER`)
+    export_check.py --loops SAMPLES [LOOP ...]
 
-Every compiler must answer the vectors within their tolerance and give the same bits. Exit code 0: all that could run passed."""
+The second form exports loops (none named: all that can be exported) into a folder that it takes away, and prints a row for each: C99 by gcc against
+the law in process, Structured Text against C99 by the interpreter and by $FMBPC_IEC2C. That variable names iec2c of matiec, its folder lib beside
+it, where Structured Text is to be compiled as well. Every compiler must answer the vectors within their tolerance and give the same bits. Exit code
+0: all that could run passed."""
 import csv
 import glob
 import json
@@ -28,6 +32,13 @@ def run(words, **more):
     return subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False, **more)
 
 
+def require_no_call(nm, law):
+    """The block calls nothing that is not its own."""
+    called = [line.split()[-1] for line in run([*nm, "-u", law]).stdout.splitlines()]
+    if any(not name.startswith("__aeabi_") for name in called):  # arithmetic of a core without a floating-point unit
+        raise RuntimeError(f"calls {', '.join(called)}")
+
+
 def native(folder, name, compiler, level, into, vectors=None):
     """What the test program says, as a dictionary; raises RuntimeError with the compiler's words."""
     program = os.path.join(into, "test")
@@ -37,6 +48,7 @@ def native(folder, name, compiler, level, into, vectors=None):
         built = run(words, cwd=folder)
         if built.returncode != 0:
             raise RuntimeError(built.stderr.strip())
+    require_no_call(["nm"], law)
     played = run([program] + ([vectors] if vectors else []), cwd=folder)
     return {**json.loads(played.stdout), "passed": played.returncode == 0}
 
@@ -78,6 +90,73 @@ def interpreted(folder, name, samples=None):
             if count == samples:
                 break
     return {"samples": count, "flags": flags, "hash": f"{hashed:016x}"}
+
+
+PLAYER = r"""#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "accessor.h"
+#include "iec_std_lib.h"
+TIME __CURRENT_TIME;
+BOOL __DEBUG;
+#include "POUS.h"
+#include "POUS.c"
+static unsigned long long hash = 14695981039346656037ULL;
+static void add(const void *bytes, size_t count) {
+  const unsigned char *b = bytes;
+  for (size_t i = 0; i < count; i++) hash = (hash ^ b[i]) * 1099511628211ULL;
+}
+static FB_LAW fb;
+int main(int argc, char **argv) {
+  static char line[64 * COLUMNS];
+  static double v[COLUMNS];
+  long samples = 0, flags = 0;
+  FILE *file = fopen(argv[1], "r");
+  if (file == NULL || fgets(line, sizeof line, file) == NULL) return 2;
+  FB_LAW_init__(&fb, 0);
+  while (fgets(line, sizeof line, file) != NULL) {
+    char *at = line;
+    for (int i = 0; i < COLUMNS; i++) {
+      v[i] = strtod(at, &at);
+      at++;
+    }
+GIVE
+    FB_LAW_body__(&fb);
+TAKE
+    samples++;
+  }
+  printf("{\"samples\": %ld, \"flags\": %ld, \"hash\": \"%016llx\"}\n", samples, flags, hash);
+  return 0;
+}
+"""
+
+
+def compiled(folder, name, compiler, into):
+    """The same of the block in Structured Text, by the compiler iec2c; raises RuntimeError."""
+    folder, library = os.path.abspath(folder), os.path.join(os.path.dirname(os.path.abspath(compiler)), "lib")
+    with open(os.path.join(folder, f"{name}_vectors.csv"), encoding="utf-8") as file:
+        names = file.readline().strip().split(",")
+    first = next(i for i, n in enumerate(names) if n.startswith("rOut_"))
+    give = "\n".join(f"    fb.{n.upper()}.value = v[{i}]{' != 0.0' if n[0] == 'x' else ''};" for i, n in enumerate(names[:first]))
+    take = []
+    for i, n in enumerate(names[first:], first):
+        take.append(f"    add(&fb.{n.upper()}.value, sizeof fb.{n.upper()}.value);")
+        if n[0] == "i":
+            mask = f" & {COMPARED_ERRORS}" if n == "iErrors" else ""
+            take.append(f"    flags += (fb.{n.upper()}.value{mask}) != (DINT)v[{i}];")
+    text = PLAYER.replace("COLUMNS", str(len(names))).replace("GIVE", give).replace("TAKE", "\n".join(take)).replace("LAW", name.upper())
+    with open(os.path.join(into, "player.c"), "w", encoding="utf-8") as file:
+        file.write(text)
+    program = os.path.join(into, "player")
+    for words in ([compiler, "-f", "-I", library, "-T", into, os.path.join(folder, f"{name}.st")],
+                  ["gcc", "-w", "-O1", *EXACT, "-I", os.path.join(library, "C"), "-I", into, os.path.join(into, "player.c"), "-o", program, "-lm"]):
+        built = run(words, cwd=into)
+        if built.returncode != 0:
+            raise RuntimeError((built.stderr or built.stdout).strip()[-600:])
+    played = run([program, os.path.join(folder, f"{name}_vectors.csv")])
+    if played.returncode != 0:
+        raise RuntimeError("the compiled block did not run")
+    return json.loads(played.stdout)
 
 
 # Rules of MISRA C 2012 that a block breaks, with the reason (docs/export.md lists them).
@@ -124,11 +203,8 @@ static void print(uint64_t value) {
   call(4, text);
 }
 VECTORS
-void reset(void) {
+static void __attribute__((noinline)) play(void) {
   uint32_t most = 0, sum = 0;
-  *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* the floating-point unit, if there is one */
-  __asm__ volatile("dsb");
-  __asm__ volatile("isb");
   *(volatile uint32_t *)0xE000E014 = 0xFFFFFF;
   *(volatile uint32_t *)0xE000E010 = 5;
   NAME_defaults(&in);
@@ -146,6 +222,13 @@ TAKE
   print(sum);
   print(sizeof state);
   call(0x18, (void *)0x20026);
+}
+/* Saves no register of the floating-point unit, if there is one, before it is switched on. */
+void reset(void) {
+  *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20;
+  __asm__ volatile("dsb");
+  __asm__ volatile("isb");
+  play();
   for (;;) {}
 }
 """
@@ -179,18 +262,19 @@ def emulated(folder, name, core, into, samples=ON_BOARD):
         with open(os.path.join(into, file), "w", encoding="utf-8") as to:
             to.write(text)
     law, program = os.path.join(into, "law.o"), os.path.join(into, "board.elf")
-    options = ["-std=gnu99", "-O2", *EXACT, "-fno-tree-loop-distribute-patterns", "-mthumb", f"-mcpu={core}", *floats, f"-I{os.path.abspath(folder)}"]
+    options = ["-std=gnu99", "-O2", *EXACT, "-mthumb", f"-mcpu={core}", *floats, f"-I{os.path.abspath(folder)}"]
     for words in (["arm-none-eabi-gcc", *options, "-fstack-usage", "-c", os.path.join(os.path.abspath(folder), f"{name}.c"), "-o", law],
                   ["arm-none-eabi-gcc", *options, "-nostartfiles", "-nostdlib", "-T", "board.ld", "board.c", law, "-o", program, "-lgcc"]):
         built = run(words, cwd=into)
         if built.returncode != 0:
             raise RuntimeError(built.stderr.strip()[-600:])
+    require_no_call(["arm-none-eabi-nm"], law)
     size = run(["arm-none-eabi-size", law]).stdout.split("\n")[1].split()
     stack = max(int(line.split("\t")[1]) for line in open(os.path.join(into, "law.su"), encoding="utf-8"))
     said = run(["timeout", "60", "qemu-system-arm", "-M", board, "-nographic", "-monitor", "none", "-serial", "none", "-semihosting-config",
                 "enable=on,target=native", "-icount", "shift=6", "-kernel", program])
     words = (said.stdout + said.stderr).split()
-    if len(words) < 4:
+    if len(words) != 4:
         raise RuntimeError("the board said " + (said.stderr or said.stdout)[-200:])
     return {"hash": words[0], "instructions": round(int(words[1], 16) / TICKS_PER_INSTRUCTION),
             "mean": round(int(words[2], 16) / TICKS_PER_INSTRUCTION / samples), "code": int(size[0]), "stack": stack,
@@ -221,7 +305,8 @@ int main(void) {{
 }}
 """)
     source = os.path.abspath(folder)
-    said = run(["frama-c", "-eva", "-eva-precision", "1", "-warn-special-float", "non-finite", f"-cpp-extra-args=-I{source}", os.path.join(into, "main.c"),
+    said = run(["frama-c", "-eva", "-eva-precision", "1", "-eva-auto-loop-unroll", "64", "-warn-special-float", "non-finite",
+                f"-cpp-extra-args=-I{source}", os.path.join(into, "main.c"),
                 os.path.join(source, f"{name}.c")], cwd=into)
     found = re.search(r"(\d+) alarms? generated", said.stdout)
     if not found:
@@ -312,12 +397,22 @@ class Check:
             return
         with tempfile.TemporaryDirectory() as into:
             try:
-                self.say("Frama-C EVA", f"{analysed(self.folder, self.name, into)} alarms, numbers within 1e15")
+                alarms = analysed(self.folder, self.name, into)
+                self.say("Frama-C EVA", f"{alarms} alarms, numbers within 1e15", alarms > 0)
             except RuntimeError as wrong:
                 self.say("Frama-C EVA", str(wrong), True)
 
     def structured_text(self):
         self.verdict("Structured Text, interpreter", interpreted(self.folder, self.name))
+        compiler = os.environ.get("FMBPC_IEC2C")
+        if compiler:
+            with tempfile.TemporaryDirectory() as into:
+                try:
+                    self.verdict("Structured Text, iec2c", compiled(self.folder, self.name, compiler, into))
+                except (RuntimeError, OSError) as wrong:
+                    self.say("Structured Text, iec2c", str(wrong), True)
+        else:
+            self.say("Structured Text, iec2c", "not run: FMBPC_IEC2C names no compiler")
         texts = [open(os.path.join(self.folder, self.name + s), encoding="utf-8").read() for s in (".st", "_test.st")]
         test = structured_text.load(*texts)[f"fb_{self.name}_test"]()
         samples = 0
@@ -339,9 +434,44 @@ class Check:
         return 1 if self.failed else 0
 
 
+def survey(samples, loops):
+    """One row for each loop; 1 if one failed."""
+    tool, compiler = os.environ.get("FMBPC_TOOL", "fmbpc"), os.environ.get("FMBPC_IEC2C")
+    failed, refused, named = False, 0, bool(loops)
+    for loop in loops or run([tool, "loops", "--names"]).stdout.split():
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = os.path.join(scratch, "block")
+            done = run([tool, "export", loop, "--samples", samples, "--out", folder])
+            if done.returncode != 0:
+                refused += 1
+                failed = failed or named
+                if named:
+                    print(f"| {loop} | {done.stderr.strip()} |", flush=True)
+                continue
+            try:
+                says = [native(folder, "law", "gcc", "-O2", scratch)]
+                if os.path.exists(os.path.join(folder, "law.st")):
+                    says.append(interpreted(folder, "law"))
+                    if compiler:
+                        says.append(compiled(folder, "law", compiler, scratch))
+            except (RuntimeError, OSError) as wrong:
+                print(f"| {loop} | {wrong} |", flush=True)
+                failed = True
+                continue
+        flags, same = max(s["flags"] for s in says), all(s["hash"] == says[0]["hash"] for s in says)
+        good = says[0]["passed"] and flags == 0 and same
+        failed = failed or not good
+        print(f"| {loop} | {says[0]['samples']} | {says[0]['difference']:.2g} | {flags} | {'same' if same else 'OTHER'} bits of {len(says)} |"
+              + ("" if good else " FAILED |"), flush=True)
+    print(f"{refused} loops are not exported")
+    return 1 if failed else 0
+
+
 if __name__ == "__main__":
     if {"-h", "--help"} & set(sys.argv[1:]):
         sys.exit(print(__doc__))
+    if len(sys.argv) > 2 and sys.argv[1] == "--loops" and sys.argv[2].isdigit():
+        sys.exit(survey(sys.argv[2], sys.argv[3:]))
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     sys.exit(Check(sys.argv[1]).run())

@@ -81,6 +81,13 @@ class Loop(Described):
         """The plant of the loop, with its records, actuators, sensors and noise, before a law that is not ours."""
         return Simulation(self._core.simulation(), self)
 
+    def export(self, folder: str | os.PathLike, *, to: str = "all", single: bool = False, name: str = "law", samples: int = 1000,
+               seed: int = 1) -> list[str]:
+        """The law as a block for a PLC or a board, as `fmbpc export`: to="c99", "st" or "all". Names of the files in the folder."""
+        if to not in ("c99", "st", "all"):
+            raise ValueError(f"to: expected c99, st or all, got {to}")
+        return self._core.export(os.fspath(folder), to != "st", to != "c99", single, name, samples, seed)
+
     def __repr__(self) -> str:
         return f"<fmbpc.Loop {self.name}: {self.plant} with {self.law}>"
 

@@ -5,6 +5,7 @@
 #include "bind.hpp"
 #include "config/command_file.hpp"
 #include "convert.hpp"
+#include "export/export.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/report.hpp"
 #include "runtime/run.hpp"
@@ -61,6 +62,16 @@ std::string titleOf(const LoopFile& loop) {
   return loop.report.title.empty() ? loop.name : loop.report.title;
 }
 
+std::vector<std::string> exportHere(const LoopFile& loop, const std::string& folder, bool c99,
+                                    bool structured_text, bool single, const std::string& name,
+                                    int samples, std::uint64_t seed) {
+  return withoutGil([&] {
+    return exportLoop(
+        loop, {c99, structured_text, single, name, samples, seed, "fmbpc " FMBPC_VERSION, ""},
+        folder);
+  });
+}
+
 }  // namespace
 
 py::list listOf(const std::vector<SignalInfo>& signals) {
@@ -109,9 +120,11 @@ void bindLoop(py::module_& m) {
           [](std::shared_ptr<LoopFile> loop) {
             return withoutGil([&] { return std::make_unique<SteppedController>(std::move(loop)); });
           })
-      .def("simulation", [](std::shared_ptr<LoopFile> loop) {
-        return withoutGil([&] { return std::make_unique<LoopPlant>(std::move(loop)); });
-      });
+      .def("simulation",
+           [](std::shared_ptr<LoopFile> loop) {
+             return withoutGil([&] { return std::make_unique<LoopPlant>(std::move(loop)); });
+           })
+      .def("export", &exportHere);
   py::class_<MadeRun, std::shared_ptr<MadeRun>>(m, "Run")
       .def("table", &tableOf)
       .def("summary",

@@ -7,6 +7,7 @@
 
 #include "base/near_names.hpp"
 #include "config/loop_file.hpp"
+#include "config/plant_loops.hpp"
 #include "config/plugins.hpp"
 #include "config/study_file.hpp"
 #include "config/tuning_file.hpp"
@@ -103,6 +104,8 @@ std::string findStructure(const std::string& name_or_path) {
 std::vector<std::string> studyNames() { return namesIn("study"); }
 
 std::string findStudy(const std::string& name_or_path) { return find("study", name_or_path); }
+
+std::string findPlantLoops(const std::string& name_or_path) { return find("plant", name_or_path); }
 
 std::vector<std::string> tuningNames() { return namesIn("tuning"); }
 

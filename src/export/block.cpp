@@ -217,6 +217,10 @@ class BlockBuilder {
     up_ = p_.works("up", Kind::kReal, n_u_);
     mv_ = p_.works("mv", Kind::kReal, n_u_);
     sub_ = p_.works("spare", Kind::kReal, n_u_);
+    set_low_ = p_.works("setLow", Kind::kReal, n_y_);
+    set_up_ = p_.works("setUp", Kind::kReal, n_y_);
+    set_rate_ = p_.works("setRate", Kind::kReal, n_y_);
+    wish_ = p_.works("wish", Kind::kReal, n_y_);
     u_ = p_.works("u", Kind::kReal, n_u_);
     expected_ = p_.works("expected", Kind::kReal, n_y_);
     foreseen_ = p_.work("foreseen", Kind::kBool);
@@ -284,6 +288,10 @@ class BlockBuilder {
     p_.set(errors_, 0);
   }
 
+  static Value isRange(const Value& lower, const Value& upper, const Value& rate) {
+    return ir::sane(lower) && ir::sane(upper) && lower <= upper && ir::sane(rate) && rate > 0.0;
+  }
+
   static Value initial(const Value& parameter) {
     return Value(parameter.node().variable->initial[0]);
   }
@@ -301,17 +309,22 @@ class BlockBuilder {
       p_.set(up_[i], upper_in_[k]);
       p_.set(mv_[i], move_in_[k]);
       p_.set(sub_[i], fallback_in_[k]);
-      p_.when(!(ir::sane(lower_in_[k]) && ir::sane(upper_in_[k]) && lower_in_[k] <= upper_in_[k] &&
-                ir::sane(move_in_[k]) && move_in_[k] > 0.0 && ir::sane(fallback_in_[k])),
-              [&] { p_.set(limits_ok_, false); });
     }
+    p_.loop(n_u_, [&](const Value& i) {
+      p_.when(!(isRange(low_[i], up_[i], mv_[i]) && ir::sane(sub_[i])),
+              [&] { p_.set(limits_ok_, false); });
+    });
     set_limits_ok_ = p_.work("setLimitsOk", Kind::kBool);
     p_.set(set_limits_ok_, true);
-    for (std::size_t k = 0; k < at(n_y_); ++k)
-      p_.when(!(ir::sane(set_lower_in_[k]) && ir::sane(set_upper_in_[k]) &&
-                set_lower_in_[k] <= set_upper_in_[k] && ir::sane(set_rate_in_[k]) &&
-                set_rate_in_[k] > 0.0),
+    for (int i = 0; i < n_y_; ++i) {
+      p_.set(set_low_[i], set_lower_in_[at(i)]);
+      p_.set(set_up_[i], set_upper_in_[at(i)]);
+      p_.set(set_rate_[i], set_rate_in_[at(i)]);
+    }
+    p_.loop(n_y_, [&](const Value& i) {
+      p_.when(!isRange(set_low_[i], set_up_[i], set_rate_[i]),
               [&] { p_.set(set_limits_ok_, false); });
+    });
     p_.when(!limits_ok_, [&] {
       p_.words("the limits as they were exported");
       for (int i = 0; i < n_u_; ++i) {
@@ -319,6 +332,13 @@ class BlockBuilder {
         p_.set(up_[i], initial(upper_in_[at(i)]));
         p_.set(mv_[i], initial(move_in_[at(i)]));
         p_.set(sub_[i], initial(fallback_in_[at(i)]));
+      }
+    });
+    p_.when(!set_limits_ok_, [&] {
+      for (int i = 0; i < n_y_; ++i) {
+        p_.set(set_low_[i], initial(set_lower_in_[at(i)]));
+        p_.set(set_up_[i], initial(set_upper_in_[at(i)]));
+        p_.set(set_rate_[i], initial(set_rate_in_[at(i)]));
       }
     });
     const double ts = loop_.plant_info.sample_time_s;
@@ -333,27 +353,21 @@ class BlockBuilder {
     p_.words("setpoints");
     p_.set(flag_, false);
     const double hours = loop_.plant_info.sample_time_s / 3600.0;
-    for (int i = 0; i < n_y_; ++i) {
-      const std::size_t k = at(i);
-      p_.set(a_, asked_in_[k]);
-      p_.when(mode_ == 3, [&] { p_.set(a_, cascade_in_[k]); });
+    for (int i = 0; i < n_y_; ++i) p_.set(wish_[i], asked_in_[at(i)]);
+    p_.when(mode_ == 3, [&] {
+      for (int i = 0; i < n_y_; ++i) p_.set(wish_[i], cascade_in_[at(i)]);
+    });
+    p_.loop(n_y_, [&](const Value& i) {
       p_.when(
-          ir::sane(a_), [&] { p_.set(asked_[i], a_); }, [&] { p_.set(flag_, true); });
+          ir::sane(wish_[i]), [&] { p_.set(asked_[i], wish_[i]); }, [&] { p_.set(flag_, true); });
       p_.set(b_, asked_[i]);
-      const auto limit = [&](const Value& lower, const Value& upper, const Value& rate) {
-        p_.clamp(b_, lower, upper);
-        p_.when(begun_ && rate < ir::kLargest, [&] {
-          p_.set(c_, rate * hours);
-          p_.clamp(b_, active_[i] - c_, active_[i] + c_);
-        });
-      };
-      p_.when(
-          set_limits_ok_, [&] { limit(set_lower_in_[k], set_upper_in_[k], set_rate_in_[k]); },
-          [&] {
-            limit(initial(set_lower_in_[k]), initial(set_upper_in_[k]), initial(set_rate_in_[k]));
-          });
+      p_.clamp(b_, set_low_[i], set_up_[i]);
+      p_.when(begun_ && set_rate_[i] < ir::kLargest, [&] {
+        p_.set(c_, set_rate_[i] * hours);
+        p_.clamp(b_, active_[i] - c_, active_[i] + c_);
+      });
       p_.set(active_[i], b_);
-    }
+    });
     raise(flag_, kSetpointBad);
   }
 
@@ -387,6 +401,9 @@ class BlockBuilder {
       });
     });
     if (clp_) shareMoves();
+    p_.when(!known_, [&] {
+      p_.loop(n_u_, [&](const Value& i) { p_.set(proven_[i], (clp_ ? last_base_ : last_)[i]); });
+    });
   }
 
   /// Of what an optimizer sent only the optimizer knows: the law sees what is read.
@@ -456,7 +473,7 @@ class BlockBuilder {
     const int n_s = n_y_ + n_d_;
     for (int i = 0; i < n_s; ++i) {
       p_.set(raw_[i], value_in_[at(i)]);
-      p_.set(raw_ok_[i], ok_in_[at(i)] && ir::sane(value_in_[at(i)]));
+      p_.set(raw_ok_[i], ok_in_[at(i)]);
     }
     const double hours = loop_.plant_info.sample_time_s / 3600.0;
     const Value lower = p_.table("plLower", each([](const auto&s) { return s.lower; })),
@@ -486,7 +503,7 @@ class BlockBuilder {
     p_.loop(n_s, [&](const Value& i) {
       p_.set(doubt, 0);
       p_.when(
-          !raw_ok_[i], [&] { p_.set(doubt, kNoNumber); },
+          !(raw_ok_[i] && ir::sane(raw_[i])), [&] { p_.set(doubt, kNoNumber); },
           [&] {
             p_.setAbsolute(a_, raw_[i] - good_[i]);
             p_.set(jumped, false);
@@ -525,8 +542,8 @@ class BlockBuilder {
             });
           });
     });
-    for (int i = 0; i < n_y_; ++i) p_.set(y_[i], raw_[i]);
-    for (int i = 0; i < n_d_; ++i) p_.set(d_[i], raw_[n_y_ + i]);
+    p_.loop(n_y_, [&](const Value& i) { p_.set(y_[i], raw_[i]); });
+    p_.loop(n_d_, [&](const Value& i) { p_.set(d_[i], raw_[i + n_y_]); });
     p_.when(
         doubtful_, [&] { p_.when(doubted_ < kLongAgo, [&] { p_.set(doubted_, doubted_ + 1); }); },
         [&] { p_.set(doubted_, 0); });
@@ -588,53 +605,43 @@ class BlockBuilder {
       raise(flag_bad_manual_, kSetpointBad);
     });
     p_.set(fell_back_, false);
+    p_.set(ok_, true);
+    p_.set(source_, sourceOf(ActionSource::kHeld));
+    p_.loop(n_u_, [&](const Value& i) { p_.set(u_[i], proven_[i]); });
     p_.when(
-        is_manual_ && known_, [&] { sendManual(parts); },
+        is_manual_, [&] { p_.when(known_, [&] { sendManual(); }); },
         [&] {
-          p_.when(
-              !takes_ || !known_, [&] { hold(); },
-              [&] {
-                p_.when(
-                    verdict_ == 3, [&] { fallBack(parts); },
-                    [&] {
-                      p_.when(
-                          verdict_ == 2, [&] { hold(); }, [&] { runLaw(parts); });
-                    });
-              });
+          p_.when(takes_ && known_, [&] {
+            p_.when(
+                verdict_ == 3, [&] { fallBack(); },
+                [&] { p_.when(verdict_ != 2, [&] { runLaw(parts); }); });
+          });
         });
+    p_.when(!laws(), [&] {
+      clipInputs(parts, u_, proven_);
+      p_.when(ok_, [&] { p_.set(interrupted_, true); });
+    });
   }
 
-  void sendManual(BlockParts& parts) {
+  Value laws() const {
+    return source_ == sourceOf(ActionSource::kBase) ||
+           source_ == sourceOf(ActionSource::kClipped) ||
+           source_ == sourceOf(ActionSource::kGuarded) ||
+           (clp_ ? source_ == sourceOf(ActionSource::kConstrained) : Value(false));
+  }
+
+  void sendManual() {
     p_.when(!manual_given_,
             [&] { p_.loop(n_u_, [&](const Value& i) { p_.set(manual_[i], proven_[i]); }); });
     p_.set(manual_given_, true);
     p_.loop(n_u_, [&](const Value& i) { p_.set(u_[i], manual_[i]); });
-    clipInputs(parts, u_, proven_);
     p_.set(source_, sourceOf(ActionSource::kManual));
-    p_.set(interrupted_, true);
   }
 
-  void holdInput() {
-    p_.loop(n_u_, [&](const Value& i) {
-      p_.when(
-          known_, [&] { p_.set(u_[i], proven_[i]); },
-          [&] { p_.set(u_[i], (clp_ ? last_base_ : last_)[i]); });
-      p_.clamp(u_[i], low_[i], up_[i]);
-    });
-    p_.set(source_, sourceOf(ActionSource::kHeld));
-  }
-
-  void hold() {
-    holdInput();
-    p_.set(interrupted_, true);
-  }
-
-  void fallBack(BlockParts& parts) {
+  void fallBack() {
     p_.loop(n_u_, [&](const Value& i) { p_.set(u_[i], sub_[i]); });
-    clipInputs(parts, u_, proven_);
     p_.set(source_, sourceOf(ActionSource::kFallback));
     p_.set(fell_back_, true);
-    p_.set(interrupted_, true);
   }
 
   void runLaw(BlockParts& parts) {
@@ -650,7 +657,6 @@ class BlockBuilder {
       p_.set(interrupted_, false);
       p_.set(first_, false);
     });
-    p_.set(ok_, true);
     p_.set(source_, sourceOf(ActionSource::kBase));
     p_.words("the law");
     law_->step();
@@ -667,7 +673,10 @@ class BlockBuilder {
           });
           if (clp_) optimize(parts);
         },
-        [&] { holdInput(); });
+        [&] {
+          p_.set(source_, sourceOf(ActionSource::kHeld));
+          p_.loop(n_u_, [&](const Value& i) { p_.set(u_[i], proven_[i]); });
+        });
   }
 
   void keepNear(const Value& i) { p_.clamp(u_[i], command_[i] - mv_[i], command_[i] + mv_[i]); }
@@ -738,12 +747,8 @@ class BlockBuilder {
 
   void finish() {
     p_.words("what goes out");
-    const Value laws = source_ == sourceOf(ActionSource::kBase) ||
-                       source_ == sourceOf(ActionSource::kClipped) ||
-                       source_ == sourceOf(ActionSource::kGuarded) ||
-                       (clp_ ? source_ == sourceOf(ActionSource::kConstrained) : Value(false));
     if (clp_)
-      p_.when(!laws, [&] { passThrough(); });
+      p_.when(!laws(), [&] { passThrough(); });
     else
       p_.set(other_hand_,
              other_hand_ || source_ == sourceOf(ActionSource::kManual) || fell_back_ || !takes_);
@@ -762,7 +767,7 @@ class BlockBuilder {
         [&] {
           p_.loop(n_u_, [&](const Value& i) {
             p_.set(command_before_[i], command_[i]);
-            const Value other = clp_ ? !moves_active_ || of_optimizer_ != laws : !moves_active_;
+            const Value other = clp_ ? !moves_active_ || of_optimizer_ != laws() : !moves_active_;
             p_.when(other, [&] {
               p_.set(command_before_[i], u_[i]);
               if (clp_) p_.set(away_[i], false);
@@ -771,10 +776,10 @@ class BlockBuilder {
           });
           p_.set(moves_active_, true);
         });
-    if (clp_) p_.set(of_optimizer_, laws);
+    if (clp_) p_.set(of_optimizer_, laws());
     for (int i = 0; i < n_y_; ++i) p_.set(active_out_[at(i)], active_[i]);
     p_.set(source_out_, source_);
-    p_.set(valid_out_, laws);
+    p_.set(valid_out_, laws());
     p_.set(busy_out_, enable_ && mode_ >= 1 && mode_ <= 3);
     p_.set(state_out_, mode_);
     p_.when(source_ == sourceOf(ActionSource::kHeld),
@@ -802,10 +807,10 @@ class BlockBuilder {
       away_{0}, along_{0}, shown_{0}, command_{0}, command_before_{0}, applied_before_{0}, good_{0},
       has_good_{0}, since_good_{0}, at_level_{0}, level_{0}, doubted_{0};
   Value y_{0}, d_{0}, raw_{0}, raw_ok_{0}, applied_{0}, seen_{0}, proven_{0}, low_{0}, up_{0},
-      mv_{0}, sub_{0}, u_{0}, expected_{0}, foreseen_{0}, ok_{0}, source_{0}, errors_{0},
-      is_manual_{0}, takes_{0}, limits_ok_{0}, set_limits_ok_{0}, time_ok_{0}, known_{0},
-      displaced_{0}, verdict_{0}, fell_back_{0}, a_{0}, b_{0}, c_{0}, flag_{0}, any_{0},
-      doubtful_{0}, repaired_{0}, may_end_{0}, flag_bad_manual_{0};
+      mv_{0}, sub_{0}, set_low_{0}, set_up_{0}, set_rate_{0}, wish_{0}, u_{0}, expected_{0},
+      foreseen_{0}, ok_{0}, source_{0}, errors_{0}, is_manual_{0}, takes_{0}, limits_ok_{0},
+      set_limits_ok_{0}, time_ok_{0}, known_{0}, displaced_{0}, verdict_{0}, fell_back_{0}, a_{0},
+      b_{0}, c_{0}, flag_{0}, any_{0}, doubtful_{0}, repaired_{0}, may_end_{0}, flag_bad_manual_{0};
   Value state_out_{0}, source_out_{0}, valid_out_{0}, busy_out_{0}, error_out_{0}, errors_out_{0},
       hash_out_{0};
 };

@@ -17,6 +17,7 @@ using ir::Kind;
 using ir::Value;
 
 constexpr double kSingularPivot = 1e-12;  // as CoincidenceGains
+constexpr double kFaintEffect = 1e-30;    // of an input: the law has no answer
 
 class FmbpcCode final : public PredictiveCode {
  public:
@@ -121,8 +122,10 @@ class FmbpcCode final : public PredictiveCode {
     model_.rest(x_, b_.y, b_.applied, dm_);
     if (measured_ && !realigned_) model_.rest(measured_x_, b_.y, b_.applied, dm_);
     p_.loop(b_.n_y, [&](const Value& i) {
-      p_.set(undelayed_[i], b_.y[i]);
-      if (realigned_) p_.set(offset_[i], 0.0);
+      if (realigned_)
+        p_.set(offset_[i], 0.0);
+      else if (!delayed_)
+        p_.set(undelayed_[i], b_.y[i]);
     });
     if (!delayed_) return;
     model_.rest(late_x_, b_.y, b_.applied, dm_);
@@ -141,11 +144,13 @@ class FmbpcCode final : public PredictiveCode {
       p_.loop(b_.n_u, [&](const Value& j) {
         p_.set(undelayed_[i], undelayed_[i] + B_[i * b_.n_u + j] * b_.applied[j]);
       });
+      p_.contain(undelayed_[i]);
     });
     if (realigned_) {
       p_.loop(b_.n_y, [&](const Value& i) {
         p_.set(offset_[i],
                offset_[i] + params_.offset_gain * (b_.y[i] - undelayed_[i] - offset_[i]));
+        p_.contain(offset_[i]);
       });
       model_.shift(x_, b_.y, b_.applied, past_);
       return;
@@ -161,6 +166,7 @@ class FmbpcCode final : public PredictiveCode {
       p_.loop(b_.n_u, [&](const Value& j) {
         p_.set(late_y[i], late_y[i] + late_B_[i * b_.n_u + j] * late_u_[j]);
       });
+      p_.contain(late_y[i]);
     });
     model_.shift(late_x_, late_y, late_u_, late_d_before());
     p_.loop(b_.n_u,
@@ -258,6 +264,7 @@ class FmbpcCode final : public PredictiveCode {
         p_.when(shifts[j], [&] { p_.set(a_, free_[j + (row + 1)]); });
         for (int o = 0; o < b_.n_y; ++o)
           p_.set(a_, a_ + free_[row + model_.outputRow(o)] * model_.A[j + o * n_x_]);
+        p_.contain(a_);
         p_.set(next_[j], a_);
       });
       p_.loop(n_x_, [&](const Value& j) { p_.set(free_[j + row], next_[j]); });
@@ -303,19 +310,18 @@ class FmbpcCode final : public PredictiveCode {
   }
 
   void published() {
-    p_.when(
-        effect_[0] == 0.0 || !ir::sane(effect_[0]),
-        [&] {
-          p_.set(b_.ok, false);
-          p_.set(b_.u[0], b_.applied[0]);
-        },
-        [&] {
-          p_.set(b_.u[0], lack_[0] / effect_[0]);
-          if (!clp_) return;
-          clearFeedback();
-          p_.set(a_, 1.0 / effect_[0]);
-          feedBack(0, a_, 0);
-        });
+    p_.when((effect_[0] <= -kFaintEffect || effect_[0] >= kFaintEffect) && ir::sane(effect_[0]),
+            [&] {
+              p_.set(b_.u[0], lack_[0] / effect_[0]);
+              if (!clp_) return;
+              clearFeedback();
+              p_.set(a_, 1.0 / effect_[0]);
+              feedBack(0, a_, 0);
+            },
+            [&] {
+              p_.set(b_.ok, false);
+              p_.set(b_.u[0], b_.applied[0]);
+            });
   }
 
   /// u = (M' W M + L)^-1 (M' W e + L u(k-1)), by Cholesky of the matrix with a unit diagonal.
@@ -348,7 +354,7 @@ class FmbpcCode final : public PredictiveCode {
       p_.set(a_, normal[i * m + i]);
       p_.set(scale[i], 0.0);
       p_.when(
-          a_ > 0.0 && ir::sane(a_), [&] { p_.set(scale[i], 1.0 / ir::squareRoot(p_, a_)); },
+          a_ > 1e-30 && ir::sane(a_), [&] { p_.set(scale[i], 1.0 / ir::squareRoot(p_, a_)); },
           [&] { p_.set(b_.ok, false); });
     });
     p_.when(
@@ -391,6 +397,7 @@ class FmbpcCode final : public PredictiveCode {
     p_.loop(m, [&](const Value& i) {
       p_.loop(m, [&](const Value& j) {
         p_.set(normal[i * m + j], normal[i * m + j] * scale[i] * scale[j]);
+        p_.clamp(normal[i * m + j], -2.0, 2.0);  // it is within 1, but for rounding
       });
     });
     const auto entry = [&](int i, int j) { return normal[i * m + j]; };
@@ -408,6 +415,7 @@ class FmbpcCode final : public PredictiveCode {
         p_.set(a_, entry(i, j));
         for (int k = 0; k < j; ++k) p_.set(a_, a_ - entry(i, k) * entry(j, k));
         p_.set(entry(i, j), a_ / c_);
+        p_.clamp(entry(i, j), -2.0, 2.0);
       }
     }
   }
@@ -435,6 +443,7 @@ class FmbpcCode final : public PredictiveCode {
         p_.set(base[i], model.g[i]);
         p_.loop(n_x_,
                 [&](const Value& j) { p_.set(base[i], base[i] + model.A[i * n_x_ + j] * x[j]); });
+        p_.contain(base[i]);
       });
       p_.loop(b_.n_y * b_.n_u, [&](const Value& i) { p_.set(B[i], model.B[i]); });
     };
@@ -445,9 +454,10 @@ class FmbpcCode final : public PredictiveCode {
   Value healthy() override {
     p_.set(some_, true);
     p_.loop(n_x_,
-            [&](const Value& i) { p_.when(!ir::sane(x_[i]), [&] { p_.set(some_, false); }); });
-    p_.loop(b_.n_y,
-            [&](const Value& i) { p_.when(!ir::sane(base_[i]), [&] { p_.set(some_, false); }); });
+            [&](const Value& i) { p_.when(!ir::contained(x_[i]), [&] { p_.set(some_, false); }); });
+    p_.loop(b_.n_y, [&](const Value& i) {
+      p_.when(!ir::contained(base_[i]), [&] { p_.set(some_, false); });
+    });
     return some_;
   }
 

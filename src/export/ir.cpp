@@ -176,6 +176,7 @@ Value operator!(const Value& a) { return unary(Operation::kNot, Kind::kBool, a);
 Value toReal(const Value& integer) { return unary(Operation::kToReal, Kind::kReal, integer); }
 Value floorOf(const Value& real) { return unary(Operation::kFloor, Kind::kInt, real); }
 Value sane(const Value& x) { return -kLargest <= x && x <= Value(kLargest); }
+Value contained(const Value& x) { return -kLargest < x && x < Value(kLargest); }
 
 const Variable& Program::add(Variable variable) {
   auto& home = function_ ? function_->variables : variables_;

@@ -114,6 +114,8 @@ struct Function {
   Statements body;
 };
 
+constexpr double kLargest = 1e12;  ///< what is beyond is no measurement; states stay inside
+
 /// Text of its own that a block in C needs beside what the program says: types and a member of the
 /// state, tables and functions.
 struct Native {
@@ -153,6 +155,8 @@ class Program {
   /// target := inside [lower, upper]; the upper bound wins.
   void clamp(const Value& target, const Value& lower, const Value& upper);
   void setAbsolute(const Value& target, const Value& value);
+  /// target := inside kLargest: what is beyond is of no use, and nothing overflows behind it.
+  void contain(const Value& target) { clamp(target, -kLargest, kLargest); }
   /// All states as they begin.
   void initialise();
 
@@ -177,7 +181,7 @@ class Program {
   int loops_{0}, depth_{0};
 };
 
-constexpr double kLargest = 1e12;  ///< what is beyond is no measurement; states stay inside
-Value sane(const Value& x);        ///< a number within kLargest; no NaN
+Value sane(const Value& x);       ///< a number within kLargest; no NaN
+Value contained(const Value& x);  ///< sane, and not at the bounds where contain() leaves it
 
 }  // namespace fpc::ir

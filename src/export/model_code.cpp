@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "export/math.hpp"
 #include "fmbpc/base/input_error.hpp"
@@ -15,6 +16,8 @@ using ir::Value;
 namespace {
 
 std::size_t place(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double kFaint = 1e-30;  // sum of degrees below which no rule fires
 
 bool isLinear(MembershipShape shape) {
   return shape == MembershipShape::kTriangular || shape == MembershipShape::kTrapezoidal;
@@ -66,99 +69,141 @@ Value ModelCode::placed(const Regressor& r, const Value& state, const Value& d) 
   }
 }
 
-/// Feet and shoulders of each rule's set.
-std::vector<double> ModelCode::corner(int output, std::size_t antecedent, int which) const {
-  std::vector<double> all;
-  for (const Rule& rule : layout_.model().submodels[place(output)].rules) {
-    const Membership& m = rule.antecedents[antecedent];
-    const std::vector<double>& p = m.parameters;
-    if (m.shape == MembershipShape::kGaussian)
-      all.push_back(which == 0 ? p[0] - 3.0 * p[1] : which == 3 ? p[0] + 3.0 * p[1] : p[0]);
-    else if (m.shape == MembershipShape::kTriangular)
-      all.push_back(p[static_cast<std::size_t>(which == 0 ? 0 : which == 3 ? 2 : 1)]);
-    else
-      all.push_back(p[static_cast<std::size_t>(which)]);
-  }
-  return all;
+/// Shoulders of each rule's set, and the widths of its flanks.
+void ModelCode::declareFlanks(int output, const std::vector<std::size_t>& of, Flanks& flanks) {
+  const OutputModel& submodel = layout_.model().submodels[place(output)];
+  std::vector<double> lower, upper, left, right;
+  flanks.least = flanks.least_span = std::numeric_limits<double>::infinity();
+  for (const std::size_t antecedent : of)
+    for (const Rule& rule : submodel.rules) {
+      const Membership& m = rule.antecedents[antecedent];
+      const std::vector<double>& p = m.parameters;
+      if (m.shape == MembershipShape::kGaussian) {
+        lower.push_back(p[0]);
+        upper.push_back(p[0]);
+        left.push_back(3.0 * p[1]);
+        right.push_back(3.0 * p[1]);
+      } else {
+        const bool triangle = m.shape == MembershipShape::kTriangular;
+        lower.push_back(p[1]);
+        upper.push_back(p[triangle ? 1 : 2]);
+        left.push_back(p[1] - p[0]);
+        right.push_back(p[triangle ? 2 : 3] - p[triangle ? 1 : 2]);
+      }
+      for (const double width : {left.back(), right.back()})
+        if (width > 0.0) flanks.least = std::min(flanks.least, 0.5 * width);
+      const double span = upper.back() + right.back() - (lower.back() - left.back());
+      if (span > 0.0) flanks.least_span = std::min(flanks.least_span, 0.5 * span);
+    }
+  flanks.lower = table(flanks.name + "Lower", lower);
+  flanks.upper = table(flanks.name + "Upper", upper);
+  flanks.left = table(flanks.name + "Left", left);
+  flanks.right = table(flanks.name + "Right", right);
 }
 
-/// Adds the logarithm of this antecedent's degree to the weights; linear flanks multiply `product`.
-void ModelCode::degrees(int output, std::size_t antecedent, const Value& z, const Value& alive,
+/// Adds the logarithms of these antecedents' degrees to the weights; linear flanks multiply
+/// `product`.
+void ModelCode::degrees(int output, const Group& group, const Value& z, const Value& alive,
                         const Value& product) {
   const OutputModel& submodel = layout_.model().submodels[place(output)];
-  const MembershipShape shape = submodel.rules.front().antecedents[antecedent].shape;
-  for (const Rule& rule : submodel.rules)
-    require(rule.antecedents[antecedent].shape == shape ||
-                (isLinear(shape) && isLinear(rule.antecedents[antecedent].shape)),
-            "export: model " + layout_.model().name, "sets of one shape on each antecedent");
-  const std::string name = "O" + std::to_string(output) + "Z" + std::to_string(antecedent);
-  const int n = static_cast<int>(submodel.rules.size());
+  const int n = static_cast<int>(submodel.rules.size()), count = static_cast<int>(group.of.size());
   const Value& w = weights[place(output)];
-  if (shape == MembershipShape::kGaussian) {
+  if (group.shape == MembershipShape::kGaussian) {
     std::vector<double> centre, width;
-    for (const Rule& rule : submodel.rules) {
-      centre.push_back(rule.antecedents[antecedent].parameters[0]);
-      width.push_back(rule.antecedents[antecedent].parameters[1]);
-    }
-    const Value centres = table(name + "Centre", centre), widths = table(name + "Width", width);
-    p_.loop(n, [&](const Value& r) {
-      p_.set(a_, (z - centres[r]) / widths[r]);
-      p_.set(w[r], w[r] - 0.5 * a_ * a_);
+    for (const std::size_t antecedent : group.of)
+      for (const Rule& rule : submodel.rules) {
+        centre.push_back(rule.antecedents[antecedent].parameters[0]);
+        width.push_back(rule.antecedents[antecedent].parameters[1]);
+      }
+    const Value centres = table(group.flanks.name + "Centre", centre),
+                widths = table(group.flanks.name + "Width", width);
+    p_.loop(count, [&](const Value& i) {
+      p_.loop(n, [&](const Value& r) {
+        p_.set(a_, (z[i + group.first] - centres[i * n + r]) / widths[i * n + r]);
+        p_.set(w[r], w[r] - 0.5 * a_ * a_);
+      });
     });
     return;
   }
-  const Value c0 = table(name + "C0", corner(output, antecedent, 0)),
-              c1 = table(name + "C1", corner(output, antecedent, 1)),
-              c2 = table(name + "C2", corner(output, antecedent, 2)),
-              c3 = table(name + "C3", corner(output, antecedent, 3));
-  p_.loop(n, [&](const Value& r) {
-    p_.set(a_, z - c2[r]);
-    p_.set(b1_, c3[r] - c2[r]);
-    p_.when(z < c1[r], [&] {
-      p_.set(a_, c1[r] - z);
-      p_.set(b1_, c1[r] - c0[r]);
-    });
-    p_.when(a_ > 0.0, [&] {
-      if (isLinear(shape)) {
+  const Flanks& f = group.flanks;
+  p_.loop(count, [&](const Value& i) {
+    p_.loop(n, [&](const Value& r) {
+      const Value at = i * n + r;
+      p_.set(a_, z[i + group.first] - f.upper[at]);
+      p_.set(b1_, f.right[at]);
+      p_.when(z[i + group.first] < f.lower[at], [&] {
+        p_.set(a_, f.lower[at] - z[i + group.first]);
+        p_.set(b1_, f.left[at]);
+      });
+      p_.when(a_ > 0.0, [&] {
+        if (!std::isfinite(f.least)) return p_.set(alive[r], false);
+        const Value flank = isLinear(group.shape) ? b1_ >= f.least && a_ < b1_ : b1_ >= f.least;
         p_.when(
-            a_ < b1_, [&] { p_.set(product[r], product[r] * (1.0 - a_ / b1_)); },
-            [&] { p_.set(alive[r], false); });
-      } else {
-        p_.when(
-            b1_ > 0.0,
+            flank,
             [&] {
               p_.set(c_, a_ / b1_);
-              p_.set(w[r], w[r] - 7.0 * c_ * c_);
+              if (isLinear(group.shape))
+                p_.set(product[r], product[r] * (1.0 - c_));
+              else
+                p_.set(w[r], w[r] - 7.0 * c_ * c_);
             },
             [&] { p_.set(alive[r], false); });
-      }
+      });
     });
   });
 }
 
 /// Where no rule fires the nearest one has all the weight.
-void ModelCode::nearest(int output, const std::vector<Value>& z) {
+void ModelCode::nearest(int output, const std::vector<Group>& groups, const Value& z) {
   const int n = static_cast<int>(layout_.model().submodels[place(output)].rules.size());
   const Value& w = weights[place(output)];
   const Value far = p_.works(prefix_ + "far" + std::to_string(output), Kind::kReal, n);
   p_.loop(n, [&](const Value& r) { p_.set(far[r], 0.0); });
-  for (std::size_t i = 0; i < z.size(); ++i) {
-    const std::string name = "O" + std::to_string(output) + "Z" + std::to_string(i);
-    const Value c0 = table(name + "C0", corner(output, i, 0)),
-                c3 = table(name + "C3", corner(output, i, 3));
-    p_.loop(n, [&](const Value& r) {
-      p_.set(a_, 0.0);
-      p_.when(z[i] < c0[r], [&] { p_.set(a_, c0[r] - z[i]); });
-      p_.when(z[i] > c3[r], [&] { p_.set(a_, z[i] - c3[r]); });
-      p_.set(b1_, c3[r] - c0[r]);
-      p_.when(b1_ > 0.0, [&] { p_.set(a_, a_ / b1_); });
-      p_.set(far[r], far[r] + a_);
+  for (const Group& group : groups) {
+    const Flanks& f = group.flanks;
+    p_.loop(static_cast<int>(group.of.size()), [&](const Value& i) {
+      p_.loop(n, [&](const Value& r) {
+        const Value at = i * n + r;
+        const Value lower = f.lower[at] - f.left[at], upper = f.upper[at] + f.right[at];
+        p_.set(a_, 0.0);
+        p_.when(z[i + group.first] < lower, [&] { p_.set(a_, lower - z[i + group.first]); });
+        p_.when(z[i + group.first] > upper, [&] { p_.set(a_, z[i + group.first] - upper); });
+        p_.set(b1_, upper - lower);
+        if (std::isfinite(f.least_span))
+          p_.when(b1_ >= f.least_span, [&] { p_.set(a_, a_ / b1_); });
+        p_.set(far[r], far[r] + a_);
+      });
     });
   }
   p_.set(n_, 0);
   p_.loop(n, [&](const Value& r) { p_.when(far[r] < far[n_], [&] { p_.set(n_, r); }); });
   p_.loop(n, [&](const Value& r) { p_.set(w[r], 0.0); });
   p_.set(w[n_], 1.0);
+}
+
+/// Antecedents by the shape of their sets: each group is one loop.
+std::vector<ModelCode::Group> ModelCode::groupsOf(int output) const {
+  const OutputModel& submodel = layout_.model().submodels[place(output)];
+  std::vector<Group> groups;
+  int first = 0;
+  for (const MembershipShape shape :
+       {MembershipShape::kGaussian, MembershipShape::kExponential, MembershipShape::kTrapezoidal}) {
+    Group group{shape, {}, first, {}};
+    group.flanks.name = "O" + std::to_string(output) + std::string(1, "GEL"[groups.size()]);
+    const auto belongs = [&](const Membership& m) {
+      return isLinear(m.shape) ? isLinear(shape) : m.shape == shape;
+    };
+    for (std::size_t i = 0; i < submodel.antecedents.size(); ++i) {
+      if (!belongs(submodel.rules.front().antecedents[i])) continue;
+      for (const Rule& rule : submodel.rules)
+        require(belongs(rule.antecedents[i]), "export: model " + layout_.model().name,
+                "sets of one shape on each antecedent");
+      group.of.push_back(i);
+    }
+    first += static_cast<int>(group.of.size());
+    groups.push_back(std::move(group));
+  }
+  return groups;
 }
 
 void ModelCode::fire(int output, const Value& state, const Value& d) {
@@ -181,21 +226,33 @@ void ModelCode::fire(int output, const Value& state, const Value& d) {
     }
   const std::string name = std::to_string(output);
   const Value alive = p_.works(prefix_ + "alive" + name, Kind::kBool, n),
-              product = p_.works(prefix_ + "product" + name, Kind::kReal, n);
+              product = p_.works(prefix_ + "product" + name, Kind::kReal, n),
+              z = p_.works(prefix_ + "z" + name, Kind::kReal,
+                           static_cast<int>(submodel.antecedents.size()));
   p_.loop(n, [&](const Value& r) {
     p_.set(w[r], 0.0);
     p_.set(alive[r], true);
     p_.set(product[r], 1.0);
   });
-  std::vector<Value> z;
-  for (std::size_t i = 0; i < submodel.antecedents.size(); ++i) {
-    z.push_back(p_.work(prefix_ + "z" + name + "v" + std::to_string(i)));
-    p_.set(z.back(), placed(submodel.antecedents[i], state, d));
-    degrees(output, i, z.back(), alive, product);
+  std::vector<Group> groups = groupsOf(output);
+  for (Group& group : groups) {
+    for (std::size_t i = 0; i < group.of.size(); ++i)
+      p_.set(z[group.first + static_cast<int>(i)],
+             placed(submodel.antecedents[group.of[i]], state, d));
+    if (group.of.empty()) continue;
+    if (may_miss || group.shape != MembershipShape::kGaussian)
+      declareFlanks(output, group.of, group.flanks);
+    degrees(output, group, z, alive, product);
   }
-  p_.set(c_, -1e30);
+  p_.words("weights: the largest degree counts as 1");
+  p_.set(n_, -1);
+  p_.set(c_, 0.0);
   p_.loop(n, [&](const Value& r) {
-    p_.when(may_miss ? alive[r] && w[r] > c_ : w[r] > c_, [&] { p_.set(c_, w[r]); });
+    const Value better = n_ < 0 || w[r] > c_;
+    p_.when(may_miss ? alive[r] && better : better, [&] {
+      p_.set(c_, w[r]);
+      p_.set(n_, r);
+    });
   });
   p_.set(b1_, 0.0);
   p_.loop(n, [&](const Value& r) {
@@ -205,11 +262,18 @@ void ModelCode::fire(int output, const Value& state, const Value& d) {
     p_.set(w[r], a_);
     p_.set(b1_, b1_ + a_);
   });
-  const auto normalise = [&] { p_.loop(n, [&](const Value& r) { p_.set(w[r], w[r] / b1_); }); };
-  if (may_miss)
-    p_.when(b1_ > 0.0, normalise, [&] { nearest(output, z); });
-  else
-    normalise();
+  // Where a rule fires the sum is one or more, but for linear flanks.
+  p_.when(
+      b1_ >= (linear ? kFaint : 0.5),
+      [&] {
+        p_.loop(n, [&](const Value& r) {
+          p_.set(w[r], w[r] / b1_);
+          if (linear) p_.clamp(w[r], 0.0, 1.0);
+        });
+      },
+      [&] {
+        if (may_miss) nearest(output, groups, z);
+      });
 }
 
 void ModelCode::blend(const Value& state, const Value& d) {
@@ -514,8 +578,12 @@ void PredictiveCode::step() {
   p_.set(start_, false);
   if (clp_) clp_->begin(reference_, dm_);
   propose();
-  p_.loop(b_.n_u,
-          [&](const Value& i) { p_.when(!ir::sane(b_.u[i]), [&] { p_.set(b_.ok, false); }); });
+  p_.loop(b_.n_u, [&](const Value& i) {
+    p_.when(!ir::sane(b_.u[i]), [&] {
+      p_.set(b_.ok, false);
+      p_.set(b_.u[i], b_.applied[i]);
+    });
+  });
   p_.set(clipped_, false);
   p_.when(
       b_.ok,

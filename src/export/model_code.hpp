@@ -35,12 +35,26 @@ class ModelCode {
   std::vector<ir::Value> weights;  ///< of each output
 
  private:
+  /// Tables of trapezes, one entry for each antecedent and rule.
+  struct Flanks {
+    std::string name;
+    ir::Value lower{0}, upper{0}, left{0}, right{0};
+    double least{}, least_span{};  ///< half of the smallest flank and span that are above 0
+  };
+  /// Antecedents with sets of one shape; their values begin at `first`.
+  struct Group {
+    MembershipShape shape;
+    std::vector<std::size_t> of;
+    int first;
+    Flanks flanks;
+  };
   void fire(int output, const ir::Value& state, const ir::Value& d);
-  void degrees(int output, std::size_t antecedent, const ir::Value& z, const ir::Value& alive,
+  std::vector<Group> groupsOf(int output) const;
+  void declareFlanks(int output, const std::vector<std::size_t>& of, Flanks& flanks);
+  void degrees(int output, const Group& group, const ir::Value& z, const ir::Value& alive,
                const ir::Value& product);
-  void nearest(int output, const std::vector<ir::Value>& z);
+  void nearest(int output, const std::vector<Group>& groups, const ir::Value& z);
   ir::Value placed(const Regressor& r, const ir::Value& state, const ir::Value& d) const;
-  std::vector<double> corner(int output, std::size_t antecedent, int which) const;
   ir::Value table(const std::string& name, const std::vector<double>& values);
 
   BlockParts& b_;

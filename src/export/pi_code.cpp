@@ -17,7 +17,7 @@ class PiCode final : public LawCode {
   PiCode(BlockParts& parts, const PiParams& params) : b_(parts), p_(parts.p), params_(params) {
     const int n = static_cast<int>(params_.loops.size());
     hours_ = parts.loop.plant_info.sample_time_s / 3600.0;
-    integral_ = p_.states("integral", Kind::kReal, n);
+    integral_ = p_.states("share", Kind::kReal, n);
     pending_ = p_.states("piPending", Kind::kBool, n);
     error_ = p_.work("error");
     unclipped_ = p_.works("unclipped", Kind::kReal, n);

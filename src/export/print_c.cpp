@@ -1,4 +1,5 @@
 // C99: no heap, no recursion, no library.
+#include <algorithm>
 #include <cmath>
 
 #include "export/print.hpp"
@@ -13,6 +14,13 @@ using ir::Operation;
 using ir::Role;
 using ir::Statement;
 using ir::Variable;
+
+/// What compilers make a call of memset or memcpy.
+bool fillsOrCopies(const ir::Statements& statements) {
+  return std::any_of(statements.begin(), statements.end(), [](const Statement& s) {
+    return s.form == Statement::Form::kAssign && s.value->operation <= Operation::kElement;
+  });
+}
 
 class CPrinter final : public ExpressionPrinter {
  public:
@@ -66,7 +74,7 @@ class CPrinter final : public ExpressionPrinter {
         return " || ";
     }
   }
-  std::string negation() const override { return "!"; }
+  std::string negated(const std::string& flag) const override { return "!(" + flag + ")"; }
   std::string toReal(const std::string& inner) const override {
     return "((" + type(Kind::kReal) + ")" + inner + ")";
   }
@@ -79,7 +87,8 @@ class CPrinter final : public ExpressionPrinter {
   std::string begin(const Statement& s) const override {
     if (s.form == Statement::Form::kIf) return "if (" + bare(*s.value) + ") {";
     const std::string& i = s.index->name;
-    return "for (" + i + " = 0; " + i + " < " + std::to_string(s.count) + "; " + i + "++) {";
+    return "for (" + i + " = 0; " + i + " < " + std::to_string(s.count) + "; " + i + "++) {" +
+           (fillsOrCopies(s.then) ? " " + upperCase(program_.name) + "_NO_CALL" : "");
   }
   std::string otherwise() const override { return "} else {"; }
   std::string end(const Statement&) const override { return "}"; }
@@ -157,6 +166,14 @@ std::string cSource(const ir::Program& program, const ExportIdentity& id) {
   std::string text = "/* " + id.controller + " of loop " + id.loop + ", by " + id.exporter +
                      ". Compile with -ffp-contract=off. */\n#include \"" + program.name +
                      ".h\"\n\n";
+  std::string loops;
+  c.print(program.body(), 1, loops);
+  const std::string no_call = upperCase(program.name) + "_NO_CALL";
+  if (loops.find(no_call) != std::string::npos)
+    text +=
+        "/* Loops that fill and copy stay loops: no call of memset or memcpy. */\n"
+        "#if defined(__GNUC__) && !defined(__FRAMAC__)\n#define " +
+        no_call + " __asm__ __volatile__(\"\");\n#else\n#define " + no_call + "\n#endif\n\n";
   printTables(c, program, text);
   printFunctions(c, program, text);
   text += program.native.code;
@@ -169,8 +186,7 @@ std::string cSource(const ir::Program& program, const ExportIdentity& id) {
   for (const Variable& v : program.variables())
     if (v.used && (v.role == Role::kWork || v.role == Role::kIndex))
       text += "  " + c.declaration(v) + ";\n";
-  c.print(program.body(), 1, text);
-  return text + "}\n";
+  return text + loops + "}\n";
 }
 
 }  // namespace fpc

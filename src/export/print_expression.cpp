@@ -46,7 +46,7 @@ std::string ExpressionPrinter::text(const Node& node) const {
     case Operation::kNegate:
       return "(-" + text(*node.of[0]) + ")";
     case Operation::kNot:
-      return negation() + "(" + text(*node.of[0]) + ")";
+      return negated(text(*node.of[0]));
     case Operation::kToReal:
       return toReal(text(*node.of[0]));
     case Operation::kFloor:

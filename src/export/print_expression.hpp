@@ -20,7 +20,7 @@ class ExpressionPrinter {
   virtual std::string literal(const ir::Node& node) const = 0;
   virtual std::string variable(const ir::Variable& variable) const = 0;
   virtual std::string operation(const ir::Node& node) const = 0;  ///< " AND "
-  virtual std::string negation() const = 0;                       ///< of a flag
+  virtual std::string negated(const std::string& flag) const = 0;
   virtual std::string toReal(const std::string& inner) const = 0;
   virtual std::string called(const std::string& function) const = 0;
   virtual std::string assign(const std::string& to, const std::string& value) const = 0;

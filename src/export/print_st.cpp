@@ -79,7 +79,8 @@ class StPrinter final : public ExpressionPrinter {
         return " OR ";
     }
   }
-  std::string negation() const override { return "NOT "; }
+  /// NOT of an expression is no flag to every compiler.
+  std::string negated(const std::string& flag) const override { return "(" + flag + " = FALSE)"; }
   std::string toReal(const std::string& inner) const override {
     return "DINT_TO_" + real() + "(" + inner + ")";
   }

@@ -169,11 +169,12 @@ std::string structuredTextTest(const LoopFile& loop, const ir::Program& program,
     if (name == "iErrors") continue;
     const std::string value =
         isReal(name) ? "fbTested." + name : "DINT_TO_" + real + "(fbTested." + name + ")";
-    text += "    r := " + value + " - c" + name + "[k];\n    IF NOT((r <= " +
+    text += "    r := " + value + " - c" + name + "[k];\n    IF ((r <= " +
             realLiteral(isReal(name) ? allowed(loop, program, name) : 0.25, program.single, 'E') +
             ") AND (r >= -" +
             realLiteral(isReal(name) ? allowed(loop, program, name) : 0.25, program.single, 'E') +
-            ")) THEN\n      xPassed := FALSE;\n      IF iFailed < 0 THEN\n        iFailed := k;\n  "
+            ")) = FALSE THEN\n      xPassed := FALSE;\n      IF iFailed < 0 THEN\n        iFailed "
+            ":= k;\n  "
             "    END_IF;\n    END_IF;\n";
   }
   return text + "    k := k + 1;\n  END_IF;\n  xDone := k >= " + std::to_string(rows.size()) +

@@ -14,7 +14,7 @@ class SupervisorCode final : public LawCode {
   SupervisorCode(BlockParts& parts, const LoadSupervisorParams& params)
       : b_(parts), p_(parts.p), params_(params) {
     hours_ = parts.loop.plant_info.sample_time_s / 3600.0;
-    integral_ = p_.state("integral", Kind::kReal);
+    integral_ = p_.state("share", Kind::kReal);
     transfer_ = p_.state("transfer", Kind::kBool);
     error_ = p_.work("error");
     direct_ = p_.work("direct");

@@ -38,6 +38,8 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       effect_(node, topics::kSetpointEffect, comeback_, audienceOf(node, authority())),
       listeners_(
           {base_.publisher(), prediction_.publisher(), tracking_.publisher(), effect_.publisher()}),
+      links_(node, private_node, loop.ring.pace, LinkInbox::Of::kController,
+             [this] { guarded(topics::kControlAction, [this] { answerParked(); }); }),
       plant_subscriber_(subscribe(node, topics::kPlantInfo, 1, &ControllerNode::onPlantInfo, this)),
       model_subscriber_(subscribe(node, topics::kFuzzyModel, 1, &ControllerNode::onModel, this)),
       measurement_subscriber_(subscribeLaw(node, topics::kMeasurement, loop.ring.pace,
@@ -76,6 +78,11 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
     listeners_.alsoHear(standin_->hearing());
   }
   advertiseSignals();
+  if (!links_.inbox().empty())
+    link_timer_ = guardedTimer(node, kLookAgain, "links", [this] {
+      announceIfReady();
+      if (ready_.announced()) link_timer_.stop();
+    });
 }
 
 // Early, so that whoever listens misses nothing; what depends on a model follows with it.
@@ -177,7 +184,7 @@ void ControllerNode::refuseModel(const std::string& why) {
 }
 
 void ControllerNode::announceIfReady() {
-  if (plant_.open() && session_.ready()) ready_.announce();
+  if (plant_.open() && session_.ready() && links_.missing().empty()) ready_.announce();
 }
 
 void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
@@ -194,7 +201,7 @@ void ControllerNode::onMeasurement(const fmbpc::Measurement::ConstPtr& msg) {
 bool ControllerNode::mayAnswer(const Measurement& measurement) {
   return plant_.open() && plant_.runId() == measurement.header.run_id && session_.ready() &&
          listeners_.open() && inbox_.complete(measurement.header) && desk_.mayStart(measurement) &&
-         hasTargets(measurement.header);
+         hasTargets(measurement.header) && links_.inbox().ready(measurement.header.time_ns);
 }
 
 // Kept, since the plant does not send a sample again that somebody has answered: a controller that
@@ -215,9 +222,17 @@ void ControllerNode::answerParked() {
   guarded(topics::kMeasurement, [&] { answer(measurement); });
 }
 
+// Once for each sample: a repeated one is not commanded for again.
+void ControllerNode::takeLinkedSetpoints(const StepHeader& sample) {
+  if (links_.inbox().empty() || isSameSample(linked_, sample)) return;
+  linked_ = sample;
+  if (const auto command = links_.inbox().command(sample.time_ns)) session_.command(*command);
+}
+
 void ControllerNode::answer(const Measurement& measurement) {
   heard_s_ = steadyNow();
   useModels(measurement.header);
+  takeLinkedSetpoints(measurement.header);
   const bool first = session_.counts().accepted == 0;
   switch (session_.receive(measurement)) {
     case Receipt::kAnswered:

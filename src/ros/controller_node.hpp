@@ -23,6 +23,7 @@
 
 #include "config/loop_file.hpp"
 #include "ros/health_reporter.hpp"
+#include "ros/link_listener.hpp"
 #include "ros/listener_gate.hpp"
 #include "ros/node.hpp"
 #include "ros/operator_desk.hpp"
@@ -71,6 +72,7 @@ class ControllerNode : public Node {
   StepHeader nextSample() const;
   bool mayAnswer(const Measurement& measurement);
   void park(const Measurement& measurement);
+  void takeLinkedSetpoints(const StepHeader& sample);
   void answer(const Measurement& measurement);
   void answerParked();
   void tell();  ///< what the operator asks has changed
@@ -101,6 +103,7 @@ class ControllerNode : public Node {
   std::string model_, model_source_,
       model_problem_;                  // name of the one in use; why the latest was refused
   double model_refused_s_{};           // when
+  StepHeader linked_;                  // the sample whose setpoints of other loops are taken
   StepHeader aimed_;                   // the sample that the latest targets are of
   std::vector<Event> target_events_;   // of them; until they are in an answer
   std::vector<Event> models_refused_;  // that could not be used; until they are in an answer
@@ -111,10 +114,11 @@ class ControllerNode : public Node {
   RingPublisher<fmbpc::Tracking> tracking_;
   RingPublisher<fmbpc::CommandEffect> effect_;
   ListenerGate listeners_;
+  LinkListener links_;  // of setpoints
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       identified_subscriber_, setpoint_subscriber_, targets_subscriber_;
   ros::ServiceServer manual_, manual_input_, hold_, adapt_, candidate_;
-  ros::SteadyTimer parked_timer_;
+  ros::SteadyTimer parked_timer_, link_timer_;
   SettingsServer settings_;
   SummaryListener summary_;
   RateLimit commands_;

@@ -10,6 +10,7 @@ void ControllerNode::onSetpoint(const fmbpc::Setpoint::ConstPtr& msg) {
   if (!commands_.pass(steadyNow())) return;
   const auto take = [&] {
     const Command command = fromMsg(*msg);
+    links_.inbox().refuseLinked(command);
     const std::uint32_t step = session_.command(command);
     ROS_INFO("%s: setpoint of %s from sample %u on", name().c_str(), join(command.name).c_str(),
              step);

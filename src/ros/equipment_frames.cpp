@@ -2,6 +2,7 @@
 
 #include <geometry_msgs/TransformStamped.h>
 #include <tf2/exceptions.h>
+#include <tf2_msgs/TFMessage.h>
 
 #include <cmath>
 
@@ -28,20 +29,22 @@ double length(const geometry_msgs::Vector3& v) {
 
 }  // namespace
 
-void EquipmentFrames::broadcast(const TfParams& params, std::int64_t time_ns) {
+void EquipmentFrames::broadcast(ros::NodeHandle node, const TfParams& params,
+                                std::int64_t time_ns) {
   if (!params.broadcast) return;
-  std::vector<geometry_msgs::TransformStamped> transforms;
+  tf2_msgs::TFMessage msg;
   for (const EquipmentFrame& frame : params.frames)
-    if (!frame.parent.empty()) transforms.push_back(transform(frame, toStamp(time_ns)));
-  if (transforms.empty()) return;
-  broadcaster_ = std::make_unique<tf2_ros::StaticTransformBroadcaster>();
-  broadcaster_->sendTransform(transforms);
+    if (!frame.parent.empty()) msg.transforms.push_back(transform(frame, toStamp(time_ns)));
+  if (msg.transforms.empty()) return;
+  publisher_ = node.advertise<tf2_msgs::TFMessage>("/tf_static", 1, true);
+  publisher_.publish(msg);
 }
 
-SampleLines::SampleLines(std::vector<SampleLine> lines) : lines_(std::move(lines)) {
+SampleLines::SampleLines(const ros::NodeHandle& node, std::vector<SampleLine> lines)
+    : lines_(std::move(lines)) {
   if (lines_.empty()) return;
   buffer_ = std::make_unique<tf2_ros::Buffer>();
-  listener_ = std::make_unique<tf2_ros::TransformListener>(*buffer_);
+  listener_ = std::make_unique<tf2_ros::TransformListener>(*buffer_, node);
 }
 
 std::vector<std::pair<std::string, double>> SampleLines::poll() {

@@ -4,7 +4,6 @@
 
 #include <ros/ros.h>
 #include <tf2_ros/buffer.h>
-#include <tf2_ros/static_transform_broadcaster.h>
 #include <tf2_ros/transform_listener.h>
 
 #include <cstdint>
@@ -17,20 +16,21 @@
 
 namespace fpc {
 
-/// Broadcasts the frames of a loop file as static transforms, once.
+/// Broadcasts the frames of a loop file as static transforms, once, on the tree of `node`: that of
+/// its loop, where its names are remapped.
 class EquipmentFrames {
  public:
   /// Does nothing if the frames come from elsewhere (tf.broadcast false).
-  void broadcast(const TfParams& params, std::int64_t time_ns);
+  void broadcast(ros::NodeHandle node, const TfParams& params, std::int64_t time_ns);
 
  private:
-  std::unique_ptr<tf2_ros::StaticTransformBroadcaster> broadcaster_;
+  ros::Publisher publisher_;
 };
 
 /// Looks up the lengths of sample lines; without lines it listens to nothing.
 class SampleLines {
  public:
-  explicit SampleLines(std::vector<SampleLine> lines);
+  SampleLines(const ros::NodeHandle& node, std::vector<SampleLine> lines);
   /// Tries the lines not yet found, without waiting. Returns (output, delay [s]) of those found
   /// now.
   std::vector<std::pair<std::string, double>> poll();

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "fmbpc/base/text.hpp"
+#include "ros/node_end.hpp"
 #include "ros/topics.hpp"
 #include "runtime/health.hpp"
 
@@ -67,7 +68,7 @@ bool Node::mayLog(const std::string& what) { return logs_.emplace(what, 1.0).fir
 void Node::fail(const std::string& what) {
   ROS_FATAL("%s: %s", name_.c_str(), what.c_str());
   exit_code_ = 1;
-  ros::shutdown();
+  endNode(what);
 }
 
 void Node::refuse(const char* topic, const std::string& why) {

@@ -70,7 +70,7 @@ void PlantNode::begin() {
   for (const ros::Publisher& own : alsoRecorded()) recorded.push_back(own);
   listeners_.emplace(std::move(recorded));
   beginRun();
-  frames_.broadcast(loop_.tf, session_.process().info().header.time_ns);
+  frames_.broadcast(node_, loop_.tf, session_.process().info().header.time_ns);
 }
 
 // A number that no run had before, also of an earlier process; which one counts is said by
@@ -79,6 +79,7 @@ void PlantNode::beginRun() {
   run_id_ = std::max(run_id_ + 1, ros::WallTime::now().toNSec());
   session_.begin(run_id_);
   keeper_.beginRun(run_id_);
+  parked_.reset();
   publishers_.begin(session_.process());
   introduced_s_ = steadyNow();
   tracking_subscriber_.shutdown();
@@ -129,11 +130,27 @@ void PlantNode::waitForOthers() {
 void PlantNode::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
   guarded(topics::kControlAction, [&] {
     exchange();
-    if (!session_.receive(fromMsg(*msg))) return;
-    answered_s_ = steadyNow();
-    exchange();
-    tryAdvance();
+    take(fromMsg(*msg));
   });
+}
+
+void PlantNode::take(ControlAction action) {
+  const bool awaited = !session_.hasAction() && session_.process().answers(action.header) &&
+                       session_.phase() == PlantPhase::kRunning &&
+                       action.input.size() == session_.process().measurement().input_applied.size();
+  if (awaited && !prepare(action)) {
+    parked_ = std::move(action);
+    return;
+  }
+  parked_.reset();
+  if (!session_.receive(action)) return;
+  answered_s_ = steadyNow();
+  exchange();
+  tryAdvance();
+}
+
+void PlantNode::takeParked() {
+  if (parked_) take(*std::exchange(parked_, std::nullopt));
 }
 
 void PlantNode::onTracking(const fmbpc::Tracking::ConstPtr& msg) {

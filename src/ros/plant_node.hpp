@@ -50,6 +50,11 @@ class PlantNode : public Node {
   virtual VectorRef shownDisturbances() const = 0;
   /// Before anything is decided about time, and after a command may have changed.
   virtual void exchange() {}
+  /// Before an action for the present sample is taken, which it may change. False: it must wait;
+  /// the plant's own class calls takeParked() when it may not have to any more.
+  virtual bool prepare(ControlAction&) { return true; }
+  void takeParked();
+  bool hasParked() const { return parked_.has_value(); }
   /// What the plant's own class publishes for a record.
   virtual std::vector<ros::Publisher> alsoRecorded() const { return {}; }
   /// What a measurement says besides its struct.
@@ -70,6 +75,7 @@ class PlantNode : public Node {
 
  private:
   void onAction(const fmbpc::ControlAction::ConstPtr& msg);
+  void take(ControlAction action);
   void onTracking(const fmbpc::Tracking::ConstPtr& msg);
   void onRecorded(const fmbpc::Recorded::ConstPtr& msg);
   void onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher);
@@ -97,6 +103,7 @@ class PlantNode : public Node {
   EquipmentFrames frames_;
   RingWatch watch_;
 
+  std::optional<ControlAction> parked_;  // answers the present sample, and waits
   std::uint64_t run_id_{};
   double begun_s_, introduced_s_{}, answered_s_{}, failed_s_{-1};
   std::string failure_;

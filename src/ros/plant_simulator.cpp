@@ -15,6 +15,13 @@ namespace fpc {
 namespace {
 
 constexpr double kCommandBurst = 200;  // commands at once
+constexpr double kLinkPatience = 1.0;  // [s] without a sample of another loop before that is said
+
+std::vector<std::string> joined(std::vector<std::string> names,
+                                const std::vector<std::string>& more) {
+  names.insert(names.end(), more.begin(), more.end());
+  return names;
+}
 
 }  // namespace
 
@@ -24,15 +31,17 @@ std::string PlantSimulator::idleReason(const LoopFile& loop) {
 
 PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_node,
                                const LoopFile& loop)
-    : PlantSimulator(std::move(node), std::move(private_node), loop,
+    : PlantSimulator(node, private_node, loop,
                      std::make_unique<SimulatedProcess>(makeSimulation(loop))) {}
 
 PlantSimulator::PlantSimulator(ros::NodeHandle node, ros::NodeHandle private_node,
                                const LoopFile& loop, std::unique_ptr<SimulatedProcess> simulation)
-    : PlantNode(node, std::move(private_node), loop, std::move(simulation),
+    : PlantNode(node, private_node, loop, std::move(simulation),
                 namesOf(makePlant(loop.simulation)->description().disturbances)),
       simulation_(static_cast<SimulatedProcess&>(session().process()).simulation()),
-      lines_(loop.tf.sample_lines),
+      lines_(node, loop.tf.sample_lines),
+      links_(node, private_node, loop.ring.pace, LinkInbox::Of::kPlant,
+             [this] { guarded(topics::kMeasurement, [this] { takeParked(); }); }),
       commands_(loop.ring.commands_per_s, kCommandBurst),
       state_(
           node.advertise<fmbpc::PlantState>(topics::kPlantState, queueOf(ListenerKind::kRecord))),
@@ -52,7 +61,17 @@ std::vector<std::string> PlantSimulator::plantMissing() {
     const auto place = static_cast<std::size_t>(found - outputs.begin());
     simulation_.setOutputDelay(place, delay_s);
   }
-  return lines_.missing();
+  return joined(lines_.missing(), links_.missing());
+}
+
+bool PlantSimulator::prepare(ControlAction& action) {
+  LinkInbox& inbox = links_.inbox();
+  const std::int64_t now_ns = simulation_.measurement().header.time_ns;
+  if (inbox.empty()) return true;
+  if (!inbox.ready(now_ns)) return false;
+  if (const auto command = inbox.command(now_ns)) simulation_.command(*command);
+  inbox.replaceInputs(now_ns, simulation_.info().inputs, action.input);
+  return true;
 }
 
 void PlantSimulator::afterSample() {
@@ -73,6 +92,10 @@ void PlantSimulator::publishState() {
 }
 
 Health PlantSimulator::plantHealth() const {
+  if (hasParked() && session().unansweredFor(steadyNow()) > kLinkPatience)
+    return {LoopMode::kStalled, EventCode::kWaiting,
+            "waits for a sample of loop " + join(links_.inbox().missing()),
+            links_.inbox().missing()};
   const std::vector<Event>& events = simulation_.events();
   if (events.empty()) return PlantNode::plantHealth();
   return {LoopMode::kDegraded, worstOf(events).code, textOf(events), {}};
@@ -82,6 +105,7 @@ void PlantSimulator::onDisturbance(const fmbpc::Disturbance::ConstPtr& msg) {
   if (!commands_.pass(steadyNow())) return;
   const auto take = [&] {
     const Command command = fromMsg(*msg);
+    links_.inbox().refuseLinked(command);
     const std::uint32_t step = simulation_.command(command);
     ROS_INFO("plant_simulator: disturbance of %s from sample %u on", join(command.name).c_str(),
              step);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "plant/simulation.hpp"
+#include "ros/link_listener.hpp"
 #include "ros/plant_node.hpp"
 
 namespace fpc {
@@ -27,6 +28,7 @@ class PlantSimulator : public PlantNode {
   void onDisturbance(const fmbpc::Disturbance::ConstPtr& msg);
   void publishState();
   std::vector<std::string> plantMissing() override;
+  bool prepare(ControlAction& action) override;
   VectorRef shownDisturbances() const override { return simulation_.state().disturbances; }
   void afterSample() override;
   void afterResend() override { state_.publish(last_); }
@@ -36,6 +38,7 @@ class PlantSimulator : public PlantNode {
 
   Simulation& simulation_;  // the session's
   SampleLines lines_;
+  LinkListener links_;
   RateLimit commands_;
   boost::shared_ptr<const fmbpc::PlantState> last_;
   ros::Publisher state_, effect_;

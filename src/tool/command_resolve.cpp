@@ -1,7 +1,7 @@
 // fmbpc resolve LOOP: the one text that nodes read.
 #include <iostream>
 
-#include "config/loop_file.hpp"
+#include "config/plant_loops.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {
@@ -13,6 +13,22 @@ int resolve(const std::string& loop, const std::vector<std::string>& set, const 
   for (const auto& text : set) overrides.push_back(parseOverride(text));
   for (const auto& override : parseOverrides(sets)) overrides.push_back(override);
   std::cout << resolveLoop(loop, overrides);
+  return 0;
+}
+
+int resolvePlant(const std::string& file, const std::vector<std::string>& set,
+                 const std::string& sets) {
+  Overrides overrides;
+  for (const auto& text : set) overrides.push_back(parseOverride(text));
+  for (const auto& override : parseOverrides(sets)) overrides.push_back(override);
+  const PlantLoops plant = readPlantLoops(file, overrides);
+  for (const PlantLoop& one : plant.loops) {
+    std::cout << one.name << ": " << one.loop.controllerType().name << " on "
+              << one.loop.plant_info.name << (one.isolate ? ", in a process of its own" : "")
+              << (one.machine.empty() ? "" : ", on " + one.machine) << "\n";
+    for (const LoopLink& link : one.links)
+      std::cout << "  " << link.name << " from " << link.from << "\n";
+  }
   return 0;
 }
 

@@ -8,10 +8,12 @@
 #include "base/files.hpp"
 #include "config/command_file.hpp"
 #include "config/model_file.hpp"
+#include "config/plant_loops.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/plot.hpp"
 #include "runtime/report.hpp"
 #include "runtime/run.hpp"
+#include "runtime/run_plant.hpp"
 #include "tool/commands.hpp"
 #include "tool/watched_run.hpp"
 
@@ -105,7 +107,37 @@ bool reportTrouble(const std::vector<Summary>& summaries) {
 
 }  // namespace
 
+namespace {
+
+/// All loops of a plant at once, each into a folder of its name.
+int runWholePlant(const RunArguments& arguments) {
+  Overrides overrides;
+  for (const auto& text : arguments.set) overrides.push_back(parseOverride(text));
+  const PlantLoops plant = readPlantLoops(arguments.plant, overrides);
+  catchInterrupts();
+  RunOptions options;
+  options.stop = [] { return interruption() != 0; };
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<RunRecord> records = runPlant(plant, options);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  std::vector<Summary> summaries;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const LoopFile& loop = plant.loops[i].loop;
+    summaries.push_back(summarize(loop, records[i], wall.count()));
+    if (arguments.out.empty()) continue;
+    const std::string folder = (fs::path(arguments.out) / plant.loops[i].name).string();
+    writeRun(loop, records[i], summaries.back(), folder);
+    if (!arguments.no_plot && !interruption()) draw({folder}, folder);
+  }
+  std::cout << (arguments.json ? jsonOf(summaries) + "\n" : toTable(summaries));
+  if (interruption()) return kInterrupted;
+  return reportTrouble(summaries) ? 1 : 0;
+}
+
+}  // namespace
+
 int run(const RunArguments& arguments) {
+  if (!arguments.plant.empty()) return runWholePlant(arguments);
   const std::vector<LoopFile> loops = readAll(arguments);
   catchInterrupts();
   std::vector<Summary> summaries;

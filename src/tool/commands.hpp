@@ -21,6 +21,7 @@ struct RunArguments {
   std::string out;               ///< folder, empty: nothing is written
   bool on_model{false};          ///< the loop's model in the place of its plant
   std::string commands;          ///< file of what an operator does, empty: nothing
+  std::string plant;             ///< plant file, in the place of loops; empty: none
   bool json{false};
   bool no_plot{false};
   bool brief{false};  ///< table: a line per run
@@ -185,6 +186,9 @@ int run(const RunArguments& arguments);
 /// `sets`: more of them in one text, see parseOverrides().
 int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets,
             bool on_model);
+/// Checks a plant file with all its loops, and lists them with their links.
+int resolvePlant(const std::string& plant, const std::vector<std::string>& set,
+                 const std::string& sets);
 /// What the plugins of all loops that are found register, so that lists show it.
 void loadPluginsOfLoops();
 int plants(bool json);

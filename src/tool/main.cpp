@@ -20,7 +20,10 @@ std::function<int()> chosen;
 void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
   CLI::App* run =
       app.add_subcommand("run", "Closes loops in this process and prints their indices");
-  run->add_option("LOOP", a.loops, "names of config/loop, or paths")->required();
+  CLI::Option* loops = run->add_option("LOOP", a.loops, "names of config/loop, or paths");
+  run->add_option("--plant", a.plant,
+                  "plant file: all its loops with their links (docs/plant_loops.md)")
+      ->excludes(loops);
   run->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
       ->allow_extra_args(false);
   run->add_option("--out", a.out,
@@ -33,19 +36,28 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
   run->add_flag("--no-plot", a.no_plot, "no plot.png");
   run->footer("Example: fmbpc run asp_best asp_case1_pi_x_best --out results\n");
-  run->callback([&a] { chosen = [&a] { return fpc::tool::run(a); }; });
+  run->callback([&a] {
+    if (a.loops.empty() && a.plant.empty()) throw CLI::RequiredError("LOOP");
+    chosen = [&a] { return fpc::tool::run(a); };
+  });
 }
 
 void addResolve(CLI::App& app, fpc::tool::RunArguments& a) {
   CLI::App* resolve = app.add_subcommand(
       "resolve", "Merges and checks a loop file and prints what nodes would read");
-  resolve->add_option("LOOP", a.loops, "name or path")->required()->expected(1);
+  CLI::Option* loop = resolve->add_option("LOOP", a.loops, "name or path")->expected(1);
+  resolve->add_option("--plant", a.plant, "plant file: lists its loops and their links")
+      ->excludes(loop);
   resolve->add_option("--set", a.set, "KEY.PATH=VALUE, may be repeated")->allow_extra_args(false);
   resolve->add_flag("--on-model", a.on_model, "with the loop's model in the place of its plant");
   resolve->add_option("--sets", a.sets, "several of them in one text, separated by spaces");
   resolve->footer("Example: fmbpc resolve asp_case1 --set controller.coincidence_steps=3\n");
   resolve->callback([&a] {
-    chosen = [&a] { return fpc::tool::resolve(a.loops.front(), a.set, a.sets, a.on_model); };
+    if (a.loops.empty() && a.plant.empty()) throw CLI::RequiredError("LOOP");
+    chosen = [&a] {
+      if (!a.plant.empty()) return fpc::tool::resolvePlant(a.plant, a.set, a.sets);
+      return fpc::tool::resolve(a.loops.front(), a.set, a.sets, a.on_model);
+    };
   });
 }
 

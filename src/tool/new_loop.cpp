@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <sstream>
 
 #include "base/files.hpp"
@@ -15,8 +14,8 @@
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
 #include "plant/model_plant.hpp"
-#include "runtime/loop_probe.hpp"
 #include "tool/commands.hpp"
+#include "tool/rehearsal.hpp"
 
 namespace fpc::tool {
 namespace {
@@ -27,9 +26,13 @@ using Eigen::Index;
 constexpr int kLongestStep = 5000;  // samples
 constexpr double kStepPart = 0.1;   // of an input's range
 constexpr double kShortHorizon = 10, kLongHorizon = 60;
-constexpr double kPeak = 1.7;      // of the sensitivity: what is usually asked (astrom2008)
 constexpr double kNoNoise = 1e-3;  // of an output's range, where the record's noise is unknown
-constexpr double kWeights[] = {0.01, 0.1, 1.0, 10.0, 100.0};  // of the moves, ranges squared
+constexpr double kSteps[] = {0.15, -0.15, 0.0};  // of the inputs' ranges, around the middle
+constexpr double kLoad = 0.5;                    // of the first step of the setpoints
+constexpr double kWeights[] = {0.01, 0.03, 0.1,  0.3,  1.0,
+                               3.0,  10.0, 30.0, 100.0};           // of the moves, ranges squared
+constexpr double kWalks[] = {1.0, 0.1, 0.01};                      // of the record's load
+constexpr double kSlower[] = {1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0};  // than the rule's PI
 
 /// What steps of the inputs do to the outputs around the model's nominal point.
 struct StepResponses {
@@ -133,6 +136,10 @@ struct Pair {
   Index input, output;
 };
 
+struct LawSetting {
+  double move_weight, walk;  ///< see kWeights, kWalks
+};
+
 /// Inputs and outputs by their largest gains in parts of the ranges, each once.
 std::vector<Pair> pairsOf(const StepResponses& r) {
   Matrix strength =
@@ -162,32 +169,29 @@ class LoopWriter {
                    (noise_.measurement.array() + noise_.load.array() > 0.0).all();
   }
 
-  std::string law(double move_weight) const {
-    std::ostringstream out;
-    out << head() << plant() << timing() << "model:\n  file: " << file_ << "\n\n"
-        << controller(move_weight) << actuator();
-    return out.str();
+  /// The loop file; `plant` as of NewArguments.
+  std::string law(const LawSetting& setting, const std::string& plant_type) const {
+    return head(plant_type) + plant(plant_type) + timing(plant_type) + "model:\n  file: " + file_ +
+           "\n\n" + controller(setting) + actuator();
   }
 
-  /// The same under proportional and integral controllers, tuned by the step responses.
-  std::string pi() const {
-    std::ostringstream out;
-    out << "# The same loop by PI controllers, tuned by the model's step responses (rivera1986): "
+  /// The same under proportional and integral controllers, tuned by the step responses, whole.
+  std::string pi(double slower) const {
+    return head("model") + plant("model") + timing("model") + piController(slower) + actuator();
+  }
+
+  /// As a file beside that of law().
+  std::string piBeside(double slower) const {
+    return "# The same loop by PI controllers, tuned by the model's step responses (rivera1986): "
            "what to fall back to, "
-           "and what to beat.\n"
-        << "extends: " << name_ << ".yaml\ntitle: " << name_
-        << ", PI\ncontroller:\n  type: pi\n  loops:\n";
-    for (const Pair& p : pairsOf(steps_)) {
-      const Fopdt lag{steps_.gain(p.output, p.input), steps_.time(p.output, p.input) / 60.0,
-                      steps_.dead_time(p.output, p.input) / 60.0};
-      const double lambda = std::max({lag.dead_time, 0.5 * lag.time_constant, sample_ / 60.0});
-      const PiTuning t = imcTuning(lag, lambda);
-      out << "    - {input: " << inputs()[p.input].name << ", output: " << outputs()[p.output].name
-          << ", kp: " << digits(t.kp) << ", ki_per_h: " << digits(t.kp * 60.0 / t.integral_time_min)
-          << ", start: bumpless}  # gain " << digits(lag.gain) << ", lag "
-          << digits(lag.time_constant) << " min, dead time " << digits(lag.dead_time) << " min\n";
-    }
-    return out.str();
+           "and what to beat.\nextends: " +
+           name_ + ".yaml\ntitle: " + name_ + ", PI\n" + piController(slower);
+  }
+
+  /// A step of the setpoints, and the move of the inputs that makes it.
+  RehearsalScale scale() const {
+    const Vector step = aimOf(kSteps[0]) - steps_.y;
+    return {step.cwiseAbs().cwiseMax(0.01 * steps_.y_range), kSteps[0] * steps_.u_range};
   }
 
  private:
@@ -205,11 +209,28 @@ class LoopWriter {
     return text + "}";
   }
 
-  std::string head() const {
+  std::string piController(double slower) const {
+    std::string text = "controller:\n  type: pi\n  loops:\n";
+    for (const Pair& p : pairsOf(steps_)) {
+      const Fopdt lag{steps_.gain(p.output, p.input), steps_.time(p.output, p.input) / 60.0,
+                      steps_.dead_time(p.output, p.input) / 60.0};
+      const double lambda =
+          slower * std::max({lag.dead_time, 0.5 * lag.time_constant, sample_ / 60.0});
+      const PiTuning t = imcTuning(lag, lambda);
+      text += "    - {input: " + inputs()[p.input].name + ", output: " + outputs()[p.output].name +
+              ", kp: " + digits(t.kp) + ", ki_per_h: " + digits(t.kp * 60.0 / t.integral_time_min) +
+              ", start: bumpless}  # gain " + digits(lag.gain) + ", lag " +
+              digits(lag.time_constant) + " min, dead time " + digits(lag.dead_time) +
+              " min; asked for a lag of " + digits(lambda) + " min\n";
+    }
+    return text;
+  }
+
+  std::string head(const std::string& plant_type) const {
     return "# Written by `fmbpc new loop` from " + file_ +
            ": numbers are of the model and its record, see them as a start.\n"
            "#   fmbpc run " +
-           name_ + (a_.plant == "model" ? "" : " --on-model") + "\n#   fmbpc stability " + name_ +
+           name_ + (plant_type == "model" ? "" : " --on-model") + "\n#   fmbpc stability " + name_ +
            "\n# All keys, units and defaults: docs/loop_file.md\ntitle: " + name_ + "\n\n";
   }
 
@@ -228,8 +249,8 @@ class LoopWriter {
     return text;
   }
 
-  std::string plant() const {
-    if (a_.plant == "model")
+  std::string plant(const std::string& type) const {
+    if (type == "model")
       return "plant:\n  type: model                    # rehearsed on the model itself, with its "
              "noise\n  model: " +
              file_ + "\n\n";
@@ -239,20 +260,20 @@ class LoopWriter {
         name_ + "\n" + signalList("outputs", model_.outputs, 0.5) +
         signalList("inputs", model_.inputs, 0.0) +
         signalList("disturbances", model_.disturbances, 0.5) + "\n";
-    if (a_.plant == "external")
+    if (type == "external")
       return text +
              "gateway: {type: none}            # a node of yours speaks the loop protocol: "
              "docs/own_plant.md\n\n";
-    text += "gateway:\n  type: " + a_.plant + "\n";
+    text += "gateway:\n  type: " + type + "\n";
     int next = 0;
-    if (a_.plant == "modbus")
+    if (type == "modbus")
       text += "  modbus: {host: 127.0.0.1, port: 502}  # put yours, and the registers below\n";
     text += "  tags:\n";
     for (const auto* group : {&model_.outputs, &model_.disturbances, &model_.inputs})
       for (const SignalInfo& s : *group) {
         const bool is_input = group == &model_.inputs;
         text += "    " + s.name + ": {";
-        if (a_.plant == "modbus")
+        if (type == "modbus")
           text += "register: " + std::to_string(2 * next++) + (is_input ? "" : ", table: input") +
                   ", type: float32}\n";
         else
@@ -261,31 +282,60 @@ class LoopWriter {
     return text + "\n";
   }
 
-  /// Steps to where the outputs rest under inputs at 65 and 35 % of their ranges.
-  std::string timing() const {
+  /// Where the outputs rest under inputs beside the middle by so much of their ranges.
+  Vector aimOf(double part) const {
+    const std::optional<Vector> rest = restOf(model_, steps_.u + part * steps_.u_range, steps_.d);
+    return rest && rest->allFinite() ? *rest : steps_.y;
+  }
+
+  /// What, added in each sample, would shift the outputs by a part of the first step.
+  Vector load() const {
+    const ModelPlant plant(model_, {}, {});
+    Vector shift = kLoad * (aimOf(kSteps[0]) - steps_.y);
+    for (Index i = 0; i < shift.size(); ++i)
+      if (shift[i] == 0.0) shift[i] = kLoad * kStepPart * steps_.y_range[i];
+    Vector change(shift.size()), d = Vector::Zero(steps_.d.size() + shift.size());
+    d.head(steps_.d.size()) = steps_.d;
+    plant.derivatives(steps_.y + shift, steps_.u, d, change);
+    for (Index i = 0; i < shift.size(); ++i) {  // of an output that integrates at least a ramp
+      const double least = std::abs(shift[i]) * sample_ / settlingOf(steps_);
+      if (!(std::abs(change[i]) >= least)) change[i] = shift[i] < 0.0 ? least : -least;
+    }
+    return -change;
+  }
+
+  /// Steps of the setpoints, then, where the plant is the model, a load.
+  std::string timing(const std::string& plant_type) const {
     const auto quarter =
-        static_cast<int>(std::clamp(std::ceil(3.0 * settlingOf(steps_) / sample_), 50.0, 2000.0));
+        static_cast<int>(std::clamp(std::ceil(3.0 * settlingOf(steps_) / sample_), 50.0, 1000.0));
     const auto hours = [&](int samples) { return exactText(samples * sample_ / 3600.0); };
+    const bool loaded = plant_type == "model";
+    const int samples = (loaded ? 5 : 4) * quarter;
     std::ostringstream out;
     out << "sampling:\n  sample_time_s: " << exactText(sample_)
-        << "\n  duration_h: " << hours(4 * quarter) << "      # " << 4 * quarter
+        << "\n  duration_h: " << hours(samples) << "      # " << samples
         << " samples\n\nsetpoint:                        # steps that the inputs' ranges allow\n  "
            "initial: "
         << mapping(model_.outputs, steps_.y) << "\n  schedule:\n";
     int k = 1;
-    for (const double part : {0.15, -0.15, 0.0}) {
-      const std::optional<Vector> rest = restOf(model_, steps_.u + part * steps_.u_range, steps_.d);
-      const Vector aim = rest && rest->allFinite() ? *rest : steps_.y;
-      std::string step = mapping(model_.outputs, aim);
-      out << "    - {time_h: " << hours(quarter * k++) << ", " << step.substr(1) << "\n";
-    }
+    for (const double part : kSteps)
+      out << "    - {time_h: " << hours(quarter * k++) << ", "
+          << mapping(model_.outputs, aimOf(part)).substr(1) << "\n";
+    out << "\n";
+    if (!loaded) return out.str();
+    out << "disturbance:                     # a load that would shift the outputs by half of the "
+           "first step\n  commands:\n";
+    const Vector shift = load();
+    for (Index i = 0; i < shift.size(); ++i)
+      out << "    - {time_h: " << hours(quarter * k) << ", name: load/" << outputs()[i].name
+          << ", value: " << digits(shift[i]) << ", mode: offset}\n";
     out << "\n";
     return out.str();
   }
 
-  std::string controller(double move_weight) const {
+  std::string controller(const LawSetting& setting) const {
     const Vector y_weight = steps_.y_range.array().square().inverse(),
-                 u_weight = move_weight * steps_.u_range.array().square().inverse();
+                 u_weight = setting.move_weight * steps_.u_range.array().square().inverse();
     Vector pole(steps_.y.size()), noise(pole.size()), walk(pole.size());
     for (Index i = 0; i < pole.size(); ++i) {
       Index j = 0;
@@ -294,7 +344,8 @@ class LoopWriter {
       pole[i] = std::exp(-sample_ / asked);
       noise[i] = known_noise_ ? std::max(noise_.measurement[i], noise_.load[i])
                               : kNoNoise * steps_.y_range[i];
-      walk[i] = known_noise_ ? std::max(noise_.load[i], 0.02 * noise[i]) : noise[i];
+      walk[i] =
+          setting.walk * (known_noise_ ? std::max(noise_.load[i], 0.02 * noise[i]) : noise[i]);
     }
     const double horizon =
         std::clamp(std::ceil(settlingOf(steps_) / sample_), kShortHorizon, kLongHorizon);
@@ -306,16 +357,19 @@ class LoopWriter {
         << "  reference_pole: " << mapping(model_.outputs, pole)
         << "  # half the lag, or the dead time\n"
         << "  weight_output: " << mapping(model_.outputs, y_weight) << "  # 1 / range^2\n"
-        << "  weight_move: " << mapping(model_.inputs, u_weight) << "  # " << digits(move_weight)
-        << " / range^2: of five the least with a sensitivity peak below " << digits(kPeak)
-        << " on the model, or the one with the lowest peak\n"
+        << "  weight_move: " << mapping(model_.inputs, u_weight) << "  # "
+        << digits(setting.move_weight) << " / range^2\n"
         << "  realisation: observer\n"
         << "  observer:"
         << (known_noise_ ? "                        # of the model's errors on its record\n"
                          : "                        # the model file does not say its errors: put "
                            "the noise of your sensors\n")
         << "    noise_std: " << mapping(model_.outputs, noise) << "\n"
-        << "    disturbance_std: " << mapping(model_.outputs, walk) << "\n\n";
+        << "    disturbance_std: " << mapping(model_.outputs, walk) << "  # "
+        << digits(setting.walk) << " of it. This and weight_move: of "
+        << std::size(kWeights) * std::size(kWalks)
+        << " pairs the cheapest on the model with a sensitivity peak below " << digits(kUsualPeak)
+        << ", or the one with the lowest\n\n";
     return out.str();
   }
 
@@ -337,18 +391,13 @@ class LoopWriter {
   bool known_noise_{};
 };
 
-/// Largest sensitivity of the loop of this text on its model; infinite if it does not rest.
-double peakOf(const std::string& text, const std::string& name) {
-  const LoopFile loop = parseLoop(text, name, {{"plant.type", "model"}});
-  const LoopCourse course(loop);
-  double worst = 0.0;
-  for (const CoursePoint& point : course.points(3)) {
-    const LoopProbe probe = probeLoop(course.stayingAt(loop, point), point);
-    if (probe.result == ProbeResult::kHeld) continue;
-    if (probe.result != ProbeResult::kLinear) return std::numeric_limits<double>::infinity();
-    worst = std::max(worst, probe.response->peak());
-  }
-  return worst;
+std::string figuresOf(const std::string& name, const Rehearsed& chosen, const Judged& is,
+                      const std::vector<SignalInfo>& outputs) {
+  std::string text = "  " + name + ": cost " + digits(is.cost) + ", ISE";
+  for (std::size_t i = 0; i < outputs.size(); ++i)
+    text += " of " + outputs[i].name + " " + digits(is.ise[static_cast<Index>(i)]);
+  return text + ", mean move " + digits(100.0 * is.movement) +
+         " % of the range, sensitivity peak " + digits(chosen.peak) + "\n";
 }
 
 }  // namespace
@@ -363,23 +412,39 @@ int newLoop(const NewArguments& a) {
   for (const std::string& t : {target, pi_target})
     require(!fs::exists(t), t, "a file that is not there yet");
   const LoopWriter writer(a, name, found, file);
-  double chosen = kWeights[0], least = std::numeric_limits<double>::infinity();
-  for (const double weight : kWeights) {  // the first with a low peak, or that with the lowest
-    const double peak = peakOf(writer.law(weight), name);
-    if (!(peak < least)) continue;
-    chosen = weight;
-    least = peak;
-    if (peak < kPeak) break;
-  }
-  require(std::isfinite(least), "--model " + file,
-          "a model on which law iterated comes to rest with one of five weights of the moves");
+  std::vector<LawSetting> settings;
+  std::vector<std::string> laws, pis;
+  for (const double weight : kWeights)
+    for (const double walk : kWalks) {
+      settings.push_back({weight, walk});
+      laws.push_back(writer.law(settings.back(), "model"));
+    }
+  for (const double slower : kSlower) pis.push_back(writer.pi(slower));
+  const RehearsalScale scale = writer.scale();
+  const Rehearsed law = chosenOf(laws, name, scale), pi = chosenOf(pis, name, scale);
+  require(std::isfinite(law.cost) && std::isfinite(law.peak), "--model " + file,
+          "a model on which law iterated comes to rest with one of " + std::to_string(laws.size()) +
+              " settings");
+  const auto placeOf = [](const std::vector<std::string>& texts, const Rehearsed& chosen) {
+    return static_cast<std::size_t>(std::find(texts.begin(), texts.end(), chosen.text) -
+                                    texts.begin());
+  };
   makeFolder(a.out);
-  writeText(writer.law(chosen), target);
-  writeText(writer.pi(), pi_target);
+  writeText(writer.law(settings[placeOf(laws, law)], a.plant), target);
+  writeText(writer.piBeside(kSlower[placeOf(pis, pi)]), pi_target);
   for (const std::string& t : {target, pi_target}) readLoop(t);  // says what does not fit
+  const Judged of_law = judged(law.text, name, scale), of_pi = judged(pi.text, name, scale);
   const std::string rehearsal = a.plant == "model" ? "" : " --on-model";
-  std::cout << "written: " << target << ", " << pi_target << "\ntry it: fmbpc run " << target << " "
-            << pi_target << rehearsal << "\n        fmbpc stability " << target << "\n";
+  std::cout << "written: " << target << ", " << pi_target
+            << "\non the model, with three seeds of noise that nothing was chosen by:\n"
+            << figuresOf(name, law, of_law, found.model.outputs)
+            << figuresOf(name + "_pi", pi, of_pi, found.model.outputs)
+            << (of_law.cost < of_pi.cost
+                    ? "The law costs " + digits(of_law.cost / of_pi.cost) +
+                          " of what the PI does.\n"
+                    : "The PI is cheaper: begin with it, or tune the law (fmbpc tune).\n")
+            << "try it: fmbpc run " << target << " " << pi_target << rehearsal
+            << "\n        fmbpc stability " << target << "\n";
   return 0;
 }
 

@@ -42,6 +42,19 @@ TEST_F(NewTool, ALoopOfAModelRunsAndIsStable) {
   }
 }
 
+TEST_F(NewTool, TheLawIsCheaperThanThePiUnderNoiseThatNothingWasChosenBy) {
+  ASSERT_EQ(newLoop(path("new"), "--model cstr_auto").code, 0);
+  const auto meanIse = [&](const std::string& file) {
+    double sum = 0.0;
+    for (const char* seed : {"21", "22", "23", "24", "25"}) {
+      const LoopFile loop = readLoop(path("new") + file, {{"noise.seed", seed}});
+      sum += summarize(loop, runLoop(loop), 0.0).outputs.front().ise;
+    }
+    return sum / 5.0;
+  };
+  EXPECT_LT(meanIse("/mine.yaml"), 0.9 * meanIse("/mine_pi.yaml"));
+}
+
 TEST_F(NewTool, ALoopForARealPlantIsReadAndRehearsed) {
   for (const char* plant : {"external", "float64", "modbus"}) {
     const std::string folder = path(plant);

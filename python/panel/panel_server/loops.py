@@ -20,10 +20,12 @@ MOST_WAITING = 20000  # raw messages of a topic between two looks
 MOST_FILLED = 200000  # rows of a run's earlier parts
 PLAN_GRACE = 60.0 # s that plans are listened to after the last page that shows them
 FAST = 100        # samples a second of wall time; of a faster loop the recorder's journal is read, not each message
-GLANCE = 2.0      # s between two looks at the messages of a fast loop
+FOLLOW = 0.5      # s between two readings of that journal
+GLANCE = 5.0      # s between two looks at the messages of a fast loop
 GLANCED = 0.3     # s that such a look lasts at most
 ALL_FOR = 6.0     # s that a fast loop's messages are heard once somebody asks something of it
-SAMPLED = ("measurement", "tracking", "control_action")
+TRUST = "signal/model_trust"
+SAMPLED = ("measurement", "tracking", "control_action", TRUST)
 
 # Who speaks where, as in the loop file (loop.publishers); () is anyone.
 SPEAKERS = {"plant_info": ("plant_simulator", "plant_gateway"), "measurement": ("plant_simulator", "plant_gateway"),
@@ -76,7 +78,7 @@ class Loop:
         self.prediction_law, self.guard_limits, self.prediction_step = (), None, -1
         self.model = self.trust = None
         self.kept, self.settings, self.settings_now = None, None, None
-        self.signals = {}          # name: latest value of signal/NAME
+        self.trust_said = None     # by the law, of now
         self.run_end = None
         self.heard = None
         self.damaged = self.strangers = 0
@@ -86,25 +88,21 @@ class Loop:
         self.plan_wanted = -math.inf
         self.paced = collections.deque()  # (time, step) of the latest second
         self.journal, self.following, self.followed = None, False, 0
-        self.fast_tried = self.all_until = self.glanced = -math.inf
+        self.fast_tried = self.all_until = self.glanced = self.follow_at = -math.inf
         self.glance, self.closed = {}, False
         self.lock = threading.RLock()
-        self.raw = {topic: Raw(self.prefix + topic) for topic in ("plant_info", "measurement", "tracking", "control_action", "loop_state",
-                                                                   "operator_kept", "fuzzy_model")}
+        self.raw = {topic: Raw(self.prefix + topic) for topic in ("plant_info", *SAMPLED, "loop_state", "operator_kept", "fuzzy_model")}
         self.on_demand = {}
         self.subscribers = [
             rospy.Subscriber(self.prefix + "fmbpc_controller/parameter_descriptions", ConfigDescription, self._on_description),
             rospy.Subscriber(self.prefix + "fmbpc_controller/parameter_updates", Config, self._on_config),
             rospy.Subscriber(self.prefix + "run_end", String, lambda m: setattr(self, "run_end", m.data))]
-        for signal in ("model_trust", "model_trust_ahead"):
-            self.subscribers.append(rospy.Subscriber(self.prefix + "signal/" + signal, messages.Signal,
-                                                     lambda m, s=signal: self.signals.__setitem__(s, m.data)))
         self._read_text()
 
     def close(self):
         with self.lock:
             self.closed = True
-            topics = [*self.raw.values(), *self.on_demand.values(), *self.glance.values()]
+            topics = [*self.raw.values(), *self.on_demand.values()]
             self.raw, self.on_demand, self.glance = {}, {}, {}
             journal, self.journal = self.journal, None
         for item in topics:
@@ -177,7 +175,7 @@ class Loop:
             for topic, take in (("plant_info", self._on_info), ("measurement", self._on_measurement), ("tracking", self._on_tracking),
                                 ("control_action", self._on_action), ("base_action", self._on_base), ("input_plan", self._on_plan),
                                 ("predictive_action", self._on_prediction), ("fuzzy_model", self._on_model), ("operator_kept", self._on_kept),
-                                ("loop_state", self._on_state)):
+                                (TRUST, self._on_trust), ("loop_state", self._on_state)):
                 raw = self.raw.get(topic) or self.on_demand.get(topic) or self.glance.get(topic)
                 for caller, buffer, wall in raw.drain() if raw else ():
                     if topic != "loop_state" and not self._counts(topic, caller):
@@ -198,7 +196,7 @@ class Loop:
         names = [s.name for s in info.outputs]
         columns = names + [n + "_setpoint" for n in names] + [n + "_reference" for n in names]
         columns += [s.name for s in info.inputs] + [s.name + "_base" for s in info.inputs] + [s.name + "_applied" for s in info.inputs]
-        columns += [s.name for s in info.disturbances] + ["model_trust"]
+        columns += [s.name for s in info.disturbances]
         self.history, self.errors = History(columns, self.history_bytes), predict.Errors(len(names))
         self.setpoint = self.reference = self.action = self.base = self.applied = ()
         self.action_step = self.base_step = self.prediction_step = -1
@@ -222,12 +220,10 @@ class Loop:
             return
         values = {s.name: v for s, v in zip(info.outputs, outputs)}
         values.update({s.name: v for s, v in zip(info.disturbances, disturbances)})
-        values.update({s.name + "_applied": v for s, v in zip(info.inputs, applied)})
-        if "model_trust" in self.signals:
-            values["model_trust"] = self.signals["model_trust"]
         self.history.put(step, values, wall)
+        self.history.put(step - 1, {s.name + "_applied": v for s, v in zip(info.inputs, applied)})  # u(k-1)
         self.errors.came(step, outputs)
-        self.sent_from = min(self.sent_from, step)
+        self.sent_from = min(self.sent_from, max(step - 1, 0))
         if step >= self.step:
             self.step, self.quality, self.final, self.applied = step, quality, final, applied
         self.heard = now
@@ -249,6 +245,9 @@ class Loop:
         self.sent_from = min(self.sent_from, step)
         if step >= self.action_step:
             self.action, self.source, self.action_step = values, source, step
+
+    def _on_trust(self, buffer, *_):
+        self.trust_said = wire.signal(buffer)
 
     def _on_base(self, buffer, *_):
         run_id, step, values, _ = wire.action(buffer)
@@ -353,7 +352,11 @@ class Loop:
                 {n: i for n, i in wanted.items() if n in self.history.index})
 
     # A loop that goes much faster than anybody can look: each message to one more listener costs it, so the samples are read from the journal that
-    # its recorder writes on this machine, and of the messages only some are looked at, for what is not in there (quality, source, plan).
+    # its recorder writes on this machine, and a message is looked at every now and then, for what is not in there (quality, source, trust). Of such
+    # a loop no plan is shown: it would be old before it is drawn.
+
+    def fast(self):
+        return self.journal is not None
 
     def want_all(self, now):
         """Somebody asks something of the loop: each message counts for a while."""
@@ -365,24 +368,30 @@ class Loop:
             self.paced.popleft()
         since, step = self.paced[0]
         rate = (self.step - step) / (now - since) if now - since >= 0.5 else math.nan
+        if self.following:
+            return
         if self.journal is None:
-            begins = rate > FAST and now > self.all_until and now - self.fast_tried > 5.0 and self.tool and self.executor is not None and not self.over()
-            if not begins or self.following:
+            if not rate > FAST or now < self.all_until or now - self.fast_tried < 5.0 or not self.tool or self.executor is None or self.over():
                 return
             self.fast_tried = now
-        if not self.following:
             self.following = True
-            slow = rate < 0.5 * FAST or now < self.all_until or self.over()
-            self.executor.submit(self._follow, now, self.run_id, self.journal is not None and slow)
+            self.executor.submit(self._follow, now, self.run_id, False)
+            return
+        slow = rate < 0.5 * FAST or now < self.all_until or self.over()
+        if slow or now - self.follow_at >= FOLLOW:
+            self.following = True
+            self.executor.submit(self._follow, now, self.run_id, slow)
 
     def _follow(self, now, run_id, ends):
         """In a thread: nothing here may keep the others waiting."""
         try:
+            self.follow_at = now
             if self.journal is None:
                 self._begin_to_follow(run_id)
             if self.journal is not None:
+                if not ends and now - self.glanced > GLANCE:
+                    self._glance(now)
                 self._take_newest(now, run_id)
-                self._glance(now)
             if ends:
                 self._hear_all()
         except Exception:  # noqa: BLE001: no journal (any more), or of another run: the messages are heard as before
@@ -397,7 +406,7 @@ class Loop:
             if fits:
                 self.journal, self.followed = journal, max(self.step - 20, 0)
                 topics = [self.raw.pop(t) for t in SAMPLED] + list(self.on_demand.values())
-                self.on_demand = {}
+                self.on_demand, self.plan, self.planned = {}, None, None
         if not fits:
             journal.close()
             return
@@ -417,8 +426,6 @@ class Loop:
             self.history.put(last, {}, time.time())
             value = lambda names: tuple(float(table[-1, wanted[n]]) if n in wanted else math.nan for n in names)  # noqa: E731
             outputs, inputs = [s.name for s in self.info.outputs], [s.name for s in self.info.inputs]
-            for k, row in zip(steps.tolist(), table[:, [wanted[n] for n in outputs]]):
-                self.errors.came(k, row)
             self.sent_from, self.followed = min(self.sent_from, int(steps[0])), last + 1
             if last > self.step:
                 self.step, self.heard = last, now
@@ -426,24 +433,20 @@ class Loop:
                 self.setpoint, self.reference = value(n + "_setpoint" for n in outputs), value(n + "_reference" for n in outputs)
 
     def _glance(self, now):
-        """Some messages, every now and then."""
-        if self.glance and now - self.glanced > GLANCED:
-            with self.lock:
-                topics, self.glance = self.glance, {}
-            for raw in topics.values():
-                raw.close()
-        elif not self.glance and now - self.glanced > GLANCE:
-            self.glanced = now
-            plans = ("predictive_action", "input_plan") if now - self.plan_wanted < PLAN_GRACE else ()
-            self.glance = {topic: Raw(self.prefix + topic, keep=2) for topic in ("measurement", "control_action", *plans)}
+        """One message of each topic that says what the journal does not."""
+        self.glanced = now
+        topics = {topic: Raw(self.prefix + topic, keep=1) for topic in ("measurement", "control_action", *([TRUST] if self.trust_said is not None else []))}
+        while not all(raw.waiting for raw in topics.values()) and time.monotonic() < now + GLANCED:
+            time.sleep(0.002)
+        for raw in topics.values():
+            raw.close()
+        with self.lock:
+            self.glance = topics
 
     def _hear_all(self):
         with self.lock:
-            journal, self.journal = self.journal, None
-            topics, self.glance = self.glance, {}
+            journal, self.journal, self.glance = self.journal, None, {}
             missing = [] if self.closed else [t for t in SAMPLED if t not in self.raw]
-        for raw in topics.values():
-            raw.close()
         made = {t: Raw(self.prefix + t) for t in missing}
         with self.lock:
             self.raw.update(made)
@@ -590,7 +593,6 @@ class Loop:
                 "rules": predict.rules_of(self.model, value),
                 "signals": [{"name": s.name, "unit": s.unit, "lower": finite(s.lower), "upper": finite(s.upper), "value": finite(self.history.value(self.step, s.name))}
                             for s in list(self.model.outputs) + list(self.model.inputs) + list(self.model.disturbances)],
-                "trust": finite(self.signals.get("model_trust")), "trust_ahead": finite(self.signals.get("model_trust_ahead")),
                 "trust_here": self._trust_here(),
                 "poles": [] if plan is None else [[round(float(p.real), 6), round(float(p.imag), 6)] for p in plan.poles()],
                 "gains": None if gains is None else [plain(row, 5) for row in gains],

@@ -26,8 +26,10 @@ TICK = 0.1            # s
 LOOK_FOR_LOOPS = 2.0  # s
 MOST_LOOPS = 200
 LEFT_AFTER = 600.0    # s that a loop is shown that no master lists and nobody hears any more
-MOST_ROWS = 400       # in one message; more, and pages fetch the trend
+MOST_ROWS = 200       # in one message; of more, the least and the most of each stretch
+SELDOM = 5            # ticks from one message about a fast loop to the next
 MOST_STREAMS, MOST_STREAMS_OF_ONE = 100, 32
+DEAF = 30.0           # s without reading, then a browser is cut off
 MOST_POINTS = 4000
 WEB = os.path.join(os.path.dirname(os.path.dirname(os.path.realpath(__file__))), "web")
 FILES = {"/": ("index.html", "text/html; charset=utf-8"), "/app.js": ("app.js", "text/javascript; charset=utf-8"),
@@ -157,7 +159,7 @@ class Panel:
         if self.beat % 5 == 0:
             self.send("overview", compact(self.overview(now)))
         for name in watched:
-            if name in self.loops:
+            if name in self.loops and (self.beat % SELDOM == 0 or not self.loops[name].fast()):
                 self.send("loop", compact(self.update(self.loops[name], now)), name)
         if self.said_alarms != self.alarms.changes:
             self.said_alarms = self.alarms.changes
@@ -168,9 +170,10 @@ class Panel:
             self.send("journal", compact([light(e) for e in news]))
 
     def send(self, kind, text, loop=None):
+        packed = event(kind, text)
         for stream in list(self.streams):
             if loop is None or stream.loop == loop:
-                stream.push(kind, text)
+                stream.push(packed)
 
     def overview(self, now):
         rows = []
@@ -204,13 +207,9 @@ class Panel:
             update["ahead"] = loop.ahead() if self.beat % 2 == 0 else False  # False: as before
             update["held"] = bool(loop.kept and loop.kept.recipe_held)
             update["adapt"] = bool(loop.kept.adapt) if loop.kept is not None and loop.kept.adapt_given else None
-            update["trust"] = loops.finite(loop.signals.get("model_trust"))
+            update["trust"], update["fast"] = loops.finite(loop.trust_said), loop.fast()
             update["external"] = loop.get("plant", "type") == "external"
-            first = loop.sent_from
-            if loop.step - first > MOST_ROWS:
-                update["refetch"] = True
-                first = loop.step
-            steps, values, wall = loop.history.rows(first, loop.step)
+            steps, values, wall = loop.history.drawn(loop.sent_from, loop.step, MOST_ROWS)
             loop.sent_from = loop.step + 1
             update["rows"] = [[int(s), None if w != w else round(float(w), 2)] + plain(v) for s, v, w in zip(steps, values, wall)]
         return update
@@ -267,6 +266,11 @@ class Panel:
     def close(self):
         self.journal.write({"t": round(time.time(), 3), "kind": "panel", "what": "ended", "who": "", "note": ""})
         self.executor.shutdown(wait=False)
+
+
+def event(kind, text):
+    """Of server-sent events, one."""
+    return f"event: {kind}\ndata: {text}\n\n".encode()
 
 
 def lead(loop):
@@ -393,6 +397,7 @@ class Stream(Handler):
     loop = None
     pending = None
     missed = False
+    pushed = 0.0
 
     async def get(self):
         if not self.may_view():
@@ -407,10 +412,9 @@ class Stream(Handler):
         self.set_header("X-Accel-Buffering", "no")
         now = time.monotonic()
         self.write("retry: 1000\n\n")
-        self.event("hello", compact({"me": me(self.caller), "events": panel.events}))
-        self.event("overview", compact(panel.overview(now)))
-        self.event("alarms", compact(panel.alarms.listed()))
-        self.event("journal", compact([light(e) for e in panel.journal.latest(200)]))
+        self.write(event("hello", compact({"me": me(self.caller), "events": panel.events})))
+        self.write(event("overview", compact(panel.overview(now))))
+        self.write_lists()
         try:
             await self.flush()
         except tornado.iostream.StreamClosedError:
@@ -423,23 +427,27 @@ class Stream(Handler):
         finally:
             panel.streams.discard(self)
 
-    def event(self, kind, text):
-        self.write(f"event: {kind}\ndata: {text}\n\n")
+    def write_lists(self):
+        self.write(event("alarms", compact(self.panel.alarms.listed())))
+        self.write(event("journal", compact([light(e) for e in self.panel.journal.latest(200)])))
 
-    def push(self, kind, text):
+    def push(self, packed):
+        now = time.monotonic()
         if self.pending is not None and not self.pending.done():
             self.missed = True
+            if now - self.pushed > DEAF:
+                self.request.connection.stream.close()
             return
         if self.caller.session is not None and self.panel.access.session(self.get_cookie(self.cookie)) is None and self.anonymous == "none":
             self.on_connection_close()
             return
         if self.missed:
             self.missed = False
-            self.event("missed", "1")
-            self.event("alarms", compact(self.panel.alarms.listed()))
-        self.event(kind, text)
+            self.write(event("missed", "1"))
+            self.write_lists()
+        self.write(packed)
         try:
-            self.pending = self.flush()
+            self.pending, self.pushed = self.flush(), now
         except tornado.iostream.StreamClosedError:
             self.on_connection_close()
 

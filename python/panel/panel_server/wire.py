@@ -45,3 +45,8 @@ def tracking(buffer):
     setpoint, at = doubles(buffer, at)
     reference, at = doubles(buffer, at)
     return run_id, step, setpoint, reference
+
+
+def signal(buffer):
+    """The number of signal/NAME."""
+    return struct.unpack_from("<d", buffer, 16 + struct.unpack_from("<I", buffer, 12)[0])[0]

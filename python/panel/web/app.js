@@ -12,7 +12,10 @@ const MARKS = { 1: "!!", 2: "!", 3: "i" };
 const PRIORITY = { 1: "high", 2: "medium", 3: "low" };
 const WINDOWS = [[100, "100 samples"], [300, "300"], [1000, "1,000"], [5000, "5,000"], [0, "whole run"]];
 const GONE = 1600;            // ms without a word of the panel (it speaks twice a second)
-let source = null, view = { kind: "" }, drawn = null;
+const AGAIN = 5000;           // ms, then a new connection is tried: one that was cut without a word never ends by itself
+const DRAWN = 240;            // ms from one drawing of the trends to the next
+const FAST_SPAN = 5000;       // samples at least that the trend of a fast loop shows
+let source = null, connected = 0, view = { kind: "" }, drawn = null;
 
 // ---- small things
 
@@ -109,6 +112,7 @@ async function get(path) { const answer = await fetch(path); if (!answer.ok) thr
 
 function connect() {
   if (source) source.close();
+  connected = Date.now();
   const loop = view.loop ? "?loop=" + encodeURIComponent(view.loop) : "";
   source = new EventSource("stream" + loop);
   const on = (kind, take) => source.addEventListener(kind, (e) => { S.heard = Date.now(); take(JSON.parse(e.data)); });
@@ -164,9 +168,12 @@ function takeLoop(m) {
   if (!m.columns) { render(); return; }
   if (!series || series.run !== m.run || m.refetch || (before && before.restarted !== m.restarted) ||
     (series.steps.length && m.rows.length && m.rows[0][0] > series.steps[series.steps.length - 1] + 1)) fetchTrend(m.name);
-  if (series && series.run === m.run) for (const row of m.rows) append(series, row);
-  S.seenAt = performance.now();
-  if (view.loop === m.name) requestAnimationFrame(render);
+  if (series && series.run === m.run) {
+    for (const row of m.rows) append(series, row);
+    forget(series, spanOf(m));
+    if (series.steps.length > 6000) fetchTrend(m.name);
+  }
+  if (view.loop === m.name && !document.hidden) requestAnimationFrame(render);
 }
 
 function append(series, row) {
@@ -175,7 +182,17 @@ function append(series, row) {
   if (n && step <= series.steps[n - 1]) { i = series.steps.lastIndexOf(step); if (i < 0) return; }
   series.steps[i] = step; series.wall[i] = at;
   values.forEach((v, j) => { series.data[j][i] = v; });
-  if (series.steps.length > 6000) fetchTrend(series.name);
+}
+/* Samples of the past that are shown; 0: all. */
+function spanOf(info) {
+  const span = Number(store.get("window", "300"));
+  return span && info && info.fast ? Math.max(span, FAST_SPAN) : span;
+}
+function forget(series, span) {
+  const n = series.steps.length, first = series.steps[n - 1] - span;
+  if (!span || series.steps[0] >= first - 0.1 * span) return;
+  const gone = series.steps.findIndex((k) => k >= first);
+  for (const column of [series.steps, series.wall, ...series.data]) column.splice(0, gone);
 }
 
 const fetching = {};
@@ -188,7 +205,7 @@ async function fetchTrend(name) {
   }
   fetching[name] = now;
   try {
-    const info = S.last[name] || S.loops.find((l) => l.name === name), span = Number(store.get("window", "300"));
+    const info = S.last[name] || S.loops.find((l) => l.name === name), span = spanOf(S.last[name]);
     const from = span && info && info.step > span ? info.step - span : 0;
     const got = await get(`api/history?loop=${encodeURIComponent(name)}&from=${from}&points=1500`);
     S.series[name] = { name, run: got.run, columns: got.columns, steps: got.steps, wall: got.wall, data: got.data, dt: got.dt };
@@ -301,7 +318,11 @@ function renderBanner() {
   put($("banner"), parts);
   put($("link"), [gone ? "✕ no connection" : S.heard ? "● connected " + wall(S.time || Date.now() / 1000) : "connecting …"]);
 }
-if (!FILE) setInterval(renderBanner, 300);
+if (!FILE)
+  setInterval(() => {
+    renderBanner();
+    if (Date.now() - Math.max(S.heard, connected) > AGAIN) connect();
+  }, 300);
 
 // ---- dialogs
 
@@ -604,8 +625,15 @@ function loopView(force) {
           h("span.word." + (n.away > 2 ? "stale" : n.word), null, n.away > 2 ? "silent" : n.word)),
         h("td.reason", null, n.reason),
         cell("heard", n.away > 2 ? `${num(n.away, 2)} s ago` : "now", ".num"))))]);
-  windowButtons(); trends(m);
+  windowButtons(m);
+  const now = performance.now();
+  if (force || now - trendsAt > DRAWN || trendsOf !== S.series[m.name]) {
+    trendsAt = now;
+    trendsOf = S.series[m.name];
+    trends(m);
+  }
 }
+let trendsAt = 0, trendsOf = null;
 
 function modeButtons(l) {
   const manual = l.mode === "manual", can = may("operate"), title = can ? null : "log in as operator";
@@ -622,7 +650,7 @@ function modeButtons(l) {
     l.trust === null || l.trust === undefined ? null : h("span", null, `model trusted ${num(100 * l.trust, 3)} %`)];
 }
 
-function windowButtons() {
+function windowButtons(m) {
   const now = store.get("window", "300");
   put($("window"), [
     h("h2", null, "Trends"),
@@ -633,6 +661,7 @@ function windowButtons() {
         onclick: () => { store.set("window", String(n)); fetching[view.loop] = 0; fetchTrend(view.loop); }
       },
       label)),
+    m.fast ? h("span.soft", null, `It goes fast: at least ${FAST_SPAN} samples, without the plan.`) : null,
     h("details", null,
       h("summary", null, "What the lines are"),
       h("p.soft", null,
@@ -742,7 +771,7 @@ function trends(m, whole) {
       plan: plan ? extra.map((i) => plan[i]) : null,
       trust: future && ahead.trust ? extra.map((i) => ahead.trust[Math.min(i, ahead.trust.length - 1)]) : null,
       lower: p.kind === "y" ? p.s.lower : p.kind === "u" ? p.s.lower : null,
-      upper: p.kind === "y" ? p.s.upper : p.kind === "u" ? p.s.upper : null, seen: performance.now()
+      upper: p.kind === "y" ? p.s.upper : p.kind === "u" ? p.s.upper : null
     };
     chart.box.setAttribute("aria-label",
       `${p.s.name}: now ${num(p.s.value)}${unit(p.s.unit)}` +
@@ -1150,6 +1179,7 @@ function render(force) {
   else if (view.kind === "alarms") alarmsView(); else if (view.kind === "journal") journalView(); else overview();
 }
 addEventListener("hashchange", () => { route(); $("main").focus({ preventScroll: true }); scrollTo(0, 0); });
+addEventListener("visibilitychange", () => render(true));
 addEventListener("resize", () => { clearTimeout(addEventListener.later); addEventListener.later = setTimeout(() => render(true), 150); });
 addEventListener("keydown", (e) => {
   if (e.ctrlKey || e.altKey || e.metaKey || /INPUT|SELECT|TEXTAREA/.test(e.target.tagName) || $("dialog").open || FILE) return;
@@ -1158,13 +1188,7 @@ addEventListener("keydown", (e) => {
   if (to) location.hash = to;
 });
 if (!FILE) {
-  setInterval(
-    () => {
-      if (view.kind === "overview") fetchSparks();
-      if (view.tab === "model") render();
-      if (source && source.readyState === 2) connect();
-    },
-    5000);
+  setInterval(() => { if (view.kind === "overview") fetchSparks(); }, 5000);
   setInterval(() => { if (view.tab === "model") render(); }, 1000);
 }
 window.fmbpcPanel = S;

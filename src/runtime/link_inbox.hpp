@@ -1,0 +1,67 @@
+// What a loop has heard of the signals of other loops that stand for signals of its own: the same
+// in one process and over topics.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/plant_loops.hpp"
+#include "fmbpc/base/ring.hpp"
+
+namespace fpc {
+
+/// In lockstep a source whose samples do not follow each other without a gap from its first one on
+/// is never ready again: nothing may be made up. At time t a link has the value of its source's
+/// latest sample that is not later than t. In lockstep that sample is waited for; otherwise the
+/// latest that has come counts, whatever its time, and stays.
+class LinkInbox {
+ public:
+  /// Keeps those links that are for the plant, or those that are for the controller.
+  enum class Of { kPlant, kController };
+  LinkInbox(const std::vector<LoopLink>& links, Of of, bool lockstep);
+
+  bool empty() const { return sources_.empty(); }
+  /// Who is to be heard: name of the loop, and whether it is its actions.
+  std::set<std::pair<std::string, bool>> sources() const;
+  /// A sample of loop `from`: its outputs, or with `action` its inputs as asked. What is not finite
+  /// or of wrong size changes no value.
+  void hear(const std::string& from, bool action, const StepHeader& sample, VectorRef values);
+  /// Lockstep: everything that is needed at this time has come. Otherwise always.
+  bool ready(std::int64_t time_ns);
+  /// Names of the loops that are waited for.
+  std::vector<std::string> missing() const;
+  /// Overrides of the disturbances, or of the setpoints, from the next sample on; none: no value
+  /// has come.
+  std::optional<Command> command(std::int64_t time_ns);
+  /// Puts in what the plant's inputs are in truth: the outputs of inner loops.
+  void replaceInputs(std::int64_t time_ns, const std::vector<SignalInfo>& inputs,
+                     Eigen::Ref<Vector> input);
+  /// Whether a person may command the signal: @throws InputError if it has a link.
+  void refuseLinked(const Command& command) const;
+
+ private:
+  struct Item {
+    std::int64_t time_ns;
+    double value;
+  };
+  struct Source {
+    LoopLink link;
+    std::uint64_t run_id{};
+    std::deque<Item> items;  // in the order of time; none that is not needed any more
+    std::int64_t newest_ns{};
+    bool heard{}, gap{};
+  };
+  bool has(const Source& source, std::int64_t time_ns) const;
+  std::optional<double> valueAt(Source& source, std::int64_t time_ns) const;
+
+  bool lockstep_;
+  std::vector<Source> sources_;
+  std::vector<std::string> missing_;
+};
+
+}  // namespace fpc

@@ -1,0 +1,72 @@
+#include "runtime/run_plant.hpp"
+
+#include <memory>
+
+#include "runtime/loop_ring.hpp"
+
+namespace fpc {
+namespace {
+
+/// One loop, and how far it is.
+struct TurningLoop {
+  const PlantLoop* of;
+  std::unique_ptr<LoopRing> ring;
+  bool answered{false}, over{false};
+};
+
+void tell(const TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
+  const Measurement& now = loop.ring->measurement();
+  for (TurningLoop* other : listeners)
+    other->ring->hearMeasurement(loop.of->name, now.header, now.outputs);
+}
+
+/// True: the loop has got on by half a sample.
+bool turn(TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
+  if (loop.over) return false;
+  LoopRing& ring = *loop.ring;
+  if (!loop.answered) {
+    if (!ring.mayAnswer()) return false;
+    ring.answer();
+    if (!ring.measurement().final)
+      for (TurningLoop* other : listeners)
+        other->ring->hearAction(loop.of->name, ring.sent().header, ring.sent().input);
+    return loop.answered = true;
+  }
+  if (!ring.measurement().final && !ring.mayAdvance()) return false;
+  loop.over = !ring.advance();
+  loop.answered = false;
+  if (loop.over) return true;
+  tell(loop, listeners);
+  return true;
+}
+
+std::vector<TurningLoop*> listenersOf(const TurningLoop& loop, std::vector<TurningLoop>& all) {
+  std::vector<TurningLoop*> listeners;
+  for (TurningLoop& other : all)
+    for (const LoopLink& link : other.of->links)
+      if (link.from == loop.of->name && (listeners.empty() || listeners.back() != &other))
+        listeners.push_back(&other);
+  return listeners;
+}
+
+}  // namespace
+
+// Every link looks back in time, or from a measurement to an action of the same time: of the loops
+// that are behind, one can always go on.
+std::vector<RunRecord> runPlant(const PlantLoops& plant, const RunOptions& options) {
+  std::vector<TurningLoop> loops;
+  for (const PlantLoop& one : plant.loops)
+    loops.push_back({&one, std::make_unique<LoopRing>(one.loop, options, one.links)});
+  std::vector<std::vector<TurningLoop*>> listeners;
+  for (const TurningLoop& loop : loops) listeners.push_back(listenersOf(loop, loops));
+  for (std::size_t i = 0; i < loops.size(); ++i) tell(loops[i], listeners[i]);
+  for (bool any = true; any && !(options.stop && options.stop());) {
+    any = false;
+    for (std::size_t i = 0; i < loops.size(); ++i) any = turn(loops[i], listeners[i]) || any;
+  }
+  std::vector<RunRecord> records;
+  for (TurningLoop& loop : loops) records.push_back(loop.ring->take());
+  return records;
+}
+
+}  // namespace fpc

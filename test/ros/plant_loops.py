@@ -1,0 +1,162 @@
+#!/usr/bin/python3
+"""The loops of a plant in one process give the runs of `fmbpc run --plant` bit for bit, links between them included; what happens to
+one loop (its process killed, its plugin throws, no folder for its record, stopped, replaced) changes no bit of the others."""
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import rosgraph
+import rostest
+import yaml
+from fmbpc.srv import LoopOrderRequest
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent))
+import ring
+
+PLUGINS = os.path.dirname(ring.program("fmbpc_tool"))
+THROWS = {"plugins": ["throws"], "plant": {"type": "throwing"}, "sampling": {"sample_time_s": 1, "duration_h": 1},
+          "controller": {"type": "pi", "loops": [{"input": "u", "output": "x", "kp": 0.1, "ki_per_h": 1}]}}
+
+
+class Launch:
+    """plant.launch on a master of its own."""
+
+    def __init__(self, test, plant, out, *arguments):
+        port = ring.free_port()
+        self.uri = f"http://localhost:{port}"
+        environment = {**os.environ, "ROS_MASTER_URI": self.uri, "FMBPC_PLUGIN_PATH": PLUGINS}
+        environment.pop("DISPLAY", None)
+        self.process = subprocess.Popen(
+            ring.tied(["roslaunch", "-p", port, "fmbpc", "plant.launch", "plant:=" + plant, "out:=" + out, *arguments]),
+            env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        test.addCleanup(ring.killed, self.process)
+        self.master = rosgraph.Master("/plant_loops_test", self.uri)
+
+    def end(self):
+        text = self.process.communicate(timeout=120)[0]
+        return self.process.returncode, re.sub(r"\x1b\[[0-9;]*m", "", text)
+
+
+class PlantLoops(unittest.TestCase):
+    def setUp(self):
+        self.out = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.out)
+        self.topics, self.process = (os.path.join(self.out, name) for name in ("topics", "process"))
+
+    def plant(self, content):
+        file = os.path.join(self.out, "plant.yaml")
+        pathlib.Path(file).write_text(yaml.safe_dump(content), encoding="utf-8")
+        return file
+
+    def loop(self, name, content):
+        file = os.path.join(self.out, name + ".yaml")
+        pathlib.Path(file).write_text(yaml.safe_dump(content), encoding="utf-8")
+        return file
+
+    def in_process(self, plant, *sets):
+        ring.tool("run", "--plant", plant, "--no-plot", "--out", self.process, *[word for s in sets for word in ("--set", s)])
+
+    def same(self, *loops):
+        for loop in loops:
+            ring.assert_same_run(self, os.path.join(self.topics, loop), os.path.join(self.process, loop))
+
+    def shipped(self, **isolate):
+        """The shipped plant in lockstep, some loops in a process of their own."""
+        file = pathlib.Path(__file__).resolve().parents[2] / "config/plant/jacketed_vessel.yaml"
+        content = yaml.safe_load(file.read_text(encoding="utf-8"))
+        content["pace"] = "lockstep"
+        content["set"]["sampling.duration_h"] = 6
+        for loop in isolate:
+            content["loops"][loop]["isolate"] = True
+        return self.plant(content)
+
+    def test_links_and_cascades_in_one_process(self):
+        plant = self.shipped()
+        self.in_process(plant)
+        code, text = Launch(self, plant, self.topics).end()
+        self.assertEqual(0, code, text)
+        self.same("vessel", "jacket", "preheater")
+
+    def test_links_and_cascades_over_processes(self):
+        plant = self.shipped(vessel=True, preheater=True)
+        self.in_process(plant)
+        code, text = Launch(self, plant, self.topics).end()
+        self.assertEqual(0, code, text)
+        self.same("vessel", "jacket", "preheater")
+
+    def test_a_plugin_that_throws_ends_its_loop_alone(self):
+        good = {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 40}}
+        self.in_process(self.plant({"pace": "lockstep", "loops": {"a": good, "c": good}}))
+        bad = {"loop": self.loop("bad", THROWS)}
+        code, text = Launch(self, self.plant({"pace": "lockstep", "loops": {"a": good, "b": bad, "c": good}}), self.topics).end()
+        self.assertIn("thrown by the plugin", text)
+        self.assertTrue(os.path.isfile(os.path.join(self.topics, "b", "summary.json")), text)  # what it had
+        self.same("a", "c")
+
+    def test_a_process_that_is_killed_and_a_record_without_room(self):
+        """The isolated loop is killed in its run, another one has no folder for its record; then both are replaced."""
+        good = {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 200}}
+        endless = {"loop": "heated_tank", "set": {"sampling.duration_h": 0, "setpoint.schedule": []}}
+        self.in_process(self.plant({"pace": "lockstep", "loops": {"a": good, "c": good}}))
+        os.makedirs(self.topics)
+        pathlib.Path(self.topics, "full").touch()  # no folder can be made there
+        plant = self.plant({"pace": "lockstep", "loops": {
+            "a": good, "c": good, "apart": {**endless, "isolate": True},
+            "full": {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 1}}}})
+        launch = Launch(self, plant, self.topics, "keep:=true")
+        os.environ["ROS_MASTER_URI"] = launch.uri
+        ring.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "the isolated loop runs")
+        process = ring.pid("/plant_host_apart", launch.master)
+        os.kill(process, signal.SIGKILL)
+        ring.wait_until(lambda: "killed" in self.state(launch)[1].lower(), "the plant says so")
+        ring.wait_until(lambda: all(os.path.isfile(os.path.join(self.topics, loop, "summary.json")) for loop in "ac"), "records")
+        self.same("a", "c")
+        code, words = self.state(launch)
+        self.assertEqual("failed", code, words)
+        self.assertIn("full", words)
+        self.order(launch, LoopOrderRequest.REPLACE, "apart")
+        ring.wait_until(lambda: self.state(launch, "apart")[0] == "automatic", "it runs again")
+        self.assertNotEqual(process, ring.pid("/plant_host_apart", launch.master))
+        os.unlink(os.path.join(self.topics, "full"))
+        self.order(launch, LoopOrderRequest.REPLACE, "full")
+        ring.wait_until(lambda: os.path.isfile(os.path.join(self.topics, "full", "summary.json")), "the record of the replaced loop")
+        self.order(launch, LoopOrderRequest.STOP, "apart")
+        ring.wait_until(lambda: "stopped: apart" in self.state(launch)[1], "the plant says that it is stopped")
+        self.assertIn("success: False", self.order(launch, LoopOrderRequest.STOP, "nobody", good=False))
+
+    @staticmethod
+    def state(launch, loop=None):
+        """Word and reason of the plant's state, or of a loop's."""
+        done = subprocess.run(["rostopic", "echo", "-n", "4", f"/{loop}/loop_state" if loop else "/loop_state"],
+                              env={**os.environ, "ROS_MASTER_URI": launch.uri}, text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.DEVNULL, timeout=30, check=False)
+        for text in done.stdout.split("---\n"):
+            message = yaml.safe_load(text) if text.strip() else None
+            if message and message["summary"]:
+                return message["word"], message["reason"]
+        return "", ""
+
+    def order(self, launch, order, loop, good=True):
+        done = subprocess.run(["rosservice", "call", "/plant_host/order", f"{{order: {order}, loop: {loop}}}"],
+                              env={**os.environ, "ROS_MASTER_URI": launch.uri}, text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, timeout=60, check=True)
+        self.assertIn(f"success: {good}", done.stdout)
+        return done.stdout
+
+    def test_a_wrong_file_starts_nothing(self):
+        plant = self.plant({"loops": {"a": {"loop": "heated_tank", "isolated": True}}})
+        code, text = Launch(self, plant, self.topics).end()
+        self.assertNotEqual(0, code)
+        self.assertIn("plant.yaml:", text)
+        self.assertIn("loops.a.isolated", text)
+        self.assertFalse(os.path.exists(self.topics))
+
+
+if __name__ == "__main__":
+    rostest.rosrun("fmbpc", "plant_loops", PlantLoops)
