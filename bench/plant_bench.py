@@ -14,7 +14,7 @@ import time
 import launching
 import yaml
 
-LATE = ("hold", "fallback")  # sources of an action that nobody sent in time
+LATE = ("held", "fallback")  # sources of an action that nobody sent in time
 
 
 def ticks_of(pid):
