@@ -56,8 +56,7 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       hold_(serve(private_node, topics::kHold, &ControllerNode::onHold, this)),
       adapt_(serve(private_node, topics::kAdapt, &ControllerNode::onAdapt, this)),
       candidate_(serve(private_node, topics::kCandidate, &ControllerNode::onCandidate, this)),
-      parked_timer_(guardedTimer(
-          node, kLookAgain, "parked", [this] { answerParked(); }, false, false)),
+      parked_timer_(guardedTimer(node, kLookAgain, "parked", [this] { answerParked(); })),
       settings_(
           private_node, loop.controllerType().settings,
           [this] { return session_.controller().settings(); },
@@ -80,9 +79,9 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
   advertiseSignals();
   if (!links_.inbox().empty())
     link_timer_ = guardedTimer(node, kLookAgain, "links", [this] {
-      announceIfReady();
-      if (ready_.announced()) link_timer_.stop();
-    });
+                    announceIfReady();
+                    if (ready_.announced()) link_timer_.stop();
+                  }).started();
 }
 
 // Early, so that whoever listens misses nothing; what depends on a model follows with it.

@@ -118,7 +118,7 @@ class ControllerNode : public Node {
   ros::Subscriber plant_subscriber_, model_subscriber_, measurement_subscriber_,
       identified_subscriber_, setpoint_subscriber_, targets_subscriber_;
   ros::ServiceServer manual_, manual_input_, hold_, adapt_, candidate_;
-  ros::SteadyTimer parked_timer_, link_timer_;
+  SteadyTimer parked_timer_, link_timer_;
   SettingsServer settings_;
   SummaryListener summary_;
   RateLimit commands_;

@@ -12,12 +12,12 @@ Diagnostics::Diagnostics(const ros::NodeHandle& node, const ros::NodeHandle& pri
     : updater_(node, private_node) {
   updater_.setHardwareID(hardware_id);
   updater_.add(title, [report = std::move(report)](Status& status) { report(status); });
-  timer_ = node.createSteadyTimer(ros::WallDuration(1.0), [this](const ros::SteadyTimerEvent&) {
-    const auto say = [this](const char* what) {
-      if (log_.pass()) ROS_ERROR("diagnostics: %s", what);
-    };
-    callGuarded([this] { updater_.force_update(); }, say, say);
-  });
+  timer_ = SteadyTimer(node, 1.0, [this] {
+             const auto say = [this](const char* what) {
+               if (log_.pass()) ROS_ERROR("diagnostics: %s", what);
+             };
+             callGuarded([this] { updater_.force_update(); }, say, say);
+           }).started();
 }
 
 void addCounts(Diagnostics::Status& status, const ArrivalCounts& counts) {

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "base/step_gate.hpp"
+#include "ros/steady_timer.hpp"
 #include "ros/wall_throttle.hpp"
 
 namespace fpc {
@@ -27,7 +28,7 @@ class Diagnostics {
  private:
   diagnostic_updater::Updater updater_;
   WallThrottle log_{1.0};
-  ros::SteadyTimer timer_;
+  SteadyTimer timer_;
 };
 
 /// What arrived and was not simply the next sample.

@@ -65,7 +65,7 @@ FuzzyIdentifier::FuzzyIdentifier(ros::NodeHandle node, const ros::NodeHandle& pr
           withoutTimer(private_node), topics::kIdentify,
           [this](Server::GoalHandle goal) { onGoal(std::move(goal)); },
           [this](Server::GoalHandle goal) { onCancel(std::move(goal)); }, false),
-      poll_timer_(guardedTimer(node, kPollPeriod, "poll", [this] { poll(); })),
+      poll_timer_(guardedTimer(node, kPollPeriod, "poll", [this] { poll(); }).started()),
       health_(
           node, private_node, "model", loop.name, false,
           {[this](double now_s) { return health(now_s); }, [this] { return session_.present(); },

@@ -78,7 +78,7 @@ class FuzzyIdentifier : public Node {
   ros::Publisher model_publisher_, identified_;
   ros::Subscriber plant_subscriber_, kept_subscriber_, measurement_subscriber_;
   Server server_;
-  ros::SteadyTimer poll_timer_;
+  SteadyTimer poll_timer_;
   HealthReporter health_;
 };
 

@@ -32,7 +32,7 @@ GatewayNode::GatewayNode(ros::NodeHandle node, ros::NodeHandle private_node, con
                 namesOf(loop.plant_info.disturbances)),
       field_(std::move(field)),
       gateway_(static_cast<PlantGateway&>(session().process())),
-      field_timer_(guardedTimer(node, kExchange, "field", [this] { exchange(); })) {
+      field_timer_(guardedTimer(node, kExchange, "field", [this] { exchange(); }).started()) {
   begin();
 }
 

@@ -32,7 +32,7 @@ class GatewayNode : public PlantNode {
   PlantGateway& gateway_;  // the session's
   std::string problem_;    // of the field, as it was logged
   WallThrottle problem_log_{1.0};
-  ros::SteadyTimer field_timer_;
+  SteadyTimer field_timer_;
 };
 
 }  // namespace fpc

@@ -45,12 +45,12 @@ HealthReporter::HealthReporter(ros::NodeHandle node, const ros::NodeHandle& priv
           node.advertise<fmbpc::LoopState>(topics::kLoopState, queueOf(ListenerKind::kPeer), true)),
       diagnostics_(node, private_node, title, hardware_id,
                    [this](Diagnostics::Status& status) { fill(status); }),
-      timer_(node.createSteadyTimer(ros::WallDuration(kLook), [this](const ros::SteadyTimerEvent&) {
-        const auto say = [this](const char* what) {
-          if (log_.pass()) ROS_ERROR("%s: health: %s", name_.c_str(), what);
-        };
-        callGuarded([this] { look(); }, say, say);
-      })) {}
+      timer_(SteadyTimer(node, kLook, [this] {
+               const auto say = [this](const char* what) {
+                 if (log_.pass()) ROS_ERROR("%s: health: %s", name_.c_str(), what);
+               };
+               callGuarded([this] { look(); }, say, say);
+             }).started()) {}
 
 // A new one at once, or the latest of each second of wall time.
 void HealthReporter::say(const std::vector<Event>& events) {

@@ -10,6 +10,7 @@
 
 #include "fmbpc/base/ring.hpp"
 #include "ros/diagnostics.hpp"
+#include "ros/steady_timer.hpp"
 #include "ros/wall_throttle.hpp"
 #include "runtime/health.hpp"
 
@@ -48,7 +49,7 @@ class HealthReporter {
   WallThrottle log_{1.0}, events_log_{1.0};
   ros::Publisher publisher_;
   Diagnostics diagnostics_;
-  ros::SteadyTimer timer_;
+  SteadyTimer timer_;
 };
 
 }  // namespace fpc

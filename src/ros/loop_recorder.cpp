@@ -58,8 +58,9 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       sample_recorded_(
           node.advertise<fmbpc::Recorded>(topics::kSampleRecorded, queueOf(ListenerKind::kPeer))),
       end_(node),
-      poll_timer_(guardedTimer(node, kRecorderPoll, "poll", [this] { poll(); })),
-      ready_timer_(guardedTimer(node, kLookForRing, "ready", [this] { announceIfConnected(); })),
+      poll_timer_(guardedTimer(node, kRecorderPoll, "poll", [this] { poll(); }).started()),
+      ready_timer_(
+          guardedTimer(node, kLookForRing, "ready", [this] { announceIfConnected(); }).started()),
       health_(node, private_node, "recorder", loop.name, false,
               {[this](double now_s) { return health(now_s); }, [this] { return session_.latest(); },
                [this](Diagnostics::Status& status) { report(status); }}) {

@@ -103,7 +103,7 @@ class LoopRecorder : public Node {
   ros::Publisher recorded_, sample_recorded_;
   RunEndPublisher end_;
   std::vector<ros::Subscriber> ring_;  // every publisher that must be connected
-  ros::SteadyTimer poll_timer_, ready_timer_;
+  SteadyTimer poll_timer_, ready_timer_;
   HealthReporter health_;
 };
 

@@ -20,6 +20,7 @@
 #include "ros/newest.hpp"
 #include "ros/queues.hpp"
 #include "ros/quick_negotiation.hpp"
+#include "ros/steady_timer.hpp"
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
 #include "runtime/authority.hpp"
@@ -63,15 +64,13 @@ class Node {
       }
     });
   }
-  /// A timer on the steady clock, every so often or once after its start() (`once`), whose handler
-  /// is guarded. `what`: names it in counters and the log.
+  /// A timer on the steady clock, not started, whose handler is guarded. `what`: names it in
+  /// counters and the log.
   template <typename Handler>
-  ros::SteadyTimer guardedTimer(ros::NodeHandle& node, double period_s, const char* what,
-                                Handler handler, bool once = false, bool started = true) {
-    return node.createSteadyTimer(
-        ros::WallDuration(period_s),
-        [this, what, handler](const ros::SteadyTimerEvent&) { guarded(what, handler); }, once,
-        started);
+  SteadyTimer guardedTimer(const ros::NodeHandle& node, double period_s, const char* what,
+                           Handler handler, SteadyTimer::Kind kind = SteadyTimer::Kind::kPeriodic) {
+    return SteadyTimer(
+        node, period_s, [this, what, handler] { guarded(what, handler); }, kind);
   }
   void refuse(const char* topic, const std::string& why);
   void mishap(const char* topic, const std::string& what);

@@ -21,7 +21,7 @@ OptimizerStandin::OptimizerStandin(ros::NodeHandle node, const LoopFile& loop, s
       subscriber_(subscribe(node, topics::kControlAction, queueOf(ListenerKind::kPeer),
                             &OptimizerStandin::onAction, this)),
       timer_(guardedTimer(
-          node, 1.0, "standin", [this] { onTimer(); }, true, false)) {}
+          node, 1.0, "standin", [this] { onTimer(); }, SteadyTimer::Kind::kOnce)) {}
 
 void OptimizerStandin::asked(const ControllerAnswer& answer, bool repeated) {
   if (!answer.has_action) return;
@@ -64,10 +64,7 @@ void OptimizerStandin::send(bool repeated) {
 
 void OptimizerStandin::arm() {
   const double due_s = watch_.deadline();
-  if (!std::isfinite(due_s)) return;
-  timer_.stop();
-  timer_.setPeriod(ros::WallDuration(std::max(1e-6, due_s - steadyNow())));
-  timer_.start();
+  if (std::isfinite(due_s)) timer_.startIn(due_s - steadyNow());
 }
 
 void OptimizerStandin::onTimer() {

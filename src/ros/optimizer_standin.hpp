@@ -44,7 +44,7 @@ class OptimizerStandin : public Node {
   RingPublisher<fmbpc::ControlAction> action_;
   RingPublisher<fmbpc::SolverReport> report_;
   ros::Subscriber subscriber_;
-  ros::SteadyTimer timer_;
+  SteadyTimer timer_;
 };
 
 }  // namespace fpc

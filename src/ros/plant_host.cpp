@@ -67,13 +67,12 @@ PlantHost::PlantHost(ros::NodeHandle node, ros::NodeHandle private_node)
                                }});
   for (auto& [name, place] : places_)
     if (place.ours) start(place);
-  timer_ = node_.createSteadyTimer(ros::WallDuration(kLookAtLoops),
-                                   [this](const ros::SteadyTimerEvent&) {
-                                     const auto say = [](const char* what) {
-                                       ROS_ERROR("%s: %s", ros::this_node::getName().c_str(), what);
-                                     };
-                                     callGuarded([this] { look(); }, say, say);
-                                   });
+  timer_ = SteadyTimer(node_, kLookAtLoops, [this] {
+             const auto say = [](const char* what) {
+               ROS_ERROR("%s: %s", ros::this_node::getName().c_str(), what);
+             };
+             callGuarded([this] { look(); }, say, say);
+           }).started();
 }
 
 PlantHost::~PlantHost() { finish(); }

@@ -17,6 +17,7 @@
 #include "ros/health_reporter.hpp"
 #include "ros/hosted_loop.hpp"
 #include "ros/run_end.hpp"
+#include "ros/steady_timer.hpp"
 #include "runtime/health.hpp"
 
 namespace fpc {
@@ -75,7 +76,7 @@ class PlantHost {
   RunEndPublisher end_;
   ros::ServiceServer order_;
   std::unique_ptr<HealthReporter> health_;  // none of a process for one loop
-  ros::SteadyTimer timer_;
+  SteadyTimer timer_;
 };
 
 int runPlantHost(int argc, char** argv);

@@ -56,10 +56,11 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
       pause_(serve(private_node, topics::kPause, &PlantNode::onPause, this)),
       step_(serve(private_node, topics::kStep, &PlantNode::onStep, this)),
       reset_(serve(private_node, topics::kReset, &PlantNode::onReset, this)),
-      poll_timer_(guardedTimer(node, kPoll, "poll", [this] { onPoll(); })),
-      start_timer_(guardedTimer(node, kLookForStart, "start", [this] { waitForOthers(); })),
+      poll_timer_(guardedTimer(node, kPoll, "poll", [this] { onPoll(); }).started()),
+      start_timer_(
+          guardedTimer(node, kLookForStart, "start", [this] { waitForOthers(); }).started()),
       pace_timer_(guardedTimer(
-          node, kPoll, "pace", [this] { tryAdvance(); }, true, false)),
+          node, kPoll, "pace", [this] { tryAdvance(); }, SteadyTimer::Kind::kOnce)),
       health_(node, private_node, "plant", loop.name, true,
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.process().measurement().header; },
@@ -213,10 +214,10 @@ void PlantNode::publishSample() {
 void PlantNode::armTimer() {
   if (!session_.pacer().timed()) return;
   const double due_s = session_.nextDue();
-  pace_timer_.stop();
-  if (!std::isfinite(due_s)) return;
-  pace_timer_.setPeriod(ros::WallDuration(std::max(1e-6, due_s - steadyNow())));
-  pace_timer_.start();
+  if (std::isfinite(due_s))
+    pace_timer_.startIn(due_s - steadyNow());
+  else
+    pace_timer_.stop();
 }
 
 bool PlantNode::onPause(std_srvs::SetBool::Request& request,

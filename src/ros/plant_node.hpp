@@ -115,7 +115,7 @@ class PlantNode : public Node {
   ros::NodeHandle node_;
   ros::Subscriber action_subscriber_, state_subscriber_, recorded_subscriber_, tracking_subscriber_;
   ros::ServiceServer pause_, step_, reset_;
-  ros::SteadyTimer poll_timer_, start_timer_, pace_timer_;
+  SteadyTimer poll_timer_, start_timer_, pace_timer_;
   HealthReporter health_;
 };
 

@@ -39,8 +39,7 @@ TargetOptimizer::TargetOptimizer(ros::NodeHandle node, const ros::NodeHandle& pr
                                            &TargetOptimizer::onMeasurement, this)),
       setpoint_subscriber_(subscribe(node, topics::kSetpoint, queueOf(ListenerKind::kViewer),
                                      &TargetOptimizer::onSetpoint, this)),
-      parked_timer_(guardedTimer(
-          node, kLookAtParked, "parked", [this] { answerParked(); }, false, false)),
+      parked_timer_(guardedTimer(node, kLookAtParked, "parked", [this] { answerParked(); })),
       summary_(node, loop, name()),
       health_(node, private_node, "targets", loop.name, false,
               {[this](double now_s) { return health(now_s); },

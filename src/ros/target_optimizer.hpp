@@ -64,7 +64,7 @@ class TargetOptimizer : public Node {
   ListenerGate listeners_;
   ros::Subscriber plant_subscriber_, model_subscriber_, identified_subscriber_,
       measurement_subscriber_, setpoint_subscriber_;
-  ros::SteadyTimer parked_timer_;
+  SteadyTimer parked_timer_;
   SummaryListener summary_;
   HealthReporter health_;
 };
