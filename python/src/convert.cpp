@@ -53,7 +53,7 @@ py::object byName(py::handle value) {
   py::dict named = py::module_::import("builtins").attr("dict")(value);
   for (const auto& item : named)
     if (!py::isinstance<py::str>(item.first)) return {};
-  return std::move(named);
+  return named;
 }
 
 void readSignals(py::handle value, const Names& names, const char* what, Vector& out,
