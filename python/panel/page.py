@@ -39,8 +39,11 @@ def read_folder(folder):
             summary = json.load(stream)
     except ValueError as error:
         raise PageError(f"{summary_path}: expected JSON ({error})") from error
-    names, units, table = read_csv(path)
-    if not table.size or table.shape[1] != len(names) or names[0] != "time":
+    try:
+        names, units, table = read_csv(path)
+    except ValueError as error:
+        raise PageError(str(error)) from error
+    if not table.size or names[0] != "time":
         raise PageError(f"{path}: expected a column time[h] and rows of {len(names)} numbers")
     return {"title": summary.get("title") or summary.get("loop", folder), "complete": bool(summary.get("complete")), "outputs": summary.get("outputs", {}),
             "inputs": list(summary.get("inputs", {})), "events": summary.get("events", []), "names": names, "units": units, "table": table, "ranges": {}}

@@ -62,18 +62,21 @@ std::string pythonFolder() {
 
 /// A warning, or nothing. `words`: folders first.
 std::string drawWith(const std::string& kind, const std::vector<std::string>& words) {
-  const std::string folder = pythonFolder();
-  if (folder.empty()) return "no plot: the Python package fmbpc.plots is not installed";
-  const char* others = std::getenv("PYTHONPATH");
-  std::vector<std::string> line{
-      "/usr/bin/env", "PYTHONPATH=" + folder + (others ? ":" + std::string(others) : ""),
-      kPython,        "-m",
-      "fmbpc.plots",  kind};
+  const std::string path = pythonPath();
+  if (path.empty()) return "no plot: the Python package fmbpc.plots is not installed";
+  std::vector<std::string> line{"/usr/bin/env", "PYTHONPATH=" + path, kPython,
+                                "-m",           "fmbpc.plots",        kind};
   line.insert(line.end(), words.begin(), words.end());
   return runScript(std::move(line)) ? "" : "no plot of " + words.front();
 }
 
 }  // namespace
+
+std::string pythonPath() {
+  const std::string folder = pythonFolder();
+  const char* others = std::getenv("PYTHONPATH");
+  return folder.empty() || others == nullptr ? folder : folder + ":" + others;
+}
 
 PlotResult drawPlot(const std::string& folder) {
   const std::string warning = drawWith("run", {folder});

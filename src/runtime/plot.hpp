@@ -12,6 +12,9 @@ struct PlotResult {
 };
 
 inline constexpr char kPython[] = "/usr/bin/python3";
+/// PYTHONPATH of our scripts: the folder of the Python package `fmbpc` first. Empty if it is not
+/// there.
+std::string pythonPath();
 /// A script of ours: it stands beside the config folders, in the source tree as in an installed
 /// package. Empty if it is not there.
 std::string findScript(const std::string& name);

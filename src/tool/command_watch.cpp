@@ -1,5 +1,6 @@
 // `fmbpc watch` and `fmbpc page` become scripts: one shows a running loop from its topics, the
 // other writes a finished run as a page.
+#include <cstdlib>
 #include <filesystem>
 
 #include "fmbpc/base/input_error.hpp"
@@ -27,6 +28,7 @@ int watch(const std::vector<std::string>& words) { becomeScript("watch", "watch.
 int page(std::vector<std::string> words) {
   std::error_code none;
   words.insert(words.end(), {"--tool", std::filesystem::read_symlink("/proc/self/exe", none)});
+  if (const std::string path = pythonPath(); !path.empty()) setenv("PYTHONPATH", path.c_str(), 1);
   becomeScript("page", "../python/panel/page.py", words);
 }
 

@@ -31,6 +31,18 @@ class Plots(unittest.TestCase):
                 done = subprocess.run([sys.executable, "-m", "fmbpc.plots", *words], capture_output=True, check=False)
                 self.assertEqual((code, True), (done.returncode, bool(done.stderr)), words)
 
+    def test_a_table_that_is_being_written_is_read_to_its_last_whole_row(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "trajectory.csv")
+            for text, growing, rows in (("time[h],x\n0,1\n1,", True, 1), ("time[h],x\n0,1\n1,", False, 2), ("", True, 0), ("time[h],x\n0,1\n1\n", True, None),
+                                        ("time[h],x\n0,a\n", False, None)):
+                file.write_text(text)
+                if rows is None:
+                    with self.assertRaises(ValueError):
+                        plots.read_table(file, growing)
+                else:
+                    self.assertEqual(rows, len(plots.read_table(file, growing)[0].get("time", ())), text)
+
     def test_the_tool_draws_by_it(self):
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run([os.environ["FMBPC_TOOL"], "run", "asp_case1", "--set", "sampling.duration_h=4", "--out", folder], check=True, capture_output=True)

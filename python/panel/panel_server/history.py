@@ -5,6 +5,8 @@ import subprocess
 
 import numpy
 
+from fmbpc.plots.table import read_table
+
 CHUNK = 4096  # rows
 
 
@@ -188,15 +190,5 @@ def plain(array, digits=7):
 
 def read_csv(path):
     """(names, units by name, table) of a trajectory.csv; a last line that is being written is left out."""
-    with open(path, encoding="utf-8") as stream:
-        header = [word.partition("[") for word in stream.readline().strip().split(",")]
-        names = [name for name, _, _ in header]
-        rows = []
-        for line in stream:
-            cells = line.rstrip("\n").split(",")
-            if line.endswith("\n") and len(cells) == len(names):
-                try:
-                    rows.append([float(c) if c else math.nan for c in cells])
-                except ValueError:
-                    continue
-    return names, {name: unit.rstrip("]") for name, _, unit in header}, numpy.array(rows, dtype=float).reshape(-1, len(names))
+    columns, units = read_table(path, growing=True)
+    return list(columns), units, numpy.array(list(columns.values()), dtype=float).reshape(len(columns), -1).T
