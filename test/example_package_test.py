@@ -119,6 +119,21 @@ class ExamplePackage(unittest.TestCase):
             self.assertTrue(file.startswith(str(self.fmbpc)), file)
         self.assertIn("asp_case1_clp", run("/usr/bin/python3", "-m", "fmbpc", "loops", **where))
 
+    def test_python_steps_its_plant_and_runs_its_loops_as_the_tool(self):
+        if not WITH_ROS and not list((BUILD / "python" / "fmbpc").glob("_core.*")):
+            self.skipTest("the module was not built")
+        code = ("import sys, fmbpc\n"
+                "fmbpc.register('two_tanks')\n"
+                "plant = fmbpc.Plant('two_tanks')\n"
+                "assert (plant.step() != plant.step({'q': 0.0})).any()\n"
+                "fmbpc.Loop('two_tanks_outflow').run(progress=False).save(sys.argv[1])\n")
+        where = {"PYTHONPATH": self.fmbpc / "lib/python3/dist-packages", "LD_LIBRARY_PATH": "", "CMAKE_PREFIX_PATH": self.own,
+                 "FMBPC_CONFIG_PATH": self.own / "share" / "two_tanks" / "config"}
+        results = self.folder / "of_python"
+        run("/usr/bin/python3", "-c", code, results / "python", **where)
+        self.tool("run", "two_tanks_outflow", "--no-plot", "--out", results / "tool")
+        self.assertEqual(*((results / kind / "trajectory.csv").read_bytes() for kind in ("python", "tool")))
+
     def test_plant_and_controller_keep_what_every_one_promises(self):
         text = self.tool("check", "two_tanks")
         for subject in ("plant two_tanks", "controller outflow"):

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 import re
 from typing import Any, NamedTuple
 
@@ -84,11 +85,15 @@ def register(cls):
         sample `applied` and `disturbance`.
     Parameters are attributes of the object; start(self), if it has one, is called once they are there. A loop of this
     process names the class as plant.type or controller.type. A class of the same name takes the place of the former.
-    In C++: docs/own_plant.md, docs/own_controller.md.
-    Raises InputError naming what is wrong with the description.
+    A package's library in C++, by its name or path, registers all that it brings; a loop file says `plugins` for it
+    (docs/own_plant.md, docs/own_controller.md).
+    Raises InputError naming what is wrong with the description or the library.
     """
+    if isinstance(cls, (str, os.PathLike)):
+        _core.register_library(os.fspath(cls))
+        return cls
     if not isinstance(cls, type):
-        raise _core.InputError(f"register: expected a class, got {cls!r}")
+        raise _core.InputError(f"register: expected a class or the name of a library, got {cls!r}")
     name = _name_of(cls)
     if _is_plant(cls):
         steps = not hasattr(cls, "derivatives")
@@ -117,6 +122,8 @@ def check(cls, *, loop=None) -> list[str]:
     the loop's own. The class is registered by this (docs/python.md). Raises InputError, and what the class itself raises.
     """
     from fmbpc._loop import Loop
+    if not isinstance(cls, type):
+        raise _core.InputError(f"check: expected a class, got {cls!r}")
     register(cls)
     if _is_plant(cls):
         return _core.check_plant(_name_of(cls))

@@ -1,5 +1,6 @@
 // Controllers and plants that are stepped, those of Python, and what is registered.
 #include "bind.hpp"
+#include "config/plugins.hpp"
 #include "convert.hpp"
 #include "fmbpc/control/registry.hpp"
 #include "own_plant.hpp"
@@ -127,6 +128,7 @@ void bindControl(py::module_& m) {
   m.def("check_controller", [](const std::shared_ptr<LoopFile>& loop) {
     return brokenOf(withoutGil([&] { return controllerPromises(*loop); }));
   });
+  m.def("register_library", [](const std::string& name) { loadPlugin(name, "register"); });
   m.def("register_plant", &registerOwnPlant);
   m.def("register_controller", &registerOwnController);
 }

@@ -212,8 +212,11 @@ class Own(unittest.TestCase):
                 fmbpc.register(type("Wrong", (OwnTank,), {"name": "wrong_tank", **change}))
         with self.assertRaises(fmbpc.InputError):
             fmbpc.register(type("pi", (OwnLaw,), {}))
+        for wrong in (OwnTank(), "no_such_library", "/no/such/library.so", ""):
+            with self.subTest(wrong), self.assertRaises(fmbpc.InputError):
+                fmbpc.register(wrong)
         with self.assertRaises(fmbpc.InputError):
-            fmbpc.register(OwnTank())
+            fmbpc.check("two_tanks")
 
     def test_a_class_takes_the_place_of_the_former(self):
         class Again(OwnTank):
