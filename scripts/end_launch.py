@@ -31,20 +31,39 @@ if not hasattr(threading.Thread, "isAlive"):
     threading.Thread.isAlive = threading.Thread.is_alive
 
 
+class Process:
+    """A process itself, not its number, which is somebody else's once the process has ended."""
+
+    def __init__(self, number):
+        self.number = number
+        self.handle = os.pidfd_open(number) if hasattr(os, "pidfd_open") else None  # Python 3.9
+
+    def send(self, what):
+        """False if it has ended."""
+        try:
+            if self.handle is None:
+                os.kill(self.number, what)
+            else:
+                signal.pidfd_send_signal(self.handle, what)
+        except ProcessLookupError:
+            return False
+        return True
+
+
 def launcher():
-    """Process of the roslaunch that is the parent of this node; 0 if a person started the node."""
-    parent = os.getppid()
+    """The roslaunch that is the parent of this node; None if a person started the node."""
+    parent = Process(os.getppid())
     try:
         uris = rosgraph.Master("/end_launch").getParam("/roslaunch/uris")
     except (OSError, rosgraph.MasterException):
         uris = {}
     for uri in uris.values():
         try:
-            if xmlrpc.client.ServerProxy(uri).get_pid()[2] == parent:
+            if xmlrpc.client.ServerProxy(uri).get_pid()[2] == parent.number == os.getppid():
                 return parent
         except (OSError, xmlrpc.client.Error):
             continue
-    return 0
+    return None
 
 
 class Recorder:
@@ -114,19 +133,20 @@ def ask(node):
 
 
 def child(parent, node):
-    """The process of a node among those that the launch has started on this machine; 0 if it is not there, or if the number
-    is no longer the launch's."""
-    if os.getppid() != parent:
-        return 0
+    """The process of a node among those that the launch has started on this machine; None if it is not there."""
     name = b"__name:=" + node.rsplit("/", 1)[-1].encode()
-    for process in filter(str.isdigit, os.listdir("/proc")):
+
+    def is_it(number):
         try:
-            with open(f"/proc/{process}/stat", encoding="utf-8") as stat, open(f"/proc/{process}/cmdline", "rb") as line:
-                if int(stat.read().rsplit(")", 1)[1].split()[1]) == parent and name in line.read().split(b"\0"):
-                    return int(process)
+            with open(f"/proc/{number}/stat", encoding="utf-8") as stat, open(f"/proc/{number}/cmdline", "rb") as line:
+                return int(stat.read().rsplit(")", 1)[1].split()[1]) == parent.number == os.getppid() and name in line.read().split(b"\0")
         except OSError:  # it has just ended
-            continue
-    return 0
+            return False
+    for number in filter(is_it, filter(str.isdigit, os.listdir("/proc"))):
+        found = Process(int(number))
+        if is_it(number):  # still: then it is the one that is held
+            return found
+    return None
 
 
 def killed(recorder, parent):
@@ -137,10 +157,10 @@ def killed(recorder, parent):
                      recorder.name, seconds)
         return False
     rospy.logerr("end_launch: %s has not answered for %.0f s: it is killed", recorder.name, seconds)
-    os.kill(process, signal.SIGKILL)
+    process.send(signal.SIGKILL)
     recorder.hangs_since = None
     for _ in range(100):  # its journal is free when it has ended
-        if child(parent, recorder.name) != process:
+        if not process.send(0):
             break
         time.sleep(0.05)
     return True
@@ -160,8 +180,7 @@ def end_launch(parent, ours):
     """As Ctrl-C does. This node ends by itself: rospy cannot be interrupted while it says its last. A parent that has ended is
     no parent any more, whoever has its number now: then the nodes are asked to end, as `rosnode kill` does."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if os.getppid() == parent:
-        os.kill(parent, signal.SIGINT)
+    if os.getppid() == parent.number and parent.send(signal.SIGINT):
         return
     for node in sorted(ours):
         try:
@@ -191,7 +210,7 @@ def main():
         try:
             message = words.get(timeout=0.5)
         except queue.Empty:
-            if os.getppid() != parent and not orphaned:
+            if os.getppid() != parent.number and not orphaned:
                 orphaned = True
                 rospy.logerr("end_launch: the roslaunch of this loop was killed: nobody starts its nodes again; they are ended "
                              "when the run is over")

@@ -270,7 +270,8 @@ def emulated(folder, name, core, into, samples=ON_BOARD):
             raise RuntimeError(built.stderr.strip()[-600:])
     require_no_call(["arm-none-eabi-nm"], law)
     size = run(["arm-none-eabi-size", law]).stdout.split("\n")[1].split()
-    stack = max(int(line.split("\t")[1]) for line in open(os.path.join(into, "law.su"), encoding="utf-8"))
+    with open(os.path.join(into, "law.su"), encoding="utf-8") as file:
+        stack = max(int(line.split("\t")[1]) for line in file)
     said = run(["timeout", "60", "qemu-system-arm", "-M", board, "-nographic", "-monitor", "none", "-serial", "none", "-semihosting-config",
                 "enable=on,target=native", "-icount", "shift=6", "-kernel", program])
     words = (said.stdout + said.stderr).split()

@@ -59,6 +59,15 @@ class Export(unittest.TestCase):
                 rows = [row.split(",") for row in (self.folder / "law_vectors.csv").read_text().splitlines()]
                 sources = {row[rows[0].index("iSource")] for row in rows[1:]}
                 self.assertLessEqual({"2", "3", "4", "5"}, sources)
+                if shutil.which("clang"):
+                    self.assertEqual(said[0]["hash"], export_check.native(self.folder, "law", "clang", "-O2", self.into)["hash"])
+
+    @unittest.skipUnless(shutil.which("arm-none-eabi-gcc") and shutil.which("qemu-system-arm"), "no board to emulate")
+    def test_an_optimizer_on_a_board_has_the_same_bits_and_calls_no_library(self):
+        self.exported("linear_2x2_clp", "--to", "c99", "--samples", "40")
+        here = export_check.native(self.folder, "law", "gcc", "-O2", self.into)
+        there = export_check.emulated(self.folder, "law", "cortex-m7", self.into, 40)
+        self.assertEqual(here["hash"], there["hash"])
 
     def test_an_optimizer_that_may_not_try_enough_clips_the_law(self):
         self.exported("asp_clp_1b", "--to", "c99", "--samples", "250")

@@ -83,10 +83,14 @@ class Loop(Described):
 
     def export(self, folder: str | os.PathLike, *, to: str = "all", single: bool = False, name: str = "law", samples: int = 1000,
                seed: int = 1) -> list[str]:
-        """The law as a block for a PLC or a board, as `fmbpc export`: to="c99", "st" or "all". Names of the files in the folder."""
+        """The law as a block for a PLC or a board, with vectors and tests, as `fmbpc export` (docs/export.md).
+
+        to: "c99", "st" or "all"; single: single precision; samples, seed: of the closed loops of its vectors
+        Returns the names of the files in the folder. Raises InputError, also for a law that is not exported.
+        """
         if to not in ("c99", "st", "all"):
-            raise ValueError(f"to: expected c99, st or all, got {to}")
-        return self._core.export(os.fspath(folder), to != "st", to != "c99", single, name, samples, seed)
+            raise _core.InputError(f"to: expected c99, st or all, got {to}")
+        return self._core.export(_text.path(folder, "folder"), to != "st", to != "c99", single, name, _text.whole(samples, "samples"), _text.whole(seed, "seed"))
 
     def __repr__(self) -> str:
         return f"<fmbpc.Loop {self.name}: {self.plant} with {self.law}>"

@@ -68,6 +68,7 @@ class ClpText {
   std::string named(std::string text) const {
     replaceAll(text, "clp_root", block_ + "_sqrt");
     replaceAll(text, "clp_", block_ + "_clp_");
+    replaceAll(text, "CLP_NO_CALL", noCall(block_));
     replaceAll(text, "CLP_", upperCase(block_) + "_CLP_");
     return text;
   }

@@ -19,5 +19,6 @@ std::string cSource(const ir::Program& program, const ExportIdentity& identity);
 std::string structuredText(const ir::Program& program, const ExportIdentity& identity);
 std::string realLiteral(double number, bool single, char exponent);  ///< "1.0E-5"
 std::string upperCase(std::string text);
+std::string noCall(const std::string& block);  ///< macro that keeps a loop from becoming a call
 
 }  // namespace fpc

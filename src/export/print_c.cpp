@@ -88,7 +88,7 @@ class CPrinter final : public ExpressionPrinter {
     if (s.form == Statement::Form::kIf) return "if (" + bare(*s.value) + ") {";
     const std::string& i = s.index->name;
     return "for (" + i + " = 0; " + i + " < " + std::to_string(s.count) + "; " + i + "++) {" +
-           (fillsOrCopies(s.then) ? " " + upperCase(program_.name) + "_NO_CALL" : "");
+           (fillsOrCopies(s.then) ? " " + noCall(program_.name) + ";" : "");
   }
   std::string otherwise() const override { return "} else {"; }
   std::string end(const Statement&) const override { return "}"; }
@@ -141,6 +141,8 @@ void printFunctions(const CPrinter& c, const ir::Program& program, std::string& 
 
 }  // namespace
 
+std::string noCall(const std::string& block) { return upperCase(block) + "_NO_CALL"; }
+
 std::string cHeader(const ir::Program& program, const ExportIdentity& id) {
   const CPrinter c(program);
   const std::string guard = upperCase(program.name) + "_H", upper = upperCase(program.name);
@@ -168,12 +170,13 @@ std::string cSource(const ir::Program& program, const ExportIdentity& id) {
                      ".h\"\n\n";
   std::string loops;
   c.print(program.body(), 1, loops);
-  const std::string no_call = upperCase(program.name) + "_NO_CALL";
-  if (loops.find(no_call) != std::string::npos)
+  const std::string no_call = noCall(program.name);
+  if ((loops + program.native.code).find(no_call) != std::string::npos)
     text +=
         "/* Loops that fill and copy stay loops: no call of memset or memcpy. */\n"
         "#if defined(__GNUC__) && !defined(__FRAMAC__)\n#define " +
-        no_call + " __asm__ __volatile__(\"\");\n#else\n#define " + no_call + "\n#endif\n\n";
+        no_call + " __asm__ __volatile__(\"\")\n#else\n#define " + no_call +
+        " ((void)0)\n#endif\n\n";
   printTables(c, program, text);
   printFunctions(c, program, text);
   text += program.native.code;

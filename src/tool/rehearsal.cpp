@@ -1,7 +1,6 @@
 #include "tool/rehearsal.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "base/parallel.hpp"
 #include "runtime/loop_probe.hpp"
@@ -11,7 +10,6 @@ namespace fpc::tool {
 namespace {
 
 constexpr double kMoves = 0.1;  // of the cost
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kPoints = 3;                                          // of the course, probed
 constexpr std::uint64_t kChosenBy = 1, kJudgedBy[] = {11, 12, 13};  // seeds of the noise
 
@@ -19,7 +17,7 @@ Judged costOf(LoopFile loop, const RehearsalScale& scale, std::uint64_t seed) {
   loop.simulation.noise_seed = seed;
   const RunRecord record = runLoop(loop);
   const InputLimits& limits = loop.simulation.actuator.limits;
-  Judged found{record.complete ? 0.0 : kInfinite, Vector::Zero(scale.output.size()), 0.0};
+  Judged found{record.complete ? 0.0 : kInfinity, Vector::Zero(scale.output.size()), 0.0};
   const auto n = static_cast<double>(record.samples.size());
   const Vector* before = nullptr;
   for (const SampleRecord& s : record.samples) {
@@ -48,7 +46,7 @@ double peakOf(const LoopFile& loop) {
   for (const CoursePoint& point : course.points(kPoints)) {
     const LoopProbe probe = probeLoop(course.stayingAt(loop, point), point);
     if (probe.result == ProbeResult::kHeld) continue;
-    if (probe.result != ProbeResult::kLinear) return kInfinite;
+    if (probe.result != ProbeResult::kLinear) return kInfinity;
     worst = std::max(worst, probe.response->peak());
   }
   return worst;
@@ -60,7 +58,7 @@ Rehearsed chosenOf(const std::vector<std::string>& texts, const std::string& nam
                    const RehearsalScale& scale) {
   std::vector<Rehearsed> all;
   all.reserve(texts.size());
-  for (const std::string& text : texts) all.push_back({text, kInfinite, kInfinite});
+  for (const std::string& text : texts) all.push_back({text, kInfinity, kInfinity});
   parallelFor(all.size(), 0, [&](std::size_t i) {
     all[i].cost = costOf(onItsModel(all[i].text, name), scale, kChosenBy).cost;
   });

@@ -1,6 +1,7 @@
 // The exported QP solver as a part of a test: define CLP_N and CLP_M, include this inside a
 // namespace of its own. No include guard: once for each size.
 #define CLP_ROWS (CLP_M > 0 ? CLP_M : 1)
+#define CLP_NO_CALL ((void)0)
 
 #include "export/clp/qp.h"
 
@@ -46,6 +47,7 @@ inline ExportedAnswer solve(const QpProblem& p, int most = 1000) {
 #undef CLP_N
 #undef CLP_M
 #undef CLP_ROWS
+#undef CLP_NO_CALL
 #undef CLP_NONE
 #undef CLP_EXACT
 #undef CLP_SOLVED

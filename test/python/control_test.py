@@ -73,7 +73,7 @@ class Loops(unittest.TestCase):
 
         def interrupt(share, words):
             told.append(share)
-            if len(told) == 2:
+            if told[0] == share:  # the first of them: a machine under load asks seldom
                 os.kill(os.getpid(), signal.SIGINT)
         run = loop.run(progress=interrupt)
         self.assertTrue(run.interrupted)

@@ -35,11 +35,11 @@ class JournalRowsTest : public LoopFolder {
     return cells;
   }
   // Bit for bit: a missing value is no number, which equals nothing.
-  static void expectSame(const Cells& got, const Cells& wanted) {
-    ASSERT_EQ(got.size(), wanted.size());
+  static void expectSame(const Cells& got, const Cells& expected) {
+    ASSERT_EQ(got.size(), expected.size());
     for (std::size_t i = 0; i < got.size(); ++i)
-      EXPECT_TRUE(got[i] == wanted[i] || (got[i] != got[i] && wanted[i] != wanted[i]))
-          << i << ": " << got[i] << " " << wanted[i];
+      EXPECT_TRUE(got[i] == expected[i] || (got[i] != got[i] && expected[i] != expected[i]))
+          << i << ": " << got[i] << " " << expected[i];
   }
 
   LoopFile loop_;

@@ -63,6 +63,7 @@ static void clp_advance(const clp_t* w, const double* x, const double* u, bool a
 
 static void clp_copy(const double* from, double* to, int32_t count) {
   for (int32_t i = 0; i < count; i++) {
+    CLP_NO_CALL;
     to[i] = from[i];
   }
 }
@@ -75,6 +76,7 @@ static bool clp_find_target(clp_t* w) {
   double largest = 0.0;
   bool unique = true;
   for (int32_t i = 0; i < (n * n); i++) {
+    CLP_NO_CALL;
     w->system[i] = 0.0;
   }
   for (int32_t j = 0; j < n; j++) { /* column by column: what moves with each unknown */
@@ -330,6 +332,7 @@ static void clp_find_pulses(clp_t* w) {
   for (int32_t a = 0; a < CLP_NU; a++) {
     double input[CLP_NU];
     for (int32_t i = 0; i < CLP_NX; i++) {
+      CLP_NO_CALL;
       w->state[i] = 0.0;
     }
     for (int32_t i = 0; i < CLP_NU; i++) {
@@ -424,6 +427,7 @@ static void clp_fill_gradient(clp_t* w) {
   double* l = w->next;
   double share[CLP_NY];
   for (int32_t o = 0; o < CLP_NY; o++) {
+    CLP_NO_CALL;
     share[o] = clp_lead[o];
   }
   for (int32_t i = 0; i < CLP_NC; i++) {
@@ -437,6 +441,7 @@ static void clp_fill_gradient(clp_t* w) {
     }
   }
   for (int32_t i = 0; i < CLP_NX; i++) {
+    CLP_NO_CALL;
     l[i] = 0.0;
 #if CLP_LQ
     for (int32_t j = 0; j < CLP_NX; j++) { /* the state after the horizon is left by the roll-out */
@@ -493,6 +498,7 @@ static void clp_scale_cost(clp_t* w) {
   for (int32_t s = 0; s < CLP_SOFT; s++) {
     const int32_t p = CLP_INPUTS + s;
     for (int32_t j = 0; j < p; j++) {
+      CLP_NO_CALL;
       w->qp.H[clp_first(p) + j] = 0.0;
     }
     w->qp.H[clp_first(p) + p] = clp_soft_weight[s];
@@ -566,6 +572,7 @@ static void clp_fill_limits(clp_t* w) {
  * then its lower ones. */
 static void clp_row(const clp_t* w, int32_t row, double* to) {
   for (int32_t p = 0; p < CLP_N; p++) {
+    CLP_NO_CALL;
     to[p] = 0.0;
   }
   if (row < CLP_MOVES) {

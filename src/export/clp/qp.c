@@ -51,6 +51,7 @@ static bool clp_factor(clp_qp_t* q) {
   for (int32_t i = 0; i < CLP_N; i++) {
     double* row = &q->J[i * CLP_N];
     for (int32_t j = 0; j < i; j++) {
+      CLP_NO_CALL;
       row[j] = 0.0;
     }
     row[i] = 1.0 / q->R[clp_first(i) + i];
@@ -69,6 +70,7 @@ static bool clp_factor(clp_qp_t* q) {
 /* to := J' from, times a sign */
 static void clp_transform(const clp_qp_t* q, const double* from, double* to) {
   for (int32_t j = 0; j < CLP_N; j++) {
+    CLP_NO_CALL;
     to[j] = 0.0;
   }
   for (int32_t i = 0; i < CLP_N; i++) {
@@ -167,6 +169,7 @@ static void clp_append(clp_qp_t* q, int32_t id, int32_t side, double norm) {
   const double pivot = (first > 0.0) ? -norm : norm;
   const double beta = 1.0 / (norm * (norm + clp_abs(first)));
   for (int32_t i = 0; i < k; i++) {
+    CLP_NO_CALL;
     column[i] = q->d[i];
   }
   column[k] = pivot;
@@ -194,6 +197,7 @@ static void clp_remove(clp_qp_t* q, int32_t gone) {
     double low;
     double norm;
     for (int32_t i = 0; i < gone; i++) {
+      CLP_NO_CALL;
       to[i] = from[i];
     }
     for (int32_t i = gone; i < k; i++) { /* the rotations so far */
@@ -230,6 +234,7 @@ static double clp_take_normal(clp_t* w, int32_t id) {
   double value = 0.0;
   if (id < CLP_N) {
     for (int32_t i = 0; i < CLP_N; i++) {
+      CLP_NO_CALL;
       q->normal[i] = 0.0;
     }
     q->normal[id] = 1.0;
@@ -432,6 +437,7 @@ static int32_t clp_solve(clp_t* w, int32_t most) {
   q->iterations = 0;
   q->count = 0;
   for (int32_t i = 0; i < (CLP_N + CLP_M); i++) {
+    CLP_NO_CALL;
     q->side[i] = 0;
   }
   if (!done) {
