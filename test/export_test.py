@@ -74,6 +74,10 @@ class Export(unittest.TestCase):
         there = export_check.emulated(self.folder, "law", "cortex-m7", self.into, 40)
         self.assertEqual(here["hash"], there["hash"])
 
+    def test_a_block_with_an_optimizer_may_have_any_name(self):
+        self.exported("linear_2x2_clp", "--to", "c99", "--samples", "30", "--name", "clp")
+        self.assertTrue(export_check.native(self.folder, "clp", "gcc", "-O0", self.into)["passed"])
+
     def test_the_own_exponential_is_within_two_units_in_the_last_place(self):
         self.exported("asp_case1", "--to", "c99", "--samples", "10")
         text = (self.folder / "law.c").read_text()
