@@ -1,7 +1,12 @@
 #!/usr/bin/python3
 """Exported blocks against the law in process: C99 by this machine's compiler, Structured Text by the interpreter of scripts/."""
+import ctypes
+import decimal
+import math
 import os
 import pathlib
+import random
+import re
 import shutil
 import subprocess
 import sys
@@ -68,6 +73,30 @@ class Export(unittest.TestCase):
         here = export_check.native(self.folder, "law", "gcc", "-O2", self.into)
         there = export_check.emulated(self.folder, "law", "cortex-m7", self.into, 40)
         self.assertEqual(here["hash"], there["hash"])
+
+    def test_a_block_with_an_optimizer_may_have_any_name(self):
+        self.exported("linear_2x2_clp", "--to", "c99", "--samples", "30", "--name", "clp")
+        self.assertTrue(export_check.native(self.folder, "clp", "gcc", "-O0", self.into)["passed"])
+
+    def test_the_own_exponential_is_within_two_units_in_the_last_place(self):
+        self.exported("asp_case1", "--to", "c99", "--samples", "10")
+        text = (self.folder / "law.c").read_text()
+        parts = [re.search(rf"^static \w+ law_{name}\(double x\) {{.*?^}}", text, re.M | re.S)[0] for name in ("floor", "exp")]
+        (self.folder / "exp.c").write_text("#include <stdint.h>\n" + "\n".join(parts) + "\ndouble own(double x) { return law_exp(x); }\n")
+        library = self.folder / "exp.so"
+        subprocess.run(["gcc", "-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC", str(self.folder / "exp.c"), "-o", str(library)], check=True)
+        own = ctypes.CDLL(str(library)).own
+        own.restype, own.argtypes = ctypes.c_double, [ctypes.c_double]
+        draw, worst = random.Random(5), 0.0
+        decimal.getcontext().prec = 40
+        for span in (1e-8, 1e-3, 0.35, 1.0, 5.0, 30.0, 300.0, 700.0):
+            for _ in range(1000):
+                x = -draw.uniform(0.0, span)
+                exact = decimal.Decimal(x).exp()
+                worst = max(worst, float(abs(decimal.Decimal(own(x)) - exact) / decimal.Decimal(math.ldexp(1.0, math.frexp(float(exact))[1] - 53))))
+        self.assertEqual((1.0, 0.0), (own(0.0), own(-701.0)))
+        self.assertLess(worst, 2.0)
+        self.assertLess(0.1, worst)  # of rounding alone
 
     def test_an_optimizer_that_may_not_try_enough_clips_the_law(self):
         self.exported("asp_clp_1b", "--to", "c99", "--samples", "250")

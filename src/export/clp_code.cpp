@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "control/power_of_two.hpp"
 #include "export/clp_text.hpp"
@@ -14,13 +15,6 @@ namespace {
 
 using ir::Kind;
 using ir::Value;
-
-void replaceAll(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at)) {
-    text.replace(at, from.size(), to);
-    at += to.size();
-  }
-}
 
 /// The text of the optimizer with this loop's sizes and tables in front, under the block's name.
 class ClpText {
@@ -61,16 +55,25 @@ class ClpText {
     tables_ += "};\n";
   }
   static std::string withSolver() {
+    const std::string include = "#include \"qp.c\"\n";
     std::string text = kClp;
-    replaceAll(text, "#include \"qp.c\"\n", kClpQp);
-    return text;
+    return text.replace(text.find(include), include.size(), kClpQp);
   }
-  std::string named(std::string text) const {
-    replaceAll(text, "clp_root", block_ + "_sqrt");
-    replaceAll(text, "clp_", block_ + "_clp_");
-    replaceAll(text, "CLP_NO_CALL", noCall(block_));
-    replaceAll(text, "CLP_", upperCase(block_) + "_CLP_");
-    return text;
+  /// In one pass: the block's own name may hold what is replaced.
+  std::string named(const std::string& text) const {
+    const std::pair<std::string, std::string> words[] = {{"clp_root", block_ + "_sqrt"},
+                                                         {"CLP_NO_CALL", noCall(block_)},
+                                                         {"clp_", block_ + "_clp_"},
+                                                         {"CLP_", upperCase(block_) + "_CLP_"}};
+    std::string to;
+    for (std::size_t at = 0; at < text.size();) {
+      const auto* word = std::find_if(std::begin(words), std::end(words), [&](const auto& w) {
+        return text.compare(at, w.first.size(), w.first) == 0;
+      });
+      to += word == std::end(words) ? std::string(1, text[at]) : word->second;
+      at += word == std::end(words) ? 1 : word->first.size();
+    }
+    return to;
   }
 
   std::string block_, types_, tables_;

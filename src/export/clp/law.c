@@ -360,13 +360,18 @@ static void clp_find_pulses(clp_t* w) {
   }
 }
 
+/* What input p does at the end of the horizon: which entry of the pulses. */
+static int32_t clp_pulse(int32_t p) {
+  return ((CLP_NC - 1 - (p / CLP_NU)) * CLP_NU) + (p % CLP_NU);
+}
+
 /* The Hessian of the inputs: block Toeplitz but for its corner, from the last sample backwards. */
 static void clp_fill_hessian(clp_t* w) {
   double* H = w->qp.H;
   const int32_t width = CLP_NY + CLP_NU;
   for (int32_t p = CLP_INPUTS - 1; p >= 0; p--) {
     const int32_t a = p % CLP_NU;
-    const int32_t pulse = CLP_INPUTS - CLP_NU - p + (2 * a);
+    const int32_t pulse = clp_pulse(p);
     for (int32_t o = 0; o < CLP_NY; o++) {
       w->factor[(p * width) + o] =
           clp_unit[a] * clp_root_output[o] * w->output_pulse[(pulse * CLP_NY) + o];
@@ -400,7 +405,7 @@ static void clp_fill_hessian(clp_t* w) {
 #if CLP_LQ
   for (int32_t p = 0; p < CLP_INPUTS; p++) {
     const int32_t a = p % CLP_NU;
-    const double* here = &w->state_pulse[(CLP_INPUTS - CLP_NU - p + (2 * a)) * CLP_NX];
+    const double* here = &w->state_pulse[clp_pulse(p) * CLP_NX];
     H[clp_first(p) + p] += clp_weight_input[a] * clp_unit[a] * clp_unit[a];
     for (int32_t i = 0; i < CLP_NX; i++) {
       w->next[i] = 0.0;
@@ -410,7 +415,7 @@ static void clp_fill_hessian(clp_t* w) {
     }
     for (int32_t q = 0; q <= p; q++) {
       const int32_t b = q % CLP_NU;
-      const double* there = &w->state_pulse[(CLP_INPUTS - CLP_NU - q + (2 * b)) * CLP_NX];
+      const double* there = &w->state_pulse[clp_pulse(q) * CLP_NX];
       double sum = 0.0;
       for (int32_t i = 0; i < CLP_NX; i++) {
         sum += w->next[i] * there[i];
@@ -459,9 +464,10 @@ static void clp_fill_gradient(clp_t* w) {
       sum = clp_weight_input[a] * (w->plan_u[(i * CLP_NU) + a] - w->aim_u[a]);
 #endif
       for (int32_t j = 0; j < CLP_NX; j++) {
-        if (clp_kind[j] < CLP_NY) {
-          sum += w->B[(clp_kind[j] * CLP_NU) + a] * l[j];
-        } else if (clp_kind[j] == (CLP_NY + 1 + a)) {
+        const int32_t kind = clp_kind[j];
+        if (kind < CLP_NY) {
+          sum += w->B[(kind * CLP_NU) + a] * l[j];
+        } else if (kind == (CLP_NY + 1 + a)) {
           sum += l[j];
         } else {
           sum += 0.0;
@@ -584,9 +590,12 @@ static void clp_row(const clp_t* w, int32_t row, double* to) {
     const int32_t s = (row - CLP_MOVES) / (2 * CLP_NC);
     const int32_t at = (row - CLP_MOVES) % (2 * CLP_NC);
     const int32_t i = at % CLP_NC;
-    for (int32_t p = 0; p < ((i + 1) * CLP_NU); p++) {
-      const int32_t j = p / CLP_NU;
-      to[p] = w->soft[(s * CLP_INPUTS) + p + ((i - (2 * j)) * CLP_NU)];
+    for (int32_t j = 0; j <= i; j++) {
+      const double* from = &w->soft[(s * CLP_INPUTS) + (clp_within(i - j, CLP_NC - 1) * CLP_NU)];
+      for (int32_t a = 0; a < CLP_NU; a++) {
+        CLP_NO_CALL;
+        to[(j * CLP_NU) + a] = from[a];
+      }
     }
     to[CLP_INPUTS + s] = (at < CLP_NC) ? -1.0 : 1.0;
   }
@@ -606,8 +615,11 @@ static void clp_rows(const clp_t* w, const double* x, double* to) {
     for (int32_t i = 0; i < CLP_NC; i++) {
       const int32_t above = CLP_MOVES + (2 * s * CLP_NC) + i;
       double y = 0.0;
-      for (int32_t p = 0; p < ((i + 1) * CLP_NU); p++) {
-        y += soft[p + ((i - (2 * (p / CLP_NU))) * CLP_NU)] * x[p];
+      for (int32_t j = 0; j <= i; j++) {
+        const double* from = &soft[clp_within(i - j, CLP_NC - 1) * CLP_NU];
+        for (int32_t a = 0; a < CLP_NU; a++) {
+          y += from[a] * x[(j * CLP_NU) + a];
+        }
       }
       to[above] = y - x[CLP_INPUTS + s];
       to[above + CLP_NC] = y + x[CLP_INPUTS + s];
@@ -624,7 +636,8 @@ static void clp_protect(clp_t* w) {
   bool moved = false;
   for (int32_t a = 0; a < CLP_NU; a++) {
     const double asked = w->u[a];
-    double to = clp_bounded(asked, w->least[a], w->most[a]);
+    double to = ((asked - asked) == 0.0) ? asked : w->base[a]; /* a finite one */
+    to = clp_bounded(to, w->least[a], w->most[a]);
     if (w->move[a] < CLP_UNLIMITED) {
       to = clp_bounded(to, w->previous[a] - w->move[a], w->previous[a] + w->move[a]);
     }
@@ -677,7 +690,7 @@ static void clp_step(clp_t* w, int32_t most) {
       w->iterations = w->qp.iterations;
     }
     if (!base && (w->status == CLP_SOLVED)) {
-      w->active = w->qp.count;
+      w->active = clp_count(&w->qp);
       for (int32_t a = 0; a < CLP_NU; a++) {
         w->u[a] = w->base[a] + (w->qp.x[a] * clp_unit[a]);
       }

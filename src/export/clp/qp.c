@@ -14,6 +14,22 @@ static double clp_abs(double v) { return (v < 0.0) ? -v : v; }
 /* First entry of a row of a lower triangle, or of a column of an upper one. */
 static int32_t clp_first(int32_t k) { return (k * (k + 1)) / 2; }
 
+/* v inside 0 to most. It is: a proof needs the words. */
+static int32_t clp_within(int32_t v, int32_t most) {
+  int32_t to = (v > 0) ? v : 0;
+  if (to > most) {
+    to = most;
+  }
+  return to;
+}
+
+/* How many constraints the working set holds, and which one is its entry k. */
+static int32_t clp_count(const clp_qp_t* q) { return clp_within(q->count, CLP_N); }
+
+static int32_t clp_held(const clp_qp_t* q, int32_t k) {
+  return clp_within(q->set[k], (CLP_N + CLP_M) - 1);
+}
+
 static double clp_limit(const clp_qp_t* q, int32_t id, int32_t side) {
   double limit;
   if (id < CLP_N) {
@@ -86,7 +102,8 @@ static void clp_transform(const clp_qp_t* q, const double* from, double* to) {
 
 /* Solves R'v = v and R v = v for the working set. */
 static void clp_solve_transposed(const clp_qp_t* q, double* v) {
-  for (int32_t k = 0; k < q->count; k++) {
+  const int32_t count = clp_count(q);
+  for (int32_t k = 0; k < count; k++) {
     const double* column = &q->R[clp_first(k)];
     double sum = v[k];
     for (int32_t i = 0; i < k; i++) {
@@ -97,7 +114,7 @@ static void clp_solve_transposed(const clp_qp_t* q, double* v) {
 }
 
 static void clp_solve_upper(const clp_qp_t* q, double* v) {
-  for (int32_t k = q->count - 1; k >= 0; k--) {
+  for (int32_t k = clp_count(q) - 1; k >= 0; k--) {
     const double* column = &q->R[clp_first(k)];
     v[k] = v[k] / column[k];
     for (int32_t i = 0; i < k; i++) {
@@ -163,7 +180,7 @@ static int32_t clp_violated(clp_t* w, int32_t* side) {
 /* Takes the constraint with transform d and step z into the working set: a reflection of the
  * columns of J that are left. */
 static void clp_append(clp_qp_t* q, int32_t id, int32_t side, double norm) {
-  const int32_t k = q->count;
+  const int32_t k = clp_within(q->count, CLP_N - 1);
   double* column = &q->R[clp_first(k)];
   const double first = q->d[k];
   const double pivot = (first > 0.0) ? -norm : norm;
@@ -188,8 +205,8 @@ static void clp_append(clp_qp_t* q, int32_t id, int32_t side, double norm) {
 
 /* Takes entry `gone` out of the working set: rotations make R triangular again. */
 static void clp_remove(clp_qp_t* q, int32_t gone) {
-  const int32_t last = q->count - 1;
-  q->side[q->set[gone]] = 0;
+  const int32_t last = clp_within(q->count - 1, CLP_N - 1);
+  q->side[clp_held(q, gone)] = 0;
   for (int32_t k = gone; k < last; k++) {
     const double* from = &q->R[clp_first(k + 1)];
     double* to = &q->R[clp_first(k)];
@@ -251,8 +268,9 @@ static double clp_take_normal(clp_t* w, int32_t id) {
 /* The entry of the working set whose multiplier first reaches zero as the new one grows; -1: none.
  */
 static int32_t clp_blocking(const clp_qp_t* q, bool dependent, double size, double* step) {
+  const int32_t count = clp_count(q);
   int32_t first = -1;
-  for (int32_t k = 0; k < q->count; k++) {
+  for (int32_t k = 0; k < count; k++) {
     const double rate = q->r[k];
     if (rate > 0.0) {
       const double multiplier = (q->y[k] > 0.0) ? q->y[k] : 0.0;
@@ -280,6 +298,7 @@ static int32_t clp_enter(clp_t* w, int32_t id, int32_t side, int32_t most) {
   int32_t status = CLP_LIMIT;
   bool done = false;
   while (!done && (q->iterations < most)) {
+    const int32_t count = clp_count(q);
     const double violation = sign * (limit - clp_take_normal(w, id));
     double head = 0.0;
     double tail = 0.0;
@@ -292,14 +311,14 @@ static int32_t clp_enter(clp_t* w, int32_t id, int32_t side, int32_t most) {
     for (int32_t j = 0; j < CLP_N; j++) {
       q->d[j] = sign * q->d[j];
       q->r[j] = q->d[j];
-      if (j < q->count) {
+      if (j < count) {
         head += q->d[j] * q->d[j];
       } else {
         tail += q->d[j] * q->d[j];
       }
     }
     clp_solve_upper(q, q->r);
-    dependent = (q->count >= CLP_N) || !(tail > (1e-20 * (head + tail)));
+    dependent = (count >= CLP_N) || !(tail > (1e-20 * (head + tail)));
     leaving = clp_blocking(q, dependent, head + tail, &step);
     if (!(clp_abs(violation) < 1e24) || !((head + tail) < 1e24)) {
       status = CLP_FAILED;
@@ -315,7 +334,7 @@ static int32_t clp_enter(clp_t* w, int32_t id, int32_t side, int32_t most) {
         for (int32_t i = 0; i < CLP_N; i++) {
           const double* row = &q->J[i * CLP_N];
           double sum = 0.0;
-          for (int32_t j = q->count; j < CLP_N; j++) {
+          for (int32_t j = count; j < CLP_N; j++) {
             sum += row[j] * q->d[j];
           }
           q->z[i] = sum;
@@ -328,16 +347,19 @@ static int32_t clp_enter(clp_t* w, int32_t id, int32_t side, int32_t most) {
       for (int32_t i = 0; (i < CLP_N) && !dependent; i++) {
         q->x[i] += step * q->z[i];
       }
-      for (int32_t k = 0; k < q->count; k++) {
+      for (int32_t k = 0; k < count; k++) {
         q->y[k] -= step * q->r[k];
       }
       entered += step;
-      if (done) {
-        q->y[q->count] = entered;
+      if (done && (count < CLP_N)) {
+        q->y[count] = entered;
         clp_append(q, id, side, clp_root(tail));
         status = CLP_SOLVED;
-      } else {
+      } else if (leaving >= 0) {
         clp_remove(q, leaving);
+      } else {
+        status = CLP_FAILED;
+        done = true;
       }
     }
   }
@@ -348,10 +370,11 @@ static int32_t clp_enter(clp_t* w, int32_t id, int32_t side, int32_t most) {
  * a bound is what is left there. The largest error, relative to its terms. */
 static double clp_errors(clp_t* w) {
   clp_qp_t* q = &w->qp;
+  const int32_t count = clp_count(q);
   double worst = 0.0;
   double terms = 1.0;
-  for (int32_t k = 0; k < q->count; k++) {
-    const int32_t id = q->set[k];
+  for (int32_t k = 0; k < count; k++) {
+    const int32_t id = clp_held(q, k);
     if (id < CLP_N) {
       q->x[id] = clp_limit(q, id, q->side[id]);
     }
@@ -370,8 +393,9 @@ static double clp_errors(clp_t* w) {
     q->z[i] -= sum;
     terms = (clp_abs(sum) > terms) ? clp_abs(sum) : terms;
   }
-  for (int32_t k = 0; k < q->count; k++) {
-    const int32_t id = q->set[k];
+  for (int32_t k = 0; k < count; k++) {
+    const int32_t id = clp_held(q, k);
+    CLP_NO_CALL;
     q->c[k] = 0.0;
     if (id >= CLP_N) {
       const int32_t side = q->side[id];
@@ -392,8 +416,8 @@ static double clp_errors(clp_t* w) {
       worst = (error > worst) ? error : worst;
     }
   }
-  for (int32_t k = 0; k < q->count; k++) {
-    const int32_t id = q->set[k];
+  for (int32_t k = 0; k < count; k++) {
+    const int32_t id = clp_held(q, k);
     if (id < CLP_N) {
       q->y[k] = (q->side[id] > 0) ? -q->z[id] : q->z[id];
       q->z[id] = 0.0;
@@ -408,14 +432,15 @@ static double clp_errors(clp_t* w) {
 
 /* H dx - N dy = z, N'dx = c: R'b = c, dx = J [b; J_2'z], R dy = b - J_1'z. */
 static void clp_correct(clp_qp_t* q) {
+  const int32_t count = clp_count(q);
   clp_transform(q, q->z, q->d);
   clp_solve_transposed(q, q->c);
-  for (int32_t k = 0; k < q->count; k++) {
+  for (int32_t k = 0; k < count; k++) {
     q->r[k] = q->c[k] - q->d[k];
     q->d[k] = q->c[k];
   }
   clp_solve_upper(q, q->r);
-  for (int32_t k = 0; k < q->count; k++) {
+  for (int32_t k = 0; k < count; k++) {
     q->y[k] += q->r[k];
   }
   for (int32_t i = 0; i < CLP_N; i++) {
