@@ -38,7 +38,9 @@ class Ring {
         player_(options.commands, simulation_.clock()),
         record_(recordLayout(loop).emptyRecord()),
         recorder_(recordLayout(loop),
-                  [this](const SampleRecord& sample) { record_.samples.push_back(sample); }),
+                  [this](std::uint32_t, const SampleRecord& sample) {
+                    record_.samples.push_back(sample);
+                  }),
         targets_{
             simulation_, controller_.session(),
             [this](int window) { controller_.identify(window); },
