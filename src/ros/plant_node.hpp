@@ -69,7 +69,8 @@ class PlantNode : public Node {
   ros::NodeHandle& node() { return node_; }
 
  private:
-  void onAction(const fmbpc::ControlAction::ConstPtr& msg);
+  void onAction(const fmbpc::ControlAction::ConstPtr& msg, const std::string& publisher);
+  bool commands(const std::string& publisher, std::uint32_t step) const;
   void onTracking(const fmbpc::Tracking::ConstPtr& msg);
   void onRecorded(const fmbpc::Recorded::ConstPtr& msg);
   void onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher);
@@ -95,12 +96,15 @@ class PlantNode : public Node {
   ReadyListener ready_;
   std::optional<ListenerGate> listeners_;  // of the first sample: whoever records is connected
   EquipmentFrames frames_;
+  const std::vector<std::string> members_;  // nodes of ours that beat
   RingWatch watch_;
 
   std::uint64_t run_id_{};
   double begun_s_, introduced_s_{}, answered_s_{}, failed_s_{-1};
   std::string failure_;
   std::vector<std::string> missing_;
+  std::string commander_;           // whose action acts ...
+  std::uint32_t commanded_step_{};  // ... since this sample
   bool recorded_{false};
   RunEndPublisher end_;
   WallThrottle trouble_log_{1.0};
