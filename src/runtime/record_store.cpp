@@ -91,9 +91,11 @@ bool RecordStore::flush(bool settled) {
   journal_.flush();
   const double hours =
       static_cast<double>(journal_.samples()) * loop_.plant_info.sample_time_s / 3600.0;
-  const bool full = hours >= part_h_ || static_cast<double>(journal_.bytes()) >= part_bytes_;
-  return layout_.samples == 0 && full && settled && journal_.isOpen() &&
-         journal_.unwritten() == 0 && beginNextPart();
+  const double parts =
+      std::max(hours / part_h_, static_cast<double>(journal_.bytes()) / part_bytes_);
+  const bool full = parts >= (settled ? 1.0 : 2.0);
+  return layout_.samples == 0 && full && journal_.isOpen() && journal_.unwritten() == 0 &&
+         beginNextPart();
 }
 
 bool RecordStore::beginNextPart() {

@@ -30,7 +30,7 @@ class RecordStore {
   RecorderSession::Samples unfinished() const;
   void put(std::uint32_t step, const SampleRecord& sample);  ///< see RecordJournal
   /// True: a part of an endless run has become files, and the next one begins. `settled`: of the
-  /// samples in it no more will come.
+  /// samples in it no more will come; else it gets twice as long first.
   bool flush(bool settled = true);
   void sync(double now_s) { journal_.sync(now_s); }  ///< see RecordJournal
   /// The run is over: makes its files of the journal and removes that. @throws InputError if they

@@ -276,6 +276,20 @@ TEST_F(InterruptedTest, AnEndlessRunIsFiledInPartsThatFollowEachOther) {
   EXPECT_EQ(readSummary(path("out/history/11-2/summary.json")).first_step, 4U);
 }
 
+TEST_F(InterruptedTest, APartOfWhichMoreMayComeIsTwiceAsLongAndNoMore) {
+  const RunRecord run = runLoop(clp_);
+  const LoopFile endless =
+      readLoop("asp_case1_clp", {{"sampling.duration_h", "0"}, {"disturbance.source", "constant"}});
+  RecordStore store(endless, path("out"), 0.0, 0.8);
+  store.begin(11);
+  std::vector<std::size_t> ends;
+  for (std::size_t k = 0; k < 10; ++k) {
+    put(store, run, k, k + 1);
+    if (store.flush(false)) ends.push_back(k + 1);
+  }
+  EXPECT_EQ(ends, (std::vector<std::size_t>{8}));
+}
+
 TEST_F(InterruptedTest, AJournalBecomesFilesOnRequest) {
   EXPECT_TRUE(recoverFolder(path("out")).empty());
   record(clp_, 11, 5);
