@@ -11,6 +11,7 @@
 #include "ros/topics.hpp"
 #include "ros/wall_throttle.hpp"
 #include "runtime/plot.hpp"
+#include "runtime/run_events.hpp"
 
 namespace fpc {
 namespace {
@@ -22,7 +23,7 @@ constexpr double kHeard = 1.0;          // [s] in which a run under way is heard
 constexpr double kLookForRing = 0.01;   // [s] of wall time, at who is there
 constexpr double kSettled = 0.1;        // [s]: a connection is complete at both ends a moment later
 constexpr double kLookForTopics = 0.1, kLookForMore = 0.5;  // [s], until ready and then
-constexpr int kLateAnswers = 20, kNoAnswers = 100;          // polls of 0.05 s
+constexpr int kLate = 20;                                   // polls of 0.05 s
 constexpr double kPredecessor = 5.0;  // [s] in which one of the same name may end in order
 
 template <typename Msg>
@@ -51,7 +52,9 @@ LoopRecorder::LoopRecorder(ros::NodeHandle node, const ros::NodeHandle& private_
       stay_(private_node.param("stay", false)),
       started_s_(steadyNow()),
       store_(openStore(private_node.param<std::string>("out", ""))),
-      session_(recordLayout(loop), [this](const SampleRecord& sample) { store_->append(sample); }),
+      session_(
+          recordLayout(loop),
+          [this](std::uint32_t step, const SampleRecord& sample) { store_->put(step, sample); }),
       ready_(node, loop, name()),
       plant_(loop),
       recorded_(node.advertise<std_msgs::String>(topics::kRecorded, 1, true)),
@@ -105,11 +108,12 @@ void LoopRecorder::poll() {
     bag_ready_ = bag_->look() || bag_ready_;
     looked_s_ = steadyNow();
   }
-  if (store_->flush() && bag_) bag_->beginNextPart();
+  if (!written_) watchGaps();
+  if (store_->flush(session_.lacking(told_, session_.latest().step).empty()) && bag_)
+    bag_->beginNextPart();
   store_->sync(steadyNow());
   if (bag_) bag_->sync(steadyNow());
   if (written_) return;
-  giveUpOld();
   if (clock_.closed()) return conclude();  // the disk had no room
   if (!clock_.stragglersLost(steadyNow())) return;
   const std::uint32_t last = session_.latest().step, expected = session_.layout().samples;
@@ -121,20 +125,26 @@ void LoopRecorder::poll() {
   conclude();
 }
 
-// What a sample lacks is not waited for in memory for long, where it and all that follow would be
-// lost with this process. What comes late comes in order: once a later sample is whole, a second is
-// enough. Where nobody answers, what was measured is worth more than answers of long after.
-void LoopRecorder::giveUpOld() {
-  const auto look = [&](Mark& mark, std::uint32_t before, int polls) {
-    if (++mark.polls < polls) return;
-    if (mark.run_id == plant_.runId()) session_.giveUpBefore(mark.before);
-    mark = {plant_.runId(), before, 0};
-  };
-  look(whole_, session_.wholeBefore(), kLateAnswers);
-  look(heard_, session_.latest().step, kNoAnswers);
-  if (session_.gapCount() == gaps_) return;
-  gaps_ = session_.gapCount();
-  gap_s_ = steadyNow();
+// What lacks something is on disk as well, and amended by what still comes. A sample that lacks it
+// for a second is a gap, which is said once; the loop is worse for it while the newest lack it.
+void LoopRecorder::watchGaps() {
+  session_.keep();
+  const std::uint32_t now = session_.latest().step;
+  if (!session_.lacks()) {
+    lacks_s_ = -1;
+  } else {
+    const auto [step, what] = session_.lacking(now - 1, now).front();
+    lacks_ = "sample " + std::to_string(step) + ": no " + what;
+    if (lacks_s_ < 0) lacks_s_ = steadyNow();
+  }
+  if (++polls_ < kLate) return;
+  std::vector<Event> gaps;
+  for (const auto& [step, what] : session_.lacking(told_, due_))
+    gaps.push_back(gapEvent(what, step));
+  health_.say(gaps);
+  told_ = due_;
+  due_ = now;
+  polls_ = 0;
 }
 
 // A folder that cannot be used ends the launch before the first sample; a run that is under way
@@ -181,9 +191,10 @@ void LoopRecorder::beginRun(std::uint64_t run_id) {
     ROS_ERROR("loop_recorder: %s (tried again)", store_->problem().c_str());
   if (!store_->remark().empty()) ROS_WARN("loop_recorder: %s", store_->remark().c_str());
   if (bag_) bag_->begin(run_id);
+  told_ = due_ = here;
   if (here > 0) {
     clock_.restart(std::min(store_->beganAt(), steadyNow()));
-    session_.resume(run_id, here);
+    session_.resume(run_id, here, store_->unfinished());
     ROS_INFO("loop_recorder: goes on after the %u samples that are on disk", here);
   } else {
     session_.announce(run_id);
@@ -275,13 +286,8 @@ void LoopRecorder::sayEnd() {
 bool LoopRecorder::tryWrite() {
   try {
     const double wall_s = clock_.elapsed(steadyNow());
-    const bool waits = !loop_.external_plant && loop_.ring.pace != Pace::kRealtime;
-    session_.giveUpBefore(session_.latest().step);
-    const std::uint32_t whole = session_.passedOn();
-    session_.close();  // a plant that waits sends again what is not whole
-    const std::uint32_t kept = waits ? whole : session_.passedOn();
-    const Summary summary =
-        clock_.closed() ? store_->finish(wall_s) : store_->interrupt(wall_s, kept);
+    session_.close();
+    const Summary summary = clock_.closed() ? store_->finish(wall_s) : store_->interrupt(wall_s);
     written_ = true;
     trouble_ = troubleOf(summary);
     ROS_INFO("loop_recorder: %u samples in %.3f s", summary.steps, summary.wall_s);

@@ -58,7 +58,7 @@ class LoopRecorder : public Node {
   std::unique_ptr<RecordStore> openStore(const std::string& folder);
   void poll();
   void giveUp();
-  void giveUpOld();
+  void watchGaps();
   void announceIfConnected();
   void beginRun(std::uint64_t run_id);
   template <typename Msg, typename Take>
@@ -83,15 +83,11 @@ class LoopRecorder : public Node {
   PlantGate plant_;
   std::string announcer_;  // of the run: its measurements count
   std::unique_ptr<BagWriter> bag_;
-  double looked_s_{-1};  // at the topics
-  struct Mark {
-    std::uint64_t run_id{};
-    std::uint32_t before{};
-    int polls{};  // since then
-  };
-  Mark whole_, heard_;    // see giveUpOld()
-  std::uint64_t gaps_{};  // that are said ...
-  double gap_s_{-1};      // ... since then
+  double looked_s_{-1};           // at the topics
+  int polls_{};                   // since the last look at gaps
+  std::uint32_t told_{}, due_{};  // gaps before it are said; will be at the next look
+  double lacks_s_{-1};            // since when the newest samples lack something ...
+  std::string lacks_;             // ... in words
   bool bag_ready_{false};
 
   RecorderClock clock_;

@@ -1,7 +1,6 @@
 #include "ros/neighbours.hpp"
 
 #include <arpa/inet.h>
-#include <fcntl.h>
 #include <ifaddrs.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -9,6 +8,7 @@
 #include <ros/network.h>
 #include <ros/ros.h>
 #include <ros/xmlrpc_manager.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 #include <xmlrpcpp/XmlRpcClient.h>
@@ -16,9 +16,11 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
+#include <system_error>
 
 #include "ros/wall_throttle.hpp"
 
@@ -26,6 +28,7 @@ namespace fpc {
 namespace {
 
 constexpr double kConnectPatience = 1.0;  // [s] for a connection
+constexpr rlim_t kSpareDescriptors = 16;  // connections of a node
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 
@@ -142,11 +145,19 @@ std::string Starter::problem() const {
   return "the roslaunch that started this node was killed: nobody starts the node again or ends it";
 }
 
+// A node that starts again needs several: with one left its topics would not be connected.
 std::string descriptorProblem() {
-  const int probe = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  if (probe < 0) return std::string("no connection can be made here: ") + std::strerror(errno);
-  close(probe);
-  return "";
+  std::error_code error;
+  std::filesystem::directory_iterator all("/proc/self/fd", error);
+  if (error) return "no connection can be made here: " + error.message();
+  rlimit limit{};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return "";
+  rlim_t used = 0;
+  for (const std::filesystem::directory_iterator end; all != end && !error; all.increment(error))
+    if (std::stoull(all->path().filename().string()) < limit.rlim_cur) ++used;
+  if (limit.rlim_cur >= used && limit.rlim_cur - used + 1 >= kSpareDescriptors) return "";
+  return "no connection can be made here with a node that starts: fewer than " +
+         std::to_string(kSpareDescriptors) + " file descriptors are left";
 }
 
 const std::string& NodeAddresses::of(const std::string& node) {

@@ -43,7 +43,8 @@ PlantNode::PlantNode(ros::NodeHandle node, ros::NodeHandle private_node, const L
       publishers_(node, loop, session_.process().info(), disturbances),
       keeper_(node, loop, name()),
       ready_(node, loop, name(), namesToWaitFor(loop, private_node)),
-      watch_(namesToWatch(loop, node)),
+      members_(namesToWatch(loop, node)),
+      watch_(members_),
       begun_s_(steadyNow()),
       end_(node),
       node_(node),
@@ -85,6 +86,7 @@ void PlantNode::beginRun() {
   introduced_s_ = steadyNow();
   tracking_subscriber_.shutdown();
   recorded_ = false;
+  commanded_step_ = 0;
 }
 
 void PlantNode::start() {
@@ -128,26 +130,41 @@ void PlantNode::waitForOthers() {
   health_.look();
 }
 
-void PlantNode::onAction(const fmbpc::ControlAction::ConstPtr& msg) {
+// Where anyone may command the plant (loop.publishers), nobody takes it from the one that does: a
+// node that is no member of the loop counts once a sample has gone by without an action, or waits.
+bool PlantNode::commands(const std::string& publisher, std::uint32_t step) const {
+  const StepHeader& now = session_.process().measurement().header;
+  return step != now.step || commander_.empty() || publisher == commander_ ||
+         std::find(members_.begin(), members_.end(), publisher) != members_.end() ||
+         now.step > commanded_step_ + 1 || session_.unansweredFor(steadyNow()) > kActionPatience;
+}
+
+void PlantNode::onAction(const fmbpc::ControlAction::ConstPtr& msg, const std::string& publisher) {
   guarded(topics::kControlAction, [&] {
     exchange();
-    take(fromMsg(*msg));
+    require(commands(publisher, msg->step), "control_action of " + publisher,
+            "one of " + commander_ + ", which commands the plant");
+    if (!take(fromMsg(*msg))) return;
+    commander_ = publisher;
+    commanded_step_ = msg->step;
   });
 }
 
-void PlantNode::take(ControlAction action) {
+/// False if it is no answer to the present sample.
+bool PlantNode::take(ControlAction action) {
   const bool awaited = !session_.hasAction() && session_.process().answers(action.header) &&
                        session_.phase() == PlantPhase::kRunning &&
                        action.input.size() == session_.process().measurement().input_applied.size();
   if (awaited && !prepare(action)) {
     parked_ = std::move(action);
-    return;
+    return true;
   }
   parked_.reset();
-  if (!session_.receive(action)) return;
+  if (!session_.receive(action)) return false;
   answered_s_ = steadyNow();
   exchange();
   tryAdvance();
+  return true;
 }
 
 void PlantNode::takeParked() {

@@ -74,8 +74,9 @@ class PlantNode : public Node {
   ros::NodeHandle& node() { return node_; }
 
  private:
-  void onAction(const fmbpc::ControlAction::ConstPtr& msg);
-  void take(ControlAction action);
+  void onAction(const fmbpc::ControlAction::ConstPtr& msg, const std::string& publisher);
+  bool commands(const std::string& publisher, std::uint32_t step) const;
+  bool take(ControlAction action);
   void onTracking(const fmbpc::Tracking::ConstPtr& msg);
   void onRecorded(const fmbpc::Recorded::ConstPtr& msg);
   void onLoopState(const fmbpc::LoopState::ConstPtr& msg, const std::string& publisher);
@@ -101,6 +102,7 @@ class PlantNode : public Node {
   ReadyListener ready_;
   std::optional<ListenerGate> listeners_;  // of the first sample: whoever records is connected
   EquipmentFrames frames_;
+  const std::vector<std::string> members_;  // nodes of ours that beat
   RingWatch watch_;
 
   std::optional<ControlAction> parked_;  // answers the present sample, and waits
@@ -108,6 +110,8 @@ class PlantNode : public Node {
   double begun_s_, introduced_s_{}, answered_s_{}, failed_s_{-1};
   std::string failure_;
   std::vector<std::string> missing_;
+  std::string commander_;           // whose action acts ...
+  std::uint32_t commanded_step_{};  // ... since this sample
   bool recorded_{false};
   RunEndPublisher end_;
   WallThrottle trouble_log_{1.0};

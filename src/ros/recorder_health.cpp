@@ -4,7 +4,7 @@
 namespace fpc {
 
 namespace {
-constexpr double kGapShown = 2.0;  // [s] that a gap stays in words
+constexpr double kLacking = 1.0;  // [s] in which a late message may come
 }
 
 Health LoopRecorder::health(double now_s) const {
@@ -18,11 +18,8 @@ Health LoopRecorder::health(double now_s) const {
   if (!ready_.announced())
     return {LoopMode::kStarting, EventCode::kWaiting, "waiting for publishers of the ring", {}};
   if (written_) return {LoopMode::kFinished, EventCode::kNone, "written", {}};
-  if (gaps_ > 0 && now_s - gap_s_ < kGapShown)
-    return {LoopMode::kDegraded,
-            EventCode::kRecordGap,
-            "recording, with gaps: " + session_.lastGap(),
-            {}};
+  if (lacks_s_ >= 0 && now_s - lacks_s_ > kLacking)
+    return {LoopMode::kDegraded, EventCode::kRecordGap, "recording, with gaps: " + lacks_, {}};
   return {LoopMode::kAutomatic, EventCode::kNone, session_.running() ? "recording" : "waiting", {}};
 }
 
@@ -32,8 +29,7 @@ void LoopRecorder::report(Diagnostics::Status& status) const {
   status.add("samples that wait for the disk", store_->unwritten());
   status.add("samples lost", store_->lost());
   if (!store_->remark().empty()) status.add("run before", store_->remark());
-  status.add("samples with gaps", session_.gapCount());
-  status.add("waiting for what belongs to them", session_.waiting());
+  status.add("samples with gaps", session_.gapCount() + session_.waiting());
   status.add("dropped: other run", session_.strays());
   status.add("dropped: wrong size or not finite", session_.wrongSize());
   addRefused(status, refused());

@@ -1,6 +1,7 @@
 #include "runtime/journal_rows.hpp"
 
 #include <algorithm>
+#include <deque>
 
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/journal_reader.hpp"
@@ -37,8 +38,14 @@ JournalRows::Rows JournalRows::read(std::uint32_t from, std::size_t most) const 
   Trajectory table(loop_, part, [&rows](const std::vector<double>& cells) {
     rows.cells.insert(rows.cells.end(), cells.begin(), cells.end());
   });
-  SampleRecord sample;
-  while (rows.cells.size() < most * names_.size() && reader.next(sample)) table.add(sample);
+  const auto full = [&] { return rows.cells.size() >= most * names_.size(); };
+  std::deque<SampleRecord> held;
+  for (SampleRecord sample; !full() && reader.next(sample);) {
+    held.push_back(sample);
+    const bool whole = layout_.isComplete(sample);
+    for (; !full() && !held.empty() && (whole || held.size() > kSettled); held.pop_front())
+      table.add(held.front());
+  }
   return rows;
 }
 

@@ -14,6 +14,7 @@ namespace fpc {
 
 class JournalRows {
  public:
+  static constexpr std::size_t kSettled = 20;
   struct Rows {
     std::uint32_t first;        ///< sample of the first row
     std::vector<double> cells;  ///< row by row
@@ -24,7 +25,8 @@ class JournalRows {
   const std::vector<std::string>& names() const { return names_; }  ///< those of trajectory.csv
   /// Rows of names().size() numbers, at most `most` of them, from sample `from` on (or the first
   /// that is there), as trajectory.csv has them. The newest sample lacks its input and is not among
-  /// them.
+  /// them, nor is one that lacks something, of which more may come, until kSettled more or a whole
+  /// one follow.
   /// @throws InputError if the journal holds another run now.
   Rows read(std::uint32_t from, std::size_t most) const;
 

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstddef>
@@ -117,7 +118,7 @@ void RecordJournal::writeHead() {
   require(done, name_, std::string("room on the disk (") + strerror(errno) + ")");
 }
 
-bool RecordJournal::write(const Entry& entry) {
+bool RecordJournal::write(const Entries::value_type& entry) {
   const std::size_t bytes = entry_size_ * sizeof(double);
   const std::uint64_t offset = sizeof(JournalHeader) + about_.size() + entry.first * bytes;
   errno = ENOSPC;  // a write that ends early says nothing
@@ -130,22 +131,24 @@ bool RecordJournal::write(const Entry& entry) {
   return false;
 }
 
-void RecordJournal::append(const SampleRecord& sample) {
-  if (entry_size_ == 0) return;
+void RecordJournal::put(std::uint32_t step, const SampleRecord& sample) {
+  if (entry_size_ == 0 || step < layout_.first_step) return;  // the part before is filed
   if (next_ == 0) {
     began_ns_ = steadyNs();
     if (file_ >= 0) writeAt(file_, &began_ns_, sizeof began_ns_, offsetof(JournalHeader, began_ns));
   }
-  const std::uint64_t place = next_++;
-  if (unwritten_.size() < kMostUnwritten)
-    unwritten_.emplace_back(place, packEntry(sample, JournalSizes(layout_)));
+  const std::uint64_t place = step - layout_.first_step;
+  next_ = std::max(next_, place + 1);
+  if (unwritten_.size() < kMostUnwritten || unwritten_.count(place) > 0)
+    unwritten_[place] = packEntry(sample, JournalSizes(layout_));
   else
     ++lost_;
   if (problem_.empty()) flush();
 }
 
 void RecordJournal::flush() {
-  while (file_ >= 0 && !unwritten_.empty() && write(unwritten_.front())) unwritten_.pop_front();
+  while (file_ >= 0 && !unwritten_.empty() && write(*unwritten_.begin()))
+    unwritten_.erase(unwritten_.begin());
 }
 
 bool RecordJournal::sync(double now_s) {
@@ -153,13 +156,6 @@ bool RecordJournal::sync(double now_s) {
   unsynced_ = ::fdatasync(file_) != 0;
   synced_s_ = now_s;
   return true;
-}
-
-void RecordJournal::cut(std::uint64_t samples) {
-  if (file_ < 0 || samples >= next_) return;
-  const std::uint64_t head = sizeof(JournalHeader) + about_.size();
-  const std::uint64_t size = head + samples * entry_size_ * sizeof(double);
-  if (ftruncate(file_, static_cast<off_t>(size)) == 0) next_ = samples;
 }
 
 void RecordJournal::beginNextPart() {

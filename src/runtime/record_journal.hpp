@@ -1,12 +1,11 @@
-// A run on disk while it runs: sample after sample in one file of fixed-size entries, so that
+// A run on disk while it runs: each sample at its place in one file of fixed-size entries, so that
 // memory stays flat and nothing is lost with the process.
 #pragma once
 
 #include <cstdint>
-#include <deque>
+#include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "runtime/recorder_session.hpp"
@@ -33,19 +32,17 @@ class RecordJournal {
   /// are in it already. @throws InputError if it cannot be written, another process writes it, or
   /// something else is in it: that is never overwritten.
   std::uint32_t open(const std::string& file, const RecordLayout& layout, std::uint64_t run_id);
-  /// Never throws and never blocks the loop: what the disk refuses is kept and tried again; what
-  /// cannot be kept leaves a hole at its place.
-  void append(const SampleRecord& sample);
+  /// The sample of a step, in place of what is there of it. Never throws and never blocks the loop:
+  /// what the disk refuses is kept and tried again; what cannot be kept leaves a hole at its place.
+  void put(std::uint32_t step, const SampleRecord& sample);
   void flush();
   /// What is written is on the disk itself, once a second at most (`now_s`: any steady clock).
   /// @return whether there was something to do.
   bool sync(double now_s);
-  /// Forgets what is behind the first `samples`.
-  void cut(std::uint64_t samples);
   /// The file begins anew with the sample after those that are in it. @throws InputError
   void beginNextPart();
   std::uint32_t firstStep() const { return layout_.first_step; }
-  std::uint64_t samples() const { return next_; }  ///< in it, or waiting
+  std::uint64_t samples() const { return next_; }  ///< up to the newest in it, or waiting
   std::uint64_t bytes() const { return next_ * entry_size_ * sizeof(double); }
   /// Why something is not on disk, in words; empty if all is.
   const std::string& problem() const { return problem_; }
@@ -57,10 +54,10 @@ class RecordJournal {
   void close();
 
  private:
-  using Entry = std::pair<std::uint64_t, std::vector<double>>;  // with its place
+  using Entries = std::map<std::uint64_t, std::vector<double>>;  // by place
   bool goesOn(std::uint64_t size);
   void writeHead();
-  bool write(const Entry& entry);
+  bool write(const Entries::value_type& entry);
 
   std::string name_, about_;
   RecordLayout layout_;
@@ -68,10 +65,10 @@ class RecordJournal {
   std::int64_t began_ns_{};
   int file_{-1};
   std::size_t entry_size_{};
-  std::uint64_t next_{};  // place of the next entry
+  std::uint64_t next_{};  // place behind the last entry
   bool unsynced_{false};
   double synced_s_{-1e9};
-  std::deque<Entry> unwritten_;
+  Entries unwritten_;
   std::uint64_t lost_{};
   std::string problem_;
 };

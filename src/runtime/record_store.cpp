@@ -1,10 +1,12 @@
 #include "runtime/record_store.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
 #include "base/files.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "runtime/journal_reader.hpp"
 #include "runtime/recover.hpp"
 
 namespace fpc {
@@ -42,7 +44,7 @@ std::string RecordStore::journalFile() const {
 }
 
 std::uint32_t RecordStore::begin(std::uint64_t run_id) {
-  samples_ = actions_ = 0;
+  actions_ = 0;
   run_id_ = run_id;
   begun_ = true;
   problem_.clear();
@@ -52,9 +54,19 @@ std::uint32_t RecordStore::begin(std::uint64_t run_id) {
   if (journal_.unwritten() > 0)
     remark_ = std::to_string(journal_.unwritten()) + " samples of the run before had no room";
   journal_.start(layout_, run_id);
-  const std::uint32_t here = tryOpen();
-  samples_ = here;
-  return here;
+  return tryOpen();
+}
+
+RecorderSession::Samples RecordStore::unfinished() const {
+  RecorderSession::Samples found;
+  const auto all = static_cast<std::uint32_t>(journal_.samples());
+  const std::uint32_t from = all > kAmended ? all - kAmended : 0;
+  JournalReader reader(journalFile(), layout_);
+  reader.skip(from);
+  SampleRecord sample;
+  for (std::uint32_t place = from; reader.next(sample); ++place)
+    if (!layout_.isComplete(sample)) found.emplace_back(journal_.firstStep() + place, sample);
+  return found;
 }
 
 std::uint32_t RecordStore::tryOpen() {
@@ -69,18 +81,19 @@ std::uint32_t RecordStore::tryOpen() {
   }
 }
 
-void RecordStore::append(const SampleRecord& sample) {
-  ++samples_;
-  actions_ += sample.has_action ? 1 : 0;
-  if (!folder_.empty()) journal_.append(sample);
+void RecordStore::put(std::uint32_t step, const SampleRecord& sample) {
+  if (sample.has_action) actions_ = std::max(actions_, step + 1);
+  if (!folder_.empty()) journal_.put(step, sample);
 }
 
-bool RecordStore::flush() {
+bool RecordStore::flush(bool settled) {
   if (!problem_.empty() && begun_) tryOpen();
   journal_.flush();
   const double hours =
       static_cast<double>(journal_.samples()) * loop_.plant_info.sample_time_s / 3600.0;
-  const bool full = hours >= part_h_ || static_cast<double>(journal_.bytes()) >= part_bytes_;
+  const double parts =
+      std::max(hours / part_h_, static_cast<double>(journal_.bytes()) / part_bytes_);
+  const bool full = parts >= (settled ? 1.0 : 2.0);
   return layout_.samples == 0 && full && journal_.isOpen() && journal_.unwritten() == 0 &&
          beginNextPart();
 }
@@ -99,7 +112,7 @@ bool RecordStore::beginNextPart() {
 
 Summary RecordStore::finish(double wall_s) {
   Summary summary;
-  summary.steps = static_cast<std::uint32_t>(actions_);
+  summary.steps = actions_;
   summary.wall_s = wall_s;
   if (folder_.empty()) return summary;
   summary = write(wall_s);
@@ -109,10 +122,9 @@ Summary RecordStore::finish(double wall_s) {
   return summary;
 }
 
-Summary RecordStore::interrupt(double wall_s, std::uint32_t samples) {
+Summary RecordStore::interrupt(double wall_s) {
   if (folder_.empty()) return finish(wall_s);
   Summary summary = write(wall_s);
-  journal_.cut(samples - journal_.firstStep());
   journal_.close();
   return summary;
 }

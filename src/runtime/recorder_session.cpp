@@ -22,7 +22,7 @@ void RecorderSession::announce(std::uint64_t run_id) {
   run_id_ = run_id;
   gate_.announce(run_id);
   next_ = 0;
-  window_.clear();
+  waiting_.clear();
   latest_ = {};
   final_.reset();
   gaps_.clear();
@@ -30,25 +30,23 @@ void RecorderSession::announce(std::uint64_t run_id) {
   for (const auto& deliver : std::exchange(early_, {})) deliver();
 }
 
-void RecorderSession::resume(std::uint64_t run_id, std::uint32_t next_step) {
+void RecorderSession::resume(std::uint64_t run_id, std::uint32_t next_step, Samples unfinished) {
   auto early = std::exchange(early_, {});
   announce(run_id);
   next_ = next_step;
+  for (auto& [step, sample] : unfinished) waiting_[step].sample = std::move(sample);
   for (const auto& deliver : early) deliver();
 }
 
 bool RecorderSession::holds(const StepHeader& sample) const {
-  if (run_id_ != sample.run_id) return false;
-  if (sample.step < next_) return true;
-  const std::size_t place = sample.step - next_;
-  return place < window_.size() && layout_.isComplete(window_[place]);
+  return run_id_ == sample.run_id && sample.step < next_ && waiting_.count(sample.step) == 0;
 }
 
-SampleRecord* RecorderSession::at(std::uint32_t step) {
-  if (step < next_) return nullptr;
-  const std::size_t place = step - next_;
-  if (place >= window_.size()) window_.resize(place + 1);
-  return &window_[place];
+void RecorderSession::reach(std::uint32_t step) {
+  for (; next_ <= step; ++next_) {
+    if (waiting_.size() >= kWindow) giveUpFirst();
+    waiting_[next_];
+  }
 }
 
 template <typename Item, typename Place>
@@ -70,11 +68,15 @@ void RecorderSession::collect(const Item& item, bool SampleRecord::*has, Place p
     ++strays_;
     return;
   }
-  SampleRecord* sample = at(header.step);
-  if (sample == nullptr || sample->*has) return;  // repeated
-  place(*sample, item);
-  sample->*has = true;
-  passOn();
+  reach(header.step);
+  const auto found = waiting_.find(header.step);
+  if (found == waiting_.end() || found->second.sample.*has) return;  // repeated
+  SampleRecord& sample = found->second.sample;
+  place(sample, item);
+  sample.*has = found->second.changed = true;
+  if (!layout_.isComplete(sample)) return;
+  sink_(header.step, sample);
+  waiting_.erase(found);
 }
 
 // A stray far ahead would fill the disk with holes: it counts only when others follow it and
@@ -105,8 +107,7 @@ void RecorderSession::receive(const Measurement& m) {
       return;
     }
     if (final_ && m.header.step > *final_) final_.reset();  // a plant that goes on has not ended
-    while (isNew(arrival) && m.header.step >= next_ && m.header.step - next_ >= kWindow)
-      emitFront();  // what has been waiting longest is given up
+    if (isNew(arrival)) reach(m.header.step);
   }
   collect(m, &SampleRecord::has_measurement, [this](SampleRecord& sample, const Measurement& item) {
     sample.measurement = item;  // only the loop's last sample has no action
@@ -165,48 +166,57 @@ void RecorderSession::noteGaps(const SampleRecord& s, std::uint32_t step, std::s
   });
 }
 
-void RecorderSession::emitFront() {
-  if (window_.empty()) window_.emplace_back();
-  const SampleRecord& sample = window_.front();
-  if (!layout_.isComplete(sample)) {
-    ++gap_count_;
-    noteGaps(sample, next_, kMostGaps, gaps_);
-    std::vector<std::string> lines;
-    noteGaps(sample, next_, 1, lines);
-    last_gap_ = lines.front();
+void RecorderSession::giveUpFirst() {
+  const auto first = waiting_.begin();
+  ++gap_count_;
+  noteGaps(first->second.sample, first->first, kMostGaps, gaps_);
+  if (first->second.changed) sink_(first->first, first->second.sample);
+  waiting_.erase(first);
+}
+
+// A part that is on its way comes within a moment: what is written twice would cost more.
+void RecorderSession::keep() {
+  for (auto& [step, waits] : waiting_) {
+    if (step >= latest_.step) break;
+    if (std::exchange(waits.seen, true) && std::exchange(waits.changed, false))
+      sink_(step, waits.sample);
   }
-  sink_(sample);
-  window_.pop_front();
-  ++next_;
-}
-
-void RecorderSession::passOn() {
-  while (!window_.empty() && layout_.isComplete(window_.front())) emitFront();
-}
-
-void RecorderSession::giveUpBefore(std::uint32_t step) {
-  while (next_ < step && !window_.empty()) emitFront();
-  passOn();
-}
-
-std::uint32_t RecorderSession::wholeBefore() const {
-  std::size_t place = window_.size();
-  while (place > 0 && !layout_.isComplete(window_[place - 1])) --place;
-  return next_ + static_cast<std::uint32_t>(place);
 }
 
 // A run that was cut short ends with the last measurement; its action is not missed.
 void RecorderSession::close() {
-  while (!window_.empty() && !window_.back().has_measurement) window_.pop_back();
-  while (!window_.empty()) emitFront();
+  for (auto last = waiting_.find(next_ - 1);
+       last != waiting_.end() && !last->second.sample.has_measurement;
+       last = waiting_.find(next_ - 1)) {
+    waiting_.erase(last);
+    --next_;
+  }
+  while (!waiting_.empty()) giveUpFirst();
 }
 
 std::vector<std::string> RecorderSession::gaps(std::size_t limit) const {
   std::vector<std::string> lines(
       gaps_.begin(), gaps_.begin() + static_cast<std::ptrdiff_t>(std::min(limit, gaps_.size())));
-  for (std::size_t i = 0; i < window_.size() && lines.size() < limit; ++i)
-    noteGaps(window_[i], next_ + static_cast<std::uint32_t>(i), limit, lines);
+  for (auto at = waiting_.begin(); at != waiting_.end() && lines.size() < limit; ++at)
+    noteGaps(at->second.sample, at->first, limit, lines);
   return lines;
+}
+
+std::vector<std::pair<std::uint32_t, std::string>> RecorderSession::lacking(
+    std::uint32_t from, std::uint32_t before) const {
+  std::vector<std::pair<std::uint32_t, std::string>> all;
+  for (auto at = waiting_.lower_bound(from); at != waiting_.end() && at->first < before; ++at) {
+    std::string first;
+    forMissingParts(at->second.sample, layout_.has_optimizer, layout_.has_state,
+                    [&](const char* what) { first = first.empty() ? what : first; });
+    all.emplace_back(at->first, first);
+  }
+  return all;
+}
+
+bool RecorderSession::lacks() const {
+  return latest_.step > 0 && waiting_.count(latest_.step - 1) > 0 &&
+         waiting_.count(latest_.step) > 0;
 }
 
 }  // namespace fpc

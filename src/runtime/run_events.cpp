@@ -151,13 +151,15 @@ void RunEvents::watchOutputs(const SampleRecord& sample) {
 
 /// What a sample lacks is a gap once another one follows.
 void RunEvents::watchGaps(const SampleRecord& sample) {
-  for (const char* what : missing_) {
-    const std::string text = std::string("no ") + what + " in the record";
-    say({EventCode::kRecordGap, text.c_str(), what}, step_ - 1);
-  }
+  for (const char* what : missing_) list_.add(gapEvent(what, step_ - 1));
   missing_.clear();
   forMissingParts(sample, loop_.has_clp, !loop_.external_plant,
                   [this](const char* what) { missing_.push_back(what); });
+}
+
+Event gapEvent(const std::string& what, std::uint32_t step) {
+  const std::string text = "no " + what + " in the record";
+  return eventOf({EventCode::kRecordGap, text.c_str(), what.c_str()}, step);
 }
 
 EventList RunEvents::finish() const {

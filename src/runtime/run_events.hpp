@@ -55,6 +55,8 @@ class RunEvents {
   EventList list_;
 };
 
+/// A message (its topic) that a sample lacks in the record.
+Event gapEvent(const std::string& what, std::uint32_t step);
 /// What is to be known of a solve; kNone of one that is as it should be.
 Notice noticeOf(SolveStatus status);
 /// Of the loop file as such: what never acts or is overruled, cells of the disturbance record.

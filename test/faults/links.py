@@ -111,9 +111,9 @@ def connections(process):
     return {number: ends[link] for number, link in links.items() if link in ends}
 
 
-def use_up(loop, node):
-    """No file descriptor is left to a node, nor do those help that are free once somebody whom it hears has died, who is
-    started again."""
+def use_up(loop, node, left):
+    """So many file descriptors are left to a node; those do not help that are free once somebody whom it hears has died, who
+    is started again."""
     remember(loop)
     loop.starved = loop.pid("/" + loop.name(node))
     loop.descriptors = resource.prlimit(loop.starved, resource.RLIMIT_NOFILE)
@@ -121,7 +121,7 @@ def use_up(loop, node):
     free = next(number for number in range(len(open_now) + 1) if number not in open_now)
     theirs = {(there, here) for here, there in connections(loop.pid("/" + CONTROLLER)).values()}
     shared = [number for number, ends in connections(loop.starved).items() if ends in theirs]
-    resource.prlimit(loop.starved, resource.RLIMIT_NOFILE, (min([free, *shared]), loop.descriptors[1]))
+    resource.prlimit(loop.starved, resource.RLIMIT_NOFILE, (min([free, *shared]) + left, loop.descriptors[1]))
     loop.kill(CONTROLLER)
 
 
@@ -130,8 +130,9 @@ def give_back(loop):
     return whole(loop)
 
 
-def starved(node):
-    return Fault(f"{node}: no file descriptor is left while the controller is killed", lambda loop: use_up(loop, node), give_back,
+def starved(node, left):
+    return Fault(f"{node}: {'one' if left else 'no'} file descriptor is left while the controller is killed",
+                 lambda loop: use_up(loop, node, left), give_back,
                  said=f"/{node} .*(no connection can be made|not connected)", said_within=5.0, touches=(CONTROLLER,), lasts=2.0)
 
 
@@ -145,4 +146,5 @@ def contacted(node):
     return Fault(f"{node}: bytes that once ended nodes", do, needs=needs(node), lasts=1.0)
 
 
-FAULTS = [forged(node) for node in (*NODES, MANAGER)] + [contacted(node) for node in (*NODES, MANAGER)] + [cleaned(node) for node in NODES] + [starved(RECORDER), starved(PLANT)]
+FAULTS = [make(node) for make in (forged, contacted) for node in (*NODES, MANAGER)] + [cleaned(node) for node in NODES] + [
+    starved(node, left) for node in (RECORDER, PLANT) for left in (0, 1)]

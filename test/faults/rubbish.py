@@ -54,7 +54,7 @@ def other_units(message, _):
 
 
 def impostor(loop):
-    """Answers every sample before the loop does, with the valves open: the plant keeps its move limits."""
+    """Answers every sample before the loop does, with the valves open: the plant goes on with the one that commands it."""
     for _ in range(10):
         message = latest(loop, "control_action")
         message.input = [signal.upper for signal in loop.info().inputs]
@@ -86,7 +86,7 @@ FAULTS = [
     fault("control_action", "no inputs", sized("input", 0)),
     fault("control_action", "another run", next_run, counted=(PLANT, "actions dropped: other run")),
     fault("control_action", "burst of 3000", stale, times=3000, counted=(PLANT, "actions dropped: old step")),
-    Fault("rubbish: control_action, an impostor that is first ten times", impostor, lasts=1.0),
+    Fault("rubbish: control_action, an impostor that is first ten times", impostor, counted=(PLANT, "refused: control_action"), lasts=1.0),
     fault("tracking", "far ahead", far, counted=(RECORDER, "dropped: other run")),
     fault("tracking", "wrong size", sized("setpoint", 7), counted=(RECORDER, "dropped: wrong size")),
     fault("solver_report", "wrong size", sized("perturbation", 0)),

@@ -107,7 +107,8 @@ class Soak:
 
     def run(self, injections, seconds):
         """Injects until the run is over, or for so many seconds."""
-        ring.wait_until(lambda: self.latest is not None and self.info is not None and self.latest.step > 0, "the run")
+        ring.wait_until(lambda: self.latest is not None and self.info is not None and self.latest.step > 0,
+                        "the run", 600.0)
         done, looked = 0, -1
         while self.latest.word != "finished" and time.monotonic() - self.started < seconds:
             due = injections * self.latest.step // max(1, int(0.99 * self.samples))  # the last ones before the end
@@ -186,7 +187,7 @@ def main():
                        "actuator.move_upper.q_r=40", "out:=" + arguments.out, "draw:=false", "sim_time:=false"]),
             stdout=log, stderr=log, start_new_session=True)
     try:
-        ring.wait_until(rosgraph.is_master_online, "the master")
+        ring.wait_until(rosgraph.is_master_online, "the master", 600.0)
         rospy.init_node("soak", disable_signals=True, disable_rosout=True)
         soak = Soak(arguments.samples, arguments.seed)
         done = soak.run(arguments.injections, 3600.0 * arguments.hours)

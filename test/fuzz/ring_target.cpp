@@ -49,7 +49,7 @@ class FuzzedRing {
         simulated_(new SimulatedProcess(makeSimulation(loop))),
         plant_(std::unique_ptr<Process>(simulated_), PlantPolicy{}),
         controller_(makeControllerSession(loop)),
-        recorder_(recordLayout(loop), [](const SampleRecord&) {}) {
+        recorder_(recordLayout(loop), [](std::uint32_t, const SampleRecord&) {}) {
     if (loop.has_clp) optimizer_.emplace(makeOptimizerSession(loop));
     if (loop.has_model || loop.has_identify) identifier_.emplace(loop);
     plant_.begin(kRun);

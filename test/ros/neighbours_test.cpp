@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -49,6 +50,23 @@ TEST(Neighbours, OneThatNeverAnswersIsGivenUp) {
   silent.shut();  // refused: at once
   EXPECT_FALSE(ask(silent.uri(), "getPid", arguments, payload, 1e9));
   EXPECT_FALSE(ask("nonsense", "getPid", arguments, payload, 1e9));
+}
+
+TEST(Neighbours, FewFileDescriptorsThatAreLeftAreAProblem) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int lowest_free = ::dup(0);
+  ::close(lowest_free);
+  const auto withLeft = [&](int left) {
+    const rlimit now{static_cast<rlim_t>(lowest_free + left), before.rlim_max};
+    EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &now), 0);
+    const std::string problem = descriptorProblem();
+    EXPECT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+    return problem;
+  };
+  EXPECT_FALSE(withLeft(0).empty());
+  EXPECT_FALSE(withLeft(1).empty());
+  EXPECT_TRUE(withLeft(100).empty());
 }
 
 }  // namespace ros_neighbours_test

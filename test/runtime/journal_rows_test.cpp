@@ -24,7 +24,8 @@ class JournalRowsTest : public LoopFolder {
   }
 
   void append(RecordJournal& journal, std::size_t from, std::size_t to) {
-    for (std::size_t k = from; k < to; ++k) journal.append(record_.samples[k]);
+    for (std::size_t k = from; k < to; ++k)
+      journal.put(static_cast<std::uint32_t>(k), record_.samples[k]);
     journal.flush();
   }
   // The rows of trajectory.csv from one sample on, before another one.
@@ -74,6 +75,25 @@ TEST_F(JournalRowsTest, OfVeryManyAsManyAsAreAskedFor) {
   const JournalRows reader(path("journal"));
   expectSame(reader.read(3, 4).cells, expected(3, 7));
   EXPECT_TRUE(reader.read(1000, 4).cells.empty());
+}
+
+TEST_F(JournalRowsTest, RowsEndBeforeASampleOfWhichMoreMayCome) {
+  SampleRecord part = record_.samples[2];
+  part.has_action = false;
+  RecordJournal journal;
+  journal.open(path("journal"), layout_, 1);
+  append(journal, 0, 2);
+  journal.put(2, part);
+  const JournalRows rows(path("journal"));
+  const auto count = [&] { return rows.read(0, 100).cells.size() / rows.names().size(); };
+  EXPECT_EQ(count(), 1U);  // the input of the newest is not known yet
+  append(journal, 3, 4);
+  EXPECT_EQ(count(), 3U);
+  for (std::uint32_t k = 4; k < 4 + JournalRows::kSettled; ++k) journal.put(k, part);
+  EXPECT_EQ(count(), 3U);
+  journal.put(4 + JournalRows::kSettled, part);
+  EXPECT_EQ(count(), 4U);
+  EXPECT_EQ(rows.read(0, 2).cells.size(), 2 * rows.names().size());
 }
 
 TEST_F(JournalRowsTest, APartOfAnEndlessRunBeginsWhereItBegins) {

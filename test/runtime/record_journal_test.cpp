@@ -21,7 +21,8 @@ class RecordJournalTest : public LoopFolder {
         record_(runLoop(loop_)) {}
 
   void append(RecordJournal& journal, std::size_t from, std::size_t to) {
-    for (std::size_t k = from; k < to; ++k) journal.append(record_.samples[k]);
+    for (std::size_t k = from; k < to; ++k)
+      journal.put(static_cast<std::uint32_t>(k), record_.samples[k]);
   }
   std::string textOf(const RunRecord& record) {
     const std::string folder = path("files");
@@ -107,16 +108,49 @@ TEST_F(RecordJournalTest, ItTellsOfWhichLoopAndRunItIs) {
 TEST_F(RecordJournalTest, SamplesThatCouldNotBeKeptLeaveTheirPlacesEmpty) {
   RecordJournal journal;
   journal.start(layout_, 1);
-  for (std::size_t k = 0; k < RecordJournal::kMostUnwritten; ++k) append(journal, 0, 1);
-  append(journal, 0, 3);  // the disk comes back after them
-  EXPECT_EQ(journal.lost(), 3U);
+  constexpr auto kMost = static_cast<std::uint32_t>(RecordJournal::kMostUnwritten);
+  for (std::uint32_t k = 0; k < kMost + 3; ++k) journal.put(k, record_.samples[0]);
+  EXPECT_EQ(journal.lost(), 3U);  // the disk comes back after them
   journal.open(path("journal"), layout_, 1);
-  append(journal, 4, 5);
+  journal.put(kMost + 3, record_.samples[4]);
   journal.close();
   const RunRecord back = readJournal(path("journal"), layout_);
   ASSERT_EQ(back.samples.size(), RecordJournal::kMostUnwritten + 4);
   EXPECT_FALSE(back.samples[RecordJournal::kMostUnwritten + 2].has_measurement);
   EXPECT_EQ(back.samples.back().measurement.header.step, 4U);
+}
+
+TEST_F(RecordJournalTest, ASampleIsAmendedInItsPlaceAndWhatNeverCameHasNoValues) {
+  SampleRecord part = record_.samples[2];
+  part.has_action = part.has_report = false;
+  RecordJournal journal;
+  journal.open(path("journal"), layout_, 1);
+  append(journal, 0, 1);
+  append(journal, 3, 5);  // before 1 and 2
+  journal.put(2, part);
+  EXPECT_EQ(journal.samples(), 5U);
+  RunRecord back = readJournal(path("journal"), layout_);
+  EXPECT_FALSE(back.samples[1].has_measurement || back.samples[2].has_action);
+  EXPECT_TRUE(back.samples[2].has_measurement && back.samples[3].has_action);
+  append(journal, 2, 3);
+  append(journal, 1, 2);
+  append(journal, 5, record_.samples.size());
+  journal.close();
+  EXPECT_EQ(textOf(readJournal(path("journal"), layout_)), textOf(record_));
+}
+
+TEST_F(RecordJournalTest, WhatADiskWithoutRoomKeepsIsAmendedToo) {
+  SampleRecord part = record_.samples[1];
+  part.has_action = false;
+  RecordJournal journal;
+  journal.start(layout_, 1);
+  append(journal, 0, 1);
+  journal.put(1, part);
+  append(journal, 1, 2);
+  EXPECT_EQ(journal.unwritten(), 2U);
+  journal.open(path("journal"), layout_, 1);
+  journal.close();
+  EXPECT_TRUE(readJournal(path("journal"), layout_).samples[1].has_action);
 }
 
 TEST_F(RecordJournalTest, IsOnTheDiskItselfOnceASecond) {

@@ -26,6 +26,10 @@ double peakSinceLastCall() {
 
 class RecordStoreTest : public LoopFolder {
  protected:
+  static void put(RecordStore& store, const RunRecord& record, std::size_t from, std::size_t to) {
+    for (std::size_t k = from; k < to; ++k)
+      store.put(static_cast<std::uint32_t>(k), record.samples[k]);
+  }
   static std::string textOf(const std::string& file) {
     std::ifstream stream(file);
     std::ostringstream text;
@@ -37,7 +41,7 @@ class RecordStoreTest : public LoopFolder {
     conclude(record, complete);
     RecordStore store(loop, path("streamed"));
     store.begin(7);
-    for (const SampleRecord& sample : record.samples) store.append(sample);
+    put(store, record, 0, record.samples.size());
     store.finish(1.5);
     Summary summary = summarize(loop, record, 1.5);
     summary.run_id = 7;
@@ -81,8 +85,8 @@ TEST_F(RecordStoreTest, MemoryDoesNotGrowWithTheRun) {
   const RunRecord record = runLoop(loop);
   RecordStore store(loop, path("long"));
   store.begin(7);
-  for (std::size_t k = 0; k < 20000; ++k)
-    store.append(record.samples[k % (record.samples.size() - 1)]);
+  for (std::uint32_t k = 0; k < 20000; ++k)
+    store.put(k, record.samples[k % (record.samples.size() - 1)]);
   peakSinceLastCall();
   const double before = peakSinceLastCall();
   if (before == 0.0) GTEST_SKIP() << "no /proc/self/status";
@@ -104,7 +108,7 @@ class InterruptedTest : public RecordStoreTest {
     const RunRecord run = runLoop(loop);
     RecordStore store(loop, path("out"));
     store.begin(run_id);
-    for (std::size_t k = 0; k < samples; ++k) store.append(run.samples[k]);
+    put(store, run, 0, samples);
     if (finish) store.finish(1.0);
   }
   std::size_t rows(const std::string& folder) const {
@@ -173,25 +177,56 @@ TEST_F(InterruptedTest, TheFolderHoldsTheNewestRunAndItsHistoryThoseBefore) {
 
 TEST_F(InterruptedTest, PartsOfARunWhoseRecorderEndedInOrderAreJoined) {
   const RunRecord run = runLoop(clp_);
-  const auto part = [&](std::size_t from, std::size_t to, std::size_t whole) {
+  const auto part = [&](std::size_t from, std::size_t to) {
     RecordStore store(clp_, path("out"));
     const std::size_t here = store.begin(11);
-    for (std::size_t k = here; k < to; ++k) store.append(run.samples[k]);
+    put(store, run, here, to);
     if (to == run.samples.size())
       store.finish(1.0);
     else
-      store.interrupt(1.0, static_cast<std::uint32_t>(whole));
+      store.interrupt(1.0);
     return here == from;
   };
-  EXPECT_TRUE(part(0, 5, 4));  // the last one had come in part
+  EXPECT_TRUE(part(0, 5));
   EXPECT_EQ(rows("out"), 5U);
   EXPECT_FALSE(readSummary(path("out/summary.json")).complete);
-  EXPECT_TRUE(part(4, 7, 7));
+  EXPECT_TRUE(part(5, 7));
   EXPECT_EQ(rows("out"), 7U);
-  EXPECT_TRUE(part(7, 11, 11));
+  EXPECT_TRUE(part(7, 11));
   EXPECT_EQ(rows("out"), 11U);
   EXPECT_TRUE(readSummary(path("out/summary.json")).complete);
   EXPECT_FALSE(exists("out/journal.bin") || exists("out/history"));
+}
+
+TEST_F(InterruptedTest, ASampleThatHadComeInPartIsGoneOnWith) {
+  const RunRecord run = runLoop(clp_);
+  SampleRecord parts[] = {run.samples[3], run.samples[4]};
+  parts[0].has_tracking = parts[1].has_action = false;
+  {
+    RecordStore store(clp_, path("out"));
+    store.begin(11);
+    put(store, run, 0, 3);
+    store.put(3, parts[0]);
+    store.put(4, parts[1]);
+  }
+  RecordStore store(clp_, path("out"));
+  const std::uint32_t here = store.begin(11);
+  ASSERT_EQ(here, 5U);
+  RecorderSession session(recordLayout(clp_), [&](std::uint32_t step, const SampleRecord& sample) {
+    store.put(step, sample);
+  });
+  session.resume(11, here, store.unfinished());
+  EXPECT_EQ(session.waiting(), 2U);
+  Tracking tracking = run.samples[3].tracking;
+  ControlAction action = run.samples[4].action;
+  tracking.header.run_id = action.header.run_id = 11;
+  session.receive(tracking);
+  session.receiveAction(action);
+  EXPECT_EQ(session.waiting(), 0U);
+  put(store, run, 5, run.samples.size());
+  store.finish(1.0);
+  EXPECT_TRUE(readSummary(path("out/summary.json")).complete);
+  EXPECT_EQ(rows("out"), 11U);
 }
 
 TEST_F(InterruptedTest, WhatARecorderLeftForAnotherOneIsFiledOnce) {
@@ -199,8 +234,8 @@ TEST_F(InterruptedTest, WhatARecorderLeftForAnotherOneIsFiledOnce) {
     const RunRecord run = runLoop(clp_);
     RecordStore store(clp_, path("out"));
     store.begin(11);
-    for (std::size_t k = 0; k < 5; ++k) store.append(run.samples[k]);
-    store.interrupt(1.0, 5);
+    put(store, run, 0, 5);
+    store.interrupt(1.0);
   }
   record(clp_, 12, 11, true);
   EXPECT_EQ(rows("out"), 11U);
@@ -216,10 +251,11 @@ TEST_F(InterruptedTest, AnEndlessRunIsFiledInPartsThatFollowEachOther) {
     RecordStore store(endless, path("out"), 0.0, 0.8);
     EXPECT_EQ(store.begin(11), from);
     for (std::size_t k = from; k < to; ++k) {
-      store.append(run.samples[k]);
+      put(store, run, k, k + 1);
+      EXPECT_FALSE(store.flush(false));
       store.flush();
     }
-    store.interrupt(1.0, static_cast<std::uint32_t>(to));
+    store.interrupt(1.0);
   };
   record(0, 5);
   record(5, 10);
@@ -238,6 +274,20 @@ TEST_F(InterruptedTest, AnEndlessRunIsFiledInPartsThatFollowEachOther) {
     EXPECT_NEAR(std::stod(line), 0.2 * k, 1e-9);  // time goes on
   EXPECT_TRUE(readSummary(path("out/history/11/summary.json")).complete);
   EXPECT_EQ(readSummary(path("out/history/11-2/summary.json")).first_step, 4U);
+}
+
+TEST_F(InterruptedTest, APartOfWhichMoreMayComeIsTwiceAsLongAndNoMore) {
+  const RunRecord run = runLoop(clp_);
+  const LoopFile endless =
+      readLoop("asp_case1_clp", {{"sampling.duration_h", "0"}, {"disturbance.source", "constant"}});
+  RecordStore store(endless, path("out"), 0.0, 0.8);
+  store.begin(11);
+  std::vector<std::size_t> ends;
+  for (std::size_t k = 0; k < 10; ++k) {
+    put(store, run, k, k + 1);
+    if (store.flush(false)) ends.push_back(k + 1);
+  }
+  EXPECT_EQ(ends, (std::vector<std::size_t>{8}));
 }
 
 TEST_F(InterruptedTest, AJournalBecomesFilesOnRequest) {
@@ -259,7 +309,7 @@ TEST_F(InterruptedTest, AJournalBecomesFilesOnRequest) {
 TEST_F(InterruptedTest, AJournalThatIsBeingWrittenIsLeftAlone) {
   RecordStore store(clp_, path("out"));
   store.begin(11);
-  store.append(runLoop(clp_).samples[0]);
+  store.put(0, runLoop(clp_).samples[0]);
   expectWords(recoverFolder(path("out")).at(0).problem, {"another loop is running"});
   EXPECT_TRUE(exists("out/journal.bin"));
 }
@@ -271,7 +321,7 @@ TEST_F(InterruptedTest, AFullDiskAtTheBeginningIsSaidAndTheWholeRunIsRecordedOnc
   {
     const FullDisk full(0);
     EXPECT_EQ(store.begin(12), 0U);
-    for (const SampleRecord& sample : run.samples) store.append(sample);
+    put(store, run, 0, run.samples.size());
     store.flush();
     expectWords(store.problem(), {"not recorded", "room on the disk"});
   }

@@ -43,7 +43,10 @@ class RecorderSessionTest : public ::testing::Test {
     layout.info.inputs = {{"u", "-", 0, 1}};
     layout.has_optimizer = has_optimizer;
     layout.has_state = has_state;
-    return {layout, [this](const SampleRecord& s) { passed_.push_back(s); }};
+    return {layout, [this](std::uint32_t step, const SampleRecord& s) {
+              passed_.push_back(s);
+              steps_.push_back(step);
+            }};
   }
   static void addSample(RecorderSession& r, std::uint32_t step, bool final = false) {
     r.receive(measurement(step, final));
@@ -51,6 +54,7 @@ class RecorderSessionTest : public ::testing::Test {
     if (!final) r.receiveBase(action(step));
   }
   std::vector<SampleRecord> passed_;
+  std::vector<std::uint32_t> steps_;  // of them
 };
 
 TEST_F(RecorderSessionTest, IsCompleteWithTheFinalSampleAndNoGap) {
@@ -60,7 +64,7 @@ TEST_F(RecorderSessionTest, IsCompleteWithTheFinalSampleAndNoGap) {
   addSample(r, 0);
   addSample(r, 1);
   EXPECT_FALSE(r.complete());
-  EXPECT_EQ(r.passedOn(), 2U);
+  EXPECT_EQ(r.samples(), 2U);
   addSample(r, 2, true);
   EXPECT_TRUE(r.finalSeen() && r.complete());
   ASSERT_EQ(passed_.size(), 3U);
@@ -68,7 +72,7 @@ TEST_F(RecorderSessionTest, IsCompleteWithTheFinalSampleAndNoGap) {
   EXPECT_EQ(passed_[2].measurement.outputs[0], 2.0);
 }
 
-TEST_F(RecorderSessionTest, OrderOfArrivalDoesNotMatterAndSamplesGoOutInOrder) {
+TEST_F(RecorderSessionTest, OrderOfArrivalDoesNotMatterAndEachGoesOutOnceItIsWhole) {
   RecorderSession r = recorder();
   r.announce(7);
   addSample(r, 2, true);
@@ -77,7 +81,8 @@ TEST_F(RecorderSessionTest, OrderOfArrivalDoesNotMatterAndSamplesGoOutInOrder) {
                                                 "sample 1: no control_action"}));
   addSample(r, 1);
   EXPECT_TRUE(r.complete());
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(passed_[k].measurement.header.step, k);
+  EXPECT_EQ(steps_, (std::vector<std::uint32_t>{2, 0, 1}));
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(passed_[i].measurement.header.step, steps_[i]);
 }
 
 TEST_F(RecorderSessionTest, HoldsASampleWhenAllOfItIsThere) {
@@ -98,7 +103,7 @@ TEST_F(RecorderSessionTest, HoldsASampleWhenAllOfItIsThere) {
 TEST_F(RecorderSessionTest, AFinalSampleBeforeTheLoopsLastIsNotTheEnd) {
   RecordLayout layout = recorder().layout();
   layout.samples = 3;
-  RecorderSession r(layout, [](const SampleRecord&) {});
+  RecorderSession r(layout, [](std::uint32_t, const SampleRecord&) {});
   r.announce(7);
   addSample(r, 0);
   addSample(r, 1, true);
@@ -126,9 +131,9 @@ TEST_F(RecorderSessionTest, AnOptimizerOwesActionAndReport) {
 TEST_F(RecorderSessionTest, WhatComesBeforeTheAnnouncementIsNotLost) {
   RecorderSession r = recorder();
   addSample(r, 0);
-  EXPECT_EQ(r.passedOn(), 0U);
+  EXPECT_EQ(r.samples(), 0U);
   r.announce(7);
-  EXPECT_EQ(r.passedOn(), 1U);
+  EXPECT_EQ(r.samples(), 1U);
 }
 
 TEST_F(RecorderSessionTest, AnAnnouncedRunStartsOverWhicheverNumberIsLarger) {
@@ -140,7 +145,7 @@ TEST_F(RecorderSessionTest, AnAnnouncedRunStartsOverWhicheverNumberIsLarger) {
   EXPECT_EQ(r.strays(), 1U);
   r.announce(3);
   addSample(r, 1);  // of run 7
-  EXPECT_EQ(r.passedOn(), 0U);
+  EXPECT_EQ(r.samples(), 0U);
   EXPECT_EQ(r.strays(), 4U);
 }
 
@@ -163,7 +168,7 @@ TEST_F(RecorderSessionTest, AStrayStepNumberDoesNotFillTheMemory) {
   EXPECT_EQ(r.waiting(), 0U);
   EXPECT_EQ(r.strays(), 2U);
   addSample(r, 1);
-  EXPECT_EQ(r.passedOn(), 2U);
+  EXPECT_EQ(r.samples(), 2U);
 }
 
 TEST_F(RecorderSessionTest, RepeatedStraysFarAheadLeaveNoHolesOnTheDisk) {
@@ -224,40 +229,71 @@ TEST_F(RecorderSessionTest, OfTooManyEventsThoseAreKeptThatAJournalHolds) {
   EXPECT_EQ(passed_[0].events.size(), 2U);
 }
 
-TEST_F(RecorderSessionTest, WhatIsMissingForLongIsGivenUpAndNamed) {
+TEST_F(RecorderSessionTest, MemoryIsBoundedAndTheOldestThatLacksSomethingIsGivenUpAndNamed) {
   RecorderSession r = recorder();
   r.announce(7);
-  r.receive(measurement(0));  // its tracking never comes
-  r.receiveBase(action(0));
-  for (std::uint32_t k = 1; k <= RecorderSession::kWindow; ++k) addSample(r, k);
+  for (std::uint32_t k = 0; k <= RecorderSession::kWindow; ++k) {  // no tracking ever
+    r.receive(measurement(k));
+    r.receiveBase(action(k));
+  }
   EXPECT_EQ(r.gapCount(), 1U);
-  EXPECT_EQ(r.gaps(), (std::vector<std::string>{"sample 0: no tracking"}));
-  EXPECT_EQ(passed_.size(), RecorderSession::kWindow + 1U);
-  EXPECT_EQ(r.waiting(), 0U);
+  EXPECT_EQ(r.gaps(1), (std::vector<std::string>{"sample 0: no tracking"}));
+  EXPECT_EQ(steps_, (std::vector<std::uint32_t>{0}));
+  EXPECT_EQ(r.waiting(), RecorderSession::kWindow);
 }
 
-TEST_F(RecorderSessionTest, WhatHasBeenWaitedForKeepsNothingInMemory) {
+TEST_F(RecorderSessionTest, OneThatLacksSomethingHoldsUpNobodyAndIsAmended) {
   RecorderSession r = recorder();
   r.announce(7);
-  for (std::uint32_t k = 0; k < 5; ++k) r.receive(measurement(k));  // nobody answers
-  addSample(r, 5);
-  addSample(r, 6);
-  EXPECT_EQ(r.waiting(), 7U);
-  EXPECT_EQ(r.wholeBefore(), 7U);
-  r.receive(measurement(7));
-  EXPECT_EQ(r.wholeBefore(), 7U);
-  r.giveUpBefore(3);
-  EXPECT_EQ(r.lastGap(), "sample 2: no tracking");
-  EXPECT_EQ(passed_.size(), 3U);
-  EXPECT_EQ(r.gapCount(), 3U);
-  r.receive(tracking(1));  // too late
-  r.giveUpBefore(5);
-  EXPECT_EQ(passed_.size(), 7U) << "those that follow are whole";
-  EXPECT_EQ(r.gapCount(), 5U);
+  r.receive(measurement(0));  // its tracking comes late
+  r.receiveBase(action(0));
+  addSample(r, 1);
+  addSample(r, 2);
+  EXPECT_EQ(steps_, (std::vector<std::uint32_t>{1, 2}));
   EXPECT_EQ(r.waiting(), 1U);
-  addSample(r, 7);
-  EXPECT_EQ(r.wholeBefore(), 8U);
-  EXPECT_EQ(passed_.back().measurement.header.step, 7U);
+  r.receive(tracking(0));
+  ASSERT_EQ(steps_, (std::vector<std::uint32_t>{1, 2, 0}));
+  EXPECT_TRUE(passed_[2].has_tracking && passed_[2].has_measurement);
+  addSample(r, 3, true);
+  EXPECT_TRUE(r.complete());
+}
+
+TEST_F(RecorderSessionTest, WhatThereIsOfASampleIsKeptBeforeItIsWhole) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  r.receive(measurement(0));
+  r.receive(measurement(1));
+  r.receive(tracking(1));
+  r.keep();
+  EXPECT_TRUE(steps_.empty()) << "what is on its way may still come";
+  r.keep();
+  ASSERT_EQ(steps_, (std::vector<std::uint32_t>{0})) << "of the newest more is to come";
+  EXPECT_TRUE(passed_[0].has_measurement && !passed_[0].has_tracking);
+  r.keep();
+  EXPECT_EQ(steps_.size(), 1U) << "nothing new";
+  r.receive(tracking(0));
+  r.keep();
+  EXPECT_EQ(steps_, (std::vector<std::uint32_t>{0, 0}));
+  r.receiveBase(action(0));
+  EXPECT_EQ(steps_, (std::vector<std::uint32_t>{0, 0, 0}));
+  EXPECT_EQ(r.waiting(), 1U);
+}
+
+TEST_F(RecorderSessionTest, LacksSomethingWhileItsNewestSamplesDo) {
+  RecorderSession r = recorder();
+  r.announce(7);
+  addSample(r, 0);
+  EXPECT_FALSE(r.lacks());
+  r.receive(measurement(1));
+  EXPECT_FALSE(r.lacks()) << "the newest waits for its answer";
+  r.receive(measurement(2));
+  EXPECT_TRUE(r.lacks());
+  using Gaps = std::vector<std::pair<std::uint32_t, std::string>>;
+  EXPECT_EQ(r.lacking(0, 2), (Gaps{{1, "tracking"}}));
+  addSample(r, 2);
+  EXPECT_FALSE(r.lacks()) << "a gap is no reason to be worse for ever";
+  EXPECT_EQ(r.lacking(0, 3), (Gaps{{1, "tracking"}}));
+  EXPECT_TRUE(r.lacking(2, 3).empty());
 }
 
 TEST_F(RecorderSessionTest, ClosePassesOnWhatWaits) {
