@@ -28,5 +28,5 @@ add_message_files(DIRECTORY msg FILES
   Tracking.msg
 )
 add_service_files(DIRECTORY srv FILES Candidate.srv LoopOrder.srv ManualInput.srv)
-add_action_files(DIRECTORY action FILES IdentifyModel.action)
+add_action_files(DIRECTORY action FILES Commission.action IdentifyModel.action)
 generate_messages(DEPENDENCIES actionlib_msgs std_msgs)

@@ -8,7 +8,7 @@
 
 Loops and what comes out of them: Loop, loops(), Run with Signal and Event, Controller, Simulation.
 Plants and laws: Plant, plants(), controllers(); register(), check(), Quantity for your own.
-For learning: env(), an Env or VectorEnv. Models: identify(), Model. Many runs and analyses: study(), tune(), stability(). Pictures: fmbpc.plots.
+For learning: env(), an Env or VectorEnv. Models: identify(), Model. Many runs and analyses: study(), tune(), stability(). From a strange plant to a law: commission(). Pictures: fmbpc.plots.
 Every computation gives the bits that the tool `fmbpc` and the nodes give. Times are hours unless a
 name says otherwise; errors of what you hand over are InputError (a ValueError).
 """
@@ -23,11 +23,11 @@ if _find_spec("fmbpc._core") is not None:  # not where only the plots are there:
     from fmbpc._own import Quantity, check, controllers, register
     from fmbpc._plant import Plant, Simulation, plants
     from fmbpc._run import Event, Run, Signal
-    from fmbpc._study import stability, study, tune
+    from fmbpc._study import commission, stability, study, tune
 
     InputError = _core.InputError
     InputError.__doc__ = "What was handed over is wrong: the text names it and what was expected (docs/python.md). A ValueError."
     __version__ = _core.version
 
     __all__ = ["Controller", "Env", "Event", "InputError", "Loop", "Model", "Plant", "Quantity", "Run", "Signal", "Simulation", "VectorEnv",
-               "check", "controllers", "env", "identify", "loops", "plants", "register", "stability", "study", "tune"]
+               "check", "commission", "controllers", "env", "identify", "loops", "plants", "register", "stability", "study", "tune"]

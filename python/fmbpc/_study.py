@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import json
 import numbers
+import pathlib
 import threading
 from typing import Any, Callable, Mapping, Sequence
 
@@ -71,6 +72,22 @@ def tune(loop: str, tuning: str, *, set: Mapping[str, Any] | None = None, method
     counts = [_text.whole(value, what) for value, what in ((evaluations, "evaluations"), (seed, "seed"), (threads, "threads"))]
     with _progress.bar("tune", progress) as bar:
         return _interruptible(lambda look: _core.tune(_text.path(loop, "loop"), _text.path(tuning, "tuning"), _text.assignments(set), _text.text(method, "method"), *counts, look), bar)
+
+
+def commission(brief: str, folder: str = "", *, until: str = "design", again: str = "", evaluations: int = 48, members: int = 16, threads: int = 0,
+               progress: bool | Callable[[float, str], None] | None = None) -> dict[str, Any]:
+    """Goes from a brief of a simulated plant to a law that holds it, stage by stage (docs/commissioning.md).
+
+    folder: keeps what is done, so that the next call goes on; NAME_commissioned if left out
+    until: last stage, of brief, watch, test, model, design; again: this one and those after it once more
+    evaluations: of each search of stage design; members: of the ensemble of models
+    Returns the figures of each stage, None of those that are not done. Raises InputError; Ctrl-C KeyboardInterrupt, and what is done is kept.
+    """
+    brief = _text.path(brief, "brief")
+    folder = _text.path(folder, "folder") or f"{pathlib.Path(brief).stem}_commissioned"
+    counts = [_text.whole(value, what) for value, what in ((evaluations, "evaluations"), (members, "members"), (threads, "threads"))]
+    with _progress.bar("commission", progress) as bar:
+        return _interruptible(lambda look: _core.commission(brief, folder, _text.text(until, "until"), _text.text(again, "again"), *counts, look), bar)
 
 
 def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: range | str = "1..200", noise_gain: float = 0.0,

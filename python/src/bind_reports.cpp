@@ -5,6 +5,8 @@
 
 #include "bind.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "fmbpc/base/option.hpp"
+#include "runtime/commissioning/commissioning.hpp"
 #include "study/study.hpp"
 #include "study/study_statistics.hpp"
 #include "study/tune.hpp"
@@ -79,6 +81,36 @@ std::string tuneHere(const std::string& loop, const std::string& file,
   return json;
 }
 
+std::string commissionHere(const std::string& brief, const std::string& folder,
+                           const std::string& until, const std::string& again, int evaluations,
+                           int members, int threads, py::object progress) {
+  struct Interrupted {};
+  Watch watch(std::move(progress), false);
+  std::string json;
+  bool stopped = false;
+  watch.during([&] {
+    const auto last = commissioningStage(until, "until");
+    CommissioningOptions options;
+    options.evaluations = evaluations;
+    options.members = members;
+    options.threads = threads;
+    options.show = [&](CommissioningStage stage, const std::string& text) {
+      const double share = static_cast<double>(stage) / kCommissioningStages;
+      if (!watch.goOn(share, wordOf(stage) + ": " + text)) throw Interrupted{};
+    };
+    Commissioning commissioning(brief, folder, options);
+    if (!again.empty()) commissioning.undo(commissioningStage(again, "again"));
+    try {
+      commissioning.run(last);
+    } catch (const Interrupted&) {
+      stopped = true;
+    }
+    json = commissioning.figures().dump();
+  });
+  if (stopped) interruptedBy();
+  return json;
+}
+
 }  // namespace
 
 void bindReports(py::module_& m) {
@@ -99,6 +131,7 @@ void bindReports(py::module_& m) {
     return studyHere(a, std::move(progress));
   });
   m.def("tune", &tuneHere);
+  m.def("commission", &commissionHere);
   m.def("stability", [](const std::string& name, const std::string& at, const std::string& horizon,
                         double noise_gain, int settling) {
     tool::StabilityArguments a;

@@ -12,8 +12,9 @@
 namespace fpc {
 namespace {
 
-constexpr double kBurst = 200;       // commands at once
-constexpr double kLookAgain = 0.01;  // [s] at what a parked sample waits for
+constexpr double kBurst = 200;         // commands at once
+constexpr double kLookAgain = 0.01;    // [s] at what a parked sample waits for
+constexpr double kCommissioned = 0.1;  // [s] of wall time: feedback, end of a goal
 
 const char* actionTopic(const LoopFile& loop, const ros::NodeHandle& private_node) {
   const bool answers_plant = private_node.param("final_action", !loop.has_clp);
@@ -71,7 +72,16 @@ ControllerNode::ControllerNode(ros::NodeHandle node, ros::NodeHandle private_nod
       health_(node, private_node, "controller", loop.name, false,
               {[this](double now_s) { return health(now_s); },
                [this] { return session_.answer().tracking.header; },
-               [this](Diagnostics::Status& status) { report(status); }}) {
+               [this](Diagnostics::Status& status) { report(status); }}),
+      commission_timer_(
+          guardedTimer(node, kCommissioned, topics::kCommission, [this] { commission_.poll(); })
+              .started()),
+      commission_(private_node, loop_,
+                  {[this](std::shared_ptr<PlantTap> tap) { session_.test(std::move(tap)); },
+                   [this](const Command& command) {
+                     session_.command(command);
+                     tell();
+                   }}) {
   if (loop.has_clp) {
     standin_.emplace(node, loop, name(), comeback_);
     listeners_.alsoHear(standin_->hearing());

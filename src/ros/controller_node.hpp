@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "config/loop_file.hpp"
+#include "ros/commission_server.hpp"
 #include "ros/health_reporter.hpp"
 #include "ros/link_listener.hpp"
 #include "ros/listener_gate.hpp"
@@ -46,8 +47,8 @@ namespace fpc {
 /// optimizer (or ~final_action is true). Services: ~manual (SetBool: true is manual),
 /// ~manual_input, ~hold (SetBool: true stops the setpoint schedule, false lets it go on), ~adapt
 /// (SetBool: false freezes a controller that retunes itself), ~candidate (Candidate: watches
-/// another law, hands over, takes back). Settings that may change in a run are served to
-/// dynamic_reconfigure under the node's name.
+/// another law, hands over, takes back); action ~commission (Commission). Settings that may change
+/// in a run are served to dynamic_reconfigure under the node's name.
 class ControllerNode : public Node {
  public:
   static std::string idleReason(const LoopFile&) { return ""; }  ///< every loop has a controller
@@ -123,6 +124,8 @@ class ControllerNode : public Node {
   SummaryListener summary_;
   RateLimit commands_;
   HealthReporter health_;
+  SteadyTimer commission_timer_;
+  CommissionServer commission_;
 };
 
 }  // namespace fpc

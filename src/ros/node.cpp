@@ -147,10 +147,10 @@ void pause(double seconds) {
 }
 
 void untilHeard(const Failure& failure) {
-  constexpr double kHeard = 0.5, kPatience = 3.0;  // [s] after somebody has connected, and in all
+  constexpr double kConnected = 0.5, kPatience = 3.0;  // [s] after somebody has connected, and in all
   const double begun_s = steadyNow();
   double alone_s = begun_s;  // until then
-  while (ros::ok() && steadyNow() - alone_s < kHeard && steadyNow() - begun_s < kPatience) {
+  while (ros::ok() && steadyNow() - alone_s < kConnected && steadyNow() - begun_s < kPatience) {
     if (!failure.hasListener()) alone_s = steadyNow();
     pause(0.05);
   }

@@ -2,6 +2,9 @@
 
 #include <fmbpc/Candidate.h>
 #include <fmbpc/CommandEffect.h>
+#include <fmbpc/CommissionActionFeedback.h>
+#include <fmbpc/CommissionActionGoal.h>
+#include <fmbpc/CommissionActionResult.h>
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/Disturbance.h>
 #include <fmbpc/LoopState.h>
@@ -12,6 +15,9 @@
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_srvs/SetBool.h>
+
+#include <actionlib_msgs/GoalID.h>
+#include <actionlib_msgs/GoalStatus.h>
 
 #include <algorithm>
 #include <functional>
@@ -34,6 +40,8 @@ constexpr double kAnswerPatience = 5.0;     // [s] of wall time, for answers of 
 constexpr std::uint32_t kAnswerIsLost = 3;  // samples after which a command is said again
 constexpr double kOnItsWay = 0.02;          // [s], for what was sent before a service answered
 constexpr char kControllerName[] = "fmbpc_controller";
+constexpr double kLookAfter = 0.5;  // [s] whether the controller lives
+using Show = std::function<void(const std::string&, const std::string&)>;
 
 /// The latest message of a topic, of those that count.
 template <typename Msg>
@@ -96,6 +104,44 @@ class Line {
         break;
     }
     return hand(c);
+  }
+
+  std::string commission(const CommissionWish& wish, const Show& show) {
+    const std::string action = std::string(kControllerName) + "/" + topics::kCommission;
+    fmbpc::CommissionActionGoal goal;
+    goal.goal_id.stamp = uniqueStamp();
+    goal.goal_id.id = ros::this_node::getName() + "-" + std::to_string(goal.goal_id.stamp.nsec);
+    goal.goal.brief = wish.brief;
+    goal.goal.folder = wish.folder;
+    goal.goal.until = wish.until;
+    goal.goal.again = wish.again;
+    goal.goal.evaluations = static_cast<std::uint32_t>(wish.evaluations);
+    goal.goal.members = static_cast<std::uint32_t>(wish.members);
+    Latest<fmbpc::CommissionActionResult> result(node_, action + "/result", [&](const auto& msg) {
+      return msg.status.goal_id.id == goal.goal_id.id;
+    });
+    const ros::Subscriber feedback = node_.subscribe<fmbpc::CommissionActionFeedback>(
+        action + "/feedback", 100,
+        [&](const boost::shared_ptr<const fmbpc::CommissionActionFeedback>& msg) {
+          if (msg->status.goal_id.id == goal.goal_id.id)
+            show(msg->feedback.stage, msg->feedback.text);
+        });
+    const ros::Publisher publisher =
+        node_.advertise<fmbpc::CommissionActionGoal>(action + "/goal", 1);
+    require(wait([&] { return result.connected() && publisher.getNumSubscribers() > 0; },
+                 kAnswerPatience),
+            action, "a controller of a running loop that takes it");
+    publisher.publish(goal);
+    for (double gone_s = 0.0; !result.get();) {
+      wait([&] { return result.get() != nullptr; }, kLookAfter);
+      gone_s = result.connected() ? 0.0 : gone_s + kLookAfter;
+      require(ros::ok() && gone_s < kAnswerPatience, action,
+              "a controller that lives; what is done is kept, and the same command goes on");
+    }
+    const fmbpc::CommissionActionResult& done = *result.get();
+    require(done.status.status == actionlib_msgs::GoalStatus::SUCCEEDED, topics::kCommission,
+            done.result.message.empty() ? done.status.text : done.result.message);
+    return done.result.figures;
   }
 
  private:
@@ -299,14 +345,27 @@ class Line {
 
 }  // namespace
 
-std::string askLoop(const OperatorCommand& command) {
+namespace {
+
+void beOperator() {
   ros::init(ros::M_string{}, "operator",
             ros::init_options::AnonymousName | ros::init_options::NoRosout);
   require(ros::master::check(), "ROS_MASTER_URI",
           "a master at " + ros::master::getURI() +
               ": start a loop first (roslaunch fmbpc loop.launch loop:=NAME)");
   negotiateQuickly();
+}
+
+}  // namespace
+
+std::string askLoop(const OperatorCommand& command) {
+  beOperator();
   return Line().run(command);
+}
+
+std::string commissionLoop(const CommissionWish& wish, const Show& show) {
+  beOperator();
+  return Line().commission(wish, show);
 }
 
 }  // namespace fpc

@@ -37,8 +37,9 @@ inline constexpr char kEnable[] = "enable";
 inline constexpr char kTags[] = "tags";
 inline constexpr char kServices[] = "services";
 
-// Private action.
+// Private actions.
 inline constexpr char kIdentify[] = "identify";
+inline constexpr char kCommission[] = "commission";
 
 // Private services.
 inline constexpr char kPause[] = "pause";

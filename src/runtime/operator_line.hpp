@@ -2,6 +2,7 @@
 // with ROS done in room ros, else refused in words (tool/no_bags.cpp).
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,5 +23,15 @@ struct OperatorCommand {
 /// sample since which it is in force: what became of it, one line per thing asked.
 /// @throws InputError if there is no loop, it refuses (with its reason), or nothing comes of it.
 std::string askLoop(const OperatorCommand& command);
+
+/// What is asked of a loop's action `commission`; paths as the controller's machine knows them.
+struct CommissionWish {
+  std::string brief, folder, until, again;
+  int evaluations{}, members{};
+};
+/// Commissions the loop on the present master: the figures of all stages, in JSON. `show` gets what
+/// is done, stage and text. @throws InputError as askLoop(); the stages that are done stay done.
+std::string commissionLoop(const CommissionWish& wish,
+                           const std::function<void(const std::string&, const std::string&)>& show);
 
 }  // namespace fpc

@@ -198,6 +198,7 @@ void ControllerSession::process(const Measurement& m) {
     if (verdict == Verdict::kRepaired) output_.events.add(plausibility_.notice());
   }
   if (interruption_ != nullptr && usable) controller_->lookOn(accepted);
+  if (tap_) endTest();
   gatherEvents();
   answered();
 }
@@ -285,6 +286,7 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (!output_.ok) return hold(m, {});
   if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
     return hold(m, {EventCode::kLawFailed});
+  if (tap_) passToTest(m);
   answer_.base.input = output_.input;
   handOver(m);
   limit(m);

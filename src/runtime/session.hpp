@@ -19,6 +19,7 @@
 
 namespace fpc {
 
+class PlantTap;
 class ReactionWatch;
 class WatchedLaw;
 struct CandidateLaw;
@@ -131,6 +132,11 @@ class ControllerSession {
   void handOver(bool on);
   const WatchedLaw* watched() const { return watched_; }
 
+  /// From the next sample on these stages see what the law asks for, which stays in charge, and say
+  /// what is sent instead, inside the limits. Ended by whatever takes the inputs from the law; the
+  /// law then goes on bumplessly. @throws InputError while another one is open.
+  void test(std::shared_ptr<PlantTap> tap);
+
   OperatorWishes wishes() const;
   /// Before the first sample. What has been asked of this object itself is newer and stays.
   /// @throws InputError for what the controller refuses; the rest is taken.
@@ -175,6 +181,8 @@ class ControllerSession {
   void answered();
   void limit(const Measurement& m);
   void runLaw(const Measurement& m);
+  void passToTest(const Measurement& m);
+  void endTest();
   void hold(const Measurement& m, const Notice& why);
   void fallBack(const Measurement& m, const Notice& why);
   Notice imposing(DoubtAction action) const;
@@ -193,6 +201,7 @@ class ControllerSession {
 
   std::unique_ptr<Controller> controller_;
   WatchedLaw* watched_{nullptr};             // controller_, where there is a candidate
+  std::shared_ptr<PlantTap> tap_;            // null: nobody tests
   std::vector<std::string> setpoint_texts_;  // by output; empty: that it is clamped is not said
   SetpointSource setpoint_;
   InputLimits limits_;

@@ -1,4 +1,5 @@
 // From where the inputs of a session move on, and what it sends when its law does not run.
+#include "runtime/commissioning/plant_tap.hpp"
 #include "runtime/session.hpp"
 
 namespace fpc {
@@ -27,6 +28,28 @@ void ControllerSession::handOver(const Measurement& m) {
   if (controller_->mayBeSent(proposal_)) return;
   input = output_.input;
   transfer_.reset(false);
+}
+
+/// What the stages of a commissioning send in the place of the law's input. When they are done, the
+/// law moves on from what the plant gets.
+void ControllerSession::passToTest(const Measurement& m) {
+  proposal_ = output_.input;
+  tap_->pass(m, limits_, output_.input);
+  if (output_.input != proposal_) {
+    output_.predictive = false;
+    output_.source = ActionSource::kGuarded;
+  }
+  if (tap_->open()) return;
+  tap_.reset();
+  transfer_.reset(true);
+}
+
+/// Where somebody else has the inputs; a held sample is only one that is missing.
+void ControllerSession::endTest() {
+  const bool taken = manual_ || unreleased_ || !takes_actions_ || fell_back_;
+  if (taken || arrival_ == Arrival::kNewRun)
+    tap_->end(taken ? "somebody else has the inputs" : "a new run has begun");
+  if (!tap_->open() && interruption_ != nullptr) tap_.reset();
 }
 
 /// Puts the answer inside bounds and move limit, and where it may be sent.

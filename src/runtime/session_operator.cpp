@@ -5,6 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/text.hpp"
+#include "runtime/commissioning/plant_tap.hpp"
 #include "runtime/session.hpp"
 #include "runtime/watched_law.hpp"
 #include "supervision/reaction_watch.hpp"
@@ -89,6 +90,13 @@ void ControllerSession::handOver(bool on) {
     watched_->handOver();
   else
     watched_->back();
+}
+
+void ControllerSession::test(std::shared_ptr<PlantTap> tap) {
+  require(!tap_ || !tap_->open(), "test", "no other one that goes on");
+  require(!leads_an_optimizer_, "test",
+          "a loop without a constraint optimizer, whose plan would undo it: clp.enabled false");
+  tap_ = std::move(tap);
 }
 
 OperatorWishes ControllerSession::wishes() const {

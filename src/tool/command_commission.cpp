@@ -8,6 +8,7 @@
 #include "fmbpc/base/option.hpp"
 #include "fmbpc/base/text.hpp"
 #include "runtime/commissioning/commissioning.hpp"
+#include "runtime/operator_line.hpp"
 #include "tool/commands.hpp"
 
 namespace fpc::tool {
@@ -15,13 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = OrderedJson;
-
-CommissioningStage stageOf(const std::string& word) {
-  const auto words = wordsOf(CommissioningStage{});
-  for (std::size_t i = 0; i < words.size(); ++i)
-    if (words[i] == word) return static_cast<CommissioningStage>(i);
-  throw InputError("--until: expected one of " + join(words));
-}
 
 std::string figure(const Json& value) {
   return value.is_number() ? shortText(value.get<double>()) : "-";
@@ -83,11 +77,37 @@ void printDesign(const Json& stage) {
   std::cout << "  offered: " << stage["offered"].get<std::string>() << "\n";
 }
 
+void print(const Json& all, bool json) {
+  if (json) {
+    std::cout << all.dump(2) << "\n";
+    return;
+  }
+  for (const auto& [word, figures] : all.items()) {
+    std::cout << word << (figures.is_null() ? ": to be done" : ": done") << "\n";
+    if (figures.is_null()) continue;
+    if (word == wordOf(CommissioningStage::kWatch)) printWatch(figures);
+    if (word == wordOf(CommissioningStage::kTest)) printTest(figures);
+    if (word == wordOf(CommissioningStage::kModel)) printModel(figures);
+    if (word == wordOf(CommissioningStage::kDesign)) printDesign(figures);
+  }
+}
+
 }  // namespace
 
 int commission(const CommissionArguments& a) {
   const std::string folder =
       a.folder.empty() ? fs::path(a.brief).stem().string() + "_commissioned" : a.folder;
+  if (a.topics) {
+    require(!a.undo, "--undo", "a command without --topics: it only takes files back");
+    const std::string figures = commissionLoop(
+        {fs::absolute(a.brief).string(), fs::absolute(folder).lexically_normal().string(), a.until,
+         a.again, a.evaluations, a.members},
+        [&](const std::string& stage, const std::string& text) {
+          if (!a.json) std::cerr << stage << ": " << text << "\n";
+        });
+    print(Json::parse(figures), a.json);
+    return 0;
+  }
   CommissioningOptions options;
   options.evaluations = a.evaluations;
   options.members = a.members;
@@ -98,24 +118,9 @@ int commission(const CommissionArguments& a) {
     };
   Commissioning commissioning(a.brief, folder, options);
   require(!a.undo || !a.again.empty(), "--undo", "--again with the stage that is taken back");
-  if (!a.again.empty()) commissioning.undo(stageOf(a.again));
-  if (!a.undo) commissioning.run(stageOf(a.until));
-  Json all = Json::object();
-  for (int s = 0; s < kCommissioningStages; ++s) {
-    const auto stage = static_cast<CommissioningStage>(s);
-    const std::string word = wordOf(stage);
-    Json figures = commissioning.done(stage) ? commissioning.figures(stage) : Json(nullptr);
-    if (!a.json) {
-      std::cout << word << (figures.is_null() ? ": to be done" : ": done") << "\n";
-      if (figures.is_null()) continue;
-      if (stage == CommissioningStage::kWatch) printWatch(figures);
-      if (stage == CommissioningStage::kTest) printTest(figures);
-      if (stage == CommissioningStage::kModel) printModel(figures);
-      if (stage == CommissioningStage::kDesign) printDesign(figures);
-    }
-    all[word] = std::move(figures);
-  }
-  if (a.json) std::cout << all.dump(2) << "\n";
+  if (!a.again.empty()) commissioning.undo(commissioningStage(a.again, "--again"));
+  if (!a.undo) commissioning.run(commissioningStage(a.until, "--until"));
+  print(commissioning.figures(), a.json);
   return 0;
 }
 

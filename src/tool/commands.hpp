@@ -173,6 +173,7 @@ struct CommissionArguments {
   std::string folder;           ///< empty: NAME of the brief in the present one
   std::string until{"design"};  ///< last stage
   std::string again;            ///< stage that is gone through anew, with all after it; empty: none
+  bool topics{false};           ///< of the loop that runs over topics
   bool undo{false};             ///< takes `again` and all after it back, and does nothing else
   int evaluations{48}, members{16}, threads{0};
   bool json{false};

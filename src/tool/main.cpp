@@ -74,6 +74,8 @@ void addCommission(CLI::App& app, fpc::tool::CommissionArguments& a) {
       ->check(CLI::IsMember({"brief", "watch", "test", "model", "design"}));
   commission->add_option("--again", a.again, "goes through this stage and those after it once more")
       ->check(CLI::IsMember({"brief", "watch", "test", "model", "design"}));
+  commission->add_flag("--topics", a.topics,
+                       "of the loop that runs over topics: its plant, not a simulated one");
   commission->add_flag("--undo", a.undo,
                        "only takes back what --again names, and what is after it");
   commission->add_option("--evaluations", a.evaluations, "of each search of stage design")

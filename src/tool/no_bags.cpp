@@ -25,4 +25,9 @@ std::string askLoop(const OperatorCommand&) {
   throw InputError("a loop over topics: expected a program built with ROS");
 }
 
+std::string commissionLoop(const CommissionWish&,
+                           const std::function<void(const std::string&, const std::string&)>&) {
+  return askLoop({});
+}
+
 }  // namespace fpc

@@ -19,8 +19,8 @@ Bench::Bench(const CommissioningBrief& brief)
     : loop_(prepared(brief)),
       closed_(brief.closed),
       simulation_(makeSimulation(loop_)),
-      controller_(makeControllerSession(loop_)),
-      present_(loop_.simulation.actuator.initial) {
+      controller_(makeControllerSession(loop_)) {
+  sample_.present = loop_.simulation.actuator.initial;
   if (loop_.has_clp) optimizer_.emplace(makeOptimizerSession(loop_));
   if (controller_.controller().needsModel()) {
     require(loop_.has_model, brief.file + ": loop", "a model for the present controller");
@@ -31,22 +31,27 @@ Bench::Bench(const CommissioningBrief& brief)
   if (optimizer_) optimizer_->announce(1);
 }
 
-const Vector& Bench::present() {
-  if (!closed_) return present_;
-  controller_.receive(now());
+const StagedPlant::Sample& Bench::next() {
+  sample_.now = simulation_.measurement();
+  sample_.sent.resize(0);
+  true_outputs_ = simulation_.state().outputs;
+  if (!closed_) return sample_;
+  controller_.receive(sample_.now);
   const ControllerAnswer& answer = controller_.answer();
   if (optimizer_) {
     if (answer.has_prediction) optimizer_->receive(answer.prediction);
     optimizer_->receive(answer.base);
   }
-  present_ = optimizer_ ? optimizer_->action().input : answer.base.input;
-  return present_;
+  sample_.present = optimizer_ ? optimizer_->action().input : answer.base.input;
+  return sample_;
 }
 
-void Bench::send(VectorRef input) {
+const Vector& Bench::send(VectorRef input) {
   simulation_.advance(input);
   const std::string& trouble = simulation_.state().trouble;
   require(trouble.empty(), loop_.name + ": plant", "a plant that moves: " + trouble);
+  sample_.sent = input;
+  return sample_.sent;
 }
 
 }  // namespace fpc

@@ -6,6 +6,7 @@
 
 #include "plant/simulation.hpp"
 #include "runtime/commissioning/brief.hpp"
+#include "runtime/commissioning/staged_plant.hpp"
 #include "runtime/session.hpp"
 
 namespace fpc {
@@ -13,16 +14,13 @@ namespace fpc {
 /// The plant of a brief from its start on: setpoints are the brief's, disturbances and noise those
 /// of the loop file. The same inputs give the same bits, so that a stage that was stopped is played
 /// again.
-class Bench {
+class Bench final : public StagedPlant {
  public:
   explicit Bench(const CommissioningBrief& brief);
-  const Measurement& now() const { return simulation_.measurement(); }
-  /// What the present control asks at this sample; of an open loop the start input.
-  const Vector& present();
-  /// What goes to the plant; moves on. @throws InputError if the plant cannot be moved.
-  void send(VectorRef input);
-  /// Outputs without noise, of this sample: for judges only.
-  const Vector& trueOutputs() const { return simulation_.state().outputs; }
+  const Sample& next() override;
+  /// @throws InputError if the plant cannot be moved.
+  const Vector& send(VectorRef input) override;
+  const Vector& trueOutputs() const override { return true_outputs_; }
 
  private:
   static LoopFile prepared(const CommissioningBrief& brief);
@@ -32,7 +30,8 @@ class Bench {
   Simulation simulation_;
   ControllerSession controller_;
   std::optional<OptimizerSession> optimizer_;
-  Vector present_;
+  Sample sample_;
+  Vector true_outputs_;
 };
 
 }  // namespace fpc

@@ -74,15 +74,21 @@ std::uint32_t CommissioningBrief::samples() const {
   return static_cast<std::uint32_t>(plant_time_h * 3600.0 / loop.plant_info.sample_time_s);
 }
 
-CommissioningBrief readBrief(const std::string& file) {
+CommissioningBrief readBrief(const std::string& file, const LoopFile* running) {
   CommissioningBrief b;
   b.file = fs::absolute(file).lexically_normal().string();
   b.text = textOf(file);
   YamlSection section = YamlSection::parse(b.text, file);
   std::string loop;
-  need(section, "loop", "the plant's loop file, by name or path");
+  if (running == nullptr) need(section, "loop", "the plant's loop file, by name or path");
   section.text("loop", loop);
-  b.loop = readLoop(loopBeside(file, loop));
+  if (running == nullptr) {
+    b.loop = readLoop(loopBeside(file, loop));
+  } else {
+    if (!loop.empty() && fs::path(loop).stem() != running->name)
+      section.fail("loop", "the loop that runs, " + running->name + ", or nothing; got " + loop);
+    b.loop = *running;
+  }
   const auto& y = b.loop.plant_info.outputs;
   const auto& u = b.loop.plant_info.inputs;
   const Index n_y = countOf(y);
@@ -108,7 +114,14 @@ CommissioningBrief readBrief(const std::string& file) {
   requireAll(section, "moves", u, b.move, "the largest move per sample");
   b.move = b.move.cwiseMin(b.loop.simulation.actuator.limits.move);
   b.hold = b.loop.setpoint.initial;
-  readValues(section, "hold", y, b.hold, kFinite);
+  Vector asked = Vector::Constant(n_y, kNaN);
+  readValues(section, "hold", y, asked, kFinite);
+  for (Index i = 0; i < n_y; ++i) {
+    if (!std::isfinite(asked[i])) continue;
+    b.hold[i] = asked[i];
+    b.hold_asked.push_back(y[static_cast<std::size_t>(i)].name);
+    b.hold_values.push_back(asked[i]);
+  }
   b.closed = !b.loop.controllerType().open_loop;
   for (Index i = 0; i < n_y; ++i) {
     const std::string& name = y[static_cast<std::size_t>(i)].name;
@@ -125,8 +138,9 @@ CommissioningBrief readBrief(const std::string& file) {
                  "at least 60 samples of " + exactText(b.loop.plant_info.sample_time_s) + " s");
   section.seed("seed", b.seed);
   section.finish();
-  require(!b.loop.external_plant, file + ": loop",
-          "a simulated plant; one over topics or a gateway is not commissioned yet");
+  require(running != nullptr || !b.loop.external_plant, file + ": loop",
+          "a simulated plant; one that runs over topics or behind a gateway is commissioned with "
+          "--topics");
   return b;
 }
 

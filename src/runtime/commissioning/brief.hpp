@@ -14,8 +14,10 @@ struct CommissioningBrief {
   Vector lower, upper;            ///< n_y, limits that no test may leave
   Vector zone_lower, zone_upper;  ///< n_y, of outputs that may float; infinite: held at a setpoint
   Vector hold;                    ///< n_y, setpoints while the plant is tested
-  Vector move;                    ///< n_u, largest move per sample
-  double plant_time_h{};          ///< that watching and testing may use
+  std::vector<std::string> hold_asked;  ///< outputs whose setpoint the brief itself gives, and
+  std::vector<double> hold_values;      ///< these
+  Vector move;                          ///< n_u, largest move per sample
+  double plant_time_h{};                ///< that watching and testing may use
   std::uint64_t seed{1};
   bool closed{};           ///< the present control follows setpoints
   std::vector<bool> held;  ///< n_y, is to be held at a setpoint
@@ -27,6 +29,8 @@ struct CommissioningBrief {
 /// {INPUT: number}, hold {OUTPUT: number}, zone {OUTPUT: [low, high]}, plant_time_h, seed.
 /// @throws InputError naming file and key: of limits, moves or plant time that neither the brief
 /// nor the loop file says, of unknown signals, of setpoints beyond the limits.
-CommissioningBrief readBrief(const std::string& file);
+/// `running`: the loop that runs, of which the brief then speaks; `loop` may be left out and is its
+/// name else.
+CommissioningBrief readBrief(const std::string& file, const LoopFile* running = nullptr);
 
 }  // namespace fpc

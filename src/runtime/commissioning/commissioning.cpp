@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "base/files.hpp"
 #include "base/finite_json.hpp"
@@ -43,21 +44,27 @@ OrderedJson byName(const std::vector<SignalInfo>& signals, const Vector& values)
 }
 
 /// Rows of the plant under its present control.
-PlantRecord watchedRows(Bench& bench, const CommissioningBrief& brief) {
+PlantRecord watchedRows(StagedPlant& plant, const CommissioningBrief& brief) {
   PlantRecord record(brief.loop.plant_info);
   for (std::uint32_t k = 0; k < watchedSamples(brief); ++k) {
-    const Vector input = bench.present();
-    record.add(bench.now(), input);
-    bench.send(input);
+    const StagedPlant::Sample& sample = plant.next();
+    record.add(sample.now, plant.send(sample.present));
   }
   return record;
 }
 
 }  // namespace
 
+Stage commissioningStage(const std::string& word, const std::string& field) {
+  const auto words = wordsOf(Stage{});
+  const auto at = std::find(words.begin(), words.end(), word);
+  require(at != words.end(), field, "one of " + join(words));
+  return static_cast<Stage>(at - words.begin());
+}
+
 Commissioning::Commissioning(const std::string& brief, std::string folder,
                              CommissioningOptions options)
-    : brief_(readBrief(brief)),
+    : brief_(readBrief(brief, options.running)),
       folder_(fs::absolute(folder).lexically_normal().string()),
       options_(std::move(options)) {
   makeFolder(folder_);
@@ -89,6 +96,15 @@ OrderedJson Commissioning::figures(Stage stage) const {
       json.value(kFingerprint, "") != fingerprint(stage))
     return nullptr;
   return json;
+}
+
+OrderedJson Commissioning::figures() const {
+  OrderedJson all = OrderedJson::object();
+  for (int s = 0; s < kCommissioningStages; ++s) {
+    const auto stage = static_cast<Stage>(s);
+    all[wordOf(stage)] = done(stage) ? figures(stage) : OrderedJson(nullptr);
+  }
+  return all;
 }
 
 bool Commissioning::done(Stage stage) const {
@@ -155,11 +171,20 @@ OrderedJson Commissioning::state() const {
           {"moves", byName(plant.inputs, brief_.move)}};
 }
 
-OrderedJson Commissioning::watchPlant() {
+/// The plant that lives, or the simulated one from its start on.
+template <typename Use>
+void Commissioning::withPlant(Use use) const {
+  if (options_.alive) return use(*options_.alive);
   Bench bench(brief_);
+  use(bench);
+}
+
+OrderedJson Commissioning::watchPlant() {
   const std::uint32_t samples = watchedSamples(brief_);
   show(Stage::kWatch, std::to_string(samples) + " samples under the present control");
-  const PlantRecord record = watchedRows(bench, brief_);
+  PlantRecord record;
+  withPlant([&](StagedPlant& plant) { record = watchedRows(plant, brief_); });
+  watched_ = record;
   record.write(inFolder(folder_, "watch.csv"));
   OrderedJson json = toJson(watch(record));
   json["samples"] = samples;
@@ -192,20 +217,35 @@ OrderedJson Commissioning::testPlant() {
   params.closed = brief_.closed;
   params.seed = brief_.seed;
   params.most_rows = static_cast<Index>(brief_.samples() - watchedSamples(brief_));
-  // The plant's life begins at its start: what was watched is played again.
-  Bench bench(brief_);
-  PlantTest test(params, watchedRows(bench, brief_));
+  std::optional<PlantTest> tested;
   Vector lowest = Vector::Constant(n_y, 1e300), highest = -lowest;
-  while (test.end() == TestEnd::kNone) {
-    const Vector present = bench.present();
-    const Index fits = static_cast<Index>(test.fits().size());
-    bench.send(test.step(bench.now(), present));
-    lowest = lowest.cwiseMin(bench.trueOutputs());
-    highest = highest.cwiseMax(bench.trueOutputs());
-    if (test.rows() % 200 == 0 || (fits == 0 && !test.fits().empty()))
-      show(Stage::kTest,
-           std::to_string(test.rows()) + " samples, settling " + shortText(test.settling()) + " s");
-  }
+  withPlant([&](StagedPlant& plant) {
+    // A simulated plant's life begins at its start: what was watched is played again.
+    PlantRecord watched_rows = options_.alive ? watched_ : watchedRows(plant, brief_);
+    if (watched_rows.rows() == 0) watched_rows = PlantRecord(brief_.loop.plant_info);
+    while (!tested || tested->end() == TestEnd::kNone) {
+      const StagedPlant::Sample& sample = plant.next();
+      if (!tested) {
+        if (watched_rows.rows() == 0) params.start_input = sample.now.input_applied;
+        tested.emplace(params, std::move(watched_rows));
+      }
+      for (Index i = 0; i < n_y; ++i) {
+        const double y = plant.trueOutputs()[i];
+        if (std::isfinite(y)) lowest[i] = std::min(lowest[i], y);
+        if (std::isfinite(y)) highest[i] = std::max(highest[i], y);
+      }
+      const Vector sent = sample.sent.size() > 0
+                              ? sample.sent
+                              : plant.send(tested->choose(sample.now, sample.present));
+      const bool first_fit = tested->fits().empty();
+      tested->add(sample.now, sent);
+      if (tested->rows() % 200 == 0 || (first_fit && !tested->fits().empty()))
+        show(Stage::kTest, std::to_string(tested->rows()) + " samples, settling " +
+                               shortText(tested->settling()) + " s");
+    }
+    plant.release();
+  });
+  const PlantTest& test = *tested;
   test.record().write(inFolder(folder_, "test.csv"));
   const PlantInfo& plant = brief_.loop.plant_info;
   const double Ts = plant.sample_time_s;

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/ordered_json.hpp"
 #include "runtime/commissioning/brief.hpp"
+#include "runtime/commissioning/plant_record.hpp"
+#include "runtime/commissioning/staged_plant.hpp"
 
 namespace fpc {
 
@@ -16,11 +19,17 @@ inline std::vector<std::string> wordsOf(CommissioningStage) {
   return {"brief", "watch", "test", "model", "design"};
 }
 constexpr int kCommissioningStages = 5;
+/// @throws InputError naming `field`.
+CommissioningStage commissioningStage(const std::string& word, const std::string& field);
 
 struct CommissioningOptions {
   int evaluations{48};  ///< of each search of stage design
   int members{16};      ///< of the ensemble
   int threads{0};       ///< 0: all cores
+  /// A plant that lives, and the loop file of the loop that it runs in; null: the simulated one of
+  /// the brief's loop file, from its start on.
+  std::shared_ptr<StagedPlant> alive;
+  const LoopFile* running{nullptr};
   std::function<void(CommissioningStage, const std::string&)> show;  ///< may be empty
 };
 
@@ -40,6 +49,7 @@ class Commissioning {
   /// Takes the stage and all after it back.
   void undo(CommissioningStage first);
   OrderedJson figures(CommissioningStage stage) const;  ///< null if it is not done
+  OrderedJson figures() const;  ///< of all stages, by name; null of those that are not done
   std::string lawFile() const;
   std::string piFile() const;
 
@@ -49,6 +59,8 @@ class Commissioning {
   void finish(CommissioningStage stage, OrderedJson figures);
   void show(CommissioningStage stage, const std::string& text) const;
   OrderedJson state() const;
+  template <typename Use>
+  void withPlant(Use use) const;
   OrderedJson watchPlant();
   OrderedJson testPlant();
   OrderedJson findModel();
@@ -57,6 +69,7 @@ class Commissioning {
   CommissioningBrief brief_;
   std::string folder_;
   CommissioningOptions options_;
+  PlantRecord watched_;  // of a plant that lives, in the life of this object
 };
 
 }  // namespace fpc

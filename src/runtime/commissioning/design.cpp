@@ -187,15 +187,13 @@ class Designer {
     Design d;
     require(!outline_.pairs.empty(), brief_.file + ": zone", "an output that is to be held");
     lookAtDirections(d);
-    show("PI: " + std::to_string(params_.evaluations) + " settings");
     Vector pi_x = searched(
-        piStart(), piWidth(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
+        "PI", piStart(), piWidth(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
     pi_ = piOf(pi_x);
-    show("law: " + std::to_string(params_.evaluations) + " settings");
     Vector start, width;
     lawStart(start, width);
     Vector x = searched(
-        start, width, [this](const Vector& point) { return lawText(point); }, d.law_figures);
+        "law", start, width, [this](const Vector& point) { return lawText(point); }, d.law_figures);
     show("margins of the PI");
     chooseProbed(piText(pi_x), lawText(x));
     d.probed = probed_.size();
@@ -416,16 +414,20 @@ class Designer {
   }
 
   template <typename Text>
-  Vector searched(const Vector& start, const Vector& width, const Text& text,
-                  DesignFigures& figures) const {
+  Vector searched(const std::string& what, const Vector& start, const Vector& width,
+                  const Text& text, DesignFigures& figures) const {
     SearchParams search;
     search.method = SearchMethod::kApso;
     search.population = 8;
     search.evaluations = params_.evaluations;
     search.seed = params_.seed;
+    Index judged = 0;
     const SearchResult result = runSearch(
         search, start - width, start + width,
         [&](const Matrix& points, Vector& costs) {
+          show(what + ": " + std::to_string(judged) + " of " + std::to_string(params_.evaluations) +
+               " settings judged");
+          judged += points.cols();
           costs.resize(points.cols());
           for (Index c = 0; c < points.cols(); ++c) {
             const std::vector<double> all = costsOver(text(points.col(c)), tuned_);

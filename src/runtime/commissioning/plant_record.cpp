@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/csv.hpp"
+#include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 
 namespace fpc {
@@ -11,6 +12,7 @@ namespace {
 using Eigen::Index;
 
 const char kApplied[] = "_applied";
+constexpr std::uint32_t kMostMissing = 30;  // samples in a row
 
 }  // namespace
 
@@ -22,7 +24,24 @@ void PlantRecord::reserve() {
   applied_.conservativeResize(room, countOf(info_.inputs));
 }
 
+void PlantRecord::fillTo(const StepHeader& next) {
+  if (rows_ == 0 || last_.run_id == 0) return;
+  require(next.run_id == last_.run_id && next.step > last_.step &&
+              next.step - last_.step <= kMostMissing + 1,
+          "plant", "a run without gaps of more than " + std::to_string(kMostMissing) + " samples");
+  for (; last_.step + 1 < next.step; ++last_.step) {
+    if (rows_ >= y_.rows()) reserve();
+    y_.row(rows_).setConstant(kNaN);
+    if (d_.cols() > 0) d_.row(rows_).setConstant(kNaN);
+    u_.row(rows_) = u_.row(rows_ - 1);
+    applied_.row(rows_) = u_.row(rows_ - 1);
+    ++rows_;
+  }
+}
+
 void PlantRecord::add(const Measurement& now, VectorRef sent) {
+  fillTo(now.header);
+  last_ = now.header;
   if (rows_ >= y_.rows()) reserve();
   y_.row(rows_) = now.outputs.transpose();
   u_.row(rows_) = sent.transpose();

@@ -13,7 +13,11 @@ class PlantRecord {
  public:
   PlantRecord() = default;
   explicit PlantRecord(const PlantInfo& plant) : info_(plant) {}
+  /// After fillTo().
   void add(const Measurement& now, VectorRef sent);
+  /// Rows of samples that never came before this one: NaN, the inputs held.
+  /// @throws InputError where too many are missing, or the run is another one.
+  void fillTo(const StepHeader& next);
   Eigen::Index rows() const { return rows_; }
   const PlantInfo& info() const { return info_; }
   /// rows x n each; NaN where a measurement is missing.
@@ -33,6 +37,7 @@ class PlantRecord {
   PlantInfo info_;
   Eigen::Index rows_{};
   Matrix y_, u_, d_, applied_;
+  StepHeader last_;
 };
 
 }  // namespace fpc

@@ -50,15 +50,15 @@ const char* wordOf(TestEnd end) {
 }
 
 template <typename Input>
-double PlantTest::Track::next(const std::vector<double>& so_far, const Input& input) const {
-  const auto k = static_cast<Index>(so_far.size());
+double PlantTest::Track::next(Index k, const std::vector<double>& before,
+                              const Input& input) const {
   double value = 0.0;
   for (std::size_t i = 0; i < sampled.b.size(); ++i) {
     const Index at = k - 1 - sampled.delay - static_cast<Index>(i);
     if (at >= 0) value += sampled.b[i] * input(at);
   }
-  for (std::size_t i = 1; i < a.size() && i <= so_far.size(); ++i)
-    value -= a[i] * so_far[so_far.size() - i];
+  for (std::size_t i = 1; i < a.size() && i <= before.size(); ++i)
+    value -= a[i] * before[before.size() - i];
   return value;
 }
 
@@ -97,12 +97,9 @@ double PlantTest::effect(const ElementEstimate& e) const {
   return gain;
 }
 
-const Vector& PlantTest::step(const Measurement& now, const Vector& present) {
-  for (Index i = 0; i < n_y_; ++i)
-    if (std::isfinite(now.outputs[i])) last_output_[i] = now.outputs[i];
-  follow();
-  choose(present);
-  record_.add(now, sent_);
+void PlantTest::add(const Measurement& now, VectorRef sent) {
+  record_.add(now, sent);
+  sent_ = sent;
   if (end_ == TestEnd::kNone && rows() >= next_fit_) {
     next_fit_ = static_cast<Index>(std::ceil(kNextFit * static_cast<double>(rows())));
     know();
@@ -119,7 +116,6 @@ const Vector& PlantTest::step(const Measurement& now, const Vector& present) {
     if (end_ == TestEnd::kNone) end_ = TestEnd::kTime;
     if (fits_.empty()) reason_ = "no input was seen to move an output";
   }
-  return sent_;
 }
 
 /// Fits all outputs to what has been seen; an output that nothing moves leaves all as they were.
@@ -163,7 +159,8 @@ void PlantTest::follow() {
       Track& t = tracks_[static_cast<std::size_t>(i * n_u_ + j)];
       if (!t.seen) continue;
       const auto input = [&](Index k) { return u(k, j) - u(0, j); };
-      while (static_cast<Index>(t.w.size()) <= record_.rows()) t.w.push_back(t.next(t.w, input));
+      while (static_cast<Index>(t.w.size()) <= record_.rows())
+        t.w.push_back(t.next(static_cast<Index>(t.w.size()), t.w, input));
     }
 }
 
@@ -191,9 +188,10 @@ void PlantTest::predict(const Vector& present) {
         const auto input = [&](Index k) {
           return (k >= now ? planned[k - now] : u(k, j)) - u(0, j);
         };
-        std::vector<double> w = t.w;
+        const auto known = static_cast<Index>(t.w.size());
+        std::vector<double> w(t.w.end() - std::min<Index>(known, countOf(t.a)), t.w.end());
         for (Index h = 0; h < H; ++h) {
-          w.push_back(t.next(w, input));
+          w.push_back(t.next(known + h, w, input));
           ahead(i, h) = (w.back() - t.w.back()) * (1.0 + t.margin);
         }
       }
@@ -231,7 +229,11 @@ Vector PlantTest::sent(const std::vector<int>& levels, const Vector& present,
   return u;
 }
 
-void PlantTest::choose(const Vector& present) {
+const Vector& PlantTest::choose(const Measurement& now, const Vector& present) {
+  for (Index i = 0; i < n_y_; ++i)
+    if (std::isfinite(now.outputs[i])) last_output_[i] = now.outputs[i];
+  record_.fillTo(now.header);
+  follow();
   const double Ts = record_.info().sample_time_s;
   const double longest = settling_ > 0.0 ? std::max(kLongDwell * settling_ / Ts, 3.0) : kFirstDwell;
   const double shortest = std::max<double>(kShortestDwell, kShortDwell * settling_ / Ts);
@@ -269,7 +271,7 @@ void PlantTest::choose(const Vector& present) {
   }
   if (taken != asked) ++turned_;
   level_ = taken;
-  sent_ = sent(taken, present, sent_);
+  return sent_ = sent(taken, present, sent_);
 }
 
 /// Heights for what is to be seen beside the noise, within the room of the limits.

@@ -36,15 +36,17 @@ enum class TestEnd {
 };
 const char* wordOf(TestEnd end);
 
-/// Sees a plant sample by sample, in whatever process. A new model is fitted now and then within
-/// step(), which then takes longer.
+/// Sees a plant sample by sample, in whatever process: choose(), then add(). A new model is fitted
+/// now and then within add(), which then takes longer.
 class PlantTest {
  public:
   /// `watched`: the record until now, with which the fits begin. @throws InputError on sizes.
   PlantTest(PlantTestParams params, PlantRecord watched);
   /// What is to be sent at this sample; `present`: what the control in charge asks, or the start
   /// input.
-  const Vector& step(const Measurement& now, const Vector& present);
+  const Vector& choose(const Measurement& now, const Vector& present);
+  /// What was sent at this sample, the choice or, where that came too late, something else.
+  void add(const Measurement& now, VectorRef sent);
   TestEnd end() const { return end_; }
   const std::string& reason() const { return reason_; }
   const PlantRecord& record() const { return record_; }
@@ -58,7 +60,6 @@ class PlantTest {
   void know();
   void judge();
   void setAmplitudes();
-  void choose(const Vector& present);
   double excess(const std::vector<int>& levels) const;
   void follow();
   void predict(const Vector& present);
@@ -76,9 +77,10 @@ class PlantTest {
     std::vector<double> a;  // whole denominator
     std::vector<double> w;
     double margin{};  // by which its gain may be larger
-    /// What follows the responses `so_far`; input(k): from that of the first row.
+    /// w(k), behind w(k - 1) and those before it, of which `before` has the last ones; input(k):
+    /// from that of the first row.
     template <typename Input>
-    double next(const std::vector<double>& so_far, const Input& input) const;
+    double next(Eigen::Index k, const std::vector<double>& before, const Input& input) const;
   };
   std::vector<Track> tracks_;  // [output * n_u + input]
   std::vector<Matrix> ahead_;  // [input * 3 + level + 1]: n_y H changes
