@@ -2,13 +2,14 @@
 """What the operator's panel costs: panel_bench.py [cost|equal|screen|memory|many]... [--rounds N] [--quick]
 
   cost    lockstep throughput of a loop beside the panel with 10 browsers and without the panel, in turn: browsers in one light process that
-          reads the stream of the loop's page, and windows of Chromium, whose own processor time is stated
+          reads the stream of the loop's page, and windows of Chromium, whose own processor time is stated; beside it the processor time of the
+          loop's nodes for a sample, which other work on the machine changes little
   equal   trajectories of runs with and without panel and browsers, byte by byte
   screen  time from a measurement to its number in the page, in headless Chromium, at 10 samples a second
   memory  resident size of the panel after 24 h at 1 s of a loop (86,400 samples), and at 0.1 s (864,000), without a hole
   many    processor time of panel and Chromium, and bytes a second, with 1 and with 50 loops at a sample a second (synthetic publishers)
 
-Prints lines of JSON with the aim, as bench/ring_bench.py does. Before: source scripts/env.sh. Beside other work: nice -n -19, so that it measures itself.
+Prints lines of JSON with the aim, as bench/ring_bench.py does. Before: source scripts/env.sh.
 """
 import argparse
 import contextlib
@@ -182,14 +183,15 @@ class Counter:
         if message.summary:
             self.said.append((time.monotonic(), message.step))
 
-    def rate(self, seconds):
-        """Samples a second during the next `seconds`."""
+    def rate(self, seconds, nodes):
+        """(samples a second, processor time of the nodes a sample in us) during the next `seconds`."""
         begin = len(self.said)
         wait_until(lambda: len(self.said) > begin, "the loop's word")
-        begin, end = len(self.said) - 1, time.monotonic() + seconds
+        begin, end, used = len(self.said) - 1, time.monotonic() + seconds, -cpu_s(*nodes)
         wait_until(lambda: self.said[-1][0] >= end, "the loop's word", seconds + 30.0)
+        used += cpu_s(*nodes)
         (t0, k0), (t1, k1) = self.said[begin], self.said[-1]
-        return (k1 - k0) / (t1 - t0)
+        return (k1 - k0) / (t1 - t0), 1e6 * used / (k1 - k0)
 
 
 @contextlib.contextmanager
@@ -223,13 +225,14 @@ def cost(rounds, quick):
     """One lockstep loop goes on; the panel and its browsers come and go beside it. A ratio: with them, of the mean of before and after."""
     import rospy
     seconds = 2.0 if quick else 6.0
-    with tempfile.TemporaryDirectory() as folder, launching.master() as env, loop_of(env, os.path.join(folder, "run"), 0, "pace:=lockstep", gate=False):
+    with tempfile.TemporaryDirectory() as folder, launching.master() as env, loop_of(env, os.path.join(folder, "run"), 0, "pace:=lockstep", gate=False) as (launch, _):
         os.environ.update({k: env[k] for k in ("ROS_MASTER_URI", "ROS_HOSTNAME")})
         rospy.init_node("panel_bench", disable_signals=True)
         counter = Counter()
-        wait_until(lambda: counter.said and counter.said[-1][1] > 5000, "the loop to go")
+        wait_until(lambda: counter.said and counter.said[-1][1] > 5000, "the loop to go", 120.0)
+        nodes = family(launch.pid)
         for who, open_browsers in (("no browser", no_browsers), ("10 browsers that only read", light_browsers), ("10 windows of Chromium", chromiums)):
-            ratios, panel_cpu, shown_cpu, rates = [], [], [], [counter.rate(seconds)]
+            ratios, effort, panel_cpu, shown_cpu, alone = [], [], [], [], [counter.rate(seconds, nodes)]
             for _ in range(rounds):
                 with panel_of(env, folder) as panel:
                     wait_until(lambda: knows(panel), "the panel to find the loop")
@@ -237,15 +240,17 @@ def cost(rounds, quick):
                         time.sleep(4.0)  # until it has seen how fast the loop is
                         mine = family(panel.pid)
                         began, used, theirs = time.monotonic(), -cpu_s(*mine), -cpu_s(*shown)
-                        beside = counter.rate(seconds)
+                        beside = counter.rate(seconds, nodes)
                         took = time.monotonic() - began
                         panel_cpu.append((used + cpu_s(*mine)) / took)
                         shown_cpu.append((theirs + cpu_s(*shown)) / took)
                 time.sleep(1.0)
-                rates.append(counter.rate(seconds))
-                ratios.append(2.0 * beside / (rates[-2] + rates[-1]))
+                alone.append(counter.rate(seconds, nodes))
+                for kept, i in ((ratios, 0), (effort, 1)):
+                    kept.append(2.0 * beside[i] / (alone[-2][i] + alone[-1][i]))
             print_json(what=f"lockstep with panel and {who} beside without, {LOOP}", aim=0.98, ratio=statistics.median(ratios), least=min(ratios), most=max(ratios), pairs=rounds,
-                       without_per_s=statistics.median(rates), panel_cpu=statistics.median(panel_cpu), chromium_cpu=statistics.median(shown_cpu))
+                       without_per_s=statistics.median(rate for rate, _ in alone), node_cpu_ratio=statistics.median(effort), node_cpu_least=min(effort), node_cpu_most=max(effort),
+                       node_cpu_us=statistics.median(us for _, us in alone), panel_cpu=statistics.median(panel_cpu), chromium_cpu=statistics.median(shown_cpu))
 
 
 def equal(rounds, quick):
