@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the operator's panel costs: panel_bench.py [cost|equal|screen|memory|many]... [--rounds N] [--quick]
+"""What the operator's panel costs: panel_bench.py [cost|equal|screen|memory|many|pictures]... [--rounds N] [--quick]
 
   cost    lockstep throughput of a loop beside the panel with 10 browsers and without the panel, in turn: browsers in one light process that
           reads the stream of the loop's page, and windows of Chromium, whose own processor time is stated; beside it the processor time of the
@@ -7,6 +7,7 @@
   equal   trajectories of runs with and without panel and browsers, byte by byte
   screen  time from a measurement to its number in the page, in headless Chromium, at 10 samples a second
   memory  resident size of the panel after 24 h at 1 s of a loop (86,400 samples), and at 0.1 s (864,000), without a hole
+  pictures  docs/panel_VIEW.png and panel_VIEW_phone.png: each view of a loop whose input was set by hand beyond its limit, at 1280 and 360 px
   many    processor time of panel and Chromium, and bytes a second, with 1 and with 50 loops at a sample a second (synthetic publishers)
 
 Prints lines of JSON with the aim, as bench/ring_bench.py does. Before: source scripts/env.sh.
@@ -383,21 +384,63 @@ def many(quick):
                 source.wait()
 
 
+def pictures(quick):
+    """Looked at by a person; nothing here judges them."""
+    from PIL import Image
+    views = (("overview", "", ""), ("loop", "loop/%2F", "q_r"), ("model", "loop/%2F/model", "Rules of"), ("alarms", "alarms", "Alarms"), ("journal", "journal", "Journal"))
+    with tempfile.TemporaryDirectory() as folder, launching.master() as env:
+        users, secret = os.path.join(folder, "users.json"), "correct horse"
+        subprocess.run([sys.executable, panel_page.SCRIPT, "--users", users, "--add-user", "olga", "engineer"], input=secret + "\n", check=True, text=True, stdout=subprocess.DEVNULL)
+        panel = panel_page.PanelProcess(launching.free_port(), os.path.join(folder, "panel"), users=users, env=env)
+        page = None
+        try:
+            with loop_of(env, os.path.join(folder, "run"), 0, "pace:=paced", "speedup:=7200", gate=False):
+                wait_until(lambda: knows(panel), "the panel to find the loop")
+                page = panel_page.browser()
+                panel_page.size(page, 1280, 900)
+                page.get(f"http://localhost:{panel.port}/")
+                log_in = "return fetch('api/login', {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({name: 'olga', password: '%s'})}).then((a) => a.json())"
+                token = page.execute_script(log_in % secret)["xsrf"]
+                ask = "return fetch('api/command', {method: 'POST', headers: {'Content-Type': 'application/json', 'X-Xsrf': '%s'}, body: JSON.stringify({verb: '%s', loop: '/', arguments: %s})}).then((a) => a.status)"
+                time.sleep(3 if quick else 15)
+                for verb, arguments in (("manual", "{}"), ("input", "{values: {q_r: '9000'}}")):
+                    if page.execute_script(ask % (token, verb, arguments)) != 200:
+                        raise RuntimeError(f"{verb}: refused")
+                time.sleep(1 if quick else 4)
+                for name, path, wanted in views:
+                    for width, end in ((1280, ""), (360, "_phone")):
+                        panel_page.size(page, width, 900)
+                        page.get("about:blank")
+                        page.get(f"http://localhost:{panel.port}/#/{path}")
+                        wait_until(lambda: wanted in page.find_element("id", "main").text, f"{wanted} on the page")
+                        time.sleep(2.0)
+                        panel_page.size(page, width, min(page.execute_script("return document.documentElement.scrollHeight"), 2400))
+                        time.sleep(1.0)
+                        file = HERE.parent / "docs" / f"panel_{name}{end}.png"
+                        page.save_screenshot(str(file))
+                        Image.open(file).convert("RGB").quantize(64).save(file, optimize=True)
+                        print_json(what=file.name, bytes=file.stat().st_size)
+        finally:
+            if page is not None:
+                page.quit()
+            panel.kill()
+
+
 def main():
     if sys.argv[1:2] == ["--reader"]:
         reader(int(sys.argv[2]), int(sys.argv[3]), sys.argv[4])
         return
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", nargs="*", help="cost, equal, screen, memory, many (all)")
+    parser.add_argument("what", nargs="*", help="cost, equal, screen, memory, many (all), pictures")
     parser.add_argument("--rounds", type=int, default=10)
     parser.add_argument("--quick", action="store_true", help="for a moment: shows that it works")
     options = parser.parse_args()
     parts = {"cost": lambda: cost(1 if options.quick else options.rounds, options.quick), "equal": lambda: equal(2, options.quick), "screen": lambda: screen(options.quick), "memory": lambda: memory(options.quick),
-             "many": lambda: many(options.quick)}
+             "many": lambda: many(options.quick), "pictures": lambda: pictures(options.quick)}
     unknown = sorted(set(options.what) - set(parts))
     if unknown:
         parser.error(f"'{unknown[0]}': expected some of {', '.join(parts)}")
-    names = options.what or list(parts)
+    names = options.what or [name for name in parts if name != "pictures"]
     for name in names:
         if len(names) == 1:
             parts[name]()
