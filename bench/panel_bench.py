@@ -1,14 +1,16 @@
 #!/usr/bin/python3
-"""What the operator's panel costs: panel_bench.py [cost|equal|screen|memory|many]... [--rounds N] [--quick]
+"""What the operator's panel costs: panel_bench.py [cost|equal|screen|memory|many|pictures]... [--rounds N] [--quick]
 
   cost    lockstep throughput of a loop beside the panel with 10 browsers and without the panel, in turn: browsers in one light process that
-          reads the stream of the loop's page, and windows of Chromium, whose own processor time is stated
+          reads the stream of the loop's page, and windows of Chromium, whose own processor time is stated; beside it the processor time of the
+          loop's nodes for a sample, which other work on the machine changes little
   equal   trajectories of runs with and without panel and browsers, byte by byte
   screen  time from a measurement to its number in the page, in headless Chromium, at 10 samples a second
   memory  resident size of the panel after 24 h at 1 s of a loop (86,400 samples), and at 0.1 s (864,000), without a hole
+  pictures  docs/panel_VIEW.png and panel_VIEW_phone.png: each view of a loop whose input was set by hand beyond its limit, at 1280 and 360 px
   many    processor time of panel and Chromium, and bytes a second, with 1 and with 50 loops at a sample a second (synthetic publishers)
 
-Prints lines of JSON with the aim, as bench/ring_bench.py does. Before: source scripts/env.sh. Beside other work: nice -n -19, so that it measures itself.
+Prints lines of JSON with the aim, as bench/ring_bench.py does. Before: source scripts/env.sh.
 """
 import argparse
 import contextlib
@@ -182,14 +184,15 @@ class Counter:
         if message.summary:
             self.said.append((time.monotonic(), message.step))
 
-    def rate(self, seconds):
-        """Samples a second during the next `seconds`."""
+    def rate(self, seconds, nodes):
+        """(samples a second, processor time of the nodes a sample in us) during the next `seconds`."""
         begin = len(self.said)
         wait_until(lambda: len(self.said) > begin, "the loop's word")
-        begin, end = len(self.said) - 1, time.monotonic() + seconds
+        begin, end, used = len(self.said) - 1, time.monotonic() + seconds, -cpu_s(*nodes)
         wait_until(lambda: self.said[-1][0] >= end, "the loop's word", seconds + 30.0)
+        used += cpu_s(*nodes)
         (t0, k0), (t1, k1) = self.said[begin], self.said[-1]
-        return (k1 - k0) / (t1 - t0)
+        return (k1 - k0) / (t1 - t0), 1e6 * used / (k1 - k0)
 
 
 @contextlib.contextmanager
@@ -223,13 +226,14 @@ def cost(rounds, quick):
     """One lockstep loop goes on; the panel and its browsers come and go beside it. A ratio: with them, of the mean of before and after."""
     import rospy
     seconds = 2.0 if quick else 6.0
-    with tempfile.TemporaryDirectory() as folder, launching.master() as env, loop_of(env, os.path.join(folder, "run"), 0, "pace:=lockstep", gate=False):
+    with tempfile.TemporaryDirectory() as folder, launching.master() as env, loop_of(env, os.path.join(folder, "run"), 0, "pace:=lockstep", gate=False) as (launch, _):
         os.environ.update({k: env[k] for k in ("ROS_MASTER_URI", "ROS_HOSTNAME")})
         rospy.init_node("panel_bench", disable_signals=True)
         counter = Counter()
-        wait_until(lambda: counter.said and counter.said[-1][1] > 5000, "the loop to go")
+        wait_until(lambda: counter.said and counter.said[-1][1] > 5000, "the loop to go", 120.0)
+        nodes = family(launch.pid)
         for who, open_browsers in (("no browser", no_browsers), ("10 browsers that only read", light_browsers), ("10 windows of Chromium", chromiums)):
-            ratios, panel_cpu, shown_cpu, rates = [], [], [], [counter.rate(seconds)]
+            ratios, effort, panel_cpu, shown_cpu, alone = [], [], [], [], [counter.rate(seconds, nodes)]
             for _ in range(rounds):
                 with panel_of(env, folder) as panel:
                     wait_until(lambda: knows(panel), "the panel to find the loop")
@@ -237,15 +241,17 @@ def cost(rounds, quick):
                         time.sleep(4.0)  # until it has seen how fast the loop is
                         mine = family(panel.pid)
                         began, used, theirs = time.monotonic(), -cpu_s(*mine), -cpu_s(*shown)
-                        beside = counter.rate(seconds)
+                        beside = counter.rate(seconds, nodes)
                         took = time.monotonic() - began
                         panel_cpu.append((used + cpu_s(*mine)) / took)
                         shown_cpu.append((theirs + cpu_s(*shown)) / took)
                 time.sleep(1.0)
-                rates.append(counter.rate(seconds))
-                ratios.append(2.0 * beside / (rates[-2] + rates[-1]))
+                alone.append(counter.rate(seconds, nodes))
+                for kept, i in ((ratios, 0), (effort, 1)):
+                    kept.append(2.0 * beside[i] / (alone[-2][i] + alone[-1][i]))
             print_json(what=f"lockstep with panel and {who} beside without, {LOOP}", aim=0.98, ratio=statistics.median(ratios), least=min(ratios), most=max(ratios), pairs=rounds,
-                       without_per_s=statistics.median(rates), panel_cpu=statistics.median(panel_cpu), chromium_cpu=statistics.median(shown_cpu))
+                       without_per_s=statistics.median(rate for rate, _ in alone), node_cpu_ratio=statistics.median(effort), node_cpu_least=min(effort), node_cpu_most=max(effort),
+                       node_cpu_us=statistics.median(us for _, us in alone), panel_cpu=statistics.median(panel_cpu), chromium_cpu=statistics.median(shown_cpu))
 
 
 def equal(rounds, quick):
@@ -378,21 +384,63 @@ def many(quick):
                 source.wait()
 
 
+def pictures(quick):
+    """Looked at by a person; nothing here judges them."""
+    from PIL import Image
+    views = (("overview", "", ""), ("loop", "loop/%2F", "q_r"), ("model", "loop/%2F/model", "Rules of"), ("alarms", "alarms", "Alarms"), ("journal", "journal", "Journal"))
+    with tempfile.TemporaryDirectory() as folder, launching.master() as env:
+        users, secret = os.path.join(folder, "users.json"), "correct horse"
+        subprocess.run([sys.executable, panel_page.SCRIPT, "--users", users, "--add-user", "olga", "engineer"], input=secret + "\n", check=True, text=True, stdout=subprocess.DEVNULL)
+        panel = panel_page.PanelProcess(launching.free_port(), os.path.join(folder, "panel"), users=users, env=env)
+        page = None
+        try:
+            with loop_of(env, os.path.join(folder, "run"), 0, "pace:=paced", "speedup:=7200", gate=False):
+                wait_until(lambda: knows(panel), "the panel to find the loop")
+                page = panel_page.browser()
+                panel_page.size(page, 1280, 900)
+                page.get(f"http://localhost:{panel.port}/")
+                log_in = "return fetch('api/login', {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({name: 'olga', password: '%s'})}).then((a) => a.json())"
+                token = page.execute_script(log_in % secret)["xsrf"]
+                ask = "return fetch('api/command', {method: 'POST', headers: {'Content-Type': 'application/json', 'X-Xsrf': '%s'}, body: JSON.stringify({verb: '%s', loop: '/', arguments: %s})}).then((a) => a.status)"
+                time.sleep(3 if quick else 15)
+                for verb, arguments in (("manual", "{}"), ("input", "{values: {q_r: '9000'}}")):
+                    if page.execute_script(ask % (token, verb, arguments)) != 200:
+                        raise RuntimeError(f"{verb}: refused")
+                time.sleep(1 if quick else 4)
+                for name, path, wanted in views:
+                    for width, end in ((1280, ""), (360, "_phone")):
+                        panel_page.size(page, width, 900)
+                        page.get("about:blank")
+                        page.get(f"http://localhost:{panel.port}/#/{path}")
+                        wait_until(lambda: wanted in page.find_element("id", "main").text, f"{wanted} on the page")
+                        time.sleep(2.0)
+                        panel_page.size(page, width, min(page.execute_script("return document.documentElement.scrollHeight"), 2400))
+                        time.sleep(1.0)
+                        file = HERE.parent / "docs" / f"panel_{name}{end}.png"
+                        page.save_screenshot(str(file))
+                        Image.open(file).convert("RGB").quantize(64).save(file, optimize=True)
+                        print_json(what=file.name, bytes=file.stat().st_size)
+        finally:
+            if page is not None:
+                page.quit()
+            panel.kill()
+
+
 def main():
     if sys.argv[1:2] == ["--reader"]:
         reader(int(sys.argv[2]), int(sys.argv[3]), sys.argv[4])
         return
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("what", nargs="*", help="cost, equal, screen, memory, many (all)")
+    parser.add_argument("what", nargs="*", help="cost, equal, screen, memory, many (all), pictures")
     parser.add_argument("--rounds", type=int, default=10)
     parser.add_argument("--quick", action="store_true", help="for a moment: shows that it works")
     options = parser.parse_args()
     parts = {"cost": lambda: cost(1 if options.quick else options.rounds, options.quick), "equal": lambda: equal(2, options.quick), "screen": lambda: screen(options.quick), "memory": lambda: memory(options.quick),
-             "many": lambda: many(options.quick)}
+             "many": lambda: many(options.quick), "pictures": lambda: pictures(options.quick)}
     unknown = sorted(set(options.what) - set(parts))
     if unknown:
         parser.error(f"'{unknown[0]}': expected some of {', '.join(parts)}")
-    names = options.what or list(parts)
+    names = options.what or [name for name in parts if name != "pictures"]
     for name in names:
         if len(names) == 1:
             parts[name]()

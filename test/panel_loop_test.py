@@ -15,6 +15,7 @@ from unittest import mock
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "python/panel"))
 try:
+    import numpy
     from fmbpc import msg as messages
     from panel_server import alarms, loops, wire
 except ImportError as error:  # a build without ROS
@@ -133,6 +134,100 @@ class Loop(unittest.TestCase):
         put(made, "plant_info", messages.PlantInfo(run_id=RUN + 1, sample_time_s=60.0, outputs=made.info.outputs, inputs=made.info.inputs), PLANT)
         made.look(1.1)
         self.assertEqual((-1, None), (made.step, made.history.first))
+
+
+class FakeJournal:
+    """What the recorder of a loop has on disk: y is the number of the sample."""
+
+    names, run_id, samples, closed, gone = ["time", "y", "u_commanded", "y_setpoint"], RUN, 0, False, False
+
+    def rows(self, first):
+        if self.gone:
+            raise ValueError("no journal")
+        k = numpy.arange(first, self.samples, dtype=float)
+        return numpy.column_stack([k / 60.0, k, 0 * k + 2.0, 0 * k + 4.0])
+
+    def close(self):
+        self.closed = True
+
+
+class Now:
+    """Runs at once what is for another thread."""
+
+    @staticmethod
+    def submit(act, *arguments):
+        act(*arguments)
+
+
+class Fast(unittest.TestCase):
+    """A loop of 1,000 samples a second is read from the journal; a slow one, or one of which something is asked, is heard. No sample lacks."""
+
+    def setUp(self):
+        self.file, self.now, self.k = FakeJournal(), 100.0, 0
+        self.file.closed = False
+        for patch in (mock.patch.object(loops.rospy, "Subscriber"), mock.patch.object(loops.rospy, "get_param", lambda *_: ""),
+                      mock.patch.object(loops, "Journal", lambda tool, folder: self.file)):
+            patch.start()
+            self.addCleanup(patch.stop)
+        self.made = loop()
+        self.made.tool, self.made.executor = "tool", Now
+        self.made.fill_tried = math.inf  # a gap would be filled from the same journal
+
+    def go(self, seconds, per_tick):
+        """Ten ticks a second; each sample is in the journal, and comes as a message where it is heard."""
+        for _ in range(round(10 * seconds)):
+            self.now += 0.1
+            for _ in range(per_tick):
+                if "measurement" in self.made.raw:
+                    sample(self.made, self.k, y=float(self.k))
+                self.k += 1
+            self.file.samples = self.k
+            self.made.look(self.now)
+
+    def whole(self):
+        """Nothing lacks but what is on its way."""
+        self.assertEqual([], [gap for gap in self.made.history.gaps("y") if gap[0] < self.made.step])
+        self.assertEqual(0, self.made.history.first)
+        self.assertEqual([float(k) for k in range(self.made.step + 1)], [self.made.history.value(k, "y") for k in range(self.made.step + 1)])
+
+    def test_it_is_followed_and_heard_again_without_a_hole(self):
+        self.go(2.0, 1)
+        self.assertFalse(self.made.fast())
+        self.go(4.0, 100)
+        self.assertTrue(self.made.fast())
+        self.assertEqual(set(), {"measurement", "tracking", "control_action", loops.TRUST} & set(self.made.raw))
+        self.assertLess(self.k - self.made.step, 100 * 10 * loops.FOLLOW + 100)
+        self.whole()
+        self.go(3.0, 1)
+        self.assertFalse(self.made.fast())
+        self.assertTrue(self.file.closed)
+        self.assertLessEqual({"measurement", "tracking", "control_action", loops.TRUST}, set(self.made.raw))
+        self.whole()
+
+    def test_who_asks_something_is_answered_by_messages(self):
+        self.go(4.0, 100)
+        self.assertTrue(self.made.fast())
+        self.made.want_all(self.now)
+        self.go(1.0, 100)
+        self.assertFalse(self.made.fast())
+        self.go(loops.ALL_FOR + 5.0, 100)
+        self.assertTrue(self.made.fast())
+        self.whole()
+
+    def test_a_journal_that_goes_away_costs_no_message(self):
+        self.go(4.0, 100)
+        self.file.gone = True
+        self.go(1.0, 100)
+        self.assertFalse(self.made.fast())
+        self.assertIn("measurement", self.made.raw)
+        self.assertEqual(self.k - 1, self.made.step)
+
+    def test_the_journal_of_another_run_is_not_followed(self):
+        self.file.run_id = RUN + 1
+        self.go(4.0, 100)
+        self.assertFalse(self.made.fast())
+        self.assertTrue(self.file.closed)
+        self.whole()
 
 
 class Said(unittest.TestCase):
