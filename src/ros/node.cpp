@@ -147,7 +147,8 @@ void pause(double seconds) {
 }
 
 void untilHeard(const Failure& failure) {
-  constexpr double kConnected = 0.5, kPatience = 3.0;  // [s] after somebody has connected, and in all
+  constexpr double kConnected = 0.5,
+                   kPatience = 3.0;  // [s] after somebody has connected, and in all
   const double begun_s = steadyNow();
   double alone_s = begun_s;  // until then
   while (ros::ok() && steadyNow() - alone_s < kConnected && steadyNow() - begun_s < kPatience) {

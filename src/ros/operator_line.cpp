@@ -40,8 +40,18 @@ constexpr double kAnswerPatience = 5.0;     // [s] of wall time, for answers of 
 constexpr std::uint32_t kAnswerIsLost = 3;  // samples after which a command is said again
 constexpr double kOnItsWay = 0.02;          // [s], for what was sent before a service answered
 constexpr char kControllerName[] = "fmbpc_controller";
-constexpr double kLookAfter = 0.5;  // [s] whether the controller lives
+constexpr double kLookAfter = 0.5;     // [s] whether the controller lives
+constexpr double kLostPatience = 2.0;  // [s] for a result that is on its way
 using Show = std::function<void(const std::string&, const std::string&)>;
+
+/// Of a node, as the master has it; empty: the master does not answer, or has none of this name.
+std::string addressOf(const std::string& node) {
+  XmlRpc::XmlRpcValue request, response, payload;
+  request[0] = ros::this_node::getName();
+  request[1] = node;
+  if (!ros::master::execute("lookupNode", request, response, payload, false)) return {};
+  return payload.getType() == XmlRpc::XmlRpcValue::TypeString ? std::string(payload) : "";
+}
 
 /// The latest message of a topic, of those that count.
 template <typename Msg>
@@ -132,10 +142,13 @@ class Line {
                  kAnswerPatience),
             action, "a controller of a running loop that takes it");
     publisher.publish(goal);
-    for (double gone_s = 0.0; !result.get();) {
+    // A controller that ends may be back at once, by another address: it has forgotten the goal.
+    const std::string controller = ros::names::resolve(kControllerName),
+                      address = addressOf(controller);
+    for (double lost_s = 0.0; !result.get();) {
       wait([&] { return result.get() != nullptr; }, kLookAfter);
-      gone_s = result.connected() ? 0.0 : gone_s + kLookAfter;
-      require(ros::ok() && gone_s < kAnswerPatience, action,
+      if (lost_s > 0.0 || addressOf(controller) != address) lost_s += kLookAfter;
+      require(ros::ok() && lost_s < kLostPatience, action,
               "a controller that lives; what is done is kept, and the same command goes on");
     }
     const fmbpc::CommissionActionResult& done = *result.get();

@@ -9,7 +9,7 @@
 namespace fpc::tool {
 namespace {
 
-constexpr double kMoves = 0.1;  // of the cost
+constexpr double kMoves = 0.1;                                      // of the cost
 constexpr int kPoints = 3;                                          // of the course, probed
 constexpr std::uint64_t kChosenBy = 1, kJudgedBy[] = {11, 12, 13};  // seeds of the noise
 

@@ -574,6 +574,7 @@ class Designer {
 LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& errors,
                  const LinearPoint& rest) {
   LoopFile on = loop;
+  on.external_plant = false;
   SimulationParams& sim = on.simulation;
   const InputLimits& limits = sim.actuator.limits;
   // A run leaves the operator's limits without ending: that is judged.
