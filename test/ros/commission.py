@@ -59,7 +59,7 @@ class Commission(unittest.TestCase):
                 break
         else:
             self.fail(f"stage {stage} has not begun")
-        subprocess.run(["pkill", "-KILL", "-f", "fmbpc_controller.*__name:=fmbpc_controller"], check=True)
+        os.kill(ring.pid("/fmbpc_controller"), signal.SIGKILL)
         rest = command.stderr.read()
         self.assertEqual(1, command.wait(60), rest)
         self.measurements.clear()
