@@ -119,11 +119,13 @@ class Equal(unittest.TestCase):
             text = launch(topics, loop, sets, pace, speedup)
             self.assertTrue(os.path.exists(os.path.join(topics, "summary.json")), text[-3000:])
             tool("run", loop, "--no-plot", "--out", process, *[word for s in sets for word in ("--set", s)])
+            late = 0
             if pace == "realtime":
-                self.compare_realtime(topics, process, steps)
+                late = self.compare_realtime(topics, process, steps)
             else:
                 ring.assert_same_run(self, topics, process)
-            self.assertEqual(steps, ring.summary(topics)["steps"])
+            self.assertLessEqual(ring.summary(topics)["steps"], steps)
+            self.assertGreaterEqual(ring.summary(topics)["steps"], steps - late)  # none is missing but for a late one
             return ring.summary(topics)
 
     def compare_realtime(self, topics, process, steps):
@@ -139,6 +141,7 @@ class Equal(unittest.TestCase):
         self.assertEqual(there[:same], here[:same])
         self.assertEqual(len(there), len(here))
         print(f"realtime: {same - 1} of {steps + 1} rows compared, {len(late)} actions too late")
+        return len(late)
 
     def test_a_setpoint_and_an_offset_clamped_are_events_in_both_ways(self):
         self.assertEqual([("disturbance_clamped", "T_in", 60, 300), ("setpoint_clamped", "T", 120, 240)],

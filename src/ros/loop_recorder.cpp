@@ -109,7 +109,7 @@ void LoopRecorder::poll() {
     looked_s_ = steadyNow();
   }
   if (!written_) watchGaps();
-  if (store_->flush(session_.lacking(told_, session_.latest().step).empty()) && bag_)
+  if (store_->flush(session_.incomplete(told_, session_.latest().step).empty()) && bag_)
     bag_->beginNextPart();
   store_->sync(steadyNow());
   if (bag_) bag_->sync(steadyNow());
@@ -133,13 +133,13 @@ void LoopRecorder::watchGaps() {
   if (!session_.lacks()) {
     lacks_s_ = -1;
   } else {
-    const auto [step, what] = session_.lacking(now - 1, now).front();
+    const auto [step, what] = session_.incomplete(now - 1, now).front();
     lacks_ = "sample " + std::to_string(step) + ": no " + what;
     if (lacks_s_ < 0) lacks_s_ = steadyNow();
   }
   if (++polls_ < kLate) return;
   std::vector<Event> gaps;
-  for (const auto& [step, what] : session_.lacking(told_, due_))
+  for (const auto& [step, what] : session_.incomplete(told_, due_))
     gaps.push_back(gapEvent(what, step));
   health_.say(gaps);
   told_ = due_;

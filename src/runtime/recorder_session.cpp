@@ -202,7 +202,7 @@ std::vector<std::string> RecorderSession::gaps(std::size_t limit) const {
   return lines;
 }
 
-std::vector<std::pair<std::uint32_t, std::string>> RecorderSession::lacking(
+std::vector<std::pair<std::uint32_t, std::string>> RecorderSession::incomplete(
     std::uint32_t from, std::uint32_t before) const {
   std::vector<std::pair<std::uint32_t, std::string>> all;
   for (auto at = waiting_.lower_bound(from); at != waiting_.end() && at->first < before; ++at) {

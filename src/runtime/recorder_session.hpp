@@ -80,8 +80,8 @@ class RecorderSession {
   /// "sample 17: no control_action" for the first holes, those of waiting samples included.
   std::vector<std::string> gaps(std::size_t limit = 10) const;
   /// Samples from `from` to before `before` that lack something, each with the first part of it.
-  std::vector<std::pair<std::uint32_t, std::string>> lacking(std::uint32_t from,
-                                                             std::uint32_t before) const;
+  std::vector<std::pair<std::uint32_t, std::string>> incomplete(std::uint32_t from,
+                                                                std::uint32_t before) const;
   /// Whether the newest sample but one lacks something: what was lost is not coming again.
   bool lacks() const;
   std::uint64_t gapCount() const { return gap_count_; }  ///< samples given up

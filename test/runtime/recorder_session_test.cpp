@@ -289,11 +289,11 @@ TEST_F(RecorderSessionTest, LacksSomethingWhileItsNewestSamplesDo) {
   r.receive(measurement(2));
   EXPECT_TRUE(r.lacks());
   using Gaps = std::vector<std::pair<std::uint32_t, std::string>>;
-  EXPECT_EQ(r.lacking(0, 2), (Gaps{{1, "tracking"}}));
+  EXPECT_EQ(r.incomplete(0, 2), (Gaps{{1, "tracking"}}));
   addSample(r, 2);
   EXPECT_FALSE(r.lacks()) << "a gap is no reason to be worse for ever";
-  EXPECT_EQ(r.lacking(0, 3), (Gaps{{1, "tracking"}}));
-  EXPECT_TRUE(r.lacking(2, 3).empty());
+  EXPECT_EQ(r.incomplete(0, 3), (Gaps{{1, "tracking"}}));
+  EXPECT_TRUE(r.incomplete(2, 3).empty());
 }
 
 TEST_F(RecorderSessionTest, ClosePassesOnWhatWaits) {
