@@ -103,10 +103,13 @@ class ExamplePackage(unittest.TestCase):
         link = (ws / "build" / "two_tanks" / "CMakeFiles" / "two_tanks.dir" / "link.txt").read_text()
         self.assertIn("libfmbpc_core.so", link)
 
-    def test_the_python_package_is_in_the_prefix(self):
-        """With everything that it needs, the tool and the loops included; with ROS the messages are in the same package."""
+    def need_module(self):
         if not WITH_ROS and not list((BUILD / "python" / "fmbpc").glob("_core.*")):
             self.skipTest("the module was not built")
+
+    def test_the_python_package_is_in_the_prefix(self):
+        """With everything that it needs, the tool and the loops included; with ROS the messages are in the same package."""
+        self.need_module()
         code = ("import json, pathlib, fmbpc\n"
                 "loop = fmbpc.Loop('asp_case1_clp', set={'sampling.duration_h': 4})\n"
                 "maps = [line.split()[-1] for line in open('/proc/self/maps') if 'libfmbpc' in line]\n"
@@ -120,8 +123,7 @@ class ExamplePackage(unittest.TestCase):
         self.assertIn("asp_case1_clp", run("/usr/bin/python3", "-m", "fmbpc", "loops", **where))
 
     def test_python_steps_its_plant_and_runs_its_loops_as_the_tool(self):
-        if not WITH_ROS and not list((BUILD / "python" / "fmbpc").glob("_core.*")):
-            self.skipTest("the module was not built")
+        self.need_module()
         code = ("import sys, fmbpc\n"
                 "fmbpc.register('two_tanks')\n"
                 "plant = fmbpc.Plant('two_tanks')\n"

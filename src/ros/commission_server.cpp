@@ -90,8 +90,8 @@ void CommissionServer::begin(const fmbpc::CommissionGoal& wish) {
   if (until >= CommissioningStage::kWatch &&
       !stages->done(std::min(until, CommissioningStage::kTest))) {
     hooks_.tap(tap_);
-    if (!brief.hold_asked.empty())
-      hooks_.setpoint({0, brief.hold_asked, brief.hold_values, CommandMode::kOverride});
+    held_ = brief.hold_asked;
+    if (!held_.empty()) hooks_.setpoint({0, held_, brief.hold_values, CommandMode::kOverride});
   }
   cancelled_ = over_ = false;
   result_ = {};
@@ -121,6 +121,8 @@ void CommissionServer::poll() {
     over = over_;
   }
   for (const fmbpc::CommissionFeedback& text : news) goal_.publishFeedback(text);
+  if (!tap_->open() && !held_.empty())
+    hooks_.setpoint({0, std::exchange(held_, {}), {}, CommandMode::kRelease});
   if (!over) return;
   thread_.join();
   if (cancelled_)

@@ -42,6 +42,7 @@ class CommissionServer {
   const LoopFile& loop_;
   Loop hooks_;
   std::shared_ptr<PlantTap> tap_;
+  std::vector<std::string> held_;  // outputs whose setpoint is the brief's, until the tap ends
   Server::GoalHandle goal_;
   std::thread thread_;
   bool cancelled_{false};

@@ -286,10 +286,10 @@ void ControllerSession::runLaw(const Measurement& m) {
   if (!output_.ok) return hold(m, {});
   if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
     return hold(m, {EventCode::kLawFailed});
-  if (tap_) passToTest(m);
   answer_.base.input = output_.input;
   handOver(m);
   limit(m);
+  if (tap_) passToTest(m);
   answer_.base.source = output_.source;
   answer_.has_prediction = output_.predictive && !m.final;
   if (!answer_.has_prediction) return;

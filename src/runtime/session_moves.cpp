@@ -30,12 +30,13 @@ void ControllerSession::handOver(const Measurement& m) {
   transfer_.reset(false);
 }
 
-/// What the stages of a commissioning send in the place of the law's input. When they are done, the
-/// law moves on from what the plant gets.
+/// What the stages of a commissioning send in the place of the law's input, inside its limits. When
+/// they are done, the law moves on from what the plant gets.
 void ControllerSession::passToTest(const Measurement& m) {
-  proposal_ = output_.input;
-  tap_->pass(m, limits_, output_.input);
-  if (output_.input != proposal_) {
+  Vector& input = answer_.base.input;
+  proposal_ = input;
+  tap_->pass(m, limits_, moves_.displaced() ? moves_.origin() : m.input_applied, input);
+  if (input != proposal_) {
     output_.predictive = false;
     output_.source = ActionSource::kGuarded;
   }

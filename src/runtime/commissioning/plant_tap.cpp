@@ -32,11 +32,14 @@ void PlantTap::requireOpen() const {
   require(!closed_, "plant", "a loop that goes on: " + (why_.empty() ? "it is over" : why_));
 }
 
-void PlantTap::pass(const Measurement& now, const InputLimits& limits, Vector& input) {
+void PlantTap::pass(const Measurement& now, const InputLimits& limits, VectorRef previous,
+                    Vector& input) {
   std::unique_lock<std::mutex> lock(mutex_);
   if (closed_) return;
   const std::uint64_t number = ++number_;
   queue_.push_back({number, {now, input, {}}});
+  limits_ = limits;
+  previous_ = previous;
   answered_ = false;
   for_stages_.notify_all();
   const auto settled = [&] { return answered_ || closed_; };
@@ -50,9 +53,8 @@ void PlantTap::pass(const Measurement& now, const InputLimits& limits, Vector& i
     input = answer_;
   } else {
     ++late_;
-    if (difference_.size() == law.size()) input += difference_;
+    if (difference_.size() == law.size()) limits.clip(input += difference_, previous);
   }
-  if (input != law) limits.clip(input, now.input_applied);
   difference_ = input - law;
   if (answered_) return;
   if (current_number_ == number)
@@ -75,7 +77,9 @@ const Vector& PlantTap::send(VectorRef input) {
   const std::lock_guard<std::mutex> lock(mutex_);
   requireOpen();
   if (current_.sent.size() > 0) return current_.sent;  // too late
-  current_.sent = answer_ = input;
+  answer_ = input;
+  if (answer_ != current_.present) limits_.clip(answer_, previous_);
+  current_.sent = answer_;
   answered_ = true;
   for_loop_.notify_all();
   return current_.sent;

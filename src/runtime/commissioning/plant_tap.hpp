@@ -22,8 +22,8 @@ class PlantTap final : public StagedPlant {
   explicit PlantTap(double patience_s);
 
   // ---- the loop's side
-  /// input: the law's, then what is to be sent, inside the limits as seen from input_applied.
-  void pass(const Measurement& now, const InputLimits& limits, Vector& input);
+  /// input: the law's, then what is to be sent, inside the limits as seen from `previous`.
+  void pass(const Measurement& now, const InputLimits& limits, VectorRef previous, Vector& input);
   /// No more samples, for a reason in words; the first one counts.
   void end(const std::string& why);
   bool open() const;
@@ -48,7 +48,8 @@ class PlantTap final : public StagedPlant {
   std::deque<Waiting> queue_;
   Sample current_;
   std::uint64_t number_{}, current_number_{}, late_{};
-  Vector answer_, difference_;
+  InputLimits limits_;  // of the newest sample
+  Vector previous_, answer_, difference_;
   bool answered_{false}, closed_{false};
   std::string why_;
 };
