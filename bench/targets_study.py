@@ -1,11 +1,14 @@
 #!/usr/bin/python3
-"""The target layer beside what else could stand in its place: targets_study.py shell|column|zones|square|bsm1 [--quick]; prints the tables of docs/targets.md.
+"""The target layer beside what else could stand in its place: targets_study.py shell|column|zones|bsm1 [--quick]; prints the tables of docs/targets.md.
 Needs the package fmbpc (. scripts/env.sh); bsm1 needs the folder FMBPC_DATA."""
 import argparse
 import concurrent.futures
+import json
 import os
 import pathlib
+import subprocess
 import sys
+import tempfile
 
 import numpy as np
 import yaml
@@ -225,7 +228,7 @@ def column_run(case):
         spec["targets"]["outputs"] = {n: {"lower": float(z[0]), "upper": float(z[1]), "rank": 1} for n, z in zip(COLUMN, inner)}
         spec["targets"]["band"] = 0.002
     run = fmbpc.Loop(spec).run(progress=False)
-    y, v = columns(run.true_outputs if hasattr(run, "true_outputs") else run.outputs, COLUMN), np.asarray(run.inputs["V"], float)[:-1]
+    y, v = columns(run.outputs, COLUMN), np.asarray(run.inputs["V"], float)[:-1]
     out = beyond(y, PURITIES[:, :1], PURITIES[:, 1:]) / (np.ptp(PURITIES, axis=1)[:, None] / 2)
     return float(v.mean()), float((out > 0.02).any(axis=0).mean()), float(out.max()), float(np.abs(np.diff(v)).sum() / COLUMN_H)
 
@@ -302,7 +305,54 @@ def zones(quick):
                 row(loop, f"{100 * spread:.0f} %", "yes" if noisy else "no", way, runs[:, 0].mean(), runs[:, 1].mean(), np.median(runs[:, 2]), runs[:, 3].mean())
 
 
-STUDIES = {"shell": shell, "column": column, "zones": zones}
+# --- BSM1 -----------------------------------------------------------------------------------------------------------------------------------------------
+
+AMMONIUM_MODEL = {"noise_std": 0.05, "disturbance_std": 0.01}
+
+
+def one_zone(upper):
+    """Law `general` as in bsm1_fmbpc, its setpoint where air with a price lets ammonium rest below `upper`."""
+    spec = fmbpc_yaml("bsm1_fmbpc")
+    spec["targets"] = {"outputs": {"S_NH5": {"lower": 0.05, "upper": upper, "rank": 1}}, "inputs": {"air": {"price": 1}}, "observer": AMMONIUM_MODEL}
+    return spec
+
+
+def two_zones(horizon, air_move, nitrate_move, upper, slow, nitrate_weight):
+    """Law `iterated` on bsm1_nitrate: ammonium below `upper`, nitrate below 14, air with a price, the nitrate setpoint at 2.8."""
+    spec = fmbpc_yaml("bsm1_fmbpc")
+    spec["plant"]["outputs"] = ["S_NH5", "S_NO2", "S_NO5"]
+    spec["sensors"].update(S_NO2={"class": "B0", "lower": 0, "upper": 20}, S_NO5={"class": "B0", "lower": 0, "upper": 50})
+    spec["model"] = {"file": "bsm1_nitrate.yaml"}
+    spec["setpoint"]["initial"] = {"S_NH5": 1.0, "S_NO2": 1.5, "S_NO5": 12}
+    moves = {**spec["controller"]["weight_move"], "air": air_move, "NO2": nitrate_move}
+    spec["controller"] = {"type": "fmbpc", "law": "iterated", "horizon_steps": horizon, "reference_pole": 0, "weight_output": {"S_NH5": 1, "S_NO2": 0, "S_NO5": nitrate_weight},
+                          "weight_move": moves, "weight_input": {"air": 0, "NO2": 5}, "realisation": "observer", "observer": {"noise_std": 0.05, "disturbance_std": 0.005}}
+    spec["targets"] = {"outputs": {"S_NH5": {"lower": 0.05, "upper": upper, "rank": 2}, "S_NO5": {"upper": 14, "rank": 1}},
+                       "inputs": {"air": {"price": 1}, "NO2": {"rest": 2.8}}, "observer": {"noise_std": 0.05, "disturbance_std": slow}}
+    return spec
+
+
+def evaluated(case):
+    name, spec = case
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "loop.yaml")
+        if spec is not None:
+            file.write_text(yaml.safe_dump(spec), encoding="utf-8")
+        found = json.loads(subprocess.run(["fmbpc", "evaluate", "--json", name if spec is None else file], capture_output=True, text=True, check=True).stdout)
+    return found[0] if isinstance(found, list) else found
+
+
+def bsm1(quick):
+    cases = [("bsm1_supervisor_tuned", None)] + [(f"general, ammonium below {z}", one_zone(z)) for z in (0.9, 1.017, 1.3)]
+    cases += [(f"iterated, {h} steps, move weights {a}, {n}, ammonium below {z}", two_zones(h, a, n, z, slow, w))
+              for h, a, n, z, slow, w in ((4, 0.5, 2, 1.0, 0.002, 0.05), (8, 1, 5, 1.0, 0.002, 0.05), (16, 5, 20, 1.0, 0.002, 0.05), (16, 20, 50, 1.0, 0.0005, 0), (24, 20, 50, 2.0, 0.0005, 0))]
+    cases = cases[:2] if quick else cases
+    table("control, dry weather", "EQI", "OCI", "TN > 18 [%]", "NH > 4 [%]")
+    for (name, _), e in zip(cases, mapped(evaluated, cases)):
+        row(name, f"{e['EQI']:.0f}", f"{e['OCI']:.0f}", e["limits"]["TN"]["share_percent"], e["limits"]["NH"]["share_percent"])
+
+
+STUDIES = {"shell": shell, "column": column, "zones": zones, "bsm1": bsm1}
 
 if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
