@@ -11,6 +11,8 @@ import sys
 import tempfile
 import unittest
 
+import yaml
+
 import fmbpc
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
@@ -18,7 +20,7 @@ sys.path.insert(0, str(TOP / "test" / "ros"))
 import ring  # noqa: E402
 
 LONG = os.environ.get("FMBPC_LONG_TESTS")
-SAMPLES = 480
+SAMPLES = 480  # more where a loop identifies a model: until it has one
 ENVIRONMENT = f". {TOP}/scripts/env.sh; exec "
 
 
@@ -41,7 +43,9 @@ class EveryLoop(unittest.TestCase):
             self.skipTest("its record is not there: FMBPC_DATA")
         if loop._core.external:
             self.skipTest("its plant is not ours")
-        sets = [f"sampling.duration_h={SAMPLES * loop.sample_time_s / 3600.0!r}", "report.record_from_h=0"]
+        identify = (yaml.safe_load(loop.resolved).get("model") or {}).get("identify") or {}
+        samples = max(SAMPLES, identify.get("after", 0) + 40)
+        sets = [f"sampling.duration_h={samples * loop.sample_time_s / 3600.0!r}", "report.record_from_h=0"]
         port = ring.free_port()
         topics = run(f"roslaunch -p {port} fmbpc loop.launch loop:={name} pace:=lockstep draw:=false "
                      f"set:='{' '.join(sets)}' out:={folder}/topics", ROS_MASTER_URI=f"http://localhost:{port}")
@@ -52,7 +56,7 @@ class EveryLoop(unittest.TestCase):
         self.assertEqual(python.returncode, 0, python.stderr)
         over_topics, in_process, from_python = (pathlib.Path(folder, kind, "trajectory.csv") for kind in ("topics", "process", "python"))
         self.assertTrue(over_topics.exists(), topics.stdout[-2000:])
-        self.assertEqual(SAMPLES + 2, len(in_process.read_text().splitlines()))  # a head, and the final sample
+        self.assertEqual(samples + 2, len(in_process.read_text().splitlines()))  # a head, and the final sample
         self.assertTrue(filecmp.cmp(over_topics, in_process, shallow=False), "over topics it differs from the tool")
         self.assertTrue(filecmp.cmp(from_python, in_process, shallow=False), "from Python it differs from the tool")
 

@@ -1,13 +1,17 @@
 """Many runs on all cores, and analyses; the results are what the tool prints as JSON."""
 from __future__ import annotations
 
+import contextlib
 import json
 import numbers
 import pathlib
+import tempfile
 import threading
 from typing import Any, Callable, Mapping, Sequence
 
 from fmbpc import _core, _progress, _text
+from fmbpc._loop import Loop
+from fmbpc._model import Model
 
 
 def _interruptible(call, progress):
@@ -90,11 +94,13 @@ def commission(brief: str, folder: str = "", *, until: str = "design", again: st
         return _interruptible(lambda look: _core.commission(brief, folder, _text.text(until, "until"), _text.text(again, "again"), *counts, look), bar)
 
 
-def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: range | str = "1..200", noise_gain: float = 0.0,
-              settling: int = 0) -> dict[str, Any]:
-    """Steady states, eigenvalues over the coincidence horizon, zeros and a Lyapunov certificate of a loop or a model (docs/stability.md).
+def stability(subject: str | Loop | Model, *, set: Mapping[str, Any] | None = None, at: Mapping[str, float] | None = None,
+              horizon: range | str = "1..200", noise_gain: float = 0.0, settling: int = 0, points: int = 4,
+              on_model: bool = False) -> dict[str, Any]:
+    """Margins of a loop; of a fuzzy law eigenvalues over the coincidence horizon and a Lyapunov certificate (docs/stability.md).
 
-    name: of a loop or a model, or a path
+    subject: a Loop, a Model, or the name or path of one; set: keys over a loop, as Loop() takes them
+    points: so many places of the loop's run at which it is linearised; on_model: the loop's model in the place of its plant
     at: the operating point, {"NAME": value} of inputs, disturbances, outputs; horizon: range(1, 201) or "1..200"
     noise_gain and settling [samples]: largest ones of an advised horizon
     Returns what `fmbpc stability --json` prints. Raises InputError.
@@ -103,4 +109,18 @@ def stability(name: str, *, at: Mapping[str, float] | None = None, horizon: rang
         raise _core.InputError("horizon: expected a range without steps")
     text = f"{horizon.start}..{horizon.stop - 1}" if isinstance(horizon, range) else horizon
     point = ",".join(f"{key}={value!r}" for key, value in _text.numbers_of(at, "at"))
-    return json.loads(_core.stability(_text.path(name, "name"), point, text, _text.real(noise_gain, "noise_gain"), _text.whole(settling, "settling")))
+    counts = [_text.whole(value, what) for value, what in ((settling, "settling"), (points, "points"))]
+    with _file_of(subject) as file:
+        return json.loads(_core.stability(file, _text.assignments(set), point, text, _text.real(noise_gain, "noise_gain"), *counts, bool(on_model)))
+
+
+@contextlib.contextmanager
+def _file_of(subject):
+    """Name or path; of a Loop or a Model, the path of a file while it is needed."""
+    if not isinstance(subject, (Loop, Model)):
+        yield _text.path(subject, "subject")
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, subject.name + ".yaml")
+        file.write_text(subject.resolved if isinstance(subject, Loop) else subject._core.text, encoding="utf-8")
+        yield str(file)

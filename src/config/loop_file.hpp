@@ -173,6 +173,8 @@ std::pair<std::string, std::string> parseOverride(const std::string& text);
 /// Several in one text, separated by spaces outside brackets and quotes; a word without "=" belongs
 /// to the value before it. @throws InputError as parseOverride().
 Overrides parseOverrides(const std::string& text);
+/// One in each text, as --set takes them. @throws InputError as parseOverride().
+Overrides parseOverrides(const std::vector<std::string>& texts);
 
 /// Folders that hold loop/, model/, structure/ and data/: ${FMBPC_CONFIG_PATH} (colon separated),
 /// then those of the build.

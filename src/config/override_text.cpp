@@ -47,6 +47,12 @@ std::string insideQuotes(const std::string& word) {
 
 }  // namespace
 
+Overrides parseOverrides(const std::vector<std::string>& texts) {
+  Overrides overrides;
+  for (const auto& text : texts) overrides.push_back(parseOverride(text));
+  return overrides;
+}
+
 Overrides parseOverrides(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t at = 0; at < text.size();) {

@@ -31,8 +31,7 @@ int exportLaw(const ExportArguments& a) {
   if (!a.check.empty()) return checkExport(a.check);
   require(!a.loop.empty() && !a.out.empty(), "export",
           "a LOOP and --out FOLDER, or --check FOLDER");
-  Overrides overrides;
-  for (const auto& text : a.set) overrides.push_back(parseOverride(text));
+  Overrides overrides = parseOverrides(a.set);
   ExportOptions options = a.options;
   options.exporter = "fmbpc " FMBPC_VERSION;
   options.c99 = a.to != "st";

@@ -8,9 +8,8 @@ namespace fpc::tool {
 
 int resolve(const std::string& loop, const std::vector<std::string>& set, const std::string& sets,
             bool on_model) {
-  Overrides overrides;
-  if (on_model) overrides.emplace_back("plant.type", "model");
-  for (const auto& text : set) overrides.push_back(parseOverride(text));
+  Overrides overrides = parseOverrides(set);
+  if (on_model) overrides.emplace(overrides.begin(), "plant.type", "model");
   for (const auto& override : parseOverrides(sets)) overrides.push_back(override);
   std::cout << resolveLoop(loop, overrides);
   return 0;
@@ -18,8 +17,7 @@ int resolve(const std::string& loop, const std::vector<std::string>& set, const 
 
 int resolvePlant(const std::string& file, const std::vector<std::string>& set,
                  const std::string& sets) {
-  Overrides overrides;
-  for (const auto& text : set) overrides.push_back(parseOverride(text));
+  Overrides overrides = parseOverrides(set);
   for (const auto& override : parseOverrides(sets)) overrides.push_back(override);
   const PlantLoops plant = readPlantLoops(file, overrides);
   for (const PlantLoop& one : plant.loops) {

@@ -64,9 +64,8 @@ Summary runOne(const LoopFile& loop, const std::string& folder, const std::strin
 }
 
 std::vector<LoopFile> readAll(const RunArguments& arguments) {
-  Overrides overrides;
-  if (arguments.on_model) overrides.emplace_back("plant.type", "model");
-  for (const auto& text : arguments.set) overrides.push_back(parseOverride(text));
+  Overrides overrides = parseOverrides(arguments.set);
+  if (arguments.on_model) overrides.emplace(overrides.begin(), "plant.type", "model");
   std::vector<LoopFile> loops;
   std::set<std::string> names;
   for (const auto& name : arguments.loops) {
@@ -111,8 +110,7 @@ namespace {
 
 /// All loops of a plant at once, each into a folder of its name.
 int runWholePlant(const RunArguments& arguments) {
-  Overrides overrides;
-  for (const auto& text : arguments.set) overrides.push_back(parseOverride(text));
+  Overrides overrides = parseOverrides(arguments.set);
   const PlantLoops plant = readPlantLoops(arguments.plant, overrides);
   catchInterrupts();
   RunOptions options;

@@ -77,7 +77,8 @@ struct ValidateArguments {
 };
 
 struct StabilityArguments {
-  std::string name;  ///< model or loop
+  std::string name;              ///< model or loop
+  std::vector<std::string> set;  ///< KEY.PATH=VALUE over the loop file
   std::string at;    ///< "name=value,..."
   std::string horizon{"1..200"};
   std::string out;

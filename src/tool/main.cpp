@@ -294,6 +294,8 @@ void addStability(CLI::App& app, fpc::tool::StabilityArguments& a) {
                          "law: eigenvalues over "
                          "the horizon, a Lyapunov certificate. Steady states of the plant");
   stability->add_option("MODEL|LOOP", a.name, "model or loop, by name or path")->required();
+  stability->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
+      ->allow_extra_args(false);
   stability->add_option("--at", a.at,
                         "operating point, NAME=VALUE,...: inputs, disturbances, outputs");
   stability->add_option("--horizon", a.horizon, "coincidence horizons, FIRST..LAST")

@@ -109,17 +109,19 @@ bool saysLimit(const LoopFile& loop, const std::string& key) {
 }
 
 /// The loop, on its model where nothing else can be simulated.
-LoopFile readSimulated(const std::string& name, bool on_model) {
-  const Overrides rehearsal{{"plant.type", "model"}};
-  LoopFile loop = readLoop(name, on_model ? rehearsal : Overrides{});
+LoopFile readSimulated(const std::string& name, const Overrides& set, bool on_model) {
+  Overrides rehearsal = set;
+  rehearsal.emplace(rehearsal.begin(), "plant.type", "model");
+  LoopFile loop = readLoop(name, on_model ? rehearsal : set);
   if (!loop.external_plant) return loop;
   require(loop.has_model, loop.name + ": model.file",
           "a model: the plant is external, and without one there is nothing to look at");
   return readLoop(name, rehearsal);
 }
 
-void readLoopInto(StabilitySubject& subject, const std::string& name, bool on_model) {
-  subject.loop = std::make_shared<LoopFile>(readSimulated(name, on_model));
+void readLoopInto(StabilitySubject& subject, const std::string& name, const Overrides& set,
+                  bool on_model) {
+  subject.loop = std::make_shared<LoopFile>(readSimulated(name, set, on_model));
   const LoopFile& loop = *subject.loop;
   subject.name = loop.name;
   subject.sample_time_s = loop.plant_info.sample_time_s;
@@ -134,11 +136,13 @@ void readLoopInto(StabilitySubject& subject, const std::string& name, bool on_mo
 
 }  // namespace
 
-StabilitySubject readSubject(const std::string& name, const std::string& at, bool on_model) {
+StabilitySubject readSubject(const std::string& name, const std::vector<std::string>& set,
+                             const std::string& at, bool on_model) {
   StabilitySubject subject;
   if (isLoop(name)) {
-    readLoopInto(subject, name, on_model);
+    readLoopInto(subject, name, parseOverrides(set), on_model);
   } else {
+    require(set.empty(), "--set", "a loop: a model has no keys to set");
     subject.model = readModel(findModel(name));
     subject.name = subject.model.name;
     subject.has_model = true;

@@ -151,9 +151,17 @@ class Reports(unittest.TestCase):
 
     def test_stability_is_that_of_the_tool(self):
         self.assertEqual(self.tool("stability", "fm_1", "--horizon", "1..9"), fmbpc.stability("fm_1", horizon=range(1, 10)))
-        for wrong in ({"at": {"no": 1.0}}, {"horizon": range(1, 9, 2)}, {"horizon": "many"}):
-            with self.assertRaises(fmbpc.InputError):
+        for wrong in ({"at": {"no": 1.0}}, {"horizon": range(1, 9, 2)}, {"horizon": "many"}, {"set": {"a": 1}}, {"points": 101}, {"points": -1}):
+            with self.subTest(wrong=wrong), self.assertRaises(fmbpc.InputError):
                 fmbpc.stability("fm_1", **wrong)
+
+    def test_objects_are_analysed_as_their_files_are(self):
+        self.assertEqual(fmbpc.stability("fm_1", horizon="1..9"), fmbpc.stability(fmbpc.Model("fm_1"), horizon="1..9"))
+        changed = {"controller.loops.0.kp": 30}
+        told = self.tool("stability", "cstr_tracking_pi", "--points", "2", "--set", "controller.loops.0.kp=30")
+        self.assertEqual(told, fmbpc.stability("cstr_tracking_pi", set=changed, points=2))
+        self.assertEqual(told, fmbpc.stability(fmbpc.Loop("cstr_tracking_pi", set=changed), points=2))
+        self.assertNotEqual(told, fmbpc.stability("cstr_tracking_pi", points=2))
 
     def test_what_is_wrong_is_named(self):
         seeds = {"seeds": 2}
