@@ -22,7 +22,7 @@ namespace {
 using XmlRpc::XmlRpcValue;
 
 constexpr int kEachLook = 8;   // so often; then every so many, for one whom nothing helps
-constexpr int kOnItsWay = 20;  // looks that a first registration may take
+constexpr int kFirstLooks = 20;  // looks that a first registration may take
 
 XmlRpcValue request(const std::vector<std::string>& arguments) {
   XmlRpcValue all;
@@ -128,7 +128,7 @@ bool Links::lacks(const std::string& what, const std::string& node) {
 bool Links::isForgotten(const std::string& what, bool known) {
   if (known) known_.insert(what);
   if (known || !lacks(what)) return false;
-  return known_.count(what) > 0 || missing_[what].looks > kOnItsWay;
+  return known_.count(what) > 0 || missing_[what].looks > kFirstLooks;
 }
 
 Links::Master Links::look(const std::vector<std::string>& spaces, NodeAddresses& addresses) try {

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using Json = OrderedJson;
 
 /// What is judged, and what is to be said of it.
-struct Judged {
+struct EvaluatedRun {
   CsvTable table;
   std::vector<std::string> remarks;
 };
@@ -35,26 +35,26 @@ void requireNoOverrides(const std::string& run, const Overrides& overrides) {
   require(overrides.empty(), "--set", "a loop that is run now; '" + run + "' is a recording here");
 }
 
-Judged recorded(const std::string& file) {
-  Judged judged{readCsv(file), {}};
+EvaluatedRun recorded(const std::string& file) {
+  EvaluatedRun judged{readCsv(file), {}};
   const fs::path summary = fs::path(file).parent_path() / "summary.json";
   if (fs::is_regular_file(summary) && !readSummary(summary.string()).complete)
     judged.remarks.emplace_back(kIncomplete);
   return judged;
 }
 
-Judged runNow(const std::string& run, const Overrides& overrides) {
+EvaluatedRun runNow(const std::string& run, const Overrides& overrides) {
   const LoopFile loop = readLoop(run, overrides);
   ProgressBar bar(loop.name);
   const RunRecord record = runLoop(loop, watchedBy(bar));
-  Judged judged{trajectoryOf(loop, record), {}};
+  EvaluatedRun judged{trajectoryOf(loop, record), {}};
   judged.table.file = loop.name;
   if (!record.complete) judged.remarks.emplace_back(kIncomplete);
   return judged;
 }
 
 /// A recorded run, or one that is made now.
-Judged judgedRun(const std::string& run, const Overrides& overrides) {
+EvaluatedRun judgedRun(const std::string& run, const Overrides& overrides) {
   const fs::path folder(run);
   if (fs::is_regular_file(folder / "trajectory.csv")) {
     requireNoOverrides(run, overrides);
@@ -139,7 +139,7 @@ int evaluate(const EvaluateArguments& arguments) {
   Json all = Json::array();
   std::set<Levers> levers;
   for (const auto& run : arguments.runs) {
-    Judged judged = judgedRun(run, overrides);
+    EvaluatedRun judged = judgedRun(run, overrides);
     const EffluentReport report = evaluateEffluent(judged.table, params);
     addProtocol(report, judged.remarks);
     if (!arguments.json && all.empty()) printHead();

@@ -11,7 +11,7 @@
 namespace fpc::tool {
 namespace {
 
-double numberOf(const std::string& name, const std::string& text) {
+double operatorNumber(const std::string& name, const std::string& text) {
   const std::optional<double> value = parseNumber(text[0] == '+' ? text.substr(1) : text);
   require(value.has_value(), name, "a number, got '" + text + "'");
   return *value;
@@ -24,11 +24,11 @@ std::vector<std::pair<std::string, double>> pairsOf(const std::vector<std::strin
     const std::size_t equals = words[i].find('=');
     if (equals != std::string::npos) {
       const std::string name = words[i].substr(0, equals);
-      pairs.emplace_back(name, numberOf(name, words[i].substr(equals + 1)));
+      pairs.emplace_back(name, operatorNumber(name, words[i].substr(equals + 1)));
       continue;
     }
     require(i + 1 < words.size(), words[i], "NAME VALUE: a value behind it");
-    pairs.emplace_back(words[i], numberOf(words[i], words[i + 1]));
+    pairs.emplace_back(words[i], operatorNumber(words[i], words[i + 1]));
     ++i;
   }
   return pairs;
