@@ -5,6 +5,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "identification/prediction.hpp"
+#include "model/longest_lag.hpp"
 
 namespace fpc {
 namespace {
@@ -27,14 +28,6 @@ void clipToSensors(const IdentifiedModel& model, Matrix& predicted) {
 
 ModelKind bestOf(const IdentifiedModel& model, std::size_t output) {
   return output < model.outputs.size() ? model.outputs[output].best : ModelKind::kRegressors;
-}
-
-Index longestLag(const TsModel& model) {
-  Index longest = 0;
-  for (const auto& s : model.submodels)
-    for (const auto* list : {&s.antecedents, &s.regressors})
-      for (const auto& r : *list) longest = std::max<Index>(longest, r.lag);
-  return longest;
 }
 
 /// Free runs of `reach` samples behind each other, each from measured ones.

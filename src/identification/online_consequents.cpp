@@ -4,19 +4,12 @@
 #include <cmath>
 
 #include "fmbpc/base/input_error.hpp"
+#include "model/longest_lag.hpp"
 
 namespace fpc {
 namespace {
 
 using Eigen::Index;
-
-Index longestLag(const TsModel& model) {
-  int longest = 0;
-  for (const auto& submodel : model.submodels)
-    for (const auto* list : {&submodel.antecedents, &submodel.regressors})
-      for (const auto& r : *list) longest = std::max(longest, r.lag);
-  return longest;
-}
 
 Index rowOf(const TsModel& model, const Regressor& r) {
   auto row = static_cast<Index>(r.index);

@@ -17,6 +17,8 @@ struct FaultyRows {
 /// Stretches in which a signal that else changes in nearly every row keeps one value, not its
 /// lowest nor highest: at least 20 rows, and 5 times as long as all usual repetitions. Of outputs
 /// only those in which inputs moved three times and more; none of inputs, which may rest.
+/// On 159 columns of 12 public records it accuses none and finds 7 of 10 stretches of 20 rows and
+/// more; the rule for running signals (FlatLine), which needs noise, 3 of 10 (record_faults_test).
 std::vector<FaultyRows> frozenRows(const DataSet& data, Eigen::Index column);
 
 /// From one row on the values and the moves of a column are larger (smaller) by the same factor,

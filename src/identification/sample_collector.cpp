@@ -6,6 +6,7 @@
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
 #include "fmbpc/base/text.hpp"
+#include "model/longest_lag.hpp"
 
 namespace fpc {
 namespace {
@@ -14,14 +15,6 @@ constexpr std::uint64_t kLongestBreak =
     1000;  // rows that are kept; rows() shortens breaks to the longest lag
 
 double finiteOrMissing(double value) { return std::isfinite(value) ? value : kNaN; }
-
-std::size_t longestLag(const Structure& structure) {
-  int longest = 0;
-  for (const auto& submodel : structure.submodels)
-    for (const auto* list : {&submodel.regressors, &submodel.antecedents})
-      for (const auto& variable : *list) longest = std::max(longest, variable.lag);
-  return static_cast<std::size_t>(longest);
-}
 
 bool allMissing(const std::vector<double>& row) {
   return std::all_of(row.begin(), row.end(), [](double value) { return std::isnan(value); });
@@ -117,7 +110,7 @@ Matrix SampleCollector::rows(const Structure& structure, std::size_t newest) con
   for (const auto& s : structure.disturbances)
     places.push_back(placeOf(s, plant_.disturbances, n_y_ + n_u_, "disturbances"));
   const std::size_t count = newest == 0 ? rows_.size() : std::min(newest, rows_.size());
-  const auto needed = neededRows(rows_, count, longestLag(structure));
+  const auto needed = neededRows(rows_, count, static_cast<std::size_t>(longestLag(structure)));
   Matrix table(static_cast<Eigen::Index>(needed.size()), static_cast<Eigen::Index>(places.size()));
   for (std::size_t k = 0; k < needed.size(); ++k)
     for (std::size_t j = 0; j < places.size(); ++j)

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
 
+#include "base/csv.hpp"
 #include "base/random.hpp"
 #include "identification/record_remarks.hpp"
 
@@ -53,6 +56,42 @@ TEST(RecordFaults, AFrozenSensorIsFoundAndLeftOut) {
   EXPECT_EQ(frozen[0].first, 200);
   EXPECT_EQ(frozen[0].last, 350);
   EXPECT_EQ(withoutOutliers(data).values.col(0).array().isNaN().count(), 149);
+}
+
+/// Each column of each public record as the output, the others as inputs, sound and with a stretch
+/// of it frozen somewhere.
+TEST(RecordFaults, FrozenStretchesOfPublicRecordsAreFoundAndHealthyOnesNotAccused) {
+  const char* folder = std::getenv("FMBPC_DATA");
+  if (!folder) GTEST_SKIP() << "FMBPC_DATA names no folder of public records";
+  std::mt19937_64 random(1);
+  int columns = 0, accused = 0, frozen = 0, found = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.path().extension() != ".csv") continue;
+    const Matrix values = readCsv(file.path().string()).values;
+    for (Index c = 0; c < values.cols(); ++c, ++columns) {
+      DataSet data;
+      data.values = values;
+      data.values.col(0).swap(data.values.col(c));
+      data.outputs = {{"y", "", 0.0, 1.0}};
+      data.inputs.assign(static_cast<std::size_t>(values.cols()) - 1, {"u", "", 0.0, 1.0});
+      accused += frozenRows(data, 0).empty() ? 0 : 1;
+      for (int n = 0; n < 10 && values.rows() > 200; ++n) {
+        DataSet spoilt = data;
+        const auto first =
+            static_cast<Index>(uniform(random) * static_cast<double>(values.rows() - 50));
+        if (!std::isfinite(data.values(first, 0))) continue;
+        spoilt.values.col(0).segment(first, 50).setConstant(data.values(first, 0));
+        ++frozen;
+        found += frozenRows(spoilt, 0).empty() ? 0 : 1;
+      }
+    }
+  }
+  RecordProperty("columns", columns);
+  RecordProperty("frozen", frozen);
+  RecordProperty("found", found);
+  EXPECT_GT(columns, 100);
+  EXPECT_EQ(accused, 0);
+  EXPECT_GT(found, 2 * frozen / 3);
 }
 
 TEST(RecordFaults, ASensorAtItsLimitAtRestOrOfLowResolutionIsNotFrozen) {
