@@ -267,6 +267,7 @@ OrderedJson Commissioning::testPlant() {
       {"ended", wordOf(test.end())},
       {"reason", test.reason()},
       {"samples", test.rows()},
+      {"listened", test.listened()},
       {"hours", static_cast<double>(test.rows()) * Ts / 3600.0},
       {"settling_s", test.settling()},
       {"settling_times", test.settling() > 0.0

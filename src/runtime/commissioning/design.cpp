@@ -3,12 +3,14 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <sstream>
 
 #include "base/finite_json.hpp"
 #include "base/parallel.hpp"
 #include "base/statistics.hpp"
 #include "base/yaml_load.hpp"
+#include "control/pi/pi.hpp"
 #include "control/pi/tuning.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
@@ -29,8 +31,9 @@ constexpr double kViolation = 10.0;  // cost of all samples beyond the limits
 constexpr double kFailed = 1e3;      // cost of a run that fails
 constexpr int kFewestRun = 40, kMostRun = 220;  // samples of one stretch of the scenario
 constexpr double kShortHorizon = 10, kLongHorizon = 60;
-constexpr double kStiffer = 2.0;  // the moves' weight when a member is not stable enough
-constexpr int kStiffenings = 8;
+constexpr double kSofter = 2.0;  // the moves' weight when a member is not stable enough
+constexpr int kSoftenings = 16;
+constexpr double kLeastDearer = 0.02;  // of the cost, that a softer setting is taken to add
 constexpr double kSpoiltGain = 1.6, kSpoiltDelay = 0.25;  // factor; of dead time and a sample
 constexpr double kSpoiltShare = 0.2;                      // of the cost that is tuned
 constexpr double kWeakWeight = 0.3;   // of the square of a weak direction's gain
@@ -171,12 +174,9 @@ class Designer {
         models_(models),
         params_(params),
         outline_(outlineOf(brief, models)) {
-    const std::size_t all = models.ensemble.size();
-    const auto tuned = static_cast<std::size_t>(params.tuned_members);
-    require(all > tuned + 1, "ensemble", "more members than are tuned on");
-    for (std::size_t m = 0; m < all; ++m)
-      (m < tuned ? tuned_ : held_out_).push_back(&models.ensemble[m]);
-    tuned_.insert(tuned_.begin(), &models.model);
+    std::vector<const TsModel*> all;
+    for (const TsModel& member : models.ensemble) all.push_back(&member);
+    require(split(all), "ensemble", "more members than are tuned on");
     double late = brief.loop.plant_info.sample_time_s;
     for (const ProcessFit& fit : models.fits)
       for (const ElementEstimate& e : fit.elements) late = std::max(late, e.element.dead_time);
@@ -186,6 +186,7 @@ class Designer {
   Design run() {
     Design d;
     require(!outline_.pairs.empty(), brief_.file + ": zone", "an output that is to be held");
+    leaveOutRefuted(d);
     lookAtDirections(d);
     Vector pi_x = searched(
         "PI", piStart(), piWidth(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
@@ -194,18 +195,20 @@ class Designer {
     lawStart(start, width);
     Vector x = searched(
         "law", start, width, [this](const Vector& point) { return lawText(point); }, d.law_figures);
-    show("margins of the PI");
+    show("margins of the present control");
     chooseProbed(piText(pi_x), lawText(x));
     d.probed = probed_.size();
+    allowWhatThereIs(d);
+    show("margins of the PI");
     soften(
         d.pi_figures, [&] { return piText(pi_x); },
-        [&] {
+        [&](double) {
           for (Index i = 0; i < pi_x.size(); i += 2) pi_x[i] -= 0.5;  // log2 of the gain
         });
     pi_ = piOf(pi_x);
     show("margins of the law");
     soften(
-        d.law_figures, [&] { return lawText(x); }, [&] { x[0] += std::log10(kStiffer); });
+        d.law_figures, [&] { return lawText(x); }, [&](double peak) { x = softerLaw(x, peak); });
     d.pi = piText(pi_x);
     d.law = lawText(x);
     compare(d);
@@ -215,6 +218,38 @@ class Designer {
  private:
   void show(const std::string& text) const {
     if (params_.show) params_.show(text);
+  }
+
+  // ---- the models
+
+  /// False: too few.
+  bool split(const std::vector<const TsModel*>& members) {
+    const auto tuned = static_cast<std::ptrdiff_t>(params_.tuned_members);
+    if (static_cast<std::ptrdiff_t>(members.size()) < tuned + 2) return false;
+    tuned_.assign(members.begin(), members.begin() + tuned);
+    tuned_.insert(tuned_.begin(), &models_.model);
+    held_out_.assign(members.begin() + tuned, members.end());
+    return true;
+  }
+
+  bool hasPresent() const { return brief_.closed && !brief_.loop.controllerType().needs_model; }
+
+  /// The present control holds the plant: a model that it does not bring to rest is not the
+  /// plant's.
+  void leaveOutRefuted(Design& d) {
+    if (!hasPresent()) return;
+    show("models on which the present control holds");
+    std::vector<ProbeResult> present(models_.ensemble.size());
+    parallelFor(present.size(), params_.threads, [&](std::size_t m) {
+      DesignFigures figures;
+      present[m] = probe(brief_.loop.resolved, models_.ensemble[m], figures);
+    });
+    std::vector<const TsModel*> held;
+    for (std::size_t m = 0; m < present.size(); ++m)
+      if (present[m] == ProbeResult::kLinear || present[m] == ProbeResult::kBends)
+        held.push_back(&models_.ensemble[m]);
+    d.refuted = models_.ensemble.size() - held.size();
+    refuted_ = !split(held);
   }
 
   // ---- the PI
@@ -239,9 +274,11 @@ class Designer {
         s.kp = 0.5 / (e.gain * wait);
         s.ti_min = 8.0 * wait / 60.0;
       } else if (e.time_constant < 0.0) {
+        // 1 + K kp < 0 stabilises K / (tau s + 1) with tau < 0; the more, the sooner it acts.
         const double wait = std::max(late + e.second, Ts);
-        s.kp = 1.5 / e.gain * std::min(std::sqrt(-e.time_constant / wait), 4.0);
+        s.kp = -1.5 / e.gain * std::max(std::min(std::sqrt(-e.time_constant / wait), 4.0), 1.0);
         s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
+        present(pair, s);
       } else {
         const Fopdt lag{e.gain, std::max(e.time_constant + e.second, 0.3 * Ts) / 60.0, late / 60.0};
         const PiTuning t =
@@ -255,6 +292,17 @@ class Designer {
     return settings;
   }
 
+  /// The gains in charge, where a PI holds the pair: of a plant that runs away others are a guess.
+  void present(const Pairing& pair, PiSetting& setting) const {
+    const auto* in_charge = findParams<PiParams>(*brief_.loop.controller);
+    if (!brief_.closed || !in_charge) return;
+    for (const PiLoop& loop : in_charge->loops)
+      if (loop.input == pair.input && loop.output == pair.output && loop.ki_per_h > 0.0) {
+        setting.kp = loop.reverse ? -loop.kp : loop.kp;
+        setting.ti_min = loop.kp / loop.ki_per_h * 60.0;
+      }
+  }
+
   std::string piText(const Vector& x) const {
     return rewritten(
         brief_, "# PI of the commissioning of " + brief_.loop.name + ".\n",
@@ -263,14 +311,14 @@ class Designer {
 
   // ---- the predictive law
 
-  /// x: log10 of the moves' weight, log10 of disturbance over noise, then log2 of the reference
-  /// times of the held outputs.
+  /// x: log10 of the moves' weight, log10 of a disturbance's effect over noise, then log2 of the
+  /// reference times of the held outputs.
   void lawStart(Vector& start, Vector& width) const {
     const auto held = static_cast<Index>(std::count(brief_.held.begin(), brief_.held.end(), true));
     start = Vector::Zero(2 + held);
     width = Vector::Constant(2 + held, 2.5);
     start[0] = -1.0;
-    start[1] = -0.5;
+    start[1] = 0.25;
     width[1] = 1.0;
   }
 
@@ -296,7 +344,8 @@ class Designer {
       pole[i] = std::exp(-Ts / (lag * (held ? std::exp2(x[next]) : 1.0)));
       if (held) ++next;
       noise[i] = std::max(noise_[i], 1e-4 * outline_.y_scale[i]);
-      walk[i] = std::pow(10.0, x[1]) * std::max(fit.one_step, 1e-4 * outline_.y_scale[i]);
+      walk[i] = std::pow(10.0, x[1]) * std::max(fit.one_step, 1e-4 * outline_.y_scale[i]) *
+                loadShare(models_.model, i);
     }
     for (Index j = 0; j < n_u; ++j) {
       const double unit = 1.0 / (outline_.u_range[j] * outline_.u_range[j]);
@@ -325,6 +374,17 @@ class Designer {
 
   // ---- judging
 
+  /// What a constant load of the model's equation is divided by once the output rests, or, where it
+  /// does not rest, once the settling time is over.
+  double loadShare(const TsModel& model, Index output) const {
+    double sum = 1.0;
+    const OutputModel& submodel = model.submodels[static_cast<std::size_t>(output)];
+    for (std::size_t r = 0; r < submodel.regressors.size(); ++r)
+      if (submodel.regressors[r].kind == SignalKind::kOutput)
+        sum -= submodel.rules.front().coefficients[static_cast<Index>(r)];
+    return std::max(sum, brief_.loop.plant_info.sample_time_s / outline_.settling);
+  }
+
   /// The loop on one model, asked for steps of all that is held, then for loads.
   LoopFile scenario(const std::string& text, const TsModel& model) const {
     LoopFile loop = onModel(parseLoop(text, brief_.loop.name), model, models_.errors,
@@ -345,12 +405,7 @@ class Designer {
     loop.setpoint.schedule.push_back({at(stretch++), rest, 0.0});
     for (Index i = 0; i < rest.size(); ++i) {
       if (!brief_.held[static_cast<std::size_t>(i)]) continue;
-      double sum = 1.0;  // of the denominator: what a constant load is divided by
-      const OutputModel& submodel = model.submodels[static_cast<std::size_t>(i)];
-      for (std::size_t r = 0; r < submodel.regressors.size(); ++r)
-        if (submodel.regressors[r].kind == SignalKind::kOutput)
-          sum -= submodel.rules.front().coefficients[static_cast<Index>(r)];
-      const double load = kLoad * outline_.y_scale[i] * std::max(sum, Ts / outline_.settling);
+      const double load = kLoad * outline_.y_scale[i] * loadShare(model, i);
       Command command;
       command.name = {"load/" + brief_.loop.plant_info.outputs[static_cast<std::size_t>(i)].name};
       command.value = {load};
@@ -465,14 +520,77 @@ class Designer {
     probed_.push_back(rest[order.front() == first ? order[1] : order.front()]);
   }
 
+  /// A plant that is hard to hold may not allow the peak that is asked for: then nothing may be
+  /// more sensitive than the control in charge, on the same models.
+  void allowWhatThereIs(Design& d) {
+    allowed_peak_ = params_.peak;
+    if (!hasPresent()) return;
+    DesignFigures present;
+    margins(brief_.loop.resolved, present, false);
+    d.present_peak = present.worst_peak;
+    if (std::isfinite(present.worst_peak))
+      allowed_peak_ = std::max(params_.peak, present.worst_peak);
+  }
+
   /// Until all of them are stable enough, or nothing helps.
   template <typename Text, typename Softer>
   void soften(DesignFigures& figures, const Text& text, const Softer& softer) {
     for (int k = 0;; ++k) {
-      margins(text(), figures, k < kStiffenings);
-      if (figures.worst_peak <= params_.peak || k == kStiffenings) return;
-      softer();
+      margins(text(), figures, k < kSoftenings);
+      if (figures.worst_peak <= allowed_peak_ || k == kSoftenings) return;
+      softer(figures.worst_peak);
     }
+  }
+
+  /// The law with costlier moves, a slower observer or slower references: the one of the three
+  /// whose sensitivity peak on the model that failed falls most for what it costs.
+  Vector softerLaw(const Vector& x, double peak) const {
+    const auto costOf = [&](const Vector& at) {
+      const std::vector<double> costs = costsOver(lawText(at), tuned_);
+      return std::accumulate(costs.begin(), costs.end(), 0.0);
+    };
+    Matrix ways = Matrix::Zero(x.size(), 3);
+    ways(0, 0) = std::log10(kSofter);
+    ways(1, 1) = -0.5 * std::log10(kSofter);
+    ways.col(2).tail(x.size() - 2).setConstant(0.5 * std::log2(kSofter));
+    const double cost = costOf(x);
+    double best = 0.0;
+    Vector softer = x + ways.col(0);
+    for (Index way = 0; way < ways.cols(); ++way) {
+      const Vector at = x + ways.col(way);
+      DesignFigures figures;
+      probe(lawText(at), *probed_.front(), figures);
+      const double lower =
+          std::log(std::min(peak, kFailed) / std::min(figures.worst_peak, kFailed));
+      const double worth = lower / std::max(costOf(at) / cost - 1.0, kLeastDearer);
+      if (worth > best) {
+        best = worth;
+        softer = at;
+      }
+    }
+    return softer;
+  }
+
+  /// The loop at rest on one model, added to the figures; a loop that is not linear there is taken
+  /// for one that is not stable.
+  ProbeResult probe(const std::string& text, const TsModel& model, DesignFigures& figures) const {
+    LoopFile loop = scenario(text, model);
+    loop.simulation.disturbance_commands.clear();
+    const LoopCourse course(loop);
+    const CoursePoint point = course.points(1).front();
+    const LoopProbe probed = probeLoop(course.stayingAt(loop, point), point);
+    if (probed.result != ProbeResult::kLinear) {
+      figures.worst_peak = kInfinity;
+      figures.least_gain = figures.least_delay_s = 0.0;
+      return probed.result;
+    }
+    figures.worst_peak = std::max(figures.worst_peak, probed.response->peak());
+    for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
+      const LoopMargins margin = probed.response->margins(j);
+      figures.least_gain = std::min(figures.least_gain, margin.gain_upper);
+      figures.least_delay_s = std::min(figures.least_delay_s, margin.delay_s);
+    }
+    return probed.result;
   }
 
   /// With `early` the first model beyond the peak ends it, and is the first one the next time.
@@ -480,23 +598,8 @@ class Designer {
     figures.worst_peak = 0.0;
     figures.least_gain = figures.least_delay_s = kInfinity;
     for (std::size_t m = 0; m < probed_.size(); ++m) {
-      LoopFile loop = scenario(text, *probed_[m]);
-      loop.simulation.disturbance_commands.clear();
-      const LoopCourse course(loop);
-      const CoursePoint point = course.points(1).front();
-      const LoopProbe probe = probeLoop(course.stayingAt(loop, point), point);
-      if (probe.result != ProbeResult::kLinear) {
-        figures.worst_peak = kInfinity;
-        figures.least_gain = figures.least_delay_s = 0.0;
-      } else {
-        figures.worst_peak = std::max(figures.worst_peak, probe.response->peak());
-        for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
-          const LoopMargins margin = probe.response->margins(j);
-          figures.least_gain = std::min(figures.least_gain, margin.gain_upper);
-          figures.least_delay_s = std::min(figures.least_delay_s, margin.delay_s);
-        }
-      }
-      if (!early || figures.worst_peak <= params_.peak) continue;
+      probe(text, *probed_[m], figures);
+      if (!early || figures.worst_peak <= allowed_peak_) continue;
       std::swap(probed_.front(), probed_[m]);
       return;
     }
@@ -516,20 +619,24 @@ class Designer {
         normalBound(0.95) * std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0));
     d.ratio = std::exp(mean);
     d.ratio_bound = d.ratio * std::expm1(half);
-    const bool pi_holds = d.pi_figures.worst_peak <= params_.peak;
-    const bool law_holds = d.law_figures.worst_peak <= params_.peak;
-    d.offers_law = law_holds && (!pi_holds || std::exp(mean + half) < kLeastBetter);
-    d.offers_pi = !d.offers_law && pi_holds;
+    const bool pi_holds = d.pi_figures.worst_peak <= allowed_peak_;
+    const bool law_holds = d.law_figures.worst_peak <= allowed_peak_;
+    d.offers_law = !refuted_ && law_holds && (!pi_holds || std::exp(mean + half) < kLeastBetter);
+    d.offers_pi = !refuted_ && !d.offers_law && pi_holds;
+    if (refuted_)
+      d.remarks.push_back("the present control holds the plant and would not hold " +
+                          std::to_string(d.refuted) + " of " +
+                          std::to_string(models_.ensemble.size()) + " models: they are not its");
     if (!law_holds)
       d.remarks.push_back("the law is not stable on every model with a sensitivity peak below " +
-                          shortText(params_.peak));
+                          shortText(allowed_peak_));
     if (!pi_holds)
       d.remarks.push_back("the PI is not stable on every model with a sensitivity peak below " +
-                          shortText(params_.peak));
+                          shortText(allowed_peak_));
     d.remarks.push_back(d.offers_law ? "the law is offered: it costs " + shortText(d.ratio) +
                                            " of what the PI does"
-                        : pi_holds ? "the PI is offered: the law does not beat it"
-                                   : "neither is offered: test again, or allow more plant time");
+                        : d.offers_pi ? "the PI is offered: the law does not beat it"
+                                      : "neither is offered: test again, or allow more plant time");
   }
 
   void lookAtDirections(Design& d) {
@@ -566,7 +673,8 @@ class Designer {
   std::vector<const TsModel*> tuned_, held_out_, probed_;
   TsModel spoilt_;
   std::vector<PiSetting> pi_;
-  double pull_{};
+  double pull_{}, allowed_peak_{};
+  bool refuted_{false};  // too few of the models hold under the present control
 };
 
 }  // namespace
@@ -649,6 +757,8 @@ OrderedJson toJson(const Design& d, const PlantInfo& plant) {
           {"cost_ratio", d.ratio},
           {"cost_ratio_bound", d.ratio_bound},
           {"models_probed", d.probed},
+          {"models_refuted", d.refuted},
+          {"present_sensitivity_peak", numberOrNull(d.present_peak)},
           {"law", figures(d.law_figures)},
           {"pi", figures(d.pi_figures)},
           {"weak_directions", weak},

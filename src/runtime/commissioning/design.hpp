@@ -15,7 +15,8 @@ namespace fpc {
 struct DesignParams {
   int evaluations{48};   ///< points that each search judges, each over the tuned members
   int tuned_members{4};  ///< beside the likeliest model
-  double peak{2.0};      ///< largest sensitivity that any member may have (astrom2008)
+  /// Largest sensitivity that any member may have (astrom2008), or that of the control in charge.
+  double peak{2.0};
   double movement{0.1};  ///< weight of the moves beside the errors
   int threads{0};        ///< 0: all cores
   std::uint64_t seed{1};
@@ -39,7 +40,9 @@ struct Design {
   bool offers_pi{};      ///< the law is not offered, and the PI is stable on all members
   std::vector<std::string> remarks;
   std::vector<WeakDirection> weak;
-  std::size_t probed{};  ///< models: the likeliest, those tuned on, the costliest held out
+  double present_peak{kInfinity};  ///< of the control in charge; infinite: none, or not looked at
+  std::size_t refuted{};  ///< members of the ensemble on which the control in charge is not stable
+  std::size_t probed{};   ///< models: the likeliest, those tuned on, the costliest held out
 };
 
 /// @throws InputError if the plant's loop file cannot be rewritten, or if no output is to be held.

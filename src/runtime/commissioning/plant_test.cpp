@@ -33,6 +33,7 @@ constexpr double kSettlings = 5.0;                     // that a test lasts at l
 constexpr double kDeadTime = 0.25;  // of dead time and lags: bound asked of the dead time
 constexpr double kMatters = 0.3;    // of an output's largest gain: dead times that matter
 constexpr int kTwice = 2;           // fits in a row that are good enough
+constexpr double kListen = 0.5;     // of the time left: for disturbances that have not moved yet
 
 }  // namespace
 
@@ -69,6 +70,7 @@ PlantTest::PlantTest(PlantTestParams params, PlantRecord watched)
       next_fit_(kFirstFit),
       n_y_(params_.lower.size()),
       n_u_(params_.start_input.size()),
+      last_row_(params_.most_rows),
       sent_(params_.start_input),
       last_output_(params_.hold),
       engine_(seededEngine(params_.seed, {11})) {
@@ -110,10 +112,10 @@ void PlantTest::add(const Measurement& now, VectorRef sent) {
       amplitude_ = (kGrowth * amplitude_).cwiseMin(kMostAmplitude * span_);
     }
   }
-  if (end_ == TestEnd::kNone && rows() >= params_.most_rows) {
+  if (end_ == TestEnd::kNone && rows() >= last_row_) {
     know();
     if (!fits_.empty()) judge();
-    if (end_ == TestEnd::kNone) end_ = TestEnd::kTime;
+    if (end_ == TestEnd::kNone) end_ = tested_ > 0 ? TestEnd::kEnough : TestEnd::kTime;
     if (fits_.empty()) reason_ = "no input was seen to move an output";
   }
 }
@@ -237,6 +239,10 @@ const Vector& PlantTest::choose(const Measurement& now, const Vector& present) {
   const double Ts = record_.info().sample_time_s;
   const double longest = settling_ > 0.0 ? std::max(kLongDwell * settling_ / Ts, 3.0) : kFirstDwell;
   const double shortest = std::max<double>(kShortestDwell, kShortDwell * settling_ / Ts);
+  if (tested_ > 0) {
+    std::fill(level_.begin(), level_.end(), 0);
+    return sent_ = sent(level_, present, sent_);
+  }
   std::vector<int> asked = level_;
   for (std::size_t j = 0; j < asked.size(); ++j) {
     if (left_[j]-- > 0) continue;
@@ -341,12 +347,33 @@ void PlantTest::judge() {
     }
   }
   reason_ = why;
+  const char* const known = "gains and dead times are within the bounds asked for";
+  if (tested_ > 0) {
+    reason_ = known;
+    if (knowsDisturbances()) end_ = TestEnd::kEnough;
+    return;
+  }
   const bool long_enough =
       settling_ > 0.0 && static_cast<double>(rows()) * Ts >= kSettlings * settling_;
   enough_ = worst <= 1.0 && long_enough ? enough_ + 1 : 0;
   if (enough_ < kTwice) return;
-  end_ = TestEnd::kEnough;
-  reason_ = "gains and dead times are within the bounds asked for";
+  reason_ = known;
+  tested_ = rows();
+  last_row_ = tested_ + static_cast<Index>(kListen * static_cast<double>(last_row_ - tested_));
+  if (knowsDisturbances() || last_row_ <= tested_) end_ = TestEnd::kEnough;
+}
+
+/// Each measured disturbance was seen to act on an output.
+bool PlantTest::knowsDisturbances() const {
+  const auto columns = fits_.front().elements.size();
+  for (std::size_t d = static_cast<std::size_t>(n_u_); d < columns; ++d) {
+    const bool seen = std::any_of(fits_.begin(), fits_.end(), [&](const ProcessFit& fit) {
+      const ElementEstimate& e = fit.elements[d];
+      return e.seen && e.gain_bound < kMostUnsure * std::abs(e.element.gain);
+    });
+    if (!seen) return false;
+  }
+  return true;
 }
 
 }  // namespace fpc

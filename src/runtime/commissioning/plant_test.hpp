@@ -55,10 +55,13 @@ class PlantTest {
   const Vector& amplitude() const { return amplitude_; }
   double settling() const { return settling_; }  ///< [s], of what is known; 0: nothing
   Eigen::Index rows() const { return record_.rows() - watched_rows_; }
+  /// Rows at the end in which inputs were no longer tested: a measured disturbance had not moved.
+  Eigen::Index listened() const { return tested_ > 0 ? rows() - tested_ : 0; }
 
  private:
   void know();
   void judge();
+  bool knowsDisturbances() const;
   void setAmplitudes();
   double excess(const std::vector<int>& levels) const;
   void follow();
@@ -70,6 +73,7 @@ class PlantTest {
   PlantTestParams params_;
   PlantRecord record_;
   Eigen::Index watched_rows_{}, next_fit_{}, n_y_{}, n_u_{};
+  Eigen::Index tested_{}, last_row_{};  // rows() when the inputs were known, and of the end
   std::vector<ProcessFit> fits_;
   struct Track {  // of one element: its response so far
     bool seen{false};
