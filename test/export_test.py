@@ -23,7 +23,8 @@ LOOPS = ["asp_case1_pi_x", "cstr_tracking_gspi", "cstr_tracking_pi_best", "bsm1_
          "cstr_modbus", "column_clip", "surge_tank_steps", "mimo_cstr_steps"]
 
 
-OPTIMIZED = ["asp_case1_clp", "asp_clp_1b", "column_clp_limits", "linear_2x2_clp", "surge_tank_steps_clp"]
+OPTIMIZED = {"asp_case1_clp": 250, "asp_clp_1b": 250, "column_clp_limits": 250, "linear_2x2_clp": 250, "surge_tank_steps_clp": 250,
+             "column_clp_tracking": 6800}  # samples; holds that differ by rounding, more than 500 working sets
 
 
 def export(folder, loop, *more):
@@ -54,11 +55,11 @@ class Export(unittest.TestCase):
                 self.assertEqual((250, 0, said["hash"]), (text["samples"], text["flags"], text["hash"]))
 
     def test_an_optimizer_in_c_answers_as_the_one_in_process(self):
-        for loop in OPTIMIZED:
+        for loop, samples in OPTIMIZED.items():
             with self.subTest(loop=loop):
-                self.exported(loop, "--to", "c99", "--samples", "250")
+                self.exported(loop, "--to", "c99", "--seed", "7", "--samples", str(samples))
                 said = [export_check.native(self.folder, "law", "gcc", level, self.into) for level in ("-O0", "-O2")]
-                self.assertEqual([(250, 0)] * 2, [(s["samples"], s["flags"]) for s in said])
+                self.assertEqual([(samples, 0)] * 2, [(s["samples"], s["flags"]) for s in said])
                 self.assertLessEqual(said[0]["difference"], 1e-9)
                 self.assertEqual(said[0]["hash"], said[1]["hash"])
                 rows = [row.split(",") for row in (self.folder / "law_vectors.csv").read_text().splitlines()]
@@ -103,7 +104,7 @@ class Export(unittest.TestCase):
         vectors = self.folder / "law_vectors.csv"
         rows = [row.split(",") for row in vectors.read_text().splitlines()]
         column = rows[0].index("iMostSets")
-        self.assertEqual({"500"}, {row[column] for row in rows[1:]})
+        self.assertEqual({"10000"}, {row[column] for row in rows[1:]})
         for row in rows[1:]:
             row[column] = "0"
         vectors.write_text("".join(",".join(row) + "\n" for row in rows))
