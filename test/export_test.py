@@ -75,6 +75,20 @@ class Export(unittest.TestCase):
         there = export_check.emulated(self.folder, "law", "cortex-m7", self.into, 40)
         self.assertEqual(here["hash"], there["hash"])
 
+    @unittest.skipUnless(shutil.which("frama-c"), "no frama-c")
+    def test_a_proof_finds_an_index_out_of_bounds(self):
+        for loop, judge, right, wrong in (
+                ("asp_case1_pi_x", export_check.analysed, r"s->asked\[0\] =", "s->asked[1] ="),
+                ("linear_2x2_clp", export_check.analysed_optimizer, r"(set\[k\], \(LAW_CLP_N \+ LAW_CLP_M\)) - 1", r"\1")):
+            with self.subTest(loop=loop):
+                self.exported(loop, "--to", "c99", "--samples", "10")
+                law = self.folder / "law.c"
+                text = law.read_text()
+                self.assertRegex(text, right)
+                self.assertEqual(0, judge(self.folder, "law", self.into))
+                law.write_text(re.sub(right, wrong, text))
+                self.assertLess(0, judge(self.folder, "law", self.into))
+
     def test_a_block_with_an_optimizer_may_have_any_name(self):
         self.exported("linear_2x2_clp", "--to", "c99", "--samples", "30", "--name", "clp")
         self.assertTrue(export_check.native(self.folder, "clp", "gcc", "-O0", self.into)["passed"])
