@@ -3,10 +3,12 @@
 
     export_check.py FOLDER                (`fmbpc export --check FOLDER`)
     export_check.py --loops SAMPLES [LOOP ...]
+    export_check.py --real SAMPLES [LOOP ...]
 
 The second form exports loops (none named: all that can be exported) into a folder that it takes away, and prints a row for each: C99 by gcc against
 the law in process, Structured Text against C99 by the interpreter and by $FMBPC_IEC2C. That variable names iec2c of matiec, its folder lib beside
-it, where Structured Text is to be compiled as well. Every compiler must answer the vectors within their tolerance and give the same bits. Exit code
+it, where Structured Text is to be compiled as well. The third form does so in single precision, in C99 only, and names the loops that are refused
+for it. Every compiler must answer the vectors within their tolerance and give the same bits. Exit code
 0: all that could run passed."""
 import csv
 import glob
@@ -486,18 +488,18 @@ class Check:
         return 1 if self.failed else 0
 
 
-def survey(samples, loops):
+def survey(form, samples, loops):
     """One row for each loop; 1 if one failed."""
     tool, compiler = os.environ.get("FMBPC_TOOL", "fmbpc"), os.environ.get("FMBPC_IEC2C")
-    failed, refused, named = False, 0, bool(loops)
+    failed, refused, named, more = False, 0, bool(loops), ["--real", "--to", "c99"] if form == "--real" else []
     for loop in loops or run([tool, "loops", "--names"]).stdout.split():
         with tempfile.TemporaryDirectory() as scratch:
             folder = os.path.join(scratch, "block")
-            done = run([tool, "export", loop, "--samples", samples, "--out", folder])
+            done = run([tool, "export", loop, "--samples", samples, "--out", folder, *more])
             if done.returncode != 0:
                 refused += 1
                 failed = failed or named
-                if named:
+                if named or "in single" in done.stderr:
                     print(f"| {loop} | {done.stderr.strip()} |", flush=True)
                 continue
             try:
@@ -522,8 +524,8 @@ def survey(samples, loops):
 if __name__ == "__main__":
     if {"-h", "--help"} & set(sys.argv[1:]):
         sys.exit(print(__doc__))
-    if len(sys.argv) > 2 and sys.argv[1] == "--loops" and sys.argv[2].isdigit():
-        sys.exit(survey(sys.argv[2], sys.argv[3:]))
+    if len(sys.argv) > 2 and sys.argv[1] in ("--loops", "--real") and sys.argv[2].isdigit():
+        sys.exit(survey(sys.argv[1], sys.argv[2], sys.argv[3:]))
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     sys.exit(Check(sys.argv[1]).run())

@@ -78,8 +78,8 @@ class Export(unittest.TestCase):
     @unittest.skipUnless(shutil.which("frama-c"), "no frama-c")
     def test_a_proof_finds_an_index_out_of_bounds(self):
         for loop, judge, right, wrong in (
-                ("asp_case1_pi_x", export_check.analysed, r"s->asked\[0\] =", "s->asked[1] ="),
-                ("linear_2x2_clp", export_check.analysed_optimizer, r"(set\[k\], \(LAW_CLP_N \+ LAW_CLP_M\)) - 1", r"\1")):
+                ("asp_case1_pi_x", export_check.analysed, r"s->last\[0\] = u\[0\]", "s->last[1] = u[0]"),
+                ("linear_2x2_clp", export_check.analysed_optimizer, r"(within\(q->count, LAW_CLP_N) - 1", r"\1")):
             with self.subTest(loop=loop):
                 self.exported(loop, "--to", "c99", "--samples", "10")
                 law = self.folder / "law.c"
