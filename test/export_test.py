@@ -11,19 +11,78 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "scripts"))
 import export_check  # noqa: E402
 import structured_text  # noqa: E402
+from exported_law import ExportedLaw  # noqa: E402
 
 TOOL = os.environ.get("FMBPC_TOOL", str(TOP / "devel/lib/fmbpc/fmbpc_tool"))
 LOOPS = ["asp_case1_pi_x", "cstr_tracking_gspi", "cstr_tracking_pi_best", "bsm1_own_supervisor", "asp_case1", "asp_case1_general", "cstr_tracking",
          "cstr_modbus", "column_clip", "surge_tank_steps", "mimo_cstr_steps"]
 
 
-OPTIMIZED = ["asp_case1_clp", "asp_clp_1b", "column_clp_limits", "linear_2x2_clp", "surge_tank_steps_clp"]
+OPTIMIZED = {"asp_case1_clp": 250, "asp_clp_1b": 250, "column_clp_limits": 250, "linear_2x2_clp": 250, "surge_tank_steps_clp": 250,
+             "column_clp_tracking": 6800}  # samples; holds that differ by rounding, more than 500 working sets
+
+
+def takes_over(before, now):
+    return before.iMode == 1 and now.iMode == 2 and now.iSource in (1, 3, 7) and not now.xReset
+
+
+def bad_for_long(before, now):
+    return before.iState == now.iState == 4 and now.iErrors & ~2 == 0 and now.iMode >= 2
+
+
+# What a block does, in each language and in process alike: when, what holds then.
+BEHAVIOUR = {
+    "cold start": (lambda before, now: before is None, lambda now: now.away <= now.rounding),
+    "manual to automatic": (lambda before, now: before and takes_over(before, now), lambda now: now.away <= now.rounding),
+    "reset": (lambda before, now: now.xReset and now.iMode == 2 and now.iSource in (1, 3, 7), lambda now: now.away <= now.rounding),
+    "bad measured value": (lambda before, now: before and bad_for_long(before, now), lambda now: now.away == 0.0),
+    "actuator no number": (lambda before, now: now.actuator != now.actuator, lambda now: now.iErrors & 8 and now.out == now.out),
+    "wrong sample time": (lambda before, now: now.rSampleTime > 0.0 and now.iMode >= 2 and now.xEnable and now.iErrors == 1,
+                          lambda now: now.iSource == 4 and now.away == 0.0),
+    "limits crossed": (lambda before, now: now.lower > now.upper, lambda now: now.iErrors & 4),
+    "setpoint no number": (lambda before, now: now.asked != now.asked, lambda now: now.iErrors & 32 and now.active == now.active),
+}
+
+
+class Row(types.SimpleNamespace):
+    """A sample by the names of the block, and what the table above asks about its first input."""
+
+    def __init__(self, names, cells):
+        super().__init__(**{name: float(cell) if name[0] == "r" else int(float(cell)) for name, cell in zip(names, cells)})
+        for key, prefix in (("out", "rOut_"), ("actuator", "rActuator_"), ("lower", "rLower_"), ("upper", "rUpper_"),
+                            ("asked", "rSetpoint_"), ("active", "rActive_")):
+            setattr(self, key, getattr(self, next(name for name in names if name.startswith(prefix))))
+        self.away = abs(self.out - self.actuator)
+        self.rounding = 1e-9 * abs(self.upper - self.lower)
+
+
+class InC:
+    def __init__(self, folder):
+        self.law = ExportedLaw(folder)
+
+    def answer(self, given, wanted):
+        for name, value in given.items():
+            setattr(self.law.given, name, value)
+        self.law.step()
+        return [getattr(self.law.answer, name) for name in wanted]
+
+
+class InStructuredText:
+    def __init__(self, folder):
+        self.block = structured_text.load((pathlib.Path(folder) / "law.st").read_text())["fb_law"]()
+
+    def answer(self, given, wanted):
+        for name, value in given.items():
+            setattr(self.block, structured_text.Reader.name(name), value)
+        self.block()
+        return [getattr(self.block, structured_text.Reader.name(name)) for name in wanted]
 
 
 def export(folder, loop, *more):
@@ -54,11 +113,11 @@ class Export(unittest.TestCase):
                 self.assertEqual((250, 0, said["hash"]), (text["samples"], text["flags"], text["hash"]))
 
     def test_an_optimizer_in_c_answers_as_the_one_in_process(self):
-        for loop in OPTIMIZED:
+        for loop, samples in OPTIMIZED.items():
             with self.subTest(loop=loop):
-                self.exported(loop, "--to", "c99", "--samples", "250")
+                self.exported(loop, "--to", "c99", "--seed", "7", "--samples", str(samples))
                 said = [export_check.native(self.folder, "law", "gcc", level, self.into) for level in ("-O0", "-O2")]
-                self.assertEqual([(250, 0)] * 2, [(s["samples"], s["flags"]) for s in said])
+                self.assertEqual([(samples, 0)] * 2, [(s["samples"], s["flags"]) for s in said])
                 self.assertLessEqual(said[0]["difference"], 1e-9)
                 self.assertEqual(said[0]["hash"], said[1]["hash"])
                 rows = [row.split(",") for row in (self.folder / "law_vectors.csv").read_text().splitlines()]
@@ -73,6 +132,20 @@ class Export(unittest.TestCase):
         here = export_check.native(self.folder, "law", "gcc", "-O2", self.into)
         there = export_check.emulated(self.folder, "law", "cortex-m7", self.into, 40)
         self.assertEqual(here["hash"], there["hash"])
+
+    @unittest.skipUnless(shutil.which("frama-c"), "no frama-c")
+    def test_a_proof_finds_an_index_out_of_bounds(self):
+        for loop, judge, right, wrong in (
+                ("asp_case1_pi_x", export_check.analysed, r"s->last\[0\] = u\[0\]", "s->last[1] = u[0]"),
+                ("linear_2x2_clp", export_check.analysed_optimizer, r"(within\(q->count, LAW_CLP_N) - 1", r"\1")):
+            with self.subTest(loop=loop):
+                self.exported(loop, "--to", "c99", "--samples", "10")
+                law = self.folder / "law.c"
+                text = law.read_text()
+                self.assertRegex(text, right)
+                self.assertEqual(0, judge(self.folder, "law", self.into))
+                law.write_text(re.sub(right, wrong, text))
+                self.assertLess(0, judge(self.folder, "law", self.into))
 
     def test_a_block_with_an_optimizer_may_have_any_name(self):
         self.exported("linear_2x2_clp", "--to", "c99", "--samples", "30", "--name", "clp")
@@ -103,7 +176,7 @@ class Export(unittest.TestCase):
         vectors = self.folder / "law_vectors.csv"
         rows = [row.split(",") for row in vectors.read_text().splitlines()]
         column = rows[0].index("iMostSets")
-        self.assertEqual({"500"}, {row[column] for row in rows[1:]})
+        self.assertEqual({"10000"}, {row[column] for row in rows[1:]})
         for row in rows[1:]:
             row[column] = "0"
         vectors.write_text("".join(",".join(row) + "\n" for row in rows))
@@ -141,20 +214,44 @@ class Export(unittest.TestCase):
                 block()
             self.assertEqual(passes, block.v_xpassed)
 
+    def test_what_happens_to_a_block_ends_alike_in_each_language_and_in_process(self):
+        for loop in ("asp_case1_pi_x", "asp_case1"):
+            self.exported(loop, "--seed", "4")
+            lines = [line.split(",") for line in (self.folder / "law_vectors.csv").read_text().splitlines()]
+            names, lines = lines[0], lines[1:]
+            first = next(i for i, name in enumerate(names) if name.startswith("rOut_"))
+            played = {"process": lines}
+            for block in (InC(self.folder), InStructuredText(self.folder)):
+                played[type(block).__name__] = rows = []
+                for line in lines:
+                    given = {name: float(cell) if name[0] == "r" else int(float(cell)) if name[0] == "i" else cell != "0"
+                             for name, cell in zip(names[:first], line)}
+                    rows.append(line[:first] + block.answer(given, names[first:]))
+            for who, rows in played.items():
+                rows = [Row(names, row) for row in rows]
+                for what, (when, holds) in BEHAVIOUR.items():
+                    with self.subTest(loop=loop, who=who, what=what):
+                        seen = [now for before, now in zip([None, *rows], rows) if when(before, now)]
+                        self.assertTrue(seen)
+                        self.assertEqual([], [now for now in seen if not holds(now)])
+
+    def test_nothing_winds_up_against_a_valve_that_stands(self):
+        self.exported("asp_case1_pi_x", "--set", "actuator.move_upper=20")
+        for block in (InC(self.folder), InStructuredText(self.folder)):
+            given = {"rValue_x": 1400.0, "rValue_s": 50.0, "rValue_q_i": 1300.0, "rValue_s_i": 400.0, "rSetpoint_x": 1500.0, "rActuator_q_r": 775.0}
+            pushed = [block.answer(given, ["rOut_q_r"])[0] - 775.0 for _ in range(500)]
+            turned = [block.answer({**given, "rValue_x": 1600.0}, ["rOut_q_r"])[0] - 775.0 for _ in range(3)]
+            self.assertNotEqual(0.0, pushed[-1])
+            self.assertLess(turned[-1] * pushed[-1], 0.0, (type(block).__name__, pushed[-1], turned))
+
     def test_a_changed_hash_starts_the_block_anew(self):
-        self.exported("asp_case1_pi_x", "--to", "st")
-        kind = structured_text.load((self.folder / "law.st").read_text())["fb_law"]
-        old, new = kind(), kind()
-        for block, samples in ((old, 40), (new, 1)):
-            block.v_hash += 1 if block is old else 0
-            for _ in range(samples):
-                block.v_rvalue_x, block.v_rvalue_s, block.v_rvalue_q_i, block.v_rvalue_s_i = 1500.0, 50.0, 1300.0, 400.0
-                block.v_ractuator_q_r = 500.0
-                block()
-        self.assertNotEqual(old.v_rout_q_r, new.v_rout_q_r)
-        old.v_hash += 1
-        old()
-        self.assertEqual((500.0, 500.0), (old.v_rout_q_r, new.v_rout_q_r))
+        self.exported("asp_case1_pi_x")
+        given = {"rValue_x": 1500.0, "rValue_s": 50.0, "rValue_q_i": 1300.0, "rValue_s_i": 400.0, "rActuator_q_r": 500.0}
+        for block, state, name in ((c := InC(self.folder), c.law.state, "hash"), (st := InStructuredText(self.folder), st.block, "v_hash")):
+            answers = [block.answer(given, ["rOut_q_r"]) for _ in range(40)]
+            self.assertNotEqual([500.0], answers[-1])
+            setattr(state, name, getattr(state, name) + 1)
+            self.assertEqual([[500.0]] * 2, [answers[0], block.answer(given, ["rOut_q_r"])])
 
     def test_single_precision_is_exported_where_the_law_allows_it(self):
         self.exported("asp_case1", "--real", "--samples", "250")

@@ -620,6 +620,7 @@ class BlockBuilder {
     p_.when(!laws(), [&] {
       clipInputs(parts, u_, proven_);
       p_.when(ok_, [&] { p_.set(interrupted_, true); });
+      if (clp_) passThrough();
     });
   }
 
@@ -747,9 +748,7 @@ class BlockBuilder {
 
   void finish() {
     p_.words("what goes out");
-    if (clp_)
-      p_.when(!laws(), [&] { passThrough(); });
-    else
+    if (!clp_)
       p_.set(other_hand_,
              other_hand_ || source_ == sourceOf(ActionSource::kManual) || fell_back_ || !takes_);
     for (int i = 0; i < n_u_; ++i) {

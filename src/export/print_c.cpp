@@ -96,11 +96,20 @@ class CPrinter final : public ExpressionPrinter {
 };
 
 std::string members(const CPrinter& c, const ir::Program& program, Role role) {
-  std::string text;
+  std::vector<Variable> all;
   for (const Variable& v : program.variables())
-    if (v.role == role)
-      text += "  " + c.declaration(v) + ";" +
-              (v.meaning.empty() ? "" : " /* " + v.meaning + " */") + "\n";
+    if (v.role == role) all.push_back(v);
+  if (role == Role::kState)  // no gaps; the hash stays first: every law looks for it there
+    std::stable_sort(all.begin(), all.end(), [](const Variable& a, const Variable& b) {
+      const auto rank = [](Kind kind) {
+        return kind == Kind::kInt ? 0 : kind == Kind::kReal ? 1 : 2;
+      };
+      return rank(a.kind) < rank(b.kind);
+    });
+  std::string text;
+  for (const Variable& v : all)
+    text += "  " + c.declaration(v) + ";" + (v.meaning.empty() ? "" : " /* " + v.meaning + " */") +
+            "\n";
   return role == Role::kState ? text + program.native.member : text;
 }
 

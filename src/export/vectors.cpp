@@ -18,6 +18,9 @@ namespace block_vectors {
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
+/// Of the optimizer: how many it tries depends on its path, and the block's is another.
+constexpr int kEnoughSets = 10000;
+
 /// What is given to the block at one sample.
 struct BlockCase {
   bool enable{true}, reset{false}, track{true};
@@ -270,11 +273,13 @@ class Scenario {
 }  // namespace block_vectors
 
 using block_vectors::BlockCase;
+using block_vectors::kEnoughSets;
 using block_vectors::kNoNumber;
 
 struct BlockVectors::Run {
   Run(const LoopFile& given, const ir::Program& program, std::uint64_t seed, int samples)
       : loop(given), scenario(loop, seed) {
+    loop.clp.qp.max_iterations = kEnoughSets;
     loop.setpoint.schedule.clear();
     loop.setpoint.commands.clear();
     // A record may be at another place, or too short: disturbances go to and fro instead.
@@ -395,6 +400,7 @@ struct BlockVectors::Run {
     put("xReset", now.reset);
     put("xTrack", now.track);
     put("rSampleTime", now.sample_time);
+    if (loop.has_clp) put("iMostSets", kEnoughSets);
     for (std::size_t i = 0; i < plant.outputs.size() + plant.disturbances.size(); ++i) {
       const bool output = i < plant.outputs.size();
       const auto row_of = static_cast<Eigen::Index>(i);

@@ -159,10 +159,15 @@ Matrix OptimizerSession::plan() const {
          Eigen::Map<const Matrix>(x.data(), scale.size(), params_.perturbation_steps);
 }
 
-/// The input is not the one that went out before: a person's, a fallback, the plant's own.
+/// The input is not the one that went out before: a person's, a fallback, the plant's own. Rounding
+/// is no other hand.
 bool OptimizerSession::isOtherHand() const {
   if (base_.source != ActionSource::kHeld) return !needsPrediction(base_.source);
-  return action_.input.size() != base_.input.size() || action_.input != base_.input;
+  static constexpr double kRounding = 1e-9;  // of the range
+  return action_.input.size() != base_.input.size() ||
+         ((action_.input - base_.input).array().abs() >
+          kRounding * (limits_.upper - limits_.lower).array())
+             .any();
 }
 
 // The base action is inside its limits already; the bounds are for controllers that broke the rule.

@@ -34,7 +34,7 @@ TEST(OptimizerSession, WhatWasHeldOfOursGoesOn) {
   OptimizerSession session = make();
   session.receive(base(header(0), 1600.0, ActionSource::kClipped));
   ASSERT_TRUE(session.receive(prediction(header(0), 2000.0)));
-  const double sent = session.action().input[0];
+  const double sent = session.action().input[0] - 1e-7;  // within 1e-9 of the range
   ASSERT_TRUE(session.receive(base(header(1), sent, ActionSource::kHeld)));
   session.receive(base(header(2)));
   ASSERT_TRUE(session.receive(prediction(header(2))));
