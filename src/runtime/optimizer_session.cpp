@@ -1,3 +1,4 @@
+#include <cmath>
 #include <utility>
 
 #include "fmbpc/base/signals.hpp"
@@ -163,11 +164,15 @@ Matrix OptimizerSession::plan() const {
 /// is no other hand.
 bool OptimizerSession::isOtherHand() const {
   if (base_.source != ActionSource::kHeld) return !needsPrediction(base_.source);
-  static constexpr double kRounding = 1e-9;  // of the range
-  return action_.input.size() != base_.input.size() ||
-         ((action_.input - base_.input).array().abs() >
-          kRounding * (limits_.upper - limits_.lower).array())
-             .any();
+  constexpr double kRounding = 1e-9;  // of the range, or of the input where it has none
+  const Vector &before = action_.input, &now = base_.input;
+  if (before.size() != now.size()) return true;
+  for (Eigen::Index j = 0; j < now.size(); ++j) {
+    const double range = limits_.upper[j] - limits_.lower[j];
+    const double size = std::isfinite(range) ? range : std::abs(before[j]);
+    if (!(std::abs(now[j] - before[j]) <= kRounding * size)) return true;
+  }
+  return false;
 }
 
 // The base action is inside its limits already; the bounds are for controllers that broke the rule.

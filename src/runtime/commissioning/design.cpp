@@ -33,6 +33,7 @@ constexpr int kFewestRun = 40, kMostRun = 220;  // samples of one stretch of the
 constexpr double kShortHorizon = 10, kLongHorizon = 60;
 constexpr double kSofter = 2.0;  // the moves' weight when a member is not stable enough
 constexpr int kSoftenings = 16;
+constexpr double kMostPresent = 10.0;  // sensitivity that a control which holds a plant may have
 constexpr double kLeastDearer = 0.02;  // of the cost, that a softer setting is taken to add
 constexpr double kSpoiltGain = 1.6, kSpoiltDelay = 0.25;  // factor; of dead time and a sample
 constexpr double kSpoiltShare = 0.2;                      // of the cost that is tuned
@@ -203,7 +204,12 @@ class Designer {
     soften(
         d.pi_figures, [&] { return piText(pi_x); },
         [&](double) {
-          for (Index i = 0; i < pi_x.size(); i += 2) pi_x[i] -= 0.5;  // log2 of the gain
+          // log2 of the gain, or where the gain is what holds the plant, of the integral's time.
+          for (Index p = 0; p < loops(); ++p)
+            if (elementOf(p).time_constant < 0.0)
+              pi_x[2 * p + 1] += 0.5;
+            else
+              pi_x[2 * p] -= 0.5;
         });
     pi_ = piOf(pi_x);
     show("margins of the law");
@@ -239,15 +245,15 @@ class Designer {
   void leaveOutRefuted(Design& d) {
     if (!hasPresent()) return;
     show("models on which the present control holds");
-    std::vector<ProbeResult> present(models_.ensemble.size());
-    parallelFor(present.size(), params_.threads, [&](std::size_t m) {
-      DesignFigures figures;
-      present[m] = probe(brief_.loop.resolved, models_.ensemble[m], figures);
+    std::vector<double> peaks(models_.ensemble.size());
+    parallelFor(peaks.size(), params_.threads, [&](std::size_t m) {
+      DesignFigures present;
+      const ProbeResult result = probe(brief_.loop.resolved, models_.ensemble[m], present);
+      peaks[m] = result == ProbeResult::kBends ? 0.0 : present.worst_peak;
     });
     std::vector<const TsModel*> held;
-    for (std::size_t m = 0; m < present.size(); ++m)
-      if (present[m] == ProbeResult::kLinear || present[m] == ProbeResult::kBends)
-        held.push_back(&models_.ensemble[m]);
+    for (std::size_t m = 0; m < peaks.size(); ++m)
+      if (peaks[m] <= kMostPresent) held.push_back(&models_.ensemble[m]);
     d.refuted = models_.ensemble.size() - held.size();
     refuted_ = !split(held);
   }
@@ -255,6 +261,12 @@ class Designer {
   // ---- the PI
 
   Index loops() const { return static_cast<Index>(outline_.pairs.size()); }
+  const ProcessElement& elementOf(Index pair) const {
+    const Pairing& pairing = outline_.pairs[static_cast<std::size_t>(pair)];
+    return models_.fits[static_cast<std::size_t>(pairing.output)]
+        .elements[static_cast<std::size_t>(pairing.input)]
+        .element;
+  }
   Vector piStart() const { return Vector::Zero(2 * loops()); }
   Vector piWidth() const { return Vector::Constant(2 * loops(), 3.0); }
 
@@ -264,9 +276,7 @@ class Designer {
     const double Ts = brief_.loop.plant_info.sample_time_s;
     for (Index p = 0; p < loops(); ++p) {
       const Pairing& pair = outline_.pairs[static_cast<std::size_t>(p)];
-      const ProcessElement& e = models_.fits[static_cast<std::size_t>(pair.output)]
-                                    .elements[static_cast<std::size_t>(pair.input)]
-                                    .element;
+      const ProcessElement& e = elementOf(p);
       PiSetting s;
       const double late = e.dead_time + std::abs(std::min(e.lead, 0.0)) + 0.5 * Ts;
       if (e.integrating) {  // skogestad2003
