@@ -258,6 +258,33 @@ class TheJournal(Folder):
         again.close()
 
 
+class TheTable(unittest.TestCase):
+    """trajectory.csv, of many rows, while it is being written."""
+
+    def read(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "trajectory.csv")
+            with open(path, "w", encoding="utf-8", newline="") as stream:
+                stream.write(text)
+            return history.read_csv(path)
+
+    def test_each_number_is_where_it_was_written(self):
+        dice = random.Random(8)
+        for _ in range(20):
+            rows = [[dice.choice((math.nan, dice.gauss(0.0, 10.0 ** dice.randrange(-9, 9)), float(dice.randrange(99)))) for _ in range(7)] for _ in range(dice.randrange(2000, 9000))]
+            end = dice.choice(("\n", "\r\n"))
+            text = end.join(["time[h],y[mg/l],c,d,e,f,g[-]"] + [",".join(dice.choice(("", "nan")) if v != v else repr(v) for v in row) for row in rows] + [dice.choice(("", "1,2"))])
+            names, units, table = self.read(text)
+            self.assertEqual((["time", "y", "c", "d", "e", "f", "g"], "mg/l"), (names, units["y"]))
+            numpy.testing.assert_array_equal(numpy.array(rows), table)
+
+    def test_what_is_no_table_is_refused(self):
+        for rows in ("1,x\n", "1,2x\n", "1,2,3\n", "1\n", "1,2,3\n4\n", "1 2,3\n", "1,2\n\n"):
+            with self.assertRaises(ValueError, msg=rows):
+                self.read("time[h],y\n" + rows)
+        self.assertEqual(0, self.read("")[2].size + self.read("time[h],y\n1,2")[2].size)
+
+
 class TheHistory(unittest.TestCase):
     def test_rows_find_their_place_in_any_order(self):
         for seed in range(20):

@@ -191,7 +191,8 @@ class Loop:
         info = read(messages.PlantInfo, buffer)
         if info.run_id == self.run_id:
             return
-        self._read_text()
+        if self.run_id is not None or not self.text:
+            self._read_text()
         self.info, self.run_id, self.step = info, info.run_id, -1
         names = [s.name for s in info.outputs]
         columns = names + [n + "_setpoint" for n in names] + [n + "_reference" for n in names]
@@ -306,13 +307,14 @@ class Loop:
     def _fill(self, now):
         if self.history is None or self.history.last is None or self.filling or now - self.fill_tried < 5.0 or self.executor is None:
             return
+        self.fill_tried = now
         name = self.info.outputs[0].name if self.info.outputs else None
         begun = self.history.first > 0 and not self.filled
         # Not the newest samples of a run that goes on: those are on their way.
         newest = self.step if self.over() else self.step - 20
         if name is None or not (begun or any(a < newest and a > self.filled for a, _ in self.history.gaps(name))):
             return
-        self.fill_tried, self.filling = now, True
+        self.filling = True
         self.executor.submit(self._fill_from, self.run_id)
 
     def _fill_from(self, run_id):
@@ -593,7 +595,7 @@ class Loop:
                 "rules": predict.rules_of(self.model, value),
                 "signals": [{"name": s.name, "unit": s.unit, "lower": finite(s.lower), "upper": finite(s.upper), "value": finite(self.history.value(self.step, s.name))}
                             for s in list(self.model.outputs) + list(self.model.inputs) + list(self.model.disturbances)],
-                "trust_here": self._trust_here(),
+                "trust_known": self.trust.known(), "trust_here": self._trust_here(),
                 "poles": [] if plan is None else [[round(float(p.real), 6), round(float(p.imag), 6)] for p in plan.poles()],
                 "gains": None if gains is None else [plain(row, 5) for row in gains],
                 "outputs": [s.name for s in self.info.outputs], "inputs": [s.name for s in self.info.inputs],

@@ -1004,7 +1004,9 @@ async function modelView() {
       h("p.soft", null, m.source),
       h("p", null,
         m.trust_here === null
-          ? "It says nothing of where its data were."
+          ? m.trust_known
+            ? "No trust: one of its signals has no value now."
+            : "No trust: the model does not say where its data were."
           : `Trusted here by ${num(100 * m.trust_here, 3)} %` +
             (m.trust_here < 0.5 ? ": the process is where the model has few data." : ".")),
       h("div.scroll", null,
