@@ -204,6 +204,20 @@ class Fast(unittest.TestCase):
         self.assertLessEqual({"measurement", "tracking", "control_action", loops.TRUST}, set(self.made.raw))
         self.whole()
 
+    def test_a_message_ahead_of_the_journal_is_no_gap(self):
+        """Else all that the recorder has on disk is read again after each look at the messages."""
+        self.made.fill_tried = -math.inf
+        with mock.patch.object(loops, "recorded", return_value=[]) as read:
+            self.go(4.0, 100)
+            for _ in range(3):
+                ahead = loops.Raw("measurement")
+                ahead.waiting.append((PLANT, packed(messages.Measurement(run_id=RUN, step=self.k + 200, outputs=[self.k + 200.0], disturbances=[3.0], input_applied=[2.0])), 1000.0))
+                self.made.glance = {"measurement": ahead}
+                self.go(6.0, 100)
+            self.assertTrue(self.made.fast())
+            read.assert_not_called()
+        self.whole()
+
     def test_who_asks_something_is_answered_by_messages(self):
         self.go(4.0, 100)
         self.assertTrue(self.made.fast())

@@ -310,8 +310,8 @@ class Loop:
         self.fill_tried = now
         name = self.info.outputs[0].name if self.info.outputs else None
         begun = self.history.first > 0 and not self.filled
-        # Not the newest samples of a run that goes on: those are on their way.
-        newest = self.step if self.over() else self.step - 20
+        # Not the newest samples of a run that goes on: those are on their way. Of a fast loop, not what its journal gives next.
+        newest = self.followed if self.fast() else self.step if self.over() else self.step - 20
         if name is None or not (begun or any(a < newest and a > self.filled for a, _ in self.history.gaps(name))):
             return
         self.filling = True
