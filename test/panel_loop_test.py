@@ -206,13 +206,12 @@ class Fast(unittest.TestCase):
 
     def test_a_message_ahead_of_the_journal_is_no_gap(self):
         """Else all that the recorder has on disk is read again after each look at the messages."""
-        self.made.fill_tried = -math.inf
         with mock.patch.object(loops, "recorded", return_value=[]) as read:
             self.go(4.0, 100)
             for _ in range(3):
                 ahead = loops.Raw("measurement")
                 ahead.waiting.append((PLANT, packed(messages.Measurement(run_id=RUN, step=self.k + 200, outputs=[self.k + 200.0], disturbances=[3.0], input_applied=[2.0])), 1000.0))
-                self.made.glance = {"measurement": ahead}
+                self.made.glance, self.made.follow_at, self.made.fill_tried = {"measurement": ahead}, self.now, -math.inf
                 self.go(6.0, 100)
             self.assertTrue(self.made.fast())
             read.assert_not_called()
@@ -242,6 +241,18 @@ class Fast(unittest.TestCase):
         self.assertFalse(self.made.fast())
         self.assertTrue(self.file.closed)
         self.whole()
+
+
+class Recorded(unittest.TestCase):
+    def test_of_the_parts_of_a_run_only_those_that_are_wanted_are_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for i, name in enumerate((f"{RUN}", *(f"{RUN}-{j}" for j in range(2, 12)), f"{RUN + 1}")):
+                part = pathlib.Path(folder, "history", name)
+                part.mkdir(parents=True)
+                part.joinpath("trajectory.csv").write_text("time[h],y\n" + "".join(f"{10 * i + k},{10 * i + k}\n" for k in range(10)))
+            for since, first in ((0.0, 0), (99.0, 90), (100.0, 100), (105.0, 100), (1e9, 100)):
+                got = [float(v) for _, table, _ in loops.recorded(folder, "", RUN, since) for v in table[:, 1]]
+                self.assertEqual([float(v) for v in range(first, 110)], got)
 
 
 class Said(unittest.TestCase):

@@ -312,15 +312,16 @@ class Loop:
         begun = self.history.first > 0 and not self.filled
         # Not the newest samples of a run that goes on: those are on their way. Of a fast loop, not what its journal gives next.
         newest = self.followed if self.fast() else self.step if self.over() else self.step - 20
-        if name is None or not (begun or any(a < newest and a > self.filled for a, _ in self.history.gaps(name))):
+        first = None if name is None else 0 if begun else next((a for a, _ in self.history.gaps(name) if self.filled < a < newest), None)
+        if first is None:
             return
         self.filling = True
-        self.executor.submit(self._fill_from, self.run_id)
+        self.executor.submit(self._fill_from, self.run_id, first * self.info.sample_time_s / 3600.0)
 
-    def _fill_from(self, run_id):
+    def _fill_from(self, run_id, since_h):
         try:
             folder = rospy.get_param(self.prefix + "loop_recorder/out", "")
-            for names, table, certain in recorded(folder, self.tool, run_id):
+            for names, table, certain in recorded(folder, self.tool, run_id, since_h):
                 with self.lock:
                     if run_id == self.run_id:
                         self._take_rows(names, table, certain)
@@ -619,9 +620,9 @@ def finite(value):
     return float(f"{float(value):.9g}") if value is not None and math.isfinite(value) else None
 
 
-def recorded(folder, tool, run_id=None):
-    """(names, table, of this run for certain) of what the recorder of a loop has on disk: the parts of a run that are filed already, then the run that goes on or has
-    ended; nothing if that is elsewhere."""
+def recorded(folder, tool, run_id=None, since_h=0.0):
+    """(names, table, of this run for certain) of what the recorder of a loop has on disk: the parts of a run that are filed already, of those the ones that end after since_h
+    of the run, then the run that goes on or has ended; nothing if that is elsewhere."""
     if not folder or not os.path.isdir(folder):
         return
     history = os.path.join(folder, "history")
@@ -631,9 +632,12 @@ def recorded(folder, tool, run_id=None):
         found, rows = [], 0
         for part in reversed(parts):
             path = os.path.join(history, part, "trajectory.csv")
-            if os.path.exists(path) and rows < MOST_FILLED:
+            if os.path.exists(path):
                 found.insert(0, read_csv(path))
-                rows += len(found[0][2])
+                names, _, table = found[0]
+                rows += len(table)
+                if rows >= MOST_FILLED or len(table) and "time" in names and table[0, names.index("time")] <= since_h:
+                    break
         for names, _, table in found:
             yield names, table, True
     if tool and os.path.exists(os.path.join(folder, "journal.bin")):
