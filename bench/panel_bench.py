@@ -364,7 +364,15 @@ def many(quick):
             page = None
             try:
                 source.stdout.readline()
-                wait_until(lambda: len(panel.get("/api/sparks")) == count, f"{count} loops in the panel")
+                waited, began = [], time.monotonic()
+
+                def taken_up():
+                    asked = time.monotonic()
+                    there = len(panel.get("/api/sparks")) == count
+                    waited.append(time.monotonic() - asked)
+                    return there
+                wait_until(taken_up, f"{count} loops in the panel")
+                took = time.monotonic() - began
                 used = -cpu_s(panel.pid)
                 time.sleep(seconds)
                 alone = (used + cpu_s(panel.pid)) / seconds
@@ -378,7 +386,8 @@ def many(quick):
                 used, theirs = -cpu_s(panel.pid), -cpu_s(*shown)
                 time.sleep(seconds)
                 print_json(what=f"{count} synthetic loops, 1 sample a second each", panel_cpu=alone, panel_cpu_with_page=(used + cpu_s(panel.pid)) / seconds,
-                           chromium_cpu=(theirs + cpu_s(*shown)) / seconds, stream_bytes_per_s=rate, resident_mb=resident_mb(panel.pid))
+                           chromium_cpu=(theirs + cpu_s(*shown)) / seconds, stream_bytes_per_s=rate, resident_mb=resident_mb(panel.pid),
+                           taken_up_s=took, slowest_answer_meanwhile_s=max(waited))
             finally:
                 if page is not None:
                     page.quit()

@@ -308,6 +308,16 @@ class Said(unittest.TestCase):
             self.assertEqual([], self.active(), code)
             self.assertEqual([1] if severity != "info" else [], [a.count for a in self.list.alarms.values()])
 
+    def test_one_cause_in_several_words_is_one_alarm_that_goes(self):
+        made = loop()
+        k = self.run_for(made, 1.0, 0, lambda k: ("", ()))
+        listed_thrice = [messages.Event(code="signal_missing", severity=1, signal="y", first=k + a, last=k + b, count=b - a + 1, text=text)
+                         for a, b, text in ((1, 3, "y is stale: the model's value is used"), (4, 9, "y is stale: input held"), (10, 15, "y is stale: the configured fallback"))]
+        k = self.run_for(made, 2.0, k, lambda k: ("signal_missing", [e for e in listed_thrice if e.first <= k]))
+        self.assertEqual([("signal_missing", "y")], [(a.code, a.signal) for a in self.active()])
+        self.run_for(made, alarms.OFF_DELAY + 2.0, k, lambda k: ("", listed_thrice))
+        self.assertEqual([], self.active())
+
     def test_what_lasts_one_sample_is_not_missed_and_what_flickers_does_not_chatter(self):
         made = loop()
         k = self.run_for(made, 1.0, 0, lambda k: ("", ()))

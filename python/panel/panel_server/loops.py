@@ -296,8 +296,10 @@ class Loop:
             self.heard = now
         if self.run_id is None or message.run_id not in (self.run_id, 0):
             return
+        listed = {(message.node, e.code, e.signal, e.first) for e in message.events}
+        self.seen_events = {k: v for k, v in self.seen_events.items() if k[0] != message.node or k in listed or now - v[2] < SILENT}
         for event in message.events:
-            key = (message.node, event.code, event.signal)
+            key = (message.node, event.code, event.signal, event.first)  # a node lists one code and signal several times, with other words
             said = (event.last, event.count)
             if self.seen_events.get(key, (None,))[0] != said:
                 self.seen_events[key] = (said, event, now, message.step, before is None)
@@ -469,7 +471,7 @@ class Loop:
     def current(self, now):
         """{(code, signal): (severity, text)} of what is wrong now, and nodes that are away."""
         found, severity = {}, self.severities
-        for (node, code, signal), (_, event, came, at_step, _) in self.seen_events.items():
+        for (node, code, signal, _), (_, event, came, _, _) in self.seen_events.items():
             here = self.states.get(node)
             fresh = now - came < 0.6
             going_on = here is not None and event.count > 0 and event.last + 2 >= here.step
@@ -478,7 +480,7 @@ class Loop:
         codes = {code for code, _ in found}
         for message in self.states.values():
             if message.code and message.code not in codes and message.word not in ("finished",):
-                signal = next((s for (_, code, s) in self.seen_events if code == message.code and s), "")  # one alarm, not one with and one without
+                signal = next((s for (_, code, s, _) in self.seen_events if code == message.code and s), "")  # one alarm, not one with and one without
                 found[(message.code, signal)] = (severity.get(message.code, "warning"), message.reason)
         if self.heard is not None and self.stale(now) and not self.over():
             found = {("node_silent", "plant"): ("warning", f"the plant has said nothing for {self.stale(now):.0f} s")}
