@@ -100,6 +100,15 @@ class Alarms(Folder):
         self.look("input_held", seconds=1)
         self.assertEqual(alarms.UNACKNOWLEDGED, self.state("input_held"))
 
+    def test_who_is_silent_is_said_once(self):
+        self.look("node_silent", "input_stuck")
+        self.assertEqual(alarms.UNACKNOWLEDGED, self.state("node_silent"))
+        self.look("node_silent", "no_action")
+        self.assertEqual((alarms.SUPPRESSED, alarms.UNACKNOWLEDGED), (self.state("node_silent"), self.state("no_action")))
+        self.now += 0.1
+        self.list.look("/a", {("no_action", ""): ("error", "no action"), alarms.SILENT_PLANT: ("warning", "the plant has said nothing for 2 s")}, self.now)
+        self.assertEqual((alarms.SUPPRESSED, alarms.UNACKNOWLEDGED), (self.state("no_action"), self.list.alarms["/a|node_silent|plant"].state))
+
     def test_the_first_after_a_quiet_time_is_the_first_out(self):
         self.look("x")
         self.look("x", "y")

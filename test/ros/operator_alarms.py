@@ -78,11 +78,13 @@ class Faults(unittest.TestCase):
         ring.wait_until(lambda: not self.alarms.active(), f"no alarm, there is {self.alarms.active()}", 20.0)
         self.alarms.came.clear()
 
-    def is_one_alarm(self, code, signal, since, others=()):
+    def is_one_alarm(self, code, signal, since, first=()):
+        """first: what may be said of it before more is known."""
         ring.wait_until(lambda: (code, signal) in self.alarms.came, f"{code} {signal}, there is {self.alarms.active()}", 10.0)
-        self.assertLess(self.alarms.came[(code, signal)] - since(), SOON)
+        self.assertLess(min(self.alarms.came.values()) - since(), SOON)
         time.sleep(2.0)  # while it lasts nothing comes or goes
-        self.assertEqual({(code, signal), *others}, set(self.alarms.came))
+        self.assertEqual([(code, signal)], [(a["code"], a["signal"]) for a in self.alarms.active()])
+        self.assertLessEqual(set(self.alarms.came), {(code, signal), *first})
         self.assertIn(self.alarms.events[code]["severity"], ("warning", "error"))
         self.assertNotIn(self.alarms.events[code]["remedy"], ("", "none"))
 
@@ -94,12 +96,12 @@ class Faults(unittest.TestCase):
         time.sleep(1.0)
         self.assertEqual([count], [a["count"] for a in self.alarms.now if (a["code"], a["signal"]) == (code, signal)])
 
-    def spoilt(self, code, signal, spoil, others=()):
+    def spoilt(self, code, signal, spoil):
         """spoil: changes a measurement."""
         type(self).first_spoilt = None
         type(self).spoil = staticmethod(spoil)
         try:
-            self.is_one_alarm(code, signal, lambda: self.first_spoilt, others)
+            self.is_one_alarm(code, signal, lambda: self.first_spoilt)
         finally:
             type(self).spoil = None
         self.goes_once(code, signal)
@@ -130,9 +132,6 @@ class Faults(unittest.TestCase):
     def test_a_reading_that_is_too_fast(self):
         self.spoilt("signal_too_fast", "s", self.put("outputs", 0, lambda v: v + (60.0 if int(time.monotonic() * 5) % 2 else 0.0)))
 
-    def test_a_plant_outside_the_model(self):
-        self.spoilt("outside_model", "", self.put("disturbances", 1, 2500.0))
-
     def test_a_setpoint_beyond_its_limits(self):
         began = time.monotonic()
         self.setpoint.publish(Setpoint(name=["x"], value=[90000.0], mode=Setpoint.OVERRIDE))
@@ -142,9 +141,9 @@ class Faults(unittest.TestCase):
             self.setpoint.publish(Setpoint(mode=Setpoint.RELEASE))
         self.goes_once("setpoint_clamped", "x")
 
-    def frozen(self, node, code, signal="", others=()):
+    def frozen(self, node, code, signal=""):
         with ring.Frozen(node) as fault:
-            self.is_one_alarm(code, signal, lambda: fault.since, others)
+            self.is_one_alarm(code, signal, lambda: fault.since, [("node_silent", ""), ("no_measurement", ""), ("no_action", "")])
         self.goes_once(code, signal)
 
     def test_a_plant_that_hangs(self):

@@ -13,6 +13,7 @@ from fmbpc import msg as messages
 from std_msgs.msg import String
 
 from panel_server import predict, state, wire
+from panel_server.alarms import NAMED_BY, SILENT_PLANT
 from panel_server.history import History, Journal, plain, read_csv
 
 SILENT = 1.5      # s of wall time without a word from the plant: the loop is stale
@@ -483,7 +484,8 @@ class Loop:
                 signal = next((s for (_, code, s, _) in self.seen_events if code == message.code and s), "")  # one alarm, not one with and one without
                 found[(message.code, signal)] = (severity.get(message.code, "warning"), message.reason)
         if self.heard is not None and self.stale(now) and not self.over():
-            found = {("node_silent", "plant"): ("warning", f"the plant has said nothing for {self.stale(now):.0f} s")}
+            found = {key: said for key, said in found.items() if key[0] in NAMED_BY}  # what else was said of it is old
+            found[SILENT_PLANT] = ("warning", f"the plant has said nothing for {self.stale(now):.0f} s")
         return found
 
     severities = {}  # by code, of `fmbpc events`
