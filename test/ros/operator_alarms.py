@@ -11,7 +11,7 @@ import unittest
 
 import rospy
 import rostest
-from fmbpc.msg import Measurement, PlantInfo, Setpoint
+from fmbpc.msg import Measurement, PlantInfo
 
 import panel_page
 import ring
@@ -56,7 +56,6 @@ class Faults(unittest.TestCase):
         cls.info = rospy.Publisher("plant_info", PlantInfo, queue_size=10, latch=True)
         cls.true_info = rospy.Subscriber("plant_info_true", PlantInfo, cls.info.publish, tcp_nodelay=True)
         cls.true = rospy.Subscriber("measurement_true", Measurement, cls.pass_on, tcp_nodelay=True)
-        cls.setpoint = rospy.Publisher("setpoint", Setpoint, queue_size=10)
         cls.panel = panel_page.PanelProcess(ring.free_port(), cls.folder.name)
         cls.alarms = Alarms(cls.panel.port)
         heard = ring.Listener("measurement_true", Measurement)
@@ -75,7 +74,7 @@ class Faults(unittest.TestCase):
         cls.measurement.publish(message)
 
     def setUp(self):
-        ring.wait_until(lambda: not self.alarms.active(), f"no alarm, there is {self.alarms.active()}", 20.0)
+        ring.wait_until(lambda: not self.alarms.active(), f"no alarm, there is {self.alarms.active()}", 75.0)  # twice within a minute: it stays for one
         self.alarms.came.clear()
 
     def is_one_alarm(self, code, signal, since, first=()):
@@ -132,25 +131,10 @@ class Faults(unittest.TestCase):
     def test_a_reading_that_is_too_fast(self):
         self.spoilt("signal_too_fast", "s", self.put("outputs", 0, lambda v: v + (60.0 if int(time.monotonic() * 5) % 2 else 0.0)))
 
-    def test_a_setpoint_beyond_its_limits(self):
-        began = time.monotonic()
-        self.setpoint.publish(Setpoint(name=["x"], value=[90000.0], mode=Setpoint.OVERRIDE))
-        try:
-            self.is_one_alarm("setpoint_clamped", "x", lambda: began)
-        finally:
-            self.setpoint.publish(Setpoint(mode=Setpoint.RELEASE))
-        self.goes_once("setpoint_clamped", "x")
-
     def frozen(self, node, code, signal=""):
         with ring.Frozen(node) as fault:
             self.is_one_alarm(code, signal, lambda: fault.since, [("node_silent", ""), ("no_measurement", ""), ("no_action", "")])
         self.goes_once(code, signal)
-
-    def test_a_plant_that_hangs(self):
-        self.frozen("/plant_simulator", "node_silent", "plant")
-
-    def test_a_controller_that_hangs(self):
-        self.frozen("/fmbpc_controller", "no_action")
 
     def test_an_optimizer_that_hangs(self):
         self.frozen("/clp_optimizer", "optimizer_lost")
