@@ -7,13 +7,15 @@
   equal   trajectories of runs with and without panel and browsers, byte by byte
   screen  time from a measurement to its number in the page, in headless Chromium, at 10 samples a second
   memory  resident size of the panel after 24 h at 1 s of a loop (86,400 samples), and at 0.1 s (864,000), without a hole
-  pictures  docs/panel_VIEW.png and panel_VIEW_phone.png: each view of a loop whose input was set by hand beyond its limit, at 1280 and 360 px
+  pictures  docs/panel_VIEW.png and panel_VIEW_phone.png: each view, at 1280 and 360 px, of two loops; an input was set by hand beyond its limit,
+          then a setpoint leads it there
   many    processor time of panel and Chromium, and bytes a second, with 1 and with 50 loops at a sample a second (synthetic publishers)
 
 Prints lines of JSON with the aim, as bench/ring_bench.py does. Before: source scripts/env.sh.
 """
 import argparse
 import contextlib
+import itertools
 import json
 import os
 import pathlib
@@ -130,12 +132,12 @@ sys.stdin.readline()
 
 
 @contextlib.contextmanager
-def loop_of(env, out, hours, *words, gate=True):
-    """A lockstep loop that begins once it is told to: yields (process of roslaunch, function that lets it begin)."""
+def loop_of(env, out, hours, *words, gate=True, loop=LOOP, more=""):
+    """A lockstep loop that begins once it is told to: yields (process of roslaunch, function that lets it begin). more: keys for set:=."""
     endless = " disturbance.source=constant setpoint.schedule=[]" if hours == 0 else ""
     gated = " loop.wait_for=[loop_recorder,fmbpc_controller,fuzzy_identifier,clp_optimizer,bench_go]" if gate else ""
-    launch = subprocess.Popen(["roslaunch", "--wait", "fmbpc", "loop.launch", f"loop:={LOOP}", f"out:={out}", "draw:=false", "sim_time:=false", *words,
-                               f"set:=sampling.duration_h={hours}{endless}{gated}"], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    launch = subprocess.Popen(["roslaunch", "--wait", "fmbpc", "loop.launch", f"loop:={loop}", f"out:={out}", "draw:=false", "sim_time:=false", *words,
+                               f"set:=sampling.duration_h={hours}{endless}{gated} {more}"], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     go = subprocess.Popen([sys.executable, "-c", GO], env=env, stdin=subprocess.PIPE, text=True) if gate else None
 
     def begin():
@@ -151,9 +153,9 @@ def loop_of(env, out, hours, *words, gate=True):
                 process.wait()
 
 
-def knows(panel):
+def knows(panel, loop="/"):
     """The panel shows the loop, and hears its plant (connected: the plant has introduced itself)."""
-    return panel.get("/api/model", loop="/") is not None
+    return panel.get("/api/model", loop=loop) is not None
 
 
 def record_of(hours, folder, with_panel):
@@ -215,7 +217,7 @@ def chromiums(port):
         for i in range(10):
             if i:
                 page.switch_to.new_window("window")
-            page.get(f"http://localhost:{port}/#/loop/%2F")
+            page.get(f"http://{('localhost', '127.0.0.1')[i % 2]}:{port}/#/loop/%2F")  # a browser opens six connections to a name
             wait_until(lambda: "sample" in page.find_element("id", "main").text, "the loop on the page")
         yield family(page.service.process.pid)
     finally:
@@ -362,7 +364,15 @@ def many(quick):
             page = None
             try:
                 source.stdout.readline()
-                wait_until(lambda: len(panel.get("/api/sparks")) == count, f"{count} loops in the panel")
+                waited, began = [], time.monotonic()
+
+                def taken_up():
+                    asked = time.monotonic()
+                    there = len(panel.get("/api/sparks")) == count
+                    waited.append(time.monotonic() - asked)
+                    return there
+                wait_until(taken_up, f"{count} loops in the panel")
+                took = time.monotonic() - began
                 used = -cpu_s(panel.pid)
                 time.sleep(seconds)
                 alone = (used + cpu_s(panel.pid)) / seconds
@@ -376,7 +386,8 @@ def many(quick):
                 used, theirs = -cpu_s(panel.pid), -cpu_s(*shown)
                 time.sleep(seconds)
                 print_json(what=f"{count} synthetic loops, 1 sample a second each", panel_cpu=alone, panel_cpu_with_page=(used + cpu_s(panel.pid)) / seconds,
-                           chromium_cpu=(theirs + cpu_s(*shown)) / seconds, stream_bytes_per_s=rate, resident_mb=resident_mb(panel.pid))
+                           chromium_cpu=(theirs + cpu_s(*shown)) / seconds, stream_bytes_per_s=rate, resident_mb=resident_mb(panel.pid),
+                           taken_up_s=took, slowest_answer_meanwhile_s=max(waited))
             finally:
                 if page is not None:
                     page.quit()
@@ -387,33 +398,35 @@ def many(quick):
 def pictures(quick):
     """Looked at by a person; nothing here judges them."""
     from PIL import Image
-    views = (("overview", "", ""), ("loop", "loop/%2F", "q_r"), ("model", "loop/%2F/model", "Rules of"), ("alarms", "alarms", "Alarms"), ("journal", "journal", "Journal"))
+    by_hand = (("overview", "", "Activated"), ("alarms", "alarms", "input_clamped"))
+    at_the_limit = (("loop", "loop/%2Fa", "turned aside"), ("model", "loop/%2Fa/model", "Rules of"), ("journal", "journal", "Journal"))
     with tempfile.TemporaryDirectory() as folder, launching.master() as env:
         users, secret = os.path.join(folder, "users.json"), "correct horse"
         subprocess.run([sys.executable, panel_page.SCRIPT, "--users", users, "--add-user", "olga", "engineer"], input=secret + "\n", check=True, text=True, stdout=subprocess.DEVNULL)
         panel = panel_page.PanelProcess(launching.free_port(), os.path.join(folder, "panel"), users=users, env=env)
         page = None
         try:
-            with loop_of(env, os.path.join(folder, "run"), 0, "pace:=paced", "speedup:=7200", gate=False):
-                wait_until(lambda: knows(panel), "the panel to find the loop")
+            with loop_of(env, os.path.join(folder, "a"), 0, "pace:=paced", "speedup:=7200", "ns:=/a", gate=False, more="setpoint.upper.x=2500"), \
+                    loop_of(env, os.path.join(folder, "b"), 0, "pace:=paced", "speedup:=60", "ns:=/b", gate=False, loop="cstr_tracking"):
+                for loop in ("/a", "/b"):
+                    wait_until(lambda loop=loop: knows(panel, loop), f"the panel to find {loop}")
                 page = panel_page.browser()
                 panel_page.size(page, 1280, 900)
                 page.get(f"http://localhost:{panel.port}/")
                 log_in = "return fetch('api/login', {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify({name: 'olga', password: '%s'})}).then((a) => a.json())"
                 token = page.execute_script(log_in % secret)["xsrf"]
-                ask = "return fetch('api/command', {method: 'POST', headers: {'Content-Type': 'application/json', 'X-Xsrf': '%s'}, body: JSON.stringify({verb: '%s', loop: '/', arguments: %s})}).then((a) => a.status)"
+                ask = "return fetch('api/command', {method: 'POST', headers: {'Content-Type': 'application/json', 'X-Xsrf': '%s'}, body: JSON.stringify({verb: '%s', loop: '/a', arguments: %s})}).then((a) => a.status)"
                 time.sleep(3 if quick else 15)
-                for verb, arguments in (("manual", "{}"), ("input", "{values: {q_r: '9000'}}")):
-                    if page.execute_script(ask % (token, verb, arguments)) != 200:
-                        raise RuntimeError(f"{verb}: refused")
-                time.sleep(1 if quick else 4)
-                for name, path, wanted in views:
-                    for width, end in ((1280, ""), (360, "_phone")):
-                        panel_page.size(page, width, 900)
+                for commands, views in (((("manual", "{}"), ("input", "{values: {q_r: '9000'}}")), by_hand), ((("auto", "{}"), ("set", "{values: {x: '2400'}}")), at_the_limit)):
+                    for verb, arguments in commands:
+                        if page.execute_script(ask % (token, verb, arguments)) != 200:
+                            raise RuntimeError(f"{verb}: refused")
+                    for (name, path, wanted), (width, end) in itertools.product(views, ((1280, ""), (360, "_phone"))):
+                        panel_page.size(page, width, 400)
                         page.get("about:blank")
                         page.get(f"http://localhost:{panel.port}/#/{path}")
                         wait_until(lambda: wanted in page.find_element("id", "main").text, f"{wanted} on the page")
-                        time.sleep(2.0)
+                        time.sleep(1 if quick else 5)  # so many plans that a band is drawn
                         panel_page.size(page, width, min(page.execute_script("return document.documentElement.scrollHeight"), 2400))
                         time.sleep(1.0)
                         file = HERE.parent / "docs" / f"panel_{name}{end}.png"

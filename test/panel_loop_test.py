@@ -204,6 +204,19 @@ class Fast(unittest.TestCase):
         self.assertLessEqual({"measurement", "tracking", "control_action", loops.TRUST}, set(self.made.raw))
         self.whole()
 
+    def test_a_message_ahead_of_the_journal_is_no_gap(self):
+        """Else all that the recorder has on disk is read again after each look at the messages."""
+        with mock.patch.object(loops, "recorded", return_value=[]) as read:
+            self.go(4.0, 100)
+            for _ in range(3):
+                ahead = loops.Raw("measurement")
+                ahead.waiting.append((PLANT, packed(messages.Measurement(run_id=RUN, step=self.k + 200, outputs=[self.k + 200.0], disturbances=[3.0], input_applied=[2.0])), 1000.0))
+                self.made.glance, self.made.follow_at, self.made.fill_tried = {"measurement": ahead}, self.now, -math.inf
+                self.go(6.0, 100)
+            self.assertTrue(self.made.fast())
+            read.assert_not_called()
+        self.whole()
+
     def test_who_asks_something_is_answered_by_messages(self):
         self.go(4.0, 100)
         self.assertTrue(self.made.fast())
@@ -228,6 +241,18 @@ class Fast(unittest.TestCase):
         self.assertFalse(self.made.fast())
         self.assertTrue(self.file.closed)
         self.whole()
+
+
+class Recorded(unittest.TestCase):
+    def test_of_the_parts_of_a_run_only_those_that_are_wanted_are_read(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for i, name in enumerate((f"{RUN}", *(f"{RUN}-{j}" for j in range(2, 12)), f"{RUN + 1}")):
+                part = pathlib.Path(folder, "history", name)
+                part.mkdir(parents=True)
+                part.joinpath("trajectory.csv").write_text("time[h],y\n" + "".join(f"{10 * i + k},{10 * i + k}\n" for k in range(10)))
+            for since, first in ((0.0, 0), (99.0, 90), (100.0, 100), (105.0, 100), (1e9, 100)):
+                got = [float(v) for _, table, _ in loops.recorded(folder, "", RUN, since) for v in table[:, 1]]
+                self.assertEqual([float(v) for v in range(first, 110)], got)
 
 
 class Said(unittest.TestCase):
@@ -282,6 +307,16 @@ class Said(unittest.TestCase):
             k = self.run_for(made, alarms.OFF_DELAY + 2.0, k, lambda k: ("", [gone]))
             self.assertEqual([], self.active(), code)
             self.assertEqual([1] if severity != "info" else [], [a.count for a in self.list.alarms.values()])
+
+    def test_one_cause_in_several_words_is_one_alarm_that_goes(self):
+        made = loop()
+        k = self.run_for(made, 1.0, 0, lambda k: ("", ()))
+        listed_thrice = [messages.Event(code="signal_missing", severity=1, signal="y", first=k + a, last=k + b, count=b - a + 1, text=text)
+                         for a, b, text in ((1, 3, "y is stale: the model's value is used"), (4, 9, "y is stale: input held"), (10, 15, "y is stale: the configured fallback"))]
+        k = self.run_for(made, 2.0, k, lambda k: ("signal_missing", [e for e in listed_thrice if e.first <= k]))
+        self.assertEqual([("signal_missing", "y")], [(a.code, a.signal) for a in self.active()])
+        self.run_for(made, alarms.OFF_DELAY + 2.0, k, lambda k: ("", listed_thrice))
+        self.assertEqual([], self.active())
 
     def test_what_lasts_one_sample_is_not_missed_and_what_flickers_does_not_chatter(self):
         made = loop()

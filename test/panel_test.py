@@ -100,6 +100,15 @@ class Alarms(Folder):
         self.look("input_held", seconds=1)
         self.assertEqual(alarms.UNACKNOWLEDGED, self.state("input_held"))
 
+    def test_who_is_silent_is_said_once(self):
+        self.look("node_silent", "input_stuck")
+        self.assertEqual(alarms.UNACKNOWLEDGED, self.state("node_silent"))
+        self.look("node_silent", "no_action")
+        self.assertEqual((alarms.SUPPRESSED, alarms.UNACKNOWLEDGED), (self.state("node_silent"), self.state("no_action")))
+        self.now += 0.1
+        self.list.look("/a", {("no_action", ""): ("error", "no action"), alarms.SILENT_PLANT: ("warning", "the plant has said nothing for 2 s")}, self.now)
+        self.assertEqual((alarms.SUPPRESSED, alarms.UNACKNOWLEDGED), (self.state("no_action"), self.list.alarms["/a|node_silent|plant"].state))
+
     def test_the_first_after_a_quiet_time_is_the_first_out(self):
         self.look("x")
         self.look("x", "y")
@@ -256,6 +265,33 @@ class TheJournal(Folder):
         self.assertEqual(list(range(200)), [e["i"] for e in again.latest(1000)])
         self.assertEqual([99], [e["i"] for e in again.latest(1, before=101)])
         again.close()
+
+
+class TheTable(unittest.TestCase):
+    """trajectory.csv, of many rows, while it is being written."""
+
+    def read(self, text):
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "trajectory.csv")
+            with open(path, "w", encoding="utf-8", newline="") as stream:
+                stream.write(text)
+            return history.read_csv(path)
+
+    def test_each_number_is_where_it_was_written(self):
+        dice = random.Random(8)
+        for _ in range(20):
+            rows = [[dice.choice((math.nan, dice.gauss(0.0, 10.0 ** dice.randrange(-9, 9)), float(dice.randrange(99)))) for _ in range(7)] for _ in range(dice.randrange(2000, 9000))]
+            end = dice.choice(("\n", "\r\n"))
+            text = end.join(["time[h],y[mg/l],c,d,e,f,g[-]"] + [",".join(dice.choice(("", "nan")) if v != v else repr(v) for v in row) for row in rows] + [dice.choice(("", "1,2"))])
+            names, units, table = self.read(text)
+            self.assertEqual((["time", "y", "c", "d", "e", "f", "g"], "mg/l"), (names, units["y"]))
+            numpy.testing.assert_array_equal(numpy.array(rows), table)
+
+    def test_what_is_no_table_is_refused(self):
+        for rows in ("1,x\n", "1,2x\n", "1,2,3\n", "1\n", "1,2,3\n4\n", "1 2,3\n", "1,2\n\n"):
+            with self.assertRaises(ValueError, msg=rows):
+                self.read("time[h],y\n" + rows)
+        self.assertEqual(0, self.read("")[2].size + self.read("time[h],y\n1,2")[2].size)
 
 
 class TheHistory(unittest.TestCase):

@@ -192,15 +192,17 @@ class Web(unittest.TestCase):
         with mock.patch.object(web.loops, "Loop") as loop, mock.patch.object(web.commands, "Desk") as desk:
             loop.side_effect = lambda *_: mock.MagicMock(heard=None, history=None, info=None)
             desk.side_effect = lambda *_: mock.Mock()
-            panel.take_up(["/gone", "/heard"], 0.0)
+            for name in ("/gone", "/heard"):
+                panel.take_in(*panel.make(name))
+            panel.keep(["/gone", "/heard"], 0.0)
             closed = [panel.loops["/gone"].close, panel.desks["/gone"].close]
             panel.loops["/heard"].heard = web.LEFT_AFTER  # its plant speaks, the master was started anew
             panel.alarms.look("/gone", {("link_lost", ""): ("warning", "lost")}, 1.0)
-            panel.take_up([], web.LEFT_AFTER - 1.0)
-            panel.take_up(None, 10.0 * web.LEFT_AFTER)  # no master: nothing is said of any loop
+            panel.keep([], web.LEFT_AFTER - 1.0)
+            panel.keep(None, 10.0 * web.LEFT_AFTER)  # no master: nothing is said of any loop
             self.assertLessEqual({"/gone", "/heard"}, set(panel.loops))
             self.assertEqual("unacknowledged", panel.alarms.alarms["/gone|link_lost|"].state)
-            panel.take_up([], web.LEFT_AFTER + 1.0)
+            panel.keep([], web.LEFT_AFTER + 1.0)
             self.assertNotIn("/gone", panel.loops)
             self.assertNotIn("/gone", panel.desks)
             self.assertIn("/heard", panel.loops)

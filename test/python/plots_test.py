@@ -31,17 +31,16 @@ class Plots(unittest.TestCase):
                 done = subprocess.run([sys.executable, "-m", "fmbpc.plots", *words], capture_output=True, check=False)
                 self.assertEqual((code, True), (done.returncode, bool(done.stderr)), words)
 
-    def test_a_table_that_is_being_written_is_read_to_its_last_whole_row(self):
+    def test_a_table_is_read_or_refused(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder, "trajectory.csv")
-            for text, growing, rows in (("time[h],x\n0,1\n1,", True, 1), ("time[h],x\n0,1\n1,", False, 2), ("", True, 0), ("time[h],x\n0,1\n1\n", True, None),
-                                        ("time[h],x\n0,a\n", False, None)):
+            for text, rows in (("time[h],x\n0,1\n1,", 2), ("", 0), ("time[h],x\n0,1\n1\n", None), ("time[h],x\n0,a\n", None)):
                 file.write_text(text)
                 if rows is None:
                     with self.assertRaises(ValueError):
-                        plots.read_table(file, growing)
+                        plots.read_table(file)
                 else:
-                    self.assertEqual(rows, len(plots.read_table(file, growing)[0].get("time", ())), text)
+                    self.assertEqual(rows, len(plots.read_table(file)[0].get("time", ())), text)
 
     def test_the_tool_draws_by_it(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -174,9 +174,13 @@ class Panel(unittest.TestCase):
         self.said("by hand since")
         self.assertIn("input_clamped", self.see(By.ID, "banner", "input_clamped").text)
         self.assertIn("upper limit 1600", self.see(By.CSS_SELECTOR, "#inputs td.reason", "upper").text)
+        self.open()
         self.clicks = 0
+        self.click(By.CSS_SELECTOR, "a.tile")
+        self.assertIn("upper limit 1600", self.see(By.CSS_SELECTOR, "#inputs td.reason", "upper").text)
         self.click(By.CSS_SELECTOR, "#banner button")
         self.said("acknowledged")
+        self.assertLessEqual(self.clicks, 3)
         self.open("#/alarms")
         self.see(By.ID, "alarmlist", "acknowledged by olga")
         self.open("#/loop/%2Fa")
@@ -245,13 +249,16 @@ class Panel(unittest.TestCase):
         self.panel.start()
         ring.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
         ring.wait_until(lambda: self.panel.holes("/a", ("x", "x_reference", "q_r"), 0, away + 20) == 0, "a trend without holes", 40.0)
+        self.sees_no_hole(away + 20)
+        ring.wait_until(lambda: self.alarm_keys() >= listed, "the alarms of before")
+
+    def sees_no_hole(self, until):
         self.click(By.XPATH, "//button[.='whole run']")
 
         def whole():
             got = self.page.execute_script(HOLES)
-            return got is not None and got[0] == 0 and got[1] > away + 20 and got[2] == 0
-        ring.wait_until(whole, "the same in the browser", 40.0)
-        ring.wait_until(lambda: self.alarm_keys() >= listed, "the alarms of before")
+            return got is not None and got[0] == 0 and got[1] > until and got[2] == 0
+        ring.wait_until(whole, "the whole trend in the browser", 40.0)
 
     def alarm_keys(self):
         return set(self.page.execute_script("return window.fmbpcPanel.alarms.map((a) => a.key)"))

@@ -8,14 +8,13 @@ def name_and_unit(cell):
     return name.strip(), unit.rstrip().removesuffix("]") if bracket else ""
 
 
-def read_table(file, growing=False):
+def read_table(file):
     """Columns by name (lists, NaN where a cell is empty), units by name, of a CSV whose header cells are NAME[UNIT] (docs/recording.md).
 
-    growing: a last line that is still being written is left out.
     Raises OSError where it cannot be read, ValueError for a cell that is no number or a row of another length.
     """
     with open(file, newline="", encoding="utf-8") as stream:
-        rows = list(csv.reader(line for line in stream if line.endswith("\n") or not growing))
+        rows = list(csv.reader(stream))
     columns, units = {}, {}
     if any(len(row) != len(rows[0]) for row in rows):
         raise ValueError(f"{file}: expected {len(rows[0])} cells in each row")

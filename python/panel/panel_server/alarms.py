@@ -17,6 +17,10 @@ MOST_ALARMS = 2000        # of one panel; the oldest normal ones go first
 
 # What follows from others: suppressed by design while one of those is active in the same loop.
 CONSEQUENCES = {"node_degraded", "input_held", "run_incomplete", "measurement_rejected", "never_controlled", "waiting"}
+# One fault that is said by several: the first is suppressed while one of the others is there. Of a silent plant nothing else is said.
+SILENT_PLANT = ("node_silent", "plant")
+NAMED_BY = {"node_silent": {("no_action", ""), ("no_measurement", ""), ("not_recorded", ""), ("optimizer_lost", ""), SILENT_PLANT},
+            "no_action": {SILENT_PLANT}, "no_measurement": {SILENT_PLANT}, "not_recorded": {SILENT_PLANT}}
 
 
 class Alarm:
@@ -214,7 +218,7 @@ class AlarmList:
                     self.alarms[alarm.key] = alarm
                     self._bound()
                 # A consequence says nothing while its cause is said.
-                suppressed = code in CONSEQUENCES and roots
+                suppressed = code in CONSEQUENCES and roots or signal == "" and not NAMED_BY.get(code, set()).isdisjoint(causes)
                 quieted = suppressed and not alarm.suppressed
                 freed = alarm.suppressed and not suppressed
                 alarm.suppressed = suppressed

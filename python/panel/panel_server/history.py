@@ -1,13 +1,15 @@
 """What a loop did, sample by sample, in bounded memory: rows are found by the number of their sample, so late ones find their place."""
+import csv
 import math
 import os
 import subprocess
 
 import numpy
 
-from fmbpc.plots.table import read_table
+from fmbpc.plots.table import name_and_unit
 
 CHUNK = 4096  # rows
+BLOCK = 1 << 18  # bytes of a table that are read at once: others run in between
 
 
 class History:
@@ -189,6 +191,21 @@ def plain(array, digits=7):
 
 
 def read_csv(path):
-    """(names, units by name, table) of a trajectory.csv; a last line that is being written is left out."""
-    columns, units = read_table(path, growing=True)
-    return list(columns), units, numpy.array(list(columns.values()), dtype=float).reshape(len(columns), -1).T
+    """(names, units by name, table) of a trajectory.csv; a last line that is being written is left out. ValueError for a cell that is no number."""
+    with open(path, "rb") as stream:
+        head = [name_and_unit(cell) for cell in next(csv.reader([stream.readline().decode()]), [])]
+        names = [name for name, _ in head]
+        blocks = [numpy.zeros((0, len(names)))]
+        while True:
+            lines = stream.readlines(BLOCK)
+            if lines and not lines[-1].endswith(b"\n"):
+                lines.pop()
+            if not lines:
+                return names, dict(head), numpy.concatenate(blocks)
+            text = b"\n" + b"".join(lines).replace(b"\r\n", b"\n")
+            for _ in range(2):  # an empty cell after an empty cell
+                text = text.replace(b",,", b",nan,").replace(b",\n", b",nan\n").replace(b"\n,", b"\nnan,")
+            numbers = numpy.fromstring(text[1:].replace(b"\n", b",") + b"0", sep=",")  # ends at what is no number: before that 0
+            if numbers.size != len(lines) * len(names) + 1 or any(line.count(b",") != len(names) - 1 for line in lines):
+                raise ValueError(f"{path}: expected {len(names)} numbers in each row")
+            blocks.append(numbers[:-1].reshape(len(lines), len(names)))

@@ -13,6 +13,7 @@ from fmbpc import msg as messages
 from std_msgs.msg import String
 
 from panel_server import predict, state, wire
+from panel_server.alarms import NAMED_BY, SILENT_PLANT
 from panel_server.history import History, Journal, plain, read_csv
 
 SILENT = 1.5      # s of wall time without a word from the plant: the loop is stale
@@ -191,7 +192,8 @@ class Loop:
         info = read(messages.PlantInfo, buffer)
         if info.run_id == self.run_id:
             return
-        self._read_text()
+        if self.run_id is not None or not self.text:
+            self._read_text()
         self.info, self.run_id, self.step = info, info.run_id, -1
         names = [s.name for s in info.outputs]
         columns = names + [n + "_setpoint" for n in names] + [n + "_reference" for n in names]
@@ -295,8 +297,10 @@ class Loop:
             self.heard = now
         if self.run_id is None or message.run_id not in (self.run_id, 0):
             return
+        listed = {(message.node, e.code, e.signal, e.first) for e in message.events}
+        self.seen_events = {k: v for k, v in self.seen_events.items() if k[0] != message.node or k in listed or now - v[2] < SILENT}
         for event in message.events:
-            key = (message.node, event.code, event.signal)
+            key = (message.node, event.code, event.signal, event.first)  # a node lists one code and signal several times, with other words
             said = (event.last, event.count)
             if self.seen_events.get(key, (None,))[0] != said:
                 self.seen_events[key] = (said, event, now, message.step, before is None)
@@ -306,19 +310,21 @@ class Loop:
     def _fill(self, now):
         if self.history is None or self.history.last is None or self.filling or now - self.fill_tried < 5.0 or self.executor is None:
             return
+        self.fill_tried = now
         name = self.info.outputs[0].name if self.info.outputs else None
         begun = self.history.first > 0 and not self.filled
-        # Not the newest samples of a run that goes on: those are on their way.
-        newest = self.step if self.over() else self.step - 20
-        if name is None or not (begun or any(a < newest and a > self.filled for a, _ in self.history.gaps(name))):
+        # Not the newest samples of a run that goes on: those are on their way. Of a fast loop, not what its journal gives next.
+        newest = self.followed if self.fast() else self.step if self.over() else self.step - 20
+        first = None if name is None else 0 if begun else next((a for a, _ in self.history.gaps(name) if self.filled < a < newest), None)
+        if first is None:
             return
-        self.fill_tried, self.filling = now, True
-        self.executor.submit(self._fill_from, self.run_id)
+        self.filling = True
+        self.executor.submit(self._fill_from, self.run_id, first * self.info.sample_time_s / 3600.0)
 
-    def _fill_from(self, run_id):
+    def _fill_from(self, run_id, since_h):
         try:
             folder = rospy.get_param(self.prefix + "loop_recorder/out", "")
-            for names, table, certain in recorded(folder, self.tool, run_id):
+            for names, table, certain in recorded(folder, self.tool, run_id, since_h):
                 with self.lock:
                     if run_id == self.run_id:
                         self._take_rows(names, table, certain)
@@ -466,7 +472,7 @@ class Loop:
     def current(self, now):
         """{(code, signal): (severity, text)} of what is wrong now, and nodes that are away."""
         found, severity = {}, self.severities
-        for (node, code, signal), (_, event, came, at_step, _) in self.seen_events.items():
+        for (node, code, signal, _), (_, event, came, _, _) in self.seen_events.items():
             here = self.states.get(node)
             fresh = now - came < 0.6
             going_on = here is not None and event.count > 0 and event.last + 2 >= here.step
@@ -475,10 +481,11 @@ class Loop:
         codes = {code for code, _ in found}
         for message in self.states.values():
             if message.code and message.code not in codes and message.word not in ("finished",):
-                signal = next((s for (_, code, s) in self.seen_events if code == message.code and s), "")  # one alarm, not one with and one without
+                signal = next((s for (_, code, s, _) in self.seen_events if code == message.code and s), "")  # one alarm, not one with and one without
                 found[(message.code, signal)] = (severity.get(message.code, "warning"), message.reason)
         if self.heard is not None and self.stale(now) and not self.over():
-            found = {("node_silent", "plant"): ("warning", f"the plant has said nothing for {self.stale(now):.0f} s")}
+            found = {key: said for key, said in found.items() if key[0] in NAMED_BY}  # what else was said of it is old
+            found[SILENT_PLANT] = ("warning", f"the plant has said nothing for {self.stale(now):.0f} s")
         return found
 
     severities = {}  # by code, of `fmbpc events`
@@ -593,7 +600,7 @@ class Loop:
                 "rules": predict.rules_of(self.model, value),
                 "signals": [{"name": s.name, "unit": s.unit, "lower": finite(s.lower), "upper": finite(s.upper), "value": finite(self.history.value(self.step, s.name))}
                             for s in list(self.model.outputs) + list(self.model.inputs) + list(self.model.disturbances)],
-                "trust_here": self._trust_here(),
+                "trust_known": self.trust.known(), "trust_here": self._trust_here(),
                 "poles": [] if plan is None else [[round(float(p.real), 6), round(float(p.imag), 6)] for p in plan.poles()],
                 "gains": None if gains is None else [plain(row, 5) for row in gains],
                 "outputs": [s.name for s in self.info.outputs], "inputs": [s.name for s in self.info.inputs],
@@ -617,9 +624,9 @@ def finite(value):
     return float(f"{float(value):.9g}") if value is not None and math.isfinite(value) else None
 
 
-def recorded(folder, tool, run_id=None):
-    """(names, table, of this run for certain) of what the recorder of a loop has on disk: the parts of a run that are filed already, then the run that goes on or has
-    ended; nothing if that is elsewhere."""
+def recorded(folder, tool, run_id=None, since_h=0.0):
+    """(names, table, of this run for certain) of what the recorder of a loop has on disk: the parts of a run that are filed already, of those the ones that end after since_h
+    of the run, then the run that goes on or has ended; nothing if that is elsewhere."""
     if not folder or not os.path.isdir(folder):
         return
     history = os.path.join(folder, "history")
@@ -629,9 +636,12 @@ def recorded(folder, tool, run_id=None):
         found, rows = [], 0
         for part in reversed(parts):
             path = os.path.join(history, part, "trajectory.csv")
-            if os.path.exists(path) and rows < MOST_FILLED:
+            if os.path.exists(path):
                 found.insert(0, read_csv(path))
-                rows += len(found[0][2])
+                names, _, table = found[0]
+                rows += len(table)
+                if rows >= MOST_FILLED or len(table) and "time" in names and table[0, names.index("time")] <= since_h:
+                    break
         for names, _, table in found:
             yield names, table, True
     if tool and os.path.exists(os.path.join(folder, "journal.bin")):

@@ -101,12 +101,18 @@ class Panel:
         found = [t[:-len("/plant_info")] or "/" for t, kind in topics if kind == "fmbpc/PlantInfo" and t.endswith("/plant_info")]
         return [n for n in sorted(found) if not self.only or n in self.only][:MOST_LOOPS]
 
-    def take_up(self, names, now):
+    def make(self, name):
+        """A loop and its desk. Waits for the master: in a thread."""
+        loop = loops.Loop(name, self.history_bytes, self.tool, self.executor)
+        return name, loop, commands.Desk(loop)
+
+    def take_in(self, name, loop, desk):
+        self.loops[name], self.desks[name], self.listed[name] = loop, desk, time.monotonic()
+
+    def keep(self, names, now):
+        """names: of loops that a master lists; None: it does not answer."""
         self.master_gone = names is None
         for name in names or ():
-            if name not in self.loops:
-                self.loops[name] = loops.Loop(name, self.history_bytes, self.tool, self.executor)
-                self.desks[name] = commands.Desk(self.loops[name])
             self.listed[name] = now
         for name, loop in list(self.loops.items()) if names is not None else ():
             if now - max(self.listed.get(name, now), loop.heard or -math.inf) > LEFT_AFTER:
@@ -129,11 +135,19 @@ class Panel:
         if self.looking:
             return
         self.looking = True
+        server = tornado.ioloop.IOLoop.current()
+
+        def look():
+            names = self.find_loops()
+            server.add_callback(self.keep, names, time.monotonic())
+            for name in names or ():
+                if name not in self.loops:
+                    server.add_callback(self.take_in, *self.make(name))
 
         def done(future):
             self.looking = False
-            self.take_up(future.result(), time.monotonic())
-        tornado.ioloop.IOLoop.current().add_future(self.executor.submit(self.find_loops), done)
+            future.result()
+        server.add_future(self.executor.submit(look), done)
 
     # Ten times a second.
 
@@ -207,7 +221,7 @@ class Panel:
             update["ahead"] = loop.ahead() if self.beat % 2 == 0 else False  # False: as before
             update["held"] = bool(loop.kept and loop.kept.recipe_held)
             update["adapt"] = bool(loop.kept.adapt) if loop.kept is not None and loop.kept.adapt_given else None
-            update["trust"], update["fast"] = loops.finite(loop.trust_said), loop.fast()
+            update["trust"], update["fast"] = loops.finite(loop.trust_said) if loop.trust is None or loop.trust.known() else None, loop.fast()
             update["external"] = loop.get("plant", "type") == "external"
             steps, values, wall = loop.history.drawn(loop.sent_from, loop.step, MOST_ROWS)
             loop.sent_from = loop.step + 1

@@ -110,8 +110,10 @@ async function get(path) { const answer = await fetch(path); if (!answer.ok) thr
 
 // ---- the stream
 
+/* A browser opens six connections to a name, and each stream takes one: a page that nobody sees has none. */
 function connect() {
   if (source) source.close();
+  if (document.hidden) { source = null; return; }
   connected = Date.now();
   const loop = view.loop ? "?loop=" + encodeURIComponent(view.loop) : "";
   source = new EventSource("stream" + loop);
@@ -321,7 +323,7 @@ function renderBanner() {
 if (!FILE)
   setInterval(() => {
     renderBanner();
-    if (Date.now() - Math.max(S.heard, connected) > AGAIN) connect();
+    if (!document.hidden && Date.now() - Math.max(S.heard, connected) > AGAIN) connect();
   }, 300);
 
 // ---- dialogs
@@ -946,6 +948,13 @@ function alarmsView() {
       "Acknowledge all")]);
   put($("alarmlist"), [S.alarms.length ? alarmTable(S.alarms) : h("p.soft", null, "All alarms are normal.")]);
 }
+/* What was asked, as it is in the journal: {"values":{"x":"2100"},"decimal":"."}. */
+function wish(note) {
+  const words = (v) => (v && typeof v === "object"
+    ? Object.entries(v).filter(([k]) => k !== "decimal").map(([k, w]) => `${k} ${words(w)}`).join(", ")
+    : String(v));
+  try { return words(JSON.parse(note)); } catch (e) { return note; }
+}
 function journalView() {
   if (drawn !== "journal") {
     $("main").replaceChildren(h("section.card", { "aria-label": "Journal" },
@@ -973,8 +982,10 @@ function journalView() {
         cell("", e.kind === "command" ? `${e.verb}: ${e.what}` : `${e.kind} ${e.what}`),
         cell("by", e.who || ""),
         h("td.reason", null,
-          (e.code ? `${e.code}${e.signal ? " " + e.signal : ""}: ${e.text} ` : "") + (e.note || "") +
-            (e.step !== undefined && e.step !== null && e.loop ? ` · sample ${e.step}` : "")))))]);
+          [
+            e.code ? `${e.code}${e.signal ? " " + e.signal : ""}: ${e.text}` : "",
+            e.what === "requested" ? wish(e.note) : e.note,
+            e.loop && (e.step ?? null) !== null ? `sample ${e.step}` : ""].filter(Boolean).join(" · ")))))]);
 }
 
 // ---- model and settings
@@ -1004,7 +1015,9 @@ async function modelView() {
       h("p.soft", null, m.source),
       h("p", null,
         m.trust_here === null
-          ? "It says nothing of where its data were."
+          ? m.trust_known
+            ? "No trust: one of its signals has no value now."
+            : "No trust: the model does not say where its data were."
           : `Trusted here by ${num(100 * m.trust_here, 3)} %` +
             (m.trust_here < 0.5 ? ": the process is where the model has few data." : ".")),
       h("div.scroll", null,
@@ -1031,7 +1044,8 @@ async function modelView() {
               cell("sets",
                 r.degrees.length
                   ? r.degrees.map((d, q) => `${lagged(o.antecedents[q])} ${d < 5e-4 ? "0" : num(d, 3)}`).join(", ")
-                  : r.center.length ? "around " + r.center.map((v) => num(v, 4)).join(", ") : "–"),
+                  : r.center.length ? "around " + r.center.map((v) => num(v, 4)).join(", ") : "–",
+                ".wide"),
               cell("data", r.data ? String(r.data) : "–", ".num"),
               h("td.reason", null,
                 r.coefficients.map((c, q) => `${num(c, 4)} ${lagged(o.regressors[q])}`).concat([num(r.offset, 4)]).join(" + ").replace(/\+ \u2212/g, "− "))))))));
@@ -1179,7 +1193,7 @@ function render(force) {
   else if (view.kind === "alarms") alarmsView(); else if (view.kind === "journal") journalView(); else overview();
 }
 addEventListener("hashchange", () => { route(); $("main").focus({ preventScroll: true }); scrollTo(0, 0); });
-addEventListener("visibilitychange", () => render(true));
+addEventListener("visibilitychange", () => { if (!FILE) connect(); render(true); });
 addEventListener("resize", () => { clearTimeout(addEventListener.later); addEventListener.later = setTimeout(() => render(true), 150); });
 addEventListener("keydown", (e) => {
   if (e.ctrlKey || e.altKey || e.metaKey || /INPUT|SELECT|TEXTAREA/.test(e.target.tagName) || $("dialog").open || FILE) return;
