@@ -93,7 +93,7 @@ def rows(family, seeds, percent):
 
 def page(families, seeds, percent):
     lines = ["# Noise on every loop", "",
-             "Explanation with figures for anyone who asks what noise costs: every shipped predictive loop beside the baseline of its family, under",
+             "Explanation with figures for anyone who judges loops under noise: every shipped predictive loop beside the baseline of its family, under",
              "white noise of %g %% of the span of the setpoints on each output, seeds %s; medians of the ISE of the noise-free outputs."
              % (percent, seeds), "",
              "    scripts/noise_survey.py --write     # makes this page", "",
