@@ -61,7 +61,8 @@ std::string tuneHere(const std::string& loop, const std::string& file,
     if (evaluations > 0) search.evaluations = evaluations;
     if (seed >= 0) search.seed = static_cast<std::uint64_t>(seed);
     search.validate();
-    const TuningObjective objective(loop, tuning, parseOverrides(set), std::make_shared<ThreadPool>(threads));
+    const TuningObjective objective(loop, tuning, parseOverrides(set),
+                                    std::make_shared<ThreadPool>(threads));
     TuneOptions options;
     std::atomic<bool> ended{false};
     options.stop = [&ended] { return ended.load(); };
@@ -130,20 +131,20 @@ void bindReports(py::module_& m) {
   });
   m.def("tune", &tuneHere);
   m.def("commission", &commissionHere);
-  m.def("stability", [](const std::string& name, std::vector<std::string> set,
-                        const std::string& at, const std::string& horizon, double noise_gain,
-                        int settling, int points, bool on_model) {
-    tool::StabilityArguments a;
-    a.name = name;
-    a.set = std::move(set);
-    a.at = at;
-    a.horizon = horizon;
-    a.noise_gain = noise_gain;
-    a.settling = settling;
-    a.points = points;
-    a.on_model = on_model;
-    return withoutGil([&] { return tool::stabilityReport(a).dump(); });
-  });
+  m.def("stability",
+        [](const std::string& name, std::vector<std::string> set, const std::string& at,
+           const std::string& horizon, double noise_gain, int settling, int points, bool on_model) {
+          tool::StabilityArguments a;
+          a.name = name;
+          a.set = std::move(set);
+          a.at = at;
+          a.horizon = horizon;
+          a.noise_gain = noise_gain;
+          a.settling = settling;
+          a.points = points;
+          a.on_model = on_model;
+          return withoutGil([&] { return tool::stabilityReport(a).dump(); });
+        });
 }
 
 }  // namespace fpc::python

@@ -21,7 +21,7 @@ namespace {
 
 using XmlRpc::XmlRpcValue;
 
-constexpr int kEachLook = 8;   // so often; then every so many, for one whom nothing helps
+constexpr int kEachLook = 8;     // so often; then every so many, for one whom nothing helps
 constexpr int kFirstLooks = 20;  // looks that a first registration may take
 
 XmlRpcValue request(const std::vector<std::string>& arguments) {

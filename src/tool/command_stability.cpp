@@ -292,8 +292,8 @@ Json reportOf(const StabilitySubject& s, const StabilityArguments& a) {
 
 Json stabilityReport(const StabilityArguments& arguments) {
   require(arguments.points >= 0 && arguments.points <= 100, "points", "0 to 100");
-  return reportOf(
-      readSubject(arguments.name, arguments.set, arguments.at, arguments.on_model), arguments);
+  return reportOf(readSubject(arguments.name, arguments.set, arguments.at, arguments.on_model),
+                  arguments);
 }
 
 int stability(const StabilityArguments& arguments) {

@@ -79,7 +79,7 @@ struct ValidateArguments {
 struct StabilityArguments {
   std::string name;              ///< model or loop
   std::vector<std::string> set;  ///< KEY.PATH=VALUE over the loop file
-  std::string at;    ///< "name=value,..."
+  std::string at;                ///< "name=value,..."
   std::string horizon{"1..200"};
   std::string out;
   double noise_gain{0.0};  ///< limits of the advisor; 0: no advice

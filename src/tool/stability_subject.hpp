@@ -28,8 +28,8 @@ struct StabilitySubject {
 };
 
 /// Loops go before models of the same name. `at` is "name=value,...": outputs given choose the
-/// nearest equilibrium; `set` is KEY=VALUE over the loop file. @throws InputError naming what was not
-/// understood.
+/// nearest equilibrium; `set` is KEY=VALUE over the loop file. @throws InputError naming what was
+/// not understood.
 StabilitySubject readSubject(const std::string& name, const std::vector<std::string>& set,
                              const std::string& at, bool on_model);
 
