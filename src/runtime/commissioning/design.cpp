@@ -248,8 +248,8 @@ class Designer {
     std::vector<double> peaks(models_.ensemble.size());
     parallelFor(peaks.size(), params_.threads, [&](std::size_t m) {
       DesignFigures present;
-      const ProbeResult result = probe(brief_.loop.resolved, models_.ensemble[m], present);
-      peaks[m] = result == ProbeResult::kBends ? 0.0 : present.worst_peak;
+      probe(brief_.loop.resolved, models_.ensemble[m], present);
+      peaks[m] = present.worst_peak;
     });
     std::vector<const TsModel*> held;
     for (std::size_t m = 0; m < peaks.size(); ++m)
@@ -583,7 +583,7 @@ class Designer {
 
   /// The loop at rest on one model, added to the figures; a loop that is not linear there is taken
   /// for one that is not stable.
-  ProbeResult probe(const std::string& text, const TsModel& model, DesignFigures& figures) const {
+  void probe(const std::string& text, const TsModel& model, DesignFigures& figures) const {
     LoopFile loop = scenario(text, model);
     loop.simulation.disturbance_commands.clear();
     const LoopCourse course(loop);
@@ -592,7 +592,7 @@ class Designer {
     if (probed.result != ProbeResult::kLinear) {
       figures.worst_peak = kInfinity;
       figures.least_gain = figures.least_delay_s = 0.0;
-      return probed.result;
+      return;
     }
     figures.worst_peak = std::max(figures.worst_peak, probed.response->peak());
     for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
@@ -600,7 +600,6 @@ class Designer {
       figures.least_gain = std::min(figures.least_gain, margin.gain_upper);
       figures.least_delay_s = std::min(figures.least_delay_s, margin.delay_s);
     }
-    return probed.result;
   }
 
   /// With `early` the first model beyond the peak ends it, and is the first one the next time.
