@@ -122,8 +122,8 @@ class Startup(unittest.TestCase):
         self.start("fuzzy_identifier")
         recorded.wait()
         self.assertEqual({"/fmbpc_controller", "/fuzzy_identifier", "/loop_recorder"}, {m.node for m in ready.messages})
-        self.assertEqual(0, measurements.messages[0].step)
-        self.assertEqual(10, measurements.messages[-1].step)
+        ring.wait_until(lambda: measurements.messages and measurements.messages[-1].step == 10, "the last sample, on a connection of its own")
+        self.assertEqual(list(range(11)), [m.step for m in measurements.messages])
 
     def test_a_registration_that_takes_long_is_not_taken_for_a_lost_one(self):
         master = SlowMaster("/slow/loop_state", 4.0)

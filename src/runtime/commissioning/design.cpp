@@ -10,7 +10,6 @@
 #include "base/parallel.hpp"
 #include "base/statistics.hpp"
 #include "base/yaml_load.hpp"
-#include "control/pi/pi.hpp"
 #include "control/pi/tuning.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "fmbpc/base/signals.hpp"
@@ -304,13 +303,20 @@ class Designer {
 
   /// The gains in charge, where a PI holds the pair: of a plant that runs away others are a guess.
   void present(const Pairing& pair, PiSetting& setting) const {
-    const auto* in_charge = findParams<PiParams>(*brief_.loop.controller);
-    if (!brief_.closed || !in_charge) return;
-    for (const PiLoop& loop : in_charge->loops)
-      if (loop.input == pair.input && loop.output == pair.output && loop.ki_per_h > 0.0) {
-        setting.kp = loop.reverse ? -loop.kp : loop.kp;
-        setting.ti_min = loop.kp / loop.ki_per_h * 60.0;
-      }
+    const PlantInfo& plant = brief_.loop.plant_info;
+    const YAML::Node in_charge = loadYaml(brief_.loop.resolved, brief_.loop.name)["controller"];
+    if (!brief_.closed) return;
+    for (const auto& loop : in_charge["loops"]) {
+      const double kp = loop["kp"].as<double>(0.0), ki_per_h = loop["ki_per_h"].as<double>(0.0);
+      if (loop["input"].as<std::string>("") !=
+              plant.inputs[static_cast<std::size_t>(pair.input)].name ||
+          loop["output"].as<std::string>("") !=
+              plant.outputs[static_cast<std::size_t>(pair.output)].name ||
+          !(kp / ki_per_h > 0.0))
+        continue;
+      setting.kp = loop["reverse"].as<bool>(false) ? -kp : kp;
+      setting.ti_min = kp / ki_per_h * 60.0;
+    }
   }
 
   std::string piText(const Vector& x) const {
