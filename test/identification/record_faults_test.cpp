@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <set>
 
 #include "base/csv.hpp"
 #include "base/random.hpp"
@@ -65,9 +66,11 @@ TEST(RecordFaults, FrozenStretchesOfPublicRecordsAreFoundAndHealthyOnesNotAccuse
   if (!folder) GTEST_SKIP() << "FMBPC_DATA names no folder of public records";
   std::mt19937_64 random(1);
   int columns = 0, accused = 0, frozen = 0, found = 0;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    if (file.path().extension() != ".csv") continue;
-    const Matrix values = readCsv(file.path().string()).values;
+  std::set<std::string> files;  // in an order of their own: the draws are the same everywhere
+  for (const auto& file : std::filesystem::directory_iterator(folder))
+    if (file.path().extension() == ".csv") files.insert(file.path().string());
+  for (const std::string& file : files) {
+    const Matrix values = readCsv(file).values;
     for (Index c = 0; c < values.cols(); ++c, ++columns) {
       DataSet data;
       data.values = values;
