@@ -51,7 +51,8 @@ def cases_in(folder, name, since):
     except (xml.ParseError, ValueError) as error:
         return [(name, "failed", f"broken result file: {error}")]
     if tests or failures:
-        found.append((name, "failed", f"its totals name {tests} tests and {failures} failures or errors more than its cases"))
+        told = "\n".join((element.text or "").strip()[-1500:] for element in root.iter("system-err"))
+        found.append((name, "failed", f"its totals name {tests} tests and {failures} failures or errors more than its cases\n{told}"))
     return found or [(name, "failed", "ran no test")]
 
 

@@ -135,7 +135,7 @@ void print(const std::string& run, const EffluentReport& r) {
 int evaluate(const EvaluateArguments& arguments) {
   EvaluateParams params{arguments.from_h, arguments.to_h, arguments.weights_2002};
   params.validate();
-  Overrides overrides = parseOverrides(arguments.set);
+  const Overrides overrides = parseOverrides(arguments.set);
   Json all = Json::array();
   std::set<Levers> levers;
   for (const auto& run : arguments.runs) {

@@ -31,7 +31,7 @@ int exportLaw(const ExportArguments& a) {
   if (!a.check.empty()) return checkExport(a.check);
   require(!a.loop.empty() && !a.out.empty(), "export",
           "a LOOP and --out FOLDER, or --check FOLDER");
-  Overrides overrides = parseOverrides(a.set);
+  const Overrides overrides = parseOverrides(a.set);
   ExportOptions options = a.options;
   options.exporter = "fmbpc " FMBPC_VERSION;
   options.c99 = a.to != "st";

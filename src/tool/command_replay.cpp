@@ -15,7 +15,7 @@ namespace {
 using Json = OrderedJson;
 
 LoopFile loopOf(const ReplayArguments& a) {
-  Overrides overrides = parseOverrides(a.set);
+  const Overrides overrides = parseOverrides(a.set);
   if (!a.loop.empty()) return readLoop(a.loop, overrides);
   require(a.set.empty(), "--set", "a LOOP: the bag's own loop is taken as it is");
   return parseLoop(loopTextOf(a.bag), std::filesystem::path(a.bag).stem().string());

@@ -110,7 +110,7 @@ namespace {
 
 /// All loops of a plant at once, each into a folder of its name.
 int runWholePlant(const RunArguments& arguments) {
-  Overrides overrides = parseOverrides(arguments.set);
+  const Overrides overrides = parseOverrides(arguments.set);
   const PlantLoops plant = readPlantLoops(arguments.plant, overrides);
   catchInterrupts();
   RunOptions options;

@@ -66,7 +66,7 @@ StudyFile fromOptions(const StudyArguments& arguments) {
 
 /// The options over the study file.
 void layOver(const StudyArguments& arguments, StudyFile& study) {
-  for (const auto& text : arguments.set) study.set.push_back(parseOverride(text));
+  for (auto& override : parseOverrides(arguments.set)) study.set.push_back(std::move(override));
   for (const auto& text : arguments.vary) study.vary.push_back(parseVariation(text));
   for (const auto& text : arguments.noise) study.noise.push_back(parseNoise(text));
   if (arguments.noise_percent >= 0.0) study.noise_percent = arguments.noise_percent;

@@ -122,7 +122,7 @@ int tune(const TuneArguments& arguments) {
   const TuningFile tuning = readTuning(arguments.tuning);
   const SearchParams search = searchOf(arguments, tuning);
   require(!arguments.resume || !arguments.out.empty(), "--resume", "--out with a stopped tuning");
-  Overrides overrides = parseOverrides(arguments.set);
+  const Overrides overrides = parseOverrides(arguments.set);
   const auto pool =
       arguments.pool ? arguments.pool : std::make_shared<ThreadPool>(arguments.threads);
   const TuningObjective objective(arguments.loop, tuning, overrides, pool);

@@ -20,7 +20,7 @@ class PlcBehindWire:
     RANGE, SHARE = 200.0, 100.0  # l/min, counts per l/min
 
     def __init__(self, folder):
-        self.port = wire.free_port()
+        self.port = ring.free_port()
         self.log = os.path.join(folder, "plc.jsonl")
         self.process = subprocess.Popen(
             ["/usr/bin/python3", os.path.join(SCRIPTS, "soft_plc.py"), "--port", str(self.port), "--log", self.log],

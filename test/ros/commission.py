@@ -15,7 +15,6 @@ import yaml
 from fmbpc.msg import LoopState, Measurement
 
 import ring
-import wire
 from modbus import LOWER, UPPER, Plc
 
 LOOP = {"extends": "cstr_modbus", "title": "Reactor behind a PLC, PI",
@@ -31,21 +30,16 @@ class Commission(unittest.TestCase):
         cls.loop, cls.brief = (os.path.join(cls.folder, name) for name in ("reactor.yaml", "brief.yaml"))
         for file, content in ((cls.loop, LOOP), (cls.brief, BRIEF)):
             pathlib.Path(file).write_text(yaml.safe_dump(content), encoding="utf-8")
-        cls.plc = Plc(wire.free_port())
+        cls.plc = Plc(ring.free_port())
         cls.addClassCleanup(lambda: ring.killed(cls.plc.process))
         sets = f"gateway.modbus.port={cls.plc.port} sampling.duration_h=0 setpoint.schedule=[]"
         cls.launch = subprocess.Popen(
             ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", f"loop:={cls.loop}", f"set:={sets}", "draw:=false", "keep:=true",
                        "sim_time:=false", "respawn:=true", f"out:={cls.folder}/out"]), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        cls.addClassCleanup(cls.end_launch)
+        cls.addClassCleanup(ring.end_launch, cls.launch)
         cls.states = ring.Listener("loop_state", LoopState, "/plant_gateway")
         cls.measurements = ring.Listener("measurement", Measurement)
         cls.states.wait(lambda s: s.summary and s.mode == LoopState.AUTOMATIC)
-
-    @classmethod
-    def end_launch(cls):
-        cls.launch.send_signal(signal.SIGINT)
-        cls.launch.wait(60)
 
     def words(self, until):
         return ["fmbpc_tool", "commission", self.brief, "--topics", "--folder", os.path.join(self.folder, "stages"), "--until", until, "--evaluations", "8", "--members", "8"]

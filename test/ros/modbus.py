@@ -98,7 +98,7 @@ class Plc:
 class Modbus(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.plc = Plc(wire.free_port())
+        cls.plc = Plc(ring.free_port())
         cls.addClassCleanup(lambda: ring.killed(cls.plc.process))
         cls.wire = wire.Wire(cls.plc.port)
         sets = f"gateway.modbus.port={cls.wire.port} sampling.duration_h=0 setpoint.schedule=[]"
@@ -106,15 +106,10 @@ class Modbus(unittest.TestCase):
             ring.tied(["roslaunch", "--wait", "fmbpc", "loop.launch", "loop:=cstr_modbus", f"set:={sets}", "draw:=false",
                        "keep:=true", "sim_time:=false", "respawn:=true", f"out:={tempfile.mkdtemp()}"]),
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        cls.addClassCleanup(cls.end_launch)
+        cls.addClassCleanup(ring.end_launch, cls.launch)
         cls.states = ring.Listener("loop_state", LoopState, "/plant_gateway")
         cls.measurements = ring.Listener("measurement", Measurement)
         cls.await_calm()
-
-    @classmethod
-    def end_launch(cls):
-        cls.launch.send_signal(signal.SIGINT)
-        cls.launch.wait(30)
 
     @classmethod
     def await_calm(cls, patience=ring.PATIENCE):

@@ -13,7 +13,6 @@ import rostest
 from fmbpc.msg import Setpoint
 
 import ring
-import wire
 
 SCRIPTS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "scripts")
 LOWER, UPPER, MOVE = 0.0, 200.0, 4.0
@@ -29,7 +28,7 @@ class PlcLaw(unittest.TestCase):
         ring.wait_until(lambda: any(condition(line) for line in self.lines()[since:]), what)
 
     def test_the_law_goes_on_when_ros_is_killed(self):
-        folder, self.log, port = tempfile.mkdtemp(), tempfile.NamedTemporaryFile(suffix=".jsonl"), wire.free_port()
+        folder, self.log, port = tempfile.mkdtemp(), tempfile.NamedTemporaryFile(suffix=".jsonl"), ring.free_port()
         ring.tool("export", "cstr_modbus", "--to", "c99", "--samples", "10", "--out", folder)
         plc = subprocess.Popen(ring.tied(["/usr/bin/python3", os.path.join(SCRIPTS, "soft_plc.py"), "--port", str(port), "--log", self.log.name,
                                           "--law", folder]), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

@@ -5,6 +5,7 @@ import os
 import signal
 import socket
 import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -253,6 +254,18 @@ def runs(process):
             return file.read().rsplit(")", 1)[1].split()[0] != "Z"
     except OSError:
         return False
+
+
+def end_launch(launch):
+    """Ctrl-C to a roslaunch. One that does not end is a failure, and what still runs of it is printed."""
+    launch.send_signal(signal.SIGINT)
+    try:
+        launch.wait(PATIENCE)
+    except subprocess.TimeoutExpired:
+        left = subprocess.run(["ps", "-eo", "pid,ppid,stat,wchan:20,etimes,args"], capture_output=True, text=True, check=False).stdout
+        print("\n".join(line[:200] for line in left.splitlines() if "__name:=" in line or "roslaunch" in line), file=sys.stderr)
+        launch.kill()
+        raise
 
 
 def killed(process):

@@ -6,12 +6,6 @@ import threading
 import time
 
 
-def free_port():
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return probe.getsockname()[1]
-
-
 def frame(stream):
     """One whole message: (transaction, unit, function and data)."""
     head = exactly(stream, 7)

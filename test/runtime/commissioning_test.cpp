@@ -10,6 +10,7 @@
 #include "base/files.hpp"
 #include "fmbpc/base/input_error.hpp"
 #include "paths.hpp"
+#include "runtime/commissioning/design.hpp"
 #include "runtime/run.hpp"
 
 namespace fpc {
@@ -132,6 +133,89 @@ TEST(Commissioning, OfOneInputGoesTheWholeWayInsideItsLimits) {
     EXPECT_NEAR(record.samples.back().state.outputs[0], 50.0, 0.5)
         << file;  // its own setpoint at the end
   }
+}
+
+TEST(Commissioning, WaitsForAMeasuredDisturbanceAndFeedsItForward) {
+  for (const bool moves : {false, true}) {
+    std::string loop = kTank;
+    if (moves) loop.replace(loop.find("[]}"), 3, "[{time_h: 7, name: T_in, value: 10}]}");
+    const std::string folder = folderOf("waits", kTankBrief, "tank.yaml", loop);
+    Commissioning c = made(folder);
+    c.run(Stage::kModel);
+    const OrderedJson test = c.figures(Stage::kTest);
+    EXPECT_EQ(test["ended"], "enough") << test["reason"];
+    EXPECT_GT(test["listened"], 0) << "nothing had moved it";
+    const OrderedJson element = elementOf(c, 0, 1);
+    EXPECT_EQ(element["from"], "T_in");
+    EXPECT_EQ(element["seen"], moves);
+    if (moves) expectWithin(element, "gain", "gain_bound", 0.8);
+  }
+}
+
+/// Under its tight PI the tank is taken for an integrator, with a measured disturbance that
+/// integrates as well: the loads that the design tries must be of the size of its steps.
+TEST(Commissioning, ThePiOfAPlantTakenForAnIntegratorHoldsThePlant) {
+  const std::string folder = folderOf("integrator", kTankBrief, "tank.yaml",
+                                      "extends: heated_tank\nnoise: {std: {T: 0.05}}\n");
+  Commissioning c = made(folder);
+  c.run(Stage::kDesign);
+  ASSERT_EQ(c.figures(Stage::kModel)["outputs"][0]["kind"], "integrating");
+  const RunRecord record = runLoop(readLoop(c.piFile()));
+  EXPECT_NEAR(record.samples.back().state.outputs[0], 50.0, 1.5);
+}
+
+/// One element from heat to T, and likely models with these parts of its gain.
+ProcessModels unstableModels(const CommissioningBrief& brief, const std::vector<double>& parts) {
+  ProcessFit fit;
+  fit.kind = ProcessKind::kUnstable;
+  ElementEstimate heat, inlet;
+  heat.element = {1.0, -600.0, 0.0, 0.0, 30.0, false};
+  heat.seen = true;
+  fit.elements = {heat, inlet};
+  fit.one_step = fit.free_run = 0.05;
+  fit.output = 42.0;
+  fit.input = Vector::Constant(2, 10.0);
+  ProcessModels models;
+  models.fits = {fit};
+  models.model.name = "unstable";
+  models.model.sample_time_s = brief.loop.plant_info.sample_time_s;
+  models.model.outputs = brief.loop.plant_info.outputs;
+  models.model.inputs = brief.loop.plant_info.inputs;
+  models.model.disturbances = brief.loop.plant_info.disturbances;
+  for (const double part : parts) {
+    models.fits.front().ensemble.push_back({heat.element, inlet.element});
+    models.fits.front().ensemble.back().front().gain *= part;
+    models.ensemble.push_back(spoiltModel(models, part, 0.0));
+  }
+  models.model = spoiltModel(models, 1.0, 0.0);
+  models.errors.one_step = models.errors.free_run = Vector::Constant(1, 0.05);
+  return models;
+}
+
+/// The present PI, u = -4 e, holds the lag -1 / (600 s - 1) and not one of a twentieth of its gain.
+TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
+  const std::string folder =
+      folderOf("unstable", kTankBrief, "tank.yaml",
+               "extends: heated_tank\ncontroller:\n  loops: [{input: heat, output: T, kp: 4, "
+               "ki_per_h: 8, reverse: true, start: bumpless}]\n");
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  const auto designed = [&](const std::vector<double>& parts) {
+    const ProcessModels models = unstableModels(brief, parts);
+    writeModels(models, folder);
+    DesignParams params;
+    params.evaluations = 8;
+    params.tuned_members = 2;
+    params.threads = 1;
+    return designLaws(brief, Vector::Constant(1, 0.05), inFolder(folder, "model.yaml"), models,
+                      params);
+  };
+  const Design some = designed({1.1, 0.05, 0.9, 1.05, 0.95});
+  EXPECT_EQ(some.refuted, 1U);
+  EXPECT_TRUE(some.offers_law || some.offers_pi);
+  EXPECT_NE(some.pi.find("kp: -"), std::string::npos) << "its sign holds an unstable lag";
+  const Design none = designed({0.05, -1.0, 0.02, 0.04, 0.9});
+  EXPECT_EQ(none.refuted, 4U);
+  EXPECT_FALSE(none.offers_law || none.offers_pi);
 }
 
 TEST(Commissioning, OfTwoInputsFindsTheCouplingInsideItsLimits) {

@@ -200,20 +200,13 @@ class Designer {
     d.probed = probed_.size();
     allowWhatThereIs(d);
     show("margins of the PI");
-    soften(
-        d.pi_figures, [&] { return piText(pi_x); },
-        [&](double) {
-          // log2 of the gain, or where the gain is what holds the plant, of the integral's time.
-          for (Index p = 0; p < loops(); ++p)
-            if (elementOf(p).time_constant < 0.0)
-              pi_x[2 * p + 1] += 0.5;
-            else
-              pi_x[2 * p] -= 0.5;
-        });
+    const auto pi_text = [this](const Vector& at) { return piText(at); };
+    soften(d.pi_figures, pi_x, pi_text, [this](Vector at, double) { return softerPi(at); });
     pi_ = piOf(pi_x);
     show("margins of the law");
-    soften(
-        d.law_figures, [&] { return lawText(x); }, [&](double peak) { x = softerLaw(x, peak); });
+    const auto law_text = [this](const Vector& at) { return lawText(at); };
+    soften(d.law_figures, x, law_text,
+           [this](const Vector& at, double peak) { return softerLaw(at, peak); });
     d.pi = piText(pi_x);
     d.law = lawText(x);
     compare(d);
@@ -390,15 +383,19 @@ class Designer {
 
   // ---- judging
 
-  /// What a constant load of the model's equation is divided by once the output rests, or, where it
-  /// does not rest, once the settling time is over.
+  /// What a constant load of the model's equation is divided by once the output rests. Of an
+  /// integrator: once the settling time is over.
   double loadShare(const TsModel& model, Index output) const {
-    double sum = 1.0;
+    double sum = 1.0, slope = 0.0;  // A(1) of A = 1 - sum a_i q^i, and A / (1 - q) at 1
     const OutputModel& submodel = model.submodels[static_cast<std::size_t>(output)];
-    for (std::size_t r = 0; r < submodel.regressors.size(); ++r)
-      if (submodel.regressors[r].kind == SignalKind::kOutput)
-        sum -= submodel.rules.front().coefficients[static_cast<Index>(r)];
-    return std::max(sum, brief_.loop.plant_info.sample_time_s / outline_.settling);
+    for (std::size_t r = 0; r < submodel.regressors.size(); ++r) {
+      if (submodel.regressors[r].kind != SignalKind::kOutput) continue;
+      const double a = submodel.rules.front().coefficients[static_cast<Index>(r)];
+      sum -= a;
+      slope += (submodel.regressors[r].lag + 1) * a;
+    }
+    const double Ts = brief_.loop.plant_info.sample_time_s;
+    return std::max(std::abs(sum), std::abs(slope) * Ts / outline_.settling);
   }
 
   /// The loop on one model, asked for steps of all that is held, then for loads.
@@ -548,14 +545,31 @@ class Designer {
       allowed_peak_ = std::max(params_.peak, present.worst_peak);
   }
 
-  /// Until all of them are stable enough, or nothing helps.
+  /// Until all of them are stable enough. Where nothing helps the setting stays as it was tuned.
   template <typename Text, typename Softer>
-  void soften(DesignFigures& figures, const Text& text, const Softer& softer) {
-    for (int k = 0;; ++k) {
-      margins(text(), figures, k < kSoftenings);
-      if (figures.worst_peak <= allowed_peak_ || k == kSoftenings) return;
-      softer(figures.worst_peak);
+  void soften(DesignFigures& figures, Vector& x, const Text& text, const Softer& softer) {
+    Vector at = x;
+    for (int k = 0; k <= kSoftenings; ++k) {
+      margins(text(at), figures, k < kSoftenings);
+      if (figures.worst_peak <= allowed_peak_) {
+        x = at;
+        return;
+      }
+      at = softer(at, figures.worst_peak);
     }
+    margins(text(x), figures, false);
+  }
+
+  /// x: log2 of gains and integral times. Of an integrator a lower gain alone swings more; of an
+  /// unstable lag the gain is what holds it.
+  Vector softerPi(Vector x) const {
+    for (Index p = 0; p < loops(); ++p) {
+      const ProcessElement& e = elementOf(p);
+      const bool unstable = !e.integrating && e.time_constant < 0.0;
+      if (!unstable) x[2 * p] -= 0.5;
+      if (unstable || e.integrating) x[2 * p + 1] += 0.5;
+    }
+    return x;
   }
 
   /// The law with costlier moves, a slower observer or slower references: the one of the three

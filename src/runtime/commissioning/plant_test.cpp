@@ -236,13 +236,10 @@ const Vector& PlantTest::choose(const Measurement& now, const Vector& present) {
     if (std::isfinite(now.outputs[i])) last_output_[i] = now.outputs[i];
   record_.fillTo(now.header);
   follow();
+  if (tested_ > 0) return sent_ = sent(level_, present, sent_);
   const double Ts = record_.info().sample_time_s;
   const double longest = settling_ > 0.0 ? std::max(kLongDwell * settling_ / Ts, 3.0) : kFirstDwell;
   const double shortest = std::max<double>(kShortestDwell, kShortDwell * settling_ / Ts);
-  if (tested_ > 0) {
-    std::fill(level_.begin(), level_.end(), 0);
-    return sent_ = sent(level_, present, sent_);
-  }
   std::vector<int> asked = level_;
   for (std::size_t j = 0; j < asked.size(); ++j) {
     if (left_[j]-- > 0) continue;
@@ -346,21 +343,18 @@ void PlantTest::judge() {
            "the dead time");
     }
   }
-  reason_ = why;
-  const char* const known = "gains and dead times are within the bounds asked for";
-  if (tested_ > 0) {
-    reason_ = known;
-    if (knowsDisturbances()) end_ = TestEnd::kEnough;
-    return;
-  }
   const bool long_enough =
       settling_ > 0.0 && static_cast<double>(rows()) * Ts >= kSettlings * settling_;
   enough_ = worst <= 1.0 && long_enough ? enough_ + 1 : 0;
-  if (enough_ < kTwice) return;
-  reason_ = known;
-  tested_ = rows();
-  last_row_ = tested_ + static_cast<Index>(kListen * static_cast<double>(last_row_ - tested_));
-  if (knowsDisturbances() || last_row_ <= tested_) end_ = TestEnd::kEnough;
+  if (tested_ == 0) {
+    reason_ = why;
+    if (enough_ < kTwice) return;
+    reason_ = "gains and dead times are within the bounds asked for";
+    tested_ = rows();
+    last_row_ = tested_ + static_cast<Index>(kListen * static_cast<double>(last_row_ - tested_));
+    std::fill(level_.begin(), level_.end(), 0);
+  }
+  if (knowsDisturbances()) end_ = TestEnd::kEnough;
 }
 
 /// Each measured disturbance was seen to act on an output.
