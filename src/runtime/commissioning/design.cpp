@@ -555,7 +555,9 @@ class Designer {
         x = at;
         return;
       }
-      at = softer(at, figures.worst_peak);
+      const Vector next = softer(at, figures.worst_peak);
+      if (next == at) break;  // no way lowers it
+      at = next;
     }
     margins(text(x), figures, false);
   }
@@ -572,20 +574,22 @@ class Designer {
     return x;
   }
 
-  /// The law with costlier moves, a slower observer or slower references: the one of the three
-  /// whose sensitivity peak on the model that failed falls most for what it costs.
+  /// The law with costlier or cheaper moves, a slower or faster observer, slower or faster
+  /// references: the one of the six whose sensitivity peak on the model that failed falls most for
+  /// what it costs, `x` if it falls with none. What runs away may need the faster ones.
   Vector softerLaw(const Vector& x, double peak) const {
     const auto costOf = [&](const Vector& at) {
       const std::vector<double> costs = costsOver(lawText(at), tuned_);
       return std::accumulate(costs.begin(), costs.end(), 0.0);
     };
-    Matrix ways = Matrix::Zero(x.size(), 3);
+    Matrix ways = Matrix::Zero(x.size(), 6);
     ways(0, 0) = std::log10(kSofter);
     ways(1, 1) = -0.5 * std::log10(kSofter);
     ways.col(2).tail(x.size() - 2).setConstant(0.5 * std::log2(kSofter));
+    ways.rightCols(3) = -ways.leftCols(3);
     const double cost = costOf(x);
     double best = 0.0;
-    Vector softer = x + ways.col(0);
+    Vector softer = x;
     for (Index way = 0; way < ways.cols(); ++way) {
       const Vector at = x + ways.col(way);
       DesignFigures figures;
