@@ -216,6 +216,8 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   const Design none = designed({0.05, -1.0, 0.02, 0.04, 0.9});
   EXPECT_EQ(none.refuted, 4U);
   EXPECT_FALSE(none.offers_law || none.offers_pi);
+  EXPECT_FALSE(std::isfinite(none.law_figures.tuned) || std::isfinite(none.ratio));
+  EXPECT_NE(none.pi.find("kp:"), std::string::npos);
 }
 
 TEST(Commissioning, OfTwoInputsFindsTheCouplingInsideItsLimits) {

@@ -39,6 +39,7 @@ constexpr double kSpoiltShare = 0.2;                      // of the cost that is
 constexpr double kWeakWeight = 0.3;   // of the square of a weak direction's gain
 constexpr double kZoneWeight = 0.01;  // of an output that may float
 constexpr double kLeastBetter = 1.0;  // cost ratio that a law must be below
+constexpr const char* kNeither = "neither is offered: test again, or allow more plant time";
 
 std::string mapOf(const std::vector<SignalInfo>& signals, const Vector& values) {
   std::string text = "{";
@@ -188,11 +189,12 @@ class Designer {
     require(!outline_.pairs.empty(), brief_.file + ": zone", "an output that is to be held");
     leaveOutRefuted(d);
     lookAtDirections(d);
+    Vector start, width;
+    lawStart(start, width);
+    if (refuted_) return untuned(d, start);
     Vector pi_x = searched(
         "PI", piStart(), piWidth(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
     pi_ = piOf(pi_x);
-    Vector start, width;
-    lawStart(start, width);
     Vector x = searched(
         "law", start, width, [this](const Vector& point) { return lawText(point); }, d.law_figures);
     show("margins of the present control");
@@ -248,6 +250,19 @@ class Designer {
       if (peaks[m] <= kMostPresent) held.push_back(&models_.ensemble[m]);
     d.refuted = models_.ensemble.size() - held.size();
     refuted_ = !split(held);
+  }
+
+  /// There is nothing to tune on: the loop files hold what a search would begin with.
+  Design untuned(Design& d, const Vector& law_start) const {
+    d.pi = piText(piStart());
+    d.law = lawText(law_start);
+    for (DesignFigures* figures : {&d.law_figures, &d.pi_figures}) figures->worst_peak = kInfinity;
+    d.remarks.push_back("the present control holds the plant and would not hold " +
+                        std::to_string(d.refuted) + " of " +
+                        std::to_string(models_.ensemble.size()) +
+                        " models: they are not its, and nothing was tuned on them");
+    d.remarks.push_back(kNeither);
+    return d;
   }
 
   // ---- the PI
@@ -654,12 +669,8 @@ class Designer {
     d.ratio_bound = d.ratio * std::expm1(half);
     const bool pi_holds = d.pi_figures.worst_peak <= allowed_peak_;
     const bool law_holds = d.law_figures.worst_peak <= allowed_peak_;
-    d.offers_law = !refuted_ && law_holds && (!pi_holds || std::exp(mean + half) < kLeastBetter);
-    d.offers_pi = !refuted_ && !d.offers_law && pi_holds;
-    if (refuted_)
-      d.remarks.push_back("the present control holds the plant and would not hold " +
-                          std::to_string(d.refuted) + " of " +
-                          std::to_string(models_.ensemble.size()) + " models: they are not its");
+    d.offers_law = law_holds && (!pi_holds || std::exp(mean + half) < kLeastBetter);
+    d.offers_pi = !d.offers_law && pi_holds;
     if (!law_holds)
       d.remarks.push_back("the law is not stable on every model with a sensitivity peak below " +
                           shortText(allowed_peak_));
@@ -669,7 +680,7 @@ class Designer {
     d.remarks.push_back(d.offers_law ? "the law is offered: it costs " + shortText(d.ratio) +
                                            " of what the PI does"
                         : d.offers_pi ? "the PI is offered: the law does not beat it"
-                                      : "neither is offered: test again, or allow more plant time");
+                                      : kNeither);
   }
 
   void lookAtDirections(Design& d) {
@@ -771,7 +782,7 @@ Design designLaws(const CommissioningBrief& brief, const Vector& noise,
 
 OrderedJson toJson(const Design& d, const PlantInfo& plant) {
   const auto figures = [&](const DesignFigures& f) {
-    return OrderedJson{{"tuned_cost", f.tuned},
+    return OrderedJson{{"tuned_cost", numberOrNull(f.tuned)},
                        {"held_out_costs", f.costs},
                        {"sensitivity_peak", numberOrNull(f.worst_peak)},
                        {"gain_margin", numberOrNull(f.least_gain)},
@@ -787,8 +798,8 @@ OrderedJson toJson(const Design& d, const PlantInfo& plant) {
   return {{"offers", d.offers_law  ? "law"
                      : d.offers_pi ? "pi"
                                    : "none"},
-          {"cost_ratio", d.ratio},
-          {"cost_ratio_bound", d.ratio_bound},
+          {"cost_ratio", numberOrNull(d.ratio)},
+          {"cost_ratio_bound", numberOrNull(d.ratio_bound)},
           {"models_probed", d.probed},
           {"models_refuted", d.refuted},
           {"present_sensitivity_peak", numberOrNull(d.present_peak)},

@@ -25,7 +25,7 @@ struct DesignParams {
 
 /// What one law reaches over an ensemble.
 struct DesignFigures {
-  double tuned{};             ///< mean cost over what it was tuned on
+  double tuned{kInfinity};    ///< mean cost over what it was tuned on; infinite: was not tuned
   std::vector<double> costs;  ///< of each member that was held out
   double worst_peak{};        ///< sensitivity, largest of the models probed; infinite: not stable
   double least_gain{}, least_delay_s{};  ///< margins, least of them
@@ -34,10 +34,10 @@ struct DesignFigures {
 struct Design {
   std::string law, pi;  ///< the texts of the two loop files
   DesignFigures law_figures, pi_figures;
-  double ratio{};        ///< cost of the law over that of the PI, mean of the held-out pairs
-  double ratio_bound{};  ///< half width of its 95 % interval
-  bool offers_law{};     ///< it is stable on all members, and better than the PI beyond that bound
-  bool offers_pi{};      ///< the law is not offered, and the PI is stable on all members
+  double ratio{kInfinity};  ///< cost of the law over that of the PI, mean of the held-out pairs
+  double ratio_bound{kInfinity};  ///< half width of its 95 % interval
+  bool offers_law{};  ///< it is stable on all members, and better than the PI beyond that bound
+  bool offers_pi{};   ///< the law is not offered, and the PI is stable on all members
   std::vector<std::string> remarks;
   std::vector<WeakDirection> weak;
   double present_peak{kInfinity};  ///< of the control in charge; infinite: none, or not looked at
