@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """The operator's panel as somebody uses it: a browser loads, looks, clicks, steers a loop over topics and sees the effect."""
+import http.client
 import os
 import signal
 import socket
@@ -313,6 +314,10 @@ class Panel(unittest.TestCase):
         self.see(By.ID, "outputs", "x [mg/l]")
         tracking, asked = ring.Listener("tracking", Tracking), ring.publisher("setpoint", Setpoint, "/a/fmbpc_controller")
         came = self.clamped()
+        other = http.client.HTTPConnection("localhost", int(self.port))  # somebody who hears it all meanwhile
+        self.addCleanup(other.close)
+        other.request("GET", "/stream")
+        self.assertEqual(200, other.getresponse().status)
         self.line.cut()
         try:
             self.see(By.ID, "banner", "NO CONNECTION")
