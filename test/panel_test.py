@@ -100,14 +100,46 @@ class Alarms(Folder):
         self.look("input_held", seconds=1)
         self.assertEqual(alarms.UNACKNOWLEDGED, self.state("input_held"))
 
+    def silence(self, *signals, codes=(), seconds=0.1):
+        self.now += seconds
+        self.wall.now += seconds
+        self.list.look("/a", {**{("node_silent", s): ("warning", s) for s in signals}, **{(c, ""): ("error", c) for c in codes}}, self.now)
+
     def test_who_is_silent_is_said_once(self):
-        self.look("node_silent", "input_stuck")
-        self.assertEqual(alarms.UNACKNOWLEDGED, self.state("node_silent"))
-        self.look("node_silent", "no_action")
-        self.assertEqual((alarms.SUPPRESSED, alarms.UNACKNOWLEDGED), (self.state("node_silent"), self.state("no_action")))
-        self.now += 0.1
-        self.list.look("/a", {("no_action", ""): ("error", "no action"), alarms.SILENT_PLANT: ("warning", "the plant has said nothing for 2 s")}, self.now)
-        self.assertEqual((alarms.SUPPRESSED, alarms.UNACKNOWLEDGED), (self.state("no_action"), self.list.alarms["/a|node_silent|plant"].state))
+        told = []
+        with unittest.mock.patch.object(self.list, "_say", lambda alarm, what, *_: told.append((what, alarm.code, alarm.signal))):
+            self.silence(codes=["no_action"])
+            self.silence("controller", codes=["no_action", "record_gap"], seconds=alarms.ON_DELAY - 0.1)
+            self.silence("controller", codes=["no_action", "record_gap"], seconds=2)
+            self.assertEqual((alarms.NORMAL, alarms.SUPPRESSED), (self.list.alarms["/a|node_silent|plant"].state if "/a|node_silent|plant" in self.list.alarms else alarms.NORMAL, self.state("no_action")))
+            self.silence(codes=["no_measurement", "no_action"], seconds=1)  # it is back, what was said of it lags behind
+            self.silence(codes=["no_measurement"], seconds=1.5)
+            for _ in range(8):
+                self.silence(seconds=1)
+        self.assertEqual([("came", "node_silent", "controller"), ("went", "node_silent", "controller")], [t for t in told if t[0] != "suppressed" and t[1:] == ("node_silent", "controller") or t[0] == "came"])
+        self.assertEqual(["node_silent"], [a["code"] for a in self.list.listed()])
+
+    def test_of_a_silent_plant_nothing_else_is_said(self):
+        self.silence("controller")
+        self.silence("controller", "plant", codes=["no_action"], seconds=2)
+        self.assertEqual([("plant", alarms.UNACKNOWLEDGED), ("controller", alarms.SUPPRESSED)], [(a["signal"], a["state"]) for a in self.list.listed()])
+
+    def test_what_lacks_with_nobody_silent_is_said_after_its_delay(self):
+        self.silence(codes=["no_action"])
+        self.assertEqual(alarms.NORMAL, self.state("no_action"))
+        self.silence(codes=["no_action"], seconds=alarms.ON_DELAY)
+        self.assertEqual(alarms.UNACKNOWLEDGED, self.state("no_action"))
+        self.silence("controller", codes=["no_action"])
+        self.silence("controller", seconds=1)
+        self.silence(seconds=alarms.OFF_DELAY)
+        self.silence(codes=["no_action"], seconds=alarms.OFF_DELAY)  # and not again by itself
+        self.assertEqual([1, 1], [a.count for a in self.list.alarms.values()])
+
+    def test_a_cause_that_becomes_worse_makes_its_alarm_more_urgent(self):
+        self.look("x", severity="warning")
+        self.look("x", severity="error")
+        self.look("x", severity="warning")
+        self.assertEqual(("error", 1), (self.list.alarms["/a|x|"].severity, self.list.alarms["/a|x|"].count))
 
     def test_the_first_after_a_quiet_time_is_the_first_out(self):
         self.look("x")
@@ -182,12 +214,15 @@ class Alarms(Folder):
                 begin = self.now
                 while self.now < begin + 300.0:
                     there = (self.now - begin) % (on + off) < on
-                    self.look(*([code] if there else []), seconds=min(on, off), severity=severity)
+                    self.look(*([code] if there else []), seconds=min(on, off, 0.5), severity=severity)
                     alarm = self.list.alarms.get(f"/a|{code}|")
                     if alarm and alarm.count > count:
                         count = alarm.count
                         came.append(self.now)
-                self.assertTrue(came, (code, on, off))
+                if code not in alarms.OF_SILENCE or on >= 5.0:
+                    self.assertTrue(came, (code, on, off))
+                elif on <= alarms.ON_DELAY:
+                    self.assertFalse(came, (code, on, off))
                 for first, third in zip(came, came[2:]):
                     self.assertGreaterEqual(third - first, alarms.CHATTER, (code, on, off))
 

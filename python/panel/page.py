@@ -68,6 +68,7 @@ def read_bag(path):
                 if name == "measurement":
                     row.update({s.name: v for s, v in zip(info.outputs, message.outputs)})
                     row.update({s.name: v for s, v in zip(info.disturbances, message.disturbances)})
+                    rows.get(message.step - 1, {}).update({s.name: v for s, v in zip(info.inputs, message.input_applied)})  # in force until now
                     finished = finished or message.final
                 elif name == "tracking":
                     row.update({s.name + "_setpoint": v for s, v in zip(info.outputs, message.setpoint)})

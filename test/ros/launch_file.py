@@ -13,6 +13,7 @@ import rosbag
 import rosgraph
 import rostest
 
+import panel_page
 import ring
 
 
@@ -71,6 +72,25 @@ class LaunchFile(unittest.TestCase):
         replayed = json.loads(ring.tool("replay", os.path.join(self.out, "loop.bag"), "--json").stdout)
         self.assertEqual((True, 51, 50, 50), (replayed["equal"], replayed["measurements"],
                                               replayed["base_action"]["equal"], replayed["control_action"]["equal"]))
+        self.pages_hold_the_same(self.out, os.path.join(self.out, "loop.bag"))
+
+    def pages_hold_the_same(self, *records):
+        """All trends, and the indices that a bag gives."""
+        given = []
+        for i, record in enumerate(records):
+            out = os.path.join(self.out, f"{i}.html")
+            subprocess.run([os.path.join(os.path.dirname(panel_page.SCRIPT), "fmbpc"), "page", record, "--out", out], check=True, stdout=subprocess.DEVNULL)
+            with open(out, encoding="utf-8") as file:
+                given.append(json.loads(file.read().split("window.FMBPC_RUN=")[1].split("</script>")[0]))
+        trends = [dict(zip(g["series"]["columns"], g["series"]["data"])) for g in given]
+        self.assertEqual(11, len(trends[0]))
+        self.assertEqual(*trends)
+        for name in ("steps", "dt"):
+            self.assertEqual(*(g["series"][name] for g in given))
+        self.assertEqual([(True, 51)] * 2, [(g["complete"], g["samples"]) for g in given])
+        for name, indices in given[1]["outputs"].items():
+            for index in ("ise", "iae", "itae", "rmse"):
+                self.assertAlmostEqual(1.0, indices[index] / given[0]["outputs"][name][index], 12)
 
     def test_the_arguments_are_listed_without_a_loop_in_a_bare_shell(self):
         for file, required in (("loop", {"loop"}), ("example", set()), ("modbus_demo", set()),

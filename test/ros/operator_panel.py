@@ -1,10 +1,13 @@
 #!/usr/bin/python3
 """The operator's panel as somebody uses it: a browser loads, looks, clicks, steers a loop over topics and sees the effect."""
+import http.client
 import os
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 import unittest
 import xmlrpc.client
@@ -12,7 +15,7 @@ import xmlrpc.client
 import rosgraph
 import rospy
 import rostest
-from fmbpc.msg import CommandEffect, ControlAction, Tracking
+from fmbpc.msg import CommandEffect, ControlAction, Setpoint, Tracking
 from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
@@ -21,6 +24,7 @@ import panel_page
 import ring
 
 PASSWORD = "correct horse"
+AWAY_S = 60 if os.environ.get("FMBPC_LONG_TESTS") else 6
 
 # Text whose contrast with what is behind it is below 4.5 to 1 (WCAG 2.1), of all that is seen.
 CONTRAST = """
@@ -44,6 +48,50 @@ return [s.steps[0], s.steps[s.steps.length - 1], holes];
 """
 
 
+class Line:
+    """Between a browser and the panel: it can be cut."""
+
+    def __init__(self, port, panel_port):
+        self.port, self.panel_port, self.whole, self.ends = port, panel_port, True, []
+        self.server = socket.create_server(("localhost", int(port)))
+        threading.Thread(target=self.accept, daemon=True).start()
+
+    def accept(self):
+        while True:
+            near, _ = self.server.accept()
+            if not self.whole:
+                near.close()
+                continue
+            far = socket.create_connection(("localhost", int(self.panel_port)))
+            self.ends += [near, far]
+            for source, target in ((near, far), (far, near)):
+                threading.Thread(target=self.carry, args=(source, target), daemon=True).start()
+
+    def carry(self, source, target):
+        try:
+            while self.whole:
+                data = source.recv(65536)
+                if not data:
+                    break
+                target.sendall(data)
+        except OSError:
+            pass
+        for end in (source, target):
+            end.close()
+
+    def cut(self):
+        self.whole = False
+        for end in self.ends:
+            try:
+                end.shutdown(socket.SHUT_RDWR)
+            except OSError:  # closed before
+                pass
+        self.ends.clear()
+
+    def mend(self):
+        self.whole = True
+
+
 class Panel(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -52,7 +100,8 @@ class Panel(unittest.TestCase):
         for name, role in (("olga", "operate"), ("emil", "engineer")):
             subprocess.run([sys.executable, panel_page.SCRIPT, "--users", cls.users, "--add-user", name, role], input=PASSWORD + "\n", check=True, text=True, stdout=subprocess.DEVNULL)
         cls.port = ring.free_port()
-        cls.panel = panel_page.PanelProcess(cls.port, cls.folder.name + "/data", users=cls.users)
+        cls.line = Line(ring.free_port(), cls.port)
+        cls.panel = panel_page.PanelProcess(cls.port, cls.folder.name + "/data", f'_hosts:=["localhost:{cls.line.port}"]', users=cls.users)
         cls.page = panel_page.browser()
 
     @classmethod
@@ -259,6 +308,34 @@ class Panel(unittest.TestCase):
             got = self.page.execute_script(HOLES)
             return got is not None and got[0] == 0 and got[1] > until and got[2] == 0
         ring.wait_until(whole, "the whole trend in the browser", 40.0)
+
+    def test_9_a_browser_that_was_offline_lacks_nothing(self):
+        self.page.get(f"http://localhost:{self.line.port}/#/loop/%2Fa")
+        self.see(By.ID, "outputs", "x [mg/l]")
+        tracking, asked = ring.Listener("tracking", Tracking), ring.publisher("setpoint", Setpoint, "/a/fmbpc_controller")
+        came = self.clamped()
+        other = http.client.HTTPConnection("localhost", int(self.port))  # somebody who hears it all meanwhile
+        self.addCleanup(other.close)
+        other.request("GET", "/stream")
+        self.assertEqual(200, other.getresponse().status)
+        self.line.cut()
+        try:
+            self.see(By.ID, "banner", "NO CONNECTION")
+            asked.publish(Setpoint(name=["x"], value=[9000.0], mode=Setpoint.OVERRIDE))
+            away = tracking.wait().step
+            away = tracking.wait(lambda t: t.step > away + 10 * AWAY_S, AWAY_S + ring.PATIENCE).step
+            self.assertEqual(came, self.clamped())
+            asked.publish(Setpoint(mode=Setpoint.RELEASE))
+        finally:
+            self.line.mend()
+        ring.wait_until(lambda: "NO CONNECTION" not in self.page.find_element(By.ID, "banner").text, "the panel's word")
+        self.sees_no_hole(away)
+        ring.wait_until(lambda: self.clamped() == came + 1, "the journal's entry of meanwhile")
+        self.assertIn("/a|setpoint_clamped|x", self.alarm_keys())
+
+    def clamped(self):
+        """Entries of the page's journal that say that it came."""
+        return self.page.execute_script("return window.fmbpcPanel.journal.filter((e) => e.code === 'setpoint_clamped' && e.what === 'came').length")
 
     def alarm_keys(self):
         return set(self.page.execute_script("return window.fmbpcPanel.alarms.map((a) => a.key)"))

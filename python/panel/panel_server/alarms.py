@@ -17,10 +17,10 @@ MOST_ALARMS = 2000        # of one panel; the oldest normal ones go first
 
 # What follows from others: suppressed by design while one of those is active in the same loop.
 CONSEQUENCES = {"node_degraded", "input_held", "run_incomplete", "measurement_rejected", "never_controlled", "waiting"}
-# One fault that is said by several: the first is suppressed while one of the others is there. Of a silent plant nothing else is said.
+# What follows from a node that says nothing: suppressed while that node, or the plant, is named.
+OF_SILENCE = {"node_silent", "no_action", "no_measurement", "not_recorded", "record_gap", "optimizer_lost", "network_problem"}
+ON_DELAY = 1.0            # s that such a one must last: who is silent is known later than what lacks because of it
 SILENT_PLANT = ("node_silent", "plant")
-NAMED_BY = {"node_silent": {("no_action", ""), ("no_measurement", ""), ("not_recorded", ""), ("optimizer_lost", ""), SILENT_PLANT},
-            "no_action": {SILENT_PLANT}, "no_measurement": {SILENT_PLANT}, "not_recorded": {SILENT_PLANT}}
 
 
 class Alarm:
@@ -38,6 +38,7 @@ class Alarm:
         self.by = ""
         self.came = []             # times of the latest two
         self.away_since = None     # the cause is away, the delay runs
+        self.there_since = None    # likewise, it is there
 
     @property
     def key(self):
@@ -63,16 +64,27 @@ class Alarm:
         twice = len(self.came) == 2 and self.came[1] - self.came[0] < CHATTER
         return LONG_OFF_DELAY if twice else OFF_DELAY
 
+    def names_who(self):
+        """It says which node is silent."""
+        return self.code == "node_silent" and self.signal != ""
+
+    def on_delay(self):
+        return ON_DELAY if self.code in OF_SILENCE and not self.names_who() else 0.0
+
     def see(self, cause, now):
         """The cause is there or not; True if the alarm came or went."""
         if cause:
             self.away_since = None
             if self.active:
                 return False
-            self.active, self.acknowledged = True, False
+            self.there_since = now if self.there_since is None else self.there_since
+            if now - self.there_since < self.on_delay():
+                return False
+            self.active, self.acknowledged = True, self.suppressed  # what nobody was told needs no answer
             self.since, self.count = now, self.count + 1
             self.came = (self.came + [now])[-2:]
             return True
+        self.there_since = None
         if not self.active:
             return False
         if self.away_since is None:
@@ -211,6 +223,7 @@ class AlarmList:
         with self.lock:
             causes = {key: cause for key, cause in causes.items() if cause[0] != "info"}
             roots = any(code not in CONSEQUENCES for code, _ in causes)
+            silent = {signal for code, signal in causes if code == "node_silent" and signal} | {a.signal for a in self.alarms.values() if a.loop == loop and a.active and a.names_who()}
             for (code, signal), (severity, text) in causes.items():
                 alarm = self.alarms.get(f"{loop}|{code}|{signal}")
                 if alarm is None:
@@ -218,9 +231,9 @@ class AlarmList:
                     self.alarms[alarm.key] = alarm
                     self._bound()
                 # A consequence says nothing while its cause is said.
-                suppressed = code in CONSEQUENCES and roots or signal == "" and not NAMED_BY.get(code, set()).isdisjoint(causes)
-                quieted = suppressed and not alarm.suppressed
-                freed = alarm.suppressed and not suppressed
+                suppressed = code in CONSEQUENCES and roots or code in OF_SILENCE and bool(silent & {SILENT_PLANT[1]} if alarm.names_who() else silent) and (code, signal) != SILENT_PLANT
+                quieted = alarm.active and suppressed and not alarm.suppressed
+                freed = alarm.active and alarm.suppressed and not suppressed
                 alarm.suppressed = suppressed
                 came = alarm.see(True, now)
                 if came or not alarm.text:
@@ -233,7 +246,11 @@ class AlarmList:
                         self.quiet_since[loop] = None
                     self._say(alarm, "suppressed" if suppressed else "came")
                 elif quieted or freed:
+                    alarm.acknowledged = alarm.acknowledged and not freed
                     self._say(alarm, "suppressed" if quieted else "no longer suppressed")
+                if PRIORITIES[severity] < alarm.priority:
+                    alarm.severity = severity
+                    self._say(alarm, "more urgent")
             for alarm in list(self.alarms.values()):
                 if alarm.loop != loop or (alarm.code, alarm.signal) in causes:
                     continue

@@ -13,10 +13,12 @@ from fmbpc import msg as messages
 from std_msgs.msg import String
 
 from panel_server import predict, state, wire
-from panel_server.alarms import NAMED_BY, SILENT_PLANT
+from panel_server.alarms import OF_SILENCE, SILENT_PLANT
 from panel_server.history import History, Journal, plain, read_csv
 
 SILENT = 1.5      # s of wall time without a word from the plant: the loop is stale
+SILENT_NODE = 0.9 # likewise of a node that the plant misses: it speaks twice a second
+LATE = 20         # samples: of a run that is joined later, what nodes list already is no news
 MOST_WAITING = 20000  # raw messages of a topic between two looks
 MOST_FILLED = 200000  # rows of a run's earlier parts
 PLAN_GRACE = 60.0 # s that plans are listened to after the last page that shows them
@@ -70,7 +72,7 @@ class Loop:
         self.info = self.run_id = self.history = self.errors = None
         self.text, self.speakers = {}, dict(SPEAKERS)
         self.states, self.heard_of, self.seen_events = {}, {}, {}
-        self.step = -1
+        self.step, self.joined = -1, -1  # joined: the first sample heard of the run
         self.quality, self.final = (), False
         self.applied, self.action, self.source, self.action_step = (), (), 0, -1
         self.base, self.base_step = (), -1
@@ -194,7 +196,7 @@ class Loop:
             return
         if self.run_id is not None or not self.text:
             self._read_text()
-        self.info, self.run_id, self.step = info, info.run_id, -1
+        self.info, self.run_id, self.step, self.joined = info, info.run_id, -1, -1
         names = [s.name for s in info.outputs]
         columns = names + [n + "_setpoint" for n in names] + [n + "_reference" for n in names]
         columns += [s.name for s in info.inputs] + [s.name + "_base" for s in info.inputs] + [s.name + "_applied" for s in info.inputs]
@@ -226,6 +228,7 @@ class Loop:
         self.history.put(step - 1, {s.name + "_applied": v for s, v in zip(info.inputs, applied)})  # u(k-1)
         self.errors.came(step, outputs)
         self.sent_from = min(self.sent_from, max(step - 1, 0))
+        self.joined = step if self.joined < 0 else self.joined
         if step >= self.step:
             self.step, self.quality, self.final, self.applied = step, quality, final, applied
         self.heard = now
@@ -297,13 +300,14 @@ class Loop:
             self.heard = now
         if self.run_id is None or message.run_id not in (self.run_id, 0):
             return
+        self.joined = message.step if self.joined < 0 else self.joined
         listed = {(message.node, e.code, e.signal, e.first) for e in message.events}
         self.seen_events = {k: v for k, v in self.seen_events.items() if k[0] != message.node or k in listed or now - v[2] < SILENT}
         for event in message.events:
             key = (message.node, event.code, event.signal, event.first)  # a node lists one code and signal several times, with other words
             said = (event.last, event.count)
             if self.seen_events.get(key, (None,))[0] != said:
-                self.seen_events[key] = (said, event, now, message.step, before is None)
+                self.seen_events[key] = (said, event, now, before is None and self.joined > LATE)
 
     # What there was before the panel came, or while it was away: the recorder's own journal.
 
@@ -472,9 +476,9 @@ class Loop:
     def current(self, now):
         """{(code, signal): (severity, text)} of what is wrong now, and nodes that are away."""
         found, severity = {}, self.severities
-        for (node, code, signal, _), (_, event, came, _, _) in self.seen_events.items():
+        for (node, code, signal, _), (_, event, came, old) in self.seen_events.items():
             here = self.states.get(node)
-            fresh = now - came < 0.6
+            fresh = not old and now - came < 0.6
             going_on = here is not None and event.count > 0 and event.last + 2 >= here.step
             if fresh or going_on:
                 found[(code, signal)] = (("info", "warning", "error")[min(event.severity, 2)], event.text)
@@ -483,10 +487,25 @@ class Loop:
             if message.code and message.code not in codes and message.word not in ("finished",):
                 signal = next((s for (_, code, s, _) in self.seen_events if code == message.code and s), "")  # one alarm, not one with and one without
                 found[(message.code, signal)] = (severity.get(message.code, "warning"), message.reason)
+        for node in self.silent_nodes(now):
+            found.pop(("node_silent", ""), None)
+            found[("node_silent", node)] = (severity.get("no_action" if "no_action" in codes else "node_silent", "warning"), f"no word from {node}")
         if self.heard is not None and self.stale(now) and not self.over():
-            found = {key: said for key, said in found.items() if key[0] in NAMED_BY}  # what else was said of it is old
+            found = {key: said for key, said in found.items() if key[0] in OF_SILENCE}  # what else was said of it is old
             found[SILENT_PLANT] = ("warning", f"the plant has said nothing for {self.stale(now):.0f} s")
         return found
+
+    def silent_nodes(self, now):
+        """Nodes that the plant misses and that are not heard here either."""
+        summary = self.summary()
+        missing = summary.missing if summary is not None and summary.code in OF_SILENCE else ()
+        return [n[len(self.prefix):] if n.startswith(self.prefix) else n for n in missing if now - self.heard_of.get(n, now) > SILENT_NODE]
+
+    def excuse(self, seconds):
+        """The panel itself stood still for so long: that says nothing of others."""
+        with self.lock:
+            self.heard = None if self.heard is None else self.heard + seconds
+            self.heard_of = {node: t + seconds for node, t in self.heard_of.items()}
 
     severities = {}  # by code, of `fmbpc events`
 

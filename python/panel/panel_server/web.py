@@ -23,6 +23,7 @@ from panel_server.history import plain
 from panel_server.tool import event_list, tool_path
 
 TICK = 0.1            # s
+SLEPT = 1.0           # s between two ticks: the panel was stopped
 LOOK_FOR_LOOPS = 2.0  # s
 MOST_LOOPS = 200
 LEFT_AFTER = 600.0    # s that a loop is shown that no master lists and nobody hears any more
@@ -81,7 +82,7 @@ class Panel:
         self.listed = {}  # name: when a master listed it last
         self.commands_rate = access.Bucket(per_s=5.0, burst=20)
         self.requests_rate = access.Bucket(per_s=100.0, burst=400)
-        self.beat, self.said_alarms = 0, None
+        self.beat, self.said_alarms, self.ticked = 0, None, time.monotonic()
         self.journal.write({"t": round(time.time(), 3), "kind": "panel", "what": "started", "who": "", "note": ""})
         self.said_journal = self.journal.number
         self.looking, self.master_gone = False, False
@@ -153,11 +154,14 @@ class Panel:
 
     def tick(self):
         now = time.monotonic()
+        slept, self.ticked = now - self.ticked, now
         self.beat += 1
         watched = {s.loop for s in self.streams}
         for name, loop in list(self.loops.items()):
             if name in watched:
                 loop.want_plan(now)
+            if slept > SLEPT:
+                loop.excuse(slept)
             loop.look(now)
             if loop.info is not None:
                 with loop.lock:
