@@ -84,7 +84,7 @@ FAULTS = [
     fault("control_action", "far ahead", far, counted=(PLANT, "actions dropped: later step")),
     fault("control_action", "NaN", lambda m, loop: (nan("input")(m, loop), ahead(0)(m, loop))),
     fault("control_action", "no inputs", sized("input", 0)),
-    fault("control_action", "another run", next_run, counted=(PLANT, "actions dropped: other run")),
+    fault("control_action", "another run", next_run, counted=(PLANT, "refused: control_action")),
     fault("control_action", "burst of 3000", stale, times=3000, counted=(PLANT, "actions dropped: old step")),
     Fault("rubbish: control_action, an impostor that is first ten times", impostor, counted=(PLANT, "refused: control_action"), lasts=1.0),
     fault("tracking", "far ahead", far, counted=(RECORDER, "dropped: other run")),
