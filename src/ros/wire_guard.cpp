@@ -8,6 +8,8 @@
 #include <ros/connection.h>
 #include <ros/header.h>
 #include <ros/network.h>
+#include <ros/publisher.h>
+#include <ros/topic_manager.h>
 #include <ros/transport/transport_tcp.h>
 #include <ros/transport/transport_udp.h>
 #include <sys/socket.h>
@@ -101,6 +103,19 @@ void Connection::onHeaderLengthRead(const ConnectionPtr& conn,
 // A subscriber that asks for datagrams of 8 bytes makes the library's own divide by 0. Nobody here
 // asks for datagrams.
 TransportUDPPtr TransportUDP::createOutgoing(std::string, int, int, int) { return {}; }
+
+// The library's own keeps what is latched after it has handed it over: who connects in between got
+// neither. Kept before, such a one may get it twice.
+void Publisher::publish(const boost::function<SerializedMessage()>& serialized,
+                        SerializedMessage& message) const {
+  if (!impl_ || !impl_->isValid()) return;
+  if (impl_->latch_) {
+    const SerializedMessage kept = serialized();
+    const boost::mutex::scoped_lock lock(impl_->last_message_mutex_);
+    impl_->last_message_ = kept;
+  }
+  TopicManager::instance()->publish(impl_->topic_, serialized, message);
+}
 
 // The library's own lets a connection whose link was cut wait for its next attempt, for as long
 // again as the link was cut; ended, it is made anew (Links).
