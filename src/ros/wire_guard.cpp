@@ -109,12 +109,14 @@ TransportUDPPtr TransportUDP::createOutgoing(std::string, int, int, int) { retur
 void Publisher::publish(const boost::function<SerializedMessage()>& serialized,
                         SerializedMessage& message) const {
   if (!impl_ || !impl_->isValid()) return;
-  if (impl_->latch_) {
-    const SerializedMessage kept = serialized();
+  if (!impl_->latch_) return TopicManager::instance()->publish(impl_->topic_, serialized, message);
+  const SerializedMessage kept = serialized();
+  {
     const boost::mutex::scoped_lock lock(impl_->last_message_mutex_);
     impl_->last_message_ = kept;
   }
-  TopicManager::instance()->publish(impl_->topic_, serialized, message);
+  TopicManager::instance()->publish(
+      impl_->topic_, [&kept] { return kept; }, message);
 }
 
 // The library's own lets a connection whose link was cut wait for its next attempt, for as long

@@ -212,8 +212,7 @@ def second_gateway(loop):
 
 
 def end_second(loop):
-    loop.second.send_signal(signal.SIGINT)
-    loop.second.wait(30)
+    ring.end_launch(loop.second)
 
 
 def end(loop):

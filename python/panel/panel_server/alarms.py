@@ -68,6 +68,14 @@ class Alarm:
         """It says which node is silent."""
         return self.code == "node_silent" and self.signal != ""
 
+    def follows(self, roots, silent):
+        """From another alarm of its loop. roots: there is one that is no consequence; silent: the nodes that are named so."""
+        if self.code in CONSEQUENCES:
+            return roots
+        if self.code not in OF_SILENCE or (self.code, self.signal) == SILENT_PLANT:
+            return False
+        return SILENT_PLANT[1] in silent if self.names_who() else bool(silent)
+
     def on_delay(self):
         return ON_DELAY if self.code in OF_SILENCE and not self.names_who() else 0.0
 
@@ -223,7 +231,8 @@ class AlarmList:
         with self.lock:
             causes = {key: cause for key, cause in causes.items() if cause[0] != "info"}
             roots = any(code not in CONSEQUENCES for code, _ in causes)
-            silent = {signal for code, signal in causes if code == "node_silent" and signal} | {a.signal for a in self.alarms.values() if a.loop == loop and a.active and a.names_who()}
+            silent = {signal for code, signal in causes if code == "node_silent" and signal}
+            silent |= {a.signal for a in self.alarms.values() if a.loop == loop and a.active and a.names_who()}
             for (code, signal), (severity, text) in causes.items():
                 alarm = self.alarms.get(f"{loop}|{code}|{signal}")
                 if alarm is None:
@@ -231,7 +240,7 @@ class AlarmList:
                     self.alarms[alarm.key] = alarm
                     self._bound()
                 # A consequence says nothing while its cause is said.
-                suppressed = code in CONSEQUENCES and roots or code in OF_SILENCE and bool(silent & {SILENT_PLANT[1]} if alarm.names_who() else silent) and (code, signal) != SILENT_PLANT
+                suppressed = alarm.follows(roots, silent)
                 quieted = alarm.active and suppressed and not alarm.suppressed
                 freed = alarm.active and alarm.suppressed and not suppressed
                 alarm.suppressed = suppressed
