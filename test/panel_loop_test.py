@@ -2,6 +2,7 @@
 """What the panel makes of a loop's messages, without a master: every event of the list is one alarm, rows are complete, plans are rolled out,
 damaged messages and strangers change nothing."""
 import io
+import itertools
 import math
 import pathlib
 import random
@@ -332,6 +333,19 @@ class Said(unittest.TestCase):
             return "", [messages.Event(code="law_failed", severity=2, first=1, last=k if dice.random() < 0.3 else max(k - 40, 1), count=1 + count[0], text="flickers")]
         self.run_for(made, 120.0, k, flickers)
         self.assertLessEqual(self.list.alarms["/a|law_failed|"].count, 2)
+
+    def test_what_was_over_before_the_panel_came_is_no_alarm(self):
+        """Whichever of a running loop's messages comes first; those of an identifier stand at its first sample."""
+        over = messages.Event(code="signal_too_fast", severity=1, signal="y", first=1, last=2, count=2, text="over")
+        coming = [lambda made: state(made, 0, "/a/fuzzy_identifier"), lambda made: state(made, 500, CONTROLLER, "", [over]), lambda made: sample(made, 500)]
+        for order in itertools.permutations(coming):
+            made = loop()
+            made.heard = self.now
+            for come in order:
+                come(made)
+                self.now += 0.1
+                made.look(self.now)
+                self.assertEqual({}, made.current(self.now))
 
     def test_a_plant_that_is_silent_is_said_in_two_seconds(self):
         made = loop()

@@ -177,7 +177,7 @@ class Faults(unittest.TestCase):
         self.spoilt("outside_model", "", self.put("disturbances", 1, 1300.0))
 
     def test_12_an_optimizer_without_a_solution(self):
-        self.asked("qp_not_solved", "", 2500.0, lambda: self.reported["qp_not_solved"])
+        self.asked("qp_not_solved", "", 1000.0, lambda: self.reported["qp_not_solved"])
 
     def test_13_all_of_them_have_gone_and_came_once(self):
         ring.wait_until(lambda: not self.alarms.active(), f"the end of {self.alarms.active()}", 30.0)

@@ -72,6 +72,7 @@ class Loop:
         self.info = self.run_id = self.history = self.errors = None
         self.text, self.speakers = {}, dict(SPEAKERS)
         self.states, self.heard_of, self.seen_events = {}, {}, {}
+        self.read_lists = set()    # nodes of whose events in this run one list at least was read
         self.step, self.joined = -1, -1  # joined: the first sample heard of the run
         self.quality, self.final = (), False
         self.applied, self.action, self.source, self.action_step = (), (), 0, -1
@@ -206,7 +207,7 @@ class Loop:
         self.action_step = self.base_step = self.prediction_step = -1
         self.plan = self.planned = None
         self.final, self.run_end, self.sent_from = False, None, 0
-        self.seen_events, self.states, self.fill_tried = {}, {}, -math.inf
+        self.seen_events, self.states, self.read_lists, self.fill_tried = {}, {}, set(), -math.inf
         self.filled = 0
         self.paced.clear()
         self.restarted += 1
@@ -293,21 +294,21 @@ class Loop:
         if caller not in (message.node, self.prefix + "loop_manager"):
             self.strangers += 1
             return
-        before = self.states.get(message.node)
         self.states[message.node] = message
         self.heard_of[message.node] = now
         if message.summary:
             self.heard = now
         if self.run_id is None or message.run_id not in (self.run_id, 0):
             return
-        self.joined = message.step if self.joined < 0 else self.joined
+        old = message.node not in self.read_lists and not 0 <= self.joined <= LATE
+        self.read_lists.add(message.node)
         listed = {(message.node, e.code, e.signal, e.first) for e in message.events}
         self.seen_events = {k: v for k, v in self.seen_events.items() if k[0] != message.node or k in listed or now - v[2] < SILENT}
         for event in message.events:
             key = (message.node, event.code, event.signal, event.first)  # a node lists one code and signal several times, with other words
             said = (event.last, event.count)
             if self.seen_events.get(key, (None,))[0] != said:
-                self.seen_events[key] = (said, event, now, before is None and self.joined > LATE)
+                self.seen_events[key] = (said, event, now, old)
 
     # What there was before the panel came, or while it was away: the recorder's own journal.
 
