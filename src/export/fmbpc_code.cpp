@@ -1,6 +1,8 @@
 // Controller type fmbpc as code of a block: the published and the general law, the parallel and
 // the realigned model, a transport delay. See FmbpcLaw, CoincidenceGains.
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "control/fmbpc/law.hpp"
@@ -18,6 +20,19 @@ using ir::Value;
 
 constexpr double kSingularPivot = 1e-12;  // as CoincidenceGains
 constexpr double kFaintEffect = 1e-30;    // of an input: the law has no answer
+
+/// The way of CoincidenceGains to a horizon: short ones step by step, longer ones by doubling.
+struct CoincidenceWalk {
+  explicit CoincidenceWalk(int horizon) : start(horizon) {
+    constexpr int kWalked = 32, kStart = 8;
+    int bits = 0;
+    while (horizon > kWalked && (horizon >> bits) >= kStart) ++bits;
+    start = horizon >> bits;
+    for (int bit = bits - 1; bit >= 0; --bit) odd.push_back((horizon >> bit) % 2);
+  }
+  int start;
+  std::vector<double> odd;
+};
 
 class FmbpcCode final : public PredictiveCode {
  public:
@@ -47,13 +62,11 @@ class FmbpcCode final : public PredictiveCode {
     p_.set(b_.foreseen, !start_);
     p_.when(b_.foreseen, [&] {
       const bool late = delayed_.has_value();
-      for (int i = 0; i < b_.n_y; ++i) {
-        Value sum = (late ? late_base_ : base_)[i] + offset_[i];
-        for (int j = 0; j < b_.n_u; ++j)
-          sum = sum + (late ? late_B_ : B_)[i * b_.n_u + j] *
-                          (late ? past_inputs_[oldest_ * b_.n_u + j] : b_.applied[j]);
-        p_.set(b_.expected[i], sum);
-      }
+      p_.loop(b_.n_y, [&](const Value& i) {
+        late ? addInputs(b_.expected[i], late_base_[i], late_B_, i, pastInput())
+             : addInputs(b_.expected[i], base_[i], B_, i, nowInput());
+        p_.set(b_.expected[i], b_.expected[i] + offset_[i]);
+      });
     });
   }
 
@@ -93,8 +106,8 @@ class FmbpcCode final : public PredictiveCode {
       late_u_ = p_.works("lateU", Kind::kReal, b_.n_u);
     }
     undelayed_ = p_.works("undelayed", Kind::kReal, b_.n_y);
-    const int n = static_cast<int>(followed_.size());
-    free_ = p_.works("freeP", Kind::kReal, n * n_x_);
+    const int n = followed();
+    free_ = p_.works("freeP", Kind::kReal, (n + powers()) * n_x_);
     next_ = p_.works("nextP", Kind::kReal, n_x_);
     sum_ = p_.works("sumS", Kind::kReal, n * n_x_);
     effect_ = p_.works("effect", Kind::kReal, n * b_.n_u);
@@ -139,13 +152,7 @@ class FmbpcCode final : public PredictiveCode {
 
   /// undelayed_ := y_m(k) from what was kept, under the applied input.
   void advanceModel() override {
-    p_.loop(b_.n_y, [&](const Value& i) {
-      p_.set(undelayed_[i], base_[i]);
-      p_.loop(b_.n_u, [&](const Value& j) {
-        p_.set(undelayed_[i], undelayed_[i] + B_[i * b_.n_u + j] * b_.applied[j]);
-      });
-      p_.contain(undelayed_[i]);
-    });
+    p_.loop(b_.n_y, [&](const Value& i) { addInputs(undelayed_[i], base_[i], B_, i, nowInput()); });
     if (realigned_) {
       p_.loop(b_.n_y, [&](const Value& i) {
         p_.set(offset_[i],
@@ -161,18 +168,29 @@ class FmbpcCode final : public PredictiveCode {
     p_.loop(b_.n_u,
             [&](const Value& j) { p_.set(late_u_[j], past_inputs_[oldest_ * b_.n_u + j]); });
     const Value late_y = p_.works("lateY", Kind::kReal, b_.n_y);
-    p_.loop(b_.n_y, [&](const Value& i) {
-      p_.set(late_y[i], late_base_[i]);
-      p_.loop(b_.n_u, [&](const Value& j) {
-        p_.set(late_y[i], late_y[i] + late_B_[i * b_.n_u + j] * late_u_[j]);
-      });
-      p_.contain(late_y[i]);
-    });
+    p_.loop(b_.n_y,
+            [&](const Value& i) { addInputs(late_y[i], late_base_[i], late_B_, i, pastInput()); });
     model_.shift(late_x_, late_y, late_u_, late_d_before());
     p_.loop(b_.n_u,
             [&](const Value& j) { p_.set(past_inputs_[oldest_ * b_.n_u + j], b_.applied[j]); });
     p_.set(oldest_, oldest_ + 1);
     p_.when(oldest_ >= params_.delay_steps, [&] { p_.set(oldest_, 0); });
+  }
+
+  using Of = std::function<Value(const Value&)>;
+  Of nowInput() const {
+    return [this](const Value& j) { return b_.applied[j]; };
+  }
+  Of pastInput() const {
+    return [this](const Value& j) { return past_inputs_[oldest_ * b_.n_u + j]; };
+  }
+
+  /// to := base + B u
+  void addInputs(const Value& to, const Value& base, const Value& B, const Value& i, const Of& u) {
+    p_.set(to, 0.0);
+    p_.loop(b_.n_u, [&](const Value& j) { p_.set(to, to + B[i * b_.n_u + j] * u(j)); });
+    p_.set(to, base + to);
+    p_.contain(to);
   }
 
   /// d that the delayed model was blended with at k-1: the one before the oldest, in the ring.
@@ -200,7 +218,7 @@ class FmbpcCode final : public PredictiveCode {
         p_.set(weights_out_[o][r], model_.weights[o][static_cast<int>(r)]);
     }
     p_.words("free response and effect of a held input after the coincidence horizon");
-    for (std::size_t k = 0; k < followed_.size(); ++k) walk(static_cast<int>(k));
+    walk();
     if (params_.law == FmbpcForm::kPublished)
       published();
     else
@@ -236,86 +254,170 @@ class FmbpcCode final : public PredictiveCode {
     p_.loop(b_.n_u * b_.n_y, [&](const Value& i) { p_.set(clp_->L[i], 0.0); });
   }
 
-  /// Rows of P = C A^H, S = C (I + ... + A^(H-1)), S B for one output that is followed.
-  void walk(int k) {
-    const int row = k * n_x_, n_u = b_.n_u;
-    const LocalModel& at = model_.layout();
-    p_.loop(n_x_, [&](const Value& j) {
-      p_.set(free_[j + row], 0.0);
-      p_.set(sum_[j + row], 0.0);
-    });
-    p_.set(free_[row + model_.outputRow(followed_[static_cast<std::size_t>(k)])], 1.0);
-    for (int j = 0; j < n_u; ++j) p_.set(size_[k * n_u + j], 0.0);
-    const auto effectOf = [&](const Value& from, int j) {
-      Value effect = from[row + static_cast<int>(at.inputState(j, 1))];
-      for (int o = 0; o < b_.n_y; ++o)
-        effect = effect + from[row + model_.outputRow(o)] * model_.B[o * n_u + j];
-      return effect;
+  /// Rows of P = C A^H, S = C (I + ... + A^(H-1)), S B for the outputs that are followed, in the
+  /// order of CoincidenceGains: what is added otherwise differs by what cancels.
+  void walk() {
+    const int n = followed(), n_u = b_.n_u;
+    const auto each = [&](const std::function<void(const Value&, const Value&)>& of) {
+      p_.loop(n, [&](const Value& k) { of(k, k * n_x_); });
     };
-    p_.loop(params_.coincidence_steps, [&](const Value&) {
-      p_.loop(n_x_, [&](const Value& j) { p_.set(sum_[j + row], sum_[j + row] + free_[j + row]); });
-      for (int j = 0; j < n_u; ++j) {
-        p_.setAbsolute(a_, effectOf(free_, j));
-        p_.set(size_[k * n_u + j], size_[k * n_u + j] + a_);
-      }
-      const Value shifts = shiftTable();
-      p_.loop(n_x_, [&](const Value& j) {  // row of A^(i+1) from that of A^i
-        p_.set(a_, 0.0);
-        p_.when(shifts[j], [&] { p_.set(a_, free_[j + (row + 1)]); });
-        for (int o = 0; o < b_.n_y; ++o)
-          p_.set(a_, a_ + free_[row + model_.outputRow(o)] * model_.A[j + o * n_x_]);
-        p_.contain(a_);
-        p_.set(next_[j], a_);
+    p_.loop((n + powers()) * n_x_, [&](const Value& i) { p_.set(free_[i], 0.0); });
+    p_.loop(n * n_x_, [&](const Value& i) { p_.set(sum_[i], 0.0); });
+    for (int k = 0; k < n; ++k)
+      p_.set(free_[k * n_x_ + model_.outputRow(followed_[static_cast<std::size_t>(k)])], 1.0);
+    p_.loop(powers(), [&](const Value& i) { p_.set(free_[i * (n_x_ + 1) + n * n_x_], 1.0); });
+    p_.loop(n * n_u, [&](const Value& i) { p_.set(size_[i], 0.0); });
+    const auto step = [&] {
+      each([&](const Value& k, const Value& row) {
+        addEffect(k, free_, row);
+        p_.loop(n_x_,
+                [&](const Value& j) { p_.set(sum_[row + j], sum_[row + j] + free_[row + j]); });
       });
-      p_.loop(n_x_, [&](const Value& j) { p_.set(free_[j + row], next_[j]); });
+    };
+    const CoincidenceWalk way(params_.coincidence_steps);
+    p_.loop(way.start, [&](const Value&) {
+      step();
+      p_.loop(n + powers(), [&](const Value& k) { advance(k * n_x_); });
     });
-    for (int j = 0; j < n_u; ++j) {
-      p_.set(effect_[k * n_u + j], effectOf(sum_, j));
-      p_.setAbsolute(a_, effect_[k * n_u + j]);
-      p_.when(a_ <= kSingularPivot * size_[k * n_u + j],
-              [&] { p_.set(effect_[k * n_u + j], 0.0); });
-    }
-    const int output = followed_[static_cast<std::size_t>(k)];
-    p_.set(lack_[k], reference(output, static_cast<double>(params_.aimedColumn() + 1)));
-    if (!realigned_) p_.set(lack_[k], lack_[k] - offset_[output]);
-    for (int o = 0; o < b_.n_y; ++o) {
-      const Value own = realigned_ ? model_.g[o] + offset_[o] : model_.g[o];
-      p_.set(lack_[k], lack_[k] - sum_[row + model_.outputRow(o)] * own);
-    }
-    for (int d = 0; d < b_.n_d; ++d)
-      if (at.model().maxLag(SignalKind::kDisturbance, d) > 0)
-        p_.set(lack_[k],
-               lack_[k] - sum_[row + static_cast<int>(at.disturbanceState(d, 1))] * dm_[d]);
-    p_.loop(n_x_, [&](const Value& j) { p_.set(lack_[k], lack_[k] - free_[j + row] * x_[j]); });
+    if (powers() > 0) leap(way, step);
+    for (int k = 0; k < n; ++k) p_.set(lack_[k], aimOf(followed_[static_cast<std::size_t>(k)]));
+    each([&](const Value& k, const Value& row) {
+      for (int j = 0; j < n_u; ++j) {
+        const Value effect = effect_[k * n_u + j];
+        p_.set(effect, effectOf(sum_, row, j));
+        p_.setAbsolute(a_, effect);
+        p_.when(a_ <= kSingularPivot * size_[k * n_u + j], [&] { p_.set(effect, 0.0); });
+      }
+      subtractFrom(k, row);
+    });
   }
 
-  /// Whether row j + 1 of the state is row j of one sample before.
-  Value shiftTable() {
-    for (const ir::Variable& v : p_.variables())
-      if (v.name == "shifts") return Value(v);
-    std::vector<double> shifts(static_cast<std::size_t>(n_x_), 0.0);
-    const LocalModel& at = model_.layout();
-    const TsModel& model = at.model();
-    const auto mark = [&](Eigen::Index first, int rows) {
-      for (Eigen::Index i = first; i + 1 < first + rows; ++i)
-        shifts[static_cast<std::size_t>(i)] = 1.0;
+  /// From n steps to 2 n, and to 2 n + 1 where the bit of H is set; A^n goes along.
+  void leap(const CoincidenceWalk& way, const std::function<void()>& step) {
+    const int n = followed(), n_x = n_x_;
+    const Value odd = p_.table("oddSteps", way.odd, Kind::kBool),
+                square = p_.works("powerSquare", Kind::kReal, n_x * n_x);
+    const auto timesPower = [&](const Value& from, const Value& row, const Value& to,
+                                const Value& at) {
+      p_.loop(n_x, [&](const Value& j) {
+        p_.set(a_, 0.0);
+        p_.loop(n_x, [&](const Value& i) {
+          p_.set(a_, a_ + from[row + i] * free_[i * n_x + (j + n * n_x)]);
+        });
+        p_.contain(a_);
+        p_.set(to[at + j], a_);
+      });
     };
-    for (int i = 0; i < b_.n_y; ++i)
-      mark(at.outputState(i), std::max(model.maxLag(SignalKind::kOutput, i) + 1, 1));
-    for (int i = 0; i < b_.n_u; ++i)
-      mark(at.inputState(i, 1), std::max(model.maxLag(SignalKind::kInput, i), 1));
-    for (int i = 0; i < b_.n_d; ++i)
-      mark(at.disturbanceState(i, 1), std::max(model.maxLag(SignalKind::kDisturbance, i), 0));
-    return p_.table("shifts", shifts, Kind::kBool);
+    p_.loop(static_cast<int>(way.odd.size()), [&](const Value& bit) {
+      p_.loop(n, [&](const Value& k) {
+        const Value row = k * n_x;
+        timesPower(sum_, row, next_, 0);
+        p_.loop(n_x, [&](const Value& j) { p_.set(sum_[row + j], sum_[row + j] + next_[j]); });
+        addEffect(k, next_, 0);
+        timesPower(free_, row, next_, 0);
+        p_.loop(n_x, [&](const Value& j) { p_.set(free_[row + j], next_[j]); });
+      });
+      p_.loop(n_x, [&](const Value& i) { timesPower(free_, i * n_x + n * n_x, square, i * n_x); });
+      p_.loop(n_x * n_x, [&](const Value& i) { p_.set(free_[i + n * n_x], square[i]); });
+      p_.when(odd[bit], [&] {
+        step();
+        p_.loop(n + n_x, [&](const Value& k) { advance(k * n_x); });
+      });
+    });
+  }
+
+  int followed() const { return static_cast<int>(followed_.size()); }
+  /// Rows of A^n behind those of the outputs.
+  int powers() const { return CoincidenceWalk(params_.coincidence_steps).odd.empty() ? 0 : n_x_; }
+
+  /// What an input does by a row.
+  Value effectOf(const Value& from, const Value& row, int j) {
+    Value effect = 0.0;
+    for (int o = 0; o < b_.n_y; ++o) {
+      const Value part = from[row + model_.outputRow(o)] * model_.B[o * b_.n_u + j];
+      effect = o == 0 ? part : effect + part;
+    }
+    return effect + from[row + static_cast<int>(model_.layout().inputState(j, 1))];
+  }
+
+  void addEffect(const Value& k, const Value& from, const Value& row) {
+    for (int j = 0; j < b_.n_u; ++j) {
+      const Value size = size_[k * b_.n_u + j];
+      p_.setAbsolute(a_, effectOf(from, row, j));
+      p_.set(size, size + a_);
+    }
+  }
+
+  /// A row times A, whose rows below those of the outputs shift.
+  void advance(const Value& row) {
+    const std::vector<double> after = shifts();
+    const bool last =
+        std::all_of(after.begin(), after.end(), [&](double o) { return o == 0.0 || o == b_.n_y; });
+    const Value shift = p_.table("shifts", after, last ? Kind::kBool : Kind::kInt);
+    p_.loop(n_x_, [&](const Value& j) {
+      p_.set(a_, 0.0);
+      for (int o = 0; o < b_.n_y; ++o) {
+        p_.set(a_, a_ + free_[row + model_.outputRow(o)] * model_.A[j + o * n_x_]);
+        if (last && o + 1 < b_.n_y) continue;
+        p_.when(last ? shift[j] : shift[j] == o + 1,
+                [&] { p_.set(a_, a_ + free_[row + (j + 1)]); });
+      }
+      p_.contain(a_);
+      p_.set(next_[j], a_);
+    });
+    p_.loop(n_x_, [&](const Value& j) { p_.set(free_[row + j], next_[j]); });
+  }
+
+  /// Of each row of the state j: behind which output's row stands j + 1, if that is j of one sample
+  /// before; 0: it is not.
+  std::vector<double> shifts() const {
+    std::vector<double> after(static_cast<std::size_t>(n_x_), 0.0);
+    model_.eachShift([&](int j) {
+      int outputs = 0;
+      while (outputs < b_.n_y && model_.outputRow(outputs) <= j) ++outputs;
+      after[static_cast<std::size_t>(j)] = outputs;
+    });
+    return after;
+  }
+
+  /// y_r at the aim, less what the model says too little; as ReferenceTrajectory goes there.
+  Value aimOf(int output) {
+    const int aim = static_cast<int>(params_.aimedColumn());
+    constexpr int kFar = 32;
+    const bool far =
+        aim > kFar && aim > params_.reference_lead_steps + params_.prediction_steps + kFar;
+    const double pole = params_.reference_pole[output];
+    const auto power = far ? std::pow(pole, aim) : 1.0;
+    p_.set(a_, reference_[output]);
+    if (far) p_.set(a_, power * a_ + (1.0 - power) * b_.setpoint[output]);
+    p_.loop(far ? 1 : aim + 1,
+            [&](const Value&) { p_.set(a_, pole * a_ + (1.0 - pole) * b_.setpoint[output]); });
+    return realigned_ ? a_ : a_ - offset_[output];
+  }
+
+  /// Less what comes without an input: of g and the state.
+  void subtractFrom(const Value& k, const Value& row) {
+    p_.set(a_, 0.0);
+    for (int o = 0; o < b_.n_y; ++o)
+      p_.set(a_, a_ + sum_[row + model_.outputRow(o)] *
+                          (realigned_ ? model_.g[o] + offset_[o] : model_.g[o]));
+    const LocalModel& at = model_.layout();
+    for (int d = 0; d < b_.n_d; ++d)
+      if (at.model().maxLag(SignalKind::kDisturbance, d) > 0)
+        p_.set(a_, a_ + sum_[row + static_cast<int>(at.disturbanceState(d, 1))] * dm_[d]);
+    p_.set(lack_[k], lack_[k] - a_);
+    p_.set(a_, 0.0);
+    p_.loop(n_x_, [&](const Value& j) { p_.set(a_, a_ + free_[row + j] * x_[j]); });
+    p_.set(lack_[k], lack_[k] - a_);
   }
 
   void published() {
     p_.when((effect_[0] <= -kFaintEffect || effect_[0] >= kFaintEffect) && ir::sane(effect_[0]),
             [&] {
-              p_.set(b_.u[0], lack_[0] / effect_[0]);
+              p_.set(a_, 1.0 / effect_[0]);
+              p_.set(b_.u[0], a_ * lack_[0]);
               if (!clp_) return;
               clearFeedback();
-              p_.set(a_, 1.0 / effect_[0]);
               feedBack(0, a_, 0);
             },
             [&] {
@@ -440,9 +542,10 @@ class FmbpcCode final : public PredictiveCode {
     const auto keepOf = [&](const ModelCode& model, const Value& x, const Value& base,
                             const Value& B) {
       p_.loop(b_.n_y, [&](const Value& i) {
-        p_.set(base[i], model.g[i]);
+        p_.set(base[i], 0.0);
         p_.loop(n_x_,
                 [&](const Value& j) { p_.set(base[i], base[i] + model.A[i * n_x_ + j] * x[j]); });
+        p_.set(base[i], model.g[i] + base[i]);
         p_.contain(base[i]);
       });
       p_.loop(b_.n_y * b_.n_u, [&](const Value& i) { p_.set(B[i], model.B[i]); });

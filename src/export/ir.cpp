@@ -208,6 +208,8 @@ Value Program::works(const std::string& called, Kind kind, int size) {
 }
 Value Program::table(const std::string& called, std::vector<double> values, Kind kind) {
   const int size = static_cast<int>(values.size());
+  for (const Variable& v : variables_)
+    if (v.name == called && v.role == Role::kTable && v.initial == values) return Value(v);
   return Value(add({called, kind, Role::kTable, size, std::move(values), ""}));
 }
 

@@ -139,6 +139,7 @@ class Program {
   Value states(const std::string& name, Kind kind, int size, std::vector<double> initial = {});
   Value work(const std::string& name, Kind kind = Kind::kReal);
   Value works(const std::string& name, Kind kind, int size);
+  /// The same name and values: the same table.
   Value table(const std::string& name, std::vector<double> values, Kind kind = Kind::kReal);
 
   /// Part of native.member, "clp.x"; size 0: one number.

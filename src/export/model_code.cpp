@@ -52,8 +52,6 @@ ModelCode::ModelCode(BlockParts& parts, const TsModel& model, const std::string&
 }
 
 Value ModelCode::table(const std::string& name, const std::vector<double>& values) {
-  for (const ir::Variable& v : p_.variables())
-    if (v.name == tables_ + name) return Value(v);
   return p_.table(tables_ + name, values);
 }
 
@@ -360,6 +358,13 @@ void ModelCode::shift(const Value& state, const Value& y, const Value& u, const 
   push(SignalKind::kDisturbance, d);
 }
 
+void ModelCode::eachShift(const std::function<void(int row)>& see) const {
+  for (const SignalKind kind : {SignalKind::kOutput, SignalKind::kInput, SignalKind::kDisturbance})
+    eachSignal(layout_, kind, [&](int, int first, int rows) {
+      for (int i = first; i + 1 < first + rows; ++i) see(i);
+    });
+}
+
 GuardCode::GuardCode(BlockParts& parts, const TsModel& model)
     : b_(parts),
       p_(parts.p),
@@ -554,11 +559,6 @@ void PredictiveCode::reset() {
 
 void PredictiveCode::beginOptimizer(const LocalModel& model, int lead) {
   if (b_.loop.has_clp) clp_.emplace(b_, model, law_, lead);
-}
-
-Value PredictiveCode::reference(int output, double samples) const {
-  const double power = std::pow(law_.reference_pole[output], samples);
-  return power * reference_[output] + (1.0 - power) * b_.setpoint[output];
 }
 
 void PredictiveCode::step() {

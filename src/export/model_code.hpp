@@ -2,6 +2,7 @@
 // the room.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ class ModelCode {
   void blend(const ir::Value& state, const ir::Value& d);
   /// All of a state at rest.
   void rest(const ir::Value& state, const ir::Value& y, const ir::Value& u, const ir::Value& d);
+  /// Calls for every row whose value stands in the next one a sample later.
+  void eachShift(const std::function<void(int row)>& see) const;
   /// A state one sample on: `y` enters, `u` and `d` become the newest past ones.
   void shift(const ir::Value& state, const ir::Value& y, const ir::Value& u, const ir::Value& d);
 
@@ -102,8 +105,6 @@ class PredictiveCode : public LawCode {
   virtual ir::Value healthy() = 0;  ///< whether the states can be used
   /// For a loop with a section clp; propose() then fills it.
   void beginOptimizer(const LocalModel& model, int lead);
-  /// y_r(k + n) of one output, n constant.
-  ir::Value reference(int output, double samples) const;
 
   BlockParts& b_;
   ir::Program& p_;

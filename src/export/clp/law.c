@@ -3,6 +3,7 @@
  * rolled out, over clp_unit, then one slack for each output with soft limits. */
 
 #define CLP_UNLIMITED 1e12
+#define CLP_NEGLIGIBLE 1e-6 /* of an input's unit: no actuator shows less */
 
 static void clp_row(const clp_t* w, int32_t row, double* to);
 static void clp_rows(const clp_t* w, const double* x, double* to);
@@ -642,8 +643,8 @@ static void clp_protect(clp_t* w) {
       to = clp_bounded(to, w->previous[a] - w->move[a], w->previous[a] + w->move[a]);
     }
     to = clp_bounded(to, w->lower[a], w->upper[a]);
-    clipped = clipped || (clp_abs(to - asked) > (1e-9 * clp_unit[a]));
-    moved = moved || (clp_abs(to - w->base[a]) > (1e-9 * clp_unit[a]));
+    clipped = clipped || (clp_abs(to - asked) > (CLP_NEGLIGIBLE * clp_unit[a]));
+    moved = moved || (clp_abs(to - w->base[a]) > (CLP_NEGLIGIBLE * clp_unit[a]));
     w->u[a] = to;
   }
   if (clipped) {
