@@ -38,7 +38,8 @@ ModelCode::ModelCode(BlockParts& parts, const TsModel& model, const std::string&
       a_(0),
       b1_(0),
       c_(0),
-      n_(0) {
+      n_(0),
+      part_(0) {
   A = p_.works(prefix + "A", Kind::kReal, b_.n_y * n_x());
   B = p_.works(prefix + "B", Kind::kReal, b_.n_y * b_.n_u);
   g = p_.works(prefix + "g", Kind::kReal, b_.n_y);
@@ -46,6 +47,7 @@ ModelCode::ModelCode(BlockParts& parts, const TsModel& model, const std::string&
   b1_ = p_.work(prefix + "t2");
   c_ = p_.work(prefix + "t3");
   n_ = p_.work(prefix + "tn", Kind::kInt);
+  part_ = p_.works(prefix + "part", Kind::kReal, 4);
   for (int o = 0; o < b_.n_y; ++o)
     weights.push_back(p_.works(prefix + "w" + std::to_string(o), Kind::kReal,
                                static_cast<int>(model.submodels[place(o)].rules.size())));
@@ -252,14 +254,13 @@ void ModelCode::fire(int output, const Value& state, const Value& d) {
       p_.set(n_, r);
     });
   });
-  p_.set(b1_, 0.0);
   p_.loop(n, [&](const Value& r) {
     p_.set(a_, ir::exponential(p_, w[r] - c_));
     if (linear) p_.set(a_, a_ * product[r]);
     if (may_miss) p_.when(!alive[r], [&] { p_.set(a_, 0.0); });
     p_.set(w[r], a_);
-    p_.set(b1_, b1_ + a_);
   });
+  sum(w, n);
   // Where a rule fires the sum is one or more, but for linear flanks.
   p_.when(
       b1_ >= (linear ? kFaint : 0.5),
@@ -272,6 +273,22 @@ void ModelCode::fire(int output, const Value& state, const Value& d) {
       [&] {
         if (may_miss) nearest(output, groups, z);
       });
+}
+
+/// b1_ := the sum, in the order of Eigen's with two numbers at a time.
+void ModelCode::sum(const Value& w, int n) {
+  const Value& part = part_;
+  const int width = n < 4 ? 2 : 4, twos = n / 2 * 2;
+  p_.loop(width, [&](const Value& i) { p_.set(part[i], w[i]); });
+  p_.loop(n / 4 - 1, [&](const Value& k) {
+    p_.loop(4, [&](const Value& i) { p_.set(part[i], part[i] + w[k * 4 + i + 4]); });
+  });
+  p_.loop(2, [&](const Value& i) {
+    if (width == 4) p_.set(part[i], part[i] + part[i + 2]);
+    if (width == 4 && twos % 4 == 2) p_.set(part[i], part[i] + w[i + (twos - 2)]);
+  });
+  p_.set(b1_, part[0] + part[1]);
+  if (n > twos) p_.set(b1_, b1_ + w[n - 1]);
 }
 
 void ModelCode::blend(const Value& state, const Value& d) {

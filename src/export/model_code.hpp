@@ -52,6 +52,7 @@ class ModelCode {
     Flanks flanks;
   };
   void fire(int output, const ir::Value& state, const ir::Value& d);
+  void sum(const ir::Value& w, int n);
   std::vector<Group> groupsOf(int output) const;
   void declareFlanks(int output, const std::vector<std::size_t>& of, Flanks& flanks);
   void degrees(int output, const Group& group, const ir::Value& z, const ir::Value& alive,
@@ -64,7 +65,7 @@ class ModelCode {
   ir::Program& p_;
   LocalModel layout_;
   std::string prefix_, tables_;
-  ir::Value a_, b1_, c_, n_;
+  ir::Value a_, b1_, c_, n_, part_;
 };
 
 /// u(k) inside what the guard leaves of the moves: see GuardedController without fallback, locks
