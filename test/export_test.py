@@ -17,6 +17,7 @@ import unittest
 TOP = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(TOP / "scripts"))
 import export_check  # noqa: E402
+import fmbpc  # noqa: E402
 import structured_text  # noqa: E402
 from exported_law import ExportedLaw  # noqa: E402
 
@@ -83,6 +84,20 @@ class InStructuredText:
             setattr(self.block, structured_text.Reader.name(name), value)
         self.block()
         return [getattr(self.block, structured_text.Reader.name(name)) for name in wanted]
+
+
+class InProcess:
+    """The same names before the controller in process."""
+
+    def __init__(self, loop, **changes):
+        self.law = fmbpc.Loop(loop, set=changes).controller()
+
+    def answer(self, given, _=None):
+        def part(prefix, names):
+            return {name: given[prefix + name] for name in names if prefix + name in given}
+        outputs, disturbances, inputs = ([signal[0] for signal in getattr(self.law.loop, kind)] for kind in ("outputs", "disturbances", "inputs"))
+        return list(self.law.step(part("rValue_", outputs), part("rSetpoint_", outputs) or None, part("rValue_", disturbances) or None,
+                                  part("rActuator_", inputs) or None))
 
 
 def export(folder, loop, *more):
@@ -237,7 +252,7 @@ class Export(unittest.TestCase):
 
     def test_nothing_winds_up_against_a_valve_that_stands(self):
         self.exported("asp_case1_pi_x", "--set", "actuator.move_upper=20")
-        for block in (InC(self.folder), InStructuredText(self.folder)):
+        for block in (InC(self.folder), InStructuredText(self.folder), InProcess("asp_case1_pi_x", **{"actuator.move_upper": 20})):
             given = {"rValue_x": 1400.0, "rValue_s": 50.0, "rValue_q_i": 1300.0, "rValue_s_i": 400.0, "rSetpoint_x": 1500.0, "rActuator_q_r": 775.0}
             pushed = [block.answer(given, ["rOut_q_r"])[0] - 775.0 for _ in range(500)]
             turned = [block.answer({**given, "rValue_x": 1600.0}, ["rOut_q_r"])[0] - 775.0 for _ in range(3)]
@@ -252,6 +267,20 @@ class Export(unittest.TestCase):
             self.assertNotEqual([500.0], answers[-1])
             setattr(state, name, getattr(state, name) + 1)
             self.assertEqual([[500.0]] * 2, [answers[0], block.answer(given, ["rOut_q_r"])])
+
+    def test_a_changed_model_takes_over_in_process_without_a_bump(self):
+        text = pathlib.Path(fmbpc.Loop("asp_case1").model_file).read_text()
+        changed = pathlib.Path(self.scratch.name) / "changed.yaml"
+        changed.write_text(re.sub(r"offset: ([-0-9.e]+)", lambda m: f"offset: {float(m[1]) + 20.0}", text))
+        self.assertNotEqual(text, changed.read_text())
+        given = {"rValue_x": 1700.0, "rValue_s": 50.0, "rValue_q_i": 1300.0, "rValue_s_i": 400.0, "rSetpoint_x": 1700.0}
+        stays, changes = InProcess("asp_case1"), InProcess("asp_case1")
+        for _ in range(5):
+            self.assertEqual(stays.answer(given), changes.answer(given))
+        changes.law.set_model(fmbpc.Model(changed))
+        self.assertAlmostEqual(stays.answer(given)[0], changes.answer(given)[0], delta=1e-6)
+        later = [(stays.answer(given)[0], changes.answer(given)[0]) for _ in range(40)]
+        self.assertNotAlmostEqual(*later[-1], delta=1.0)
 
     def test_single_precision_is_exported_where_the_law_allows_it(self):
         self.exported("asp_case1", "--real", "--samples", "250")
