@@ -149,6 +149,14 @@ class Export(unittest.TestCase):
         there = export_check.emulated(self.folder, "law", "cortex-m7", self.into, 40)
         self.assertEqual(here["hash"], there["hash"])
 
+    @unittest.skipUnless(shutil.which("arm-none-eabi-gcc") and shutil.which("qemu-system-arm"), "no board to emulate")
+    def test_a_law_of_nine_rules_is_small_and_fast_on_a_board(self):
+        for precision, core in (([], "cortex-m7"), (["--real"], "cortex-m4")):
+            self.exported(str(TOP / "test/export/nine_rules.yaml"), "--to", "c99", "--samples", "200", *precision)
+            said = export_check.emulated(self.folder, "law", core, self.into)
+            for what, aim in (("code", 8192), ("stack", 1024), ("instructions", 20000)):
+                self.assertLessEqual(said[what], aim, (core, what))
+
     @unittest.skipUnless(shutil.which("frama-c"), "no frama-c")
     def test_a_proof_finds_an_index_out_of_bounds(self):
         for loop, judge, right, wrong in (

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <functional>
 
 #include "base/text_hash.hpp"
 #include "config/model_file.hpp"
@@ -449,11 +450,26 @@ class BlockBuilder {
     return loop_.plausibility.enabled && k < list.size() ? list[k] : nothing;
   }
 
-  template <typename Of>
-  std::vector<double> each(const Of& of) const {
+  using Of = std::function<Value(const Value&)>;
+
+  /// A number for each signal: a table only where they differ.
+  Of uniform(const std::string& name, const std::vector<double>& all, Kind kind) {
+    if (std::any_of(all.begin(), all.end(), [&](double v) { return v != all[0]; }))
+      return [of = p_.table(name, all, kind)](const Value& i) { return of[i]; };
+    return [number = ir::literal(all[0], kind)](const Value&) { return number; };
+  }
+
+  template <typename Get>
+  Of each(const std::string& name, const Get& get, Kind kind = Kind::kReal) {
     std::vector<double> all;
-    for (int i = 0; i < n_y_ + n_d_; ++i) all.push_back(bounded(of(plausibility(i))));
-    return all;
+    for (int i = 0; i < n_y_ + n_d_; ++i) all.push_back(bounded(get(plausibility(i))));
+    return uniform(name, all, kind);
+  }
+
+  bool hasRates() const {
+    for (int i = 0; i < n_y_ + n_d_; ++i)
+      if (std::isfinite(plausibility(i).rate_per_h)) return true;
+    return false;
   }
 
   /// What of a signal that has no number a law needs: as ControllerSession::noteNeeds().
@@ -476,18 +492,17 @@ class BlockBuilder {
       p_.set(raw_ok_[i], ok_in_[at(i)]);
     }
     const double hours = loop_.plant_info.sample_time_s / 3600.0;
-    const Value lower = p_.table("plLower", each([](const auto&s) { return s.lower; })),
-                upper = p_.table("plUpper", each([](const auto&s) { return s.upper; })),
-                rate = p_.table("plRate", each([&](const auto&s) {
-                                  return s.rate_per_h * hours * (1.0 + kRelativeRounding);
-                                }));
-    std::vector<double> needs, substitutes;
-    for (int i = 0; i < n_s; ++i) {
-      needs.push_back(isNeeded(i) ? 1.0 : 0.0);
-      substitutes.push_back(static_cast<double>(plausibility(i).substitute));
-    }
-    const Value needed = p_.table("plNeeded", needs, Kind::kBool),
-                substitute = p_.table("plSubstitute", substitutes, Kind::kInt);
+    const Of lower = each("plLower", [](const auto&s) { return s.lower; }),
+             upper = each("plUpper", [](const auto&s) { return s.upper; }),
+             rate = each(
+                 "plRate",
+                 [&](const auto&s) { return s.rate_per_h * hours * (1.0 + kRelativeRounding); }),
+             substitute = each(
+                 "plSubstitute", [](const auto&s) { return static_cast<double>(s.substitute); },
+                 Kind::kInt);
+    std::vector<double> needs;
+    for (int i = 0; i < n_s; ++i) needs.push_back(isNeeded(i) ? 1.0 : 0.0);
+    const Of needed = uniform("plNeeded", needs, Kind::kBool);
     any_ = p_.work("someDoubt", Kind::kBool);
     doubtful_ = p_.work("doubtful", Kind::kBool);
     repaired_ = p_.work("repaired", Kind::kBool);
@@ -509,10 +524,11 @@ class BlockBuilder {
             p_.set(jumped, false);
             if (jumps()) lookForJump(i, jumped);
             p_.when(
-                raw_[i] < lower[i] || raw_[i] > upper[i], [&] { p_.set(doubt, kRange); },
+                raw_[i] < lower(i) || raw_[i] > upper(i), [&] { p_.set(doubt, kRange); },
                 [&] {
                   p_.when(
-                      has_good_[i] && a_ > rate[i] * (ir::toReal(since_good_[i]) + 1.0),
+                      Value(hasRates()) && has_good_[i] &&
+                          a_ > rate(i) * (ir::toReal(since_good_[i]) + 1.0),
                       [&] { p_.set(doubt, kRate); },
                       [&] { p_.when(jumped, [&] { p_.set(doubt, kJump); }); });
                 });
@@ -527,14 +543,15 @@ class BlockBuilder {
           [&] {
             p_.when(since_good_[i] < kLongAgo, [&] { p_.set(since_good_[i], since_good_[i] + 1); });
             p_.set(any_, true);
-            p_.set(by, substitute[i]);
+            p_.set(by, substitute(i));
             p_.when(since_good_[i] <= loop_.plausibility.bridge_samples, [&] { p_.set(by, 2); });
             p_.set(modelled, false);
             p_.set(raw_[i], 0.0);
             p_.when(has_good_[i], [&] { p_.set(raw_[i], good_[i]); });
-            p_.when(i < n_y_ && by == 2 && foreseen_, [&] { modelValue(i, modelled); });
+            p_.when((n_d_ > 0 ? i < n_y_ : Value(true)) && by == 2 && foreseen_,
+                    [&] { modelValue(i, modelled); });
             p_.set(replaced, modelled || has_good_[i]);
-            p_.when(needed[i], [&] {
+            p_.when(needed(i), [&] {
               p_.set(doubtful_, true);
               p_.set(may_end_,
                      may_end_ || doubt != kRange || Value(loop_.plausibility.range_falls));
@@ -558,9 +575,9 @@ class BlockBuilder {
 
   /// An index beyond the outputs is compared first, and taken only where it is one.
   void modelValue(const Value& i, const Value& modelled) {
-    const Value at = p_.work("atOutput", Kind::kInt);
-    p_.set(at, i);
-    p_.when(at >= n_y_, [&] { p_.set(at, 0); });
+    const Value at = n_d_ > 0 ? p_.work("atOutput", Kind::kInt) : i;
+    if (n_d_ > 0) p_.set(at, i);
+    if (n_d_ > 0) p_.when(at >= n_y_, [&] { p_.set(at, 0); });
     p_.when(ir::sane(expected_[at]), [&] {
       p_.set(raw_[i], expected_[at]);
       p_.set(modelled, true);
@@ -568,21 +585,21 @@ class BlockBuilder {
   }
 
   void lookForJump(const Value& i, const Value& jumped) {
-    const Value limit = p_.table("plJump", each([](const auto&s) { return s.jump; })),
-                samples = p_.table("plJumpSamples",
-                                   each([](const auto&s) { return s.jump_samples; }), Kind::kInt);
+    const Of limit = each("plJump", [](const auto&s) { return s.jump; }),
+             samples = each(
+                 "plJumpSamples", [](const auto&s) { return s.jump_samples; }, Kind::kInt);
     p_.when(
-        has_good_[i] && a_ > limit[i],
+        has_good_[i] && a_ > limit(i),
         [&] {
           p_.setAbsolute(b_, raw_[i] - level_[i]);
           p_.when(
-              at_level_[i] > 0 && b_ <= limit[i],
+              at_level_[i] > 0 && b_ <= limit(i),
               [&] {
                 p_.when(at_level_[i] < kLongAgo, [&] { p_.set(at_level_[i], at_level_[i] + 1); });
               },
               [&] { p_.set(at_level_[i], 1); });
           p_.set(level_[i], raw_[i]);
-          p_.set(jumped, at_level_[i] < samples[i]);
+          p_.set(jumped, at_level_[i] < samples(i));
         },
         [&] { p_.set(at_level_[i], 0); });
   }

@@ -124,7 +124,7 @@ class FmbpcCode final : public PredictiveCode {
       const auto rules =
           static_cast<int>(model_.weights[static_cast<std::size_t>(i)].node().variable->size);
       weights_out_.emplace_back();
-      for (int r = 0; r < rules && rules > 1; ++r)
+      for (int r = 0; r < rules && rules > 1 && model_.partitionOf(i) == i; ++r)
         weights_out_.back().push_back(
             p_.output("rWeight_" + plainName(name) + "_" + std::to_string(r + 1), Kind::kReal,
                       "firing weight of rule " + std::to_string(r + 1)));

@@ -173,6 +173,7 @@ Value operator!=(const Value& a, const Value& b) {
 Value operator&&(const Value& a, const Value& b) { return binary(Operation::kAnd, a, b, true); }
 Value operator||(const Value& a, const Value& b) { return binary(Operation::kOr, a, b, true); }
 Value operator!(const Value& a) { return unary(Operation::kNot, Kind::kBool, a); }
+Value literal(double number, Kind kind) { return Value(numberOf(number, kind)); }
 Value toReal(const Value& integer) { return unary(Operation::kToReal, Kind::kReal, integer); }
 Value floorOf(const Value& real) { return unary(Operation::kFloor, Kind::kInt, real); }
 Value sane(const Value& x) { return -kLargest <= x && x <= Value(kLargest); }
@@ -285,21 +286,17 @@ void Program::initialise() {
   for (std::size_t k = 0; k < variables_.size(); ++k) {
     const Variable& v = variables_[k];
     if (v.role != Role::kState) continue;
-    const auto literal = [&](double number) {
-      return Value(
-          std::make_shared<Node>(Node{Operation::kNumber, v.kind, number, nullptr, nullptr, {}}));
-    };
     if (v.size == 0) {
-      set(Value(v), literal(v.initial[0]));
+      set(Value(v), literal(v.initial[0], v.kind));
       continue;
     }
     const bool same = std::all_of(v.initial.begin(), v.initial.end(),
                                   [&](double number) { return number == v.initial[0]; });
     if (same)
-      loop(v.size, [&](const Value& i) { set(Value(v)[i], literal(v.initial[0])); });
+      loop(v.size, [&](const Value& i) { set(Value(v)[i], literal(v.initial[0], v.kind)); });
     else
       for (int i = 0; i < v.size; ++i)
-        set(Value(v)[i], literal(v.initial[static_cast<std::size_t>(i)]));
+        set(Value(v)[i], literal(v.initial[static_cast<std::size_t>(i)], v.kind));
   }
 }
 

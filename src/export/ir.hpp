@@ -91,6 +91,7 @@ Value operator!=(const Value& a, const Value& b);
 Value operator&&(const Value& a, const Value& b);  // both sides may be computed
 Value operator||(const Value& a, const Value& b);
 Value operator!(const Value& a);
+Value literal(double number, Kind kind);
 Value toReal(const Value& integer);
 Value floorOf(const Value& real);  ///< as an integer; |real| < 2^31
 

@@ -7,6 +7,7 @@
 
 #include "export/math.hpp"
 #include "fmbpc/base/input_error.hpp"
+#include "model/same_rules.hpp"
 
 namespace fpc {
 
@@ -48,13 +49,25 @@ ModelCode::ModelCode(BlockParts& parts, const TsModel& model, const std::string&
   c_ = p_.work(prefix + "t3");
   n_ = p_.work(prefix + "tn", Kind::kInt);
   part_ = p_.works(prefix + "part", Kind::kReal, 4);
-  for (int o = 0; o < b_.n_y; ++o)
-    weights.push_back(p_.works(prefix + "w" + std::to_string(o), Kind::kReal,
-                               static_cast<int>(model.submodels[place(o)].rules.size())));
+  for (int o = 0; o < b_.n_y; ++o) {
+    const int like = partitionOf(o);
+    weights.push_back(like < o
+                          ? weights[place(like)]
+                          : p_.works(prefix + "w" + std::to_string(o), Kind::kReal,
+                                     static_cast<int>(model.submodels[place(o)].rules.size())));
+  }
 }
 
 Value ModelCode::table(const std::string& name, const std::vector<double>& values) {
   return p_.table(tables_ + name, values);
+}
+
+/// The first output that has the weights of this one.
+int ModelCode::partitionOf(int output) const {
+  const auto& submodels = layout_.model().submodels;
+  int like = 0;
+  while (!sameWeights(submodels[place(like)], submodels[place(output)])) ++like;
+  return like;
 }
 
 Value ModelCode::placed(const Regressor& r, const Value& state, const Value& d) const {
@@ -296,7 +309,7 @@ void ModelCode::blend(const Value& state, const Value& d) {
   p_.loop(b_.n_y * b_.n_u, [&](const Value& i) { p_.set(B[i], 0.0); });
   for (int o = 0; o < b_.n_y; ++o) {
     const OutputModel& submodel = layout_.model().submodels[place(o)];
-    fire(o, state, d);
+    if (partitionOf(o) == o) fire(o, state, d);
     const int n = static_cast<int>(submodel.rules.size()),
               m = static_cast<int>(submodel.regressors.size());
     std::vector<double> coefficients, offsets, target;

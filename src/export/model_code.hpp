@@ -23,6 +23,7 @@ class ModelCode {
             const std::string& tables);
   const LocalModel& layout() const { return layout_; }
   int n_x() const { return static_cast<int>(layout_.stateSize()); }
+  int partitionOf(int output) const;  ///< the first output with the weights of this one
   int outputRow(int output) const { return static_cast<int>(layout_.outputState(output)); }
 
   /// Firing weights and rows at this state (u(k) replaced by u(k-1)) and d(k).

@@ -27,14 +27,17 @@ bool sameLags(const TsModel& a, const TsModel& b) {
   return true;
 }
 
+bool sameWeights(const OutputModel& a, const OutputModel& b) {
+  if (!(a.antecedents == b.antecedents) || a.rules.size() != b.rules.size()) return false;
+  for (std::size_t r = 0; r < a.rules.size(); ++r)
+    if (!sameSets(a.rules[r], b.rules[r])) return false;
+  return true;
+}
+
 bool sameRules(const TsModel& a, const TsModel& b) {
   for (std::size_t i = 0; i < a.submodels.size(); ++i) {
     const OutputModel &one = a.submodels[i], &other = b.submodels[i];
-    if (!(one.antecedents == other.antecedents) || !(one.regressors == other.regressors) ||
-        one.rules.size() != other.rules.size())
-      return false;
-    for (std::size_t r = 0; r < one.rules.size(); ++r)
-      if (!sameSets(one.rules[r], other.rules[r])) return false;
+    if (!(one.regressors == other.regressors) || !sameWeights(one, other)) return false;
   }
   return true;
 }

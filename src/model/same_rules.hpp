@@ -9,5 +9,7 @@ namespace fpc {
 bool sameLags(const TsModel& a, const TsModel& b);
 /// Only the consequents differ, as those of a model that learns.
 bool sameRules(const TsModel& a, const TsModel& b);
+/// Both outputs have the same rules' sets on the same variables: one set of weights.
+bool sameWeights(const OutputModel& a, const OutputModel& b);
 
 }  // namespace fpc
