@@ -158,12 +158,13 @@ class Export(unittest.TestCase):
                 self.assertLessEqual(said[what], aim, (core, what))
 
     @unittest.skipUnless(shutil.which("frama-c"), "no frama-c")
-    def test_a_proof_finds_an_index_out_of_bounds(self):
+    def test_a_proof_finds_an_index_out_of_bounds_and_an_overflow(self):
         for loop, judge, right, wrong in (
+                (f"{TOP}/test/export/nine_rules.yaml --real", export_check.analysed, r"9\.99999968e-21f", "1.0e-30f"),
                 ("asp_case1_pi_x", export_check.analysed, r"s->last\[0\] = u\[0\]", "s->last[1] = u[0]"),
                 ("linear_2x2_clp", export_check.analysed_optimizer, r"(within\(q->count, LAW_CLP_N) - 1", r"\1")):
             with self.subTest(loop=loop):
-                self.exported(loop, "--to", "c99", "--samples", "10")
+                self.exported(*loop.split(), "--to", "c99", "--samples", "10")
                 law = self.folder / "law.c"
                 text = law.read_text()
                 self.assertRegex(text, right)

@@ -367,6 +367,7 @@ class BlockBuilder {
         p_.set(c_, set_rate_[i] * hours);
         p_.clamp(b_, active_[i] - c_, active_[i] + c_);
       });
+      p_.keepInside(b_);
       p_.set(active_[i], b_);
     });
     raise(flag_, kSetpointBad);
@@ -768,6 +769,7 @@ class BlockBuilder {
     if (!clp_)
       p_.set(other_hand_,
              other_hand_ || source_ == sourceOf(ActionSource::kManual) || fell_back_ || !takes_);
+    p_.loop(n_u_, [&](const Value& i) { p_.keepInside(u_[i]); });
     for (int i = 0; i < n_u_; ++i) {
       const std::size_t k = at(i);
       p_.set(out_[k], u_[i]);

@@ -19,7 +19,6 @@ using ir::Kind;
 using ir::Value;
 
 constexpr double kSingularPivot = 1e-12;  // as CoincidenceGains
-constexpr double kFaintEffect = 1e-30;    // of an input: the law has no answer
 
 /// The way of CoincidenceGains to a horizon: short ones step by step, longer ones by doubling.
 struct CoincidenceWalk {
@@ -80,6 +79,9 @@ class FmbpcCode final : public PredictiveCode {
     require(params_.coincidence_steps <= 10000, where + "coincidence_steps",
             "at most 10000 in an exported block");
   }
+
+  /// What an input does, or its square: with less the law has no answer.
+  double faint() const { return p_.single ? 1e-20 : 1e-30; }
 
   double weightOf(int output) const {
     if (params_.law == FmbpcForm::kPublished) return output == b_.n_y - 1 ? 1.0 : 0.0;
@@ -287,8 +289,10 @@ class FmbpcCode final : public PredictiveCode {
         p_.set(effect, effectOf(sum_, row, j));
         p_.setAbsolute(a_, effect);
         p_.when(a_ <= kSingularPivot * size_[k * n_u + j], [&] { p_.set(effect, 0.0); });
+        p_.keepInside(effect);
       }
       subtractFrom(k, row);
+      p_.keepInside(lack_[k]);
     });
   }
 
@@ -412,7 +416,7 @@ class FmbpcCode final : public PredictiveCode {
   }
 
   void published() {
-    p_.when((effect_[0] <= -kFaintEffect || effect_[0] >= kFaintEffect) && ir::sane(effect_[0]),
+    p_.when((effect_[0] <= -faint() || effect_[0] >= faint()) && ir::sane(effect_[0]),
             [&] {
               p_.set(a_, 1.0 / effect_[0]);
               p_.set(b_.u[0], a_ * lack_[0]);
@@ -456,14 +460,17 @@ class FmbpcCode final : public PredictiveCode {
       p_.set(a_, normal[i * m + i]);
       p_.set(scale[i], 0.0);
       p_.when(
-          a_ > 1e-30 && ir::sane(a_), [&] { p_.set(scale[i], 1.0 / ir::squareRoot(p_, a_)); },
+          a_ > faint() && ir::sane(a_), [&] { p_.set(scale[i], 1.0 / ir::squareRoot(p_, a_)); },
           [&] { p_.set(b_.ok, false); });
     });
     p_.when(
         b_.ok,
         [&] {
           factor(normal, scale, m);
-          p_.loop(m, [&](const Value& i) { p_.set(right[i], right[i] * scale[i]); });
+          p_.loop(m, [&](const Value& i) {
+            p_.set(right[i], right[i] * scale[i]);
+            p_.keepInside(right[i]);
+          });
           substitute(normal, right, m);
           p_.loop(m, [&](const Value& i) { p_.set(b_.u[i], right[i] * scale[i]); });
           if (clp_) gains(normal, scale, right, w, l);

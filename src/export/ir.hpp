@@ -159,6 +159,10 @@ class Program {
   void setAbsolute(const Value& target, const Value& value);
   /// target := inside kLargest: what is beyond is of no use, and nothing overflows behind it.
   void contain(const Value& target) { clamp(target, -kLargest, kLargest); }
+  /// The same of what is inside wherever it is of use: products overflow in single precision.
+  void keepInside(const Value& target) {
+    if (single) contain(target);
+  }
   /// All states as they begin.
   void initialise();
 
