@@ -151,20 +151,25 @@ bool LocalModel::blendOutput(Eigen::Index output, VectorRef state, VectorRef inp
     values[static_cast<Eigen::Index>(i)] =
         value(antecedents_[at(output)][i], state, input, disturbances);
   FiringResult& firing = firing_[at(output)];
-  firingWeights(submodel, values, firing);
-
   const Eigen::Index row = outputState(output);
-  affine_.A.row(row).setZero();
-  affine_.B.row(row).setZero();
+  // Weights are 0 before the first time. Without antecedents A and B are what they were then.
+  const bool same = values.size() == 0 && firing.weights.sum() > 0.0;
+  if (!same) {
+    firingWeights(submodel, values, firing);
+    affine_.A.row(row).setZero();
+    affine_.B.row(row).setZero();
+  }
   affine_.g[row] = 0.0;
   for (std::size_t r = 0; r < submodel.rules.size(); ++r)
     affine_.g[row] += firing.weights[static_cast<Eigen::Index>(r)] * submodel.rules[r].offset;
   for (std::size_t i = 0; i < submodel.regressors.size(); ++i) {
+    const Place& regressor = regressors_[at(output)][i];
+    if (same && (regressor.row >= 0 || regressor.of_input)) continue;
     double coefficient = 0.0;
     for (std::size_t r = 0; r < submodel.rules.size(); ++r)
       coefficient += firing.weights[static_cast<Eigen::Index>(r)] *
                      submodel.rules[r].coefficients[static_cast<Eigen::Index>(i)];
-    addTerm(row, regressors_[at(output)][i], coefficient, disturbances);
+    addTerm(row, regressor, coefficient, disturbances);
   }
   return firing.fired;
 }
@@ -188,6 +193,7 @@ void LocalModel::addSlopes(VectorRef state, VectorRef input, VectorRef disturban
                            Matrix& B) {
   for (std::size_t o = 0; o < model_.submodels.size(); ++o) {
     const OutputModel& submodel = model_.submodels[o];
+    if (submodel.antecedents.empty()) continue;
     Matrix& slopes = slopes_[o];
     firingSlopes(submodel, antecedent_values_[o], firing_[o], slopes);
     Vector& values = regressor_values_[o];

@@ -32,6 +32,7 @@ constexpr int kFewestRun = 40, kMostRun = 220;  // samples of one stretch of the
 constexpr double kShortHorizon = 10, kLongHorizon = 60;
 constexpr double kSofter = 2.0;  // the moves' weight when a member is not stable enough
 constexpr int kSoftenings = 16;
+constexpr double kStillHelps = 0.5;    // of what a softer step did when it was chosen
 constexpr double kMostPresent = 10.0;  // sensitivity that a control which holds a plant may have
 constexpr double kLeastDearer = 0.02;  // of the cost, that a softer setting is taken to add
 constexpr double kSpoiltGain = 1.6, kSpoiltDelay = 0.25;  // factor; of dead time and a sample
@@ -207,8 +208,9 @@ class Designer {
     pi_ = piOf(pi_x);
     show("margins of the law");
     const auto law_text = [this](const Vector& at) { return lawText(at); };
+    Softening way;
     soften(d.law_figures, x, law_text,
-           [this](const Vector& at, double peak) { return softerLaw(at, peak); });
+           [&](const Vector& at, double peak) { return softerLaw(at, peak, way); });
     d.pi = piText(pi_x);
     d.law = lawText(x);
     compare(d);
@@ -241,9 +243,7 @@ class Designer {
     show("models on which the present control holds");
     std::vector<double> peaks(models_.ensemble.size());
     parallelFor(peaks.size(), params_.threads, [&](std::size_t m) {
-      DesignFigures present;
-      probe(brief_.loop.resolved, models_.ensemble[m], present);
-      peaks[m] = present.worst_peak;
+      peaks[m] = probe(brief_.loop.resolved, models_.ensemble[m]).worst_peak;
     });
     std::vector<const TsModel*> held;
     for (std::size_t m = 0; m < peaks.size(); ++m)
@@ -589,68 +589,102 @@ class Designer {
     return x;
   }
 
-  /// The law with costlier or cheaper moves, a slower or faster observer, slower or faster
-  /// references: the one of the six whose sensitivity peak on the model that failed falls most for
-  /// what it costs, `x` if it falls with none. What runs away may need the faster ones.
-  Vector softerLaw(const Vector& x, double peak) const {
-    const auto costOf = [&](const Vector& at) {
-      const std::vector<double> costs = costsOver(lawText(at), tuned_);
-      return std::accumulate(costs.begin(), costs.end(), 0.0);
-    };
+  /// A step of the law's setting, and what it did to the sensitivity peak.
+  struct Softening {
+    Vector step;
+    double lowered{};          // the logarithm of the peak, when the step was chosen
+    double peak{};             // before the latest one
+    const TsModel* failing{};  // on this model
+  };
+
+  static double lowering(double from, double to) {
+    return std::log(std::min(from, kFailed) / std::min(to, kFailed));
+  }
+
+  /// The step is gone once more while it does what it did, for another model too: to choose takes
+  /// as long as ten steps.
+  Vector softerLaw(const Vector& x, double peak, Softening& way) const {
+    const bool helps =
+        way.failing != probed_.front() || lowering(way.peak, peak) >= kStillHelps * way.lowered;
+    if (way.step.size() == 0 || !helps) choose(x, peak, way);
+    way.peak = peak;
+    way.failing = probed_.front();
+    return x + way.step;
+  }
+
+  /// Costlier or cheaper moves, a slower or faster observer, slower or faster references: the one
+  /// of the six with which the peak on the model that failed falls most for what it costs, no step
+  /// if it falls with none. What runs away may need the faster ones.
+  void choose(const Vector& x, double peak, Softening& way) const {
     Matrix ways = Matrix::Zero(x.size(), 6);
     ways(0, 0) = std::log10(kSofter);
     ways(1, 1) = -0.5 * std::log10(kSofter);
     ways.col(2).tail(x.size() - 2).setConstant(0.5 * std::log2(kSofter));
     ways.rightCols(3) = -ways.leftCols(3);
+    Vector lowered(ways.cols());
+    parallelFor(static_cast<std::size_t>(ways.cols()), params_.threads, [&](std::size_t i) {
+      const auto at = static_cast<Index>(i);
+      const DesignFigures reached = probe(lawText(x + ways.col(at)), *probed_.front());
+      lowered[at] = lowering(peak, reached.worst_peak);
+    });
+    const auto costOf = [&](const Vector& at) {
+      const std::vector<double> costs = costsOver(lawText(at), tuned_);
+      return std::accumulate(costs.begin(), costs.end(), 0.0);
+    };
+    way.step.setZero(x.size());
+    if (lowered.maxCoeff() <= 0.0) return;
     const double cost = costOf(x);
     double best = 0.0;
-    Vector softer = x;
-    for (Index way = 0; way < ways.cols(); ++way) {
-      const Vector at = x + ways.col(way);
-      DesignFigures figures;
-      probe(lawText(at), *probed_.front(), figures);
-      const double lower =
-          std::log(std::min(peak, kFailed) / std::min(figures.worst_peak, kFailed));
-      const double worth = lower / std::max(costOf(at) / cost - 1.0, kLeastDearer);
-      if (worth > best) {
-        best = worth;
-        softer = at;
-      }
+    for (Index i = 0; i < ways.cols(); ++i) {
+      if (lowered[i] <= 0.0) continue;
+      const double worth =
+          lowered[i] / std::max(costOf(x + ways.col(i)) / cost - 1.0, kLeastDearer);
+      if (worth <= best) continue;
+      best = worth;
+      way.step = ways.col(i);
+      way.lowered = lowered[i];
     }
-    return softer;
   }
 
-  /// The loop at rest on one model, added to the figures; a loop that is not linear there is taken
-  /// for one that is not stable.
-  void probe(const std::string& text, const TsModel& model, DesignFigures& figures) const {
+  /// The loop at rest on one model; one that is not linear there is taken for one that is not
+  /// stable.
+  DesignFigures probe(const std::string& text, const TsModel& model) const {
     LoopFile loop = scenario(text, model);
     loop.simulation.disturbance_commands.clear();
     const LoopCourse course(loop);
     const CoursePoint point = course.points(1).front();
     const LoopProbe probed = probeLoop(course.stayingAt(loop, point), point);
-    if (probed.result != ProbeResult::kLinear) {
-      figures.worst_peak = kInfinity;
-      figures.least_gain = figures.least_delay_s = 0.0;
-      return;
-    }
-    figures.worst_peak = std::max(figures.worst_peak, probed.response->peak());
+    DesignFigures figures;
+    figures.worst_peak = kInfinity;
+    if (probed.result != ProbeResult::kLinear) return figures;
+    figures.worst_peak = probed.response->peak();
+    figures.least_gain = figures.least_delay_s = kInfinity;
     for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
       const LoopMargins margin = probed.response->margins(j);
       figures.least_gain = std::min(figures.least_gain, margin.gain_upper);
       figures.least_delay_s = std::min(figures.least_delay_s, margin.delay_s);
     }
+    return figures;
   }
 
-  /// With `early` the first model beyond the peak ends it, and is the first one the next time.
+  /// With `early` the model that failed last ends it if it fails again. The worst one is the first
+  /// one the next time.
   void margins(const std::string& text, DesignFigures& figures, bool early) {
-    figures.worst_peak = 0.0;
-    figures.least_gain = figures.least_delay_s = kInfinity;
-    for (std::size_t m = 0; m < probed_.size(); ++m) {
-      probe(text, *probed_[m], figures);
-      if (!early || figures.worst_peak <= allowed_peak_) continue;
-      std::swap(probed_.front(), probed_[m]);
-      return;
+    std::vector<DesignFigures> each{probe(text, *probed_.front())};
+    if (!early || each.front().worst_peak <= allowed_peak_) {
+      each.resize(probed_.size());
+      parallelFor(each.size() - 1, params_.threads,
+                  [&](std::size_t m) { each[m + 1] = probe(text, *probed_[m + 1]); });
     }
+    std::size_t worst = 0;
+    figures.least_gain = figures.least_delay_s = kInfinity;
+    for (std::size_t m = 0; m < each.size(); ++m) {
+      if (each[m].worst_peak > each[worst].worst_peak) worst = m;
+      figures.least_gain = std::min(figures.least_gain, each[m].least_gain);
+      figures.least_delay_s = std::min(figures.least_delay_s, each[m].least_delay_s);
+    }
+    figures.worst_peak = each[worst].worst_peak;
+    std::swap(probed_.front(), probed_[worst]);
   }
 
   void compare(Design& d) const {
