@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What the loops of a plant cost in one process: processor time, memory and late samples for each number of loops, one sample a second each.
-  bench/plant_bench.py [--seconds 60] [--loop asp_case1_clp] N ..."""
+  bench/plant_bench.py [--seconds 60] [--loop asp_case1_clp] N ...
+  bench/plant_bench.py --lockstep N         samples a second of N loops in lockstep beside one loop as four nodes, in turn, three times"""
 import argparse
 import json
 import os
@@ -65,12 +66,39 @@ def measure(loop, count, seconds):
         return {"loops": count, "core_percent": 100 * used, "mb": memory, "ready_s": ready, "samples": steps, "late": late}
 
 
+def samples_per_second(env, launch, out):
+    """Of a launch that ends by itself: samples of all its loops over the time of the one that took longest."""
+    subprocess.run(["roslaunch", *launch, f"out:={out}"], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True)
+    runs = [json.loads(summary.read_text()) for summary in [*out.glob("summary.json"), *out.glob("*/summary.json")]]
+    return sum(r["steps"] for r in runs) / max(r["wall_s"] for r in runs)
+
+
+def lockstep(loop, count):
+    hours = {1: 2000, count: 200}
+    rates = {1: [], count: []}
+    for _ in range(3):
+        for n in rates:
+            with tempfile.TemporaryDirectory() as folder, launching.master() as env:
+                folder = pathlib.Path(folder)
+                file = folder / "plant.yaml"
+                file.write_text(yaml.safe_dump({"pace": "lockstep", "set": {"sampling.duration_h": hours[n]},
+                                                "loops": {f"l{i:03}": {"loop": loop} for i in range(n)}}), encoding="utf-8")
+                alone = ["fmbpc", "loop.launch", f"loop:={loop}", "pace:=lockstep", "draw:=false", f"set:=sampling.duration_h={hours[n]}"]
+                rates[n].append(samples_per_second(env, alone if n == 1 else ["fmbpc", "plant.launch", f"plant:={file}"], folder / "out"))
+    ratios = sorted(many / one for one, many in zip(rates[1], rates[count]))
+    print(f"one loop as four nodes: {sorted(rates[1])[1]:.0f} samples/s; {count} loops in one process: {sorted(rates[count])[1]:.0f}; "
+          f"ratio {ratios[1]:.2f} ({ratios[0]:.2f} to {ratios[-1]:.2f})")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("counts", nargs="+", type=int, metavar="N")
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--loop", default="asp_case1_clp")
+    parser.add_argument("--lockstep", action="store_true")
     asked = parser.parse_args()
+    if asked.lockstep:
+        return [lockstep(asked.loop, count) for count in asked.counts] and None
     print("loops  of a core  memory  ready  samples  late")
     for count in asked.counts:
         row = measure(asked.loop, count, asked.seconds)

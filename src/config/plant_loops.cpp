@@ -27,8 +27,10 @@ double finite(double limit) { return std::clamp(limit, -kLargest, kLargest); }
 constexpr std::int64_t kNoEnd = std::numeric_limits<std::int64_t>::max();
 
 std::vector<std::string> wordsOf(LoopLink::To) {
-  return {"disturbance", "input", "setpoint", "pace"};
+  return {"disturbance", "input", "setpoint", "forecast", "pace"};
 }
+
+std::vector<std::string> wordsOf(LoopLink::Of) { return {"outputs", "inputs", "plan"}; }
 
 bool isNameOfLoop(const std::string& name) {
   return !name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) &&
@@ -107,15 +109,17 @@ const SignalInfo& signalOf(YamlSection& item, const std::string& key, const Sign
   return *found;
 }
 
-LoopLink linkFrom(const PlantLoop& other, bool action, Eigen::Index index) {
+LoopLink linkFrom(const PlantLoop& other, LoopLink::Of of, Eigen::Index index) {
   const SimulationParams& from = other.loop.simulation;
   const SampleClock clock(from.sample_time_s, from.start_time_s);
   LoopLink link;
   link.from = other.name;
-  link.action = action;
+  link.of = of;
   link.index = index;
   link.every_ns = link.reach_ns = clock.timeAt(1) - clock.timeAt(0);
-  link.last_ns = from.samples == 0 ? kNoEnd : clock.timeAt(from.samples - (action ? 1 : 0));
+  link.first_ns = clock.timeAt(0);
+  const std::uint32_t unanswered = of == LoopLink::Of::kOutputs ? 0 : 1;  // the final one
+  link.last_ns = from.samples == 0 ? kNoEnd : clock.timeAt(from.samples - unanswered);
   return link;
 }
 
@@ -124,8 +128,8 @@ void keepPace(PlantLoop& source, const PlantLoop& listener) {
   constexpr std::int64_t kAhead = 1000;  // samples
   for (const LoopLink& link : source.links)
     if (link.to == LoopLink::To::kPace && link.from == listener.name) return;
-  LoopLink link = linkFrom(listener, false, 0);
-  const LoopLink own = linkFrom(source, false, 0);
+  LoopLink link = linkFrom(listener, LoopLink::Of::kOutputs, 0);
+  const LoopLink own = linkFrom(source, LoopLink::Of::kOutputs, 0);
   link.to = LoopLink::To::kPace;
   link.name = "pace";
   link.reach_ns = kAhead * std::max(link.every_ns, own.every_ns);
@@ -142,11 +146,39 @@ void add(YamlSection& item, const std::string& key, PlantLoop& from, PlantLoop& 
   to.links.push_back(std::move(link));
 }
 
-/// An output of one loop as a disturbance of another.
+/// The plan of the other law is what this one expects of the disturbance from the next sample on.
+void readPlan(YamlSection& item, const SignalOfLoop& from, const SignalOfLoop& to, LoopLink link) {
+  const LoopFile &sender = from.of->loop, &receiver = to.of->loop;
+  const auto& measured = receiver.plant_info.disturbances;
+  if (link.of != LoopLink::Of::kInputs)
+    item.fail("plan", "`from` with an input of " + from.of->name + ": its outputs are not planned");
+  if (link.every_ns != linkFrom(*to.of, LoopLink::Of::kInputs, 0).every_ns)
+    item.fail("plan", "loops with one sample time");
+  if (!sender.controllerType().predicts)
+    item.fail("plan", "a loop that plans; controller " + sender.controllerType().name + " of " +
+                          from.of->name + " does not");
+  if (!receiver.controller->signalUse(controllerContext(receiver)).looks_ahead)
+    item.fail("plan",
+              "a receiver whose law looks ahead at disturbances (type fmbpc, law: iterated, "
+              "disturbance_feedforward: true); " +
+                  to.of->name + " has none");
+  if (std::none_of(measured.begin(), measured.end(),
+                   [&](const SignalInfo& one) { return one.name == link.name; }))
+    item.fail("plan", "a measured disturbance of " + to.of->name + "; got '" + link.name + "'");
+  link.of = LoopLink::Of::kPlan;
+  link.to = LoopLink::To::kForecast;
+  link.reach_ns = 2 * link.every_ns;  // that of the sample before
+  add(item, "to", *from.of, *to.of, std::move(link));
+}
+
+/// A signal of one loop as a disturbance of another.
 void readFeed(YamlSection& item, std::vector<PlantLoop>& loops) {
   const SignalOfLoop from = readSignal(item, "from", loops), to = readSignal(item, "to", loops);
   Eigen::Index index = 0, ignored = 0;
-  signalOf(item, "from", from, from.of->loop.plant_info.outputs, "an output", index);
+  const PlantInfo& source = from.of->loop.plant_info;
+  const bool input = std::any_of(source.inputs.begin(), source.inputs.end(),
+                                 [&](const SignalInfo& one) { return one.name == from.signal; });
+  signalOf(item, "from", from, input ? source.inputs : source.outputs, "an output or input", index);
   if (to.of->loop.external_plant)
     item.fail("to", "a loop with a simulated plant; what disturbs a real one is among its tags");
   if (from.of == to.of) item.fail("to", "another loop than that of `from`");
@@ -155,14 +187,23 @@ void readFeed(YamlSection& item, std::vector<PlantLoop>& loops) {
   for (const Quantity& q : plant->description().disturbances)
     disturbances.push_back({q.name, q.unit, q.lower, q.upper});
   const SignalInfo& target = signalOf(item, "to", to, disturbances, "a disturbance", ignored);
-  LoopLink link = linkFrom(*from.of, false, index);
+  LoopLink link = linkFrom(*from.of, input ? LoopLink::Of::kInputs : LoopLink::Of::kOutputs, index);
   link.name = target.name;
   link.lower = finite(target.lower);
   link.upper = finite(target.upper);
   item.number("gain", link.gain, kFinite);
   item.number("offset", link.offset, kFinite);
+  bool plan = false;
+  item.boolean("plan", plan);
+  double until_h = kLargest;
+  item.number("plan_until_h", until_h, kFiniteNotNegative);
   item.finish();
   add(item, "to", *from.of, *to.of, link);
+  if (!plan) return;
+  const double samples = std::floor(until_h * 3600e9 / static_cast<double>(link.every_ns));
+  if (samples < static_cast<double>((link.last_ns - link.first_ns) / link.every_ns))
+    link.last_ns = link.first_ns + static_cast<std::int64_t>(samples) * link.every_ns;
+  readPlan(item, from, to, link);
 }
 
 /// What the outer loop asks for is the inner one's setpoint; what its plant gets is the inner
@@ -193,14 +234,14 @@ void readCascade(YamlSection& item, std::vector<PlantLoop>& loops) {
                            ", lie inside those of the setpoint of " + inner.of->name + "/" +
                            followed.name + ", " + rangeText(lower, upper, followed.unit) +
                            ": set.actuator or set.setpoint");
-  LoopLink ask = linkFrom(*outer.of, true, input);
+  LoopLink ask = linkFrom(*outer.of, LoopLink::Of::kInputs, input);
   ask.to = LoopLink::To::kSetpoint;
   ask.name = followed.name;
   ask.lower = finite(lower);
   ask.upper = finite(upper);
   add(item, "inner", *outer.of, *inner.of, ask);
   if (outer.of->loop.external_plant) return;  // its gateway reads where the input is
-  LoopLink back = linkFrom(*inner.of, false, output);
+  LoopLink back = linkFrom(*inner.of, LoopLink::Of::kOutputs, output);
   back.to = LoopLink::To::kInput;
   back.name = asked.name;
   back.lower = finite(asked.lower);
@@ -244,9 +285,10 @@ std::string textOf(const std::vector<LoopLink>& links) {
   text << YAML::BeginMap << YAML::Key << "links" << YAML::Value << YAML::BeginSeq;
   for (const LoopLink& link : links)
     text << YAML::Flow << YAML::BeginMap << YAML::Key << "from" << YAML::Value << link.from
-         << YAML::Key << "action" << YAML::Value << link.action << YAML::Key << "index"
-         << YAML::Value << link.index << YAML::Key << "every_ns" << YAML::Value << link.every_ns
-         << YAML::Key << "reach_ns" << YAML::Value << link.reach_ns << YAML::Key << "last_ns"
+         << YAML::Key << "of" << YAML::Value << wordsOf(link.of)[static_cast<std::size_t>(link.of)]
+         << YAML::Key << "index" << YAML::Value << link.index << YAML::Key << "every_ns"
+         << YAML::Value << link.every_ns << YAML::Key << "reach_ns" << YAML::Value << link.reach_ns
+         << YAML::Key << "first_ns" << YAML::Value << link.first_ns << YAML::Key << "last_ns"
          << YAML::Value << link.last_ns << YAML::Key << "to" << YAML::Value
          << wordsOf(link.to)[static_cast<std::size_t>(link.to)] << YAML::Key << "name"
          << YAML::Value << link.name << YAML::Key << "gain" << YAML::Value << exactText(link.gain)
@@ -262,16 +304,17 @@ std::vector<LoopLink> parseLinks(const std::string& text, const std::string& nam
   std::vector<LoopLink> links;
   for (YamlSection& item : root.list("links")) {
     LoopLink link;
-    std::string to = "disturbance", every, reach, last;
+    std::string to = "disturbance", of = "outputs", every, reach, first, last;
     int index = 0;
     item.text("from", link.from);
-    item.boolean("action", link.action);
     item.integer("index", index, 0);
     item.text("every_ns", every);
     item.text("reach_ns", reach);
+    item.text("first_ns", first);
     item.text("last_ns", last);
-    const std::vector<std::string> words = wordsOf(link.to);
+    const std::vector<std::string> words = wordsOf(link.to), sources = wordsOf(link.of);
     item.oneOf("to", to, words);
+    item.oneOf("of", of, sources);
     item.text("name", link.name);
     item.number("gain", link.gain, kFinite);
     item.number("offset", link.offset, kFinite);
@@ -281,7 +324,10 @@ std::vector<LoopLink> parseLinks(const std::string& text, const std::string& nam
     link.index = index;
     link.every_ns = std::stoll(every);
     link.reach_ns = std::stoll(reach);
+    link.first_ns = std::stoll(first);
     link.last_ns = std::stoll(last);
+    link.of =
+        static_cast<LoopLink::Of>(std::find(sources.begin(), sources.end(), of) - sources.begin());
     link.to = static_cast<LoopLink::To>(std::find(words.begin(), words.end(), to) - words.begin());
     links.push_back(std::move(link));
   }

@@ -17,14 +17,17 @@ struct LoopLink {
     kDisturbance,  ///< of its plant
     kInput,        ///< what its plant gets as this input: the inner loop's output in a cascade
     kSetpoint,     ///< of its controller: the outer loop's input in a cascade
+    kForecast,     ///< what its controller expects of a disturbance: the other loop's plan
     kPace          ///< of nothing: in lockstep the loop does not run too far ahead of its listener
   };
-  std::string from;         ///< name of the other loop
-  bool action{};            ///< control_action of it; otherwise an output of its measurement
+  /// What of the other loop: its measurement's outputs, its inputs as asked, or as planned.
+  enum class Of { kOutputs, kInputs, kPlan };
+  std::string from;  ///< name of the other loop
+  Of of{Of::kOutputs};
   Eigen::Index index{};     ///< there
   std::int64_t every_ns{};  ///< between two samples of it
   std::int64_t reach_ns{};  ///< lockstep: the latest one may be so much older than what needs it
-  std::int64_t last_ns{};   ///< time of the last of them
+  std::int64_t first_ns{}, last_ns{};  ///< times of the first and the last of them
   To to{To::kDisturbance};
   std::string name;  ///< of the disturbance, input or output
   double gain{1.0}, offset{};

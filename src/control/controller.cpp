@@ -14,6 +14,10 @@ bool Controller::foresee(const Measurement& /*now*/, Eigen::Ref<Vector> /*output
   return false;
 }
 
+bool Controller::expect(std::uint32_t /*k*/, Eigen::Index /*disturbance*/, VectorRef /*ahead*/) {
+  return false;
+}
+
 void Controller::setModel(const TsModel& /*model*/) {}
 
 bool Controller::mayBeSent(VectorRef /*input*/) const { return true; }

@@ -18,6 +18,9 @@ class ControllerAround : public Controller {
   bool foresee(const Measurement& now, Eigen::Ref<Vector> outputs) override {
     return inside_->foresee(now, outputs);
   }
+  bool expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) override {
+    return inside_->expect(k, disturbance, ahead);
+  }
   bool needsModel() const override { return inside_->needsModel(); }
   bool followsSetpoint() const override { return inside_->followsSetpoint(); }
   void setModel(const TsModel& model) override { inside_->setModel(model); }

@@ -8,6 +8,7 @@
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
 #include "runtime/factory.hpp"
+#include "runtime/plan.hpp"
 
 namespace fpc {
 namespace {
@@ -232,16 +233,17 @@ void ControllerNode::answerParked() {
 }
 
 // Once for each sample: a repeated one is not commanded for again.
-void ControllerNode::takeLinkedSetpoints(const StepHeader& sample) {
+void ControllerNode::takeFromOthers(const StepHeader& sample) {
   if (links_.inbox().empty() || isSameSample(linked_, sample)) return;
   linked_ = sample;
   if (const auto command = links_.inbox().command(sample.time_ns)) session_.command(*command);
+  takePlans(links_.inbox(), sample, loop_.plant_info, session_);
 }
 
 void ControllerNode::answer(const Measurement& measurement) {
   heard_s_ = steadyNow();
   useModels(measurement.header);
-  takeLinkedSetpoints(measurement.header);
+  takeFromOthers(measurement.header);
   const bool first = session_.counts().accepted == 0;
   switch (session_.receive(measurement)) {
     case Receipt::kAnswered:

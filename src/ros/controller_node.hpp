@@ -73,7 +73,7 @@ class ControllerNode : public Node {
   StepHeader nextSample() const;
   bool mayAnswer(const Measurement& measurement);
   void park(const Measurement& measurement);
-  void takeLinkedSetpoints(const StepHeader& sample);
+  void takeFromOthers(const StepHeader& sample);
   void answer(const Measurement& measurement);
   void answerParked();
   void tell();  ///< what the operator asks has changed

@@ -6,6 +6,7 @@
 #include "ros/conversions.hpp"
 #include "ros/queues.hpp"
 #include "ros/topics.hpp"
+#include "runtime/plan.hpp"
 
 namespace fpc {
 namespace {
@@ -29,36 +30,36 @@ std::string besideOf(const ros::NodeHandle& node, const std::string& loop) {
 LinkListener::LinkListener(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                            Pace pace, LinkInbox::Of of, std::function<void()> heard)
     : inbox_(linksOf(private_node), of, pace == Pace::kLockstep), heard_(std::move(heard)) {
-  for (const auto& [from, action] : inbox_.sources()) listen(node, from, action);
+  for (const auto& [from, of] : inbox_.sources()) listen(node, from, of);
 }
 
-void LinkListener::listen(ros::NodeHandle node, const std::string& from, bool action) {
-  const auto hint = ros::TransportHints().tcpNoDelay();
-  const std::uint32_t queue = queueOf(ListenerKind::kRecord);
-  const auto take = [this, from, action](const StepHeader& sample, VectorRef values) {
-    inbox_.hear(from, action, sample, values);
-    heard_();
-  };
+template <class Message, class Read>
+void LinkListener::hear(ros::NodeHandle& node, const std::string& from, LoopLink::Of of,
+                        const char* topic, Read read) {
+  subscribers_.push_back(node.subscribe<Message>(
+      besideOf(node, from) + topic, queueOf(ListenerKind::kRecord),
+      [=](const typename Message::ConstPtr& msg) {
+        inbox_.hear(from, of, {fromStamp(msg->header.stamp), msg->run_id, msg->step}, read(*msg));
+        heard_();
+      },
+      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+}
+
+void LinkListener::listen(ros::NodeHandle node, const std::string& from, LoopLink::Of of) {
   const auto vectorOf = [](const std::vector<double>& values) {
     return Eigen::Map<const Vector>(values.data(), static_cast<Eigen::Index>(values.size()));
   };
-  const auto headerOf = [](const auto& msg) {
-    return StepHeader{fromStamp(msg.header.stamp), msg.run_id, msg.step};
-  };
-  if (action)
-    subscribers_.push_back(node.subscribe<fmbpc::ControlAction>(
-        besideOf(node, from) + topics::kControlAction, queue,
-        [=](const fmbpc::ControlAction::ConstPtr& msg) {
-          take(headerOf(*msg), vectorOf(msg->input));
-        },
-        ros::VoidConstPtr(), hint));
-  else
-    subscribers_.push_back(node.subscribe<fmbpc::Measurement>(
-        besideOf(node, from) + topics::kMeasurement, queue,
-        [=](const fmbpc::Measurement::ConstPtr& msg) {
-          take(headerOf(*msg), vectorOf(msg->outputs));
-        },
-        ros::VoidConstPtr(), hint));
+  switch (of) {
+    case LoopLink::Of::kOutputs:
+      return hear<fmbpc::Measurement>(node, from, of, topics::kMeasurement,
+                                      [=](const auto& msg) { return vectorOf(msg.outputs); });
+    case LoopLink::Of::kInputs:
+      return hear<fmbpc::ControlAction>(node, from, of, topics::kControlAction,
+                                        [=](const auto& msg) { return vectorOf(msg.input); });
+    case LoopLink::Of::kPlan:
+      return hear<fmbpc::PredictiveAction>(node, from, of, topics::kPredictiveAction,
+                                           [](const auto& msg) { return planOf(fromMsg(msg)); });
+  }
 }
 
 std::vector<std::string> LinkListener::missing() const {

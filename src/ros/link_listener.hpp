@@ -4,6 +4,7 @@
 
 #include <fmbpc/ControlAction.h>
 #include <fmbpc/Measurement.h>
+#include <fmbpc/PredictiveAction.h>
 #include <ros/ros.h>
 
 #include <functional>
@@ -25,7 +26,11 @@ class LinkListener {
   std::vector<std::string> missing() const;
 
  private:
-  void listen(ros::NodeHandle node, const std::string& from, bool action);
+  void listen(ros::NodeHandle node, const std::string& from, LoopLink::Of of);
+  /// read: the values of a message, for LinkInbox::hear().
+  template <class Message, class Read>
+  void hear(ros::NodeHandle& node, const std::string& from, LoopLink::Of of, const char* topic,
+            Read read);
 
   LinkInbox inbox_;
   std::function<void()> heard_;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -26,11 +27,12 @@ class LinkInbox {
   LinkInbox(const std::vector<LoopLink>& links, Of of, bool lockstep);
 
   bool empty() const { return sources_.empty(); }
-  /// Who is to be heard: name of the loop, and whether it is its actions.
-  std::set<std::pair<std::string, bool>> sources() const;
-  /// A sample of loop `from`: its outputs, or with `action` its inputs as asked. What is not finite
-  /// or of wrong size changes no value.
-  void hear(const std::string& from, bool action, const StepHeader& sample, VectorRef values);
+  /// Who is to be heard: name of the loop, and what of it.
+  std::set<std::pair<std::string, LoopLink::Of>> sources() const;
+  /// A sample of loop `from`. values: column 0 are its outputs, its inputs as asked, or as planned,
+  /// then column i those of i samples later. What is not finite or of wrong size changes no value.
+  void hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
+            const Eigen::Ref<const Matrix>& values);
   /// Lockstep: everything that is needed at this time has come. Otherwise always.
   bool ready(std::int64_t time_ns);
   /// Names of the loops that are waited for.
@@ -38,6 +40,10 @@ class LinkInbox {
   /// Overrides of the disturbances, or of the setpoints, from the next sample on; none: no value
   /// has come.
   std::optional<Command> command(std::int64_t time_ns);
+  /// Once for each plan that another law made at the sample before this one (not in lockstep: that
+  /// came since the last call): of which disturbance, and what it will be from this sample on, as
+  /// its link acts a sample later.
+  void plans(std::int64_t time_ns, const std::function<void(const std::string&, VectorRef)>& take);
   /// Puts in what the plant's inputs are in truth: the outputs of inner loops.
   void replaceInputs(std::int64_t time_ns, const std::vector<SignalInfo>& inputs,
                      Eigen::Ref<Vector> input);
@@ -47,7 +53,7 @@ class LinkInbox {
  private:
   struct Item {
     std::int64_t time_ns;
-    double value;
+    Vector values;  // of the time, and of the samples after it
   };
   struct Source {
     LoopLink link;

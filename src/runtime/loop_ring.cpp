@@ -6,6 +6,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/factory.hpp"
+#include "runtime/plan.hpp"
 #include "runtime/run_events.hpp"
 
 namespace fpc {
@@ -53,10 +54,11 @@ LoopRing::LoopRing(const LoopFile& loop, const RunOptions& options,
   plant_.start(0.0);
 }
 
-void LoopRing::takeSetpoints(const Measurement& now) {
+void LoopRing::takeFromOthers(const Measurement& now) {
   if (asks_.empty()) return;
   if (const auto command = asks_.command(now.header.time_ns))
     controller_.session().command(*command);
+  takePlans(asks_, now.header, loop_.plant_info, controller_.session());
 }
 
 void LoopRing::answer() {
@@ -64,7 +66,7 @@ void LoopRing::answer() {
   const std::uint32_t step = now.header.step;
   controller_.turnTo(step);
   player_.advance(step, targets_);
-  takeSetpoints(now);
+  takeFromOthers(now);
   recorder_.receive(now);
   recorder_.receive(
       simulation_.state(),
@@ -97,13 +99,10 @@ bool LoopRing::advance() {
   return !now.final;
 }
 
-void LoopRing::hearMeasurement(const std::string& from, const StepHeader& sample,
-                               VectorRef outputs) {
-  feeds_.hear(from, false, sample, outputs);
-}
-
-void LoopRing::hearAction(const std::string& from, const StepHeader& sample, VectorRef input) {
-  asks_.hear(from, true, sample, input);
+void LoopRing::hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
+                    const Eigen::Ref<const Matrix>& values) {
+  feeds_.hear(from, of, sample, values);
+  asks_.hear(from, of, sample, values);
 }
 
 RunRecord LoopRing::take() {

@@ -34,17 +34,18 @@ class LoopRing {
   void answer();
   bool mayAdvance() { return feeds_.ready(measurement().header.time_ns); }
   bool advance();
-  /// What another loop sends: its outputs, or its inputs as asked.
-  void hearMeasurement(const std::string& from, const StepHeader& sample, VectorRef outputs);
-  void hearAction(const std::string& from, const StepHeader& sample, VectorRef input);
+  /// What another loop sends.
+  void hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
+            const Eigen::Ref<const Matrix>& values);
 
   const ControlAction& sent() const { return controller_.sent(); }
+  const ControllerAnswer& answered() const { return controller_.answer(); }
   const Measurement& measurement() const { return simulation_.measurement(); }
   const LoopFile& loop() const { return loop_; }
   RunRecord take();
 
  private:
-  void takeSetpoints(const Measurement& now);
+  void takeFromOthers(const Measurement& now);
 
   const LoopFile& loop_;
   const RunOptions& options_;

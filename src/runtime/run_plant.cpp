@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "runtime/loop_ring.hpp"
+#include "runtime/plan.hpp"
 
 namespace fpc {
 namespace {
@@ -17,7 +18,18 @@ struct TurningLoop {
 void tell(const TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
   const Measurement& now = loop.ring->measurement();
   for (TurningLoop* other : listeners)
-    other->ring->hearMeasurement(loop.of->name, now.header, now.outputs);
+    other->ring->hear(loop.of->name, LoopLink::Of::kOutputs, now.header, now.outputs);
+}
+
+void tellAnswer(const TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
+  if (listeners.empty() || loop.ring->measurement().final) return;
+  const ControlAction& sent = loop.ring->sent();
+  const ControllerAnswer& answer = loop.ring->answered();
+  const Matrix plan = answer.has_prediction ? planOf(answer.prediction) : Matrix();
+  for (TurningLoop* other : listeners) {
+    other->ring->hear(loop.of->name, LoopLink::Of::kInputs, sent.header, sent.input);
+    other->ring->hear(loop.of->name, LoopLink::Of::kPlan, sent.header, plan);
+  }
 }
 
 /// True: the loop has got on by half a sample.
@@ -27,9 +39,7 @@ bool turn(TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
   if (!loop.answered) {
     if (!ring.mayAnswer()) return false;
     ring.answer();
-    if (!ring.measurement().final)
-      for (TurningLoop* other : listeners)
-        other->ring->hearAction(loop.of->name, ring.sent().header, ring.sent().input);
+    tellAnswer(loop, listeners);
     return loop.answered = true;
   }
   if (!ring.measurement().final && !ring.mayAdvance()) return false;

@@ -110,6 +110,10 @@ class ControllerSession {
   /// made.
   std::uint32_t command(const Command& setpoint) { return setpoint_.command(setpoint); }
   bool restore(const Command& setpoint) { return setpoint_.restore(setpoint); }
+  /// See Controller::expect(): of the sample that is answered next.
+  void expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) {
+    controller_->expect(k, disturbance, ahead);
+  }
   /// Holds the setpoint schedule, or lets it go on (a recipe waits for its operator).
   void holdRecipe(bool on);
   void manual(bool on);  ///< acts from the next sample, bumpless both ways

@@ -152,6 +152,11 @@ bool WatchedLaw::foresee(const Measurement& now, Eigen::Ref<Vector> outputs) {
   return inCharge() ? candidate_.law->foresee(now, outputs) : inside_->foresee(now, outputs);
 }
 
+bool WatchedLaw::expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) {
+  const bool candidate = candidate_.law && candidate_.law->expect(k, disturbance, ahead);
+  return inside_->expect(k, disturbance, ahead) || candidate;
+}
+
 void WatchedLaw::setModel(const TsModel& model) {
   inside_->setModel(model);
   if (!inside_->needsModel()) return;

@@ -65,6 +65,7 @@ class WatchedLaw final : public ControllerAround {
             ControllerOutput& output) override;
   void lookOn(const Measurement& now) override;
   bool foresee(const Measurement& now, Eigen::Ref<Vector> outputs) override;
+  bool expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) override;
   void setModel(const TsModel& model) override;
   bool mayBeSent(VectorRef input) const override;
   void makeSendable(Eigen::Ref<Vector> input) const override;

@@ -66,12 +66,12 @@ class PlantLoops(unittest.TestCase):
         for loop in loops:
             ring.assert_same_run(self, os.path.join(self.topics, loop), os.path.join(self.process, loop))
 
-    def shipped(self, **isolate):
-        """The shipped plant in lockstep, some loops in a process of their own."""
-        file = pathlib.Path(__file__).resolve().parents[2] / "config/plant/jacketed_vessel.yaml"
+    def shipped(self, name="jacketed_vessel", hours=6, **isolate):
+        """A shipped plant in lockstep, some loops in a process of their own."""
+        file = pathlib.Path(__file__).resolve().parents[2] / f"config/plant/{name}.yaml"
         content = yaml.safe_load(file.read_text(encoding="utf-8"))
         content["pace"] = "lockstep"
-        content["set"]["sampling.duration_h"] = 6
+        content.setdefault("set", {})["sampling.duration_h"] = hours
         for loop in isolate:
             content["loops"][loop]["isolate"] = True
         return self.plant(content)
@@ -89,6 +89,13 @@ class PlantLoops(unittest.TestCase):
         code, text = Launch(self, plant, self.topics).end()
         self.assertEqual(0, code, text)
         self.same("vessel", "jacket", "preheater")
+
+    def test_plans_that_two_laws_tell_each_other(self):
+        plant = self.shipped("four_tanks", 0.3, left=True)
+        self.in_process(plant)
+        code, text = Launch(self, plant, self.topics).end()
+        self.assertEqual(0, code, text)
+        self.same("left", "right")
 
     def test_a_plugin_that_throws_ends_its_loop_alone(self):
         good = {"loop": "asp_case1_clp", "set": {"sampling.duration_h": 40}}

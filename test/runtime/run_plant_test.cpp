@@ -15,6 +15,7 @@
 
 #include "fmbpc/base/input_error.hpp"
 #include "runtime/loop_ring.hpp"
+#include "runtime/plan.hpp"
 
 namespace fpc {
 namespace {
@@ -141,7 +142,7 @@ TEST(RunPlant, AnOuterLoopStartsWhereTheInnerOneIs) {
     for (const int half : {1, 0}) {  // the jacket has two samples in one of the vessel
       StepHeader inner{at.header.time_ns - half * std::int64_t{30'000'000'000}, 1,
                        2 * at.header.step - static_cast<std::uint32_t>(half)};
-      if (k > 0 || half == 0) outer.hearMeasurement("jacket", inner, by_hand);
+      if (k > 0 || half == 0) outer.hear("jacket", LoopLink::Of::kOutputs, inner, by_hand);
     }
     ASSERT_TRUE(outer.mayAnswer() && outer.mayAdvance());
     outer.step();
@@ -154,6 +155,11 @@ TEST(RunPlant, AnOuterLoopStartsWhereTheInnerOneIs) {
 
 TEST(RunPlant, BadFilesNameFileKeyAndWhatWasExpected) {
   const std::string loops = "loops: {a: {loop: heated_tank}, b: {loop: heated_tank}}\n";
+  // c: does not look ahead; d: no disturbance of the name; e: another sample time
+  const std::string tanks =
+      "loops: {a: {loop: four_tanks_left}, b: {loop: four_tanks_right}, c: {loop: four_tanks_left, "
+      "set: {controller.disturbance_feedforward: false}}, d: {loop: four_on_two}, e: {loop: "
+      "heated_tank}}\n";
   for (const auto& [text, key] : std::vector<std::pair<std::string, std::string>>{
            {"title: nothing\n", "loops"},
            {"loops: {a b: {loop: heated_tank}}\n", "loops.a b"},
@@ -165,7 +171,7 @@ TEST(RunPlant, BadFilesNameFileKeyAndWhatWasExpected) {
            {"speedup: 0\n" + loops, "speedup"},
            {loops + "links: [{from: a/T}]\n", "links[0].to"},
            {loops + "links: [{from: c/T, to: b/T_in}]\n", "links[0].from"},
-           {loops + "links: [{from: a/heat, to: b/T_in}]\n", "links[0].from"},
+           {loops + "links: [{from: a/none, to: b/T_in}]\n", "links[0].from"},
            {loops + "links: [{from: a/T, to: b/T}]\n", "links[0].to"},
            {loops + "links: [{from: a/T, to: a/T_in}]\n", "links[0].to"},
            {loops + "links: [{from: a/T, to: b/T_in, gain: .inf}]\n", "links[0].gain"},
@@ -181,23 +187,125 @@ TEST(RunPlant, BadFilesNameFileKeyAndWhatWasExpected) {
             "70}}}}\n"
             "cascades: [{outer: a/T_jacket, inner: b/T}]\n",
             "cascades[0].outer"},
+           {tanks + "links: [{from: a/h1, to: b/v1, plan: true}]\n", "links[0].plan"},
+           {tanks + "links: [{from: d/q1, to: b/v1, plan: true}]\n", "links[0].plan"},
+           {tanks + "links: [{from: e/heat, to: b/v1, plan: true}]\n", "links[0].plan"},
+           {tanks + "links: [{from: b/v2, to: c/v2, plan: true}]\n", "links[0].plan"},
+           {tanks + "links: [{from: a/v1, to: b/v1, plan_until_h: -1}]\n", "links[0].plan_until_h"},
            {loops + "feeds: []\n", "feeds"}}) {
     const std::string error = errorOf(text);
     EXPECT_NE(std::string::npos, error.find(": " + key + ": ")) << text << error;
   }
 }
 
+// Row 1 of a plan of three samples, times 2 plus 1, at most 8.
+TEST(RunPlant, APlanCountsAtTheSampleAfterItAndNoOther) {
+  LoopLink link;
+  link.from = "other";
+  link.of = LoopLink::Of::kPlan;
+  link.to = LoopLink::To::kForecast;
+  link.index = 1;
+  link.every_ns = 10;
+  link.reach_ns = 20;
+  link.first_ns = 0;
+  link.last_ns = 50;
+  link.name = "d";
+  link.gain = 2.0;
+  link.offset = 1.0;
+  link.upper = 8.0;
+  Matrix plan(2, 3), nan = plan;
+  plan << 9.0, 9.0, 9.0, 1.0, 2.0, 4.0;
+  nan << 9.0, 9.0, 9.0, 1.0, std::nan(""), 4.0;
+  const Vector expected = (Vector(3) << 3.0, 5.0, 8.0).finished();
+  for (const bool lockstep : {true, false}) {
+    LinkInbox inbox({link}, LinkInbox::Of::kController, lockstep);
+    const auto hear = [&](std::int64_t time_ns, const Matrix& said) {
+      inbox.hear("other", LoopLink::Of::kPlan,
+                 {time_ns, 1, static_cast<std::uint32_t>(time_ns / 10)}, said);
+    };
+    const auto plans = [&](std::int64_t time_ns) {
+      std::vector<Vector> found;
+      inbox.plans(time_ns, [&](const std::string& name, VectorRef ahead) {
+        EXPECT_EQ("d", name);
+        found.emplace_back(ahead);
+      });
+      return found;
+    };
+    EXPECT_TRUE(inbox.ready(0)) << "there is no plan before the first sample";
+    EXPECT_EQ(!lockstep, inbox.ready(10));
+    EXPECT_TRUE(plans(0).empty());
+    hear(0, plan);
+    EXPECT_TRUE(inbox.ready(10));
+    EXPECT_EQ(std::vector<Vector>{expected}, plans(10));
+    EXPECT_TRUE(plans(20).empty()) << "an old one";
+    hear(10, nan);
+    EXPECT_TRUE(plans(20).empty());
+    hear(20, plan.topRows(1));
+    EXPECT_TRUE(plans(30).empty());
+    for (const std::int64_t time_ns : {20, 30, 40, 50}) hear(time_ns, plan);
+    EXPECT_EQ(1u, plans(60).size());
+    hear(60, plan);  // after the last one that counts
+    EXPECT_TRUE(plans(70).empty());
+    EXPECT_TRUE(inbox.ready(90));
+    EXPECT_FALSE(inbox.command(90).has_value()) << "a plan is no command";
+  }
+}
+
+TEST(RunPlant, PlansOfALawWithFeedbackAreRolledOut) {
+  PredictiveAction action;
+  action.state = (Vector(1) << 2.0).finished();
+  action.A = (Matrix(1, 1) << 0.5).finished();
+  action.B = action.K = (Matrix(1, 1) << 1.0).finished();
+  action.offset_state = (Vector(1) << 0.25).finished();
+  action.feedforward = (Matrix(1, 3) << 1.0, 2.0, 3.0).finished();
+  // u = ff - x: -1, then x = 1 - 1 + 0.25, u = 1.75, x = 0.125 + 1.75 + 0.25
+  EXPECT_EQ((Matrix(1, 3) << -1.0, 1.75, 0.875).finished(), planOf(action));
+  action.K.setZero();
+  EXPECT_EQ(action.feedforward, planOf(action));
+}
+
+TEST(RunPlant, PlansOfTheOtherSideLowerTheErrorAndEndWhenTheyAreCut) {
+  const auto run = [](const std::string& rest) {
+    const fs::path file =
+        fs::temp_directory_path() / ("pair_" + std::to_string(::getpid()) + ".yaml");
+    std::ofstream(file)
+        << "loops: {left: {loop: four_tanks_left}, right: {loop: four_tanks_right}}\n"
+           "links: [{from: right/v2, to: left/v2" +
+               rest + "}, {from: left/v1, to: right/v1" + rest + "}]\n";
+    auto records = runPlant(readPlantLoops(file.string(), {{"loop.pace", "lockstep"}}));
+    fs::remove(file);
+    return records;
+  };
+  const auto input = [](const std::vector<RunRecord>& of, std::size_t k) {
+    return of[1].samples.at(k).base.input[0];
+  };
+  const auto talk = run(", plan: true"), silent = run(""),
+             cut = run(", plan: true, plan_until_h: 0.26");
+  const auto error = [](const std::vector<RunRecord>& of) {
+    double sum = 0.0;
+    for (std::size_t side = 0; side < 2; ++side)
+      for (const SampleRecord& sample : of[side].samples)
+        sum += std::pow(sample.measurement.outputs[0] - sample.tracking.setpoint[0], 2.0);
+    return sum;
+  };
+  EXPECT_LT(error(talk), 0.95 * error(silent));
+  // The last plan that counts is that of sample 187.
+  for (std::size_t k = 0; k <= 188; ++k) EXPECT_EQ(input(talk, k), input(cut, k)) << k;
+  EXPECT_NE(input(talk, 189), input(cut, 189));
+}
+
 TEST(RunPlant, LinksAsTextAreTheSame) {
-  const PlantLoops plant = vessel();
-  for (const PlantLoop& one : plant.loops) {
+  std::vector<PlantLoop> loops = vessel().loops;
+  for (PlantLoop& one : readPlantLoops("four_tanks").loops) loops.push_back(std::move(one));
+  for (const PlantLoop& one : loops) {
     const auto again = parseLinks(textOf(one.links), "links");
     ASSERT_EQ(one.links.size(), again.size());
     for (std::size_t i = 0; i < again.size(); ++i) {
       const LoopLink &a = one.links[i], &b = again[i];
-      EXPECT_EQ(std::tie(a.from, a.action, a.index, a.every_ns, a.reach_ns, a.last_ns, a.to, a.name,
-                         a.gain, a.offset, a.lower, a.upper),
-                std::tie(b.from, b.action, b.index, b.every_ns, b.reach_ns, b.last_ns, b.to, b.name,
-                         b.gain, b.offset, b.lower, b.upper));
+      EXPECT_EQ(std::tie(a.from, a.of, a.index, a.every_ns, a.reach_ns, a.first_ns, a.last_ns, a.to,
+                         a.name, a.gain, a.offset, a.lower, a.upper),
+                std::tie(b.from, b.of, b.index, b.every_ns, b.reach_ns, b.first_ns, b.last_ns, b.to,
+                         b.name, b.gain, b.offset, b.lower, b.upper));
     }
   }
 }

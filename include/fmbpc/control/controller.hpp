@@ -56,6 +56,10 @@ class Controller {
   /// expects nothing. Only between two samples that it gets one after the other. Without
   /// allocation.
   virtual bool foresee(const Measurement& now, Eigen::Ref<Vector> outputs);
+  /// What a measured disturbance is expected to be: element i at sample k+i, NaN where nothing is
+  /// known; after the last element as there. Counts for the step() of sample k only. False: the law
+  /// has no use for it. Without allocation. Default: false.
+  virtual bool expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead);
   virtual bool needsModel() const { return false; }
   /// False for an open-loop experiment: setpoints and references are then recorded as NaN.
   virtual bool followsSetpoint() const { return true; }

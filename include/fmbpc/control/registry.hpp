@@ -47,6 +47,7 @@ struct SignalUse {
   std::vector<Eigen::Index> followed;    ///< outputs that it steers to their setpoints
   std::vector<bool> moved{};             ///< inputs; the others stay where they are. Empty: all
   std::vector<std::string> estimated{};  ///< disturbances of its model that nobody measures
+  bool looks_ahead{};                    ///< takes Controller::expect()
 };
 SignalUse everySignal(const ControllerContext& loop);
 SignalUse noSignal(const ControllerContext& loop);

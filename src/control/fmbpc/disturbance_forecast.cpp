@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -18,6 +19,7 @@ DisturbanceForecast::DisturbanceForecast(Eigen::Index n_d, int horizon_steps, in
     : past_(Matrix::Zero(n_d, Eigen::Index{std::max(period_steps, 0)} + 1 +
                                   (memory_steps > 0 ? leadOf(horizon_steps) : Eigen::Index{0}))),
       future_(Matrix::Zero(n_d, std::max(horizon_steps, 1))),
+      expected_(future_),
       weight_(Vector::Ones(n_d)),
       error_(Vector::Zero(n_d)),
       held_error_(error_),
@@ -58,6 +60,17 @@ Eigen::Index DisturbanceForecast::column(std::uint32_t step) const {
   return static_cast<Eigen::Index>(step) % past_.cols();
 }
 
+void DisturbanceForecast::expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) {
+  const Eigen::Index n = ahead.size();
+  if (n == 0) return;
+  if (!expects_ || expected_step_ != k)
+    expected_.setConstant(std::numeric_limits<double>::quiet_NaN());
+  expects_ = true;
+  expected_step_ = k;
+  for (Eigen::Index i = 0; i < expected_.cols(); ++i)
+    expected_(disturbance, i) = ahead[std::min(i, n - 1)];
+}
+
 void DisturbanceForecast::add(std::uint32_t step, VectorRef disturbances) {
   if (known_ > 0 && step < last_step_) forget();
   const Eigen::Index passed = known_ == 0 ? 1 : static_cast<Eigen::Index>(step - last_step_);
@@ -82,6 +95,8 @@ const Matrix& DisturbanceForecast::predict() {
     future_.col(i) = past_.col(column(last_step_ - back)) + fading * (now - before);
     if (fading_ < 1.0) future_.col(i) = now + weight_.cwiseProduct(future_.col(i) - now);
   }
+  if (expects_ && expected_step_ == last_step_)
+    future_ = expected_.array().isNaN().select(future_, expected_);
   return future_;
 }
 

@@ -21,6 +21,9 @@ class DisturbanceForecast {
   DisturbanceForecast(Eigen::Index n_d, int horizon_steps, int period_steps, double pole,
                       int memory_steps = 0);
   void forget();
+  /// Element i is d(k+i), NaN where it is not known; after the last one as there. At sample k it
+  /// goes before what is forecast here.
+  void expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead);
   /// d of sample `step`; samples that were missed are taken to be like it.
   void add(std::uint32_t step, VectorRef disturbances);
   /// n_d horizon_steps, column i = d(k+i).
@@ -33,6 +36,9 @@ class DisturbanceForecast {
   void learn();
 
   Matrix past_, future_;  ///< past_: d of sample k in column k mod its columns
+  Matrix expected_;       ///< as future_; NaN: not known
+  std::uint32_t expected_step_{};
+  bool expects_{};  ///< expected_ holds something, of that sample
   Vector weight_;
   Vector error_, held_error_;  ///< faded sums of squares, of the forecast and of holding
   double fading_{1.0};         ///< of the squares, per sample; 1: w stays 1

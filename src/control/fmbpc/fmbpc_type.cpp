@@ -78,6 +78,7 @@ SignalUse usedByFmbpc(const FmbpcParams& params, const ControllerContext& loop) 
   else
     use.followed = weighted(params.weight_output);
   use.estimated = namesOf(params.observer.estimated);
+  use.looks_ahead = params.law == FmbpcForm::kIterated && params.disturbance_feedforward;
   return use;
 }
 

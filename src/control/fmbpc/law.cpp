@@ -39,6 +39,12 @@ void FmbpcLaw::reset(const Measurement& start) {
   forecast_.forget();
 }
 
+bool FmbpcLaw::expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) {
+  if (params_.law != FmbpcForm::kIterated || !params_.disturbance_feedforward) return false;
+  forecast_.expect(k, disturbance, ahead);
+  return true;
+}
+
 void FmbpcLaw::note(const LawSample& sample) {
   forecast_.add(sample.now.header.step, sample.disturbances);
 }

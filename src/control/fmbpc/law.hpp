@@ -78,6 +78,7 @@ class FmbpcLaw final : public PredictiveLaw {
   FmbpcLaw(const FmbpcParams& params, const InputLimits& limits, const PlantInfo& plant);
 
   void reset(const Measurement& start) override;
+  bool expect(std::uint32_t k, Eigen::Index disturbance, VectorRef ahead) override;
   void setModel(const TsModel& model) override;
   Settings settings() const override;
   bool retune(const Settings& settings) override;

@@ -33,6 +33,27 @@ TEST(DisturbanceForecast, AfterAPeriodWhatRepeatsItselfIsForeseen) {
   }
 }
 
+TEST(DisturbanceForecast, WhatIsExpectedGoesBeforeItAtItsSampleOnly) {
+  DisturbanceForecast forecast(2, kHorizon, 0, 0.5);
+  const double nan = std::nan("");
+  const auto at = [&](std::uint32_t k) {
+    forecast.add(k, (Vector(2) << 1.0, 2.0).finished());
+    return forecast.predict();
+  };
+  Matrix held(2, kHorizon), first = held;
+  held << 1.0, 1.0, 1.0, 1.0, 2.0, 2.0, 2.0, 2.0;
+  first << 1.0, 1.0, 1.0, 1.0, 2.0, 7.0, 8.0, 8.0;  // after the last one as there
+  EXPECT_EQ(at(0), held);
+  forecast.expect(1, 1, (Vector(3) << nan, 7.0, 8.0).finished());
+  EXPECT_EQ(at(1), first);
+  EXPECT_EQ(at(2), held);
+  forecast.expect(4, 0, one(5.0));
+  EXPECT_EQ(at(3), held);
+  forecast.expect(5, 1, one(6.0));
+  first << 1.0, 1.0, 1.0, 1.0, 6.0, 6.0, 6.0, 6.0;
+  EXPECT_EQ(at(5), first) << "that of sample 4 is gone";
+}
+
 TEST(DisturbanceForecast, TodaysDifferenceDiesOutWithThePole) {
   DisturbanceForecast forecast(1, kHorizon, kPeriod, 0.5);
   for (int k = 0; k <= kPeriod; ++k)
