@@ -157,6 +157,8 @@ void readPlan(YamlSection& item, const SignalOfLoop& from, const SignalOfLoop& t
   if (!sender.controllerType().predicts)
     item.fail("plan", "a loop that plans; controller " + sender.controllerType().name + " of " +
                           from.of->name + " does not");
+  if (sender.has_clp)
+    item.fail("plan", "a sender without clp: what an optimizer changes is not in the law's plan");
   if (!receiver.controller->signalUse(controllerContext(receiver)).looks_ahead)
     item.fail("plan",
               "a receiver whose law looks ahead at disturbances (type fmbpc, law: iterated, "
@@ -167,7 +169,6 @@ void readPlan(YamlSection& item, const SignalOfLoop& from, const SignalOfLoop& t
     item.fail("plan", "a measured disturbance of " + to.of->name + "; got '" + link.name + "'");
   link.of = LoopLink::Of::kPlan;
   link.to = LoopLink::To::kForecast;
-  link.reach_ns = 2 * link.every_ns;  // that of the sample before
   add(item, "to", *from.of, *to.of, std::move(link));
 }
 

@@ -11,6 +11,14 @@
 namespace fpc {
 namespace {
 
+template <class Message>
+bool isPlanned(const Message& /*msg*/) {
+  return true;
+}
+bool isPlanned(const fmbpc::ControlAction& msg) {
+  return isLawsOwn(static_cast<ActionSource>(msg.source));
+}
+
 constexpr char kLoopLinks[] = "loop_links";
 
 std::vector<LoopLink> linksOf(const ros::NodeHandle& private_node) {
@@ -39,7 +47,8 @@ void LinkListener::hear(ros::NodeHandle& node, const std::string& from, LoopLink
   subscribers_.push_back(node.subscribe<Message>(
       besideOf(node, from) + topic, queueOf(ListenerKind::kRecord),
       [=](const typename Message::ConstPtr& msg) {
-        inbox_.hear(from, of, {fromStamp(msg->header.stamp), msg->run_id, msg->step}, read(*msg));
+        inbox_.hear(from, of, {fromStamp(msg->header.stamp), msg->run_id, msg->step}, read(*msg),
+                    isPlanned(*msg));
         heard_();
       },
       ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));

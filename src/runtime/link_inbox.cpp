@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "fmbpc/base/input_error.hpp"
 
@@ -19,16 +20,51 @@ LinkInbox::LinkInbox(const std::vector<LoopLink>& links, Of of, bool lockstep)
 
 std::set<std::pair<std::string, LoopLink::Of>> LinkInbox::sources() const {
   std::set<std::pair<std::string, LoopLink::Of>> all;
-  for (const Source& source : sources_) all.insert({source.link.from, source.link.of});
+  for (const Source& source : sources_) {
+    all.insert({source.link.from, source.link.of});
+    if (source.link.of == LoopLink::Of::kPlan)
+      all.insert({source.link.from, LoopLink::Of::kInputs});
+  }
   return all;
 }
 
+/// Empty: of no use.
+Vector LinkInbox::rowOf(const LoopLink& link, const Eigen::Ref<const Matrix>& values) const {
+  if (link.index >= values.rows() || values.cols() == 0) return {};
+  const Vector row = (link.gain * values.row(link.index).array() + link.offset).transpose();
+  if (!row.allFinite()) return {};
+  return row.cwiseMax(link.lower).cwiseMin(link.upper);
+}
+
+/// Plan and action of a sample come in any order.
+void LinkInbox::hearPlan(Source& source, LoopLink::Of of, const StepHeader& sample, Vector row,
+                         bool planned) {
+  if (source.run_id != sample.run_id) source.items.clear();
+  source.run_id = sample.run_id;
+  auto item = std::find_if(source.items.begin(), source.items.end(),
+                           [&](const Item& one) { return one.time_ns >= sample.time_ns; });
+  if (item == source.items.end() || item->time_ns != sample.time_ns)
+    item = source.items.insert(item, {sample.time_ns, {}});
+  if (of == LoopLink::Of::kPlan) {
+    item->values = std::move(row);
+    // A plan that is of no use is none.
+    if (item->values.size() == 0)
+      item->values = Vector::Constant(1, std::numeric_limits<double>::quiet_NaN());
+  } else {
+    item->asked = true;
+    item->planned = planned;
+  }
+}
+
 void LinkInbox::hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
-                     const Eigen::Ref<const Matrix>& values) {
+                     const Eigen::Ref<const Matrix>& values, bool planned) {
   for (Source& source : sources_) {
     const LoopLink& link = source.link;
-    if (link.from != from || link.of != of || link.index >= values.rows()) continue;
-    if (sample.time_ns > link.last_ns) continue;
+    if (link.from != from || sample.time_ns > link.last_ns) continue;
+    if (link.to == LoopLink::To::kForecast && of != LoopLink::Of::kOutputs)
+      hearPlan(source, of, sample, rowOf(link, values), planned);
+    if (link.of != of || link.to == LoopLink::To::kForecast || link.index >= values.rows())
+      continue;
     const bool anew = !source.heard || source.run_id != sample.run_id;
     if (!anew && sample.time_ns <= source.newest_ns) continue;  // sent again
     if (anew) source.items.clear();
@@ -37,17 +73,21 @@ void LinkInbox::hear(const std::string& from, LoopLink::Of of, const StepHeader&
     source.run_id = sample.run_id;
     source.newest_ns = sample.time_ns;
     source.heard = true;
-    const Vector row = (link.gain * values.row(link.index).array() + link.offset).transpose();
-    if (row.size() == 0 || !row.allFinite()) continue;
+    Vector row = rowOf(link, values);
+    if (row.size() == 0) continue;
     if (!lockstep_) source.items.clear();
-    source.items.push_back({sample.time_ns, row.cwiseMax(link.lower).cwiseMin(link.upper)});
+    source.items.push_back({sample.time_ns, std::move(row)});
   }
 }
 
 bool LinkInbox::has(const Source& source, std::int64_t time_ns) const {
   if (!lockstep_) return true;
-  if (source.link.to == LoopLink::To::kForecast && time_ns <= source.link.first_ns)
-    return true;  // there is none before
+  if (source.link.to == LoopLink::To::kForecast) {
+    const std::int64_t made_ns = time_ns - source.link.every_ns;
+    return made_ns < source.link.first_ns || made_ns > source.link.last_ns ||
+           std::any_of(source.items.begin(), source.items.end(),
+                       [&](const Item& item) { return item.time_ns == made_ns && item.whole(); });
+  }
   if (!source.heard || source.gap) return false;
   return source.newest_ns >= source.link.last_ns ||
          source.newest_ns > time_ns - source.link.reach_ns;
@@ -91,12 +131,17 @@ void LinkInbox::plans(std::int64_t time_ns,
     const LoopLink& link = source.link;
     if (link.to != LoopLink::To::kForecast) continue;
     const std::int64_t made_ns = time_ns - link.every_ns;
-    while (lockstep_ && !source.items.empty() && source.items.front().time_ns < made_ns)
-      source.items.pop_front();
-    if (source.items.empty()) continue;
-    const Item& item = source.items.front();
-    if (!lockstep_ || item.time_ns == made_ns) take(link.name, item.values);
-    if (!lockstep_) source.items.clear();
+    const auto latest = std::find_if(
+        source.items.rbegin(), source.items.rend(),
+        [&](const Item& item) { return item.whole() && (!lockstep_ || item.time_ns == made_ns); });
+    if (latest != source.items.rend() && latest->planned && latest->values.allFinite())
+      take(link.name, latest->values);
+    // In lockstep the sample may be asked for again.
+    source.items.erase(source.items.begin(),
+                       lockstep_
+                           ? std::find_if(source.items.begin(), source.items.end(),
+                                          [&](const Item& item) { return item.time_ns >= made_ns; })
+                           : latest.base());
   }
 }
 

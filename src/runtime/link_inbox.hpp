@@ -31,8 +31,10 @@ class LinkInbox {
   std::set<std::pair<std::string, LoopLink::Of>> sources() const;
   /// A sample of loop `from`. values: column 0 are its outputs, its inputs as asked, or as planned,
   /// then column i those of i samples later. What is not finite or of wrong size changes no value.
+  /// planned: of inputs as asked, whether they are its law's own (isLawsOwn()): only then is there
+  /// a plan to wait for, and one that counts.
   void hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
-            const Eigen::Ref<const Matrix>& values);
+            const Eigen::Ref<const Matrix>& values, bool planned = true);
   /// Lockstep: everything that is needed at this time has come. Otherwise always.
   bool ready(std::int64_t time_ns);
   /// Names of the loops that are waited for.
@@ -53,7 +55,9 @@ class LinkInbox {
  private:
   struct Item {
     std::int64_t time_ns;
-    Vector values;  // of the time, and of the samples after it
+    Vector values;            // of the time, and of the samples after it
+    bool asked{}, planned{};  // of a plan: its action has come, and is the law's own
+    bool whole() const { return asked && (!planned || values.size() > 0); }
   };
   struct Source {
     LoopLink link;
@@ -62,6 +66,9 @@ class LinkInbox {
     std::int64_t newest_ns{};
     bool heard{}, gap{};
   };
+  Vector rowOf(const LoopLink& link, const Eigen::Ref<const Matrix>& values) const;
+  void hearPlan(Source& source, LoopLink::Of of, const StepHeader& sample, Vector row,
+                bool planned);
   bool has(const Source& source, std::int64_t time_ns) const;
   std::optional<double> valueAt(Source& source, std::int64_t time_ns) const;
 

@@ -100,9 +100,9 @@ bool LoopRing::advance() {
 }
 
 void LoopRing::hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
-                    const Eigen::Ref<const Matrix>& values) {
-  feeds_.hear(from, of, sample, values);
-  asks_.hear(from, of, sample, values);
+                    const Eigen::Ref<const Matrix>& values, bool planned) {
+  feeds_.hear(from, of, sample, values, planned);
+  asks_.hear(from, of, sample, values, planned);
 }
 
 RunRecord LoopRing::take() {

@@ -36,7 +36,7 @@ class LoopRing {
   bool advance();
   /// What another loop sends.
   void hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
-            const Eigen::Ref<const Matrix>& values);
+            const Eigen::Ref<const Matrix>& values, bool planned = true);
 
   const ControlAction& sent() const { return controller_.sent(); }
   const ControllerAnswer& answered() const { return controller_.answer(); }

@@ -7,6 +7,11 @@
 
 namespace fpc {
 
+/// The action is what a law proposed, inside the limits: only that is followed by a plan.
+inline bool isLawsOwn(ActionSource source) {
+  return source == ActionSource::kBase || source == ActionSource::kClipped;
+}
+
 /// n_u n_c, column i is u(k+i) of the law's own model and feedback: what an optimizer changes is
 /// not in it.
 Matrix planOf(const PredictiveAction& action);

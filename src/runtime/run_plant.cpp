@@ -27,7 +27,8 @@ void tellAnswer(const TurningLoop& loop, const std::vector<TurningLoop*>& listen
   const ControllerAnswer& answer = loop.ring->answered();
   const Matrix plan = answer.has_prediction ? planOf(answer.prediction) : Matrix();
   for (TurningLoop* other : listeners) {
-    other->ring->hear(loop.of->name, LoopLink::Of::kInputs, sent.header, sent.input);
+    other->ring->hear(loop.of->name, LoopLink::Of::kInputs, sent.header, sent.input,
+                      isLawsOwn(sent.source));
     other->ring->hear(loop.of->name, LoopLink::Of::kPlan, sent.header, plan);
   }
 }

@@ -159,7 +159,7 @@ TEST(RunPlant, BadFilesNameFileKeyAndWhatWasExpected) {
   const std::string tanks =
       "loops: {a: {loop: four_tanks_left}, b: {loop: four_tanks_right}, c: {loop: four_tanks_left, "
       "set: {controller.disturbance_feedforward: false}}, d: {loop: four_on_two}, e: {loop: "
-      "heated_tank}}\n";
+      "heated_tank}, f: {loop: four_tanks_left, set: {clp.perturbation_steps: 60}}}\n";
   for (const auto& [text, key] : std::vector<std::pair<std::string, std::string>>{
            {"title: nothing\n", "loops"},
            {"loops: {a b: {loop: heated_tank}}\n", "loops.a b"},
@@ -191,6 +191,7 @@ TEST(RunPlant, BadFilesNameFileKeyAndWhatWasExpected) {
            {tanks + "links: [{from: d/q1, to: b/v1, plan: true}]\n", "links[0].plan"},
            {tanks + "links: [{from: e/heat, to: b/v1, plan: true}]\n", "links[0].plan"},
            {tanks + "links: [{from: b/v2, to: c/v2, plan: true}]\n", "links[0].plan"},
+           {tanks + "links: [{from: f/v1, to: b/v1, plan: true}]\n", "links[0].plan"},
            {tanks + "links: [{from: a/v1, to: b/v1, plan_until_h: -1}]\n", "links[0].plan_until_h"},
            {loops + "feeds: []\n", "feeds"}}) {
     const std::string error = errorOf(text);
@@ -219,9 +220,14 @@ TEST(RunPlant, APlanCountsAtTheSampleAfterItAndNoOther) {
   const Vector expected = (Vector(3) << 3.0, 5.0, 8.0).finished();
   for (const bool lockstep : {true, false}) {
     LinkInbox inbox({link}, LinkInbox::Of::kController, lockstep);
+    const auto headerAt = [](std::int64_t time_ns) {
+      return StepHeader{time_ns, 1, static_cast<std::uint32_t>(time_ns / 10)};
+    };
     const auto hear = [&](std::int64_t time_ns, const Matrix& said) {
-      inbox.hear("other", LoopLink::Of::kPlan,
-                 {time_ns, 1, static_cast<std::uint32_t>(time_ns / 10)}, said);
+      inbox.hear("other", LoopLink::Of::kPlan, headerAt(time_ns), said);
+    };
+    const auto ask = [&](std::int64_t time_ns, bool planned = true) {
+      inbox.hear("other", LoopLink::Of::kInputs, headerAt(time_ns), Vector::Ones(2), planned);
     };
     const auto plans = [&](std::int64_t time_ns) {
       std::vector<Vector> found;
@@ -235,16 +241,31 @@ TEST(RunPlant, APlanCountsAtTheSampleAfterItAndNoOther) {
     EXPECT_EQ(!lockstep, inbox.ready(10));
     EXPECT_TRUE(plans(0).empty());
     hear(0, plan);
+    EXPECT_EQ(!lockstep, inbox.ready(10)) << "its action may be of another hand";
+    ask(0);
     EXPECT_TRUE(inbox.ready(10));
     EXPECT_EQ(std::vector<Vector>{expected}, plans(10));
     EXPECT_TRUE(plans(20).empty()) << "an old one";
+    ask(10);
+    EXPECT_EQ(!lockstep, inbox.ready(20));
     hear(10, nan);
+    EXPECT_TRUE(inbox.ready(20));
     EXPECT_TRUE(plans(20).empty());
-    hear(20, plan.topRows(1));
+    ask(20, false);
+    EXPECT_TRUE(inbox.ready(30)) << "a person has the input: there is no plan";
+    hear(20, plan);
     EXPECT_TRUE(plans(30).empty());
-    for (const std::int64_t time_ns : {20, 30, 40, 50}) hear(time_ns, plan);
+    ask(30);
+    hear(30, plan.topRows(1));
+    EXPECT_TRUE(inbox.ready(40));
+    EXPECT_TRUE(plans(40).empty());
+    for (const std::int64_t time_ns : {40, 50}) {
+      hear(time_ns, plan);
+      ask(time_ns);
+    }
     EXPECT_EQ(1u, plans(60).size());
     hear(60, plan);  // after the last one that counts
+    ask(60);
     EXPECT_TRUE(plans(70).empty());
     EXPECT_TRUE(inbox.ready(90));
     EXPECT_FALSE(inbox.command(90).has_value()) << "a plan is no command";
