@@ -21,18 +21,21 @@ void addRun(CLI::App& app, fpc::tool::RunArguments& a) {
   CLI::App* run =
       app.add_subcommand("run", "Closes loops in this process and prints their indices");
   CLI::Option* loops = run->add_option("LOOP", a.loops, "names of config/loop, or paths");
-  run->add_option("--plant", a.plant,
-                  "plant file: all its loops with their links (docs/plant_loops.md)")
-      ->excludes(loops);
+  CLI::Option* plant =
+      run->add_option("--plant", a.plant,
+                      "plant file: all its loops with their links (docs/plant_loops.md)")
+          ->excludes(loops);
   run->add_option("--set", a.set, "KEY.PATH=VALUE over the loop file, may be repeated")
       ->allow_extra_args(false);
   run->add_option("--out", a.out,
                   "folder for trajectory.csv, summary.json, plot.png; of several loops one below "
                   "it each, with comparison.png (default: nothing is written)");
   run->add_option("--commands", a.commands,
-                  "file of what an operator does at which time (docs/operators.md)");
+                  "file of what an operator does at which time (docs/operators.md)")
+      ->excludes(plant);
   run->add_flag("--on-model", a.on_model,
-                "the loop's model, with its noise, in the place of its plant: a rehearsal");
+                "the loop's model, with its noise, in the place of its plant: a rehearsal")
+      ->excludes(plant);
   run->add_flag("--json", a.json, "print one JSON object and nothing else");
   run->add_flag("--no-plot", a.no_plot, "no plot.png");
   run->footer("Example: fmbpc run asp_best asp_case1_pi_x_best --out results\n");

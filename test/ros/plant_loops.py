@@ -156,6 +156,12 @@ class PlantLoops(unittest.TestCase):
         self.assertIn(f"success: {good}", done.stdout)
         return done.stdout
 
+    def test_what_is_of_one_loop_is_refused(self):
+        for option in (["--commands", "file.yaml"], ["--on-model"]):
+            done = ring.tool("run", "--plant", "four_tanks", *option, check=False)
+            self.assertNotEqual(0, done.returncode)
+            self.assertIn(option[0], done.stderr)
+
     def test_a_wrong_file_starts_nothing(self):
         plant = self.plant({"loops": {"a": {"loop": "heated_tank", "isolated": True}}})
         code, text = Launch(self, plant, self.topics).end()
