@@ -38,7 +38,7 @@ std::string besideOf(const ros::NodeHandle& node, const std::string& loop) {
 LinkListener::LinkListener(const ros::NodeHandle& node, const ros::NodeHandle& private_node,
                            Pace pace, LinkInbox::Of of, std::function<void()> heard)
     : inbox_(linksOf(private_node), of, pace == Pace::kLockstep), heard_(std::move(heard)) {
-  for (const auto& [from, of] : inbox_.sources()) listen(node, from, of);
+  for (const auto& [from, what] : inbox_.sources()) listen(node, from, what);
 }
 
 template <class Message, class Read>
