@@ -165,11 +165,12 @@ TEST(Commissioning, ThePiOfAPlantTakenForAnIntegratorHoldsThePlant) {
 }
 
 /// One element from heat to T, and likely models with these parts of its gain.
-ProcessModels unstableModels(const CommissioningBrief& brief, const std::vector<double>& parts) {
+ProcessModels modelsOf(const CommissioningBrief& brief, ProcessKind kind,
+                       const ProcessElement& element, const std::vector<double>& parts) {
   ProcessFit fit;
-  fit.kind = ProcessKind::kUnstable;
+  fit.kind = kind;
   ElementEstimate heat, inlet;
-  heat.element = {1.0, -600.0, 0.0, 0.0, 30.0, false};
+  heat.element = element;
   heat.seen = true;
   fit.elements = {heat, inlet};
   fit.one_step = fit.free_run = 0.05;
@@ -177,7 +178,7 @@ ProcessModels unstableModels(const CommissioningBrief& brief, const std::vector<
   fit.input = Vector::Constant(2, 10.0);
   ProcessModels models;
   models.fits = {fit};
-  models.model.name = "unstable";
+  models.model.name = "lag";
   models.model.sample_time_s = brief.loop.plant_info.sample_time_s;
   models.model.outputs = brief.loop.plant_info.outputs;
   models.model.inputs = brief.loop.plant_info.inputs;
@@ -192,6 +193,18 @@ ProcessModels unstableModels(const CommissioningBrief& brief, const std::vector<
   return models;
 }
 
+Design designed(const CommissioningBrief& brief, const std::string& folder,
+                const ProcessModels& models, double peak) {
+  writeModels(models, folder);
+  DesignParams params;
+  params.evaluations = 8;
+  params.tuned_members = 2;
+  params.threads = 1;
+  params.peak = peak;
+  return designLaws(brief, Vector::Constant(1, 0.05), inFolder(folder, "model.yaml"), models,
+                    params);
+}
+
 /// The present PI, u = -4 e, holds the lag -1 / (600 s - 1) and not one of a twentieth of its gain.
 TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   const std::string folder =
@@ -199,25 +212,47 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
                "extends: heated_tank\ncontroller:\n  loops: [{input: heat, output: T, kp: 4, "
                "ki_per_h: 8, reverse: true, start: bumpless}]\n");
   const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
-  const auto designed = [&](const std::vector<double>& parts) {
-    const ProcessModels models = unstableModels(brief, parts);
-    writeModels(models, folder);
-    DesignParams params;
-    params.evaluations = 8;
-    params.tuned_members = 2;
-    params.threads = 1;
-    return designLaws(brief, Vector::Constant(1, 0.05), inFolder(folder, "model.yaml"), models,
-                      params);
+  const auto on = [&](const std::vector<double>& parts) {
+    return designed(
+        brief, folder,
+        modelsOf(brief, ProcessKind::kUnstable, {1.0, -600.0, 0.0, 0.0, 30.0, false}, parts), 2.0);
   };
-  const Design some = designed({1.1, 0.05, 0.9, 1.05, 0.95});
+  const Design some = on({1.1, 0.05, 0.9, 1.05, 0.95});
   EXPECT_EQ(some.refuted, 1U);
   EXPECT_TRUE(some.offers_law || some.offers_pi);
   EXPECT_NE(some.pi.find("kp: -"), std::string::npos) << "its sign holds an unstable lag";
-  const Design none = designed({0.05, -1.0, 0.02, 0.04, 0.9});
+  const Design none = on({0.05, -1.0, 0.02, 0.04, 0.9});
   EXPECT_EQ(none.refuted, 4U);
   EXPECT_FALSE(none.offers_law || none.offers_pi);
   EXPECT_FALSE(std::isfinite(none.law_figures.tuned) || std::isfinite(none.ratio));
   EXPECT_NE(none.pi.find("kp:"), std::string::npos);
+}
+
+/// A lag with dead time allows any peak above 1, and with integral action none of 1 or less
+/// (Bode's integral).
+TEST(Design, IsSoftenedToThePeakThatIsAskedForOrStaysAsTuned) {
+  const std::string folder =
+      folderOf("softened", kTankBrief, "tank.yaml",
+               "extends: heated_tank\ncontroller: {type: excitation, signals: [{input: heat, "
+               "signal: none}]}\n");
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  const ProcessModels models = modelsOf(
+      brief, ProcessKind::kStable, {2.5, 240.0, 0.0, 0.0, 60.0, false}, {1.1, 0.9, 1.05, 0.95});
+  const double asked = 1.3;
+  const Design tuned = designed(brief, folder, models, 100.0);
+  const Design softened = designed(brief, folder, models, asked);
+  const Design never = designed(brief, folder, models, 1.0);
+  for (const auto figures : {&Design::law_figures, &Design::pi_figures}) {
+    EXPECT_GT((tuned.*figures).worst_peak, asked) << "nothing to soften";
+    EXPECT_LE((softened.*figures).worst_peak, asked);
+    EXPECT_GT((softened.*figures).worst_peak, 1.0);
+    EXPECT_EQ((never.*figures).worst_peak, (tuned.*figures).worst_peak);
+  }
+  EXPECT_TRUE(softened.offers_law || softened.offers_pi);
+  EXPECT_FALSE(never.offers_law || never.offers_pi);
+  EXPECT_NE(softened.law, tuned.law);
+  EXPECT_EQ(never.law, tuned.law);
+  EXPECT_EQ(never.pi, tuned.pi);
 }
 
 TEST(Commissioning, OfTwoInputsFindsTheCouplingInsideItsLimits) {
