@@ -98,7 +98,9 @@ def main():
     parser.add_argument("--lockstep", action="store_true")
     asked = parser.parse_args()
     if asked.lockstep:
-        return [lockstep(asked.loop, count) for count in asked.counts] and None
+        for count in asked.counts:
+            lockstep(asked.loop, count)
+        return
     print("loops  of a core  memory  ready  samples  late")
     for count in asked.counts:
         row = measure(asked.loop, count, asked.seconds)

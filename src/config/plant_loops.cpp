@@ -198,6 +198,7 @@ void readFeed(YamlSection& item, std::vector<PlantLoop>& loops) {
   item.boolean("plan", plan);
   double until_h = kLargest;
   item.number("plan_until_h", until_h, kFiniteNotNegative);
+  if (!plan && item.has("plan_until_h")) item.fail("plan_until_h", "plan: true beside it");
   item.finish();
   add(item, "to", *from.of, *to.of, link);
   if (!plan) return;

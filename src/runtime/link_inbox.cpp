@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "fmbpc/base/input_error.hpp"
@@ -36,24 +37,37 @@ Vector LinkInbox::rowOf(const LoopLink& link, const Eigen::Ref<const Matrix>& va
   return row.cwiseMax(link.lower).cwiseMin(link.upper);
 }
 
-/// Plan and action of a sample come in any order.
-void LinkInbox::hearPlan(Source& source, LoopLink::Of of, const StepHeader& sample, Vector row,
-                         bool planned) {
-  if (source.run_id != sample.run_id) source.items.clear();
+/// The item of a sample whose plan and action come in any order.
+LinkInbox::Item& LinkInbox::itemOf(Source& source, const StepHeader& sample) {
+  auto& items = source.items;
+  if (source.run_id != sample.run_id) items.clear();
   source.run_id = sample.run_id;
-  auto item = std::find_if(source.items.begin(), source.items.end(),
-                           [&](const Item& one) { return one.time_ns >= sample.time_ns; });
-  if (item == source.items.end() || item->time_ns != sample.time_ns)
-    item = source.items.insert(item, {sample.time_ns, {}});
-  if (of == LoopLink::Of::kPlan) {
-    item->values = std::move(row);
-    // A plan that is of no use is none.
-    if (item->values.size() == 0)
-      item->values = Vector::Constant(1, std::numeric_limits<double>::quiet_NaN());
-  } else {
-    item->asked = true;
-    item->planned = planned;
+  auto at = std::find_if(items.begin(), items.end(),
+                         [&](const Item& one) { return one.time_ns >= sample.time_ns; });
+  if (at == items.end() || at->time_ns != sample.time_ns)
+    at = items.insert(at, {sample.time_ns, {}});
+  if (lockstep_) return *at;
+  // The latest whole one, and what came after it, are enough. The others stay where they are.
+  const auto whole =
+      std::find_if(items.rbegin(), items.rend(), [](const Item& one) { return one.whole(); });
+  if (whole != items.rend() && whole.base() <= at)
+    items.erase(items.begin(), std::prev(whole.base()));
+  return *at;
+}
+
+void LinkInbox::hearPlan(Source& source, LoopLink::Of of, const StepHeader& sample,
+                         const Eigen::Ref<const Matrix>& values, bool planned) {
+  if (of == LoopLink::Of::kOutputs) return;
+  Item& item = itemOf(source, sample);
+  if (of == LoopLink::Of::kInputs) {
+    item.asked = true;
+    item.planned = planned;
+    return;
   }
+  item.values = rowOf(source.link, values);
+  // A plan that is of no use is none.
+  if (item.values.size() == 0)
+    item.values = Vector::Constant(1, std::numeric_limits<double>::quiet_NaN());
 }
 
 void LinkInbox::hear(const std::string& from, LoopLink::Of of, const StepHeader& sample,
@@ -61,10 +75,11 @@ void LinkInbox::hear(const std::string& from, LoopLink::Of of, const StepHeader&
   for (Source& source : sources_) {
     const LoopLink& link = source.link;
     if (link.from != from || sample.time_ns > link.last_ns) continue;
-    if (link.to == LoopLink::To::kForecast && of != LoopLink::Of::kOutputs)
-      hearPlan(source, of, sample, rowOf(link, values), planned);
-    if (link.of != of || link.to == LoopLink::To::kForecast || link.index >= values.rows())
+    if (link.to == LoopLink::To::kForecast) {
+      hearPlan(source, of, sample, values, planned);
       continue;
+    }
+    if (link.of != of || link.index >= values.rows()) continue;
     const bool anew = !source.heard || source.run_id != sample.run_id;
     if (!anew && sample.time_ns <= source.newest_ns) continue;  // sent again
     if (anew) source.items.clear();

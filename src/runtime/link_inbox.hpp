@@ -67,8 +67,9 @@ class LinkInbox {
     bool heard{}, gap{};
   };
   Vector rowOf(const LoopLink& link, const Eigen::Ref<const Matrix>& values) const;
-  void hearPlan(Source& source, LoopLink::Of of, const StepHeader& sample, Vector row,
-                bool planned);
+  Item& itemOf(Source& source, const StepHeader& sample);
+  void hearPlan(Source& source, LoopLink::Of of, const StepHeader& sample,
+                const Eigen::Ref<const Matrix>& values, bool planned);
   bool has(const Source& source, std::int64_t time_ns) const;
   std::optional<double> valueAt(Source& source, std::int64_t time_ns) const;
 

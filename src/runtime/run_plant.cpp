@@ -13,6 +13,7 @@ struct TurningLoop {
   const PlantLoop* of;
   std::unique_ptr<LoopRing> ring;
   bool answered{false}, over{false};
+  bool tells_plan{false};  // another one expects what it plans
 };
 
 void tell(const TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
@@ -25,11 +26,12 @@ void tellAnswer(const TurningLoop& loop, const std::vector<TurningLoop*>& listen
   if (listeners.empty() || loop.ring->measurement().final) return;
   const ControlAction& sent = loop.ring->sent();
   const ControllerAnswer& answer = loop.ring->answered();
-  const Matrix plan = answer.has_prediction ? planOf(answer.prediction) : Matrix();
+  const Matrix plan =
+      loop.tells_plan && answer.has_prediction ? planOf(answer.prediction) : Matrix();
   for (TurningLoop* other : listeners) {
     other->ring->hear(loop.of->name, LoopLink::Of::kInputs, sent.header, sent.input,
                       isLawsOwn(sent.source));
-    other->ring->hear(loop.of->name, LoopLink::Of::kPlan, sent.header, plan);
+    if (loop.tells_plan) other->ring->hear(loop.of->name, LoopLink::Of::kPlan, sent.header, plan);
   }
 }
 
@@ -51,12 +53,14 @@ bool turn(TurningLoop& loop, const std::vector<TurningLoop*>& listeners) {
   return true;
 }
 
-std::vector<TurningLoop*> listenersOf(const TurningLoop& loop, std::vector<TurningLoop>& all) {
+std::vector<TurningLoop*> listenersOf(TurningLoop& loop, std::vector<TurningLoop>& all) {
   std::vector<TurningLoop*> listeners;
   for (TurningLoop& other : all)
-    for (const LoopLink& link : other.of->links)
-      if (link.from == loop.of->name && (listeners.empty() || listeners.back() != &other))
-        listeners.push_back(&other);
+    for (const LoopLink& link : other.of->links) {
+      if (link.from != loop.of->name) continue;
+      loop.tells_plan = loop.tells_plan || link.of == LoopLink::Of::kPlan;
+      if (listeners.empty() || listeners.back() != &other) listeners.push_back(&other);
+    }
   return listeners;
 }
 
@@ -69,7 +73,7 @@ std::vector<RunRecord> runPlant(const PlantLoops& plant, const RunOptions& optio
   for (const PlantLoop& one : plant.loops)
     loops.push_back({&one, std::make_unique<LoopRing>(one.loop, options, one.links)});
   std::vector<std::vector<TurningLoop*>> listeners;
-  for (const TurningLoop& loop : loops) listeners.push_back(listenersOf(loop, loops));
+  for (TurningLoop& loop : loops) listeners.push_back(listenersOf(loop, loops));
   for (std::size_t i = 0; i < loops.size(); ++i) tell(loops[i], listeners[i]);
   for (bool any = true; any && !(options.stop && options.stop());) {
     any = false;

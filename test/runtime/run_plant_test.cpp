@@ -192,7 +192,9 @@ TEST(RunPlant, BadFilesNameFileKeyAndWhatWasExpected) {
            {tanks + "links: [{from: e/heat, to: b/v1, plan: true}]\n", "links[0].plan"},
            {tanks + "links: [{from: b/v2, to: c/v2, plan: true}]\n", "links[0].plan"},
            {tanks + "links: [{from: f/v1, to: b/v1, plan: true}]\n", "links[0].plan"},
-           {tanks + "links: [{from: a/v1, to: b/v1, plan_until_h: -1}]\n", "links[0].plan_until_h"},
+           {tanks + "links: [{from: a/v1, to: b/v1, plan: true, plan_until_h: -1}]\n",
+            "links[0].plan_until_h"},
+           {tanks + "links: [{from: a/v1, to: b/v1, plan_until_h: 1}]\n", "links[0].plan_until_h"},
            {loops + "feeds: []\n", "feeds"}}) {
     const std::string error = errorOf(text);
     EXPECT_NE(std::string::npos, error.find(": " + key + ": ")) << text << error;
@@ -207,7 +209,6 @@ TEST(RunPlant, APlanCountsAtTheSampleAfterItAndNoOther) {
   link.to = LoopLink::To::kForecast;
   link.index = 1;
   link.every_ns = 10;
-  link.reach_ns = 20;
   link.first_ns = 0;
   link.last_ns = 50;
   link.name = "d";
@@ -264,6 +265,13 @@ TEST(RunPlant, APlanCountsAtTheSampleAfterItAndNoOther) {
       ask(time_ns);
     }
     EXPECT_EQ(1u, plans(60).size());
+    if (!lockstep) {  // whoever does not look for long finds the latest one
+      for (const std::int64_t time_ns : {41, 43, 42}) {
+        hear(time_ns, time_ns == 43 ? plan : nan);
+        ask(time_ns);
+      }
+      EXPECT_EQ(std::vector<Vector>{expected}, plans(60));
+    }
     hear(60, plan);  // after the last one that counts
     ask(60);
     EXPECT_TRUE(plans(70).empty());

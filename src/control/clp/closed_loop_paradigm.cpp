@@ -225,7 +225,7 @@ void ClosedLoopParadigm::Workspace::takeBase(const PredictiveAction& now, Vector
 // Absolute limits hold whatever was decided. True if the move limit had to give way to a bound.
 bool ClosedLoopParadigm::Workspace::protectActuator(const PredictiveAction& now, bool solved,
                                                     ControlAction& action) {
-  static constexpr double kNegligible = 1e-6;  // of the input range: no actuator shows less
+  static constexpr double kNegligible = 1e-6;  // of the input's unit: no actuator shows less
   input = action.input;
   for (Eigen::Index a = 0; a < now.input_lower.size(); ++a)
     action.input[a] = std::clamp(action.input[a], now.input_lower[a], now.input_upper[a]);
