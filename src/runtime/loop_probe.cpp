@@ -231,7 +231,8 @@ class Probing {
     }
   }
 
-  /// Half the difference of a pulse and its opposite, in parts of the pulse.
+  /// Half the difference of a pulse and its opposite, in parts of the pulse: inputs in parts of
+  /// their ranges, or a unit would change the singular values.
   bool respond(Index n) {
     const Index samples = rest_ + n, n_u = u_range_.size();
     if (!base_.to(samples, loop_)) return fail(base_.trouble());
@@ -243,13 +244,15 @@ class Probing {
         Played &up = up_[at], &down = down_[at];
         if (!up.to(samples, loop_)) return fail(up.trouble());
         if (!down.to(samples, loop_)) return fail(down.trouble());
-        const Matrix odd = (up.inputs() - down.inputs()).rightCols(n),
-                     even = (up.inputs() + down.inputs() - 2.0 * base_.inputs()).rightCols(n);
+        const auto parts = u_range_.cwiseInverse().asDiagonal();
+        const Matrix odd = parts * (up.inputs() - down.inputs()).rightCols(n),
+                     even =
+                         parts * (up.inputs() + down.inputs() - 2.0 * base_.inputs()).rightCols(n);
         if (even.cwiseAbs().maxCoeff() > kBend * odd.cwiseAbs().maxCoeff()) {
           found_.result = ProbeResult::kBends;
           return false;
         }
-        response = odd / (2.0 * sizes_[at]);
+        response = odd * (u_range_[j] / (2.0 * sizes_[at]));
       }
       response(j, 0) += 1.0;
       reached.push_back(std::move(response));

@@ -53,7 +53,7 @@ struct LoopProbe {
   double growth{};             ///< per sample, of kGrows
   double period_s{};           ///< of kSwings; 0: none was found
   Vector swing;                ///< n_u, of kSwings: largest less smallest input
-  std::optional<PulseResponse> response;
+  std::optional<PulseResponse> response;  ///< inputs in parts of their ranges
 };
 
 /// `staying`: see LoopCourse::stayingAt(). Samples: at most 3000 to come to rest and 6400 of

@@ -6,6 +6,7 @@
 #include <complex>
 #include <functional>
 
+#include "fmbpc/base/text.hpp"
 #include "runtime/loop_fixture.hpp"
 
 namespace fpc {
@@ -70,6 +71,39 @@ TEST_F(LoopProbeOf, APiOnALagWithDeadTimeHasTheMarginsOfItsFormula) {
   }
   EXPECT_NEAR(found[0].outputs[0], 40.0, 1e-4);
   EXPECT_NEAR(found[1].outputs[0], 45.0, 1e-4);
+}
+
+/// Two coupled lags under two PI; the second heater in this part of a kW.
+std::string twoHeaters(double unit) {
+  const auto number = [](double value) { return exactText(value); };
+  const std::string second = ", from: oil, time_constant_min: 9, dead_time_min: 1, gain: ";
+  return "plant:\n  type: transfer_matrix\n  matrix:\n"
+         "    outputs: [{name: A, nominal: 40, lower: 0, upper: 100}, {name: B, nominal: 40, "
+         "lower: "
+         "0, upper: 100}]\n"
+         "    inputs: [{name: heat, nominal: 5, lower: 0, upper: 20}, {name: oil, nominal: " +
+         number(5.0 / unit) + ", lower: 0, upper: " + number(20.0 / unit) +
+         "}]\n    elements:\n"
+         "      - {output: A, from: heat, gain: 2, time_constant_min: 9, dead_time_min: 1}\n"
+         "      - {output: B, from: heat, gain: 1.5, time_constant_min: 9, dead_time_min: 1}\n"
+         "      - {output: A" +
+         second + number(unit) + "}\n      - {output: B" + second + number(2.0 * unit) +
+         "}\nsampling: {sample_time_s: 30, duration_h: 1}\n"
+         "controller:\n  type: pi\n  loops:\n"
+         "    - {input: heat, output: A, kp: 1, ki_per_h: 7}\n"
+         "    - {input: oil, output: B, kp: " +
+         number(1.0 / unit) + ", ki_per_h: " + number(7.0 / unit) + "}\n";
+}
+
+TEST_F(LoopProbeOf, ThePeakDoesNotDependOnTheUnitOfAnInput) {
+  const auto peak = [&](double unit) {
+    const LoopProbe found = probe(readLoop(write("a.yaml", twoHeaters(unit))), 1)[0];
+    EXPECT_EQ(found.result, ProbeResult::kLinear) << found.words;
+    return found.response ? found.response->peak() : 0.0;
+  };
+  const double in_kw = peak(1.0);
+  EXPECT_GT(in_kw, 1.1);
+  EXPECT_NEAR(peak(1e-3), in_kw, 1e-3 * in_kw);
 }
 
 /// The gain margin is the factor at which the loop is lost.
