@@ -47,12 +47,12 @@ enum class ProbeResult {
 struct LoopProbe {
   CoursePoint point;
   ProbeResult result{ProbeResult::kFailed};
-  std::string words;           ///< of a failure
-  Vector outputs, input;       ///< at rest (kSwings: the last sample)
-  std::vector<bool> at_limit;  ///< of each input
-  double growth{};             ///< per sample, of kGrows
-  double period_s{};           ///< of kSwings; 0: none was found
-  Vector swing;                ///< n_u, of kSwings: largest less smallest input
+  std::string words;                      ///< of a failure
+  Vector outputs, input;                  ///< at rest (kSwings: the last sample)
+  std::vector<bool> at_limit;             ///< of each input
+  double growth{};                        ///< per sample, of kGrows
+  double period_s{};                      ///< of kSwings; 0: none was found
+  Vector swing;                           ///< n_u, of kSwings: largest less smallest input
   std::optional<PulseResponse> response;  ///< inputs in parts of their ranges
 };
 
