@@ -57,8 +57,7 @@ class Fitter {
   ProcessFit best() {
     std::optional<Candidate> best;
     double least = std::numeric_limits<double>::infinity();
-    for (const ProcessKind kind :
-         {ProcessKind::kStable, ProcessKind::kIntegrating, ProcessKind::kUnstable}) {
+    for (const ProcessKind kind : params_.kinds) {
       Candidate c = start(kind);
       if (!refine(c)) continue;
       const double value = criterion(c);

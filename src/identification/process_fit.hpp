@@ -19,6 +19,8 @@ struct ProcessFitParams {
   int most_noise_terms{10};      ///< of the autoregressive noise
   int blocks{10};                ///< of the record, for bounds where the model is not all of it
   int ensemble{20};              ///< drawn for ProcessFit::ensemble
+  std::vector<ProcessKind> kinds{ProcessKind::kStable, ProcessKind::kIntegrating,
+                                 ProcessKind::kUnstable};  ///< that are tried
   std::uint64_t seed{1};
   void validate() const;  ///< @throws InputError naming the field
 };

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <random>
 #include <sstream>
 
 #include "base/files.hpp"
@@ -162,6 +164,34 @@ TEST(Commissioning, ThePiOfAPlantTakenForAnIntegratorHoldsThePlant) {
   ASSERT_EQ(c.figures(Stage::kModel)["outputs"][0]["kind"], "integrating");
   const RunRecord record = runLoop(readLoop(c.piFile()));
   EXPECT_NEAR(record.samples.back().state.outputs[0], 50.0, 1.5);
+}
+
+/// An integrator under levels of 4 and 6 kW; 5 kW keeps it.
+TEST(Commissioning, AKindThatThePresentControlRefutesGivesWayToAnother) {
+  const std::string folder = folderOf("kinds", kTankBrief, "tank.yaml", kTank);
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  std::ostringstream csv;
+  csv << "time[h],T[degC],heat[kW],T_in[degC],heat_applied[kW]\n";
+  std::mt19937 engine(1);
+  double T = 42.0, heat = 5.0;
+  for (int k = 0; k < 400; ++k) {
+    const double before = heat;
+    if (k % 5 == 0 && k > 0) heat = engine() % 2 == 0 ? 4.0 : 6.0;
+    const double noise = 0.05 * (static_cast<double>(engine()) / 4294967296.0 - 0.5);
+    csv << k / 120.0 << "," << T + noise << "," << heat << ",15," << before << "\n";
+    T += 0.1 * (heat - 5.0);
+  }
+  writeText(csv.str(), inFolder(folder, "record.csv"));
+  const PlantRecord record =
+      PlantRecord::read(inFolder(folder, "record.csv"), brief.loop.plant_info);
+  const auto kindIf = [&](const std::function<bool(ProcessKind)>& holds) {
+    const auto held = [&](const ProcessModels& m) { return holds(m.fits[0].kind); };
+    return findModels(brief, record, 2, held).fits[0].kind;
+  };
+  EXPECT_EQ(kindIf([](ProcessKind) { return true; }), ProcessKind::kIntegrating);
+  EXPECT_EQ(kindIf([](ProcessKind kind) { return kind == ProcessKind::kStable; }),
+            ProcessKind::kStable);
+  EXPECT_EQ(kindIf([](ProcessKind) { return false; }), ProcessKind::kIntegrating);
 }
 
 /// One element from heat to T, and likely models with these parts of its gain.

@@ -288,7 +288,9 @@ OrderedJson Commissioning::findModel() {
   const PlantRecord record =
       PlantRecord::read(inFolder(folder_, "test.csv"), brief_.loop.plant_info);
   show(Stage::kModel, std::to_string(record.rows()) + " rows");
-  const ProcessModels models = findModels(brief_, record, options_.members);
+  const ProcessModels models =
+      findModels(brief_, record, options_.members,
+                 [this](const ProcessModels& found) { return presentHolds(brief_, found); });
   writeModels(models, folder_);
   return toJson(models, brief_.loop.plant_info);
 }

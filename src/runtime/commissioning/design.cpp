@@ -166,6 +166,28 @@ std::string piLoops(const CommissioningBrief& brief, const Outline& o,
   return text + "]";
 }
 
+bool hasPresent(const CommissioningBrief& brief) {
+  return brief.closed && !brief.loop.controllerType().needs_model;
+}
+
+/// A loop that is not linear at rest is taken for one that is not stable.
+DesignFigures atRest(const LoopFile& loop) {
+  const LoopCourse course(loop);
+  const CoursePoint point = course.points(1).front();
+  const LoopProbe probed = probeLoop(course.stayingAt(loop, point), point);
+  DesignFigures figures;
+  figures.worst_peak = kInfinity;
+  if (probed.result != ProbeResult::kLinear) return figures;
+  figures.worst_peak = probed.response->peak();
+  figures.least_gain = figures.least_delay_s = kInfinity;
+  for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
+    const LoopMargins margin = probed.response->margins(j);
+    figures.least_gain = std::min(figures.least_gain, margin.gain_upper);
+    figures.least_delay_s = std::min(figures.least_delay_s, margin.delay_s);
+  }
+  return figures;
+}
+
 class Designer {
  public:
   Designer(const CommissioningBrief& brief, const Vector& noise, std::string model_file,
@@ -234,12 +256,10 @@ class Designer {
     return true;
   }
 
-  bool hasPresent() const { return brief_.closed && !brief_.loop.controllerType().needs_model; }
-
   /// The present control holds the plant: a model that it does not bring to rest is not the
   /// plant's.
   void leaveOutRefuted(Design& d) {
-    if (!hasPresent()) return;
+    if (!hasPresent(brief_)) return;
     show("models on which the present control holds");
     std::vector<double> peaks(models_.ensemble.size());
     parallelFor(peaks.size(), params_.threads, [&](std::size_t m) {
@@ -552,7 +572,7 @@ class Designer {
   /// more sensitive than the control in charge, on the same models.
   void allowWhatThereIs(Design& d) {
     allowed_peak_ = params_.peak;
-    if (!hasPresent()) return;
+    if (!hasPresent(brief_)) return;
     DesignFigures present;
     margins(brief_.loop.resolved, present, false);
     d.present_peak = present.worst_peak;
@@ -646,25 +666,10 @@ class Designer {
     }
   }
 
-  /// The loop at rest on one model; one that is not linear there is taken for one that is not
-  /// stable.
   DesignFigures probe(const std::string& text, const TsModel& model) const {
     LoopFile loop = scenario(text, model);
     loop.simulation.disturbance_commands.clear();
-    const LoopCourse course(loop);
-    const CoursePoint point = course.points(1).front();
-    const LoopProbe probed = probeLoop(course.stayingAt(loop, point), point);
-    DesignFigures figures;
-    figures.worst_peak = kInfinity;
-    if (probed.result != ProbeResult::kLinear) return figures;
-    figures.worst_peak = probed.response->peak();
-    figures.least_gain = figures.least_delay_s = kInfinity;
-    for (Index j = 0; j < countOf(loop.plant_info.inputs); ++j) {
-      const LoopMargins margin = probed.response->margins(j);
-      figures.least_gain = std::min(figures.least_gain, margin.gain_upper);
-      figures.least_delay_s = std::min(figures.least_delay_s, margin.delay_s);
-    }
-    return figures;
+    return atRest(loop);
   }
 
   /// With `early` the model that failed last ends it if it fails again. The worst one is the first
@@ -756,6 +761,18 @@ class Designer {
 };
 
 }  // namespace
+
+bool presentHolds(const CommissioningBrief& brief, const ProcessModels& models) {
+  if (!hasPresent(brief)) return true;
+  const LinearPoint rest = modelRest(models.fits, countOf(brief.loop.plant_info.inputs));
+  const auto held =
+      std::count_if(models.ensemble.begin(), models.ensemble.end(), [&](const TsModel& member) {
+        LoopFile loop = onModel(brief.loop, member, models.errors, rest);
+        loop.setpoint.initial = loop.simulation.initial_state;
+        return atRest(loop).worst_peak <= kMostPresent;
+      });
+  return 2 * held >= static_cast<std::ptrdiff_t>(models.ensemble.size());
+}
 
 LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& errors,
                  const LinearPoint& rest) {

@@ -51,6 +51,9 @@ Design designLaws(const CommissioningBrief& brief, const Vector& noise,
                   const DesignParams& params);
 OrderedJson toJson(const Design& design, const PlantInfo& plant);
 
+/// Whether the present control holds half of the ensemble at least; true without such a control.
+bool presentHolds(const CommissioningBrief& brief, const ProcessModels& models);
+
 /// The loop with a model in the place of its plant, which begins at `rest`, with neither schedule.
 LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& errors,
                  const LinearPoint& rest);

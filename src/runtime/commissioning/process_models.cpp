@@ -57,6 +57,21 @@ TsModel modelOf(const TsModel& names, const std::vector<ProcessFit>& fits, int m
   return linearModel(names, all, point);
 }
 
+ProcessModels modelsOf(const TsModel& names, const std::vector<ProcessFit>& fits, int members) {
+  ProcessModels models;
+  models.fits = fits;
+  models.model = modelOf(names, fits, -1);
+  for (int member = 0; member < members; ++member)
+    models.ensemble.push_back(modelOf(names, fits, member));
+  models.errors.one_step.resize(countOf(names.outputs));
+  models.errors.free_run.resize(countOf(names.outputs));
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    models.errors.one_step[static_cast<Index>(i)] = fits[i].one_step;
+    models.errors.free_run[static_cast<Index>(i)] = fits[i].free_run;
+  }
+  return models;
+}
+
 OrderedJson elementJson(const ProcessElement& e) {
   return {{"gain", e.gain},   {"time_constant_s", e.time_constant}, {"second_s", e.second},
           {"lead_s", e.lead}, {"dead_time_s", e.dead_time},         {"integrating", e.integrating}};
@@ -153,31 +168,38 @@ LinearPoint modelRest(const std::vector<ProcessFit>& fits, Index inputs) {
   return point;
 }
 
-ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members) {
-  ProcessModels models;
+ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members,
+                         const std::function<bool(const ProcessModels&)>& holds) {
   const TsModel names = modelNames(brief);
   const Matrix inputs = record.inputsAndDisturbances();
   ProcessFitParams params;
   params.ensemble = members;
-  for (std::size_t i = 0; i < names.outputs.size(); ++i) {
+  const auto fitted = [&](std::size_t i) {
     params.seed = brief.seed + 1000 * i;
-    models.fits.push_back(fitProcess(inputs, record.outputs().col(static_cast<Index>(i)),
-                                     names.sample_time_s, params));
-    const auto& elements = models.fits.back().elements;
-    require(std::any_of(elements.begin(), elements.begin() + countOf(names.inputs),
-                        [](const ElementEstimate& e) { return e.seen; }),
-            "output " + names.outputs[i].name, "an input that was seen to move it: test again");
+    return fitProcess(inputs, record.outputs().col(static_cast<Index>(i)), names.sample_time_s,
+                      params);
+  };
+  const auto moved = [&](const ProcessFit& fit) {
+    return std::any_of(fit.elements.begin(), fit.elements.begin() + countOf(names.inputs),
+                       [](const ElementEstimate& e) { return e.seen; });
+  };
+  std::vector<ProcessFit> fits;
+  for (std::size_t i = 0; i < names.outputs.size(); ++i) {
+    fits.push_back(fitted(i));
+    require(moved(fits.back()), "output " + names.outputs[i].name,
+            "an input that was seen to move it: test again");
   }
-  models.model = modelOf(names, models.fits, -1);
-  for (int member = 0; member < members; ++member)
-    models.ensemble.push_back(modelOf(names, models.fits, member));
-  models.errors.one_step.resize(countOf(names.outputs));
-  models.errors.free_run.resize(countOf(names.outputs));
-  for (std::size_t i = 0; i < models.fits.size(); ++i) {
-    models.errors.one_step[static_cast<Index>(i)] = models.fits[i].one_step;
-    models.errors.free_run[static_cast<Index>(i)] = models.fits[i].free_run;
+  const ProcessModels found = modelsOf(names, fits, members);
+  ProcessModels models = found;
+  for (const ProcessKind kind : {ProcessKind::kUnstable, ProcessKind::kIntegrating}) {
+    if (holds(models)) return models;
+    params.kinds.pop_back();
+    for (std::size_t i = 0; i < fits.size(); ++i)
+      if (fits[i].kind == kind) fits[i] = fitted(i);
+    if (!std::all_of(fits.begin(), fits.end(), moved)) return found;
+    models = modelsOf(names, fits, members);
   }
-  return models;
+  return holds(models) ? models : found;
 }
 
 TsModel spoiltModel(const ProcessModels& models, double gain_factor, double more_dead_time_s) {

@@ -1,6 +1,7 @@
 // Stage 4: models of the plant from what was seen of it, with what is not known of them.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,11 @@ struct ProcessModels {
   ModelErrors errors;
 };
 
-/// @throws InputError naming an output that no input moves.
-ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members);
+/// While the present control does not hold what was found, outputs called unstable, then those
+/// called integrating, are taken for another kind. Where that does not help, the kinds that the
+/// record shows stay. @throws InputError naming an output that no input moves.
+ProcessModels findModels(const CommissioningBrief& brief, const PlantRecord& record, int members,
+                         const std::function<bool(const ProcessModels&)>& holds);
 /// Elements with their bounds, kinds and errors, those of the ensemble too.
 OrderedJson toJson(const ProcessModels& models, const PlantInfo& plant);
 /// model.yaml and ensemble/NUMBER.yaml, each a plant of type model.
