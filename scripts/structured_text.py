@@ -8,7 +8,7 @@ number. What is not in the subset is an error that names it."""
 import re
 import sys
 
-TOKEN = re.compile(r"\s+|\(\*.*?\*\)|(?P<number>\d+(?:\.\d+)?(?:E-?\d+)?)|(?P<word>[A-Za-z_]\w*)|(?P<sign>:=|<=|>=|<>|\.\.|[-+*/()\[\],;:.<>=])", re.S)
+TOKEN = re.compile(r"\s+|\(\*.*?\*\)|(?:REAL#)?(?P<number>\d+(?:\.\d+)?(?:E-?\d+)?)|(?P<word>[A-Za-z_]\w*)|(?P<sign>:=|<=|>=|<>|\.\.|[-+*/()\[\],;:.<>=])", re.S)
 REALS = {"LREAL", "REAL"}
 PYTHON = {"AND": "and", "OR": "or", "=": "==", "<>": "!=", "MOD": "%"}
 RANK = [["OR"], ["AND"], ["=", "<>", "<", "<=", ">", ">="], ["+", "-"], ["*", "/", "MOD"]]
@@ -38,7 +38,7 @@ def tokens(text):
         if not match:
             raise Subset(f"line {text.count(chr(10), 0, at) + 1}: {text[at:at + 20]!r}")
         if match.lastgroup:
-            word = match.group()
+            word = match[match.lastgroup]
             found.append((match.lastgroup, word.upper() if match.lastgroup == "word" else word, at))
         at = match.end()
     return found + [("end", "", at)]

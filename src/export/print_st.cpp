@@ -45,12 +45,15 @@ class StPrinter final : public ExpressionPrinter {
   }
 
  private:
-  /// Compilers refuse literals in statements that single precision cannot hold.
+  /// Compilers refuse literals in statements that single precision cannot hold; matiec reckons in
+  /// double with one that has no type.
   std::string literal(const Node& node) const override {
     const double size = std::abs(node.number);
     require(node.kind != Kind::kReal || size == 0.0 || (size > 1e-37 && size < 1e37), "export",
             "literals that Structured Text can hold");
-    return number(node.number, node.kind);
+    const std::string text = number(node.number, node.kind);
+    if (node.kind != Kind::kReal || !program_.single) return text;
+    return text[0] == '-' ? "-REAL#" + text.substr(1) : "REAL#" + text;
   }
   std::string variable(const Variable& v) const override { return v.name; }
   std::string operation(const Node& node) const override {
