@@ -55,7 +55,6 @@ OrderedJson toJson(const Design& design, const PlantInfo& plant);
 bool presentHolds(const CommissioningBrief& brief, const ProcessModels& models);
 
 /// The loop with a model in the place of its plant, which begins at `rest`, with neither schedule.
-LoopFile onModel(const LoopFile& loop, const TsModel& model, const ModelErrors& errors,
-                 const LinearPoint& rest);
+LoopFile onModel(const LoopFile& loop, const TsModel& model, const LinearPoint& rest);
 
 }  // namespace fpc
