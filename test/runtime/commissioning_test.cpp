@@ -247,6 +247,10 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   EXPECT_EQ(some.refuted, 1U);
   EXPECT_TRUE(some.offers_law || some.offers_pi);
   EXPECT_NE(some.pi.find("kp: -"), std::string::npos) << "its sign holds an unstable lag";
+  const std::vector<double>& offered =
+      some.offers_law ? some.law_figures.costs : some.pi_figures.costs;
+  ASSERT_EQ(offered.size(), some.present_costs.size());
+  for (std::size_t m = 0; m < offered.size(); ++m) EXPECT_LT(offered[m], some.present_costs[m]);
   const Design none = on({0.05, -1.0, 0.02, 0.04, 0.9});
   EXPECT_EQ(none.refuted, 4U);
   EXPECT_FALSE(none.offers_law || none.offers_pi);

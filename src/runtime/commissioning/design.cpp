@@ -213,11 +213,10 @@ class Designer {
     lookAtDirections(d);
     if (refuted_) return untuned(d);
     const Vector pi = searched(
-        "PI", Vector::Zero(2 * loops()), [this](const Vector& x) { return piText(x); },
-        d.pi_figures);
+        "PI", piStarts(), [this](const Vector& x) { return piText(x); }, d.pi_figures);
     pi_ = piOf(pi);
     const Vector law = searched(
-        "law", lawStart(), [this](const Vector& x) { return lawText(x); }, d.law_figures);
+        "law", lawStarts(), [this](const Vector& x) { return lawText(x); }, d.law_figures);
     d.probed = tuned_.size() + held_out_.size();
     d.pi = piText(pi);
     d.law = lawText(law);
@@ -266,7 +265,7 @@ class Designer {
   /// There is nothing to tune on: the loop files hold what a search would begin with.
   Design untuned(Design& d) const {
     d.pi = piText(Vector::Zero(2 * loops()));
-    d.law = lawText(lawStart());
+    d.law = lawText(lawStarts().front());
     for (DesignFigures* figures : {&d.law_figures, &d.pi_figures}) figures->worst_peak = kInfinity;
     d.remarks.push_back("the present control holds the plant and would not hold " +
                         std::to_string(d.refuted) + " of " +
@@ -286,54 +285,74 @@ class Designer {
         .element;
   }
 
+  PiSetting ruleOf(Index p) const {
+    const double Ts = brief_.loop.plant_info.sample_time_s;
+    const ProcessElement& e = elementOf(p);
+    PiSetting s;
+    const double late = e.dead_time + std::abs(std::min(e.lead, 0.0)) + 0.5 * Ts;
+    if (e.integrating) {  // skogestad2003
+      const double wait = std::max(late + e.second, Ts);
+      s.kp = 0.5 / (e.gain * wait);
+      s.ti_min = 8.0 * wait / 60.0;
+    } else if (e.time_constant < 0.0) {
+      // 1 + K kp < 0 stabilises K / (tau s + 1) with tau < 0; the more, the sooner it acts.
+      const double wait = std::max(late + e.second, Ts);
+      s.kp = -1.5 / e.gain * std::max(std::min(std::sqrt(-e.time_constant / wait), 4.0), 1.0);
+      s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
+    } else {
+      const Fopdt lag{e.gain, std::max(e.time_constant + e.second, 0.3 * Ts) / 60.0, late / 60.0};
+      const PiTuning t =
+          imcTuning(lag, std::max({lag.dead_time, 0.5 * lag.time_constant, Ts / 60.0}));
+      s = {t.kp, t.integral_time_min};
+    }
+    return s;
+  }
+
   /// x: log2 of what the rule's gain and integral time are multiplied by.
   std::vector<PiSetting> piOf(const Vector& x) const {
     std::vector<PiSetting> settings;
-    const double Ts = brief_.loop.plant_info.sample_time_s;
     for (Index p = 0; p < loops(); ++p) {
-      const Pairing& pair = outline_.pairs[static_cast<std::size_t>(p)];
-      const ProcessElement& e = elementOf(p);
-      PiSetting s;
-      const double late = e.dead_time + std::abs(std::min(e.lead, 0.0)) + 0.5 * Ts;
-      if (e.integrating) {  // skogestad2003
-        const double wait = std::max(late + e.second, Ts);
-        s.kp = 0.5 / (e.gain * wait);
-        s.ti_min = 8.0 * wait / 60.0;
-      } else if (e.time_constant < 0.0) {
-        // 1 + K kp < 0 stabilises K / (tau s + 1) with tau < 0; the more, the sooner it acts.
-        const double wait = std::max(late + e.second, Ts);
-        s.kp = -1.5 / e.gain * std::max(std::min(std::sqrt(-e.time_constant / wait), 4.0), 1.0);
-        s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
-        present(pair, s);
-      } else {
-        const Fopdt lag{e.gain, std::max(e.time_constant + e.second, 0.3 * Ts) / 60.0, late / 60.0};
-        const PiTuning t =
-            imcTuning(lag, std::max({lag.dead_time, 0.5 * lag.time_constant, Ts / 60.0}));
-        s = {t.kp, t.integral_time_min};
-      }
-      s.kp *= std::exp2(x[2 * p]);
-      s.ti_min *= std::exp2(x[2 * p + 1]);
-      settings.push_back(s);
+      settings.push_back(ruleOf(p));
+      settings.back().kp *= std::exp2(x[2 * p]);
+      settings.back().ti_min *= std::exp2(x[2 * p + 1]);
     }
     return settings;
   }
 
-  /// The gains in charge, where a PI holds the pair: of a plant that runs away others are a guess.
-  void present(const Pairing& pair, PiSetting& setting) const {
-    const PlantInfo& plant = brief_.loop.plant_info;
-    const YAML::Node in_charge = loadYaml(brief_.loop.resolved, brief_.loop.name)["controller"];
-    if (!brief_.closed) return;
-    for (const auto& loop : in_charge["loops"]) {
-      const double kp = loop["kp"].as<double>(0.0), ki_per_h = loop["ki_per_h"].as<double>(0.0);
-      if (loop["input"].as<std::string>("") !=
-              plant.inputs[static_cast<std::size_t>(pair.input)].name ||
-          loop["output"].as<std::string>("") !=
-              plant.outputs[static_cast<std::size_t>(pair.output)].name ||
-          !(kp / ki_per_h > 0.0))
-        continue;
-      setting.kp = loop["reverse"].as<bool>(false) ? -kp : kp;
-      setting.ti_min = kp / ki_per_h * 60.0;
+  /// The rule's, softer ones, and those in charge where a PI holds the pair: of a plant that runs
+  /// away others are a guess.
+  std::vector<Vector> piStarts() const {
+    std::vector<Vector> starts(4, Vector::Zero(2 * loops()));
+    for (Index p = 0; p < loops(); ++p) {
+      const bool stable = !elementOf(p).integrating && elementOf(p).time_constant >= 0.0;
+      for (std::size_t k = 1; k < starts.size(); ++k)
+        starts[k].segment(2 * p, 2) << -static_cast<double>(k),
+            stable ? 0.0 : static_cast<double>(k);
     }
+    Vector present = Vector::Zero(2 * loops());
+    for (Index p = 0; p < loops(); ++p) {
+      const PiSetting rule = ruleOf(p), now = inCharge(p, rule);
+      present.segment(2 * p, 2) << std::log2(now.kp / rule.kp), std::log2(now.ti_min / rule.ti_min);
+    }
+    if (present.allFinite()) starts.push_back(present);
+    return starts;
+  }
+
+  PiSetting inCharge(Index p, const PiSetting& otherwise) const {
+    const PlantInfo& plant = brief_.loop.plant_info;
+    const Pairing& pair = outline_.pairs[static_cast<std::size_t>(p)];
+    if (!brief_.closed) return otherwise;
+    const YAML::Node law = loadYaml(brief_.loop.resolved, brief_.loop.name)["controller"];
+    for (const auto& loop : law["loops"]) {
+      const double kp = loop["kp"].as<double>(0.0), ki_per_h = loop["ki_per_h"].as<double>(0.0);
+      if (loop["input"].as<std::string>("") ==
+              plant.inputs[static_cast<std::size_t>(pair.input)].name &&
+          loop["output"].as<std::string>("") ==
+              plant.outputs[static_cast<std::size_t>(pair.output)].name &&
+          kp / ki_per_h > 0.0)
+        return {loop["reverse"].as<bool>(false) ? -kp : kp, kp / ki_per_h * 60.0};
+    }
+    return otherwise;
   }
 
   std::string piText(const Vector& x) const {
@@ -346,8 +365,11 @@ class Designer {
 
   /// x: log10 of the moves' weight, in parts of what they cost, log10 of a disturbance's effect
   /// over noise, then log2 of the reference times of the held outputs.
-  Vector lawStart() const {
-    return 0.25 * Vector::Unit(2 + std::count(brief_.held.begin(), brief_.held.end(), true), 1);
+  std::vector<Vector> lawStarts() const {
+    Vector softer = Vector::Ones(2 + std::count(brief_.held.begin(), brief_.held.end(), true));
+    softer[1] = -0.5;
+    const Vector start = 0.25 * Vector::Unit(softer.size(), 1);
+    return {start, start + softer, start + 2.0 * softer, start + 3.0 * softer};
   }
 
   std::string lawText(const Vector& x) const {
@@ -553,10 +575,10 @@ class Designer {
   /// The cheapest setting found that is stable enough on the models tuned on. The one held out on
   /// which it is least stable joins them where that is not enough, and the search goes on.
   template <typename Text>
-  Vector searched(const std::string& what, const Vector& start, const Text& text,
+  Vector searched(const std::string& what, const std::vector<Vector>& starts, const Text& text,
                   DesignFigures& figures) const {
     std::vector<const TsModel*> asked = tuned_, others = held_out_;
-    Vector x = start;
+    Vector x;
     int count = 0;
     for (int round = 0;; ++round) {
       Vector stable;
@@ -571,6 +593,12 @@ class Designer {
         }
         return cost;
       };
+      double least = kInfinity;
+      for (std::size_t k = 0; k < starts.size() && round == 0; ++k) {
+        const double cost = judge(starts[k], least);
+        if (k == 0 || cost < least) x = starts[k];
+        least = std::min(least, cost);
+      }
       x = simplexSearch(x, params_.evaluations / (round > 0 ? 3 : 1), judge);
       const bool found = stable.size() > 0;
       if (found) x = stable;
@@ -612,34 +640,49 @@ class Designer {
     return all;
   }
 
-  void compare(Design& d) const {
-    d.law_figures.costs = costsOver(d.law, held_out_);
-    d.pi_figures.costs = costsOver(d.pi, held_out_);
-    const auto n = static_cast<double>(held_out_.size());
-    double mean = 0.0, square = 0.0;  // of the logarithm of the ratio
-    for (std::size_t m = 0; m < held_out_.size(); ++m) {
-      const double r = std::log(d.law_figures.costs[m] / d.pi_figures.costs[m]);
+  /// Costs over others, means of the pairs' ratios, and half widths of their 95 % intervals.
+  struct Ratio {
+    double mean{}, half{};  // logarithms
+    bool isBetter() const { return std::exp(mean + half) < kLeastBetter; }
+  };
+  static Ratio ratioOf(const std::vector<double>& costs, const std::vector<double>& others) {
+    const auto n = static_cast<double>(costs.size());
+    double mean = 0.0, square = 0.0;
+    for (std::size_t m = 0; m < costs.size(); ++m) {
+      const double r = std::log(costs[m] / others[m]);
       mean += r / n;
       square += r * r / n;
     }
-    const double half =
-        normalBound(0.95) * std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0));
-    d.ratio = std::exp(mean);
-    d.ratio_bound = d.ratio * std::expm1(half);
-    const bool pi_holds = d.pi_figures.worst_peak <= allowed_peak_;
-    const bool law_holds = d.law_figures.worst_peak <= allowed_peak_;
-    d.offers_law = law_holds && (!pi_holds || std::exp(mean + half) < kLeastBetter);
-    d.offers_pi = !d.offers_law && pi_holds;
-    if (!law_holds)
-      d.remarks.push_back("the law is not stable on every model with a sensitivity peak below " +
-                          shortText(allowed_peak_));
-    if (!pi_holds)
-      d.remarks.push_back("the PI is not stable on every model with a sensitivity peak below " +
-                          shortText(allowed_peak_));
+    return {mean, normalBound(0.95) * std::sqrt(std::max(square - mean * mean, 0.0) / (n - 1.0))};
+  }
+
+  void compare(Design& d) const {
+    d.law_figures.costs = costsOver(d.law, held_out_);
+    d.pi_figures.costs = costsOver(d.pi, held_out_);
+    const Ratio ratio = ratioOf(d.law_figures.costs, d.pi_figures.costs);
+    d.ratio = std::exp(ratio.mean);
+    d.ratio_bound = d.ratio * std::expm1(ratio.half);
+    if (hasPresent(brief_)) d.present_costs = costsOver(brief_.loop.resolved, held_out_);
+    const auto isFit = [&](const DesignFigures& figures, const std::string& name) {
+      const bool stable = figures.worst_peak <= allowed_peak_;
+      const bool better =
+          d.present_costs.empty() || ratioOf(figures.costs, d.present_costs).isBetter();
+      if (!stable)
+        d.remarks.push_back("the " + name +
+                            " is not stable on every model with a sensitivity peak below " +
+                            shortText(allowed_peak_));
+      else if (!better)
+        d.remarks.push_back("the " + name + " does not beat the control in charge");
+      return stable && better;
+    };
+    const bool law = isFit(d.law_figures, "law"), pi = isFit(d.pi_figures, "PI");
+    d.offers_law = law && (!pi || ratio.isBetter());
+    d.offers_pi = !d.offers_law && pi;
     d.remarks.push_back(d.offers_law ? "the law is offered: it costs " + shortText(d.ratio) +
                                            " of what the PI does"
-                        : d.offers_pi ? "the PI is offered: the law does not beat it"
-                                      : kNeither);
+                        : !d.offers_pi ? kNeither
+                        : law          ? "the PI is offered: the law does not beat it"
+                                       : "the PI is offered");
   }
 
   void lookAtDirections(Design& d) {
@@ -763,6 +806,7 @@ OrderedJson toJson(const Design& d, const PlantInfo& plant) {
           {"models_probed", d.probed},
           {"models_refuted", d.refuted},
           {"present_sensitivity_peak", numberOrNull(d.present_peak)},
+          {"present_costs", d.present_costs},
           {"law", figures(d.law_figures)},
           {"pi", figures(d.pi_figures)},
           {"weak_directions", weak},
