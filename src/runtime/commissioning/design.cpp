@@ -572,13 +572,27 @@ class Designer {
     return cost * std::pow(std::max(std::min(peak, kMostPeak) / allowed_peak_, 1.0), kPeakPower);
   }
 
-  /// The cheapest setting found that is stable enough on the models tuned on. The one held out on
+  template <typename Text>
+  Vector leastOf(const std::vector<Vector>& settings, const Text& text,
+                 const std::vector<const TsModel*>& asked) const {
+    Vector best = settings.front();
+    double least = kInfinity, peak{};
+    for (const Vector& x : settings) {
+      const double cost = value(text(x), asked, least, peak);
+      if (cost < least) best = x;
+      least = std::min(least, cost);
+    }
+    return best;
+  }
+
+  /// The cheapest setting found that is stable enough on the models tuned on, from the first of
+  /// `starts`, or from the best one where none was found. The model held out on
   /// which it is least stable joins them where that is not enough, and the search goes on.
   template <typename Text>
   Vector searched(const std::string& what, const std::vector<Vector>& starts, const Text& text,
                   DesignFigures& figures) const {
     std::vector<const TsModel*> asked = tuned_, others = held_out_;
-    Vector x;
+    Vector x = starts.front();
     int count = 0;
     for (int round = 0;; ++round) {
       Vector stable;
@@ -593,12 +607,6 @@ class Designer {
         }
         return cost;
       };
-      double least = kInfinity;
-      for (std::size_t k = 0; k < starts.size() && round == 0; ++k) {
-        const double cost = judge(starts[k], least);
-        if (k == 0 || cost < least) x = starts[k];
-        least = std::min(least, cost);
-      }
       x = simplexSearch(x, params_.evaluations / (round > 0 ? 3 : 1), judge);
       const bool found = stable.size() > 0;
       if (found) x = stable;
@@ -611,6 +619,7 @@ class Designer {
         figures.tuned = tunedCost(text(x));
         return x;
       }
+      if (!found && round == 0) x = leastOf(starts, text, asked);
       if (!found) continue;
       asked.push_back(others[static_cast<std::size_t>(last - more.begin())]);
       others.erase(others.begin() + (last - more.begin()));
