@@ -258,6 +258,16 @@ TEST(Design, LeavesOutModelsThatThePresentControlWouldNotHold) {
   EXPECT_NE(none.pi.find("kp:"), std::string::npos);
 }
 
+TEST(Design, AsksThePresentControlOfALoopWithoutAnEnd) {
+  const std::string folder =
+      folderOf("endless", kTankBrief, "tank.yaml",
+               "extends: heated_tank\nsampling: {duration_h: 0}\nsetpoint: {schedule: []}\n");
+  const CommissioningBrief brief = readBrief(inFolder(folder, "brief_in.yaml"));
+  const ProcessElement lag{2.5, 240.0, 0.0, 0.0, 60.0, false};
+  EXPECT_TRUE(presentHolds(brief, lagsOf(brief, ProcessKind::kStable, lag, {1.1, 0.9})));
+  EXPECT_FALSE(presentHolds(brief, lagsOf(brief, ProcessKind::kStable, lag, {-1.0, -2.0})));
+}
+
 /// A lag with dead time allows any peak above 1, and with integral action none of 1 or less
 /// (Bode's integral).
 TEST(Design, KeepsThePeakThatIsAskedForOrOffersNothing) {

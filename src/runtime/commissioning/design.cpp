@@ -749,6 +749,7 @@ LoopFile onModel(const LoopFile& loop, const TsModel& model, const LinearPoint& 
   LoopFile on = loop;
   on.external_plant = false;
   SimulationParams& sim = on.simulation;
+  sim.samples = 1;  // a loop that runs may have no end
   const InputLimits& limits = sim.actuator.limits;
   // A run leaves the operator's limits without ending: that is judged.
   std::vector<SignalInfo> ranges;
