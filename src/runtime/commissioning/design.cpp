@@ -38,7 +38,6 @@ constexpr int kMostRounds = 3;                        // of a search, behind its
 constexpr double kMostPresent = 10.0;  // sensitivity that a control which holds a plant may have
 constexpr double kWeakWeight = 0.3;    // of the square of a weak direction's gain
 constexpr double kZoneWeight = 0.01;   // of an output that may float
-constexpr double kLeastBetter = 1.0;   // cost ratio that a law must be below
 constexpr const char* kNeither = "neither is offered: test again, or allow more plant time";
 
 std::string mapOf(const std::vector<SignalInfo>& signals, const Vector& values) {
@@ -319,8 +318,7 @@ class Designer {
     return settings;
   }
 
-  /// The rule's, softer ones, and those in charge where a PI holds the pair: of a plant that runs
-  /// away others are a guess.
+  /// The rule's, softer ones, and those in charge where a PI holds the pair.
   std::vector<Vector> piStarts() const {
     std::vector<Vector> starts(4, Vector::Zero(2 * loops()));
     for (Index p = 0; p < loops(); ++p) {
@@ -562,8 +560,8 @@ class Designer {
            (sum / static_cast<double>(all.size()) + *std::max_element(all.begin(), all.end()));
   }
 
-  /// The cost, dearer the less stable the loop is on one of `asked`. That takes as long as twenty
-  /// runs and is asked only of what is below `least`.
+  /// The cost, dearer the less stable the loop is on one of `asked`. That takes several times as
+  /// long as the runs and is asked only of what is below `least`.
   double value(const std::string& text, const std::vector<const TsModel*>& asked, double least,
                double& peak) const {
     const double cost = tunedCost(text);
@@ -586,8 +584,8 @@ class Designer {
   }
 
   /// The cheapest setting found that is stable enough on the models tuned on, from the first of
-  /// `starts`, or from the best one where none was found. The model held out on
-  /// which it is least stable joins them where that is not enough, and the search goes on.
+  /// `starts`, or from the best one where none was found. The model held out on which it is least
+  /// stable joins them where that is not enough, and the search goes on.
   template <typename Text>
   Vector searched(const std::string& what, const std::vector<Vector>& starts, const Text& text,
                   DesignFigures& figures) const {
@@ -652,7 +650,7 @@ class Designer {
   /// Costs over others, means of the pairs' ratios, and half widths of their 95 % intervals.
   struct Ratio {
     double mean{}, half{};  // logarithms
-    bool isBetter() const { return std::exp(mean + half) < kLeastBetter; }
+    bool isBetter() const { return mean + half < 0.0; }
   };
   static Ratio ratioOf(const std::vector<double>& costs, const std::vector<double>& others) {
     const auto n = static_cast<double>(costs.size());
