@@ -277,12 +277,8 @@ const Vector& PlantTest::choose(const Measurement& now, const Vector& present) {
   return sent_ = sent(taken, present, sent_);
 }
 
-/// Heights for what is to be seen beside the noise, more where the plant time would end before the
-/// bounds are reached, within the room of the limits.
+/// Heights for what is to be seen beside the noise, within the room of the limits.
 void PlantTest::setAmplitudes() {
-  // Bounds shrink with the root of the rows: what is to be seen by then, at the least.
-  const double more = std::max(
-      1.0, worst_ * std::sqrt(static_cast<double>(rows()) / static_cast<double>(last_row_)));
   for (Index j = 0; j < n_u_; ++j) {
     double asked_for = 0.0, most = kMostAmplitude * span_[j];
     bool known = false;
@@ -303,7 +299,7 @@ void PlantTest::setAmplitudes() {
       known = true;
     }
     if (!known) asked_for = kGrowth * amplitude_[j];
-    asked_for = std::max(asked_for * more, kFirstAmplitude * span_[j]);
+    asked_for = std::max(asked_for, kFirstAmplitude * span_[j]);
     amplitude_[j] = std::min({asked_for, most, kGrowth * amplitude_[j]});
   }
 }
@@ -311,11 +307,11 @@ void PlantTest::setAmplitudes() {
 /// Are gains and delays known well enough? If not, which input needs more.
 void PlantTest::judge() {
   const double Ts = record_.info().sample_time_s;
-  worst_ = 0.0;
+  double worst = 0.0;
   std::string why;
   const auto need = [&](double ratio, Index i, Index j, const std::string& what) {
-    if (ratio <= worst_) return;
-    worst_ = ratio;
+    if (ratio <= worst) return;
+    worst = ratio;
     const auto& info = record_.info();
     why = what + " from " + info.inputs[static_cast<std::size_t>(j)].name + " to " +
           info.outputs[static_cast<std::size_t>(i)].name + " is known to " + shortText(ratio) +
@@ -349,7 +345,7 @@ void PlantTest::judge() {
   }
   const bool long_enough =
       settling_ > 0.0 && static_cast<double>(rows()) * Ts >= kSettlings * settling_;
-  enough_ = worst_ <= 1.0 && long_enough ? enough_ + 1 : 0;
+  enough_ = worst <= 1.0 && long_enough ? enough_ + 1 : 0;
   if (tested_ == 0) {
     reason_ = why;
     if (enough_ < kTwice) return;

@@ -94,7 +94,6 @@ class PlantTest {
   std::uint64_t turned_{};
   double settling_{};
   int enough_{};
-  double worst_{};  // bound of a gain or dead time, of the one asked for
   TestEnd end_{TestEnd::kNone};
   std::string reason_;
 };
