@@ -2,6 +2,7 @@
 import contextlib
 import os
 import pathlib
+import select
 import signal
 import socket
 import subprocess
@@ -67,6 +68,9 @@ def launched(env, words, kind, names):
         watch.stdout.readline()
         began = time.monotonic()
         launch = subprocess.Popen(["roslaunch", "--wait", *words], env=env, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while not select.select([watch.stdout], [], [], 0.2)[0]:
+            if launch.poll() is not None:
+                raise RuntimeError(f"roslaunch has ended with {launch.returncode}: roslaunch {' '.join(words)}")
         line = watch.stdout.readline()
         if not line:
             raise RuntimeError("nothing was heard of " + " ".join(names))

@@ -44,7 +44,9 @@ def pid_of(name, uri):
 def measure(loop, count, seconds):
     with tempfile.TemporaryDirectory() as folder, launching.master() as env:
         resolved = yaml.safe_load(subprocess.run(["fmbpc", "resolve", loop], capture_output=True, text=True, check=True).stdout)
-        plant = {"pace": "realtime", "speedup": resolved["sampling"]["sample_time_s"],
+        sample_time = resolved["sampling"]["sample_time_s"]
+        plant = {"pace": "realtime", "speedup": sample_time,
+                 "set": {"sampling.duration_h": (seconds + 5 * count + 600) * sample_time / 3600},  # none ends before it was measured
                  "loops": {f"l{i:03}": {"loop": loop} for i in range(count)}}
         file = pathlib.Path(folder, "plant.yaml")
         file.write_text(yaml.safe_dump(plant), encoding="utf-8")

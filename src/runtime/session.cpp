@@ -267,13 +267,15 @@ void ControllerSession::watchReaction(const Measurement& m) {
 }
 
 void ControllerSession::runLaw(const Measurement& m) {
-  if (interruption_ != nullptr || !arrival_reason_.empty()) {
+  const bool restarts = interruption_ != nullptr || !arrival_reason_.empty();
+  const Measurement& of_law = restarts ? withoutTest(m) : m;
+  if (restarts) {
     reset_reason_ = arrival_reason_;
     if (interruption_ != nullptr) {
       if (!reset_reason_.empty()) reset_reason_ += "; ";
       reset_reason_ += interruption_;
     }
-    controller_->reset(m);
+    controller_->reset(of_law);
     transfer_.reset(other_hand_ || transfer_.active());
     other_hand_ = false;
     interruption_ = nullptr;
@@ -281,13 +283,13 @@ void ControllerSession::runLaw(const Measurement& m) {
   }
   if (std::exchange(gains_due_, false)) lookAtGains(m);
   output_.begin();
-  controller_->step(m, setpoint_, output_);
+  controller_->step(of_law, setpoint_, output_);
   if (output_.reference.size() == m.outputs.size()) answer_.tracking.reference = output_.reference;
   if (!output_.ok) return hold(m, {});
   if (output_.input.size() != m.input_applied.size() || !output_.input.allFinite())
     return hold(m, {EventCode::kLawFailed});
   answer_.base.input = output_.input;
-  handOver(m);
+  handOver(of_law);
   limit(m);
   if (tap_) passToTest(m);
   answer_.base.source = output_.source;

@@ -182,6 +182,7 @@ class ControllerSession {
   void process(const Measurement& m);
   void lookAtMoves(const Measurement& m);
   const Measurement& seen(const Measurement& m);
+  const Measurement& withoutTest(const Measurement& m);
   void answered();
   void limit(const Measurement& m);
   void runLaw(const Measurement& m);
@@ -222,6 +223,7 @@ class ControllerSession {
   MoveOrigin moves_;
   Targets targets_;   // without outputs: there is no target layer
   Measurement seen_;  // with the input from which the law moves on; sized once
+  Measurement without_test_;
   SignalValidator plausibility_;
   TsModel model_;        // in use, matched to the plant; of a law that needs one
   Measurement present_;  // the last that was accepted; empty before the first

@@ -45,6 +45,16 @@ void ControllerSession::passToTest(const Measurement& m) {
   transfer_.reset(true);
 }
 
+/// The sample at which a law restarts. It begins at the applied input, and a test adds its own part
+/// anew: without that part, or each restart would add it once more.
+const Measurement& ControllerSession::withoutTest(const Measurement& m) {
+  const Vector added = tap_ && tap_->open() ? tap_->difference() : Vector();
+  if (added.size() == 0) return m;
+  without_test_ = m;
+  without_test_.input_applied -= added;
+  return without_test_;
+}
+
 /// Where somebody else has the inputs; a held sample is only one that is missing.
 void ControllerSession::endTest() {
   const bool taken = manual_ || unreleased_ || !takes_actions_ || fell_back_;

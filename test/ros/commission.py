@@ -81,6 +81,7 @@ class Commission(unittest.TestCase):
             for name in STAGES[STAGES.index(stage) + 1:]:
                 self.assertIsNone(figures[name], name)
         self.assertIn(kept["test"]["ended"], ("enough", "time"))
+        self.assertEqual(0, kept["test"]["limits_left"])
         self.assertIn(kept["design"]["offers"], ("law", "pi", "none"))
         lines = [line for line in self.plc.lines() if "asked" in line and line["remote"]]
         self.assertGreater(len(lines), 300)

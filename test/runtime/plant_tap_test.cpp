@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <thread>
 
+#include "session_fixture.hpp"
+
 namespace fpc {
 namespace plant_tap_test {
 
@@ -26,6 +28,25 @@ TEST(PlantTap, WhatTheStagesSeeIsWhatWentOut) {
     EXPECT_EQ(out[0], std::min(1.0, std::max(-1.0, wish)));
   }
   EXPECT_EQ(tap.late(), 0U);
+}
+
+using PlantTapSession = test_session::SessionFixture;
+
+// A law that restarts begins at the applied input. What the test adds is in it already.
+TEST_F(PlantTapSession, ARestartedLawDoesNotTakeTheTestsLevelForItsOwn) {
+  const auto tap = std::make_shared<PlantTap>(kInfinity);
+  session->announce(1);
+  session->test(tap);
+  double applied = 570.0;
+  for (std::uint32_t step = 0; step < 20; step += 2) {  // each other sample is lost
+    std::thread loop([&] { session->receive(test_session::sample(step, 1, applied)); });
+    const Vector present = tap->next().present;
+    tap->send(present.array() + 10.0);
+    loop.join();
+    applied = input();
+  }
+  EXPECT_EQ(law->resets.size(), 10U);
+  EXPECT_DOUBLE_EQ(applied, 570.0 + 10.0 + 10.0);  // one for each sample by the law
 }
 
 }  // namespace plant_tap_test

@@ -14,6 +14,11 @@ bool PlantTap::open() const {
   return !closed_;
 }
 
+Vector PlantTap::difference() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return difference_;
+}
+
 std::uint64_t PlantTap::late() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return late_;

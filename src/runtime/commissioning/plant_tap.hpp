@@ -27,6 +27,8 @@ class PlantTap final : public StagedPlant {
   /// No more samples, for a reason in words; the first one counts.
   void end(const std::string& why);
   bool open() const;
+  /// What the stages have in the input beside the law's own; empty before they sent anything.
+  Vector difference() const;
 
   // ---- the stages' side
   const Sample& next() override;
