@@ -48,6 +48,12 @@ ProcessElement drawnInverse(Engine& engine) {
   e.lead = -between(engine, 0.2, 0.6) * e.time_constant;
   return e;
 }
+ProcessElement drawnPair(Engine& engine) {
+  ProcessElement e = drawnLag(engine);
+  e.second = e.time_constant;
+  e.damping = between(engine, 0.3, 0.9);
+  return e;
+}
 ProcessElement drawnIntegrator(Engine& engine) {
   ProcessElement e = drawnLag(engine);
   e.gain *= 0.05;
@@ -60,6 +66,7 @@ ProcessElement drawnIntegrator(Engine& engine) {
 const Kind kKinds[] = {{"a lag and a dead time", drawnLag},
                        {"two lags and a dead time", drawnTwoLags},
                        {"with an inverse response", drawnInverse},
+                       {"a pair of complex poles", drawnPair},
                        {"an integrator", drawnIntegrator}};
 
 // ---- records

@@ -20,8 +20,11 @@ constexpr double kStartPole = 0.9;  // of the noise while starts are sought
 constexpr double kGridRatio = 1.7;  // of the lags that are tried first
 constexpr int kFitIterations = 40;
 constexpr double kWorthwhile = 6.0;    // by which Schwarz's criterion must fall
+constexpr double kWorthShape = 18.0;   // likewise, for the best of some hundred starts
 constexpr double kShortestLag = 0.15;  // of a sample
 constexpr double kConverged = 1e-7;    // of the cost, relative
+constexpr double kLowestDamping = 0.1, kHighestDamping = 1e3;
+constexpr double kMostLead = 1e3;  // of the lags: a gain that is hardly one beside its lead
 
 /// Shape of an element: which of its numbers are free.
 enum Shape { kNone = 0, kFirst = 1, kSecond = 2, kLead = 3 };
@@ -233,9 +236,66 @@ class Fitter {
     return left.squaredNorm();
   }
 
+  /// Two lags and a lead of element j, dead time on a coarse grid, gain and lead by least squares:
+  /// a fast effect and a slow one of the other sign are no single lag, from which none finds them.
+  ProcessElement startWithLead(const Candidate& c, std::size_t j) const {
+    Candidate others = c;
+    others.shapes[j] = kNone;
+    const auto pick = [&](const Vector& all, Index delay) {
+      Vector x(static_cast<Index>(rows_.size()));
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+        x[static_cast<Index>(i)] = rows_[i] < delay ? 0.0 : all[rows_[i] - delay];
+      x.array() -= x.mean();
+      return x;
+    };
+    const Vector left = pick(filtered(residualOf(others), c.noise), 0);
+    const std::vector<double> lags = lagGrid(), delays = delayGrid();
+    ProcessElement best = c.elements[j];
+    double most = 0.0;
+    const auto look = [&](ProcessElement e) {
+      e.gain = 1.0;
+      const auto effect = [&](double lead) {
+        e.lead = lead;
+        return filteredResponse(response(e, static_cast<Index>(j)), c.noise);
+      };
+      const double unit = scaleOf(e);
+      const Vector straight = effect(0.0), bent = effect(unit) - straight;
+      for (const double delay : delays) {
+        const Vector a = pick(straight, static_cast<Index>(delay)),
+                     b = pick(bent, static_cast<Index>(delay));
+        const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm();
+        const double det = aa * bb - ab * ab;
+        if (!(det > 1e-9 * aa * bb)) continue;
+        const double al = a.dot(left), bl = b.dot(left);
+        const double gain = (bb * al - ab * bl) / det, lead = (aa * bl - ab * al) / det;
+        const double explained = gain * al + lead * bl;
+        if (explained <= most || gain == 0.0) continue;
+        most = explained;
+        best = e;
+        best.gain = gain;
+        best.lead = lead * unit / gain;
+        best.dead_time = delay * Ts_;
+      }
+    };
+    for (std::size_t one = 0; one < lags.size(); one += 2) {
+      ProcessElement e = shaped(c, {});
+      e.second = lags[one] * Ts_;
+      if (c.kind != ProcessKind::kStable) {
+        look(e);
+        continue;
+      }
+      for (std::size_t other = one; other < lags.size(); other += 2) {
+        e.time_constant = lags[other] * Ts_;
+        look(e);
+      }
+    }
+    return best;
+  }
+
   // ---- parameters
 
-  /// Free numbers: pole (unstable), then gain, lag, second lag, lead, dead time of each element,
+  /// Free numbers: pole (unstable), then gain, lag (of two: their geometric mean, then the damping),
+  /// gain times lead over the lags, dead time of each element,
   /// then the noise, then the constant.
   Index shapeParameters(const Candidate& c) const {
     Index n = c.kind == ProcessKind::kUnstable ? 1 : 0;
@@ -250,7 +310,7 @@ class Fitter {
   }
 
   double lowLag() const { return kShortestLag * Ts_; }
-  double highLag() const { return 2.0 * static_cast<double>(N_) * Ts_; }
+  double highLag() const { return 0.25 * static_cast<double>(N_) * Ts_; }
 
   Vector pack(const Candidate& c) const {
     std::vector<double> p;
@@ -259,21 +319,23 @@ class Fitter {
       const ProcessElement& e = c.elements[j];
       if (c.shapes[j] == kNone) continue;
       p.push_back(e.gain);
-      if (c.kind == ProcessKind::kStable) {
-        p.push_back(std::log(e.time_constant));
-        if (c.shapes[j] != kFirst) p.push_back(std::log(std::max(e.second, lowLag())));
-      } else {
+      if (c.kind != ProcessKind::kStable) {
         p.push_back(std::log(std::max(e.second, lowLag())));
+      } else if (c.shapes[j] == kFirst) {
+        p.push_back(std::log(e.time_constant));
+      } else {  // smooth where two lags meet, as they themselves are not
+        const double second = std::max(e.second, lowLag());
+        const double both = std::sqrt(e.time_constant * second);
+        p.push_back(std::log(both));
+        p.push_back(
+            std::log(e.damping < 1.0 ? e.damping : 0.5 * (e.time_constant + second) / both));
       }
-      if (c.shapes[j] == kLead) p.push_back(e.lead / scaleOf(e));
+      if (c.shapes[j] == kLead) p.push_back(e.gain * e.lead / scaleOf(e));
       p.push_back(e.dead_time / Ts_);
     }
     return Eigen::Map<const Vector>(p.data(), static_cast<Index>(p.size()));
   }
-  static double scaleOf(const ProcessElement& e) {
-    return std::max(e.integrating || e.time_constant < 0.0 ? e.second : e.time_constant + e.second,
-                    1e-300);
-  }
+  static double scaleOf(const ProcessElement& e) { return std::max(e.lags(), 1e-300); }
   void unpack(const Vector& p, Candidate& c) const {
     Index i = 0;
     const double low = std::log(lowLag()), high = std::log(highLag());
@@ -284,13 +346,24 @@ class Fitter {
       if (c.shapes[j] == kNone) continue;
       ProcessElement e = shaped(c, {});
       e.gain = p[i++];
-      if (c.kind == ProcessKind::kStable) {
-        e.time_constant = lag(p[i++]);
-        if (c.shapes[j] != kFirst) e.second = lag(p[i++]);
-      } else {
+      if (c.kind != ProcessKind::kStable) {
         e.second = lag(p[i++]);
+      } else if (c.shapes[j] == kFirst) {
+        e.time_constant = lag(p[i++]);
+      } else {
+        const double both = lag(p[i++]);
+        const double damping = std::clamp(std::exp(p[i++]), kLowestDamping, kHighestDamping);
+        const double apart = std::sqrt(std::max(damping * damping - 1.0, 0.0));
+        e.damping = std::min(damping, 1.0);
+        const double split = std::max(damping, 1.0) + apart;
+        e.time_constant = std::min(both * split, highLag());
+        e.second = std::max(both / split, lowLag());
       }
-      if (c.shapes[j] == kLead) e.lead = std::clamp(p[i++], -20.0, 20.0) * scaleOf(e);
+      if (c.shapes[j] == kLead) {
+        const double bent = p[i++], least = std::abs(bent) / kMostLead;
+        if (std::abs(e.gain) < least) e.gain = std::copysign(least, e.gain);
+        if (e.gain != 0.0) e.lead = bent / e.gain * scaleOf(e);
+      }
       e.dead_time = std::clamp(p[i++], 0.0, longest_) * Ts_;
       c.elements[j] = e;
     }
@@ -389,10 +462,17 @@ class Fitter {
       Candidate beside = c;
       for (Index a = 0; a < n; ++a) {
         const bool is_gain = a == 0, is_delay = a == n - 1;
-        if (is_gain) {
+        const bool is_lead = c.shapes[j] == kLead && a == n - 2;
+        if (is_gain || is_lead) {  // linear
           ProcessElement unit = c.elements[j];
           unit.gain = 1.0;
-          put(i + a, -filteredResponse(response(unit, input), c.noise));
+          unit.lead = 0.0;
+          Vector effect = response(unit, input);
+          if (is_lead) {
+            unit.lead = scaleOf(unit);
+            effect = response(unit, input) - effect;
+          }
+          put(i + a, -filteredResponse(effect, c.noise));
           continue;
         }
         const double step = is_delay ? 1e-3 : 1e-4;
@@ -476,7 +556,7 @@ class Fitter {
 
   double tryShape(Candidate& c, std::size_t j, Shape shape, double value) {
     Candidate best = c;
-    double least = value - kWorthwhile;
+    double least = value - kWorthShape;
     const ProcessElement from = c.elements[j];
     std::vector<ProcessElement> starts;
     if (shape == kSecond) {
@@ -494,6 +574,7 @@ class Fitter {
         if (lead < 0.0) e.dead_time = 0.5 * from.dead_time;
         starts.push_back(e);
       }
+      starts.push_back(startWithLead(c, j));
     }
     for (const ProcessElement& e : starts) {
       Candidate next = c;
@@ -508,7 +589,7 @@ class Fitter {
         best = next;
       }
     }
-    if (least < value - kWorthwhile) {
+    if (least < value - kWorthShape) {
       c = best;
       return least;
     }
@@ -614,13 +695,12 @@ class Fitter {
       // The mean residence time, by its slopes with respect to the element's numbers.
       Vector slope = Vector::Zero(covariance.rows());
       const ProcessElement& e = out.element;
-      if (c.kind == ProcessKind::kStable) {
-        slope[i + 1] = e.time_constant;
-        if (c.shapes[j] != kFirst) slope[i + 2] = e.second;
-      } else {
-        slope[i + 1] = e.second;
+      slope[i + 1] = e.lags() - e.lead;
+      if (c.kind == ProcessKind::kStable && c.shapes[j] != kFirst) slope[i + 2] = slope[i + 1];
+      if (c.shapes[j] == kLead) {
+        slope[i] = e.lead / e.gain;
+        slope[i + n - 2] = -scaleOf(e) / e.gain;
       }
-      if (c.shapes[j] == kLead) slope[i + n - 2] = -scaleOf(e);
       slope[i + n - 1] = Ts_;
       out.time_bound = z * std::sqrt(std::max(slope.dot(covariance * slope), 0.0));
       i += n;

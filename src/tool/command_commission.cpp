@@ -46,7 +46,7 @@ void printTest(const Json& stage) {
 
 void printModel(const Json& stage) {
   std::vector<std::vector<std::string>> rows{
-      {"  element", "gain", "+-", "lags s", "lead s", "dead time s", "+-", "kind"}};
+      {"  element", "gain", "+-", "lags s", "damping", "lead s", "dead time s", "+-", "kind"}};
   for (const auto& y : stage["outputs"])
     for (const auto& e : y["elements"]) {
       const std::string name =
@@ -57,8 +57,8 @@ void printModel(const Json& stage) {
       }
       rows.push_back({name, figure(e["gain"]), figure(e["gain_bound"]),
                       figure(e["time_constant_s"]) + " " + figure(e["second_s"]),
-                      figure(e["lead_s"]), figure(e["dead_time_s"]), figure(e["dead_time_bound_s"]),
-                      y["kind"].get<std::string>()});
+                      figure(e["damping"]), figure(e["lead_s"]), figure(e["dead_time_s"]),
+                      figure(e["dead_time_bound_s"]), y["kind"].get<std::string>()});
     }
   std::cout << alignedTable(rows);
 }

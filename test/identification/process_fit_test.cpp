@@ -37,6 +37,10 @@ TEST(ProcessElement, SamplesAreThoseOfTheStepResponse) {
     if (trial % 5 == 0) e.time_constant = -e.time_constant - 20.0;
     if (e.integrating && e.second == 0.0) e.lead = 0.0;
     if (e.second == 0.0) e.lead = 0.0;
+    if (trial % 4 == 1 && e.time_constant > 0.0) {
+      e.second = e.time_constant;
+      e.damping = 0.1 + 0.9 * uniform(engine);
+    }
     const Matrix ones = Matrix::Ones(60, 1);
     Response response(e, 1.3);
     for (Index k = 0; k < 60; ++k) {
@@ -55,6 +59,39 @@ TEST(ProcessFit, WithoutNoiseTheElementIsFound) {
   EXPECT_NEAR(fit.elements[0].element.gain, 2.0, 1e-3);
   EXPECT_NEAR(fit.elements[0].element.dead_time, 3.4, 0.01);
   EXPECT_NEAR(fit.elements[0].element.time_constant, 12.0, 0.02);
+}
+
+// As of an exothermic reactor: no two real lags give such a response.
+TEST(ProcessFit, FindsAPairOfComplexPoles) {
+  ProcessElement e = lag(2.0, 8.0, 2.4, 8.0, -3.0);
+  e.damping = 0.4;
+  const Data d = record(e, 0.1, 0.01, 1.0, {0.05}, 600, 3);
+  const ElementEstimate found = fitProcess(d.u, d.y, 1.0).elements[0];
+  EXPECT_NEAR(found.element.damping, 0.4, 0.03);
+  EXPECT_NEAR(found.element.time_constant, 8.0, 0.3);
+  EXPECT_NEAR(found.element.gain, 2.0, 2.0 * found.gain_bound);
+  EXPECT_LT(found.gain_bound, 0.1);
+}
+
+// A fast effect and a slow one of the other sign, which no single lag begins to describe.
+TEST(ProcessFit, FindsAFastEffectAgainstASlowOne) {
+  const ProcessElement e = lag(-1.0, 40.0, 1.0, 3.0, -60.0);
+  const Data d = record(e, 0.0, 0.0, 1.0, {0.02}, 800, 8);
+  const ProcessFit fit = fitProcess(d.u, d.y, 1.0);
+  EXPECT_EQ(fit.kind, ProcessKind::kStable);
+  EXPECT_NEAR(fit.elements[0].element.gain, -1.0, 2.0 * fit.elements[0].gain_bound);
+  EXPECT_LT(fit.one_step, 0.021);
+}
+
+// Two lags that are one have no split that a record could show: every member has some.
+TEST(ProcessFit, MembersOfTheEnsembleHaveLagsLikeTheRecords) {
+  const ProcessElement e = lag(2.0, 8.0, 3.0, 8.0);
+  const Data d = record(e, 0.0, 0.0, 1.0, {0.05}, 400, 2);
+  for (const auto& member : fitProcess(d.u, d.y, 1.0).ensemble) {
+    EXPECT_GT(member[0].lags(), 10.0);
+    EXPECT_LT(member[0].lags(), 25.0);
+    EXPECT_LT(member[0].settling(), 60.0);
+  }
 }
 
 TEST(ProcessFit, BoundsHoldUnderFeedbackWithColouredNoiseAndDrift) {

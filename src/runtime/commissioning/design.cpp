@@ -299,7 +299,7 @@ class Designer {
       s.kp = -1.5 / e.gain * std::max(std::min(std::sqrt(-e.time_constant / wait), 4.0), 1.0);
       s.ti_min = 4.0 * std::max(-e.time_constant, wait) / 60.0;
     } else {
-      const Fopdt lag{e.gain, std::max(e.time_constant + e.second, 0.3 * Ts) / 60.0, late / 60.0};
+      const Fopdt lag{e.gain, std::max(e.lags(), 0.3 * Ts) / 60.0, late / 60.0};
       const PiTuning t =
           imcTuning(lag, std::max({lag.dead_time, 0.5 * lag.time_constant, Ts / 60.0}));
       s = {t.kp, t.integral_time_min};
@@ -386,8 +386,7 @@ class Designer {
         const ProcessElement& e = fit.elements[static_cast<std::size_t>(j)].element;
         if (std::abs(outline_.gain(i, j)) * outline_.u_range[j] <= most) continue;
         most = std::abs(outline_.gain(i, j)) * outline_.u_range[j];
-        const double first = e.integrating || e.time_constant < 0.0 ? 0.0 : e.time_constant;
-        lag = std::max({0.3 * (first + e.second), 0.5 * e.dead_time, 0.5 * Ts});
+        lag = std::max({0.3 * e.lags(), 0.5 * e.dead_time, 0.5 * Ts});
       }
       pole[i] = std::exp(-Ts / (lag * (held ? std::exp2(x[next]) : 1.0)));
       if (held) ++next;

@@ -336,11 +336,8 @@ void PlantTest::judge() {
       const double allowed = params_.gain_tolerance * largest;
       need(allowed > 0.0 ? e.gain_bound * span_[j] / allowed : 1e9, i, j, "the gain");
       if (!e.seen || std::abs(e.element.gain) * span_[j] < kMatters * largest) continue;
-      const double lags =
-          (e.element.integrating || e.element.time_constant < 0.0 ? 0.0 : e.element.time_constant) +
-          e.element.second;
-      need(e.dead_time_bound / std::max(Ts, kDeadTime * (e.element.dead_time + lags)), i, j,
-           "the dead time");
+      const double allowed_time = kDeadTime * (e.element.dead_time + e.element.lags());
+      need(e.dead_time_bound / std::max(Ts, allowed_time), i, j, "the dead time");
     }
   }
   const bool long_enough =

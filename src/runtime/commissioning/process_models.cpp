@@ -58,8 +58,13 @@ TsModel modelOf(const TsModel& names, const std::vector<ProcessFit>& fits, int m
 }
 
 OrderedJson elementJson(const ProcessElement& e) {
-  return {{"gain", e.gain},   {"time_constant_s", e.time_constant}, {"second_s", e.second},
-          {"lead_s", e.lead}, {"dead_time_s", e.dead_time},         {"integrating", e.integrating}};
+  return {{"gain", e.gain},
+          {"time_constant_s", e.time_constant},
+          {"second_s", e.second},
+          {"damping", e.damping},
+          {"lead_s", e.lead},
+          {"dead_time_s", e.dead_time},
+          {"integrating", e.integrating}};
 }
 
 ProcessElement elementOf(const OrderedJson& json) {
@@ -67,6 +72,7 @@ ProcessElement elementOf(const OrderedJson& json) {
   e.gain = json.at("gain");
   e.time_constant = json.at("time_constant_s");
   e.second = json.at("second_s");
+  e.damping = json.at("damping");
   e.lead = json.at("lead_s");
   e.dead_time = json.at("dead_time_s");
   e.integrating = json.at("integrating");
