@@ -294,9 +294,9 @@ class Fitter {
 
   // ---- parameters
 
-  /// Free numbers: pole (unstable), then gain, lag (of two: their geometric mean, then the damping),
-  /// gain times lead over the lags, dead time of each element,
-  /// then the noise, then the constant.
+  /// Free numbers: pole (unstable), then gain, lag (of two: their geometric mean, then the
+  /// damping), gain times lead over the lags, dead time of each element, then the noise, then the
+  /// constant.
   Index shapeParameters(const Candidate& c) const {
     Index n = c.kind == ProcessKind::kUnstable ? 1 : 0;
     for (const Shape s : c.shapes) n += countOf(c.kind, s);
