@@ -20,7 +20,7 @@ constexpr double kStartPole = 0.9;  // of the noise while starts are sought
 constexpr double kGridRatio = 1.7;  // of the lags that are tried first
 constexpr int kFitIterations = 40;
 constexpr double kWorthwhile = 6.0;    // by which Schwarz's criterion must fall
-constexpr double kWorthShape = 18.0;   // likewise, for the best of some hundred starts
+constexpr double kWorthLead = 18.0;    // likewise, for the best of some hundred starts
 constexpr double kShortestLag = 0.15;  // of a sample
 constexpr double kConverged = 1e-7;    // of the cost, relative
 constexpr double kLowestDamping = 0.1, kHighestDamping = 1e3;
@@ -556,7 +556,8 @@ class Fitter {
 
   double tryShape(Candidate& c, std::size_t j, Shape shape, double value) {
     Candidate best = c;
-    double least = value - kWorthShape;
+    const double asked = shape == kLead ? kWorthLead : kWorthwhile;
+    double least = value - asked;
     const ProcessElement from = c.elements[j];
     std::vector<ProcessElement> starts;
     if (shape == kSecond) {
@@ -589,7 +590,7 @@ class Fitter {
         best = next;
       }
     }
-    if (least < value - kWorthShape) {
+    if (least < value - asked) {
       c = best;
       return least;
     }
